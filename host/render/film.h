@@ -1,0 +1,32 @@
+// What a render leaves behind: one value per pixel and channel.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+namespace raygate {
+
+/// The id of a pixel whose ray hits nothing.
+inline constexpr std::uint32_t kNoPrimitive = std::numeric_limits<std::uint32_t>::max();
+
+/// Pixels [x0, x1) x [y0, y1) of a larger picture, row 0 at the top.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  [[nodiscard]] int width() const { return x1 - x0; }
+  [[nodiscard]] int height() const { return y1 - y0; }
+};
+
+/// Scene-linear picture of `window` (the crop) within a `width` x `height` frame.
+/// All arrays have window.width() * window.height() elements, row-major, top row first.
+struct Film {
+  int width = 0, height = 0;
+  PixelRect window;
+  std::vector<glm::vec4> color;          ///< R G B A, scene-linear, premultiplied; A = 0 where nothing is hit
+  std::vector<float> depth;              ///< Z: distance along the camera's axis; +infinity for a miss
+  std::vector<glm::vec3> normal;         ///< unit shading normal towards the viewer; 0 for a miss
+  std::vector<std::uint32_t> primitive;  ///< triangle index of the scene; kNoPrimitive for a miss
+};
+
+}  // namespace raygate

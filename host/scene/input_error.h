@@ -1,0 +1,19 @@
+// The one exception for what a user gave us and we cannot use.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace raygate {
+
+/// One clear line: what was found and what was expected, with the file and line where there is
+/// one ("scene.obj:12: vertex index 9 in a face, but the file has 8 vertices so far").
+/// Caught once, in main, which prints it and exits with status 2.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  InputError(const std::string& file, std::size_t line, const std::string& what)
+      : std::runtime_error(file + ":" + std::to_string(line) + ": " + what) {}
+};
+
+}  // namespace raygate
