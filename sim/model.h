@@ -1,0 +1,66 @@
+// Owns a Verilated model, whatever its top.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "verilated.h"
+
+namespace raygate {
+
+/// One Verilated model `Top` (a class that Verilator made) in a context of its own, so that each
+/// thread may have one. Ports are reached by `model->port`. Neither copied nor moved: waves and
+/// contexts keep its address.
+template <class Top>
+class Model {
+ public:
+  Model() = default;
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
+  // Verilator 5.006 can hang when a model is taken down while another's context is the thread's.
+  ~Model() {
+    Verilated::threadContextp(context_.get());
+    top_->final();
+    top_.reset();
+  }
+
+  Top* operator->() { return top_.get(); }
+  const Top* operator->() const { return top_.get(); }
+  Top& operator*() { return *top_; }
+  VerilatedContext& context() { return *context_; }
+
+  /// Lets the outputs follow the inputs: all that a combinational top needs.
+  void eval() { top_->eval(); }
+
+  /// One clock cycle: a rising edge with the inputs as they are, then the falling edge. The
+  /// outputs read afterwards are those between this rising edge and the next.
+  void clock() {
+    top_->clk_i = 1;
+    top_->eval();
+    top_->clk_i = 0;
+    top_->eval();
+    ++clocks_;
+  }
+
+  /// Pulls the reset low without a clock edge (it is asynchronous) and lets go of it.
+  void reset() {
+    top_->clk_i = 0;
+    top_->rst_ni = 1;
+    top_->eval();
+    top_->rst_ni = 0;
+    top_->eval();
+    top_->rst_ni = 1;
+    top_->eval();
+  }
+
+  /// Clock cycles since construction.
+  [[nodiscard]] std::uint64_t clocks() const { return clocks_; }
+
+ private:
+  std::unique_ptr<VerilatedContext> context_ = std::make_unique<VerilatedContext>();
+  std::unique_ptr<Top> top_ = std::make_unique<Top>(context_.get(), "");
+  std::uint64_t clocks_ = 0;
+};
+
+}  // namespace raygate

@@ -1,0 +1,78 @@
+# Verilated models, and the tests that use them.
+#
+#   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [TRACE])
+#     A static library `fp_adder_f16`: module TOP of hw/ with these parameters, as class
+#     Vfp_adder_f16 in "Vfp_adder_f16.h". TRACE makes it writable to a waveform (sim/wave.h), at
+#     the price of speed. Name a model after its module and what its parameters stand for; models
+#     that several programs use are built once.
+#
+#   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...])
+#     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest.
+#
+# Debian's verilate() isn't used: it runs Verilator while CMake configures, one model after the
+# other, and compiles the run-time library again for each. Here a model is one build step and one
+# translation unit, so that the compiler sees across Verilator's functions.
+
+find_program(VERILATOR_BIN NAMES verilator_bin HINTS $ENV{VERILATOR_ROOT}/bin REQUIRED)
+find_path(VERILATOR_INCLUDE verilated.h
+  HINTS $ENV{VERILATOR_ROOT}/include /usr/share/verilator/include REQUIRED)
+
+# What all models share; waves are written as VCD, which needs no other library.
+add_library(verilated STATIC
+  ${VERILATOR_INCLUDE}/verilated.cpp
+  ${VERILATOR_INCLUDE}/verilated_threads.cpp
+  ${VERILATOR_INCLUDE}/verilated_vcd_c.cpp)
+target_include_directories(verilated SYSTEM PUBLIC
+  ${VERILATOR_INCLUDE} ${VERILATOR_INCLUDE}/vltstd)
+target_link_libraries(verilated PUBLIC Threads::Threads)
+target_compile_options(verilated PRIVATE -w)
+
+# Packages come first, a package after those it uses.
+file(GLOB arith_packages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/arith/*_pkg.sv)
+file(GLOB fp_packages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/fp/*_pkg.sv)
+file(GLOB hit_test_packages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/hit_test/*_pkg.sv)
+set(RAYGATE_HW_PACKAGES ${arith_packages} ${fp_packages} ${hit_test_packages})
+
+# Every warning stops the build, UNOPTFLAT (a loop in the logic, simulated by repetition) too.
+set(RAYGATE_VERILATOR_FLAGS -Wall
+  -y ${CMAKE_SOURCE_DIR}/hw/arith -y ${CMAKE_SOURCE_DIR}/hw/fp -y ${CMAKE_SOURCE_DIR}/hw/hit_test)
+
+function(raygate_model NAME)
+  cmake_parse_arguments(PARSE_ARGV 1 MODEL "TRACE" "TOP" "PARAMETERS")
+  if(NOT MODEL_TOP OR MODEL_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [TRACE], "
+      "got ${ARGN}")
+  endif()
+  file(GLOB top_file ${CMAKE_SOURCE_DIR}/hw/*/${MODEL_TOP}.sv)
+  if(NOT top_file)
+    message(FATAL_ERROR "raygate_model(${NAME}): no hw/*/${MODEL_TOP}.sv")
+  endif()
+
+  set(dir ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.verilated)
+  set(all ${dir}/all.cpp)  # includes all that Verilator wrote, whose names only it knows
+  list(TRANSFORM MODEL_PARAMETERS PREPEND -G)
+  set(trace $<$<BOOL:${MODEL_TRACE}>:--trace>)
+  add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${NAME}.h
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
+    COMMAND ${VERILATOR_BIN} --cc -O3 --x-assign fast --x-initial fast --no-timing
+      ${RAYGATE_VERILATOR_FLAGS} ${trace} --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
+      --top-module ${MODEL_TOP} ${MODEL_PARAMETERS} ${RAYGATE_HW_PACKAGES} ${top_file}
+    COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${NAME} -P ${CMAKE_SOURCE_DIR}/sim/gather.cmake
+    DEPENDS ${top_file} ${RAYGATE_HW_PACKAGES} ${CMAKE_SOURCE_DIR}/sim/gather.cmake
+    DEPFILE ${dir}/all.d
+    COMMENT "Verilating ${NAME}" VERBATIM COMMAND_EXPAND_LISTS)
+
+  add_library(${NAME} STATIC ${all})
+  target_include_directories(${NAME} SYSTEM PUBLIC ${dir})
+  target_link_libraries(${NAME} PUBLIC verilated)
+  target_compile_definitions(${NAME} PRIVATE VM_TRACE=$<BOOL:${MODEL_TRACE}>)
+  # The code is Verilator's: no warnings, no sanitizers, and optimised in every kind of build.
+  target_compile_options(${NAME} PRIVATE -w -O3 -fno-sanitize=all)
+endfunction()
+
+function(raygate_sim_test NAME)
+  cmake_parse_arguments(PARSE_ARGV 1 TEST "" "" "MODELS;LIBRARIES")
+  add_executable(${NAME} ${NAME}.cpp)
+  target_link_libraries(${NAME} PRIVATE ${TEST_MODELS} ${TEST_LIBRARIES} GTest::gtest_main)
+  gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60)
+endfunction()
