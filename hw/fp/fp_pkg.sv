@@ -1,0 +1,30 @@
+// What all floating-point cores share: rounding modes and exception flags.
+//
+// Every core takes a format as two parameters, ExpWidth and FracWidth (binary32: 8 and 23,
+// binary16: 5 and 10, bfloat16: 8 and 7), packed as IEEE 754 has it: sign, biased exponent,
+// fraction. Subnormals are read and given; every NaN result is the one quiet NaN with sign 0 and
+// only the top fraction bit set (0x7fc00000 in binary32). Formats need 2 <= FracWidth <=
+// 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits.
+//
+// Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
+package fp_pkg;
+
+  // RISC-V's encoding. The three values left over round towards zero.
+  typedef enum logic [2:0] {
+    RoundNearestEven         = 3'd0,
+    RoundTowardZero          = 3'd1,
+    RoundDown                = 3'd2,
+    RoundUp                  = 3'd3,
+    RoundNearestMaxMagnitude = 3'd4
+  } rounding_mode_e;
+
+  // Inexact is bit 0: the order in which RISC-V and TestFloat write them.
+  typedef struct packed {
+    logic invalid;
+    logic divide_by_zero;
+    logic overflow;
+    logic underflow;
+    logic inexact;
+  } flags_t;
+
+endpackage

@@ -1,0 +1,167 @@
+// The one rounder: an exact value in, an IEEE number and its flags out.
+//
+// The value is (-1)**sign_i * significand_i / 2**(FracWidth+3) * 2**(exponent_i + 1 - bias), with
+//   significand_i  two integer bits, FracWidth fraction bits, guard, round, sticky (the OR of all
+//                  bits further down). In [1, 4): a product or a quotient need not be normalised,
+//                  the choice between [1, 2) and [2, 4) is made here.
+//   exponent_i     the biased exponent *less one*, signed. So the packed word is exponent_i with
+//                  the integer bits added; a negative one means that the result may be subnormal,
+//                  and its complement is how far to shift right, with no adder on the way.
+//
+// SubnormalShift = 0 takes the right shift out, for a core that has its significand in place
+// already: exponent_i is then never negative, and where it is 0 significand_i may be anything in
+// [0, 4), zero included. (A sum's subnormal results are exact and come out in place.)
+//
+// What overrides what, first to last: nan_i (the canonical NaN), infinity_i, zero_i, overflow, the
+// rounded value. Any of the three inputs silences overflow, underflow and inexact; invalid_i and
+// divide_by_zero_i go straight to the flags. sign_i is the sign of every result but NaN.
+//
+// Tininess is detected after rounding with tininess_after_i = 1 (the value rounded with unbounded
+// exponent is below 2**(1-bias)), else before; underflow is tininess with inexactness.
+//
+// Combinational. Error: none but the rounding, 0.5 ulp to nearest, below 1 ulp in other modes.
+// Source: IEEE 754-2019, clauses 4.3 and 7.4 to 7.6.
+module fp_round #(
+  parameter int unsigned ExpWidth       = 8,
+  parameter int unsigned FracWidth      = 23,
+  parameter bit          SubnormalShift = 1'b1
+) (
+  input  logic                          sign_i,
+  input  logic signed [ExpWidth+1:0]    exponent_i,
+  input  logic        [FracWidth+4:0]   significand_i,
+  input  logic                          nan_i,
+  input  logic                          infinity_i,
+  input  logic                          zero_i,
+  input  logic                          invalid_i,
+  input  logic                          divide_by_zero_i,
+  input  fp_pkg::rounding_mode_e        rounding_mode_i,
+  input  logic                          tininess_after_i,
+  output logic [ExpWidth+FracWidth:0]   result_o,
+  output fp_pkg::flags_t                flags_o
+);
+
+  if (FracWidth < 2 || FracWidth > 2 ** (ExpWidth - 1)) begin : g_check
+    $error("fp_round: a format needs 2 <= FracWidth <= 2**(ExpWidth-1)");
+  end
+
+  localparam int unsigned SigWidth = FracWidth + 5;  // 2 integer, fraction, guard, round, sticky
+  localparam int unsigned FieldWidth = ExpWidth + 1;  // exponent field, one bit more for overflow
+  localparam int unsigned WordWidth = ExpWidth + FracWidth;
+  localparam logic [FieldWidth-1:0] InfField = {1'b0, {ExpWidth{1'b1}}};
+
+  // ---- Rounding mode: to nearest, or away from zero for this sign (neither: towards zero)
+
+  logic nearest_even, nearest, away;
+  assign nearest_even = rounding_mode_i == fp_pkg::RoundNearestEven;
+  assign nearest = nearest_even || rounding_mode_i == fp_pkg::RoundNearestMaxMagnitude;
+  assign away = rounding_mode_i == (sign_i ? fp_pkg::RoundDown : fp_pkg::RoundUp);
+
+  // ---- Subnormal results: shift right until the exponent is the smallest one
+
+  logic [SigWidth-1:0] placed;
+  logic [FieldWidth-1:0] base;  // exponent_i, or 0 where that is negative
+  logic negative;
+
+  assign negative = exponent_i[ExpWidth+1];
+  assign base = exponent_i[FieldWidth-1:0] & {FieldWidth{~negative}};
+
+  if (SubnormalShift) begin : g_shift
+    // By -exponent_i = ~exponent_i + 1; all from SigWidth on leave the sticky bit alone.
+    localparam int unsigned ShiftWidth = $clog2(SigWidth);
+    localparam int unsigned MaxShift = 2 ** ShiftWidth - 1;
+    logic [ExpWidth:0] complement;
+    logic [ShiftWidth-1:0] amount;
+    logic [SigWidth-1:0] half, lost;
+
+    assign complement = ~exponent_i[ExpWidth:0];
+    assign amount = (complement > (ExpWidth + 1)'(MaxShift)) ? ShiftWidth'(MaxShift)
+                                                             : complement[ShiftWidth-1:0];
+    assign half = significand_i >> 1;
+    assign lost = significand_i & ~({{(SigWidth - 1) {1'b1}}, 1'b0} << amount);
+    assign placed = negative ? (half >> amount) | SigWidth'(|lost) : significand_i;
+  end else begin : g_in_place
+    assign placed = significand_i;
+  end
+
+  // ---- Normalise: the integer bits say which of the three possible exponents it is
+
+  logic [FieldWidth-1:0] base_plus_1, base_plus_2, field;
+  logic [FracWidth-1:0] fraction;
+  logic guard, sticky;
+
+  incrementer #(.Width(FieldWidth)) u_base_plus_1 (
+    .a_i(base), .carry_i(1'b1), .sum_o(base_plus_1)
+  );
+  incrementer #(.Width(FieldWidth - 1)) u_base_plus_2 (
+    .a_i(base[FieldWidth-1:1]), .carry_i(1'b1), .sum_o(base_plus_2[FieldWidth-1:1])
+  );
+  assign base_plus_2[0] = base[0];
+
+  always_comb begin
+    if (placed[SigWidth-1]) begin
+      field = base_plus_2;
+      fraction = placed[SigWidth-2-:FracWidth];
+      guard = placed[3];
+      sticky = |placed[2:0];
+    end else begin
+      field = placed[SigWidth-2] ? base_plus_1 : base;
+      fraction = placed[SigWidth-3-:FracWidth];
+      guard = placed[2];
+      sticky = |placed[1:0];
+    end
+  end
+
+  // ---- Round: a carry out of the fraction makes the next exponent by itself
+
+  logic increment, inexact;
+  logic [WordWidth-1:0] rounded;  // right unless there is overflow
+
+  assign increment = (nearest & guard & (sticky | fraction[0] | ~nearest_even))
+                   | (away & (guard | sticky));
+  assign inexact = guard | sticky;
+
+  incrementer #(.Width(WordWidth)) u_round (
+    .a_i({field[ExpWidth-1:0], fraction}), .carry_i(increment), .sum_o(rounded)
+  );
+
+  // ---- Tininess: a leading bit below the smallest exponent. After rounding, it is not tiny if the
+  // unbounded rounding, one bit further down, carries into that bit: all ones, and an increment.
+
+  logic tiny, increment_below;
+  assign increment_below = (nearest & placed[1]) | (away & |placed[1:0]);
+  assign tiny = (placed[SigWidth-1-:2] == 2'b00)
+              & ~(tininess_after_i & (&fraction) & guard & increment_below);
+
+  // ---- Overflow, found beside the increment and not after it
+
+  logic special, overflow, to_infinity;
+  assign special = nan_i | infinity_i | zero_i;
+  assign overflow = (field >= InfField)
+                  | ((field == InfField - 1'b1) & (&fraction) & increment);
+  assign to_infinity = nearest | away;
+
+  // ---- Result
+
+  localparam logic [WordWidth-1:0] NotANumber = {{(ExpWidth + 1) {1'b1}}, {(FracWidth - 1) {1'b0}}};
+  localparam logic [WordWidth-1:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
+  localparam logic [WordWidth-1:0] Largest = {{(ExpWidth - 1) {1'b1}}, 1'b0, {FracWidth{1'b1}}};
+  logic [WordWidth-1:0] magnitude;
+
+  always_comb begin
+    if (nan_i) magnitude = NotANumber;
+    else if (infinity_i) magnitude = Infinity;
+    else if (zero_i) magnitude = '0;
+    else if (overflow) magnitude = to_infinity ? Infinity : Largest;
+    else magnitude = rounded;
+  end
+
+  assign result_o = {sign_i & ~nan_i, magnitude};
+  assign flags_o = {
+    invalid_i,
+    divide_by_zero_i,
+    overflow & ~special,
+    tiny & inexact & ~special,
+    (inexact | overflow) & ~special
+  };
+
+endmodule

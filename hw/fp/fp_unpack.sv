@@ -1,0 +1,39 @@
+// Takes one IEEE number apart: fields, hidden bit, class.
+//
+// value = (-1)**sign_o * significand_o / 2**FracWidth * 2**(exponent_o - bias) for every finite
+// number: a subnormal or zero has hidden bit 0 and the exponent of the smallest normal one, and is
+// not normalised here. Infinities and NaNs have the exponent field as it is, and mean nothing by
+// their value.
+//
+// Combinational; takes every bit pattern. Source: IEEE 754-2019, clause 3.4.
+module fp_unpack #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23
+) (
+  input  logic [ExpWidth+FracWidth:0] packed_i,
+  output logic                        sign_o,
+  output logic [ExpWidth-1:0]         exponent_o,      // biased, 1 or more
+  output logic [FracWidth:0]          significand_o,   // one integer bit
+  output logic                        zero_o,
+  output logic                        infinity_o,
+  output logic                        nan_o,           // quiet or signalling
+  output logic                        signaling_nan_o
+);
+
+  logic [ExpWidth-1:0] field;
+  logic [FracWidth-1:0] fraction;
+  logic field_zero, field_ones, fraction_zero;
+
+  assign {sign_o, field, fraction} = packed_i;
+  assign field_zero = field == '0;
+  assign field_ones = &field;
+  assign fraction_zero = fraction == '0;
+
+  assign exponent_o = {field[ExpWidth-1:1], field[0] | field_zero};
+  assign significand_o = {~field_zero, fraction};
+  assign zero_o = field_zero & fraction_zero;
+  assign infinity_o = field_ones & fraction_zero;
+  assign nan_o = field_ones & ~fraction_zero;
+  assign signaling_nan_o = nan_o & ~fraction[FracWidth-1];
+
+endmodule
