@@ -1,0 +1,61 @@
+// Adder of a chosen kind: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational.
+//
+// Every addition of the cores goes through here, so that one parameter changes them all.
+// Adder: one of arith_pkg::adder_e (a number, for tools can only override those from outside).
+// GroupWidths: the groups of a carry-select adder (see arith_pkg), or 0 for those of its kind.
+// LookAhead: how the groups of a carry-select adder add, see there.
+module adder #(
+  parameter int unsigned Width = 48,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = '0,
+  parameter bit LookAhead = 1'b1
+) (
+  input  logic [Width-1:0] a_i,
+  input  logic [Width-1:0] b_i,
+  input  logic             carry_i,
+  output logic [Width-1:0] sum_o,
+  output logic             carry_o
+);
+
+  if (Adder == arith_pkg::AdderRipple) begin : gen_ripple
+    ripple_carry_adder #(
+      .Width(Width)
+    ) u_adder (
+      .a_i,
+      .b_i,
+      .carry_i,
+      .sum_o,
+      .carry_o
+    );
+  end else if (Adder == arith_pkg::AdderUniform || Adder == arith_pkg::AdderGraded)
+  begin : gen_select
+    localparam bit [8*arith_pkg::MaxGroups-1:0] Groups =
+        (GroupWidths != '0) ? GroupWidths
+        : (Adder == arith_pkg::AdderUniform) ? arith_pkg::uniform_groups(Width)
+        : arith_pkg::graded_groups(Width);
+    carry_select_adder #(
+      .Width      (Width),
+      .GroupWidths(Groups),
+      .LookAhead  (LookAhead)
+    ) u_adder (
+      .a_i,
+      .b_i,
+      .carry_i,
+      .sum_o,
+      .carry_o
+    );
+  end else if (Adder == arith_pkg::AdderPrefix) begin : gen_prefix
+    prefix_adder #(
+      .Width(Width)
+    ) u_adder (
+      .a_i,
+      .b_i,
+      .carry_i,
+      .sum_o,
+      .carry_o
+    );
+  end else begin : gen_tool
+    assign {carry_o, sum_o} = (Width + 1)'(a_i) + (Width + 1)'(b_i) + (Width + 1)'(carry_i);
+  end
+
+endmodule

@@ -1,0 +1,86 @@
+// The kinds of adder that every core is built from, and the group widths of carry-select adders.
+//
+// A list of group widths is one flat vector of MaxGroups bytes: the lowest byte is the least
+// significant group, a byte of 0 ends the list. (A flat vector, because Yosys 0.23 has no array
+// parameters.)
+package arith_pkg;
+
+  typedef enum int unsigned {
+    AdderRipple  = 0,  // a chain of full adders
+    AdderUniform = 1,  // carry-select, groups of one width
+    AdderGraded  = 2,  // carry-select, groups that grow towards the top
+    AdderPrefix  = 3,  // Sklansky parallel prefix, a yardstick
+    AdderTool    = 4   // the tool's own `+`, the other yardstick
+  } adder_e;
+
+  localparam int unsigned MaxGroups = 16;
+
+  // Groups of 4 bits, the narrowest on top where 4 does not divide `width`; wider ones only where
+  // MaxGroups of 4 bits would not do. At 48 bits: 12 groups, the 14 full-adder delays of the paper
+  // (4 full adders, then 10 multiplexers to the carry that selects the last group's sums).
+  function automatic bit [8*MaxGroups-1:0] uniform_groups(int unsigned width);
+    int unsigned size, left;
+    size = (width <= 4 * MaxGroups) ? 4 : (width + MaxGroups - 1) / MaxGroups;
+    left = width;
+    uniform_groups = '0;
+    for (int unsigned k = 0; k < MaxGroups; k++) begin
+      uniform_groups[8*k +: 8] = 8'((left < size) ? left : size);
+      left = (left < size) ? 0 : left - size;
+    end
+  endfunction
+
+  // Groups graded so that, with a full adder and a multiplexer of one delay each, the carry reaches
+  // every group just when the group's own two sums are ready: each group one bit wider than the one
+  // below it, so that the widest, on top, has as many bits as the adder has delays.
+  //
+  // That many delays d are the least with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d bits).
+  // From the top down the groups take d, d - 1 ... bits, until what is left fits into one more group
+  // no wider than the last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper.
+  // Good to 121 bits; beyond, MaxGroups can be too few and the adder refuses the list.
+  function automatic bit [8*MaxGroups-1:0] graded_groups(int unsigned width);
+    int unsigned size, left;
+    size = 1;
+    for (int unsigned d = 1; d * (d + 1) / 2 + 1 < width; d++) size = d + 1;
+    left = width;
+    graded_groups = '0;
+    for (int unsigned k = 0; k < MaxGroups; k++) begin
+      if (left != 0) begin  // the groups placed so far move up by one, this one goes below them
+        if (left < size) size = left;
+        graded_groups = {graded_groups[8*MaxGroups-9:0], 8'(size)};
+        left = left - size;
+        if (left > size) size = size - 1;
+      end
+    end
+  endfunction
+
+  function automatic int unsigned num_groups(bit [8*MaxGroups-1:0] widths);
+    num_groups = 0;
+    for (int unsigned k = 0; k < MaxGroups; k++) begin
+      if (widths[8*k +: 8] != 0) num_groups = k + 1;
+    end
+  endfunction
+
+  function automatic int unsigned widest_group(bit [8*MaxGroups-1:0] widths);
+    widest_group = 0;
+    for (int unsigned k = 0; k < MaxGroups; k++) begin
+      if (32'(widths[8*k +: 8]) > widest_group) widest_group = 32'(widths[8*k +: 8]);
+    end
+  endfunction
+
+  // Index of the lowest bit of group k; with k = MaxGroups, the number of bits of all groups.
+  function automatic int unsigned group_low(bit [8*MaxGroups-1:0] widths, int unsigned k);
+    group_low = 0;
+    for (int unsigned i = 0; i < MaxGroups; i++) begin
+      if (i < k) group_low = group_low + 32'(widths[8*i +: 8]);
+    end
+  endfunction
+
+  // A bit set at the lowest bit of every group.
+  function automatic bit [255:0] group_starts(bit [8*MaxGroups-1:0] widths);
+    group_starts = '0;
+    for (int unsigned k = 0; k < MaxGroups; k++) begin
+      if (widths[8*k +: 8] != 0) group_starts[group_low(widths, k)] = 1'b1;
+    end
+  endfunction
+
+endpackage
