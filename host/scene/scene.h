@@ -16,15 +16,15 @@ inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::ma
 /// One MTL material. Colours are scene-linear RGB, usually in [0, 1].
 struct Material {
   std::string name;
-  glm::vec3 diffuse{0.8f};         ///< Kd
-  glm::vec3 specular{0.0f};        ///< Ks
-  glm::vec3 emission{0.0f};        ///< Ke
-  glm::vec3 transmittance{1.0f};   ///< Tf
-  float shininess = 0.0f;          ///< Ns
-  float refraction_index = 1.0f;   ///< Ni
-  float opacity = 1.0f;            ///< d, or 1 - Tr
-  int illumination_model = 2;      ///< illum
-  std::string diffuse_map;         ///< map_Kd, relative to the MTL file; empty: none
+  glm::vec3 diffuse{0.8f};        ///< Kd
+  glm::vec3 specular{0.0f};       ///< Ks
+  glm::vec3 emission{0.0f};       ///< Ke
+  glm::vec3 transmittance{1.0f};  ///< Tf
+  float shininess = 0.0f;         ///< Ns
+  float refraction_index = 1.0f;  ///< Ni
+  float opacity = 1.0f;           ///< d, or 1 - Tr
+  int illumination_model = 2;     ///< illum
+  std::string diffuse_map;        ///< map_Kd, relative to the MTL file; empty: none
 };
 
 /// One triangle: indices into the scene's arrays. Vertices run counter-clockwise seen from the
@@ -44,10 +44,10 @@ struct Scene {
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> texcoords;
   std::vector<Triangle> triangles;
-  std::vector<Material> materials;   ///< never empty; a default stands where the file names none
-  std::vector<std::string> objects;  ///< never empty; "o" and "g" names of the file
-  glm::dvec3 origin{0.0};            ///< world = origin + position
-  std::vector<std::string> warnings; ///< "file:line: ..." in the order of the file
+  std::vector<Material> materials;    ///< never empty; a default stands where the file names none
+  std::vector<std::string> objects;   ///< never empty; "o" and "g" names of the file
+  glm::dvec3 origin{0.0};             ///< world = origin + position
+  std::vector<std::string> warnings;  ///< "file:line: ..." in the order of the file
 };
 
 }  // namespace raygate

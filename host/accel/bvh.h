@@ -1,0 +1,60 @@
+// A tree of boxes around a scene's triangles.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// A binary tree of axis-aligned boxes, split by the surface area heuristic. A leaf holds a run of
+/// slots; slot s stands for triangle `triangle_of(s)` of the scene. The tree does not refer to the
+/// scene after it is built. Memory: 64 bytes an inner node, 40 bytes a slot.
+class Bvh {
+ public:
+  /// The larger a leaf, the fewer boxes and the more hit tests.
+  static constexpr std::uint32_t kMaxLeafSize = 4;
+  /// No path from the root is longer: what a traversal's stack must hold.
+  static constexpr int kMaxDepth = 60;
+
+  /// A child: an inner node (count = 0, first = its index) or a leaf (slots first .. first+count).
+  struct Ref {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+  };
+
+  /// Both children with their boxes, one cache line. Boxes are one float wider than what they
+  /// hold on every side. An absent child (a scene of one leaf or none) has an empty box,
+  /// low = +infinity and high = -infinity.
+  struct alignas(64) Node {
+    glm::vec3 low[2], high[2];
+    Ref child[2];
+  };
+
+  /// Vertices of a slot's triangle, in the triangle's order.
+  struct Corners {
+    glm::vec3 a, b, c;
+  };
+
+  /// Builds the tree; all positions finite, of magnitude at most 2^126. A scene without triangles
+  /// gives a tree that no ray enters.
+  explicit Bvh(const Scene& scene);
+
+  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }  ///< [0] is the root
+  [[nodiscard]] std::uint32_t slot_count() const {
+    return static_cast<std::uint32_t>(triangles_.size());
+  }
+  [[nodiscard]] std::uint32_t triangle_of(std::uint32_t slot) const { return triangles_[slot]; }
+  [[nodiscard]] const Corners& corners_of(std::uint32_t slot) const { return corners_[slot]; }
+
+ private:
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> triangles_;
+  std::vector<Corners> corners_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,93 @@
+// What finds hits: batches of rays against polygon records, whichever engine does the work.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "host/hit/polygon_record.h"
+
+namespace raygate {
+
+/// Rays are handled eight at a time: one AVX register of floats.
+inline constexpr int kLanes = 8;
+
+/// `direction` times the power of two that brings its largest component into [1, 2): the form in
+/// which every engine takes it. Nothing for a direction that is zero, infinite or NaN.
+[[nodiscard]] std::optional<glm::vec3> scaled_direction(const glm::vec3& direction);
+
+/// Up to eight rays that meet the same run of records: eight bursts of tests, stored as one.
+/// The burst of lane k is direction k against records[0 .. record_count), in this order.
+struct alignas(32) RayBundle {
+  float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see scaled_direction)
+  const PolygonRecord* records = nullptr;  ///< made for the origin of these rays
+  std::uint32_t record_count = 0;
+  std::uint32_t first_tag = 0;  ///< the caller's name of records[0]; records[i] is first_tag + i
+  std::uint32_t lanes = 0;      ///< bit k: lane k holds a ray
+
+  [[nodiscard]] glm::vec3 lane_direction(int lane) const {
+    return {direction[0][lane], direction[1][lane], direction[2][lane]};
+  }
+};
+
+/// A polygon that a ray surely hits, ahead of its origin.
+struct SureHit {
+  std::uint32_t bundle = 0;  ///< index into the batch
+  std::uint32_t lane = 0;
+  std::uint32_t tag = 0;
+  glm::vec3 point{0.0f};  ///< P = d I / (I . N) relative to the origin, in the plane unit's bits
+  float t_low = 0.0f;     ///< the exact t (P = t I) is in [t_low, t_high];
+  float t_high = 0.0f;    ///< +infinity where float32 says nothing
+};
+
+/// A polygon that float32 can neither call hit nor missed: for exact arithmetic to settle.
+struct Doubt {
+  std::uint32_t bundle = 0;
+  std::uint32_t lane = 0;
+  std::uint32_t tag = 0;
+  glm::vec3 point{0.0f};  ///< as in SureHit, should it be a hit
+};
+
+/// What a batch gave. Bursts without a hit or doubt leave nothing here.
+struct HitResults {
+  /// The sure hits that may be their burst's nearest: one, or as many as float32 cannot order.
+  std::vector<SureHit> hits;
+  std::vector<Doubt> doubts;
+
+  void clear() {
+    hits.clear();
+    doubts.clear();
+  }
+};
+
+/// What a tester has done since it was made.
+struct HitCounters {
+  std::uint64_t tests = 0;         ///< (ray, record) pairs; misses + hits + edge_doubts
+  std::uint64_t misses = 0;        ///< surely missed
+  std::uint64_t hits = 0;          ///< surely hit
+  std::uint64_t edge_doubts = 0;   ///< neither
+  std::uint64_t depth_doubts = 0;  ///< sure hits reported because float32 cannot order them
+  std::uint64_t plane_tests = 0;   ///< divisions d I / (I . N) asked of the unit
+  std::uint64_t clocks = 0;        ///< simulated clock cycles; 0 where nothing is simulated
+
+  HitCounters& operator+=(const HitCounters& other);
+};
+
+/// One engine. Not for use by two threads at once: each thread makes its own.
+///
+/// What it promises: a sure hit is a hit and an unreported pair a miss (or farther than a sure hit
+/// of its burst) in exact arithmetic on the records' coordinates; P has the plane unit's bits.
+/// Which pairs are in doubt may differ between engines; decisions made from the reports do not.
+class HitTester {
+ public:
+  virtual ~HitTester() = default;
+
+  /// Tests all bursts of `batch` and adds what it found to `results`, in the order of the batch.
+  virtual void test(std::span<const RayBundle> batch, HitResults& results) = 0;
+
+  [[nodiscard]] virtual HitCounters counters() const = 0;
+};
+
+}  // namespace raygate
