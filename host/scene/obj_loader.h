@@ -1,0 +1,29 @@
+// Wavefront OBJ and MTL files into a Scene: every valid file right, every other one refused.
+#pragma once
+
+#include <filesystem>
+
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+struct LoadOptions {
+  /// A face of exactly zero area (after rounding to float) is an error; true: it is dropped and
+  /// counted in a warning.
+  bool skip_degenerate = false;
+};
+
+/// Loads `file` and the MTL files that it names (relative to its own folder).
+///
+/// The triangles keep the order of the file's faces. Polygons, also concave ones, are cut into
+/// triangles of non-zero area. Only vertices that some face uses are kept, in the file's order;
+/// the scene is recentred as scene.h says. Numbers are read as in the C locale, to the nearest
+/// double.
+///
+/// Throws InputError with file and line: what cannot be read, what is not OBJ, an index that no
+/// vertex answers to, a number that is not finite, a face of no area, a file with no face.
+/// Warns (Scene::warnings) and goes on: a missing MTL file or material, statements that say
+/// nothing to a ray tracer of polygons (points, lines, curves).
+[[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
+
+}  // namespace raygate
