@@ -1,0 +1,37 @@
+# A thin front: CMake does the work, in build/. `make` alone lists the targets.
+JOBS ?= $(shell nproc)
+SCENE ?= scenes/cornell.obj
+# `make SETUP=true ...` leaves the machine's packages alone.
+SETUP ?= .ci/setup
+
+.PHONY: help verilate render test lint format clean
+
+help: ## list these targets
+	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
+
+verilate: ## build ./render, with the simulated hardware in it
+	@$(SETUP) build
+	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
+	@cmake --build build -j $(JOBS) --target render
+
+render: verilate ## render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
+	./render $(SCENE) $(ARGS)
+
+test: everything ## build and run all tests, lint among them
+	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
+
+lint: everything ## check style and pitfalls of all sources
+	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
+
+format: ## lay all sources out as lint wants them
+	@$(SETUP) test
+	@.ci/lint format --fix
+
+clean: ## remove what was built (scenes and pictures stay)
+	rm -rf build render
+
+.PHONY: everything
+everything:
+	@$(SETUP) test
+	@cmake -S . -B build -G Ninja -DBUILD_TESTING=ON
+	@cmake --build build -j $(JOBS)
