@@ -72,11 +72,27 @@ module carry_select_adder #(
     end else begin : gen_unknown
       assign carry_in = gen_group[k-1].carry_out;
     end
-    assign carry_out = carry_in ? carry_1[k] : carry_0[k];
     assign select[Low +: Size] = {Size{carry_in}};
+
+    multiplexer #(
+      .Ordered(1'b1)
+    ) u_carry (
+      .select_i(carry_in),
+      .when_0_i(carry_0[k]),
+      .when_1_i(carry_1[k]),
+      .out_o   (carry_out)
+    );
   end
 
-  assign sum_o   = (sum_0 & ~select) | (sum_1 & select);
+  multiplexer #(
+    .Width(Width)
+  ) u_sum (
+    .select_i(select),
+    .when_0_i(sum_0),
+    .when_1_i(sum_1),
+    .out_o   (sum_o)
+  );
+
   assign carry_o = gen_group[NumGroups-1].carry_out;
 
 endmodule
