@@ -52,12 +52,12 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata) {
   const PixelRect& window = film.window;
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
                      Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}));
+  header.screenWindowWidth() = metadata.screen_window_width;
   header.compression() = Imf::ZIP_COMPRESSION;
   header.insert("software", Imf::StringAttribute(metadata.software));
   header.insert("scene", Imf::StringAttribute(metadata.scene));
   header.insert("seed", Imf::StringAttribute(std::to_string(metadata.seed)));
   Imf::addWorldToCamera(header, to_imath(metadata.world_to_camera));
-  Imf::addWorldToNDC(header, to_imath(metadata.world_to_ndc));
   return header;
 }
 

@@ -16,6 +16,9 @@ namespace raygate {
 /// eye, `right` is +x and `up` is +y of the picture, and the view goes along `forward`.
 class Camera {
  public:
+  /// From the lower to the upper edge, where nobody says otherwise.
+  static constexpr double kDefaultFov = 35.0;
+
   /// Looks from `eye` towards `target`, with `up` upwards in the picture.
   /// `vertical_fov_degrees` is the angle from the lower to the upper edge, in (0, 180);
   /// `aspect` is width / height of the picture.
@@ -29,7 +32,7 @@ class Camera {
   /// scene is. The box around the scene fills the picture but for a margin of 4 %.
   /// Throws InputError for a scene without triangles or one too large for float.
   [[nodiscard]] static Camera frame(const Scene& scene, double aspect,
-                                    double vertical_fov_degrees = 35.0);
+                                    double vertical_fov_degrees = kDefaultFov);
 
   /// The common origin of all camera rays.
   [[nodiscard]] const glm::vec3& eye() const { return eye_; }

@@ -1,5 +1,5 @@
 // Whatever goes wrong, the file that was there stays as it was.
-#include "host/image/replace_file.h"
+#include "host/image/pending_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -9,6 +9,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "host/scene/input_error.h"
 
@@ -22,6 +23,10 @@ std::string read(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+void replace_file(const fs::path& path, std::string_view bytes) {
+  PendingFile(path, bytes).commit();
+}
+
 std::string message_of(const fs::path& path, std::string_view bytes) {
   try {
     replace_file(path, bytes);
@@ -31,7 +36,7 @@ std::string message_of(const fs::path& path, std::string_view bytes) {
   return "(written)";
 }
 
-class ReplaceFile : public testing::Test {
+class PendingFileTest : public testing::Test {
  protected:
   void SetUp() override {
     std::string pattern = (fs::temp_directory_path() / "raygate-test-XXXXXX").string();
@@ -49,14 +54,14 @@ class ReplaceFile : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(ReplaceFile, WritesANewFile) {
+TEST_F(PendingFileTest, WritesANewFile) {
   const std::string bytes("a\0b\r\n", 5);
   replace_file(folder_ / "new", bytes);
   EXPECT_EQ(read(folder_ / "new"), bytes);
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(ReplaceFile, NewFileHasTheUsualPermissions) {
+TEST_F(PendingFileTest, NewFileHasTheUsualPermissions) {
   const mode_t old = ::umask(027);
   replace_file(folder_ / "new", "x");
   ::umask(old);
@@ -65,7 +70,22 @@ TEST_F(ReplaceFile, NewFileHasTheUsualPermissions) {
   EXPECT_EQ(status.st_mode & 0777, 0640u);
 }
 
-TEST_F(ReplaceFile, ReplacesAnOldFileAndKeepsItsPermissions) {
+TEST_F(PendingFileTest, ChangesNothingBeforeCommit) {
+  replace_file(folder_ / "file", "old");
+  {
+    PendingFile abandoned(folder_ / "file", "new");
+    EXPECT_EQ(read(folder_ / "file"), "old");
+  }
+  EXPECT_EQ(read(folder_ / "file"), "old");
+  EXPECT_EQ(file_count(), 1);
+  PendingFile first(folder_ / "file", "new");
+  PendingFile second(std::move(first));
+  second.commit();
+  EXPECT_EQ(read(folder_ / "file"), "new");
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(PendingFileTest, ReplacesAnOldFileAndKeepsItsPermissions) {
   replace_file(folder_ / "file", std::string(100000, 'x'));
   ::chmod((folder_ / "file").c_str(), 0604);
   replace_file(folder_ / "file", "short");
@@ -76,7 +96,7 @@ TEST_F(ReplaceFile, ReplacesAnOldFileAndKeepsItsPermissions) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(ReplaceFile, FollowsSymbolicLinks) {
+TEST_F(PendingFileTest, FollowsSymbolicLinks) {
   replace_file(folder_ / "file", "old");
   fs::create_symlink("file", folder_ / "link");
   replace_file(folder_ / "link", "new");
@@ -84,50 +104,50 @@ TEST_F(ReplaceFile, FollowsSymbolicLinks) {
   EXPECT_EQ(read(folder_ / "file"), "new");
 }
 
-TEST_F(ReplaceFile, BareNameGoesToTheCurrentFolder) {
+TEST_F(PendingFileTest, BareNameGoesToTheCurrentFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder_);
-  require_replaceable("bare");
+  require_writable("bare");
   replace_file("bare", "x");
   fs::current_path(before);
   EXPECT_EQ(read(folder_ / "bare"), "x");
 }
 
-TEST_F(ReplaceFile, RequireReplaceableLeavesNothing) {
-  require_replaceable(folder_ / "new");
+TEST_F(PendingFileTest, RequireWritableLeavesNothing) {
+  require_writable(folder_ / "new");
   EXPECT_EQ(file_count(), 0);
   replace_file(folder_ / "old", "old");
-  require_replaceable(folder_ / "old");
+  require_writable(folder_ / "old");
   EXPECT_EQ(read(folder_ / "old"), "old");
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(ReplaceFile, RefusesAMissingFolder) {
+TEST_F(PendingFileTest, RefusesAMissingFolder) {
   const fs::path path = folder_ / "missing" / "file";
   EXPECT_EQ(message_of(path, "x"), path.string() + ": cannot write: No such file or directory");
-  EXPECT_THROW(require_replaceable(path), InputError);
+  EXPECT_THROW(require_writable(path), InputError);
 }
 
-TEST_F(ReplaceFile, RefusesAFileAsFolder) {
+TEST_F(PendingFileTest, RefusesAFileAsFolder) {
   replace_file(folder_ / "file", "old");
-  EXPECT_THROW(require_replaceable(folder_ / "file" / "x"), InputError);
+  EXPECT_THROW(require_writable(folder_ / "file" / "x"), InputError);
   EXPECT_THROW(replace_file(folder_ / "file" / "x", "new"), InputError);
   EXPECT_EQ(read(folder_ / "file"), "old");
 }
 
-TEST_F(ReplaceFile, RefusesAFolder) {
+TEST_F(PendingFileTest, RefusesAFolder) {
   EXPECT_EQ(message_of(folder_, "x"), folder_.string() + ": cannot write: Is a directory");
-  EXPECT_THROW(require_replaceable(folder_), InputError);
+  EXPECT_THROW(require_writable(folder_), InputError);
 }
 
-TEST_F(ReplaceFile, RefusesANameThatIsTooLong) {
-  EXPECT_THROW(require_replaceable(folder_ / std::string(300, 'n')), InputError);
+TEST_F(PendingFileTest, RefusesANameThatIsTooLong) {
+  EXPECT_THROW(require_writable(folder_ / std::string(300, 'n')), InputError);
   // As long as a name can be: the temporary file must not need more.
   replace_file(folder_ / std::string(255, 'n'), "x");
   EXPECT_EQ(read(folder_ / std::string(255, 'n')), "x");
 }
 
-TEST_F(ReplaceFile, RefusesWithoutPermission) {
+TEST_F(PendingFileTest, RefusesWithoutPermission) {
   replace_file(folder_ / "file", "old");
   const bool is_root = ::geteuid() == 0;  // root may write anywhere: be somebody else
   ::chmod((folder_ / "file").c_str(), 0444);
@@ -139,7 +159,7 @@ TEST_F(ReplaceFile, RefusesWithoutPermission) {
   const std::string new_file = message_of(folder_ / "new", "new");
   bool refused_beforehand = false;
   try {
-    require_replaceable(folder_ / "file");
+    require_writable(folder_ / "file");
   } catch (const InputError&) {
     refused_beforehand = true;
   }
@@ -155,7 +175,7 @@ TEST_F(ReplaceFile, RefusesWithoutPermission) {
 }
 
 /// The limit on file sizes stands in for a full disk: the write stops half way.
-TEST_F(ReplaceFile, FullDiskLeavesTheOldFile) {
+TEST_F(PendingFileTest, FullDiskLeavesTheOldFile) {
   replace_file(folder_ / "file", "old");
   const auto old_handler = ::signal(SIGXFSZ, SIG_IGN);
   rlimit old_limit{};
@@ -170,8 +190,8 @@ TEST_F(ReplaceFile, FullDiskLeavesTheOldFile) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(ReplaceFile, DevicesAreWrittenToAsTheyAre) {
-  require_replaceable("/dev/full");
+TEST_F(PendingFileTest, DevicesAreWrittenToAsTheyAre) {
+  require_writable("/dev/full");
   EXPECT_EQ(message_of("/dev/full", "x"), "/dev/full: cannot write: No space left on device");
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
   EXPECT_EQ(message_of("/dev/null", "x"), "(written)");

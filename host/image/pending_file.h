@@ -1,0 +1,39 @@
+// Files that are there whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace raygate {
+
+/// A file that is written but does not have its name yet. The bytes go to a temporary file in the
+/// target's folder and reach the disk; commit() gives it the name in one step. So whoever looks at
+/// the target, at whatever moment and whatever fails, finds the old file or the new one, whole;
+/// and several files can be made ready before the first one is replaced.
+///
+/// Symbolic links are followed; an old file's permissions are kept. A device or a pipe
+/// (/dev/stdout) has nothing to keep whole: the bytes go there at once. All errors are InputError,
+/// "path: cannot write: reason".
+class PendingFile {
+ public:
+  /// Writes `bytes`, for `path`.
+  PendingFile(const std::filesystem::path& path, std::string_view bytes);
+  PendingFile(PendingFile&& other) noexcept;
+  PendingFile& operator=(PendingFile&&) = delete;
+  ~PendingFile();  ///< removes the temporary file if commit() did not use it
+
+  /// Makes the target the new file. At most once.
+  void commit();
+
+ private:
+  std::filesystem::path name_;       ///< as the user wrote it, for messages
+  std::filesystem::path target_;     ///< symbolic links resolved
+  std::filesystem::path temporary_;  ///< empty: none
+};
+
+/// Throws the InputError that a PendingFile for `path` would end in as things stand: folder
+/// missing, no permission, a folder by that name. Changes nothing. To be called before hours of
+/// work whose result goes to `path`.
+void require_writable(const std::filesystem::path& path);
+
+}  // namespace raygate
