@@ -24,7 +24,7 @@ struct Material {
   float refraction_index = 1.0f;  ///< Ni
   float opacity = 1.0f;           ///< d, or 1 - Tr
   int illumination_model = 2;     ///< illum
-  std::string diffuse_map;        ///< map_Kd, relative to the MTL file; empty: none
+  std::string diffuse_map;        ///< map_Kd, joined to the MTL file's folder; empty: none
 };
 
 /// One triangle: indices into the scene's arrays. Vertices run counter-clockwise seen from the
@@ -41,13 +41,13 @@ struct Triangle {
 /// before rounding to float, so that a scene far from the world's origin keeps its digits.
 struct Scene {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;
+  std::vector<glm::vec3> normals;  ///< unit length, where a triangle uses them
   std::vector<glm::vec2> texcoords;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;    ///< never empty; a default stands where the file names none
   std::vector<std::string> objects;   ///< never empty; "o" and "g" names of the file
   glm::dvec3 origin{0.0};             ///< world = origin + position
-  std::vector<std::string> warnings;  ///< "file:line: ..." in the order of the file
+  std::vector<std::string> warnings;  ///< "file:line: ...": of statements, then of faces
 };
 
 }  // namespace raygate
