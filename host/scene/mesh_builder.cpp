@@ -37,8 +37,9 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   glm::dvec3 origin;
   for (int axis = 0; axis < 3; ++axis) {
     const double steps = std::nearbyint(centre[axis] / step);
-    // Beyond 2^53 steps the centre is on the grid already, and the quotient may overflow.
-    origin[axis] = std::abs(steps) < 0x1p53 ? steps * step : centre[axis];
+    // + 0.0: no negative zero. Beyond 2^53 steps the centre is on the grid already, and the
+    // quotient may overflow.
+    origin[axis] = std::abs(steps) < 0x1p53 ? steps * step + 0.0 : centre[axis];
   }
   return origin;
 }

@@ -66,23 +66,21 @@ bool PolygonCutter::is_ear(std::uint32_t corner) const {
   if (turn_at(corner) <= 0) return false;
   if (!mind_obstacles_) return true;
   const Corner& c = ring_[corner];
-  const std::array<glm::vec2, 3> ear{ring_[c.previous].position, c.position,
-                                     ring_[c.next].position};
-  return !obstacles_.any_in_triangle(ear, [&](std::uint32_t id) {
-    const glm::vec2& position = ring_[id].position;
-    return ring_[id].reflex && position != ear[0] && position != ear[1] && position != ear[2];
-  });
+  return !obstacles_.any_in_triangle(
+      {ring_[c.previous].position, c.position, ring_[c.next].position});
 }
 
 void PolygonCutter::cut_off(std::uint32_t corner) {
   Corner& c = ring_[corner];
   c.gone = true;
-  c.reflex = false;
   ring_[c.previous].next = c.next;
   ring_[c.next].previous = c.previous;
-  // Cutting an ear off only narrows its neighbours: a convex one stays so.
+  // Cutting an ear off only narrows its neighbours: a reflex one may become convex, never the
+  // other way round. (Without ears, where a reflex corner may go, nobody minds obstacles.)
   for (const std::uint32_t neighbour : {c.previous, c.next}) {
-    ring_[neighbour].reflex = ring_[neighbour].reflex && turn_at(neighbour) <= 0;
+    if (!ring_[neighbour].reflex || turn_at(neighbour) <= 0) continue;
+    ring_[neighbour].reflex = false;
+    obstacles_.remove(neighbour);
   }
 }
 
@@ -157,7 +155,7 @@ PolygonKind PolygonCutter::cut(std::span<const glm::vec3> corners) {
     ring_[i].reflex = turn_at(i) <= 0;
     if (ring_[i].reflex) reflex_corners_.push_back({ring_[i].position, i});
   }
-  obstacles_.build(reflex_corners_);
+  obstacles_.build(reflex_corners_, ring_.size());
   mind_obstacles_ = true;
   return clip_ears();
 }
