@@ -36,11 +36,15 @@ class Model {
   /// One clock cycle: a rising edge with the inputs as they are, then the falling edge. The
   /// outputs read afterwards are those between this rising edge and the next.
   void clock() {
-    top_->clk_i = 1;
+    edge(1);
+    edge(0);
+  }
+
+  /// Half a clock cycle: the clock goes to `level`.
+  void edge(bool level) {
+    top_->clk_i = level;
     top_->eval();
-    top_->clk_i = 0;
-    top_->eval();
-    ++clocks_;
+    clocks_ += level;
   }
 
   /// Pulls the reset low without a clock edge (it is asynchronous) and lets go of it.
@@ -54,7 +58,7 @@ class Model {
     top_->eval();
   }
 
-  /// Clock cycles since construction.
+  /// Rising clock edges since construction.
   [[nodiscard]] std::uint64_t clocks() const { return clocks_; }
 
  private:

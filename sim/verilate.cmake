@@ -1,10 +1,10 @@
 # Verilated models, and the tests that use them.
 #
-#   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [TRACE])
+#   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [OPEN])
 #     A static library `fp_adder_f16`: module TOP of hw/ with these parameters, as class
-#     Vfp_adder_f16 in "Vfp_adder_f16.h". TRACE makes it writable to a waveform (sim/wave.h), at
-#     the price of speed. Name a model after its module and what its parameters stand for; models
-#     that several programs use are built once.
+#     Vfp_adder_f16 in "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a
+#     waveform (sim/wave.h) and the signals that visible.vlt lists be read. Name a model after its
+#     module and what its parameters stand for; models that several programs use are built once.
 #
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...])
 #     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest.
@@ -38,9 +38,9 @@ set(RAYGATE_VERILATOR_FLAGS -Wall
   -y ${CMAKE_SOURCE_DIR}/hw/arith -y ${CMAKE_SOURCE_DIR}/hw/fp -y ${CMAKE_SOURCE_DIR}/hw/hit_test)
 
 function(raygate_model NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 MODEL "TRACE" "TOP" "PARAMETERS")
+  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN" "TOP" "PARAMETERS")
   if(NOT MODEL_TOP OR MODEL_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [TRACE], "
+    message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN], "
       "got ${ARGN}")
   endif()
   file(GLOB top_file ${CMAKE_SOURCE_DIR}/hw/*/${MODEL_TOP}.sv)
@@ -51,11 +51,14 @@ function(raygate_model NAME)
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.verilated)
   set(all ${dir}/all.cpp)  # includes all that Verilator wrote, whose names only it knows
   list(TRANSFORM MODEL_PARAMETERS PREPEND -G)
-  set(trace $<$<BOOL:${MODEL_TRACE}>:--trace>)
+  set(open)
+  if(MODEL_OPEN)
+    set(open --trace ${CMAKE_SOURCE_DIR}/sim/visible.vlt)
+  endif()
   add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${NAME}.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
     COMMAND ${VERILATOR_BIN} --cc -O3 --x-assign fast --x-initial fast --no-timing
-      ${RAYGATE_VERILATOR_FLAGS} ${trace} --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
+      ${RAYGATE_VERILATOR_FLAGS} ${open} --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
       --top-module ${MODEL_TOP} ${MODEL_PARAMETERS} ${RAYGATE_HW_PACKAGES} ${top_file}
     COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${NAME} -P ${CMAKE_SOURCE_DIR}/sim/gather.cmake
     DEPENDS ${top_file} ${RAYGATE_HW_PACKAGES} ${CMAKE_SOURCE_DIR}/sim/gather.cmake
@@ -65,7 +68,7 @@ function(raygate_model NAME)
   add_library(${NAME} STATIC ${all})
   target_include_directories(${NAME} SYSTEM PUBLIC ${dir})
   target_link_libraries(${NAME} PUBLIC verilated)
-  target_compile_definitions(${NAME} PRIVATE VM_TRACE=$<BOOL:${MODEL_TRACE}>)
+  target_compile_definitions(${NAME} PRIVATE VM_TRACE=$<BOOL:${MODEL_OPEN}>)
   # The code is Verilator's: no warnings, no sanitizers, and optimised in every kind of build.
   target_compile_options(${NAME} PRIVATE -w -O3 -fno-sanitize=all)
 endfunction()

@@ -1,0 +1,156 @@
+// The paper's hit-test unit: where a ray meets a polygon's plane, P = d I / (I . N), seen from the
+// ray's origin, with one multiplier, one adder, one divider, eight registers and two multiplexers.
+//
+// I = (Ix, Iy, Iz) is the ray's direction, N = (a, b, c) the plane's normal (the paper's H) and
+// d = N . V for a vertex V of the polygon. Seven words come in, three go out:
+//
+//   edge   bus in       what happens at this clock edge
+//   1-3    Ix Iy Iz     shift into I-3, I-2, I-1
+//   4-6    a b c        each into N; the accumulator is cleared at edge 4
+//   5-7                 N * I-1 into the accumulator, at edge 7 into the divisor; I rotates
+//   7      d            into d
+//   8-10   the next I   (d * I-1) / divisor into Output: Px Py Pz; I shifts
+//
+// valid_i with the first word while ready_o; the other six words follow in consecutive clocks.
+// valid_o is high, with a component on bus_o, in the clock after each of edges 8, 9 and 10.
+// Throughput: a test every 7 clocks. Latency: 10 clocks from first word to last component.
+//
+// Each operation is rounded once, in RoundingMode; the order is that of the table, the accumulator
+// starting from +0. All of IEEE 754 holds: subnormals, infinities, NaN (always the canonical one).
+// A ray parallel to the plane gives infinities, or NaN where d I is zero too. QuotientBits = 21
+// cuts quotients off as the paper's divider did; 0 rounds them.
+//
+// Source: the paper's equation 10, figures 4 and 9.
+module hit_test_unit #(
+  parameter int unsigned ExpWidth = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned QuotientBits = 0,
+  parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
+  localparam int unsigned Width = ExpWidth + FracWidth + 1
+) (
+  input  logic             clk_i,
+  input  logic             rst_ni,
+  input  logic             valid_i,
+  output logic             ready_o,
+  input  logic [Width-1:0] bus_i,
+  output logic [Width-1:0] bus_o,
+  output logic             valid_o
+);
+
+  // ---- Control: word k is taken at edge k + 1, step k ends with edge k + 7
+
+  logic [2:0] word;
+  logic [1:0] step;
+  logic load_direction, load_normal, load_d, clear, accumulate, divide;
+
+  hit_test_control #(
+    .NumWords(7),
+    .NumSteps(3)
+  ) u_control (
+    .clk_i,
+    .rst_ni,
+    .valid_i,
+    .ready_o,
+    .word_o(word),
+    .step_o(step)
+  );
+
+  assign load_direction = word <= 3'd2;
+  assign load_normal = word >= 3'd3 && word <= 3'd5;
+  assign clear = word == 3'd3;
+  assign accumulate = word >= 3'd4;
+  assign load_d = word == 3'd6;
+  assign divide = step != '0;
+
+  // ---- The eight registers
+
+  logic [Width-1:0] direction_1_q, direction_2_q, direction_3_q;  // the paper's I-1, I-2, I-3
+  logic [Width-1:0] normal_q, d_q, accumulator_q, divisor_q, output_q;
+
+  // ---- Multiplier, adder, divider and the two multiplexers
+
+  logic [Width-1:0] direction_in, factor, product, sum, quotient;
+
+  assign direction_in = load_direction ? bus_i : direction_1_q;
+  assign factor = accumulate ? normal_q : d_q;
+
+  fp_pkg::flags_t multiplier_flags, adder_flags, divider_flags;
+  logic unused_flags;
+  assign unused_flags = ^{multiplier_flags, adder_flags, divider_flags};
+
+  fp_multiplier #(
+    .ExpWidth (ExpWidth),
+    .FracWidth(FracWidth),
+    .Adder    (Adder)
+  ) u_multiplier (
+    .a_i             (factor),
+    .b_i             (direction_1_q),
+    .rounding_mode_i (RoundingMode),
+    .tininess_after_i(1'b1),
+    .result_o        (product),
+    .flags_o         (multiplier_flags)
+  );
+
+  fp_adder #(
+    .ExpWidth (ExpWidth),
+    .FracWidth(FracWidth),
+    .Adder    (Adder)
+  ) u_adder (
+    .a_i             (accumulator_q),
+    .b_i             (product),
+    .subtract_i      (1'b0),
+    .rounding_mode_i (RoundingMode),
+    .tininess_after_i(1'b1),
+    .result_o        (sum),
+    .flags_o         (adder_flags)
+  );
+
+  fp_divider #(
+    .ExpWidth    (ExpWidth),
+    .FracWidth   (FracWidth),
+    .Adder       (Adder),
+    .QuotientBits(QuotientBits)
+  ) u_divider (
+    .a_i             (product),
+    .b_i             (divisor_q),
+    .rounding_mode_i (RoundingMode),
+    .tininess_after_i(1'b1),
+    .result_o        (quotient),
+    .flags_o         (divider_flags)
+  );
+
+  always_ff @(posedge clk_i) begin
+    if (load_direction || accumulate) begin
+      direction_3_q <= direction_in;
+      direction_2_q <= direction_3_q;
+      direction_1_q <= direction_2_q;
+    end
+    if (load_normal) normal_q <= bus_i;
+    if (load_d) begin
+      d_q <= bus_i;
+      divisor_q <= sum;
+    end
+    if (clear) begin
+      accumulator_q <= '0;
+    end else if (accumulate) begin
+      accumulator_q <= sum;
+    end
+    if (divide) output_q <= quotient;
+  end
+
+  // ---- Output
+
+  logic valid_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      valid_q <= 1'b0;
+    end else begin
+      valid_q <= divide;
+    end
+  end
+
+  assign valid_o = valid_q;
+  assign bus_o = output_q;
+
+endmodule

@@ -1,0 +1,26 @@
+// The paper's hit-test unit, simulated, as a PlaneUnit.
+#pragma once
+
+#include <memory>
+
+#include "host/hit/plane_unit.h"
+
+namespace raygate {
+
+/// hw/hit_test/hit_test_unit.sv in binary32, rounded to nearest even. Tests go through it back to
+/// back: 7 clocks each, and 3 more a call for the last one's result. Not for two threads at once;
+/// each may have its own.
+class RtlPlaneUnit final : public PlaneUnit {
+ public:
+  RtlPlaneUnit();
+  ~RtlPlaneUnit() override;
+
+  void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
+  [[nodiscard]] std::uint64_t clocks() const override;
+
+ private:
+  struct Unit;  // keeps Verilator's headers out of the renderer
+  std::unique_ptr<Unit> unit_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,47 @@
+// Random input for the hit-test units, and how their results are compared.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace raygate {
+
+/// The bits of `value`, any NaN as the one the hardware gives.
+inline std::uint32_t bits(float value) {
+  return std::isnan(value) ? 0x7FC00000u : std::bit_cast<std::uint32_t>(value);
+}
+
+inline float from_bits(std::uint32_t word) { return std::bit_cast<float>(word); }
+
+/// Floats of three kinds, so that whole tests in the ordinary range are as frequent as odd ones:
+/// ordinary numbers around 1; any bit pattern; and zeros, subnormals, the largest and smallest
+/// normal numbers, infinities and NaN of either sign.
+class FloatStream {
+ public:
+  explicit FloatStream(std::uint32_t seed) : random_(seed) {}
+
+  /// A new test begins: its numbers are of one kind, or mixed.
+  void next_test() { kind_ = random_() % 4; }
+
+  float operator()() {
+    constexpr std::uint32_t kSpecial[] = {0x00000000, 0x00000001, 0x007FFFFF, 0x00800000,
+                                          0x3F800000, 0x7F7FFFFF, 0x7F800000, 0x7FC00001,
+                                          0x7F800001, 0x00000123, 0x3F800001, 0x33800000};
+    const unsigned kind = kind_ == 3 ? random_() % 3 : kind_;
+    const std::uint32_t word = random_();
+    if (kind == 0) return from_bits((word & 0x807FFFFF) | (120 + random_() % 16) << 23);
+    if (kind == 1) return from_bits(word);
+    return from_bits(kSpecial[random_() % std::size(kSpecial)] | (word & 0x80000000));
+  }
+
+  /// Clocks to wait before a test: none in every other one, else up to 20.
+  unsigned gap() { return random_() % 2 == 0 ? 0 : random_() % 21; }
+
+ private:
+  std::mt19937 random_;
+  unsigned kind_ = 0;
+};
+
+}  // namespace raygate

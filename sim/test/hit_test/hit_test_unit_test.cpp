@@ -1,0 +1,109 @@
+// The paper's unit: its worked example, its timetable, and random streams against C++ floats.
+#include <gtest/gtest.h>
+
+#include "Vhit_test_unit.h"
+#include "Vhit_test_unit_open.h"
+#include "Vhit_test_unit_open___024root.h"
+#include "Vhit_test_unit_paper.h"
+#include "sim/bus_stream.h"
+#include "sim/model.h"
+#include "sim/test/hit_test/float_stream.h"
+
+namespace raygate {
+namespace {
+
+using Point = std::array<std::uint32_t, 3>;
+
+// Section 4.2 of the paper: I = (3.3125, 5.875, 2.921875), H = (15.1875, 0.46875, 2.109375) and
+// d = 1.75, the only values that give the paper's results.
+const BusTest<7> kWorkedExample{{bits(3.3125f), bits(5.875f), bits(2.921875f), bits(15.1875f),
+                                 bits(0.46875f), bits(2.109375f), bits(1.75f)}};
+
+// P = d I / (I . H), in the unit's order.
+Point expected(const BusTest<7>& test) {
+  const auto& w = test.words;
+  float dot = 0.0f;
+  for (int k = 0; k < 3; ++k) dot += from_bits(w[3 + k]) * from_bits(w[k]);
+  Point point;
+  for (int k = 0; k < 3; ++k) point[k] = bits(from_bits(w[6]) * from_bits(w[k]) / dot);
+  return point;
+}
+
+TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
+  Model<Vhit_test_unit_open> unit;
+  unit.reset();
+  std::vector<std::uint32_t> products;  // those that go into the divider
+  std::uint32_t dot = 0;
+  const auto* inside = unit->rootp;
+  const auto results = stream_tests(unit, std::vector{kWorkedExample}, [&] {
+    if (!inside->hit_test_unit__DOT__divide) return;
+    dot = inside->hit_test_unit__DOT__divisor_q;
+    products.push_back(inside->hit_test_unit__DOT__product);
+  });
+  EXPECT_EQ(dot, 0x426CE740u);
+  EXPECT_EQ(products, (std::vector<std::uint32_t>{0x40B98000, 0x41248000, 0x40A3A000}));
+  EXPECT_EQ(results.at(0).point, (Point{0x3DC873FD, 0x3E31C2A2, 0x3DB0D093}));
+}
+
+TEST(HitTestUnit, WorkedExampleWithThePapersDivider) {
+  Model<Vhit_test_unit_paper> unit;
+  unit.reset();
+  const auto results = stream_tests(unit, std::vector{kWorkedExample});
+  EXPECT_EQ(results.at(0).point, (Point{0x3DC873F8, 0x3E31C2A0, 0x3DB0D090}));
+}
+
+TEST(HitTestUnit, TakesATestEvery7ClocksAndAnswersIn10) {
+  Model<Vhit_test_unit> unit;
+  unit.reset();
+  const auto results = stream_tests(unit, std::vector(100, kWorkedExample));
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i].first_word, 1 + 7 * i);
+    EXPECT_EQ(results[i].last_component, 10 + 7 * i);
+  }
+  for (int clock = 0; clock < 30; ++clock) {  // and then falls silent
+    unit->valid_i = 0;
+    unit.clock();
+    EXPECT_FALSE(unit->valid_o);
+    EXPECT_TRUE(unit->ready_o);
+  }
+}
+
+TEST(HitTestUnit, ResetEndsATestHalfway) {
+  Model<Vhit_test_unit> unit;
+  for (int clocks = 1; clocks < 12; ++clocks) {
+    unit.reset();
+    for (int k = 0; k < clocks; ++k) {
+      unit->valid_i = k == 0;
+      unit->bus_i = kWorkedExample.words[k % 7];
+      unit.clock();
+    }
+    unit.reset();
+    EXPECT_FALSE(unit->valid_o);
+    EXPECT_EQ(stream_tests(unit, std::vector{kWorkedExample}).at(0).point,
+              expected(kWorkedExample));
+  }
+}
+
+TEST(HitTestUnit, RandomStreamsEqualFloatArithmetic) {
+  constexpr std::uint32_t kSeed = 20260101;
+  constexpr std::size_t kTests = 100'000;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  FloatStream floats(kSeed);
+  std::vector<BusTest<7>> tests(kTests);
+  for (auto& test : tests) {
+    floats.next_test();
+    for (auto& word : test.words) word = std::bit_cast<std::uint32_t>(floats());
+    test.gap = floats.gap();
+  }
+  Model<Vhit_test_unit> unit;
+  unit.reset();
+  const auto results = stream_tests(unit, tests);
+  ASSERT_EQ(results.size(), kTests);
+  for (std::size_t i = 0; i < kTests; ++i) {
+    ASSERT_EQ(results[i].point, expected(tests[i])) << "test " << i;
+    ASSERT_EQ(results[i].last_component, results[i].first_word + 9) << "test " << i;
+  }
+}
+
+}  // namespace
+}  // namespace raygate

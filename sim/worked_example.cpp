@@ -1,0 +1,103 @@
+// The paper's worked example (section 4.2) through its unit, clock by clock, as its figure 10.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "Vhit_test_unit_open.h"
+#include "Vhit_test_unit_open___024root.h"
+#include "Vhit_test_unit_paper.h"
+#include "Vhit_test_unit_paper___024root.h"
+#include "sim/bus_stream.h"
+#include "sim/wave_model.h"
+
+namespace {
+
+using raygate::BusTest;
+using raygate::InputError;
+using raygate::WaveModel;
+
+constexpr const char* kUsage =
+    R"(usage: worked_example [--paper-divider] [--trace FILE]
+
+Sends the paper's worked example through the simulated hit-test unit and prints what every register
+holds after each clock edge, as IEEE binary32 words.
+
+  --paper-divider  cut quotients off after 21 significand bits, as the paper's divider did
+  --trace FILE     write the waveform to FILE (VCD, for GTKWave and others)
+)";
+
+// I, H and d: the only values that give the paper's own results.
+constexpr std::array<float, 7> kWords = {3.3125f,  5.875f,    2.921875f, 15.1875f,
+                                         0.46875f, 2.109375f, 1.75f};
+constexpr std::array<const char*, 7> kNames = {"Ix", "Iy", "Iz", "a", "b", "c", "d"};
+
+struct Options {
+  bool paper_divider = false;
+  std::string trace;
+};
+
+template <class Top>
+void run(const Options& options) {
+  WaveModel<Top> unit;
+  if (!options.trace.empty()) unit.record(options.trace);
+  unit.reset();
+
+  BusTest<7> test;
+  std::transform(kWords.begin(), kWords.end(), test.words.begin(),
+                 [](float value) { return std::bit_cast<std::uint32_t>(value); });
+  std::printf("edge  in  I-1      I-2      I-3      N        d        accum.   divisor  out\n");
+  const auto* inside = unit->rootp;
+  const auto results = raygate::stream_tests(unit, std::vector{test}, [&] {
+    const std::uint64_t edge = unit.clocks();
+    std::printf(
+        "%4d  %-2s  %08X %08X %08X %08X %08X %08X %08X", static_cast<int>(edge),
+        edge <= kNames.size() ? kNames[edge - 1] : "", inside->hit_test_unit__DOT__direction_1_q,
+        inside->hit_test_unit__DOT__direction_2_q, inside->hit_test_unit__DOT__direction_3_q,
+        inside->hit_test_unit__DOT__normal_q, inside->hit_test_unit__DOT__d_q,
+        inside->hit_test_unit__DOT__accumulator_q, inside->hit_test_unit__DOT__divisor_q);
+    if (unit->valid_o) std::printf(" %08X", unit->bus_o);
+    std::printf("\n");
+  });
+  const auto& result = results.front();
+  std::printf("P = (%.9g, %.9g, %.9g), %d clocks after the first word\n",
+              std::bit_cast<float>(result.point[0]), std::bit_cast<float>(result.point[1]),
+              std::bit_cast<float>(result.point[2]),
+              static_cast<int>(result.last_component - result.first_word + 1));
+}
+
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--paper-divider") == 0) {
+      options.paper_divider = true;
+    } else if (std::strcmp(argv[i], "--trace") == 0 && i + 1 < argc) {
+      options.trace = argv[++i];
+    } else {
+      throw InputError(std::string(argv[i]) + ": expected --paper-divider or --trace FILE");
+    }
+  }
+  return options;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc == 2 && std::strcmp(argv[1], "--help") == 0) {
+    std::fputs(kUsage, stdout);
+    return 0;
+  }
+  try {
+    const Options options = parse(argc, argv);
+    if (options.paper_divider) {
+      run<Vhit_test_unit_paper>(options);
+    } else {
+      run<Vhit_test_unit_open>(options);
+    }
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "worked_example: %s\n", error.what());
+    return 2;
+  }
+}
