@@ -35,3 +35,5 @@ everything:
 	@$(SETUP) test
 	@cmake -S . -B build -G Ninja -DBUILD_TESTING=ON
 	@cmake --build build -j $(JOBS)
+
+include synth/synth.mk

@@ -14,8 +14,7 @@ namespace raygate {
 template <class Top>
 class Model {
  public:
-  /// Verilator's first evaluation is the start: an edge of the clock in it would not count.
-  Model() { top_->eval(); }
+  Model() = default;
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 

@@ -5,7 +5,7 @@
 // come first, when a barrel shifter wants them. Written as word-wide steps, of which all but the tree
 // that ends in the top bit is pruned by synthesis.
 //
-// Combinational, $clog2(Width) levels. For a_i = 0, zero_o is 1 and count_o says nothing.
+// Combinational, $clog2(Width) levels. For a_i = 0, zero_o is 1 and count_o is all ones.
 module leading_zero_counter #(
   parameter int unsigned Width = 24  // at least 2
 ) (

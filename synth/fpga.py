@@ -1,0 +1,74 @@
+"""Places and routes one design on an FPGA, between registers, and reads its clock rate."""
+
+import inspect
+import json
+import pathlib
+import re
+
+from synth import mapping, store, tools
+from synth.catalogue import Design, Fpga
+
+
+def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
+    """LUTs, carry cells, registers, DSPs, fmax in MHz (slowest path between registers)."""
+    folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
+    files = [*design.sources(), tools.FLOWS / "fpga.tcl", tools.FLOWS / "elaborate.tcl"]
+    wanted = store.key(files, tools.version("yosys"), tools.version(fpga.tool), design.top,
+                       design.parameters, fpga, inspect.getsource(registered))
+    return store.cached(folder, wanted, lambda: _place(design, fpga, folder))
+
+
+def _place(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
+    environment = {**mapping.elaboration(design), "FAMILY": fpga.name,
+                   "OUT": str(folder / "netlist.json"), "WRAPPER": "", "PORTS": ""}
+    if not design.clock:
+        ports = folder / "ports.json"
+        tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "ports.log",
+                  {**environment, "PORTS": str(ports)})
+        wrapper = folder / "registered.v"
+        wrapper.write_text(registered(design.top, json.loads(ports.read_text())))
+        environment["WRAPPER"] = str(wrapper)
+    tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "yosys.log", environment)
+    rates = []
+    for seed in fpga.seeds:
+        report = folder / f"placed.{seed}.json"
+        tools.run([fpga.tool, *fpga.arguments, "--json", folder / "netlist.json", "--seed", seed,
+                   "--freq", fpga.wanted_mhz, "--timing-allow-fail", "--report", report, "--quiet"],
+                  folder / f"nextpnr.{seed}.log")
+        placed = json.loads(report.read_text())
+        rates.append(max(clock["achieved"] for clock in placed["fmax"].values()))
+    used = {name: count["used"] for name, count in placed["utilization"].items() if count["used"]}
+    return {"mhz": round(sorted(rates)[len(rates) // 2], 1), "luts": used[fpga.lut_cell],
+            "used": used}
+
+
+def registered(top: str, netlist: dict) -> str:
+    """Verilog of a wrapper that puts registers at all inputs and outputs of `top`.
+
+    `netlist` is Yosys's JSON. The ports of the wrapper are a shift register's ends: a device has
+    fewer pins than a wide design has bits, and what isn't used must not be optimised away.
+    """
+    (module,) = [body for name, body in netlist["modules"].items()
+                 if re.search(rf"(^|\\){re.escape(top)}(\\|$)", name)]
+    sides = {"input": [], "output": []}
+    for port, body in module["ports"].items():
+        sides[body["direction"]].append((port, len(body["bits"])))
+    inputs = sum(width for _, width in sides["input"])
+    outputs = sum(width for _, width in sides["output"])
+    lines = ["module registered (input clk_i, input bit_i, input load_i, output bit_o);",
+             f"  reg [{inputs - 1}:0] in;", f"  reg [{outputs - 1}:0] out, shifted;",
+             f"  wire [{outputs - 1}:0] result;",
+             f"  {top} dut ("]
+    connections = []
+    for side, bus in (("input", "in"), ("output", "result")):
+        low = 0
+        for port, width in sides[side]:
+            connections.append(f"    .{port}({bus}[{low} +: {width}])")
+            low += width
+    lines += [",\n".join(connections), "  );",
+              "  always @(posedge clk_i) begin",
+              "    in <= {in, bit_i};",
+              "    out <= result;",
+              "    shifted <= load_i ? out : {1'b0, shifted} >> 1;",
+              "  end", "  assign bit_o = shifted[0];", "endmodule"]
+    return "\n".join(lines) + "\n"

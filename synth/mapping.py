@@ -1,0 +1,99 @@
+"""Maps one design to one standard-cell library by one flow, and times it."""
+
+import functools
+import pathlib
+import re
+
+from synth import store, tools
+from synth.catalogue import Design, Library
+
+ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "fast": "fast.abc"}
+
+# One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
+PATH_STEP = re.compile(
+    r"^\s*(?:[\d.]+\s+)*?(?P<delay>-?[\d.]+)\s+(?P<arrival>-?[\d.]+) "
+    r"[v^] (?P<pin>\S+) \((?P<cell>\w+)\)$", re.M)
+
+
+@functools.cache
+def flow_facts() -> tuple[str, ...]:
+    """What every mapping depends on besides the design: the tools' versions."""
+    return tools.version("yosys"), tools.version("sta")
+
+
+def elaboration(design: Design, structural: bool = False) -> dict[str, str]:
+    """The environment that flows/elaborate.tcl reads."""
+    return {
+        "SOURCES": " ".join(str(file) for file in design.sources(structural)),
+        "TOP": design.top,
+        "PARAMETERS": " ".join(f"{name} {value}" for name, value in design.parameters),
+    }
+
+
+def synthesise(design: Design, library: Library, flow: str,
+               root: pathlib.Path | None = None) -> tuple[dict, bool]:
+    """Area (liberty units), delay (ns), cells and critical path; and whether it was cached."""
+    folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
+    scripts = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "known_selects.v",
+               "osu_cells.v", "timing.tcl", *set(ABC_SCRIPTS.values()))
+    files = [*design.sources(flow == "cells"), library.liberty,
+             *sorted(tools.FLOWS / name for name in scripts)]
+    wanted = store.key(files, flow_facts(), design.top, design.parameters, library, flow)
+    return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
+
+
+def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.Path) -> dict:
+    constraints = folder / "constraints"
+    constraints.write_text(  # ABC counts femtofarads
+        f"set_driving_cell {library.driver}\nset_load {1000 * library.load_pf:g}\n")
+    script = ABC_SCRIPTS.get(flow)
+    prefix = folder / "netlist"
+    tools.run(["yosys", "-c", tools.FLOWS / "standard_cells.tcl"], folder / "yosys.log", {
+        **elaboration(design, flow == "cells"),
+        "FLOW": flow,
+        "LIBERTY": str(library.liberty),
+        "CONSTRAINTS": str(constraints),
+        "ABC_SCRIPT": f"-script {tools.FLOWS / script}" if script else "",
+        "OUT": str(prefix),
+    })
+    area, cells = cell_counts(prefix.with_suffix(".stat").read_text())
+    timing = tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], folder / "timing.txt", {
+        "LIBERTY": str(library.liberty),
+        "NETLIST": str(prefix.with_suffix(".timed.v")),
+        "TOP": design.top,
+        "DRIVER": library.driver,
+        "LOAD": f"{library.load_pf}",
+        "CLOCK": design.clock,
+    })
+    delay, path = critical_path(timing)
+    return {
+        "area": area,
+        "delay_ns": delay,
+        "cells": cells,
+        "path": path,
+    }
+
+
+def cell_counts(stat: str) -> tuple[int, dict[str, int]]:
+    """The area (liberty units) and the number of cells of each type in Yosys's statistics."""
+    area = re.search(r"Chip area for (?:top )?module '[^']*': ([\d.]+)", stat)
+    if area is None:
+        raise tools.ToolFailed("Yosys stated no area: a cell is missing from the library")
+    cells = re.findall(r"^ {5}(\w+) +(\d+)$", stat, re.M)
+    return round(float(area.group(1))), {name: int(count) for name, count in cells}
+
+
+def critical_path(report: str) -> tuple[float, list[dict]]:
+    """The slowest path in OpenSTA's report: its length in ns, set-up time included, and its steps.
+
+    Raises ToolFailed where the report holds no path: a design without one was not timed.
+    """
+    arrival = re.search(r"^\s*(-?[\d.]+)\s+data arrival time", report, re.M)
+    if arrival is None:
+        problem = re.search(r"^(?:Error|Warning).*", report, re.M)
+        raise tools.ToolFailed(f"no timing path: {problem.group(0) if problem else report[-300:]}")
+    setup = re.search(r"^\s*(?:[\d.]+\s+)*?-([\d.]+)\s+[\d.]+\s+library setup time", report, re.M)
+    steps = [{"arrival": float(step["arrival"]), "delay": float(step["delay"]),
+              "pin": step["pin"], "cell": step["cell"]}
+             for step in PATH_STEP.finditer(report[: arrival.start()])]
+    return round(float(arrival.group(1)) + float(setup.group(1) if setup else 0), 3), steps

@@ -1,0 +1,66 @@
+"""Measures designs on all targets: the jobs, and their results as flat records."""
+
+import dataclasses
+
+from synth import fpga, mapping, runner, tools
+from synth.catalogue import FPGAS, LIBRARIES, Design
+
+
+@dataclasses.dataclass(frozen=True)
+class Targets:
+    """What is measured: names of libraries and FPGAs, and how many jobs at once."""
+
+    names: tuple[str, ...]
+    workers: int = 2
+
+
+def available(names: list[str] | None) -> tuple[str, ...]:
+    """The targets asked for, or all whose tools are installed.
+
+    Raises MissingTool for one that was asked for and for the standard-cell tools; an FPGA whose
+    placer is absent is left out of a run of everything.
+    """
+    tools.find("yosys")
+    chosen = []
+    for library in LIBRARIES:
+        if not names or library.name in names:
+            tools.find("sta")
+            _ = library.liberty
+            chosen.append(library.name)
+    for device in FPGAS:
+        if names and device.name in names:
+            tools.find(device.tool)
+        if (not names or device.name in names) and tools.installed(device.tool):
+            chosen.append(device.name)
+    unknown = set(names or []) - set(chosen)
+    if unknown:
+        known = ", ".join(target.name for target in [*LIBRARIES, *FPGAS])
+        raise ValueError(f"no target {', '.join(sorted(unknown))}; there are {known}")
+    return tuple(chosen)
+
+
+def measure(rows: list[tuple[str, Design, tuple[str, ...]]],
+            targets: Targets) -> tuple[list[dict], list[str]]:
+    """One record for each (section, design, flows) of `rows`, target and flow; and the failures."""
+    jobs, heads = [], []
+    for section, design, flows in rows:
+        head = {"section": section, "design": design.name, "top": design.top,
+                "parameters": dict(design.parameters)}
+        for library in LIBRARIES:
+            if library.name in targets.names:
+                for flow in flows:
+                    heads.append({**head, "target": library.name, "flow": flow})
+                    jobs.append(runner.Job(
+                        f"{design.name} {library.name} {flow}",
+                        lambda d=design, t=library, f=flow: mapping.synthesise(d, t, f),
+                        lambda got: f"{got['area']:,} / {got['delay_ns']:.2f} ns"))
+        for device in FPGAS:
+            if device.name in targets.names:
+                heads.append({**head, "target": device.name, "flow": "placed"})
+                jobs.append(runner.Job(
+                    f"{design.name} {device.name}",
+                    lambda d=design, t=device: fpga.place(d, t),
+                    lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz"))
+    results, failures = runner.run_all(jobs, targets.workers)
+    return [{**head, **result} for head, result in zip(heads, results, strict=True)
+            if result is not None], failures

@@ -1,0 +1,83 @@
+"""Writes what was measured: report.md for people, results.json and results.csv for programs."""
+
+import json
+import platform
+
+from synth import store, tables, tools
+from synth.catalogue import FLOWS, FPGAS, LIBRARIES
+
+TITLES = {target.name: target.title for target in [*LIBRARIES, *FPGAS]}
+
+CAVEATS = """\
+Areas are in each library's own units (one NAND2X1: 96 in the 0.35 um library, 24 in the 0.18 um one)
+and are those of the cells alone. Delays are those of the slowest path at typical corner, in at an INVX4,
+out into 0.1 pF, with no layout and no wires: silicon is slower, and the order of two designs that
+are close may change. iCE40 and ECP5 figures are placed and routed, between registers, the median of
+several placements.
+"""
+
+
+def cost(record: dict | None) -> str:
+    """`area / ns` or `LUTs / MHz`."""
+    if record is None:
+        return "-"
+    if "mhz" in record:
+        return f"{record['luts']:,} / {record['mhz']:.0f}"
+    return f"{record['area']:,} / {record['delay_ns']:.2f}"
+
+
+def section_tables(records: list[dict], section: str) -> str:
+    """A table for each library (a column for each flow), and one for the FPGAs."""
+    mine = [record for record in records if record["section"] == section]
+    groups = [(f"{library.title}: area / ns", [(library.name, flow) for flow in FLOWS])
+              for library in LIBRARIES]
+    groups.append(("LUTs / MHz", [(device.name, "placed") for device in FPGAS]))
+    return "\n".join(_table(mine, f"{section}, {title}", columns)
+                     for title, columns in groups if any(
+                         (record["target"], record["flow"]) in columns for record in mine))
+
+
+def _table(records: list[dict], title: str, columns: list[tuple[str, str]]) -> str:
+    at = {(record["design"], record["target"], record["flow"]): record for record in records}
+    columns = [column for column in columns if any(key[1:] == column for key in at)]
+    designs = dict.fromkeys(record["design"] for record in records)
+    heads = [flow if flow != "placed" else TITLES[target] for target, flow in columns]
+    return tables.markdown([title, *heads], [
+        [design, *(cost(at.get((design, *column))) for column in columns)] for design in designs])
+
+
+def path_table(record: dict) -> str:
+    """A critical path, cell by cell (output pins alone: what a cell and its load take)."""
+    steps = [step for step in record["path"]]
+    rows = []
+    for i in range(0, len(steps)):
+        step = steps[i]
+        if i and step["pin"].rpartition("/")[0] == steps[i - 1]["pin"].rpartition("/")[0]:
+            came = steps[i - 1]["pin"].rpartition("/")[2]
+            cell, _, pin = step["pin"].rpartition("/")
+            rows.append([cell, step["cell"], f"{came} to {pin}", f"{step['delay']:.3f}",
+                         f"{step['arrival']:.3f}"])
+    return tables.markdown(["instance", "cell", "through", "ns", "arrival, ns"], rows)
+
+
+def versions() -> str:
+    """The tools and their versions, one line."""
+    names = ["yosys", "sta", *dict.fromkeys(device.tool for device in FPGAS)]
+    stated = [f"{name} {tools.version(name)}" for name in names if tools.installed(name)]
+    return ", ".join([*stated, f"Python {platform.python_version()}"])
+
+
+def write(records: list[dict], sections: list[tuple[str, str]]) -> None:
+    """Writes the three files. `sections` are (title, Markdown) that follow the tables."""
+    store.OUT.mkdir(parents=True, exist_ok=True)
+    parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", CAVEATS,
+             "Flows: " + "; ".join(f"**{name}**: {text}" for name, text in FLOWS.items()) + ".\n"]
+    for section in dict.fromkeys(record["section"] for record in records):
+        parts += [f"## {section}\n", section_tables(records, section)]
+    for title, text in sections:
+        parts += [f"## {title}\n", text]
+    (store.OUT / "report.md").write_text("\n".join(parts))
+    (store.OUT / "results.json").write_text(
+        json.dumps({"tools": versions(), "results": records}, indent=1) + "\n")
+    columns = ["section", "design", "target", "flow", "area", "delay_ns", "luts", "mhz"]
+    (store.OUT / "results.csv").write_text(tables.comma_separated(records, columns))

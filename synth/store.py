@@ -1,0 +1,39 @@
+"""Keeps results on disk, under a key made of everything that they depend on."""
+
+import functools
+import hashlib
+import json
+import pathlib
+from collections.abc import Callable, Iterable
+
+from synth import tools
+
+OUT = tools.ROOT / "build" / "synth"
+
+
+@functools.cache
+def _digest(file: pathlib.Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def key(files: Iterable[pathlib.Path], *facts: object) -> str:
+    """A hash of the contents of `files` and of `facts` (tool versions, parameters, settings)."""
+    parts = [[file.name, _digest(file)] for file in files] + [repr(fact) for fact in facts]
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+
+
+def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple[dict, bool]:
+    """The result in `folder` if it was made under the key `wanted`; else makes and keeps it.
+
+    Returns the result and whether it was already there.
+    """
+    file = folder / "result.json"
+    if file.exists():
+        kept = json.loads(file.read_text())
+        if kept["key"] == wanted:
+            return kept["result"], True
+        file.unlink()  # a run that fails must not leave an older answer behind
+    folder.mkdir(parents=True, exist_ok=True)
+    result = make()
+    file.write_text(json.dumps({"key": wanted, "result": result}, indent=1))
+    return json.loads(file.read_text())["result"], False
