@@ -3,29 +3,23 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "host/hit/polygon_record.h"
+#include "host/lanes.h"
 
 namespace raygate {
-
-/// Rays are handled eight at a time: one AVX register of floats.
-inline constexpr int kLanes = 8;
-
-/// `direction` times the power of two that brings its largest component into [1, 2): the form in
-/// which every engine takes it. Nothing for a direction that is zero, infinite or NaN.
-[[nodiscard]] std::optional<glm::vec3> scaled_direction(const glm::vec3& direction);
 
 /// Up to eight rays that meet the same run of records: eight bursts of tests, stored as one.
 /// The burst of lane k is direction k against records[0 .. record_count), in this order.
 struct alignas(32) RayBundle {
-  float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see scaled_direction)
+  float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see scaled_direction,
+                                           ///< host/scene/camera.h)
   const PolygonRecord* records = nullptr;  ///< made for the origin of these rays
   std::uint32_t record_count = 0;
   std::uint32_t first_tag = 0;  ///< the caller's name of records[0]; records[i] is first_tag + i
-  std::uint32_t lanes = 0;      ///< bit k: lane k holds a ray
+  LaneMask lanes = 0;           ///< bit k: lane k holds a ray
 
   [[nodiscard]] glm::vec3 lane_direction(int lane) const {
     return {direction[0][lane], direction[1][lane], direction[2][lane]};
@@ -38,8 +32,7 @@ struct SureHit {
   std::uint32_t lane = 0;
   std::uint32_t tag = 0;
   glm::vec3 point{0.0f};  ///< P = d I / (I . N) relative to the origin, in the plane unit's bits
-  float t_low = 0.0f;     ///< the exact t (P = t I) is in [t_low, t_high];
-  float t_high = 0.0f;    ///< +infinity where float32 says nothing
+  Interval t{};           ///< high = +infinity where float32 says nothing
 };
 
 /// A polygon that float32 can neither call hit nor missed: for exact arithmetic to settle.

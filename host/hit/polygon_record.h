@@ -4,6 +4,8 @@
 #include <array>
 #include <glm/glm.hpp>
 
+#include "host/hit/exact.h"
+
 namespace raygate {
 
 /// The 16 words of a triangle A, B, C seen from an origin O (A, B, C stand for the vertices minus
@@ -23,10 +25,11 @@ struct alignas(64) PolygonRecord {
 };
 static_assert(sizeof(PolygonRecord) == 64);
 
-/// The record of triangle `a`, `b`, `c` for rays from `origin`. All coordinates finite, of
-/// magnitude at most 2^126. A triangle whose plane holds the origin, or without area, gets d = 0:
-/// no ray hits it.
-[[nodiscard]] PolygonRecord make_record(const glm::vec3& origin, const glm::vec3& a,
-                                        const glm::vec3& b, const glm::vec3& c);
+/// The bound of an edge E, rounded to float, is kEdgeBound 2^-24 |E|_1: see polygon_record.cpp.
+inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
+
+/// The record of a triangle for rays from `origin`. All coordinates finite, of magnitude at most
+/// 2^126. A triangle whose plane holds the origin, or without area, gets d = 0: no ray hits it.
+[[nodiscard]] PolygonRecord make_record(const glm::vec3& origin, const Corners& triangle);
 
 }  // namespace raygate

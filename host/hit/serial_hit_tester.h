@@ -1,9 +1,11 @@
 // Hit tests by a unit that knows planes only: the paper's hardware and the software around it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "host/hit/edge_test.h"
 #include "host/hit/hit_tester.h"
 #include "host/hit/plane_unit.h"
 
@@ -23,6 +25,28 @@ class SerialHitTester : public HitTester {
 
   void test(std::span<const RayBundle> batch, HitResults& results) override;
   [[nodiscard]] HitCounters counters() const override;
+
+ private:
+  enum class Verdict : std::uint8_t { kMiss, kHit, kDoubt };
+
+  /// A pair on its way through the unit.
+  struct Pair {
+    std::uint32_t bundle, lane, record;
+    Verdict verdict;
+  };
+
+  void collect(std::uint32_t index, const RayBundle& bundle);
+  void report_burst(std::span<const RayBundle> batch, std::size_t first, std::size_t last,
+                    HitResults& results);
+
+  std::unique_ptr<PlaneUnit> unit_;
+  Order order_;
+  HitCounters counters_;
+  // Room to work in, kept from batch to batch.
+  std::vector<EdgeVerdict> verdicts_;
+  std::vector<Pair> pairs_;  // bundle by bundle, lane by lane, in the order of the records
+  std::vector<PlaneTest> plane_tests_;
+  std::vector<glm::vec3> points_;
 };
 
 }  // namespace raygate

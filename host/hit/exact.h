@@ -1,0 +1,57 @@
+// Decisions that are never wrong: does a ray hit a triangle, and which of two hits is nearer.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+namespace raygate {
+
+/// The vertices of a triangle, in its order.
+using Corners = std::array<glm::vec3, 3>;
+
+/// A ray: origin + t direction for t > 0. All components finite; coordinates, the triangles' too,
+/// of magnitude at most 2^126; the direction scaled (see scaled_direction in host/scene/camera.h).
+struct Ray {
+  glm::vec3 origin{0.0f};
+  glm::vec3 direction{0.0f};
+};
+
+/// The exact t of a hit is in [low, high].
+struct Interval {
+  double low, high;
+};
+
+/// The sign (-1, 0, 1) of I . (A x B), for A = a - O and B = b - O: on which side of the edge from
+/// `a` to `b` the ray passes. Where it is exactly 0, the sign for a direction tilted by an
+/// infinitesimal towards +x, by a still smaller one towards +y, and one towards +z. Only for an
+/// edge in line with the origin does the tilt not help, and the answer is 0.
+[[nodiscard]] int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b);
+
+/// The sign of the determinant of A, B, C: on which side of the triangle's plane the origin is; 0
+/// for an origin in the plane and for a triangle without area.
+[[nodiscard]] int plane_side(const glm::vec3& origin, const Corners& triangle);
+
+/// Whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree about
+/// the edge they share because they ask one question about one tilted ray: exactly one triangle
+/// of a fan is hit. A triangle whose plane holds the origin is never hit, nor one behind it.
+[[nodiscard]] bool hits_triangle(const Ray& ray, const Corners& triangle);
+
+/// The t of a hit: for triangles that hits_triangle says are hit.
+[[nodiscard]] Interval hit_distance(const Ray& ray, const Corners& triangle);
+
+/// The sign of t(first) - t(second), exactly. Both must be hits.
+[[nodiscard]] int compare_hits(const Ray& ray, const Corners& first, const Corners& second);
+
+/// The double nearest to D = A . ((b-a) x (c-a)), off by 2^-32 of itself at most, with its exact
+/// sign.
+[[nodiscard]] double plane_distance(const glm::vec3& origin, const Corners& triangle);
+
+/// (p - origin) x (q - p) in double; each component is off by at most 2^-34 of the sum of the
+/// components' magnitudes.
+[[nodiscard]] glm::dvec3 edge_normal(const glm::vec3& origin, const glm::vec3& p,
+                                     const glm::vec3& q);
+
+/// (b-a) x (c-a), as accurate as edge_normal.
+[[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
+
+}  // namespace raygate

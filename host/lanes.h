@@ -1,0 +1,48 @@
+// Eight rays at a time: the one place that knows how wide the machine's vectors are.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+namespace raygate {
+
+/// Rays are handled eight at a time: one AVX register of floats.
+inline constexpr int kLanes = 8;
+
+/// A set of lanes: bit k stands for lane k.
+using LaneMask = std::uint32_t;
+
+/// GCC's and Clang's vector types: element-wise arithmetic, and comparisons giving 0 or -1. Passed
+/// around by reference only, so that no calling convention depends on the machine; aligned
+/// explicitly, as the compiler's own choice does.
+using FloatLanes = float __attribute__((vector_size(4 * kLanes), aligned(4 * kLanes)));
+using IntLanes = std::int32_t __attribute__((vector_size(4 * kLanes), aligned(4 * kLanes)));
+
+// Functions marked so are compiled twice on x86-64 and the fitting one is picked at start-up.
+// Neither form fuses multiply and add, so both give the same bits. (The sanitizers run before the
+// picking.)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define RAYGATE_LANES __attribute__((target_clones("avx2", "default")))
+#else
+#define RAYGATE_LANES
+#endif
+#define RAYGATE_INLINE inline __attribute__((always_inline))
+
+RAYGATE_INLINE void load_lanes(const float* from, FloatLanes& to) {
+  std::memcpy(&to, from, sizeof to);
+}
+
+/// Lanes where a comparison held, for two comparisons at once: the first in bits 0-7, the second
+/// in bits 8-15.
+RAYGATE_INLINE std::uint32_t mask_of(const IntLanes& first, const IntLanes& second) {
+  constexpr IntLanes kFirst = {1, 2, 4, 8, 16, 32, 64, 128};
+  constexpr IntLanes kSecond = {256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  IntLanes bits = (first & kFirst) | (second & kSecond);
+  bits |= __builtin_shuffle(bits, IntLanes{4, 5, 6, 7, 0, 1, 2, 3});
+  bits |= __builtin_shuffle(bits, IntLanes{2, 3, 0, 1, 6, 7, 4, 5});
+  bits |= __builtin_shuffle(bits, IntLanes{1, 0, 3, 2, 5, 4, 7, 6});
+  return static_cast<std::uint32_t>(bits[0]);
+}
+
+}  // namespace raygate
