@@ -1,9 +1,9 @@
 // A tree of boxes around a scene's triangles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,30 +21,30 @@ class Bvh {
   /// No path from the root is longer: what a traversal's stack must hold.
   static constexpr int kMaxDepth = 60;
 
-  /// A child: an inner node (count = 0, first = its index) or a leaf (slots first .. first+count).
+  /// A child: an inner node (count = 0) or a leaf.
   struct Ref {
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;
+    std::uint32_t first;  ///< inner: index of the node; leaf: the slots first .. first + count
+    std::uint16_t count;
+    std::uint16_t axis;  ///< inner: its child 0 is the lower one along this axis (a hint)
   };
 
   /// Both children with their boxes, one cache line. Boxes are one float wider than what they
   /// hold on every side. An absent child (a scene of one leaf or none) has an empty box,
   /// low = +infinity and high = -infinity.
   struct alignas(64) Node {
-    glm::vec3 low[2], high[2];
+    glm::vec3 bounds[2][2];  ///< [low = 0, high = 1][child]
     Ref child[2];
   };
 
-  /// Vertices of a slot's triangle, in the triangle's order.
-  struct Corners {
-    glm::vec3 a, b, c;
-  };
+  /// The vertices of a slot's triangle, in the triangle's order.
+  using Corners = std::array<glm::vec3, 3>;
 
   /// Builds the tree; all positions finite, of magnitude at most 2^126. A scene without triangles
   /// gives a tree that no ray enters.
   explicit Bvh(const Scene& scene);
 
-  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }  ///< [0] is the root
+  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+  [[nodiscard]] Ref root() const { return root_; }  ///< an inner node, always
   [[nodiscard]] std::uint32_t slot_count() const {
     return static_cast<std::uint32_t>(triangles_.size());
   }
@@ -52,7 +52,10 @@ class Bvh {
   [[nodiscard]] const Corners& corners_of(std::uint32_t slot) const { return corners_[slot]; }
 
  private:
+  friend class BvhBuilder;
+
   std::vector<Node> nodes_;
+  Ref root_{};
   std::vector<std::uint32_t> triangles_;
   std::vector<Corners> corners_;
 };
