@@ -38,7 +38,7 @@ struct RenderStats {
   bool cancelled = false;  ///< the progress function said stop: the film has holes
 };
 
-/// One tester for each thread.
+/// Makes the tester of one thread; called on that thread.
 using HitTesterFactory = std::function<std::unique_ptr<HitTester>()>;
 
 /// Called with the fraction done, in [0, 1], now and then and from one thread at a time; false

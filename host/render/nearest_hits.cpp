@@ -1,0 +1,33 @@
+#include "host/render/nearest_hits.h"
+
+#include <algorithm>
+
+namespace raygate {
+
+bool NearestHits::offer(std::uint32_t number, const Ray& ray, const SureHit& hit) {
+  return take_if_nearer(nearest_[number], ray, {hit.tag, hit.point, hit.t});
+}
+
+bool NearestHits::offer(std::uint32_t number, const Ray& ray, const Doubt& doubt) {
+  ++counters_.exact_inside;
+  const Corners& corners = bvh_.corners_of(doubt.tag);
+  if (!hits_triangle(ray, corners)) return false;
+  return take_if_nearer(nearest_[number], ray,
+                        {doubt.tag, doubt.point, hit_distance(ray, corners)});
+}
+
+bool NearestHits::take_if_nearer(NearestHit& best, const Ray& ray, const NearestHit& hit) {
+  if (best.slot != NearestHit::kNone && hit.t.high >= best.t.low) {
+    if (hit.t.low > best.t.high) return false;
+    ++counters_.exact_depth;
+    const int order = compare_hits(ray, bvh_.corners_of(hit.slot), bvh_.corners_of(best.slot));
+    if (order > 0) return false;
+    if (order == 0 && bvh_.triangle_of(hit.slot) > bvh_.triangle_of(best.slot)) return false;
+  }
+  const double farthest = best.slot != NearestHit::kNone ? best.t.high : hit.t.high;
+  best = hit;
+  best.t.high = std::min(best.t.high, farthest);  // it is nearer than what it replaces
+  return true;
+}
+
+}  // namespace raygate

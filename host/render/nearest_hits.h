@@ -1,0 +1,58 @@
+// Which polygon each ray of a wavefront hits first, decided exactly.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "host/accel/bvh.h"
+#include "host/hit/exact.h"
+#include "host/hit/hit_tester.h"
+
+namespace raygate {
+
+/// The nearest hit of a ray so far.
+struct NearestHit {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  std::uint32_t slot = kNone;  ///< of the tree; kNone: nothing hit
+  glm::vec3 point{0.0f};       ///< P, relative to the ray's origin, as the engine computed it
+  Interval t{};                ///< holds the exact t
+};
+
+/// Takes in what a HitTester reports and settles in exact arithmetic what it leaves open: doubts
+/// about edges, and the order of hits whose distances overlap (equally far: the lower triangle
+/// index is nearer). The outcome depends on the rays and the scene alone, not on the engine nor on
+/// the order of the reports.
+class NearestHits {
+ public:
+  struct Counters {
+    std::uint64_t exact_inside = 0;  ///< doubts about edges settled
+    std::uint64_t exact_depth = 0;   ///< pairs of hits put in order
+  };
+
+  explicit NearestHits(const Bvh& bvh) : bvh_(bvh) {}
+
+  /// Forgets all and begins with rays of numbers 0 to `rays` - 1.
+  void reset(std::size_t rays) { nearest_.assign(rays, {}); }
+
+  /// Offers a sure hit of ray `number`. True when it is the nearest now.
+  bool offer(std::uint32_t number, const Ray& ray, const SureHit& hit);
+
+  /// Offers a doubt. True when it is a hit, and the nearest now.
+  bool offer(std::uint32_t number, const Ray& ray, const Doubt& doubt);
+
+  [[nodiscard]] const NearestHit& operator[](std::size_t number) const { return nearest_[number]; }
+  [[nodiscard]] const Counters& counters() const { return counters_; }
+
+ private:
+  bool take_if_nearer(NearestHit& best, const Ray& ray, const NearestHit& hit);
+
+  const Bvh& bvh_;
+  std::vector<NearestHit> nearest_;
+  Counters counters_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,23 @@
+// Splits time between the parts of a job.
+#pragma once
+
+#include <chrono>
+
+namespace raygate {
+
+/// Each lap ends one part and begins the next.
+class Stopwatch {
+ public:
+  /// Seconds since construction or the last lap.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> elapsed = now - start_;
+    start_ = now;
+    return elapsed.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace raygate
