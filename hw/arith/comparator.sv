@@ -1,7 +1,7 @@
 // Compares two unsigned words: less_o = a_i < b_i, equal_o = a_i == b_i.
 //
-// A tree: each level joins pairs of neighbours, the upper one deciding unless it is equal. Written as
-// word-wide steps, of which all but the tree that ends in the top bit is pruned by synthesis.
+// A tree: each level joins pairs of neighbours, the upper one deciding unless it is equal. Written
+// as word-wide steps, of which all but the tree that ends in the top bit is pruned by synthesis.
 //
 // Combinational, $clog2(Width) levels. Any input.
 module comparator #(
@@ -13,8 +13,8 @@ module comparator #(
   output logic             equal_o
 );
 
-  // After level k bit i tells of the 2**k bits that end at bit i (of fewer at the low end, where the
-  // bits shifted in count as equal).
+  // After level k bit i tells of the 2**k bits that end at bit i (of fewer at the low end, where
+  // the bits shifted in count as equal).
   logic [Width-1:0] less, equal;
 
   always_comb begin

@@ -1,9 +1,9 @@
 // Counts the zeros above the highest one of a word.
 //
-// A tree: each level joins pairs of neighbouring blocks, whose count is that of the upper block, or,
-// where that is all zeros, that of the lower block with one more bit set. So the count's high bits
-// come first, when a barrel shifter wants them. Written as word-wide steps, of which all but the tree
-// that ends in the top bit is pruned by synthesis.
+// A tree: each level joins pairs of neighbouring blocks, whose count is that of the upper block,
+// or, where that is all zeros, that of the lower block with one more bit set. So the count's high
+// bits come first, when a barrel shifter wants them. Written as word-wide steps, of which all but
+// the tree that ends in the top bit is pruned by synthesis.
 //
 // Combinational, $clog2(Width) levels. For a_i = 0, zero_o is 1 and count_o is all ones.
 module leading_zero_counter #(
@@ -18,7 +18,7 @@ module leading_zero_counter #(
 
   // After level k bit i tells of the 2**k bits that end at bit i (zeros are shifted in below):
   // whether any is one, and bit j of their count in plane j.
-  logic [Width-1:0] any, plane [Levels];
+  logic [Width-1:0] any, plane[Levels];
 
   always_comb begin
     any = a_i;

@@ -1,8 +1,8 @@
 // Divides significands: floor(2 * x / d * 4**Rows), and whether anything is left.
 //
-// Radix-4 SRT, all rows in one go: digits -2 .. 2, residual in carry-save form, so that no row waits
-// for a carry but that of its seven-bit estimate. A first digit of 1 .. 4, taken from the operands
-// themselves, brings the quotient's 2 x / d in (1, 4) to its place; Rows digits follow.
+// Radix-4 SRT, all rows in one go: digits -2 .. 2, residual in carry-save form, so that no row
+// waits for a carry but that of its seven-bit estimate. A first digit of 1 .. 4, taken from the
+// operands themselves, brings the quotient's 2 x / d in (1, 4) to its place; Rows digits follow.
 //
 // dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs mean
 // nothing). quotient_o: two integer bits and 2 * Rows fraction bits, exact and cut off.
@@ -61,7 +61,7 @@ module srt_divider #(
   assign m_1 = M1[{eighth, 3'b000} +: 7];
   assign m_2 = M2[{eighth, 3'b000} +: 7];
 
-  // ---- First digit, 1 .. 4: w = 2 x - digit * d, the digit being 2 or 4 or nothing, and 1 or nothing
+  // ---- First digit, 1 .. 4: w = 2 x - digit * d, in two parts, of which either can be nothing
 
   logic [5:0] first_estimate;
   logic from_2, from_3, from_4, subtract_1, subtract_2;
@@ -76,11 +76,14 @@ module srt_divider #(
   assign subtract_2 = from_2 & ~from_4;
   assign first_digit = {subtract_2, subtract_1};
 
-  carry_save_adder #(.Width(ResWidth)) u_first (
-    .a_i(dividend_doubled | ResWidth'(1)),  // a one for each complement, in the two free last places
+  carry_save_adder #(
+    .Width(ResWidth)
+  ) u_first (
+    .a_i(dividend_doubled | ResWidth'(1)),  // a one for each complement, in two free last places
     .b_i(~(divisor & {ResWidth{subtract_1}})),
     .c_i(~(({ResWidth{subtract_2}} & (divisor << 1)) | ({ResWidth{from_4}} & (divisor << 2)))),
-    .sum_o(first_sum), .carry_o(first_carry)
+    .sum_o(first_sum),
+    .carry_o(first_carry)
   );
 
   // ---- Rows: residuals and digits, the first one at the top of the words
@@ -95,10 +98,21 @@ module srt_divider #(
       assign positive = first_digit;
       assign negative = 2'b00;
     end else begin : gen_next
-      srt_row #(.Width(ResWidth), .Adder(Adder)) u_row (
-        .sum_i(gen_row[r-1].sum), .carry_i(gen_row[r-1].carry), .divisor_i(divisor),
-        .m_minus_1_i(m_minus_1), .m_0_i(m_0), .m_1_i(m_1), .m_2_i(m_2),
-        .sum_o(sum), .carry_o(carry), .positive_o(positive), .negative_o(negative)
+      srt_row #(
+        .Width(ResWidth),
+        .Adder(Adder)
+      ) u_row (
+        .sum_i(gen_row[r-1].sum),
+        .carry_i(gen_row[r-1].carry),
+        .divisor_i(divisor),
+        .m_minus_1_i(m_minus_1),
+        .m_0_i(m_0),
+        .m_1_i(m_1),
+        .m_2_i(m_2),
+        .sum_o(sum),
+        .carry_o(carry),
+        .positive_o(positive),
+        .negative_o(negative)
       );
     end
   end
@@ -114,9 +128,15 @@ module srt_divider #(
   logic [ResWidth-1:0] remainder;
   logic unused_remainder_carry;
 
-  adder #(.Width(ResWidth), .Adder(Adder)) u_remainder (
-    .a_i(gen_row[Rows].sum), .b_i(gen_row[Rows].carry), .carry_i(1'b0),
-    .sum_o(remainder), .carry_o(unused_remainder_carry)
+  adder #(
+    .Width(ResWidth),
+    .Adder(Adder)
+  ) u_remainder (
+    .a_i(gen_row[Rows].sum),
+    .b_i(gen_row[Rows].carry),
+    .carry_i(1'b0),
+    .sum_o(remainder),
+    .carry_o(unused_remainder_carry)
   );
   assign remainder_o = |remainder;
 
@@ -124,9 +144,15 @@ module srt_divider #(
 
   logic unused_quotient_carry;
 
-  adder #(.Width(QuotientWidth), .Adder(Adder)) u_quotient (
-    .a_i(positives), .b_i(~negatives), .carry_i(~remainder[ResWidth-1]),
-    .sum_o(quotient_o), .carry_o(unused_quotient_carry)
+  adder #(
+    .Width(QuotientWidth),
+    .Adder(Adder)
+  ) u_quotient (
+    .a_i(positives),
+    .b_i(~negatives),
+    .carry_i(~remainder[ResWidth-1]),
+    .sum_o(quotient_o),
+    .carry_o(unused_quotient_carry)
   );
 
 endmodule

@@ -1,8 +1,8 @@
 // One row of the radix-4 SRT divider: chooses a quotient digit, w' = 4 w - digit * d.
 //
-// Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is the
-// sign) and Width - 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in and
-// comes out. The digit is positive_o - negative_o, one of them 0.
+// Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is
+// the sign) and Width - 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in
+// and comes out. The digit is positive_o - negative_o, one of them 0.
 //
 // m_minus_1_i .. m_2_i: where the digits begin for this divisor, see srt_pkg.
 //
@@ -24,17 +24,23 @@ module srt_row #(
   output logic [1:0]       negative_o
 );
 
-  localparam int unsigned EstimateWidth = 7;  // 4 w in eighths: 4 integer bits, the sign's too, and 3
+  localparam int unsigned EstimateWidth = 7;  // of 4 w: 4 integer bits with the sign, 3 more
 
-  // ---- Estimate 4 w from the first bits of both words; with its sign bit inverted it compares as an
-  // unsigned number
+  // ---- Estimate 4 w from the first bits of both words; with its sign bit inverted it compares as
+  // an unsigned number
 
   logic [EstimateWidth-1:0] sum, estimate;
   logic unused_carry;
 
-  adder #(.Width(EstimateWidth), .Adder(Adder)) u_estimate (
-    .a_i(sum_i[Width-1-:EstimateWidth]), .b_i(carry_i[Width-1-:EstimateWidth]), .carry_i(1'b0),
-    .sum_o(sum), .carry_o(unused_carry)
+  adder #(
+    .Width(EstimateWidth),
+    .Adder(Adder)
+  ) u_estimate (
+    .a_i(sum_i[Width-1-:EstimateWidth]),
+    .b_i(carry_i[Width-1-:EstimateWidth]),
+    .carry_i(1'b0),
+    .sum_o(sum),
+    .carry_o(unused_carry)
   );
   assign estimate = {~sum[EstimateWidth-1], sum[EstimateWidth-2:0]};
 
@@ -52,8 +58,8 @@ module srt_row #(
   assign positive_o = {from_2, is_1};
   assign negative_o = {~from_minus_1, is_minus_1};
 
-  // ---- Subtract digit * d: a positive digit adds the complement, and the one that completes it goes
-  // to the free last place of the carries
+  // ---- Subtract digit * d: a positive digit adds the complement, and the one that completes it
+  // goes to the free last place of the carries
 
   logic [Width-1:0] addend, carry;
 
@@ -62,8 +68,14 @@ module srt_row #(
                 | ({Width{is_minus_1}} & divisor_i)
                 | ({Width{~from_minus_1}} & (divisor_i << 1));
 
-  carry_save_adder #(.Width(Width)) u_subtract (
-    .a_i(sum_i << 2), .b_i(carry_i << 2), .c_i(addend), .sum_o, .carry_o(carry)
+  carry_save_adder #(
+    .Width(Width)
+  ) u_subtract (
+    .a_i(sum_i << 2),
+    .b_i(carry_i << 2),
+    .c_i(addend),
+    .sum_o,
+    .carry_o(carry)
   );
   assign carry_o = carry | Width'(from_1);
 

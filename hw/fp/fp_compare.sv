@@ -36,8 +36,13 @@ module fp_compare #(
   // ---- Magnitudes: packed words sort as their values do
 
   logic mag_less, mag_equal;
-  comparator #(.Width(MagWidth)) u_magnitudes (
-    .a_i(a_mag), .b_i(b_mag), .less_o(mag_less), .equal_o(mag_equal)
+  comparator #(
+    .Width(MagWidth)
+  ) u_magnitudes (
+    .a_i(a_mag),
+    .b_i(b_mag),
+    .less_o(mag_less),
+    .equal_o(mag_equal)
   );
 
   // ---- Order

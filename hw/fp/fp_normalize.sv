@@ -1,7 +1,7 @@
 // Shifts the leading one of a significand to its top bit, and says how far that was.
 //
-// For multiplying and dividing subnormals; a normal significand passes with count_o = 0. For zero the
-// outputs mean nothing. Combinational.
+// For dividing subnormals; a normal significand passes with count_o = 0. For zero
+// the outputs mean nothing. Combinational.
 module fp_normalize #(
   parameter int unsigned Width = 24
 ) (
@@ -12,8 +12,12 @@ module fp_normalize #(
 
   logic unused_zero;
 
-  leading_zero_counter #(.Width(Width)) u_count (
-    .a_i(significand_i), .count_o, .zero_o(unused_zero)
+  leading_zero_counter #(
+    .Width(Width)
+  ) u_count (
+    .a_i(significand_i),
+    .count_o,
+    .zero_o(unused_zero)
   );
   assign significand_o = significand_i << count_o;
 

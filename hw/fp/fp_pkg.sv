@@ -6,6 +6,10 @@
 // only the top fraction bit set (0x7fc00000 in binary32). Formats need 2 <= FracWidth <=
 // 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits.
 //
+// What the cores are made of: sums and differences of significands and exponents are instances of
+// hw/arith's adder (its kind is their parameter Adder), steps by one of its incrementer, products
+// and quotients of its multiplier and divider. The operators + - * / stand in constants alone.
+//
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;
 

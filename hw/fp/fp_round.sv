@@ -89,11 +89,19 @@ module fp_round #(
   logic [FracWidth-1:0] fraction;
   logic guard, sticky;
 
-  incrementer #(.Width(FieldWidth)) u_base_plus_1 (
-    .a_i(base), .carry_i(1'b1), .sum_o(base_plus_1)
+  incrementer #(
+    .Width(FieldWidth)
+  ) u_base_plus_1 (
+    .a_i(base),
+    .carry_i(1'b1),
+    .sum_o(base_plus_1)
   );
-  incrementer #(.Width(FieldWidth - 1)) u_base_plus_2 (
-    .a_i(base[FieldWidth-1:1]), .carry_i(1'b1), .sum_o(base_plus_2[FieldWidth-1:1])
+  incrementer #(
+    .Width(FieldWidth - 1)
+  ) u_base_plus_2 (
+    .a_i(base[FieldWidth-1:1]),
+    .carry_i(1'b1),
+    .sum_o(base_plus_2[FieldWidth-1:1])
   );
   assign base_plus_2[0] = base[0];
 
@@ -120,8 +128,12 @@ module fp_round #(
                    | (away & (guard | sticky));
   assign inexact = guard | sticky;
 
-  incrementer #(.Width(WordWidth)) u_round (
-    .a_i({field[ExpWidth-1:0], fraction}), .carry_i(increment), .sum_o(rounded)
+  incrementer #(
+    .Width(WordWidth)
+  ) u_round (
+    .a_i({field[ExpWidth-1:0], fraction}),
+    .carry_i(increment),
+    .sum_o(rounded)
   );
 
   // ---- Tininess: a leading bit below the smallest exponent. After rounding, it is not tiny if the
