@@ -14,7 +14,8 @@ namespace raygate {
 template <class Top>
 class Model {
  public:
-  Model() = default;
+  /// Verilator's first evaluation is the start: an edge of the clock in it would not count.
+  Model() { top_->eval(); }
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 

@@ -1,10 +1,11 @@
 # Verilated models, and the tests that use them.
 #
 #   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [OPEN])
-#     A static library `fp_adder_f16`: module TOP of hw/ with these parameters, as class
-#     Vfp_adder_f16 in "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a
-#     waveform (sim/wave.h) and the signals that visible.vlt lists be read. Name a model after its
-#     module and what its parameters stand for; models that several programs use are built once.
+#     A static library `fp_adder_f16`: module TOP of hw/ (or of the calling folder, where a test joins
+#     several modules under one top) with these parameters, as class Vfp_adder_f16 in
+#     "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a waveform (sim/wave.h)
+#     and the signals that visible.vlt lists be read. Name a model after its module and what its
+#     parameters stand for; models that several programs use are built once.
 #
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...])
 #     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest.
@@ -43,9 +44,10 @@ function(raygate_model NAME)
     message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN], "
       "got ${ARGN}")
   endif()
-  file(GLOB top_file ${CMAKE_SOURCE_DIR}/hw/*/${MODEL_TOP}.sv)
+  file(GLOB top_file ${CMAKE_SOURCE_DIR}/hw/*/${MODEL_TOP}.sv
+    ${CMAKE_CURRENT_SOURCE_DIR}/${MODEL_TOP}.sv)
   if(NOT top_file)
-    message(FATAL_ERROR "raygate_model(${NAME}): no hw/*/${MODEL_TOP}.sv")
+    message(FATAL_ERROR "raygate_model(${NAME}): no ${MODEL_TOP}.sv in hw/* or this folder")
   endif()
 
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.verilated)

@@ -1,0 +1,52 @@
+// Booth multipliers of many widths on the same operands, and a 24-bit one with each kind of adder.
+module multipliers_top (
+  input  logic               clk_i,
+  input  logic [31:0]        a_i,
+  input  logic [31:0]        b_i,
+  output logic [64*12-1:0]   product_o,     // 64 bits for each width: 2 to 9, 11, 16, 23, 32
+  output logic [64*5-1:0]    product_24_o   // 64 bits for each kind of adder
+);
+
+  localparam int unsigned NumWidths = 12;
+  localparam bit [8*NumWidths-1:0] Widths = {
+    8'd32, 8'd23, 8'd16, 8'd11, 8'd9, 8'd8, 8'd7, 8'd6, 8'd5, 8'd4, 8'd3, 8'd2
+  };
+
+  logic [31:0] a, b;
+
+  always_ff @(posedge clk_i) begin
+    a <= a_i;
+    b <= b_i;
+  end
+
+  for (genvar w = 0; w < NumWidths; w++) begin : gen_width
+    localparam int unsigned Width = 32'(Widths[8*w +: 8]);
+    logic [2*Width-1:0] product;
+
+    booth_multiplier #(
+      .Width(Width)
+    ) u_multiplier (
+      .a_i      (a[Width-1:0]),
+      .b_i      (b[Width-1:0]),
+      .product_o(product)
+    );
+
+    assign product_o[64*w +: 64] = 64'(product);
+  end
+
+  for (genvar k = 0; k < 5; k++) begin : gen_kind
+    logic [47:0] product;
+
+    booth_multiplier #(
+      .Width(24),
+      .Adder(k)
+    ) u_multiplier (
+      .a_i      (a[23:0]),
+      .b_i      (b[23:0]),
+      .product_o(product)
+    );
+
+    assign product_24_o[64*k +: 64] = 64'(product);
+  end
+
+endmodule

@@ -1,0 +1,58 @@
+// Carry-save trees: they keep the sum of their rows, and 14 rows take the paper's tree.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <random>
+
+#include "Vtrees_top.h"
+#include "sim/model.h"
+
+namespace raygate {
+namespace {
+
+constexpr int kMaxRows = 16;
+constexpr std::uint64_t kMask = (std::uint64_t{1} << 48) - 1;
+
+TEST(TreesTest, KeepTheSumOfTheirRows) {
+  Model<Vtrees_top> model;
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 20'000; ++i) {
+    std::array<std::uint64_t, kMaxRows> rows;
+    for (std::uint64_t& row : rows) {
+      row = random() & kMask;
+      if (random() % 4 == 0) row = random() % 2 ? kMask : 0;
+    }
+    for (int bit = 0; bit < 48 * kMaxRows; ++bit) {
+      std::uint32_t& word = model->rows_i[bit / 32];
+      word &= ~(1u << bit % 32);
+      word |= static_cast<std::uint32_t>(rows[bit / 48] >> bit % 48 & 1) << bit % 32;
+    }
+    model.clock();
+    std::uint64_t total = rows[0];
+    for (int count = 2; count <= kMaxRows; ++count) {
+      total = (total + rows[count - 1]) & kMask;
+      const std::uint64_t got = model->total_o[2 * count] |
+                                static_cast<std::uint64_t>(model->total_o[2 * count + 1]) << 32;
+      ASSERT_EQ(got, total) << count << " rows";
+    }
+  }
+}
+
+// The constants from which the tree is made: 12 adders in 6 levels (the paper, section 3.4).
+TEST(TreesTest, FourteenRowsTakeTwelveAddersInSixLevels) {
+  Model<Vtrees_top> model;
+  model.clock();
+  EXPECT_EQ(model->levels_of_14_o, 6);
+  constexpr std::array kRows = {14, 10, 7, 5, 4, 3, 2};
+  int adders = 0;
+  for (std::size_t level = 0; level < kRows.size(); ++level) {
+    const int rows = model->rows_of_14_o >> (8 * level) & 0xff;
+    EXPECT_EQ(rows, kRows[level]) << "after level " << level;
+    adders += rows / 3;
+  }
+  EXPECT_EQ(adders, 12);
+}
+
+}  // namespace
+}  // namespace raygate
