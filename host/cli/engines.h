@@ -1,0 +1,13 @@
+// Engines by name: which hit tester stands behind --engine.
+#pragma once
+
+#include "host/cli/options.h"
+#include "host/render/renderer.h"
+
+namespace raygate {
+
+/// Makes testers of `engine`, whose hardware is the serial unit. Each tester owns its simulated
+/// model, so that threads share nothing.
+[[nodiscard]] HitTesterFactory make_tester_factory(Engine engine);
+
+}  // namespace raygate

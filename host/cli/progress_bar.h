@@ -1,0 +1,35 @@
+// How far the render is, on a terminal.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace raygate {
+
+/// "rendering [=========>          ]  45 %, 12 s left", within `columns` characters (without the
+/// bar where it has no room). `fraction` in [0, 1]; `elapsed` seconds brought it there.
+[[nodiscard]] std::string progress_line(double fraction, double elapsed, int columns);
+
+/// A line on standard error that is redrawn as the work goes on, and gone when it is over. Silent
+/// where standard error is no terminal.
+class ProgressBar {
+ public:
+  /// `enabled` false: silent on terminals too. The clock starts here.
+  explicit ProgressBar(bool enabled);
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  ~ProgressBar();  ///< removes the line
+
+  /// Redraws the line, at most ten times a second. From one thread at a time.
+  void update(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool enabled_;
+  bool drawn_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_;
+};
+
+}  // namespace raygate

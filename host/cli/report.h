@@ -1,0 +1,35 @@
+// The statistics of a run, for people and for programs.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/cli/options.h"
+#include "host/render/renderer.h"
+
+namespace raygate {
+
+/// Everything there is to say of a finished run. Times are seconds on the wall.
+struct Report {
+  Options options;
+  std::size_t triangles = 0;
+  RenderStats render;
+  double load_seconds = 0.0;   ///< reading OBJ and MTL
+  double tree_seconds = 0.0;   ///< building the tree of boxes
+  double write_seconds = 0.0;  ///< encoding the pictures and bringing them to disk
+  double total_seconds = 0.0;
+  std::vector<std::filesystem::path> pictures;
+};
+
+/// Simulated clocks for each test that the unit did; 0 where nothing is simulated.
+[[nodiscard]] double clocks_per_test(const HitCounters& counters);
+
+/// The block at the end of a run; several lines, the last one ended too.
+[[nodiscard]] std::string to_text(const Report& report);
+
+/// The same and some more as a JSON object, for --stats. The README lists the keys.
+[[nodiscard]] std::string to_json(const Report& report);
+
+}  // namespace raygate

@@ -1,0 +1,14 @@
+// One run of the program: scene in, pictures and statistics out.
+#pragma once
+
+#include "host/cli/options.h"
+
+namespace raygate {
+
+/// Renders what `options` ask for, writes the pictures, prints warnings and progress on standard
+/// error and statistics on standard output. Throws InputError for what the user has to mend,
+/// Interrupted, PlaneUnitMismatch, and other exceptions for our own faults; in all these cases no
+/// output file has changed, unless the failure is that a later one could not be written.
+void run(const Options& options);
+
+}  // namespace raygate
