@@ -39,9 +39,9 @@ RAYGATE_INLINE std::uint32_t mask_of(const IntLanes& first, const IntLanes& seco
   constexpr IntLanes kFirst = {1, 2, 4, 8, 16, 32, 64, 128};
   constexpr IntLanes kSecond = {256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
   IntLanes bits = (first & kFirst) | (second & kSecond);
-  bits |= __builtin_shuffle(bits, IntLanes{4, 5, 6, 7, 0, 1, 2, 3});
-  bits |= __builtin_shuffle(bits, IntLanes{2, 3, 0, 1, 6, 7, 4, 5});
-  bits |= __builtin_shuffle(bits, IntLanes{1, 0, 3, 2, 5, 4, 7, 6});
+  bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
+  bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
+  bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2, 5, 4, 7, 6);
   return static_cast<std::uint32_t>(bits[0]);
 }
 

@@ -1,14 +1,18 @@
 #include "host/hit/check_plane_unit.h"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <utility>
 
 namespace raygate {
 namespace {
+
+std::array<std::uint32_t, 3> words(const glm::vec3& v) {
+  return std::bit_cast<std::array<std::uint32_t, 3>>(v);
+}
 
 std::string hex_words(std::initializer_list<float> words) {
   std::string text;
@@ -33,7 +37,7 @@ void CheckPlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm::
   unit_->intersect(tests, points);
   reference_->intersect(tests, expected_);
   for (std::size_t i = 0; i < tests.size(); ++i) {
-    if (std::memcmp(&points[i], &expected_[i], sizeof points[i]) == 0) continue;
+    if (words(points[i]) == words(expected_[i])) continue;
     throw PlaneUnitMismatch("the plane units differ: inputs (Ix Iy Iz a b c d)" +
                             hex_words(tests[i].direction) + hex_words(tests[i].normal) +
                             hex_words({tests[i].d}) + ", unit" + hex_words(points[i]) +
