@@ -44,9 +44,6 @@ class PacketTraversal {
  private:
   friend bool advance(PacketTraversal& packet, LeafVisit& visit);
 
-  const Bvh::Node* nodes_;
-  int octant_;
-  int depth_ = 1;  // of the stack of what is waiting
   FloatLanes origin_[3] = {};
   FloatLanes inverse_near_[3] = {}, inverse_far_[3] = {};
   FloatLanes cutoff_;
@@ -54,6 +51,9 @@ class PacketTraversal {
   // than the tree, as one child at most waits on each level.
   FloatLanes waiting_near_[Bvh::kMaxDepth + 1];
   Bvh::Ref waiting_[Bvh::kMaxDepth + 1];
+  const Bvh::Node* nodes_;
+  int octant_;
+  int depth_ = 1;  // of the stack of what is waiting
 };
 
 }  // namespace raygate

@@ -121,11 +121,11 @@ void try_mesh(Random& random, const std::vector<Corners>& mesh, float size, int 
 
 TEST(PacketTraversal, CullsNoTrueHit) {
   Random random;
-  try_mesh(random, test::sphere(2), 1.0f, 300);
-  try_mesh(random, test::box(glm::vec3(-1), glm::vec3(1)), 1.0f, 3000);
+  try_mesh(random, test::sphere(2), 1.0f, 3000);
+  try_mesh(random, test::box(glm::vec3(-1), glm::vec3(1)), 1.0f, 30000);
   std::vector<Corners> soup;
   for (int i = 0; i < 100; ++i) soup.push_back({random.point(), random.point(), random.point()});
-  try_mesh(random, soup, 1.0f, 300);
+  try_mesh(random, soup, 1.0f, 3000);
 }
 
 TEST(PacketTraversal, CullsNoTrueHitAtAnyScale) {
@@ -135,10 +135,10 @@ TEST(PacketTraversal, CullsNoTrueHitAtAnyScale) {
     for (int i = 0; i < 20; ++i) {
       mesh.push_back({random.point(size), random.point(size), random.point(size)});
     }
-    try_mesh(random, mesh, size, 200);
+    try_mesh(random, mesh, size, 2000);
   }
   const glm::vec3 far(1e6f);
-  try_mesh(random, test::box(far - 1.0f, far + 1.0f), 2e6f, 500);
+  try_mesh(random, test::box(far - 1.0f, far + 1.0f), 2e6f, 5000);
 }
 
 TEST(PacketTraversal, FindsNothingInAnEmptySceneOrWithoutRays) {

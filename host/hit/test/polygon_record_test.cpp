@@ -43,7 +43,7 @@ TEST(PolygonRecord, BoundHolds) {
   Random random;
   double worst = 0.0;
   long tests = 0;
-  for (int i = 0; i < 100000; ++i) {
+  for (int i = 0; i < 300000; ++i) {
     const float far = i % 2 == 0 ? 0.0f : 1000.0f;
     const glm::vec3 o = random.point(), a = random.point() + far;
     const glm::vec3 b = i % 3 == 0 ? a + random.point(1e-4f) : random.point() + far;
