@@ -1,9 +1,11 @@
 // Carry-save tree: the rows of rows_i add up to sum_o + carry_o modulo 2**Width.
 //
-// At every level each three rows become two, and up to two rows are passed on: from 14 rows 10, 7,
-// 5, 4, 3 and 2, which takes 12 carry-save adders in 6 levels (the paper's tree, section 3.4).
-// Row r of rows_i is rows_i[Width*r +: Width]. Rows from 2.
-// Combinational; arith_pkg::tree_levels(Rows) full-adder delays.
+// A queue: each carry-save adder takes the three oldest rows and appends its sum and its carry, until
+// two are left after Rows - 2 adders. So every level makes two rows of three and passes on what is
+// left: of 14 rows 10, 7, 5, 4, 3 and 2 by 12 adders in 6 levels, the paper's tree (section 3.4).
+//
+// Row r of rows_i is rows_i[Width*r +: Width]; the last ones may arrive late. Rows from 2.
+// Combinational; about log(Rows / 2) / log(1.5) full-adder delays.
 module carry_save_tree #(
   parameter int unsigned Width = 48,
   parameter int unsigned Rows  = 14
@@ -13,36 +15,24 @@ module carry_save_tree #(
   output logic [Width-1:0]      carry_o
 );
 
-  localparam int unsigned Levels = arith_pkg::tree_levels(Rows);
+  localparam int unsigned Adders = Rows - 2;
 
-  for (genvar l = 0; l <= Levels; l++) begin : gen_level
-    localparam int unsigned Count = arith_pkg::tree_rows(Rows, l);
-    logic [Width-1:0] row [Count];
+  logic [Width*(Rows+2*Adders)-1:0] queue  /*verilator split_var*/;  // simulated as words
 
-    if (l == 0) begin : gen_inputs
-      for (genvar r = 0; r < Count; r++) begin : gen_row
-        assign row[r] = rows_i[Width*r +: Width];
-      end
-    end else begin : gen_compress
-      localparam int unsigned Above = arith_pkg::tree_rows(Rows, l - 1);
-      for (genvar k = 0; k < Above / 3; k++) begin : gen_adder
-        carry_save_adder #(
-          .Width(Width)
-        ) u_adder (
-          .a_i    (gen_level[l-1].row[3*k]),
-          .b_i    (gen_level[l-1].row[3*k+1]),
-          .c_i    (gen_level[l-1].row[3*k+2]),
-          .sum_o  (row[2*k]),
-          .carry_o(row[2*k+1])
-        );
-      end
-      for (genvar r = 0; r < Above % 3; r++) begin : gen_pass
-        assign row[2*(Above/3)+r] = gen_level[l-1].row[3*(Above/3)+r];
-      end
-    end
+  assign queue[Width*Rows-1:0] = rows_i;
+
+  for (genvar k = 0; k < Adders; k++) begin : gen_adder
+    carry_save_adder #(
+      .Width(Width)
+    ) u_adder (
+      .a_i    (queue[Width*(3*k) +: Width]),
+      .b_i    (queue[Width*(3*k+1) +: Width]),
+      .c_i    (queue[Width*(3*k+2) +: Width]),
+      .sum_o  (queue[Width*(Rows+2*k) +: Width]),
+      .carry_o(queue[Width*(Rows+2*k+1) +: Width])
+    );
   end
 
-  assign sum_o   = gen_level[Levels].row[0];
-  assign carry_o = gen_level[Levels].row[1];
+  assign {carry_o, sum_o} = queue[Width*(3*Adders) +: 2*Width];
 
 endmodule
