@@ -83,16 +83,4 @@ package arith_pkg;
     end
   endfunction
 
-  // Rows of a carry-save tree after `level` levels; each level makes two rows of three.
-  function automatic int unsigned tree_rows(int unsigned rows, int unsigned level);
-    tree_rows = rows;
-    for (int unsigned l = 0; l < level; l++) tree_rows = tree_rows - tree_rows / 3;
-  endfunction
-
-  // Levels of a carry-save tree that leaves two rows of `rows`.
-  function automatic int unsigned tree_levels(int unsigned rows);
-    tree_levels = 0;
-    for (int unsigned left = rows; left > 2; left = left - left / 3) tree_levels = tree_levels + 1;
-  endfunction
-
 endpackage
