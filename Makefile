@@ -4,7 +4,7 @@ SCENE ?= scenes/cornell.obj
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
 
-.PHONY: help verilate render test lint format clean
+.PHONY: help verilate render bench test lint format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -16,6 +16,12 @@ verilate: ## build ./render, with the simulated hardware in it
 
 render: verilate ## render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
 	./render $(SCENE) $(ARGS)
+
+bench: ## time each scene with each engine: a table of one run
+	@$(SETUP) build
+	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
+	@cmake --build build -j $(JOBS) --target scene_bench scenes
+	@build/scene_bench scenes/*.obj build/scenes/sphere.obj build/scenes/sphereflake.obj
 
 test: everything ## build and run all tests, lint among them
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error

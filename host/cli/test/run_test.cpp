@@ -2,6 +2,7 @@
 // way; statistics; interruption.
 #include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <algorithm>
 #include <bit>
@@ -88,6 +89,25 @@ TEST_F(Render, OnlyASceneGivesBothPicturesHere) {
   EXPECT_EQ(folder_.list(), (std::vector<std::string>{"cornell.exr", "cornell.png", "stats.json"}));
   EXPECT_NE(outcome.out.find("wrote   cornell.exr, cornell.png\n"), std::string::npos);
   EXPECT_EQ(outcome.err, "");
+}
+
+/// Pixels of a PNG file as 24-bit RGB; compressed bytes are a matter of zlib's version.
+std::vector<std::uint8_t> decode_png(const std::string& bytes) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  image.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+  EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
+  return pixels;
+}
+
+TEST_F(Render, PictureOfTheReadmeIsWhatItsCommandMakes) {
+  fs::copy(RAYGATE_SCENES "/cornell.png", folder_.path() / "stored.png");
+  render({kCornell, "--size", "480x360", "-o", "made.png"});
+  const std::vector<std::uint8_t> stored = decode_png(folder_.read("stored.png"));
+  EXPECT_EQ(stored.size(), 3u * 480u * 360u);
+  EXPECT_TRUE(stored == decode_png(folder_.read("made.png")));
 }
 
 TEST_F(Render, ThreadsChangeNoByte) {
