@@ -26,7 +26,9 @@ add_library(verilated STATIC
 target_include_directories(verilated SYSTEM PUBLIC
   ${VERILATOR_INCLUDE} ${VERILATOR_INCLUDE}/vltstd)
 target_link_libraries(verilated PUBLIC Threads::Threads)
-target_compile_options(verilated PRIVATE -w)
+# The code is Verilator's: no warnings, no sanitizers, and optimised in every kind of build.
+set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-sanitize=all)
+target_compile_options(verilated PRIVATE ${RAYGATE_VERILATED_OPTIONS})
 
 # Packages come first, a package after those it uses.
 file(GLOB arith_packages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/arith/*_pkg.sv)
@@ -71,8 +73,7 @@ function(raygate_model NAME)
   target_include_directories(${NAME} SYSTEM PUBLIC ${dir})
   target_link_libraries(${NAME} PUBLIC verilated)
   target_compile_definitions(${NAME} PRIVATE VM_TRACE=$<BOOL:${MODEL_OPEN}>)
-  # The code is Verilator's: no warnings, no sanitizers, and optimised in every kind of build.
-  target_compile_options(${NAME} PRIVATE -w -O3 -fno-sanitize=all)
+  target_compile_options(${NAME} PRIVATE ${RAYGATE_VERILATED_OPTIONS})
 endfunction()
 
 function(raygate_sim_test NAME)

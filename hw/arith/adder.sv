@@ -30,11 +30,13 @@ module adder #(
     );
   end else if (Adder == arith_pkg::AdderUniform || Adder == arith_pkg::AdderGraded)
   begin : gen_select
-    localparam bit [8*arith_pkg::MaxGroups-1:0] Groups =
+    localparam int unsigned ListWidth = 8 * arith_pkg::MaxGroups;
+    localparam bit [ListWidth-1:0] Uniform = arith_pkg::uniform_groups(Width);
+    localparam bit [ListWidth-1:0] Graded = arith_pkg::graded_groups(Width);
+    localparam bit [ListWidth-1:0] Groups =
         (GroupWidths != '0) ? GroupWidths
-        : (LookAhead && Width <= 12) ? (8*arith_pkg::MaxGroups)'(Width)
-        : (Adder == arith_pkg::AdderUniform) ? arith_pkg::uniform_groups(Width)
-        : arith_pkg::graded_groups(Width);
+        : (LookAhead && Width <= 12) ? ListWidth'(Width)
+        : (Adder == arith_pkg::AdderUniform) ? Uniform : Graded;
     carry_select_adder #(
       .Width      (Width),
       .GroupWidths(Groups),

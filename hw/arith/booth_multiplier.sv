@@ -1,7 +1,7 @@
 // Unsigned multiplier: product_o = a_i * b_i.
 //
-// Radix-4 Booth recoding of b_i (13 partial products for 24 bits), one row of signs and constants
-// in place of all sign extensions, a carry-save tree (12 adders in 6 levels), a carry-propagate adder of
+// Radix-4 Booth recoding of b_i (13 partial products for 24 bits), constants in place of sign
+// extension (a 14th row), a carry-save tree (12 adders in 6 levels), a carry-propagate adder of
 // 2 * Width bits: the paper's multiplier (section 3.4), for any Width from 2.
 //
 // Adder, GroupWidths: the last adder, see there. Combinational.
@@ -34,19 +34,16 @@ module booth_multiplier #(
     .negative_o(negative)
   );
 
-  // The correction: what the partial products lack for their signs is, with n the word `negative`,
-  // n - n * 2**(Width+1). Modulo 2**(2*Width)
+  // Partial products: row k has weight 4**k
+  //
+  // What they lack is, with n the word `negative`, n - n * 2**(Width+1). Modulo 2**(2*Width)
   //   -n = ~n + 1,
-  // so one row holds n and, from bit Width + 1 on, ~n, whose odd bits are the constants that stand
-  // for all sign extensions; the 1 finds room above partial product 0. Known first, it is row 0.
+  // so one more row holds n and, from bit Width + 1 on, ~n (whose odd bits are the constants that
+  // stand for all sign extensions); the 1 finds room above row 0.
 
   logic [2*Width*Rows-1:0] rows  /*verilator split_var*/;  // simulated as Rows words
 
-  assign rows[0 +: 2*Width] = {~negative[Width-2:0], (Width + 1)'(negative)};
-
-  // Partial products: number k has weight 4**k and is row k + 1
-
-  for (genvar k = 0; k < Digits; k++) begin : gen_product
+  for (genvar k = 0; k < Digits; k++) begin : gen_row
     logic [Width:0] row;
 
     booth_row #(
@@ -60,11 +57,14 @@ module booth_multiplier #(
     );
 
     if (k == 0) begin : gen_first
-      assign rows[2*Width +: 2*Width] = (2 * Width)'({1'b1, row});
+      assign rows[0 +: 2*Width] = (2 * Width)'({1'b1, row});
     end else begin : gen_next
-      assign rows[2*Width*(k+1) +: 2*Width] = (2 * Width)'(row) << 2 * k;
+      assign rows[2*Width*k +: 2*Width] = (2 * Width)'(row) << 2 * k;
     end
   end
+
+  assign rows[2*Width*Digits +: 2*Width] =
+      {~negative[Width-2:0], (Width + 1)'(negative)};
 
   // Add
 

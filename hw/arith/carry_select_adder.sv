@@ -28,7 +28,7 @@ module carry_select_adder #(
 
   // Both sums of each group
 
-  logic [Width-1:0]     sum_0, sum_1;
+  logic [Width-1:0] sum_0, sum_1;
   logic [NumGroups-1:0] carry_0, carry_1;
 
   if (LookAhead) begin : gen_look_ahead
@@ -65,14 +65,14 @@ module carry_select_adder #(
 
   for (genvar k = 0; k < NumGroups; k++) begin : gen_group
     localparam int unsigned Low = arith_pkg::group_low(GroupWidths, k);
-    localparam int unsigned Size = 32'(GroupWidths[8*k +: 8]);
+    localparam int unsigned Size = 32'(GroupWidths[8*k+:8]);
     logic carry_in, carry_out;
     if (k == 0) begin : gen_known
       assign carry_in = 1'b0;  // both of its sums count carry_i already
     end else begin : gen_unknown
       assign carry_in = gen_group[k-1].carry_out;
     end
-    assign select[Low +: Size] = {Size{carry_in}};
+    assign select[Low+:Size] = {Size{carry_in}};
 
     multiplexer #(
       .Ordered(1'b1)

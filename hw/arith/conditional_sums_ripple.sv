@@ -19,7 +19,7 @@ module conditional_sums_ripple #(
 
   for (genvar k = 0; k < NumGroups; k++) begin : gen_group
     localparam int unsigned Low = arith_pkg::group_low(GroupWidths, k);
-    localparam int unsigned Size = 32'(GroupWidths[8*k +: 8]);
+    localparam int unsigned Size = 32'(GroupWidths[8*k+:8]);
 
     ripple_carry_adder #(
       .Width(Size)
