@@ -79,7 +79,11 @@ int exact_edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
   return 0;
 }
 
-/// t = |D| / |I . N| of a hit, both parts estimated.
+Expansion<96> exact_slope(const glm::vec3& direction, const Corners& t) {
+  return exact_dot(direction, exact_normal(t));
+}
+
+/// t = D / (I . N) of where a ray meets a triangle's plane, both parts estimated.
 struct Fraction {
   Estimate numerator, denominator;
 
@@ -87,34 +91,38 @@ struct Fraction {
     const Cross normal = estimated_normal(t);
     numerator = dot(difference(t[0], ray.origin), normal);
     denominator = dot(glm::dvec3(ray.direction), normal);
-    numerator.value = std::abs(numerator.value);
-    denominator.value = std::abs(denominator.value);
   }
 };
 
 /// a * b with the errors of both and of the product (twice u, for the roundings of the bound).
 Estimate product(const Estimate& a, const Estimate& b) {
   const double value = a.value * b.value;
-  return {value, 1.000001 * (a.error * b.value + a.value * b.error + a.error * b.error) +
-                     2.0 * kU * value};
+  return {value, 1.000001 * (a.error * std::abs(b.value) + std::abs(a.value) * b.error +
+                             a.error * b.error) +
+                     2.0 * kU * std::abs(value)};
 }
 
-/// The sign of t(first) - t(second) from |D1| |I.N2| - |D2| |I.N1|. Products of this size do not
-/// belong on the stack.
-int exact_compare(const Ray& ray, const Corners& first, const Corners& second) {
+/// As order_of_planes. Products of this size do not belong on the stack.
+int exact_order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
   using Product = Expansion<2 * 192 * 96>;
-  const auto absolute = [](auto e) { return e.sign() < 0 ? -e : e; };
   const auto left = std::make_unique_for_overwrite<Product>();
   const auto right = std::make_unique_for_overwrite<Product>();
   const auto scratch = std::make_unique_for_overwrite<Product>();
-  multiply(absolute(exact_plane(ray.origin, first)),
-           absolute(exact_dot(ray.direction, exact_normal(second))), *left, *scratch);
-  multiply(absolute(exact_plane(ray.origin, second)),
-           absolute(exact_dot(ray.direction, exact_normal(first))), *right, *scratch);
+  multiply(exact_plane(ray.origin, first), exact_slope(ray.direction, second), *left, *scratch);
+  multiply(exact_plane(ray.origin, second), exact_slope(ray.direction, first), *right, *scratch);
   const auto result = std::make_unique_for_overwrite<Expansion<4 * 192 * 96>>();
   for (int i = 0; i < right->size; ++i) right->parts[i] = -right->parts[i];
   add(*left, *right, *result);
   return result->sign();
+}
+
+/// The sign of D1 (I . N2) - D2 (I . N1): that of t1 - t2, times the signs of both I . N.
+int order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
+  const Fraction t1(ray, first), t2(ray, second);
+  const Estimate left = product(t1.numerator, t2.denominator);
+  const Estimate right = product(t2.numerator, t1.denominator);
+  const Estimate gap = {left.value - right.value, 1.000001 * (left.error + right.error)};
+  return gap.sure() ? gap.sign() : exact_order_of_planes(ray, first, second);
 }
 
 }  // namespace
@@ -140,25 +148,39 @@ bool hits_triangle(const Ray& ray, const Corners& t) {
          edge_side(ray, t[2], t[0]) == side;
 }
 
+int direction_side(const glm::vec3& direction, const Corners& t) {
+  const Estimate side = dot(glm::dvec3(direction), estimated_normal(t));
+  return side.sure() ? side.sign() : exact_slope(direction, t).sign();
+}
+
 Interval hit_distance(const Ray& ray, const Corners& triangle) {
   const Fraction t(ray, triangle);
   const auto& [n, d] = t;
+  const double above = std::abs(n.value), below = std::abs(d.value);
   constexpr double kGrow = 1.0 + 4.0 * kU, kShrink = 1.0 - 4.0 * kU;
-  return {std::max(0.0, (n.value - n.error) / (d.value + d.error) * kShrink),
-          d.sure() ? (n.value + n.error) / (d.value - d.error) * kGrow
+  return {std::max(0.0, (above - n.error) / (below + d.error) * kShrink),
+          d.sure() ? (above + n.error) / (below - d.error) * kGrow
                    : std::numeric_limits<double>::infinity()};
 }
 
+// The signs of D and of I . N agree for a hit, as t > 0.
 int compare_hits(const Ray& ray, const Corners& first, const Corners& second) {
-  const Fraction t1(ray, first), t2(ray, second);
-  if (t1.numerator.sure() && t1.denominator.sure() && t2.numerator.sure() &&
-      t2.denominator.sure()) {
-    const Estimate left = product(t1.numerator, t2.denominator);
-    const Estimate right = product(t2.numerator, t1.denominator);
-    const double gap = left.value - right.value;
-    if (std::abs(gap) > 1.000001 * (left.error + right.error)) return gap > 0.0 ? 1 : -1;
-  }
-  return exact_compare(ray, first, second);
+  return plane_side(ray.origin, first) * plane_side(ray.origin, second) *
+         order_of_planes(ray, first, second);
+}
+
+int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit) {
+  const Interval t = hit_distance(ray, triangle);
+  if (t.high < limit) return -1;
+  if (t.low > limit) return 1;
+  const auto excess = exact_plane(ray.origin, triangle) -
+                      exact_slope(ray.direction, triangle) * static_cast<double>(limit);
+  return plane_side(ray.origin, triangle) * excess.sign();
+}
+
+// At O + t I, t = D1 / (I . N1), the other plane's D2 has become D2 - t (I . N2).
+int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other) {
+  return plane_side(ray.origin, hit) * order_of_planes(ray, other, hit);
 }
 
 double plane_distance(const glm::vec3& origin, const Corners& t) {

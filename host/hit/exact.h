@@ -9,7 +9,9 @@ namespace raygate {
 /// The vertices of a triangle, in its order.
 using Corners = std::array<glm::vec3, 3>;
 
-/// A ray: origin + t direction for t > 0. All components finite; coordinates, the triangles' too,
+/// A ray: origin + t direction for t > 0, an open beginning: what the origin lies on, and what is
+/// behind it, is not hit. Where a ray has a limit, its end is open too: hits have t < limit (see
+/// NearestHits in host/render). All components finite; coordinates, the triangles' too,
 /// of magnitude at most 2^126; the direction scaled (see scaled_direction in host/scene/camera.h).
 struct Ray {
   glm::vec3 origin{0.0f};
@@ -41,6 +43,16 @@ struct Interval {
 
 /// The sign of t(first) - t(second), exactly. Both must be hits.
 [[nodiscard]] int compare_hits(const Ray& ray, const Corners& first, const Corners& second);
+
+/// The sign of t - limit, exactly. The triangle must be hit, `limit` positive and finite.
+[[nodiscard]] int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit);
+
+/// As plane_side of `other`, exactly, for the very point in which the ray hits `hit`.
+[[nodiscard]] int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other);
+
+/// The sign of I . N, exactly: a direction with the sign of plane_side(origin, triangle) goes
+/// towards the plane, one with the other sign away from it.
+[[nodiscard]] int direction_side(const glm::vec3& direction, const Corners& triangle);
 
 /// The double nearest to D = A . ((b-a) x (c-a)), off by 2^-32 of itself at most, with its exact
 /// sign.

@@ -1,22 +1,32 @@
 #include "host/render/nearest_hits.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace raygate {
 
 bool NearestHits::offer(std::uint32_t number, const Ray& ray, const SureHit& hit) {
-  return take_if_nearer(nearest_[number], ray, {hit.tag, hit.point, hit.t});
+  return take_if_nearer(number, ray, {hit.tag, hit.point, hit.t});
 }
 
 bool NearestHits::offer(std::uint32_t number, const Ray& ray, const Doubt& doubt) {
   ++counters_.exact_inside;
   const Corners& corners = bvh_.corners_of(doubt.tag);
   if (!hits_triangle(ray, corners)) return false;
-  return take_if_nearer(nearest_[number], ray,
-                        {doubt.tag, doubt.point, hit_distance(ray, corners)});
+  return take_if_nearer(number, ray, {doubt.tag, doubt.point, hit_distance(ray, corners)});
 }
 
-bool NearestHits::take_if_nearer(NearestHit& best, const Ray& ray, const NearestHit& hit) {
+bool NearestHits::within_limit(std::uint32_t number, const Ray& ray, const NearestHit& hit) {
+  if (limits_.empty() || !std::isfinite(limits_[number])) return true;
+  if (hit.t.high < limits_[number]) return true;
+  if (hit.t.low >= limits_[number]) return false;
+  ++counters_.exact_depth;
+  return compare_hit_to_limit(ray, bvh_.corners_of(hit.slot), limits_[number]) < 0;
+}
+
+bool NearestHits::take_if_nearer(std::uint32_t number, const Ray& ray, const NearestHit& hit) {
+  NearestHit& best = nearest_[number];
+  if (!within_limit(number, ray, hit)) return false;
   if (best.slot != NearestHit::kNone && hit.t.high >= best.t.low) {
     if (hit.t.low > best.t.high) return false;
     ++counters_.exact_depth;

@@ -30,13 +30,18 @@ class NearestHits {
  public:
   struct Counters {
     std::uint64_t exact_inside = 0;  ///< doubts about edges settled
-    std::uint64_t exact_depth = 0;   ///< pairs of hits put in order
+    std::uint64_t exact_depth = 0;   ///< pairs of hits, or a hit and a limit, put in order
   };
 
   explicit NearestHits(const Bvh& bvh) : bvh_(bvh) {}
 
-  /// Forgets all and begins with rays of numbers 0 to `rays` - 1.
-  void reset(std::size_t rays) { nearest_.assign(rays, {}); }
+  /// Forgets all and begins with rays of numbers 0 to `rays` - 1. With `limits`, one a ray
+  /// (positive; +infinity for none), ray i ends at t = limits[i]: only hits with t < limits[i], in
+  /// exact arithmetic, are taken. The span is read until the next reset.
+  void reset(std::size_t rays, std::span<const float> limits = {}) {
+    nearest_.assign(rays, {});
+    limits_ = limits;
+  }
 
   /// Offers a sure hit of ray `number`. True when it is the nearest now.
   bool offer(std::uint32_t number, const Ray& ray, const SureHit& hit);
@@ -48,10 +53,12 @@ class NearestHits {
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
  private:
-  bool take_if_nearer(NearestHit& best, const Ray& ray, const NearestHit& hit);
+  bool within_limit(std::uint32_t number, const Ray& ray, const NearestHit& hit);
+  bool take_if_nearer(std::uint32_t number, const Ray& ray, const NearestHit& hit);
 
   const Bvh& bvh_;
   std::vector<NearestHit> nearest_;
+  std::span<const float> limits_;
   Counters counters_;
 };
 

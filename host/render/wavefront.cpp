@@ -11,10 +11,10 @@ Wavefront::Wavefront(const Bvh& bvh, HitTester& tester)
     : bvh_(bvh), tester_(tester), nearest_(bvh) {}
 
 void Wavefront::trace(const glm::vec3& origin, std::span<const glm::vec3> directions,
-                      RecordCache& records) {
+                      RecordCache& records, std::span<const float> limits) {
   Stopwatch watch;
-  nearest_.reset(directions.size());
-  make_packets(origin, directions);
+  nearest_.reset(directions.size(), limits);
+  make_packets(origin, directions, limits);
   for (;;) {
     collect(directions, records);
     seconds_.traverse += watch.lap();
@@ -28,7 +28,8 @@ void Wavefront::trace(const glm::vec3& origin, std::span<const glm::vec3> direct
 }
 
 /// Each eight rays make one packet, or, where they point into several octants, one for each.
-void Wavefront::make_packets(const glm::vec3& origin, std::span<const glm::vec3> directions) {
+void Wavefront::make_packets(const glm::vec3& origin, std::span<const glm::vec3> directions,
+                             std::span<const float> limits) {
   packets_.clear();
   active_.clear();
   for (std::size_t first = 0; first < directions.size(); first += kLanes) {
@@ -46,6 +47,7 @@ void Wavefront::make_packets(const glm::vec3& origin, std::span<const glm::vec3>
         const glm::vec3& direction = directions[first + lane];
         if (octant_of(direction) != octant) continue;
         traversal.set_ray(lane, origin, direction);
+        if (!limits.empty()) traversal.set_cutoff(lane, limits[first + lane]);
         left &= ~(1u << lane);
       }
     }

@@ -28,8 +28,10 @@ class Wavefront {
   Wavefront(const Bvh& bvh, HitTester& tester);
 
   /// Finds the nearest hit of each ray from `origin`, whose records `records` holds. Directions
-  /// scaled (see scaled_direction); each eight in a row should go about the same way.
-  void trace(const glm::vec3& origin, std::span<const glm::vec3> directions, RecordCache& records);
+  /// scaled (see scaled_direction); each eight in a row should go about the same way. With
+  /// `limits`, one a ray, only hits with t < limits[i] count (see NearestHits::reset).
+  void trace(const glm::vec3& origin, std::span<const glm::vec3> directions, RecordCache& records,
+             std::span<const float> limits = {});
 
   /// Of the ray directions[number] of the last trace.
   [[nodiscard]] const NearestHit& nearest(std::size_t number) const { return nearest_[number]; }
@@ -44,7 +46,8 @@ class Wavefront {
     std::uint32_t first_ray;
   };
 
-  void make_packets(const glm::vec3& origin, std::span<const glm::vec3> directions);
+  void make_packets(const glm::vec3& origin, std::span<const glm::vec3> directions,
+                    std::span<const float> limits);
   void collect(std::span<const glm::vec3> directions, RecordCache& records);
   void merge(const glm::vec3& origin, std::span<const glm::vec3> directions);
 

@@ -152,6 +152,42 @@ TEST(Exact, OrdersHitsAsRationalsDo) {
   EXPECT_GT(equal, 100);
 }
 
+// Where the hit lies with respect to another triangle's plane and to a limit, by rationals.
+TEST(Exact, SidesAndLimitsAtAHitAgreeWithRationals) {
+  Random random;
+  int hits = 0, on_plane = 0;
+  for (int i = 0; i < 60000; ++i) {
+    const auto [ray, t] = hard_case(random);
+    Corners other = hard_case(random).triangle;
+    for (int k = 0; k < random.below(4); ++k) other[k] = t[(k + 1) % 3];
+    ASSERT_EQ(
+        direction_side(ray.direction, other),
+        sgn(dot(rational(ray.direction), cross(minus(rational(other[1]), rational(other[0])),
+                                               minus(rational(other[2]), rational(other[0]))))));
+    if (!hits_triangle(ray, t)) continue;
+    ++hits;
+    const Oracle oracle(ray, t);
+    const mpq_class distance = oracle.t();
+    Rational3 v[3];  // the other triangle, seen from the hit
+    for (int k = 0; k < 3; ++k) {
+      v[k] = minus(rational(other[k]), rational(ray.origin));
+      for (int axis = 0; axis < 3; ++axis) v[k][axis] -= distance * oracle.direction[axis];
+    }
+    const int side = sgn(dot(v[0], cross(v[1], v[2])));
+    ASSERT_EQ(plane_side_at_hit(ray, t, other), side);
+    on_plane += side == 0 ? 1 : 0;
+    const auto near = static_cast<float>(distance.get_d());
+    if (!(near > 0.0f) || !std::isfinite(near)) continue;
+    for (const float limit : {near, std::nextafter(near, 0.0f), std::nextafter(near, 3e38f)}) {
+      if (limit == 0.0f) continue;
+      const int order = cmp(distance, mpq_class(limit));
+      ASSERT_EQ(compare_hit_to_limit(ray, t, limit), order < 0 ? -1 : (order > 0 ? 1 : 0));
+    }
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(on_plane, 100);
+}
+
 /// From a point inside a closed convex mesh, every ray hits exactly one triangle.
 void expect_one_hit_each(const std::vector<Corners>& mesh, const glm::vec3& inside, Random& random,
                          int rays) {

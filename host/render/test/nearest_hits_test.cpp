@@ -42,6 +42,21 @@ TEST(NearestHits, EveryOrderOfReportsGivesTheSame) {
   EXPECT_GT(nearest.counters().exact_depth, 0u);
 }
 
+// The end of a ray is open, and exact: a hit an ulp before the limit counts, one at it does not,
+// whatever the interval says.
+TEST(NearestHits, NothingAtOrBeyondTheLimitCounts) {
+  const float limit = 0.7f, before = std::nextafter(limit, 0.0f);
+  const Bvh bvh(test::scene_of({at_depth(before), at_depth(limit)}));
+  NearestHits nearest(bvh);
+  for (std::uint32_t slot = 0; slot < 2; ++slot) {
+    const bool expected = bvh.corners_of(slot)[0].z < limit;
+    nearest.reset(1, std::span(&limit, 1));
+    EXPECT_EQ(nearest.offer(0, kRay, SureHit{.tag = slot, .t = {0.0, 10.0}}), expected);
+    nearest.reset(1, std::span(&limit, 1));
+    EXPECT_EQ(nearest.offer(0, kRay, Doubt{.tag = slot}), expected);
+  }
+}
+
 TEST(NearestHits, ADoubtThatIsAMissLeavesNothing) {
   const Bvh bvh(test::scene_of({at_depth(-1)}));
   NearestHits nearest(bvh);
