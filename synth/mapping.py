@@ -7,7 +7,7 @@ import re
 from synth import store, tools
 from synth.catalogue import Design, Library
 
-ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "fast": "fast.abc"}
+ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "small": "small.abc", "fast": "fast.abc"}
 
 # One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
 PATH_STEP = re.compile(
@@ -19,6 +19,13 @@ PATH_STEP = re.compile(
 def flow_facts() -> tuple[str, ...]:
     """What every mapping depends on besides the design: the tools' versions."""
     return tools.version("yosys"), tools.version("sta")
+
+
+def scripts() -> list[pathlib.Path]:
+    """The files that say how a netlist is made and timed."""
+    names = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "structure.v",
+             "known_selects.v", "osu_cells.v", "timing.tcl", *set(ABC_SCRIPTS.values()))
+    return sorted(tools.FLOWS / name for name in names)
 
 
 def elaboration(design: Design, structural: bool = False) -> dict[str, str]:
@@ -34,10 +41,7 @@ def synthesise(design: Design, library: Library, flow: str,
                root: pathlib.Path | None = None) -> tuple[dict, bool]:
     """Area (liberty units), delay (ns), cells and critical path; and whether it was cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
-    scripts = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "known_selects.v",
-               "osu_cells.v", "timing.tcl", *set(ABC_SCRIPTS.values()))
-    files = [*design.sources(flow == "cells"), library.liberty,
-             *sorted(tools.FLOWS / name for name in scripts)]
+    files = [*design.sources(flow == "cells"), library.liberty, *scripts()]
     wanted = store.key(files, flow_facts(), design.top, design.parameters, library, flow)
     return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
 

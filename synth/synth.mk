@@ -17,3 +17,6 @@ build/synth/venv/ready: synth/requirements.txt
 	  { echo 'sudo apt-get install python3-venv' >&2; exit 2; }
 	@build/synth/venv/bin/pip install -q --disable-pip-version-check -r $<
 	@touch $@
+
+prove: ## prove adders, multiplier and timetable: make prove [PROOFS='adder. booth.tree']
+	@python3 -m synth.prove --jobs '$(SYNTH_JOBS)' $(PROOFS)

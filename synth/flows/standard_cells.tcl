@@ -1,13 +1,14 @@
 # Maps one design to a standard-cell library. Everything comes in through the environment:
 #   SOURCES   files to read, packages first        TOP, PARAMETERS   the design
-#   FLOW      cells | kept | fast | default        ABC_SCRIPT        what ABC does (a file)
+#   FLOW      cells | kept | default | small | fast
+#   ABC_SCRIPT  what ABC does, as -script FILE, or "" for Yosys's own
 #   LIBERTY   the library                          CONSTRAINTS       driver and load, for ABC
 #   OUT       prefix of the files written
 set flows [file dirname [info script]]
 source [file join $flows elaborate.tcl]
 
 switch $::env(FLOW) {
-  default {
+  default - small {
     # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
     yosys synth -flatten -noshare -noabc -top $::env(TOP)
   }

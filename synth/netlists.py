@@ -1,0 +1,65 @@
+"""Simulates a mapped netlist beside the RTL it was made of, on the same vectors."""
+
+import json
+import pathlib
+import re
+
+from synth import mapping, store, tools
+from synth.catalogue import Design, Library
+
+PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
+
+
+def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[dict, bool]:
+    """Raises ToolFailed where an output bit differs."""
+    folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
+    files = [*design.sources(), library.liberty, PROOFS / "netlist_agrees.cpp",
+             PROOFS / "netlist_cells.tcl", pathlib.Path(__file__), *mapping.scripts()]
+    wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.top,
+                       design.parameters, library, flow, vectors)
+    return store.cached(folder, wanted, lambda: _agree(design, library, flow, vectors, folder))
+
+
+def _agree(design: Design, library: Library, flow: str, vectors: int,
+           folder: pathlib.Path) -> dict:
+    mapping.synthesise(design, library, flow)
+    run = store.OUT / "runs" / f"{design.name}.{library.name}.{flow}"
+    # The cells as the library's own functions define them; the netlist under a name of its own.
+    tools.run(["yosys", "-c", PROOFS / "netlist_cells.tcl"], folder / "cells.log", {
+        **mapping.elaboration(design), "LIBERTY": str(library.liberty),
+        "NETLIST": str(run / "netlist.v"), "OUT": str(folder)})
+    ports = json.loads((folder / "netlist.json").read_text())["modules"]["netlist"]["ports"]
+    (folder / "twins.sv").write_text(twins(design, ports))
+    sources = [*design.sources(), folder / "cells.v", folder / "netlist.v", folder / "twins.sv"]
+    tools.run(["verilator", "--cc", "--exe", "--build", "-O3", "-Wno-fatal", "-Wno-lint",
+               "-Wno-UNOPTFLAT", "--no-timing", "-CFLAGS", "-O2", "--top-module", "twins",
+               "--Mdir", folder / "obj", *sources, PROOFS / "netlist_agrees.cpp", "-o", "twins"],
+              folder / "build.log")
+    said = tools.run([str(folder / "obj" / "twins"), str(vectors)], folder / "run.log")
+    return {"vectors": int(re.search(r"(\d+) vectors", said).group(1))}
+
+
+def twins(design: Design, ports: dict) -> str:
+    """SystemVerilog of a module that holds RTL and netlist, with one vector of inputs for both."""
+    named = {"clk_i", "rst_ni"}
+    inputs = [(name, len(port["bits"])) for name, port in ports.items()
+              if port["direction"] == "input" and name not in named]
+    outputs = [(name, len(port["bits"])) for name, port in ports.items()
+               if port["direction"] == "output"]
+    total = max(65, sum(width for _, width in inputs))  # wide, so that C++ sees an array of words
+    low, slices = 0, {}
+    for name, width in inputs:
+        slices[name] = f"in_i[{low} +: {width}]"
+        low += width
+    parameters = ", ".join(f".{name}({value})" for name, value in design.parameters)
+    lines = ["module twins (", "  input logic clk_i,", "  input logic rst_ni,",
+             f"  input logic [{total - 1}:0] in_i,", "  output logic differ_o", ");"]
+    for twin in ("rtl", "netlist"):
+        lines += [f"  logic [{width - 1}:0] {twin}_{name};" for name, width in outputs]
+        connections = [f".{name}({name})" for name in ports if name in named]
+        connections += [f".{name}({bits})" for name, bits in slices.items()]
+        connections += [f".{name}({twin}_{name})" for name, _ in outputs]
+        head = f"{design.top} #({parameters})" if twin == "rtl" else "netlist"
+        lines.append(f"  {head} u_{twin} ({', '.join(connections)});")
+    differences = " || ".join(f"rtl_{name} != netlist_{name}" for name, _ in outputs)
+    return "\n".join([*lines, f"  assign differ_o = {differences};", "endmodule"]) + "\n"

@@ -1,0 +1,75 @@
+// Composition, step 3: what goes into the tree is the rows' values and nothing else:
+//   the sum of the tree's words = the sum over k of (row[k] + n[k] - n[k] * 2**25) * 4**k, mod 2**48.
+// Shown in two parts, for a sum of so many words is beyond a SAT solver: each word is that of rows
+// that are 0, plus the row in its place; and the words of rows that are 0 are what signs need.
+// "assembly" is made of the multiplier itself by booth_assembly.tcl.
+module booth_assembly_sums #(
+  parameter int unsigned Words = 13
+) (
+  input logic [13*25-1:0] row_values,
+  input logic [11:0]      n           // of digits 0 to 11; the last is not negative (step 1)
+);
+
+  logic [48*Words-1:0] words, bare;
+
+  assembly_words #(.Words(Words)) u_words (.row_values, .n, .words);
+  assembly_words #(.Words(Words)) u_bare (.row_values(325'd0), .n, .words(bare));
+
+  for (genvar k = 0; k < Words; k++) begin : gen_word
+    logic [47:0] row;
+    if (k < 13) begin : gen_row
+      assign row = 48'(row_values[25*k +: 25]) << 2 * k;
+    end else begin : gen_none
+      assign row = '0;
+    end
+    always_comb assert (words[48*k +: 48] == bare[48*k +: 48] + row);
+  end
+
+  logic [47:0] total, signs;
+  always_comb begin
+    total = '0;
+    for (int unsigned k = 0; k < Words; k++) total = total + bare[48*k +: 48];
+    signs = '0;
+    for (int unsigned k = 0; k < 12; k++) begin
+      signs = signs + (48'(n[k]) << 2 * k) - (48'(n[k]) << (25 + 2 * k));
+    end
+  end
+
+  always_comb assert (total == signs);
+
+endmodule
+
+// The assembly with its loose ends as vectors.
+module assembly_words #(
+  parameter int unsigned Words = 13
+) (
+  input  logic [13*25-1:0]    row_values,
+  input  logic [11:0]         n,
+  output logic [48*Words-1:0] words
+);
+
+  logic [25:0] negative;
+  always_comb begin
+    negative = '0;
+    for (int unsigned k = 0; k < 12; k++) negative[2*k] = n[k];
+  end
+
+  assembly u_assembly (
+    .rows(words),
+    .negative(negative),
+    .\gen_row[0].row (row_values[25*0 +: 25]),
+    .\gen_row[1].row (row_values[25*1 +: 25]),
+    .\gen_row[2].row (row_values[25*2 +: 25]),
+    .\gen_row[3].row (row_values[25*3 +: 25]),
+    .\gen_row[4].row (row_values[25*4 +: 25]),
+    .\gen_row[5].row (row_values[25*5 +: 25]),
+    .\gen_row[6].row (row_values[25*6 +: 25]),
+    .\gen_row[7].row (row_values[25*7 +: 25]),
+    .\gen_row[8].row (row_values[25*8 +: 25]),
+    .\gen_row[9].row (row_values[25*9 +: 25]),
+    .\gen_row[10].row (row_values[25*10 +: 25]),
+    .\gen_row[11].row (row_values[25*11 +: 25]),
+    .\gen_row[12].row (row_values[25*12 +: 25])
+  );
+
+endmodule

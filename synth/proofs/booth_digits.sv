@@ -1,0 +1,38 @@
+// Composition, step 1: the recoded digits, from -2 to 2, add up to the multiplier operand:
+// the sum over k of digit[k] * 4**k is b. And: a digit is not both 1 and 2, the last is not negative.
+module booth_digits #(
+  parameter int unsigned Width = 24,
+  localparam int unsigned Digits = Width / 2 + 1
+) (
+  input logic [Width-1:0] b
+);
+
+  logic [2*Digits-1:0] one, two, negative;
+
+  booth_encoder #(
+    .Width(Width)
+  ) dut (
+    .b_i       (b),
+    .one_o     (one),
+    .two_o     (two),
+    .negative_o(negative)
+  );
+
+  // Modulo 4**Digits, which is above every value that counts
+  logic [2*Digits-1:0] magnitude, sum;
+  always_comb begin
+    sum = '0;
+    for (int unsigned k = 0; k < Digits; k++) begin
+      magnitude = {{(2*Digits-2){1'b0}}, two[2*k], one[2*k]} << 2 * k;
+      sum = negative[2*k] ? sum - magnitude : sum + magnitude;
+    end
+  end
+
+  always_comb begin
+    assert (sum == (2 * Digits)'(b));
+    assert ((one & two) == '0);
+    assert (((one | two | negative) & {Digits{2'b10}}) == '0);
+    assert (!negative[2*Digits-2]);
+  end
+
+endmodule

@@ -1,0 +1,21 @@
+// product_o = a_i * b_i, for all operands: the whole multiplier at once, for small widths.
+module booth_multiplies #(
+  parameter int unsigned Width = 8
+) (
+  input logic [Width-1:0] a,
+  input logic [Width-1:0] b
+);
+
+  logic [2*Width-1:0] product;
+
+  booth_multiplier #(
+    .Width(Width)
+  ) dut (
+    .a_i      (a),
+    .b_i      (b),
+    .product_o(product)
+  );
+
+  always_comb assert (product == (2 * Width)'(a) * (2 * Width)'(b));
+
+endmodule

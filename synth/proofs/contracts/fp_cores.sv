@@ -1,0 +1,50 @@
+// Float cores that promise nothing: any result, any flags. For what control does, that is enough.
+module fp_multiplier #(
+  parameter int unsigned ExpWidth = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder = 0
+) (
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  logic [2:0]                  rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output logic [4:0]                  flags_o
+);
+  (* anyseq *) logic [ExpWidth+FracWidth+5:0] any;
+  assign {result_o, flags_o} = any;
+endmodule
+
+module fp_adder #(
+  parameter int unsigned ExpWidth = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder = 0
+) (
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  logic                        subtract_i,
+  input  logic [2:0]                  rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output logic [4:0]                  flags_o
+);
+  (* anyseq *) logic [ExpWidth+FracWidth+5:0] any;
+  assign {result_o, flags_o} = any;
+endmodule
+
+module fp_divider #(
+  parameter int unsigned ExpWidth = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder = 0,
+  parameter int unsigned QuotientBits = 0
+) (
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  logic [2:0]                  rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output logic [4:0]                  flags_o
+);
+  (* anyseq *) logic [ExpWidth+FracWidth+5:0] any;
+  assign {result_o, flags_o} = any;
+endmodule

@@ -1,0 +1,77 @@
+// The paper's unit keeps its timetable (figure 9), whenever tests come and whenever it is reset:
+// a test taken k clocks ago has its word k on the bus (k = 1 to 6) or is at its division k - 6
+// (k = 7 to 9); a component is on the output exactly 8, 9 and 10 clocks after; a new test may start
+// exactly when none was taken in the last 6 clocks.
+module timetable (
+  input logic        clk,
+  input logic        reset_n,
+  input logic        valid,
+  input logic [31:0] bus
+);
+
+  logic ready, output_valid;
+  logic [31:0] out;
+
+  hit_test_unit dut (
+    .clk_i  (clk),
+    .rst_ni (reset_n),
+    .valid_i(valid),
+    .ready_o(ready),
+    .bus_i  (bus),
+    .bus_o  (out),
+    .valid_o(output_valid)
+  );
+
+  // The same control once more, to see its counters
+  logic control_ready;
+  logic [2:0] word;
+  logic [1:0] step;
+
+  hit_test_control #(
+    .NumWords(7),
+    .NumSteps(3)
+  ) control (
+    .clk_i  (clk),
+    .rst_ni (reset_n),
+    .valid_i(valid),
+    .ready_o(control_ready),
+    .word_o (word),
+    .step_o (step)
+  );
+
+  // taken[k]: a test was taken k clocks ago
+  logic [10:1] taken;
+  initial taken = '0;
+  always_ff @(posedge clk) begin
+    if (!reset_n) begin
+      taken <= '0;
+    end else begin
+      taken <= {taken[9:1], valid && ready};
+    end
+  end
+
+  logic first;
+  initial first = 1'b1;
+  always_ff @(posedge clk) first <= 1'b0;
+  always_comb assume (!first || !reset_n);
+
+  logic [2:0] expected_word;
+  logic [1:0] expected_step;
+  always_comb begin
+    expected_word = '0;
+    for (int unsigned k = 1; k <= 6; k++) if (taken[k]) expected_word = expected_word | 3'(k);
+    expected_step = '0;
+    for (int unsigned k = 7; k <= 9; k++) if (taken[k]) expected_step = expected_step | 2'(k - 6);
+  end
+
+  always_comb begin
+    if (reset_n && !first) begin
+      assert (ready == (taken[6:1] == '0));
+      assert (control_ready == ready);
+      assert (word == expected_word);
+      assert (step == expected_step);
+      assert (output_valid == (taken[10:8] != '0));
+    end
+  end
+
+endmodule

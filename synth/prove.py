@@ -1,0 +1,171 @@
+"""`python3 -m synth.prove`: proves the adders, the multiplier and the unit's timetable, and compares
+netlists with the RTL that they were made of. Each proof is one command on the RTL itself."""
+
+import argparse
+import dataclasses
+import functools
+import pathlib
+import sys
+from collections.abc import Callable
+
+from synth import catalogue, mapping, netlists, runner, store, tables, tools
+from synth.catalogue import LIBRARIES, Design
+
+PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
+
+
+@dataclasses.dataclass(frozen=True)
+class Proof:
+    """Something that is shown; `quick`: in well under half a minute, so `make test` shows it too."""
+
+    name: str
+    claim: str
+    how: str
+    work: Callable[[], tuple[dict, bool]]
+    quick: bool = True
+
+
+def _files(folder: str) -> list[pathlib.Path]:
+    return catalogue.Design("", "", folder).sources()
+
+
+def holds(top: str, method: str = "sat", sources: list[pathlib.Path] | None = None,
+          prepare: str = "", parameters: tuple[tuple[str, object], ...] = (),
+          steps: int = 0, prepared: str = "", name: str = "") -> tuple[dict, bool]:
+    """Proves the assertions of proofs/<top>.sv; raises ToolFailed where one does not hold.
+
+    `method`: "sat" (Yosys's) or "z3". `sources`: what is read besides, all of hw/arith unless said.
+    `prepare`, `prepared`: a Tcl file that makes a module of hw/arith first, with these parameters.
+    `steps`: 0 for combinational ones; else proven for that many clocks from reset, and by induction.
+    """
+    folder = store.OUT / "proofs" / (name or top)
+    rtl = _files("arith")
+    read = [*(rtl if sources is None else sources), PROOFS / f"{top}.sv"]
+    scripts = [PROOFS / "prove.tcl", *([PROOFS / prepare] if prepare else [])]
+    wanted = store.key([*rtl, *read, *scripts], tools.version("yosys"), method, parameters, steps,
+                       prepared)
+
+    def work() -> dict:
+        smt2 = folder / "model.smt2"
+        tools.run(["yosys", "-c", PROOFS / "prove.tcl"], folder / "yosys.log", {
+            "SOURCES": " ".join(map(str, read)), "TOP": top,
+            "PARAMETERS": " ".join(f"{key} {value}" for key, value in parameters),
+            "PREPARE": str(PROOFS / prepare) if prepare else "",
+            "RTL": " ".join(map(str, rtl)), "ASSEMBLY": prepared,
+            "SMT2": str(smt2) if method == "z3" else ""})
+        if method == "z3":
+            tools.find("z3")
+            solve = ["yosys-smtbmc", "-s", "z3"]
+            tools.run([*solve, "-t", steps or 1, smt2], folder / "bounded.log")
+            if steps:
+                tools.run([*solve, "-i", "-t", steps, smt2], folder / "induction.log")
+        return {"holds": True}
+
+    return store.cached(folder, wanted, work)
+
+
+def adds(design: Design) -> tuple[dict, bool]:
+    """An adder of any kind and grouping adds, by SAT."""
+    return holds("adder_adds", parameters=design.parameters, name=f"adds.{design.name}")
+
+
+def every_product(width: int) -> tuple[dict, bool]:
+    """Every product of the Verilated multiplier."""
+    folder = store.OUT / "proofs" / f"every_product_{width}"
+    harness = PROOFS / "booth_exhaustive.cpp"
+    wanted = store.key([*_files("arith"), harness], tools.version("verilator"), width)
+
+    def work() -> dict:
+        tools.run(["verilator", "--cc", "--exe", "--build", "-O3", "--no-timing", "-MAKEFLAGS",
+                   "OPT_FAST=-O3", "-CFLAGS", f"-DWIDTH={width}", f"-GWidth={width}",
+                   "--top-module", "booth_multiplier", "--Mdir", folder / "obj",
+                   *_files("arith"), harness, "-o", "exhaustive"], folder / "build.log")
+        tools.run([str(folder / "obj" / "exhaustive")], folder / "run.log")
+        return {"holds": True}
+
+    return store.cached(folder, wanted, work)
+
+
+def all_proofs() -> list[Proof]:
+    """Every proof there is, in the order of the report."""
+    proofs = [
+        Proof(f"adder.{name}", "carry, sum = a + b + carry at 48 bits", "SAT",
+              functools.partial(adds, catalogue.design("adder", f"adder-{name}", kind, widths,
+                                                       look_ahead, Width=48)))
+        for name, kind, widths, look_ahead in catalogue.ADDERS if kind != "tool"]
+    contracts = PROOFS / "contracts"
+    package = [file for file in _files("arith") if file.stem == "arith_pkg"]
+    unit = [*(file for file in _files("hit_test") if file.stem in ("arith_pkg", "fp_pkg")),
+            contracts / "fp_cores.sv", catalogue.HW / "hit_test" / "hit_test_control.sv",
+            catalogue.HW / "hit_test" / "hit_test_unit.sv"]
+    tree = [*package, contracts / "carry_save_adder.sv", catalogue.HW / "arith" / "carry_save_tree.sv"]
+    proofs += [
+        Proof("booth.digits", "24 bits, step 1: the digits add up to b", "SAT",
+              lambda: holds("booth_digits")),
+        Proof("booth.row", "step 2: a row is its digit times a", "SAT",
+              lambda: holds("booth_row_multiple")),
+        Proof("booth.assembly", "step 3: the tree's 13 words are the rows, constants cancel", "SAT",
+              lambda: holds("booth_assembly_sums", sources=[], prepare="booth_assembly.tcl",
+                            prepared="-chparam Width 24")),
+        Proof("booth.assembly_14", "step 3, with the paper's 14th row", "SAT",
+              lambda: holds("booth_assembly_sums", sources=[], prepare="booth_assembly.tcl",
+                            parameters=(("Words", 14),), name="booth_assembly_14",
+                            prepared="-chparam Width 24 -chparam ConstantRow 1'b1")),
+        Proof("booth.carry_save", "step 4: a carry-save adder preserves the sum, 48 bits", "SAT",
+              lambda: holds("carry_save_preserves")),
+        Proof("booth.tree", "step 5: a tree of such adders adds up its 13 rows", "z3",
+              lambda: holds("carry_save_tree_adds", "z3", tree)),
+        Proof("booth.tree_14", "step 5, with the paper's 14 rows", "z3",
+              lambda: holds("carry_save_tree_adds", "z3", tree, parameters=(("Rows", 14),),
+                            name="carry_save_tree_14")),
+        Proof("booth.all_of_6_bits", "6 x 6 bits: the product, in one piece", "SAT",
+              lambda: holds("booth_multiplies", parameters=(("Width", 6),), name="booth_6")),
+        Proof("booth.all_of_8_bits", "8 x 8 bits: the product, in one piece", "SAT",
+              lambda: holds("booth_multiplies", parameters=(("Width", 8),), name="booth_8"), False),
+        *(Proof(f"booth.every_product_{width}", f"{width} x {width} bits: every product",
+                "simulation", functools.partial(every_product, width), width <= 10)
+          for width in (9, 10, 11, 12, 13, 14)),
+        Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "z3",
+              lambda: holds("timetable", "z3", unit, steps=30)),
+    ]
+    for section, design, flows in catalogue.report_designs():
+        for library in LIBRARIES:
+            for flow in flows:
+                small = section == "48-bit adders"
+                proofs.append(Proof(
+                    f"netlist.{design.name}.{library.name}.{flow}", "the netlist and its RTL agree",
+                    "simulation", functools.partial(netlists.agree, design, library, flow,
+                                                    100000 if small else 20000),
+                    library.name == "osu035" and flow == "fast"
+                    and design.name in ("adder-graded", "booth-graded")))
+    return proofs
+
+
+def main() -> int:
+    """Runs the proofs asked for; 1 where one fails, 2 for what the user can mend."""
+    parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
+    parser.add_argument("names", nargs="*", help="beginnings of proofs' names; all if none")
+    parser.add_argument("--quick", action="store_true", help="those alone that `make test` runs")
+    parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
+    given = parser.parse_args()
+    try:
+        chosen = [proof for proof in all_proofs()
+                  if (proof.quick or not given.quick)
+                  and (not given.names or proof.name.startswith(tuple(given.names)))]
+        if not chosen:
+            raise ValueError(f"no proof's name begins with {' or '.join(given.names)}")
+        results, failures = runner.run_all(
+            [runner.Job(proof.name, proof.work, lambda _: "holds") for proof in chosen], given.jobs)
+    except (tools.MissingTool, ValueError) as error:
+        print(f"synth: {error}", file=sys.stderr)
+        return 2
+    print(tables.markdown(["proof", "what", "by", "holds"], [
+        [proof.name, proof.claim, proof.how, "no" if result is None else "yes"]
+        for proof, result in zip(chosen, results, strict=True)]))
+    for failure in failures:
+        print("failed:", failure, file=sys.stderr)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
