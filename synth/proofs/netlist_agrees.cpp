@@ -41,6 +41,9 @@ int main(int argc, char** argv) {
     if (twins.differ_o) {
       std::printf("netlist and RTL differ, vector %llu of seed %llu\n",
                   static_cast<unsigned long long>(i), static_cast<unsigned long long>(kSeed));
+      std::printf("inputs, lowest word first:");
+      for (const std::uint32_t input : twins.in_i.m_storage) std::printf(" %08x", input);
+      std::printf("\n");
       return 1;
     }
     twins.clk_i = 1;
