@@ -2,8 +2,8 @@
 //
 // Every addition of the cores goes through here, so that one parameter changes them all.
 // Adder: one of arith_pkg::adder_e (a number, for tools can only override those from outside).
-// GroupWidths: the groups of a carry-select adder (see arith_pkg), or 0 for those of its kind: up to
-// 12 bits, as in exponents, one look-ahead group is not worth cutting.
+// GroupWidths: the groups of a carry-select adder (see arith_pkg), or 0 for those of its kind: up
+// to 12 bits, as in exponents, one look-ahead group is not worth cutting.
 // LookAhead: how the groups of a carry-select adder add, see there.
 module adder #(
   parameter int unsigned Width = 48,
@@ -34,9 +34,9 @@ module adder #(
     localparam bit [ListWidth-1:0] Uniform = arith_pkg::uniform_groups(Width);
     localparam bit [ListWidth-1:0] Graded = arith_pkg::graded_groups(Width);
     localparam bit [ListWidth-1:0] Groups =
-        (GroupWidths != '0) ? GroupWidths
-        : (LookAhead && Width <= 12) ? ListWidth'(Width)
-        : (Adder == arith_pkg::AdderUniform) ? Uniform : Graded;
+        (GroupWidths != '0) ? GroupWidths : (LookAhead && Width <= 12) ? ListWidth'(Width) :
+        (Adder == arith_pkg::AdderUniform) ? Uniform : Graded;
+
     carry_select_adder #(
       .Width      (Width),
       .GroupWidths(Groups),

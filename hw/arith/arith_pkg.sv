@@ -33,9 +33,10 @@ package arith_pkg;
   // every group just when the group's own two sums are ready: each group one bit wider than the one
   // below it, so that the widest, on top, has as many bits as the adder has delays.
   //
-  // That many delays d are the least with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d bits).
-  // From the top down the groups take d, d - 1 ... bits, until what is left fits into one more group
-  // no wider than the last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper.
+  // That many delays d are the least with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d
+  // bits). From the top down the groups take d, d - 1 ... bits, until what is left fits into one
+  // more group no wider than the last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays
+  // of the paper.
   // Good to 121 bits; beyond, MaxGroups can be too few and the adder refuses the list.
   function automatic bit [8*MaxGroups-1:0] graded_groups(int unsigned width);
     int unsigned size, left;
@@ -56,14 +57,14 @@ package arith_pkg;
   function automatic int unsigned num_groups(bit [8*MaxGroups-1:0] widths);
     num_groups = 0;
     for (int unsigned k = 0; k < MaxGroups; k++) begin
-      if (widths[8*k +: 8] != 0) num_groups = k + 1;
+      if (widths[8*k+:8] != 0) num_groups = k + 1;
     end
   endfunction
 
   function automatic int unsigned widest_group(bit [8*MaxGroups-1:0] widths);
     widest_group = 0;
     for (int unsigned k = 0; k < MaxGroups; k++) begin
-      if (32'(widths[8*k +: 8]) > widest_group) widest_group = 32'(widths[8*k +: 8]);
+      if (32'(widths[8*k+:8]) > widest_group) widest_group = 32'(widths[8*k+:8]);
     end
   endfunction
 
@@ -71,7 +72,7 @@ package arith_pkg;
   function automatic int unsigned group_low(bit [8*MaxGroups-1:0] widths, int unsigned k);
     group_low = 0;
     for (int unsigned i = 0; i < MaxGroups; i++) begin
-      if (i < k) group_low = group_low + 32'(widths[8*i +: 8]);
+      if (i < k) group_low = group_low + 32'(widths[8*i+:8]);
     end
   endfunction
 
@@ -79,7 +80,7 @@ package arith_pkg;
   function automatic bit [255:0] group_starts(bit [8*MaxGroups-1:0] widths);
     group_starts = '0;
     for (int unsigned k = 0; k < MaxGroups; k++) begin
-      if (widths[8*k +: 8] != 0) group_starts[group_low(widths, k)] = 1'b1;
+      if (widths[8*k+:8] != 0) group_starts[group_low(widths, k)] = 1'b1;
     end
   endfunction
 

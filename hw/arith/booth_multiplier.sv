@@ -5,8 +5,8 @@
 // (section 3.4), for any Width from 2.
 //
 // ConstantRow: 1 for the paper's tree, with the constants in a row of their own (14 rows, 12 adders
-// in 6 levels); 0 puts them into free places of the other rows (13 rows, 11 adders in 5 levels), which
-// saves a level and a twentieth of the area.
+// in 6 levels); 0 puts them into free places of the other rows (13 rows, 11 adders in 5 levels),
+// which saves a level and a twentieth of the area.
 // Adder, GroupWidths: the last adder, see there. Combinational.
 module booth_multiplier #(
   parameter int unsigned Width = 24,
@@ -40,8 +40,8 @@ module booth_multiplier #(
 
   // Partial products: row k has weight 4**k
   //
-  // With n the word `negative`, the rows lack n - n * 2**(Width+1). Modulo 2**(2*Width) the second is
-  //   2**(Width+1) + ~n * 2**(Width+1),
+  // With n the word `negative`, the rows lack n - n * 2**(Width+1). Modulo 2**(2*Width) the second
+  // is 2**(Width+1) + ~n * 2**(Width+1),
   // where the odd bits of ~n are the constants that stand for all sign extensions.
 
   logic [2*Width*Rows-1:0] rows  /*verilator split_var*/;  // simulated as Rows words

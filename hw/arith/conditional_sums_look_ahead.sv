@@ -1,10 +1,10 @@
-// The sums of every group of a carry-select adder for both possible carries into the group, by carry
-// look-ahead.
+// The sums of every group of a carry-select adder for both possible carries into the group, by
+// carry look-ahead.
 //
 // All groups are worked on at once, as words: a prefix scan of (generate, propagate) pairs that
-// doubles its reach with every step and never looks past the start of a group. A group's carries are
-// then "generate" if no carry enters it and "generate or propagate" if one does, so that one scan
-// serves both sums. The lowest group knows its carry, which counts as generated.
+// doubles its reach with every step and never looks past the start of a group. A group's carries
+// are then "generate" if no carry enters it and "generate or propagate" if one does, so that one
+// scan serves both sums. The lowest group knows its carry, which counts as generated.
 //
 // GroupWidths: see arith_pkg. Bit k of carry_0_o and carry_1_o is the carry out of group k.
 // Combinational; ceil(log2(widest group)) steps.

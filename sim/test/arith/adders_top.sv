@@ -45,16 +45,19 @@ module adders_top (
   assign carries = expected ^ {1'b0, a} ^ {1'b0, b};  // into each bit
 
   for (genvar w = 0; w < NumWidths; w++) begin : gen_width
-    localparam int unsigned Width = 32'(Widths[8*w +: 8]);
+    localparam int unsigned Width = 32'(Widths[8*w+:8]);
     logic [NumKinds-1:0] wrong, wrong_so_far;
 
-    // The five kinds; both carry-select ones with groups cut also where one would do, and with ripple
-    // groups; odd groups of both sorts.
+    // The five kinds; both carry-select ones with groups cut also where one would do, and with
+    // ripple groups; odd groups of both sorts.
     for (genvar k = 0; k < NumKinds; k++) begin : gen_kind
       localparam int unsigned Adder = (k < 5) ? k : (k == 6) ? 1 : 2;
       localparam bit LookAhead = (k < 6) || (k == 7);
-      localparam bit [8*arith_pkg::MaxGroups-1:0] GroupWidths =
-          (k == 5) ? arith_pkg::graded_groups(Width) : (k >= 7) ? odd_groups(Width) : '0;
+      localparam bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = (k == 5) ? arith_pkg::graded_groups(
+        Width
+      ) : (k >= 7) ? odd_groups(
+        Width
+      ) : '0;
       logic [Width-1:0] sum;
       logic carry_out;
 

@@ -22,7 +22,7 @@ module leading_zeros_top (
       .zero_o (count_o[8*w+7])
     );
 
-    assign count_o[8*w +: 7] = 7'(count);
+    assign count_o[8*w+:7] = 7'(count);
   end
 
 endmodule

@@ -20,10 +20,12 @@ class MultipliersTest : public testing::Test {
     model_->a_i = a;
     model_->b_i = b;
     model_.clock();
-    for (std::size_t k = 0; k < kWidths.size(); ++k) {
-      const std::uint64_t mask = (std::uint64_t{1} << kWidths[k]) - 1;
+    for (std::size_t k = 0; k < 2 * kWidths.size(); ++k) {
+      const int width = kWidths[k / 2];
+      const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
       ASSERT_EQ(word(model_->product_o, k), (a & mask) * (b & mask))
-          << kWidths[k] << " bits: " << std::hex << (a & mask) << " * " << (b & mask);
+          << width << " bits, ConstantRow " << k % 2 << ": " << std::hex << (a & mask) << " * "
+          << (b & mask);
     }
     for (int kind = 0; kind < 5; ++kind) {
       ASSERT_EQ(word(model_->product_24_o, kind), std::uint64_t{a & 0xffffff} * (b & 0xffffff))

@@ -1,9 +1,10 @@
-// Booth multipliers of many widths on the same operands, and a 24-bit one with each kind of adder.
+// Booth multipliers of many widths on the same operands, with the constants in the partial products
+// and in a row of their own, and a 24-bit one with each kind of adder.
 module multipliers_top (
   input  logic               clk_i,
   input  logic [31:0]        a_i,
   input  logic [31:0]        b_i,
-  output logic [64*12-1:0]   product_o,     // 64 bits for each width: 2 to 9, 11, 16, 23, 32
+  output logic [64*24-1:0]   product_o,     // 64 bits for each width of Widths, ConstantRow 0 and 1
   output logic [64*5-1:0]    product_24_o   // 64 bits for each kind of adder
 );
 
@@ -20,18 +21,22 @@ module multipliers_top (
   end
 
   for (genvar w = 0; w < NumWidths; w++) begin : gen_width
-    localparam int unsigned Width = 32'(Widths[8*w +: 8]);
-    logic [2*Width-1:0] product;
+    localparam int unsigned Width = 32'(Widths[8*w+:8]);
 
-    booth_multiplier #(
-      .Width(Width)
-    ) u_multiplier (
-      .a_i      (a[Width-1:0]),
-      .b_i      (b[Width-1:0]),
-      .product_o(product)
-    );
+    for (genvar c = 0; c < 2; c++) begin : gen_constants
+      logic [2*Width-1:0] product;
 
-    assign product_o[64*w +: 64] = 64'(product);
+      booth_multiplier #(
+        .Width      (Width),
+        .ConstantRow(c == 1)
+      ) u_multiplier (
+        .a_i      (a[Width-1:0]),
+        .b_i      (b[Width-1:0]),
+        .product_o(product)
+      );
+
+      assign product_o[64*(2*w+c)+:64] = 64'(product);
+    end
   end
 
   for (genvar k = 0; k < 5; k++) begin : gen_kind
@@ -46,7 +51,7 @@ module multipliers_top (
       .product_o(product)
     );
 
-    assign product_24_o[64*k +: 64] = 64'(product);
+    assign product_24_o[64*k+:64] = 64'(product);
   end
 
 endmodule

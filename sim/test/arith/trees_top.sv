@@ -1,10 +1,8 @@
-// Carry-save trees of 2 to 16 rows on the same rows, and the shape of the tree of 14.
+// Carry-save trees of 2 to 16 rows on the same rows.
 module trees_top (
   input  logic              clk_i,
   input  logic [48*16-1:0]  rows_i,
-  output logic [64*17-1:0]  total_o,       // 64 bits for each number of rows; those of 0 and 1 are 0
-  output logic [8*8-1:0]    rows_of_14_o,  // rows after level k in byte k
-  output logic [7:0]        levels_of_14_o
+  output logic [64*17-1:0]  total_o   // 64 bits for each number of rows; those of 0 and 1 are 0
 );
 
   logic [48*16-1:0] rows;
@@ -25,12 +23,7 @@ module trees_top (
       .carry_o(carry)
     );
 
-    assign total_o[64*n +: 64] = 64'(48'(sum + carry));
+    assign total_o[64*n+:64] = 64'(48'(sum + carry));
   end
-
-  for (genvar l = 0; l < 8; l++) begin : gen_level
-    assign rows_of_14_o[8*l +: 8] = 8'(arith_pkg::tree_rows(14, l));
-  end
-  assign levels_of_14_o = 8'(arith_pkg::tree_levels(14));
 
 endmodule
