@@ -63,8 +63,8 @@ class MeshBuilder {
 };
 
 /// A point to subtract from all others, on a power-of-two grid about as coarse as the box is
-/// large: zero for a box that is near the origin, and far from it the subtraction of any double is
-/// exact. No result exceeds three times the box's extent.
+/// large: zero for a box near the world's origin; and for a coordinate farther from it than three
+/// times the box's extent the subtraction is exact. No result exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
 }  // namespace raygate

@@ -37,7 +37,7 @@ std::optional<std::filesystem::path> MtlLoader::find_file(std::string_view name)
   for (const std::string& spelling : {std::string(name), slashed}) {
     std::error_code ignored;
     const std::filesystem::path file = folder_ / spelling;
-    if (std::filesystem::exists(file, ignored)) return file;
+    if (std::filesystem::is_regular_file(file, ignored)) return file;
   }
   return std::nullopt;
 }
@@ -47,7 +47,7 @@ bool MtlLoader::operator()(const std::string& names, std::vector<tinyobj::materi
   std::string_view rest = names;
   if (rest.empty()) warnings_.push_back(obj_.place() + "mtllib without a file");
   std::optional<std::filesystem::path> file = find_file(rest);
-  if (file && !rest.empty()) {
+  if (file) {
     load(*file);
     return true;
   }
@@ -64,6 +64,7 @@ bool MtlLoader::operator()(const std::string& names, std::vector<tinyobj::materi
 }
 
 void MtlLoader::load(const std::filesystem::path& file) {
+  if (!loaded_.insert(file.lexically_normal()).second) return;
   MtlText text(file, warnings_);
   std::istream stream(&text);
   stream.exceptions(std::ios::badbit);

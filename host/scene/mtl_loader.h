@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,11 +37,12 @@ class MtlLoader final : public tinyobj::MaterialReader {
 
  private:
   [[nodiscard]] std::optional<std::filesystem::path> find_file(std::string_view name) const;
-  void load(const std::filesystem::path& file);
+  void load(const std::filesystem::path& file);  // once each
 
   std::filesystem::path folder_;
   const TextLines& obj_;
   std::vector<std::string>& warnings_;
+  std::set<std::filesystem::path> loaded_;
   std::map<std::string, int> index_of_name_;
   std::vector<tinyobj::material_t> read_;
   std::vector<Material> materials_;  // read_, as the scene has them

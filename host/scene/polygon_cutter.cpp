@@ -138,11 +138,9 @@ PolygonKind PolygonCutter::clip_ears() {
   for (std::size_t i = 2; i < candidates_.size(); ++i) {
     const Corner& a = ring_[candidates_[i - 1]];
     const Corner& b = ring_[candidates_[i]];
-    if (turn(hub.position, a.position, b.position) == 0) {
-      kind = PolygonKind::kSelfTouching;
-    } else {
-      triangles_.push_back({hub.number, a.number, b.number});
-    }
+    const int winding = turn(hub.position, a.position, b.position);
+    if (winding <= 0) kind = PolygonKind::kSelfTouching;
+    if (winding != 0) triangles_.push_back({hub.number, a.number, b.number});
   }
   return kind;
 }

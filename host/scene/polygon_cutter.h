@@ -12,7 +12,7 @@
 namespace raygate {
 
 enum class PolygonKind {
-  kSimple,        ///< cut; every triangle has an area
+  kSimple,        ///< cut; every triangle keeps the winding (and covers what overlaps twice)
   kSelfTouching,  ///< crosses or touches itself: cut as well as that can be, with overlaps
   kZeroArea,      ///< exactly no area: nothing to cut
 };

@@ -13,8 +13,12 @@ namespace {
 std::string read_all(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_directory(status)) {
     throw InputError(name + ": is a folder, expected a file");
+  }
+  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status)) {
+    throw InputError(name + ": is a device, expected a file");  // it might never end
   }
   errno = 0;
   std::ifstream stream(file, std::ios::binary);

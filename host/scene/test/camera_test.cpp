@@ -1,0 +1,149 @@
+#include "host/scene/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "host/scene/input_error.h"
+
+namespace raygate {
+namespace {
+
+float largest(const glm::vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+TEST(ScaledDirection, HasItsLargestComponentBetweenOneAndTwo) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 100000; ++round) {
+    const double scale = std::ldexp(1.0, static_cast<int>(random() % 1000) - 500);
+    const glm::dvec3 direction = scale * glm::dvec3(normal(random), normal(random), normal(random));
+    const glm::vec3 scaled = scaled_direction(direction);
+    ASSERT_GE(largest(scaled), 1.0f);
+    ASSERT_LT(largest(scaled), 2.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      ASSERT_EQ(scaled[axis] < 0, direction[axis] < 0);
+      ASSERT_NEAR(scaled[axis] * direction.x, scaled.x * direction[axis], 1e-6 * scale * 10);
+    }
+  }
+}
+
+TEST(ScaledDirection, ChangesNothingButTheExponent) {
+  EXPECT_EQ(scaled_direction({0, -1, 0}), glm::vec3(0, -1, 0));
+  EXPECT_EQ(scaled_direction({3, 5, 7}), glm::vec3(0.75f, 1.25f, 1.75f));
+  // Rounds to 2 as a float.
+  EXPECT_EQ(scaled_direction({1.9999999999, 0.5, 0}), glm::vec3(1, 0.25f, 0));
+}
+
+TEST(LookAt, ShowsTheTargetInTheMiddle) {
+  const Camera camera = Camera::look_at({1, 2, 3}, {1, 2, -7}, {0, 1, 0}, 90, 2);
+  EXPECT_EQ(camera.eye(), glm::vec3(1, 2, 3));
+  EXPECT_EQ(camera.direction(0.5, 0.5), glm::vec3(0, 0, -1));
+  EXPECT_EQ(camera.forward(), glm::dvec3(0, 0, -1));
+  EXPECT_EQ(camera.right(), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(camera.up(), glm::dvec3(0, 1, 0));
+  // 90 degrees upright, twice as much (as a tangent) across; row 0 is at the top.
+  const auto expect_near = [](const glm::vec3& a, const glm::vec3& b) {
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], 1e-6);
+  };
+  expect_near(camera.direction(0.5, 0) / -camera.direction(0.5, 0).z, {0, 1, -1});
+  expect_near(camera.direction(1, 1) / -camera.direction(1, 1).z, {2, -1, -1});
+  expect_near(camera.direction(0, 0) / -camera.direction(0, 0).z, {-2, 1, -1});
+}
+
+TEST(LookAt, AxesAreOrthonormalAndRightHanded) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  const auto vector = [&] { return glm::dvec3(normal(random), normal(random), normal(random)); };
+  for (int round = 0; round < 1000; ++round) {
+    const Camera camera = Camera::look_at(vector(), vector(), 1e-200 * vector(), 40, 1);
+    EXPECT_NEAR(glm::length(camera.right()), 1, 1e-12);
+    EXPECT_NEAR(glm::length(camera.up()), 1, 1e-12);
+    EXPECT_NEAR(glm::length(camera.forward()), 1, 1e-12);
+    EXPECT_NEAR(glm::dot(glm::cross(camera.right(), camera.up()), camera.forward()), -1, 1e-12);
+  }
+}
+
+TEST(LookAt, RefusesWhatMakesNoPicture) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const glm::dvec3 eye(0, 0, 5), target(0), up(0, 1, 0);
+  EXPECT_NO_THROW((void)Camera::look_at(eye, target, up, 40, 1));
+  EXPECT_THROW((void)Camera::look_at(eye, eye, up, 40, 1), InputError);
+  EXPECT_THROW((void)Camera::look_at(eye, target, {0, 0, 0}, 40, 1), InputError);
+  EXPECT_THROW((void)Camera::look_at(eye, target, {0, 0, -3}, 40, 1), InputError);
+  EXPECT_THROW((void)Camera::look_at(eye, {nan, 0, 0}, up, 40, 1), InputError);
+  EXPECT_THROW((void)Camera::look_at({1e300, 0, 0}, target, up, 40, 1), InputError);
+  EXPECT_THROW((void)Camera::look_at({-1.7e308, 0, 0}, {1.7e308, 0, 0}, up, 40, 1), InputError);
+  for (const double fov : {0.0, -1.0, 180.0, nan}) {
+    EXPECT_THROW((void)Camera::look_at(eye, target, up, fov, 1), InputError) << fov;
+  }
+  for (const double aspect : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW((void)Camera::look_at(eye, target, up, 40, aspect), InputError) << aspect;
+  }
+}
+
+// Where in the picture a point is seen: x, y in [0, 1].
+glm::dvec2 seen_at(const Camera& camera, double aspect, const glm::vec3& point) {
+  const glm::dvec3 offset = glm::dvec3(point) - glm::dvec3(camera.eye());
+  const double depth = glm::dot(offset, camera.forward());
+  EXPECT_GT(depth, 0.0);
+  const double half = std::tan(camera.vertical_fov_degrees() / 360.0 * std::numbers::pi) * depth;
+  return {0.5 + 0.5 * glm::dot(offset, camera.right()) / (half * aspect),
+          0.5 - 0.5 * glm::dot(offset, camera.up()) / half};
+}
+
+TEST(Frame, ShowsTheWholeSceneAndFillsThePicture) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  for (int round = 0; round < 200; ++round) {
+    const glm::vec3 size(std::exp(3 * uniform(random)), std::exp(3 * uniform(random)),
+                         std::exp(3 * uniform(random)));
+    const glm::vec3 centre(10 * uniform(random), 10 * uniform(random), 10 * uniform(random));
+    Scene scene;
+    for (int corner = 0; corner < 8; ++corner) {
+      scene.positions.push_back(centre +
+                                size * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2));
+    }
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      scene.triangles.emplace_back().vertices = {i, i + 1, i + 2};
+    }
+    const double aspect = std::exp(uniform(random));
+    const Camera camera = Camera::frame(scene, aspect);
+    EXPECT_LT(camera.forward().z, 0.0);
+    EXPECT_LT(camera.forward().y, 0.0);
+    double reach = 0.0;
+    for (const glm::vec3& point : scene.positions) {
+      const glm::dvec2 at = seen_at(camera, aspect, point);
+      reach = std::max({reach, std::abs(2 * at.x - 1), std::abs(2 * at.y - 1)});
+    }
+    EXPECT_NEAR(reach, 0.96, 1e-4) << "round " << round;
+  }
+}
+
+TEST(Frame, TakesAFlatScene) {
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+  scene.triangles.emplace_back().vertices = {0, 1, 2};
+  EXPECT_GT(Camera::frame(scene, 1.5).eye().y, 0.0f) << "seen from above";
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_GT(Camera::frame(scene, 1.5).eye().z, 0.0f);
+  scene.positions = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  EXPECT_NO_THROW((void)Camera::frame(scene, 1.5));
+}
+
+TEST(Frame, RefusesNothingToSeeAndTooMuch) {
+  Scene scene;
+  EXPECT_THROW((void)Camera::frame(scene, 1), InputError);
+  const float huge = std::numeric_limits<float>::max();
+  scene.positions = {{-huge, 0, 0}, {huge, 0, 0}, {0, huge, 0}};
+  scene.triangles.emplace_back().vertices = {0, 1, 2};
+  EXPECT_THROW((void)Camera::frame(scene, 1), InputError);
+}
+
+}  // namespace
+}  // namespace raygate
