@@ -1,0 +1,73 @@
+"""Draws a block diagram of a module from its elaborated netlist: registers, cores and multiplexers.
+
+`python3 -m synth.diagram TOP OUT`: OUT.svg and OUT.png, by graphviz.
+"""
+
+import json
+import pathlib
+import sys
+
+from synth import catalogue, mapping, store, tools
+
+SHAPES = {"register": "box", "multiplexer": "invtrapezium", "core": "box3d", "port": "oval"}
+
+
+def blocks(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tuple[str, str]]]:
+    """Nodes (name -> kind, label) and arrows of the paths that are `width` bits wide.
+
+    Registers are named after what they drive; logic that isn't a block is passed through.
+    """
+    netnames = {tuple(net["bits"]): name for name, net in module["netnames"].items()
+                if not net.get("hide_name")}
+    nodes, outputs, inputs = {}, {}, {}
+    for name, port in module["ports"].items():
+        if len(port["bits"]) == width:
+            nodes[name] = ("port", name)
+            side = outputs if port["direction"] == "input" else inputs
+            side.setdefault(name, []).append(port["bits"])
+    for name, cell in module["cells"].items():
+        kind = {"$mux": "multiplexer", "$pmux": "multiplexer"}.get(cell["type"], "")
+        if "dff" in cell["type"]:
+            kind = "register"
+        elif cell["type"].startswith("$paramod") or not cell["type"].startswith("$"):
+            kind = "core"
+        if not kind:
+            continue
+        directions = cell["port_directions"]
+        wide = {port: bits for port, bits in cell["connections"].items() if len(bits) == width}
+        out = [bits for port, bits in wide.items() if directions[port] == "output"]
+        if not out:
+            continue
+        label = name.removeprefix("u_") if kind == "core" else netnames.get(tuple(out[0]), "")
+        nodes[name] = (kind, label.removesuffix("_q"))
+        outputs[name] = out
+        inputs[name] = [bits for port, bits in wide.items() if directions[port] == "input"]
+    drives = {bit: name for name, words in outputs.items() for word in words for bit in word
+              if isinstance(bit, int)}
+    arrows = {(drives[bit], name) for name, words in inputs.items() for word in words
+              for bit in word if bit in drives}
+    return nodes, arrows
+
+
+def draw(top: str, out: pathlib.Path, width: int = 32) -> None:
+    """Writes OUT.dot, OUT.svg and OUT.png."""
+    design = catalogue.design(top)
+    file = out.with_suffix(".json")
+    tools.run(["yosys", "-c", tools.FLOWS / "blocks.tcl"], out.with_suffix(".log"),
+              {**mapping.elaboration(design), "OUT": str(file)})
+    modules = json.loads(file.read_text())["modules"]
+    (module,) = [body for body in modules.values() if "top" in body["attributes"]]
+    nodes, arrows = blocks(module, width)
+    names = {name: f"n{place}" for place, name in enumerate(sorted(nodes))}
+    lines = [f"digraph {top} {{", "  rankdir=LR; node [fontname=sans]; edge [arrowsize=0.7];"]
+    lines += [f'  {names[name]} [shape={SHAPES[kind]}, label="{label}"];'
+              for name, (kind, label) in sorted(nodes.items())]
+    lines += [f"  {names[a]} -> {names[b]};" for a, b in sorted(arrows)]
+    out.with_suffix(".dot").write_text("\n".join([*lines, "}"]) + "\n")
+    for kind in ("svg", "png"):
+        tools.run(["dot", f"-T{kind}", "-o", out.with_suffix(f".{kind}"), out.with_suffix(".dot")],
+                  out.with_suffix(".log"))
+
+
+if __name__ == "__main__":
+    draw(sys.argv[1], pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else store.OUT / sys.argv[1])
