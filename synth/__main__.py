@@ -3,7 +3,8 @@
 import argparse
 import sys
 
-from synth import adder_study, catalogue, measure, report, store, tables, tools
+from synth import (adder_study, catalogue, measure, pictures, prove, report, store, tables, tools,
+                   unit_delay)
 from synth.catalogue import LIBRARIES
 
 
@@ -13,7 +14,8 @@ def arguments() -> argparse.Namespace:
         "Synthesises hw/ for standard cells and FPGAs. Without --top: everything, and one report in "
         "build/synth/. With it: one design, its area, delay, critical path and, for an adder, "
         "its unit delays and the proof that it adds."))
-    parser.add_argument("--top", help="module of hw/, e.g. adder, booth_multiplier, fp_adder; or adders: those alone")
+    parser.add_argument("--top", help="module of hw/ (adder, booth_multiplier, fp_adder, ...), or "
+                        "adders: the adders' part of the report alone")
     parser.add_argument("--adder", help="ripple, uniform, graded, prefix or tool")
     parser.add_argument("--width", help="bits of an adder or a multiplier")
     parser.add_argument("--groups", help="carry-select groups, least significant first: 4,5,7,...")
@@ -49,7 +51,8 @@ def one_design(given: argparse.Namespace) -> catalogue.Design:
 def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     """Measures one design and prints it."""
     design = one_design(given)
-    flows = ("cells", "kept", "default", "fast") if design.top == "adder" else ("small", "fast")
+    cells = design.top == "adder"
+    flows = ("cells", "kept", "default", "fast") if cells else ("small", "fast")
     records, failures = measure.measure([(design.name, design, flows)], targets)
     print(report.section_tables(records, design.name))
     timed = [record for record in records if "path" in record]
@@ -58,7 +61,23 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
                    key=lambda record: record["delay_ns"])
         print(f"Critical path, {report.TITLES[best['target']]}, {best['flow']}:\n")
         print(report.path_table(best))
+    if cells and kept_structure(design):
+        print("Full-adder delays: " + "; ".join(
+            f"{unit_delay.count(unit_delay.netlist(design), counting)['delay']:g} ({counting.title})"
+            for counting in unit_delay.COUNTINGS))
+    if cells:
+        try:
+            prove.adds(design)
+            print("Proof: it adds, for all operands (SAT).")
+        except tools.ToolFailed as error:
+            failures.append(f"proof that it adds: {error}")
     return report_failures(failures)
+
+
+def kept_structure(design: catalogue.Design) -> bool:
+    """Whether the design is full adders and multiplexers alone, so that the model applies."""
+    module = unit_delay.netlist(design)
+    return unit_delay.count(module, unit_delay.COUNTINGS[0])["gates"] == 0
 
 
 def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
@@ -82,7 +101,7 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
         sections.append(("Best groups of 48 bits", tables.markdown(
             ["library", "flow", "groups add by", "widths, lowest first", "area", "ns", "tried"],
             found)))
-    report.write(records, sections)
+    report.write(records, [*sections, ("Pictures", pictures.draw(records))])
     for section in dict.fromkeys(record["section"] for record in records):
         print(report.section_tables(records, section))
     for title, text in sections:

@@ -1,0 +1,29 @@
+"""The pictures beside the report: plots, the unit's block diagram, the worked example's timing."""
+
+import subprocess
+
+from synth import diagram, plots, store, tools, waveform
+
+# The paper's figure 10, by its signals' names in hw/hit_test/hit_test_unit.sv.
+SIGNALS = ["valid_i", "ready_o", "word", "step", "bus_i", "direction_1_q", "direction_2_q",
+           "direction_3_q", "normal_q", "d_q", "accumulator_q", "divisor_q", "output_q", "valid_o"]
+
+
+def draw(records: list[dict]) -> str:
+    """Draws what can be drawn; Markdown that shows it, and says what is missing."""
+    lines = [f"![{name}]({name}.svg)\n" for name in plots.draw(records)]
+    if tools.installed("dot"):
+        diagram.draw("hit_test_unit", store.OUT / "hit_test_unit")
+        lines.append("The paper's unit, drawn from the design:\n\n![unit](hit_test_unit.svg)\n")
+    else:
+        lines.append(f"No block diagram: dot is missing ({tools.TOOLS['dot'][0]}).\n")
+    program = tools.ROOT / "build" / "sim" / "worked_example"
+    if program.exists():
+        trace = store.OUT / "worked_example.vcd"
+        subprocess.run([program, "--trace", trace], check=True, stdout=subprocess.DEVNULL)
+        waveform.draw(trace, store.OUT / "worked_example", SIGNALS)
+        lines.append("The worked example, from a simulation trace; a column is the clock after an "
+                     "edge:\n\n![timing](worked_example.svg)\n")
+    else:
+        lines.append("No timing diagram: `make test` builds build/sim/worked_example first.\n")
+    return "\n".join(lines)
