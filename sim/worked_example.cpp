@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <string>
 
 #include "Vhit_test_unit_open.h"
@@ -99,5 +100,8 @@ int main(int argc, char** argv) {
   } catch (const InputError& error) {
     std::fprintf(stderr, "worked_example: %s\n", error.what());
     return 2;
+  } catch (const std::exception& error) {  // a fault of the unit
+    std::fprintf(stderr, "worked_example: %s\n", error.what());
+    return 1;
   }
 }
