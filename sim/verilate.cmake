@@ -43,9 +43,9 @@ set(RAYGATE_VERILATOR_FLAGS -Wall -fno-const-bit-op-tree
   -y ${CMAKE_SOURCE_DIR}/hw/arith -y ${CMAKE_SOURCE_DIR}/hw/fp -y ${CMAKE_SOURCE_DIR}/hw/hit_test)
 
 function(raygate_model NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN" "TOP" "PARAMETERS")
+  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP" "PARAMETERS")
   if(NOT MODEL_TOP OR MODEL_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN], "
+    message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN] [SHARED], "
       "got ${ARGN}")
   endif()
   file(GLOB top_file ${CMAKE_SOURCE_DIR}/hw/*/${MODEL_TOP}.sv
@@ -60,6 +60,9 @@ function(raygate_model NAME)
   set(open)
   if(MODEL_OPEN)
     set(open --trace ${CMAKE_SOURCE_DIR}/sim/visible.vlt)
+  endif()
+  if(MODEL_SHARED)
+    list(APPEND open ${CMAKE_SOURCE_DIR}/sim/shared.vlt)
   endif()
   add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${NAME}.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}

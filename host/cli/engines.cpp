@@ -1,10 +1,15 @@
 #include "host/cli/engines.h"
 
 #include <memory>
+#include <utility>
 
+#include "host/hit/check_burst_unit.h"
 #include "host/hit/check_plane_unit.h"
+#include "host/hit/cpu_burst_unit.h"
 #include "host/hit/cpu_plane_unit.h"
+#include "host/hit/pipeline_hit_tester.h"
 #include "host/hit/serial_hit_tester.h"
+#include "sim/rtl_burst_unit.h"
 #include "sim/rtl_plane_unit.h"
 
 namespace raygate {
@@ -23,10 +28,29 @@ std::unique_ptr<PlaneUnit> make_plane_unit(Engine engine) {
                                           std::make_unique<CpuPlaneUnit>());
 }
 
+std::unique_ptr<BurstUnit> make_burst_unit(Engine engine, int lanes) {
+  switch (engine) {
+    case Engine::kRtl:
+      return std::make_unique<RtlBurstUnit>(lanes);
+    case Engine::kCpu:
+      return std::make_unique<CpuBurstUnit>();
+    case Engine::kCheck:
+      break;
+  }
+  return std::make_unique<CheckBurstUnit>(std::make_unique<RtlBurstUnit>(lanes),
+                                          std::make_unique<CpuBurstUnit>());
+}
+
 }  // namespace
 
-HitTesterFactory make_tester_factory(Engine engine) {
-  return [engine] { return std::make_unique<SerialHitTester>(make_plane_unit(engine)); };
+HitTesterFactory make_tester_factory(const Options& options) {
+  const auto [engine, lanes] = std::pair(options.engine, options.lanes);
+  if (options.unit == "serial") {
+    return [engine] { return std::make_unique<SerialHitTester>(make_plane_unit(engine)); };
+  }
+  return [engine, lanes] {
+    return std::make_unique<PipelineHitTester>(make_burst_unit(engine, lanes));
+  };
 }
 
 }  // namespace raygate

@@ -6,8 +6,8 @@
 
 namespace raygate {
 
-/// Makes testers of `engine`, whose hardware is the serial unit. Each tester owns its simulated
-/// model, so that threads share nothing.
-[[nodiscard]] HitTesterFactory make_tester_factory(Engine engine);
+/// Makes testers of the engine, unit and number of lanes in `options`. Each tester owns its
+/// simulated model, so that threads share nothing.
+[[nodiscard]] HitTesterFactory make_tester_factory(const Options& options);
 
 }  // namespace raygate

@@ -31,7 +31,7 @@ constexpr const char* kFooter =
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
-  std::string scene, output, size, engine, unit, threads, camera, crop, seed, stats;
+  std::string scene, output, size, engine, unit, lanes, threads, camera, crop, seed, stats;
 };
 
 /// All names, for the message about an unknown one.
@@ -68,7 +68,10 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   value("--engine", raw.engine, "rtl|cpu|check",
         "rtl: the simulated hardware; cpu: its twin in\n"
         "C++; check: both, and the first difference\nstops the run (rtl)");
-  value("--unit", raw.unit, "serial", "which hit-test unit the hardware is (serial)");
+  value("--unit", raw.unit, "pipeline|serial",
+        "which hit-test unit the hardware is: a test\n"
+        "every clock, or the paper's (pipeline)");
+  value("--lanes", raw.lanes, "1|2|4|8", "pipelined units side by side, per thread (1)");
   value("--threads", raw.threads, "N", "threads on the host (one for each processor)");
   value("--seed", raw.seed, "N", "start of all random numbers (0)");
   flag("--skip-degenerate", options.skip_degenerate,
@@ -163,6 +166,10 @@ Options parse_options(int argc, const char* const* argv) {
   if (!raw.camera.empty()) options.camera = parse_camera(raw.camera);
   if (!raw.engine.empty()) options.engine = parse_engine(raw.engine);
   if (!raw.unit.empty()) options.unit = parse_unit(raw.unit);
+  if (!raw.lanes.empty()) options.lanes = parse_lanes(raw.lanes);
+  if (options.unit == "serial" && options.lanes != 1) {
+    throw InputError("--lanes: expected 1 with --unit serial, got " + raw.lanes);
+  }
   options.threads = raw.threads.empty() ? std::max(1u, std::thread::hardware_concurrency())
                                         : parse_threads(raw.threads);
   if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);

@@ -37,7 +37,8 @@ struct Options {
   int width = 640, height = 480;               ///< of the whole frame, in pixels
   PixelRect window;                            ///< to be rendered: the frame or --crop
   Engine engine = Engine::kRtl;
-  std::string unit = "serial";
+  std::string unit = "pipeline";  ///< or "serial"
+  int lanes = 1;                  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
   unsigned threads = 1;
   std::optional<CameraPlacement> camera;  ///< none: framed on the scene
   std::uint64_t seed = 0;

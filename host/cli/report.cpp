@@ -43,7 +43,10 @@ std::string headline(const Report& report) {
             std::to_string(options.window.height());
   }
   line += ", engine " + to_string(options.engine);
-  if (options.engine != Engine::kCpu) line += ", unit " + options.unit;
+  line += ", unit " + options.unit;
+  if (options.unit == "pipeline" && options.lanes > 1) {
+    line += " of " + std::to_string(options.lanes) + " lanes";
+  }
   return line + ", " + plural(options.threads, "thread");
 }
 
@@ -63,10 +66,26 @@ std::string shares(const RenderStats& render) {
   return text;
 }
 
+/// "a test 98.2 %, idle 1.8 %, ...": what the lanes of the pipelined unit did with their clocks.
+std::string lane_clocks(const Report& report) {
+  const HitCounters& hit = report.render.hit;
+  const double all = static_cast<double>(hit.clocks) * report.options.lanes;
+  const std::pair<const char*, std::uint64_t> parts[] = {{"a test", hit.unit_tests},
+                                                         {"idle", hit.idle_clocks},
+                                                         {"results not taken", hit.output_stalls},
+                                                         {"too many points", hit.quotient_stalls}};
+  std::string text;
+  for (const auto& [name, clocks] : parts) {
+    text += (text.empty() ? "" : ", ") + std::string(name) + " " +
+            format_fixed(100.0 * ratio(static_cast<double>(clocks), all), 1) + " %";
+  }
+  return text;
+}
+
 }  // namespace
 
 double clocks_per_test(const HitCounters& counters) {
-  return ratio(static_cast<double>(counters.clocks), static_cast<double>(counters.plane_tests));
+  return ratio(static_cast<double>(counters.clocks), static_cast<double>(counters.unit_tests));
 }
 
 std::string to_text(const Report& report) {
@@ -80,10 +99,11 @@ std::string to_text(const Report& report) {
           " for each ray");
   table.add("hits", hit.hits);
   table.add("doubts", hit.edge_doubts + hit.depth_doubts, "settled by exact arithmetic");
-  table.add("planes", hit.plane_tests, "tests that went through the unit");
+  table.add("unit", hit.unit_tests, "tests that went through the unit");
   if (hit.clocks > 0) {
     table.add("clocks", hit.clocks,
               format_fixed(clocks_per_test(hit), 2) + " for each test of the unit");
+    if (report.options.unit == "pipeline") table.add("lanes", lane_clocks(report));
   }
   table.add("time", format_duration(report.total_seconds) + ": load " +
                         format_duration(report.load_seconds) + ", tree " +
@@ -116,6 +136,7 @@ std::string to_json(const Report& report) {
       {"window", {window.x0, window.y0, window.x1, window.y1}},
       {"engine", to_string(options.engine)},
       {"unit", options.unit},
+      {"lanes", options.lanes},
       {"threads", options.threads},
       {"seed", options.seed},
       {"pictures", pictures},
@@ -129,7 +150,12 @@ std::string to_json(const Report& report) {
       {"exact_inside", render.exact_inside},
       {"exact_depth", render.exact_depth},
       {"plane_tests", hit.plane_tests},
+      {"unit_tests", hit.unit_tests},
+      {"quotients", hit.quotients},
       {"clocks", hit.clocks},
+      {"idle_clocks", hit.idle_clocks},
+      {"output_stalls", hit.output_stalls},
+      {"quotient_stalls", hit.quotient_stalls},
       {"clocks_per_test", clocks_per_test(hit)},
       {"seconds",
        {{"load", report.load_seconds},

@@ -76,7 +76,7 @@ Film render_film(const Options& options, const Scene& scene, const Bvh& bvh, con
                                      .threads = static_cast<int>(options.threads),
                                      .seed = options.seed};
   ProgressBar bar(!options.quiet);
-  Film film = render(scene, bvh, camera, render_options, make_tester_factory(options.engine), stats,
+  Film film = render(scene, bvh, camera, render_options, make_tester_factory(options), stats,
                      [&](double fraction) {
                        bar.update(fraction);
                        return InterruptGuard::signal() == 0;

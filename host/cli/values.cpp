@@ -46,8 +46,16 @@ Engine parse_engine(const std::string& text) {
 }
 
 std::string parse_unit(const std::string& text) {
-  if (text != "serial") fail("--unit", text, "serial");
+  if (text != "pipeline" && text != "serial") fail("--unit", text, "pipeline or serial");
   return text;
+}
+
+int parse_lanes(const std::string& text) {
+  const auto lanes = parse_number<int>(text);
+  if (!lanes || (*lanes != 1 && *lanes != 2 && *lanes != 4 && *lanes != 8)) {
+    fail("--lanes", text, "1, 2, 4 or 8");
+  }
+  return *lanes;
 }
 
 unsigned parse_threads(const std::string& text) {

@@ -50,7 +50,8 @@ struct Size {
 };
 [[nodiscard]] Size parse_size(const std::string& text);                  ///< "640x480"
 [[nodiscard]] Engine parse_engine(const std::string& text);              ///< "rtl", "cpu", "check"
-[[nodiscard]] std::string parse_unit(const std::string& text);           ///< "serial"
+[[nodiscard]] std::string parse_unit(const std::string& text);           ///< "pipeline", "serial"
+[[nodiscard]] int parse_lanes(const std::string& text);                  ///< "1", "2", "4", "8"
 [[nodiscard]] unsigned parse_threads(const std::string& text);           ///< "1" to "1024"
 [[nodiscard]] CameraPlacement parse_camera(const std::string& text);     ///< "1,2,3,0,0,0,40"
 [[nodiscard]] PixelRect parse_crop(const std::string& text, Size size);  ///< "10,10,20,20"

@@ -9,7 +9,12 @@ HitCounters& HitCounters::operator+=(const HitCounters& other) {
   edge_doubts += other.edge_doubts;
   depth_doubts += other.depth_doubts;
   plane_tests += other.plane_tests;
+  unit_tests += other.unit_tests;
+  quotients += other.quotients;
   clocks += other.clocks;
+  idle_clocks += other.idle_clocks;
+  output_stalls += other.output_stalls;
+  quotient_stalls += other.quotient_stalls;
   return *this;
 }
 

@@ -63,7 +63,14 @@ struct HitCounters {
   std::uint64_t edge_doubts = 0;   ///< neither
   std::uint64_t depth_doubts = 0;  ///< sure hits reported because float32 cannot order them
   std::uint64_t plane_tests = 0;   ///< divisions d I / (I . N) asked of the unit
+  std::uint64_t unit_tests = 0;    ///< tests that went through the unit
+  std::uint64_t quotients = 0;     ///< divisions that the unit did
   std::uint64_t clocks = 0;        ///< simulated clock cycles; 0 where nothing is simulated
+
+  // Clocks of the unit's lanes without a new test, by cause; only the pipelined unit has any.
+  std::uint64_t idle_clocks = 0;      ///< no test was there
+  std::uint64_t output_stalls = 0;    ///< a result was not taken
+  std::uint64_t quotient_stalls = 0;  ///< too many points were wanted
 
   HitCounters& operator+=(const HitCounters& other);
 };

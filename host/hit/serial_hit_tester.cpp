@@ -30,6 +30,8 @@ SerialHitTester::SerialHitTester(std::unique_ptr<PlaneUnit> unit, Order order)
 
 HitCounters SerialHitTester::counters() const {
   HitCounters counters = counters_;
+  counters.unit_tests = counters.plane_tests;
+  counters.quotients = 3 * counters.plane_tests;
   counters.clocks = unit_->clocks();
   return counters;
 }

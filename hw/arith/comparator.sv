@@ -3,9 +3,11 @@
 // A tree: each level joins pairs of neighbours, the upper one deciding unless it is equal. Written
 // as word-wide steps, of which all but the tree that ends in the top bit is pruned by synthesis.
 //
+// Adder: AdderTool leaves all this to the tool's own `<`; other kinds make no difference.
 // Combinational, $clog2(Width) levels. Any input.
 module comparator #(
-  parameter int unsigned Width = 31
+  parameter int unsigned Width = 31,
+  parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
   input  logic [Width-1:0] a_i,
   input  logic [Width-1:0] b_i,
@@ -13,20 +15,25 @@ module comparator #(
   output logic             equal_o
 );
 
-  // After level k bit i tells of the 2**k bits that end at bit i (of fewer at the low end, where
-  // the bits shifted in count as equal).
-  logic [Width-1:0] less, equal;
+  if (Adder == arith_pkg::AdderTool) begin : gen_tool
+    assign less_o = a_i < b_i;
+    assign equal_o = a_i == b_i;
+  end else begin : gen_tree
+    // After level k bit i tells of the 2**k bits that end at bit i (of fewer at the low end, where
+    // the bits shifted in count as equal).
+    logic [Width-1:0] less, equal;
 
-  always_comb begin
-    less = ~a_i & b_i;
-    equal = ~(a_i ^ b_i);
-    for (int unsigned k = 0; k < $clog2(Width); k++) begin
-      less = less | (equal & (less << (1 << k)));
-      equal = equal & ((equal << (1 << k)) | ~({Width{1'b1}} << (1 << k)));
+    always_comb begin
+      less = ~a_i & b_i;
+      equal = ~(a_i ^ b_i);
+      for (int unsigned k = 0; k < $clog2(Width); k++) begin
+        less = less | (equal & (less << (1 << k)));
+        equal = equal & ((equal << (1 << k)) | ~({Width{1'b1}} << (1 << k)));
+      end
     end
-  end
 
-  assign less_o = less[Width-1];
-  assign equal_o = equal[Width-1];
+    assign less_o = less[Width-1];
+    assign equal_o = equal[Width-1];
+  end
 
 endmodule

@@ -4,27 +4,33 @@
 // is found by a prefix AND of $clog2(Width) levels before the carry is known; the carry then costs
 // one AND and one XOR. A rounder has its decision late and its word early.
 //
+// Adder: AdderTool leaves all this to the tool's own `+`; other kinds make no difference.
 // Combinational. Any input; all ones wrap to zero.
 module incrementer #(
-  parameter int unsigned Width = 8  // at least 2
+  parameter int unsigned Width = 8,  // at least 2
+  parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
   input  logic [Width-1:0] a_i,
   input  logic             carry_i,
   output logic [Width-1:0] sum_o
 );
 
-  localparam int unsigned Levels = $clog2(Width);
+  if (Adder == arith_pkg::AdderTool) begin : gen_tool
+    assign sum_o = a_i + Width'(carry_i);
+  end else begin : gen_prefix
+    localparam int unsigned Levels = $clog2(Width);
 
-  // After level k bit i is the AND of the 2**k bits that end at bit i - 1, ones shifted in below.
-  logic [Width-1:0] ones_below;
+    // After level k bit i is the AND of the 2**k bits that end at bit i - 1, ones shifted in below.
+    logic [Width-1:0] ones_below;
 
-  always_comb begin
-    ones_below = {a_i[Width-2:0], 1'b1};
-    for (int unsigned k = 0; k < Levels; k++) begin
-      ones_below = ones_below & ((ones_below << (1 << k)) | ~({Width{1'b1}} << (1 << k)));
+    always_comb begin
+      ones_below = {a_i[Width-2:0], 1'b1};
+      for (int unsigned k = 0; k < Levels; k++) begin
+        ones_below = ones_below & ((ones_below << (1 << k)) | ~({Width{1'b1}} << (1 << k)));
+      end
     end
-  end
 
-  assign sum_o = a_i ^ (ones_below & {Width{carry_i}});
+    assign sum_o = a_i ^ (ones_below & {Width{carry_i}});
+  end
 
 endmodule

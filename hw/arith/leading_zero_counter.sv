@@ -1,11 +1,11 @@
 // Counts the zeros above the highest one of a word.
 //
-// A tree: each level joins pairs of neighbouring blocks, whose count is that of the upper block,
-// or, where that is all zeros, that of the lower block with one more bit set. So the count's high
-// bits come first, when a barrel shifter wants them. Written as word-wide steps, of which all but
-// the tree that ends in the top bit is pruned by synthesis.
+// The highest one is smeared over all places below it, which leaves a mark where the ones begin; bit j
+// of the count is the OR of all places whose number of zeros above has that bit. Written as word-wide
+// steps, a third of what a tree of partial counts takes to simulate.
 //
-// Combinational, $clog2(Width) levels. For a_i = 0, zero_o is 1 and count_o is all ones.
+// Combinational, $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1
+// and count_o is all ones.
 module leading_zero_counter #(
   parameter int unsigned Width = 24  // at least 2
 ) (
@@ -14,27 +14,27 @@ module leading_zero_counter #(
   output logic                     zero_o
 );
 
-  localparam int unsigned Levels = $clog2(Width);
+  localparam int unsigned CountWidth = $clog2(Width);
 
-  // After level k bit i tells of the 2**k bits that end at bit i (zeros are shifted in below):
-  // whether any is one, and bit j of their count in plane j.
-  logic [Width-1:0] any, plane[Levels];
+  // The places whose number of zeros above them has bit j.
+  function automatic bit [Width-1:0] places(int unsigned j);
+    for (int unsigned i = 0; i < Width; i++) places[Width-1-i] = ((i >> j) % 2) == 1;
+  endfunction
+
+  logic [Width-1:0] smeared, highest;
 
   always_comb begin
-    any = a_i;
-    for (int unsigned j = 0; j < Levels; j++) plane[j] = '0;
-    for (int unsigned k = 0; k < Levels; k++) begin
-      for (int unsigned j = 0; j < k; j++) begin
-        plane[j] = (any & plane[j]) | (~any & (plane[j] << (1 << k)));
-      end
-      plane[k] = ~any;
-      any = any | (any << (1 << k));
+    smeared = a_i;
+    for (int unsigned step = 1; step < Width; step = step * 2) begin
+      smeared = smeared | (smeared >> step);
     end
   end
+  assign highest = smeared & ~(smeared >> 1);
+  assign zero_o = ~smeared[0];
 
-  for (genvar j = 0; j < Levels; j++) begin : gen_count
-    assign count_o[j] = plane[j][Width-1];
+  for (genvar j = 0; j < CountWidth; j++) begin : gen_count
+    localparam bit [Width-1:0] Places = places(j);
+    assign count_o[j] = zero_o | (|(highest & Places));
   end
-  assign zero_o = ~any[Width-1];
 
 endmodule

@@ -24,7 +24,8 @@
 module fp_round #(
   parameter int unsigned ExpWidth       = 8,
   parameter int unsigned FracWidth      = 23,
-  parameter bit          SubnormalShift = 1'b1
+  parameter bit          SubnormalShift = 1'b1,
+  parameter int unsigned Adder          = arith_pkg::AdderGraded  // AdderTool: see incrementer
 ) (
   input  logic                          sign_i,
   input  logic signed [ExpWidth+1:0]    exponent_i,
@@ -90,14 +91,16 @@ module fp_round #(
   logic guard, sticky;
 
   incrementer #(
-    .Width(FieldWidth)
+    .Width(FieldWidth),
+    .Adder(Adder)
   ) u_base_plus_1 (
     .a_i(base),
     .carry_i(1'b1),
     .sum_o(base_plus_1)
   );
   incrementer #(
-    .Width(FieldWidth - 1)
+    .Width(FieldWidth - 1),
+    .Adder(Adder)
   ) u_base_plus_2 (
     .a_i(base[FieldWidth-1:1]),
     .carry_i(1'b1),
@@ -129,7 +132,8 @@ module fp_round #(
   assign inexact = guard | sticky;
 
   incrementer #(
-    .Width(WordWidth)
+    .Width(WordWidth),
+    .Adder(Adder)
   ) u_round (
     .a_i({field[ExpWidth-1:0], fraction}),
     .carry_i(increment),

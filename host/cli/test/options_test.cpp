@@ -44,7 +44,8 @@ TEST(Options, OnlyASceneMeansTheDefaults) {
   EXPECT_EQ(options.window.x1, 640);
   EXPECT_EQ(options.window.y1, 480);
   EXPECT_EQ(options.engine, Engine::kRtl);
-  EXPECT_EQ(options.unit, "serial");
+  EXPECT_EQ(options.unit, "pipeline");
+  EXPECT_EQ(options.lanes, 1);
   EXPECT_GE(options.threads, 1u);
   EXPECT_FALSE(options.camera);
   EXPECT_EQ(options.seed, 0u);
@@ -154,7 +155,11 @@ TEST(Options, CamerasThatAreImpossible) {
 
 TEST(Options, OtherValuesThatAreImpossible) {
   expect_error({"a.obj", "--engine", "gpu"}, "--engine: expected rtl, cpu or check");
-  expect_error({"a.obj", "--unit", "warp"}, "--unit: expected serial");
+  expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline or serial");
+  for (const char* lanes : {"0", "3", "16", "-1", "x"}) {
+    expect_error({"a.obj", "--lanes", lanes}, "--lanes: expected 1, 2, 4 or 8");
+  }
+  expect_error({"a.obj", "--unit", "serial", "--lanes", "2"}, "--lanes: expected 1 with");
   for (const char* threads : {"0", "-1", "1025", "two", "1.5"}) {
     expect_error({"a.obj", "--threads", threads}, "--threads: expected a whole number");
   }
@@ -179,9 +184,9 @@ TEST(Options, UnknownOptionsAreAnsweredWithTheKnownOnes) {
 TEST(Options, HelpNamesEveryOptionAndStatus) {
   const std::string help = parse({"--help"}).information;
   for (const char* word :
-       {"--output", "--size", "--crop", "--camera", "--engine", "--unit", "--threads", "--seed",
-        "--skip-degenerate", "--stats", "--quiet", "--help", "--version", "rtl|cpu|check", "  0  ",
-        "  1  ", "  2  ", "  130  "}) {
+       {"--output", "--size", "--crop", "--camera", "--engine", "--unit", "--lanes", "--threads",
+        "--seed", "--skip-degenerate", "--stats", "--quiet", "--help", "--version", "rtl|cpu|check",
+        "  0  ", "  1  ", "  2  ", "  130  "}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(parse({"-h"}).information, help);

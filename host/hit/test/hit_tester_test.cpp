@@ -1,13 +1,17 @@
-// What the serial tester calls sure is so, and what it leaves out is no nearest hit.
-#include "host/hit/serial_hit_tester.h"
+// What a tester calls sure is so, and what it leaves out is no nearest hit.
+#include "host/hit/hit_tester.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <set>
 #include <tuple>
 
+#include "host/hit/cpu_burst_unit.h"
 #include "host/hit/cpu_plane_unit.h"
+#include "host/hit/pipeline_hit_tester.h"
+#include "host/hit/serial_hit_tester.h"
 #include "host/hit/test/meshes.h"
 #include "host/scene/camera.h"
 
@@ -67,10 +71,10 @@ struct Batch {
 
 using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 
-TEST(SerialHitTester, ReportsHoldTheTruth) {
+/// Checks the promises of `tester`, which is new, against exact arithmetic.
+void expect_the_truth(HitTester& tester) {
   Random random;
   const Batch batch(random, 20000);
-  SerialHitTester tester(std::make_unique<CpuPlaneUnit>());
   HitResults results;
   tester.test(batch.bundles, results);
 
@@ -106,9 +110,44 @@ TEST(SerialHitTester, ReportsHoldTheTruth) {
   }
   const HitCounters counters = tester.counters();
   EXPECT_EQ(counters.tests, counters.misses + counters.hits + counters.edge_doubts);
-  EXPECT_EQ(counters.plane_tests, counters.hits + counters.edge_doubts);
   EXPECT_EQ(counters.edge_doubts, results.doubts.size());
   EXPECT_GT(counters.depth_doubts, 0u);
+}
+
+TEST(SerialHitTester, ReportsHoldTheTruth) {
+  SerialHitTester tester(std::make_unique<CpuPlaneUnit>());
+  expect_the_truth(tester);
+  const HitCounters counters = tester.counters();
+  EXPECT_EQ(counters.plane_tests, counters.hits + counters.edge_doubts);
+}
+
+TEST(PipelineHitTester, ReportsHoldTheTruth) {
+  PipelineHitTester tester(std::make_unique<CpuBurstUnit>());
+  expect_the_truth(tester);
+}
+
+// Two ways to the same P: the unit's for the nearest hit, the tester's for what is only reported.
+TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
+  Random random;
+  const Batch batch(random, 2000);
+  SerialHitTester serial(std::make_unique<CpuPlaneUnit>());
+  PipelineHitTester pipeline(std::make_unique<CpuBurstUnit>());
+  HitResults a, b;
+  serial.test(batch.bundles, a);
+  pipeline.test(batch.bundles, b);
+  std::map<Key, glm::vec3> points;
+  for (const SureHit& hit : a.hits) points[{hit.bundle, hit.lane, hit.tag}] = hit.point;
+  for (const Doubt& doubt : a.doubts) points[{doubt.bundle, doubt.lane, doubt.tag}] = doubt.point;
+  std::size_t compared = 0;
+  const auto expect_same = [&](const auto& result) {
+    const auto point = points.find({result.bundle, result.lane, result.tag});
+    if (point == points.end()) return;
+    EXPECT_EQ(std::memcmp(&point->second, &result.point, sizeof(glm::vec3)), 0);
+    ++compared;
+  };
+  for (const SureHit& hit : b.hits) expect_same(hit);
+  for (const Doubt& doubt : b.doubts) expect_same(doubt);
+  EXPECT_GT(compared, 1000u);
 }
 
 // The paper's order asks the unit about every pair and reports the same, bit for bit.

@@ -1,0 +1,29 @@
+// A word, Depth clocks later; clocks without enable_i don't count. No reset: what comes out first is
+// undefined. Depth = 0 is a wire.
+module delay_line #(
+  parameter int unsigned Width = 32,
+  parameter int unsigned Depth = 1
+) (
+  input  logic             clk_i,
+  input  logic             enable_i,
+  input  logic [Width-1:0] data_i,
+  output logic [Width-1:0] data_o
+);
+
+  if (Depth == 0) begin : gen_wire
+    logic unused;
+    assign unused = clk_i & enable_i;
+    assign data_o = data_i;
+  end else begin : gen_line
+    for (genvar i = 0; i < Depth; i++) begin : gen_stage
+      logic [Width-1:0] data_q;
+      if (i == 0) begin : gen_first
+        always_ff @(posedge clk_i) if (enable_i) data_q <= data_i;
+      end else begin : gen_next
+        always_ff @(posedge clk_i) if (enable_i) data_q <= gen_stage[i-1].data_q;
+      end
+    end
+    assign data_o = gen_stage[Depth-1].data_q;
+  end
+
+endmodule

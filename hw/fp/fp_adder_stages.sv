@@ -1,0 +1,369 @@
+// Floating-point add and subtract, a_i + b_i or a_i - b_i with subtract_i, in up to three stages.
+//
+// Two paths, of which the second needs no rounding and the first no long normalising shift:
+//   far   the smaller operand shifted right, one addition, the shared rounder
+//   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least
+//         the leading bit: exact, so only a leading-zero count and a left shift
+//
+// Cuts: bit 0, 1, 2 puts registers between ordering and adding, between adding and rounding, behind
+// the result. As many clocks of latency as cuts, one operation a clock; clocks without enable_i don't
+// count. No cut: combinational. The rounding mode is used in several stages and should stay the same.
+//
+// Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when
+// rounding down, unless both addends are zeros of one sign. Infinity minus infinity is invalid. A
+// subnormal sum is exact, so underflow is never raised and tininess_after_i changes nothing.
+// Source: IEEE 754-2019, clauses 5.4.1 and 6.3; the two paths: Farmwald, Stanford 1981.
+module fp_adder_stages #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter bit [2:0]    Cuts      = 3'b000
+) (
+  input  logic                        clk_i,
+  input  logic                        enable_i,
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  logic                        subtract_i,
+  input  fp_pkg::rounding_mode_e      rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output fp_pkg::flags_t              flags_o
+);
+
+  localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
+  localparam int unsigned NearWidth = FracWidth + 2;  // one place more, for a neighbour exponent
+  localparam int unsigned FarWidth = FracWidth + 3;  // two integer bits, fraction, guard
+  localparam int unsigned ShiftWidth = $clog2(FarWidth + 1);
+  localparam int unsigned CountWidth = $clog2(NearWidth);
+
+  // ---- Unpack; subtracting is adding with the other sign
+
+  logic a_sign, b_sign_packed, b_sign, subtract;
+  logic [ExpWidth-1:0] a_exp, b_exp;
+  logic [SigWidth-1:0] a_sig, b_sig;
+  logic a_zero, a_inf, a_nan, a_snan, b_zero, b_inf, b_nan, b_snan;
+
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_a (
+    .packed_i(a_i),
+    .sign_o(a_sign),
+    .exponent_o(a_exp),
+    .significand_o(a_sig),
+    .zero_o(a_zero),
+    .infinity_o(a_inf),
+    .nan_o(a_nan),
+    .signaling_nan_o(a_snan)
+  );
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_b (
+    .packed_i(b_i),
+    .sign_o(b_sign_packed),
+    .exponent_o(b_exp),
+    .significand_o(b_sig),
+    .zero_o(b_zero),
+    .infinity_o(b_inf),
+    .nan_o(b_nan),
+    .signaling_nan_o(b_snan)
+  );
+  assign b_sign = b_sign_packed ^ subtract_i;
+  assign subtract = a_sign ^ b_sign;  // of the magnitudes
+
+  // ---- Order by magnitude, so that no difference is negative
+
+  logic swap, equal, sign;
+  logic [ExpWidth-1:0] big_exp;
+  logic [SigWidth-1:0] big_sig, small_sig;
+
+  comparator #(
+    .Width(ExpWidth + FracWidth),
+    .Adder(Adder)
+  ) u_order (
+    .a_i(a_i[ExpWidth+FracWidth-1:0]),
+    .b_i(b_i[ExpWidth+FracWidth-1:0]),
+    .less_o(swap),
+    .equal_o(equal)
+  );
+  assign big_exp = swap ? b_exp : a_exp;
+  assign {big_sig, small_sig} = swap ? {b_sig, a_sig} : {a_sig, b_sig};
+  assign sign = (equal & subtract) ? rounding_mode_i == fp_pkg::RoundDown : swap ? b_sign : a_sign;
+
+  // ---- Distance of the exponents, both ways at once beside the ordering
+
+  logic [ExpWidth-1:0] a_minus_b, b_minus_a, distance;
+  logic [1:0] unused_distance_carry;
+
+  adder #(
+    .Width(ExpWidth),
+    .Adder(Adder)
+  ) u_a_minus_b (
+    .a_i(a_exp),
+    .b_i(~b_exp),
+    .carry_i(1'b1),
+    .sum_o(a_minus_b),
+    .carry_o(unused_distance_carry[0])
+  );
+  adder #(
+    .Width(ExpWidth),
+    .Adder(Adder)
+  ) u_b_minus_a (
+    .a_i(b_exp),
+    .b_i(~a_exp),
+    .carry_i(1'b1),
+    .sum_o(b_minus_a),
+    .carry_o(unused_distance_carry[1])
+  );
+  assign distance = swap ? b_minus_a : a_minus_b;
+
+  // ---- First cut
+
+  logic sign_1, subtract_1, odd_1, near_0_1, near_1_1, nan_1, infinity_1, invalid_1;
+  logic [ExpWidth-1:0] big_exp_1, distance_1;
+  logic [SigWidth-1:0] big_sig_1, small_sig_1;
+  logic odd, near_0, near_1, nan, infinity, invalid;
+
+  assign odd = a_exp[0] ^ b_exp[0];
+  assign nan = a_nan | b_nan | (a_inf & b_inf & subtract);
+  assign invalid = a_snan | b_snan | (a_inf & b_inf & subtract);
+  assign infinity = a_inf | b_inf;
+  assign near_0 = subtract & ~nan & ~infinity & (a_exp == b_exp);
+  assign near_1 = subtract & ~nan & ~infinity & (distance == ExpWidth'(1));
+
+  if (Cuts[0]) begin : gen_cut_0
+    always_ff @(posedge clk_i) begin
+      if (enable_i) begin
+        {sign_1, subtract_1, odd_1, near_0_1, near_1_1, nan_1, infinity_1, invalid_1, big_exp_1,
+         distance_1, big_sig_1, small_sig_1} <= {
+          sign,
+          subtract,
+          odd,
+          near_0,
+          near_1,
+          nan,
+          infinity,
+          invalid,
+          big_exp,
+          distance,
+          big_sig,
+          small_sig
+        };
+      end
+    end
+  end else begin : gen_no_cut_0
+    assign {sign_1, subtract_1, odd_1, near_0_1, near_1_1, nan_1, infinity_1, invalid_1, big_exp_1,
+            distance_1, big_sig_1, small_sig_1} = {
+      sign,
+      subtract,
+      odd,
+      near_0,
+      near_1,
+      nan,
+      infinity,
+      invalid,
+      big_exp,
+      distance,
+      big_sig,
+      small_sig
+    };
+  end
+
+  // ---- Far path: align. A difference is taken one place further left: its value, doubled, is in
+  // [1, 4) like that of a sum (but for those that the near path gives), and its exponent one less.
+
+  logic [FarWidth-1:0] far_big, far_small, far_aligned, far_lost;
+  logic [ShiftWidth-1:0] far_shift;
+  logic far_sticky;
+
+  assign far_big = subtract_1 ? {big_sig_1, 2'b00} : {1'b0, big_sig_1, 1'b0};
+  assign far_small = subtract_1 ? {small_sig_1, 2'b00} : {1'b0, small_sig_1, 1'b0};
+  assign far_shift = |(distance_1 >> ShiftWidth) ? '1 : ShiftWidth'(distance_1);
+  assign far_aligned = far_small >> far_shift;
+  assign far_lost = far_small & ~({FarWidth{1'b1}} << far_shift);
+  assign far_sticky = |far_lost;
+
+  // ---- Far path: add. A lost part of the subtrahend takes the place of the one that completes its
+  // complement: the difference is then too low by less than a place, which the sticky bit tells.
+
+  logic [FarWidth-1:0] far_sum;
+  logic unused_far_carry;
+
+  adder #(
+    .Width(FarWidth),
+    .Adder(Adder)
+  ) u_far_sum (
+    .a_i(far_big),
+    .b_i(far_aligned ^ {FarWidth{subtract_1}}),
+    .carry_i(subtract_1 & ~far_sticky),
+    .sum_o(far_sum),
+    .carry_o(unused_far_carry)
+  );
+
+  // ---- Far path: exponent for the rounder, less one for a sum and less two for a difference
+
+  logic [ExpWidth-1:0] exp_plus_1_n, exp_plus_2_n, far_exp;  // complements count downwards
+
+  incrementer #(
+    .Width(ExpWidth),
+    .Adder(Adder)
+  ) u_exp_less_1 (
+    .a_i(~big_exp_1),
+    .carry_i(1'b1),
+    .sum_o(exp_plus_1_n)
+  );
+  incrementer #(
+    .Width(ExpWidth - 1),
+    .Adder(Adder)
+  ) u_exp_less_2 (
+    .a_i(~big_exp_1[ExpWidth-1:1]),
+    .carry_i(1'b1),
+    .sum_o(exp_plus_2_n[ExpWidth-1:1])
+  );
+  assign exp_plus_2_n[0] = ~big_exp_1[0];
+  assign far_exp = ~(subtract_1 ? exp_plus_2_n : exp_plus_1_n);
+
+  // ---- Near path: subtract, the distance known from the exponents' lowest bits
+
+  logic [NearWidth-1:0] near_small, near_difference;
+  logic unused_near_carry;
+
+  assign near_small = odd_1 ? {1'b0, small_sig_1} : {small_sig_1, 1'b0};
+
+  adder #(
+    .Width(NearWidth),
+    .Adder(Adder)
+  ) u_near_difference (
+    .a_i({big_sig_1, 1'b0}),
+    .b_i(~near_small),
+    .carry_i(1'b1),
+    .sum_o(near_difference),
+    .carry_o(unused_near_carry)
+  );
+
+  // A mark at the place where the exponent becomes the smallest one, for normalising.
+  logic [NearWidth-1:0] near_mark;
+  logic near;
+
+  assign near_mark = NearWidth'({1'b1, {NearWidth{1'b0}}} >> big_exp_1);
+  assign near = near_0_1 | (near_1_1 & ~near_difference[NearWidth-1]);
+
+  // ---- Second cut
+
+  logic sign_2, near_2, nan_2, infinity_2, invalid_2, far_sticky_2;
+  logic [ExpWidth-1:0] big_exp_2, far_exp_2;
+  logic [FarWidth-1:0] far_sum_2;
+  logic [NearWidth-1:0] near_difference_2, near_mark_2;
+
+  if (Cuts[1]) begin : gen_cut_1
+    always_ff @(posedge clk_i) begin
+      if (enable_i) begin
+        {sign_2, near_2, nan_2, infinity_2, invalid_2, far_sticky_2, big_exp_2, far_exp_2,
+         far_sum_2, near_difference_2, near_mark_2} <= {
+          sign_1,
+          near,
+          nan_1,
+          infinity_1,
+          invalid_1,
+          far_sticky,
+          big_exp_1,
+          far_exp,
+          far_sum,
+          near_difference,
+          near_mark
+        };
+      end
+    end
+  end else begin : gen_no_cut_1
+    assign {sign_2, near_2, nan_2, infinity_2, invalid_2, far_sticky_2, big_exp_2, far_exp_2,
+            far_sum_2, near_difference_2, near_mark_2} = {
+      sign_1,
+      near,
+      nan_1,
+      infinity_1,
+      invalid_1,
+      far_sticky,
+      big_exp_1,
+      far_exp,
+      far_sum,
+      near_difference,
+      near_mark
+    };
+  end
+
+  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one:
+  // what is left is subnormal, or zero, and has the exponent field 0.
+
+  logic [NearWidth-1:0] near_normal;
+  logic [CountWidth-1:0] near_count;
+  logic [ExpWidth-1:0] near_shift, near_exp;
+  logic [ExpWidth+FracWidth-1:0] near_magnitude;
+  logic unused_near_exp_carry, unused_near_bit, unused_near_zero;
+
+  leading_zero_counter #(
+    .Width(NearWidth)
+  ) u_near_count (
+    .a_i(near_difference_2 | near_mark_2),
+    .count_o(near_count),
+    .zero_o(unused_near_zero)
+  );
+  assign near_shift = ExpWidth'(near_count);
+  adder #(
+    .Width(ExpWidth),
+    .Adder(Adder)
+  ) u_near_exp (
+    .a_i(big_exp_2),
+    .b_i(~near_shift),
+    .carry_i(1'b1),
+    .sum_o(near_exp),
+    .carry_o(unused_near_exp_carry)
+  );
+  assign near_normal = near_difference_2 << near_count;
+  assign unused_near_bit = near_normal[0];  // 0 whenever this path is taken
+  assign near_magnitude = {near_exp & {ExpWidth{near_normal[NearWidth-1]}},
+                           near_normal[NearWidth-2:1]};
+
+  // ---- Rounding of the far path, choice of the path
+
+  logic [ExpWidth+FracWidth:0] far_result, result;
+  fp_pkg::flags_t far_flags, flags;
+  logic unused_zero;
+
+  fp_round #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .SubnormalShift(1'b0),
+    .Adder(Adder)
+  ) u_round (
+    .sign_i(sign_2),
+    .exponent_i({2'b00, far_exp_2}),
+    .significand_i({far_sum_2, 1'b0, far_sticky_2}),
+    .nan_i(nan_2),
+    .infinity_i(infinity_2),
+    .zero_i(1'b0),
+    .invalid_i(invalid_2),
+    .divide_by_zero_i(1'b0),
+    .rounding_mode_i,
+    .tininess_after_i,
+    .result_o(far_result),
+    .flags_o(far_flags)
+  );
+  assign result = near_2 ? {sign_2, near_magnitude} : far_result;
+  assign flags = near_2 ? 5'b00000 : far_flags;
+  assign unused_zero = a_zero ^ b_zero;  // zeros need no special care
+
+  // ---- Last cut
+
+  if (Cuts[2]) begin : gen_cut_2
+    always_ff @(posedge clk_i) if (enable_i) {result_o, flags_o} <= {result, flags};
+  end else begin : gen_no_cut_2
+    assign {result_o, flags_o} = {result, flags};
+  end
+
+  if (Cuts == '0) begin : gen_combinational
+    logic unused_clock;
+    assign unused_clock = clk_i & enable_i;
+  end
+
+endmodule

@@ -1,0 +1,275 @@
+// Floating-point divide: a_i / b_i, in one stage or in many.
+//
+// Unpack, normalise subnormals, divide the significands digit by digit (srt_divider_stages), round.
+//
+// QuotientBits = 0 is IEEE 754: correctly rounded. Other values reproduce a divider whose significand
+// is cut off, not rounded, after that many bits, counting the leading one (21 gives the quotients
+// printed in the paper's worked example, up to 5 ulp low in binary32). Only a subnormal result is
+// then still rounded, from what the cut has left; what was cut off raises no flag.
+//
+// Pipelined = 0: combinational. Pipelined = 1: registers behind normalising, behind every stage of the
+// significands' division and behind the result, a division a clock, latency Rows + 5 (Rows: two bits
+// of the quotient each, 12 in binary32); clocks without enable_i don't count. The rounding mode is
+// used in the last stage only.
+//
+// Takes every bit pattern. A finite number by zero is infinity and raises
+// divide_by_zero; 0/0 and inf/inf are invalid.
+// Source: IEEE 754-2019, clauses 5.4.1 and 7; Choi and Chung, Trans. KIEE 48A-5-21, section 4.2.
+module fp_divider_stages #(
+  parameter int unsigned ExpWidth     = 8,
+  parameter int unsigned FracWidth    = 23,
+  parameter int unsigned Adder        = arith_pkg::AdderGraded,
+  parameter int unsigned QuotientBits = 0,
+  parameter bit          Pipelined    = 1'b0
+) (
+  input  logic                        clk_i,
+  input  logic                        enable_i,
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  fp_pkg::rounding_mode_e      rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output fp_pkg::flags_t              flags_o
+);
+
+  localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
+  localparam int unsigned CountWidth = $clog2(FracWidth + 1);
+  localparam int unsigned RoundExpWidth = ExpWidth + 2;  // the rounder's exponent
+  // Fraction bits of a quotient in [1, 4): where it is below 2, all of the significand's and the
+  // guard bit, or as many as are not cut off. Two a row.
+  localparam int unsigned QuotientFrac = (QuotientBits == 0) ? FracWidth + 1 : QuotientBits - 1;
+  localparam int unsigned Rows = (QuotientFrac + 1) / 2;
+  localparam int unsigned QuotientWidth = 2 * Rows + 2;
+  localparam int unsigned RoundSigWidth = FracWidth + 5;  // of the rounder: to its sticky bit
+
+  if (QuotientBits > FracWidth + 1) begin : gen_check
+    $error("fp_divider_stages: QuotientBits is 0 or at most the significand's FracWidth + 1");
+  end
+
+  // ---- Unpack
+
+  logic a_sign, b_sign;
+  logic [ExpWidth-1:0] a_exp, b_exp;
+  logic [SigWidth-1:0] a_sig, b_sig;
+  logic a_zero, a_inf, a_nan, a_snan, b_zero, b_inf, b_nan, b_snan;
+
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_a (
+    .packed_i(a_i),
+    .sign_o(a_sign),
+    .exponent_o(a_exp),
+    .significand_o(a_sig),
+    .zero_o(a_zero),
+    .infinity_o(a_inf),
+    .nan_o(a_nan),
+    .signaling_nan_o(a_snan)
+  );
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_b (
+    .packed_i(b_i),
+    .sign_o(b_sign),
+    .exponent_o(b_exp),
+    .significand_o(b_sig),
+    .zero_o(b_zero),
+    .infinity_o(b_inf),
+    .nan_o(b_nan),
+    .signaling_nan_o(b_snan)
+  );
+
+  // ---- Normalise
+
+  logic [SigWidth-1:0] a_norm, b_norm;
+  logic [CountWidth-1:0] a_count, b_count;
+
+  fp_normalize #(
+    .Width(SigWidth)
+  ) u_normalize_a (
+    .significand_i(a_sig),
+    .significand_o(a_norm),
+    .count_o(a_count)
+  );
+  fp_normalize #(
+    .Width(SigWidth)
+  ) u_normalize_b (
+    .significand_i(b_sig),
+    .significand_o(b_norm),
+    .count_o(b_count)
+  );
+
+  // ---- Exponent for the rounder: that of a/b, less one because the quotient comes doubled, less one
+  // because the rounder wants it so: (a_exp - a_count) - (b_exp - b_count) + bias - 2
+
+  localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
+  logic [RoundExpWidth-1:0] a_exp_offset, exp_difference, count_difference;
+  logic [RoundExpWidth-1:0] a_count_wide, b_count_wide;
+  logic [3:0] unused_carry;
+
+  assign a_count_wide = RoundExpWidth'(a_count);
+  assign b_count_wide = RoundExpWidth'(b_count);
+  adder #(
+    .Width(RoundExpWidth),
+    .Adder(Adder)
+  ) u_offset (
+    .a_i({2'b00, a_exp}),
+    .b_i(Offset),
+    .carry_i(1'b0),
+    .sum_o(a_exp_offset),
+    .carry_o(unused_carry[0])
+  );
+  adder #(
+    .Width(RoundExpWidth),
+    .Adder(Adder)
+  ) u_exp_difference (
+    .a_i(a_exp_offset),
+    .b_i(~{2'b00, b_exp}),
+    .carry_i(1'b1),
+    .sum_o(exp_difference),
+    .carry_o(unused_carry[1])
+  );
+  adder #(
+    .Width(RoundExpWidth),
+    .Adder(Adder)
+  ) u_count_difference (
+    .a_i(b_count_wide),
+    .b_i(~a_count_wide),
+    .carry_i(1'b1),
+    .sum_o(count_difference),
+    .carry_o(unused_carry[2])
+  );
+  // ---- Specials
+
+  logic nan, infinity, zero, invalid, by_zero;
+
+  assign invalid = a_snan | b_snan | (a_zero & b_zero) | (a_inf & b_inf);
+  assign nan = a_nan | b_nan | invalid;
+  assign infinity = a_inf | b_zero;
+  assign zero = a_zero | b_inf;
+  assign by_zero = b_zero & ~a_zero & ~a_inf & ~a_nan;
+
+  // ---- First cut, and what waits beside the division
+
+  localparam int unsigned DivideLatency = Pipelined ? Rows + 3 : 0;
+  logic [SigWidth-1:0] a_norm_1, b_norm_1;
+  logic [RoundExpWidth-1:0] exp_difference_1, count_difference_1, exponent, exponent_2;
+  logic sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2;
+
+  delay_line #(
+    .Width(2 * SigWidth),
+    .Depth(32'(Pipelined))
+  ) u_operands (
+    .clk_i,
+    .enable_i,
+    .data_i({a_norm, b_norm}),
+    .data_o({a_norm_1, b_norm_1})
+  );
+  delay_line #(
+    .Width(2 * RoundExpWidth),
+    .Depth(32'(Pipelined))
+  ) u_exponents (
+    .clk_i,
+    .enable_i,
+    .data_i({exp_difference, count_difference}),
+    .data_o({exp_difference_1, count_difference_1})
+  );
+  adder #(
+    .Width(RoundExpWidth),
+    .Adder(Adder)
+  ) u_exponent (
+    .a_i(exp_difference_1),
+    .b_i(count_difference_1),
+    .carry_i(1'b0),
+    .sum_o(exponent),
+    .carry_o(unused_carry[3])
+  );
+
+  delay_line #(
+    .Width(RoundExpWidth),
+    .Depth(DivideLatency)
+  ) u_exponent_beside (
+    .clk_i,
+    .enable_i,
+    .data_i(exponent),
+    .data_o(exponent_2)
+  );
+  delay_line #(
+    .Width(6),
+    .Depth(DivideLatency + 32'(Pipelined))
+  ) u_specials_beside (
+    .clk_i,
+    .enable_i,
+    .data_i({a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero}),
+    .data_o({sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2})
+  );
+
+  // ---- Divide: the doubled quotient, in (1, 4)
+
+  logic [QuotientWidth-1:0] quotient;
+  logic remainder;
+
+  srt_divider_stages #(
+    .Width(SigWidth),
+    .Rows(Rows),
+    .Adder(Adder),
+    .Pipelined(Pipelined)
+  ) u_divide (
+    .clk_i,
+    .enable_i,
+    .dividend_i(a_norm_1),
+    .divisor_i(b_norm_1),
+    .quotient_o(quotient),
+    .remainder_o(remainder)
+  );
+
+  // ---- Place it for the rounder; or cut it off, one place further down where it is below 2
+
+  logic [RoundSigWidth-1:0] significand;
+
+  if (QuotientBits == 0) begin : gen_ieee
+    assign significand = {quotient, {(RoundSigWidth - QuotientWidth - 1) {1'b0}}, remainder};
+  end else begin : gen_cut_off
+    localparam logic [QuotientWidth-1:0] Ones = '1;
+    localparam logic [QuotientWidth-1:0] KeepFrom2 = Ones << (QuotientWidth - QuotientBits);
+    localparam logic [QuotientWidth-1:0] KeepFrom1 = Ones << (QuotientWidth - 1 - QuotientBits);
+    logic unused_remainder;
+    assign unused_remainder = remainder;
+    assign significand = {quotient & (quotient[QuotientWidth-1] ? KeepFrom2 : KeepFrom1),
+                          {(RoundSigWidth - QuotientWidth) {1'b0}}};
+  end
+
+  // ---- Rounding
+
+  logic [ExpWidth+FracWidth:0] result;
+  fp_pkg::flags_t flags;
+
+  fp_round #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .Adder(Adder)
+  ) u_round (
+    .sign_i(sign_2),
+    .exponent_i(exponent_2),
+    .significand_i(significand),
+    .nan_i(nan_2),
+    .infinity_i(infinity_2),
+    .zero_i(zero_2),
+    .invalid_i(invalid_2),
+    .divide_by_zero_i(by_zero_2),
+    .rounding_mode_i,
+    .tininess_after_i,
+    .result_o(result),
+    .flags_o(flags)
+  );
+
+  // ---- Last cut
+
+  if (Pipelined) begin : gen_result
+    always_ff @(posedge clk_i) if (enable_i) {result_o, flags_o} <= {result, flags};
+  end else begin : gen_combinational
+    assign {result_o, flags_o} = {result, flags};
+  end
+
+endmodule

@@ -1,0 +1,231 @@
+// Floating-point multiply, a_i * b_i, in up to two stages.
+//
+// The significands go into the multiplier as they are, a subnormal one with its leading zeros; how
+// far the product must move is found from the operands alone, beside the multiplication: to the
+// left by the leading zeros, but not beyond the smallest exponent, or to the right for a subnormal
+// result. Behind the multiplier are left one shift and the shared rounder.
+//
+// Adder: the kind of the significands' and the exponents' adders.
+// Cuts: bit 0 and 1 put registers behind the product, and behind the result. As many clocks of
+// latency as cuts, one operation a clock; clocks without enable_i don't count. No cut:
+// combinational. The rounding mode is used in the second stage only.
+//
+// Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
+// operands' signs, also that of zeros and infinities. Zero times infinity is invalid.
+// Source: IEEE 754-2019, clause 5.4.1; the paper's multiplier, section 3.4.
+module fp_multiplier_stages #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter bit [1:0]    Cuts      = 2'b00
+) (
+  input  logic                        clk_i,
+  input  logic                        enable_i,
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  fp_pkg::rounding_mode_e      rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output fp_pkg::flags_t              flags_o
+);
+
+  localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
+  localparam int unsigned ProdWidth = 2 * SigWidth;  // two integer bits
+  localparam int unsigned LeftWidth = $clog2(SigWidth);
+  localparam int unsigned RightWidth = $clog2(FracWidth + 3);
+
+  // ---- Unpack
+
+  logic a_sign, b_sign;
+  logic [ExpWidth-1:0] a_exp, b_exp;
+  logic [SigWidth-1:0] a_sig, b_sig;
+  logic a_zero, a_inf, a_nan, a_snan, b_zero, b_inf, b_nan, b_snan;
+
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_a (
+    .packed_i(a_i),
+    .sign_o(a_sign),
+    .exponent_o(a_exp),
+    .significand_o(a_sig),
+    .zero_o(a_zero),
+    .infinity_o(a_inf),
+    .nan_o(a_nan),
+    .signaling_nan_o(a_snan)
+  );
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_b (
+    .packed_i(b_i),
+    .sign_o(b_sign),
+    .exponent_o(b_exp),
+    .significand_o(b_sig),
+    .zero_o(b_zero),
+    .infinity_o(b_inf),
+    .nan_o(b_nan),
+    .signaling_nan_o(b_snan)
+  );
+
+  // ---- Multiply the significands: in [1, 4) if both are normal
+
+  logic [ProdWidth-1:0] product;
+
+  booth_multiplier #(
+    .Width(SigWidth),
+    .Adder(Adder)
+  ) u_multiplier (
+    .a_i(a_sig),
+    .b_i(b_sig),
+    .product_o(product)
+  );
+
+  // ---- Add the exponents: the biased exponent of the product less one, as the rounder wants it, is
+  // a_exp + b_exp - bias - 1 = a_exp + b_exp - 2**(ExpWidth-1), which leaves the low bits alone.
+
+  logic [ExpWidth:0] exp_sum, exp;
+  logic exp_negative;
+
+  adder #(
+    .Width(ExpWidth),
+    .Adder(Adder)
+  ) u_exp_sum (
+    .a_i(a_exp),
+    .b_i(b_exp),
+    .carry_i(1'b0),
+    .sum_o(exp_sum[ExpWidth-1:0]),
+    .carry_o(exp_sum[ExpWidth])
+  );
+  assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
+  assign exp = {~(exp_sum[ExpWidth] ^ exp_sum[ExpWidth-1]), ~exp_sum[ExpWidth-1],
+                exp_sum[ExpWidth-2:0]};
+
+  // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two
+  // is far below the smallest subnormal). A mark stops the count where the exponent is the smallest.
+
+  logic [SigWidth-1:0] may_be_subnormal, mark;
+  logic [LeftWidth-1:0] left;
+  logic unused_zero;
+
+  assign may_be_subnormal = a_sig[SigWidth-1] ? b_sig : a_sig;
+  assign mark = {1'b1, {FracWidth{1'b0}}} >> exp;
+
+  leading_zero_counter #(
+    .Width(SigWidth)
+  ) u_left (
+    .a_i(may_be_subnormal | mark),
+    .count_o(left),
+    .zero_o(unused_zero)
+  );
+
+  // ---- Right shift: by -exp = ~exp + 1, where exp is negative; all far ones leave a sticky bit alone
+
+  logic [ExpWidth-1:0] complement;
+  logic [RightWidth-1:0] right;
+
+  assign complement = ~exp[ExpWidth-1:0];
+  assign right = |(complement >> RightWidth) ? '1 : RightWidth'(complement);
+
+  // ---- Specials
+
+  logic sign, nan, infinity, zero, invalid;
+
+  assign sign = a_sign ^ b_sign;
+  assign invalid = a_snan | b_snan | (a_inf & b_zero) | (a_zero & b_inf);
+  assign nan = a_nan | b_nan | invalid;
+  assign infinity = a_inf | b_inf;
+  assign zero = a_zero | b_zero;
+
+  // ---- Exponent after the shift
+
+  logic [ExpWidth:0] exp_less_left, left_extended;
+  logic unused_carry;
+
+  assign left_extended = (ExpWidth + 1)'(left);
+
+  adder #(
+    .Width(ExpWidth + 1),
+    .Adder(Adder)
+  ) u_exp_less_left (
+    .a_i(exp),
+    .b_i(~left_extended),
+    .carry_i(1'b1),
+    .sum_o(exp_less_left),
+    .carry_o(unused_carry)
+  );
+
+  // ---- First cut
+
+  logic [ProdWidth-1:0] product_1;
+  logic [ExpWidth:0] exp_1;
+  logic [LeftWidth-1:0] left_1;
+  logic [RightWidth-1:0] right_1;
+  logic exp_negative_1, sign_1, nan_1, infinity_1, zero_1, invalid_1;
+
+  if (Cuts[0]) begin : gen_cut_0
+    always_ff @(posedge clk_i) begin
+      if (enable_i) begin
+        {product_1, exp_1, left_1, right_1, exp_negative_1, sign_1, nan_1, infinity_1, zero_1,
+         invalid_1} <=
+            {
+          product, exp_less_left, left, right, exp_negative, sign, nan, infinity, zero, invalid
+        };
+      end
+    end
+  end else begin : gen_no_cut_0
+    assign {product_1, exp_1, left_1, right_1, exp_negative_1, sign_1, nan_1, infinity_1, zero_1,
+            invalid_1} =
+        {
+      product, exp_less_left, left, right, exp_negative, sign, nan, infinity, zero, invalid
+    };
+  end
+
+  // ---- Shift
+
+  logic [ProdWidth-1:0] half, lost;
+  logic [ProdWidth:0] placed;  // with a place for all that is lost to the right
+
+  assign half = product_1 >> 1;
+  assign lost = product_1 & ~({{(ProdWidth - 1) {1'b1}}, 1'b0} << right_1);
+  assign placed = exp_negative_1 ? {half >> right_1, |lost} : {product_1 << left_1, 1'b0};
+
+  // ---- Round
+
+  logic [ExpWidth+FracWidth:0] result;
+  fp_pkg::flags_t flags;
+
+  fp_round #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .SubnormalShift(1'b0),
+    .Adder(Adder)
+  ) u_round (
+    .sign_i(sign_1),
+    .exponent_i({1'b0, exp_1 & {(ExpWidth + 1){~exp_negative_1}}}),
+    .significand_i({placed[ProdWidth-:FracWidth+4], |placed[ProdWidth-FracWidth-4:0]}),
+    .nan_i(nan_1),
+    .infinity_i(infinity_1),
+    .zero_i(zero_1),
+    .invalid_i(invalid_1),
+    .divide_by_zero_i(1'b0),
+    .rounding_mode_i,
+    .tininess_after_i,
+    .result_o(result),
+    .flags_o(flags)
+  );
+
+  // ---- Last cut
+
+  if (Cuts[1]) begin : gen_cut_1
+    always_ff @(posedge clk_i) if (enable_i) {result_o, flags_o} <= {result, flags};
+  end else begin : gen_no_cut_1
+    assign {result_o, flags_o} = {result, flags};
+  end
+
+  if (Cuts == '0) begin : gen_combinational
+    logic unused_clock;
+    assign unused_clock = clk_i & enable_i;
+  end
+
+endmodule

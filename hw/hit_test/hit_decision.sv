@@ -1,0 +1,66 @@
+// Hit, miss or doubt: what the four dot products of a test say, with their error bounds.
+//
+// U_k = I . E_k is sure where bound_k < |U_k| < infinity; then its sign is the exact one. d's sign
+// is exact, and that of the exact I . N for every ray that hits ahead of its origin.
+//   miss   d = 0, or a sure U_k of the other sign than d
+//   hit    all U_k sure with d's sign, and V = I . N good for a division: a normal number of d's
+//          sign whose exponent is at most max_grazing below the largest of N's
+//   doubt  everything else
+// Exactly one is true. NaN is never sure. All comparisons are of words as integers.
+//
+// t_error_o: see hit_test_pkg; means something for a hit only.
+// Combinational.
+module hit_decision #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23,
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth
+) (
+  input  logic [Width-1:0]                     d_i,
+  input  logic [ExpWidth-1:0]                  normal_exponent_i,  // largest field of N's three
+  input  logic [Width-1:0]                     v_i,
+  input  logic [3*Width-1:0]                   u_i,
+  input  logic [3*Width-1:0]                   bounds_i,
+  output logic                                 miss_o,
+  output logic                                 hit_o,
+  output logic                                 doubt_o,
+  output logic [hit_test_pkg::TErrorWidth-1:0] t_error_o
+);
+
+  localparam int unsigned MaxGrazing = hit_test_pkg::max_grazing(FracWidth);
+  localparam logic [Width-2:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
+
+  logic sign, d_zero;
+  assign sign   = d_i[Width-1];
+  assign d_zero = d_i[Width-2:0] == '0;
+
+  // ---- The edges
+
+  logic [2:0] sure, agrees;
+
+  for (genvar k = 0; k < 3; k++) begin : gen_edge
+    logic [Width-2:0] magnitude;
+    assign magnitude = u_i[Width*k +: Width-1];
+    assign sure[k]   = ({1'b0, magnitude} > bounds_i[Width*k +: Width]) & (magnitude < Infinity);
+    assign agrees[k] = u_i[Width*k+Width-1] == sign;
+  end
+
+  // ---- The plane
+
+  logic [ExpWidth-1:0] v_exponent;
+  logic [ExpWidth:0] grazing;  // modulo 2**(ExpWidth+1)
+  logic grazing_negative, v_good;
+
+  assign v_exponent       = v_i[FracWidth +: ExpWidth];
+  assign grazing          = {1'b0, normal_exponent_i} - {1'b0, v_exponent};
+  assign grazing_negative = grazing[ExpWidth];
+  assign v_good = (v_i[Width-1] == sign) & (v_exponent != '0) & ~(&v_exponent)
+                & (grazing_negative | (grazing <= (ExpWidth + 1)'(MaxGrazing)));
+  assign t_error_o = grazing_negative ? '0 : hit_test_pkg::TErrorWidth'(grazing);
+
+  // ---- The verdict
+
+  assign miss_o  = d_zero | (|(sure & ~agrees));
+  assign hit_o   = ~d_zero & (&(sure & agrees)) & v_good;
+  assign doubt_o = ~miss_o & ~hit_o;
+
+endmodule

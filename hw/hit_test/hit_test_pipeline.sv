@@ -1,0 +1,397 @@
+// The pipelined hit-test unit: a ray direction and a polygon record in each clock; hit, miss or doubt
+// of each test, and the nearest hit of each burst of tests with its t and P.
+//
+//   take     I, record                        registers
+//   dot      V = N . I, U_k = E_k . I         12 multipliers, 8 adders
+//   decide   hit, miss or doubt               see hit_decision
+//   divide   t = d / V                        one divider; its free clocks work for `point`
+//   nearest  the nearest hit of the burst     see nearest_hit
+//   point    P_k = (d I_k) / V, equation 10   one multiplier, and the divider, three times a burst
+//
+// Throughput one test a clock. Latency DotLatency + divide_latency + 4 clocks (see hit_test_pkg): from
+// the clock edge that takes a test to the one after which its report, or its burst's end, is there.
+// A test whose I differs from that of its burst's others is a mistake of the user.
+//
+// Input: valid/ready; first_i and last_i mark the ends of a burst, tag_i is the user's and comes back.
+// Output: valid/ready; one word carries up to three things:
+//   report_o         not ReportNone: the test report_tag_o is in doubt or in a near tie
+//   closed_o         a burst is over; bursts end in the order in which they came. If found_o, its
+//                    nearest hit is test tag_o, at t_o (error: see hit_test_pkg), and its P follows.
+//                    If neither found_o nor a report, report_tag_o is the tag of the last test.
+//   point_valid_o    point_o is the P of a burst that was closed (and found) earlier; in their order
+//
+// ready_o and valid_o come straight from registers (ready_o through one gate); ready_o says "not
+// now" in two cases: nobody takes the results (the whole unit stands still), or so many points are
+// wanted that the divider has no clocks left (the divider goes on, the stages before it wait).
+//
+// All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are
+// ((0 + x) + y) + z, rounded after each operation. RoundingMode: one for all, RoundNearestEven for
+// verdicts that are never wrong. LogPoints: log2 of how many points may be wanted at once.
+module hit_test_pipeline #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter bit [2:0]    RoundingMode = 3'd0,
+  parameter int unsigned TagWidth  = 32,
+  parameter int unsigned LogPoints = 3,
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth,
+  localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
+) (
+  input  logic                                      clk_i,
+  input  logic                                      rst_ni,
+  input  logic                                      valid_i,
+  output logic                                      ready_o,
+  input  logic                                      first_i,
+  input  logic                                      last_i,
+  input  logic [TagWidth-1:0]                       tag_i,
+  input  logic [3*Width-1:0]                        direction_i,
+  input  logic [hit_test_pkg::RecordWords*Width-1:0] record_i,
+  output logic                                      valid_o,
+  input  logic                                      ready_i,
+  output hit_test_pkg::report_e                     report_o,
+  output logic [TagWidth-1:0]                       report_tag_o,
+  output logic                                      closed_o,
+  output logic                                      found_o,
+  output logic [TagWidth-1:0]                       tag_o,
+  output logic [Width-1:0]                          t_o,
+  output logic [TErrorWidth-1:0]                    t_error_o,
+  output logic                                      point_valid_o,
+  output logic [3*Width-1:0]                        point_o,
+  output logic [hit_test_pkg::NumCounts-1:0]        events_o  // this clock's, see count_e
+);
+  /* verilator no_inline_module */  // the lanes of an array share their code in the simulation
+
+  localparam int unsigned DotLatency = hit_test_pkg::DotLatency;
+  localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(FracWidth);
+
+  // ---- Who moves: `advance` everything, `take` the stages before the divider
+
+  logic advance, take, hold_q;
+
+  assign take    = advance & ~hold_q;
+  assign ready_o = take;
+
+  // ---- Take
+
+  logic [3*Width-1:0] direction_q;
+  logic [hit_test_pkg::RecordWords*Width-1:0] record_q;
+  logic [TagWidth-1:0] tag_q;
+  logic first_q, last_q;
+  logic [DotLatency:0] test_q;  // in the take register and the stages of the dot products
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) test_q <= '0;
+    else if (take) test_q <= {test_q[DotLatency-1:0], valid_i};
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (take) begin
+      direction_q <= direction_i;
+      record_q    <= record_i;
+      tag_q       <= tag_i;
+      first_q     <= first_i;
+      last_q      <= last_i;
+    end
+  end
+
+  // ---- Dot
+
+  logic [Width-1:0] v;
+  logic [3*Width-1:0] u;
+
+  dot_product #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .Adder(Adder),
+    .RoundingMode(RoundingMode)
+  ) u_normal (
+    .clk_i,
+    .enable_i(take),
+    .x_i(record_q[Width*hit_test_pkg::RecordNormal +: 3*Width]),
+    .y_i(direction_q),
+    .result_o(v)
+  );
+
+  for (genvar k = 0; k < 3; k++) begin : gen_edge
+    dot_product #(
+      .ExpWidth(ExpWidth),
+      .FracWidth(FracWidth),
+      .Adder(Adder),
+      .RoundingMode(RoundingMode)
+    ) u_edge (
+      .clk_i,
+      .enable_i(take),
+      .x_i(record_q[Width*(hit_test_pkg::RecordEdges+3*k) +: 3*Width]),
+      .y_i(direction_q),
+      .result_o(u[Width*k +: Width])
+    );
+  end
+
+  // What goes beside: the largest exponent of N instead of N itself.
+  logic [ExpWidth-1:0] nx_exponent, ny_exponent, nz_exponent, nxy_exponent, normal_exponent;
+
+  assign nx_exponent     = record_q[Width*hit_test_pkg::RecordNormal+FracWidth +: ExpWidth];
+  assign ny_exponent     = record_q[Width*(hit_test_pkg::RecordNormal+1)+FracWidth +: ExpWidth];
+  assign nz_exponent     = record_q[Width*(hit_test_pkg::RecordNormal+2)+FracWidth +: ExpWidth];
+  assign nxy_exponent    = (nx_exponent > ny_exponent) ? nx_exponent : ny_exponent;
+  assign normal_exponent = (nz_exponent > nxy_exponent) ? nz_exponent : nxy_exponent;
+
+  localparam int unsigned BesideWidth = 7 * Width + TagWidth + ExpWidth + 2;
+  logic [3*Width-1:0] dot_bounds, dot_direction;
+  logic [Width-1:0] dot_d;
+  logic [TagWidth-1:0] dot_tag;
+  logic [ExpWidth-1:0] dot_exponent;
+  logic dot_first, dot_last;
+
+  delay_line #(
+    .Width(BesideWidth),
+    .Depth(DotLatency)
+  ) u_beside_dot (
+    .clk_i,
+    .enable_i(take),
+    .data_i({record_q[Width*hit_test_pkg::RecordBounds +: 3*Width], direction_q,
+             record_q[Width*hit_test_pkg::RecordD +: Width], tag_q, normal_exponent, first_q,
+             last_q}),
+    .data_o({dot_bounds, dot_direction, dot_d, dot_tag, dot_exponent, dot_first, dot_last})
+  );
+
+  // ---- Decide
+
+  logic miss, hit, doubt;
+  logic [TErrorWidth-1:0] t_error;
+
+  hit_decision #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_decision (
+    .d_i(dot_d),
+    .normal_exponent_i(dot_exponent),
+    .v_i(v),
+    .u_i(u),
+    .bounds_i(dot_bounds),
+    .miss_o(miss),
+    .hit_o(hit),
+    .doubt_o(doubt),
+    .t_error_o(t_error)
+  );
+
+  logic decided_q, miss_q, hit_q, doubt_q, decided_first_q, decided_last_q;
+  logic [TErrorWidth-1:0] t_error_q;
+  logic [TagWidth-1:0] decided_tag_q;
+  logic [3*Width-1:0] decided_direction_q;
+  logic [Width-1:0] decided_d_q, decided_v_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) decided_q <= 1'b0;
+    else if (advance) decided_q <= take & test_q[DotLatency];
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (advance) begin
+      miss_q              <= miss;
+      hit_q               <= hit;
+      doubt_q             <= doubt;
+      t_error_q           <= t_error;
+      decided_first_q     <= dot_first;
+      decided_last_q      <= dot_last;
+      decided_tag_q       <= dot_tag;
+      decided_direction_q <= dot_direction;
+      decided_d_q         <= dot_d;
+      decided_v_q         <= v;
+    end
+  end
+
+  // ---- Room for points: a burst that ends with a sure hit takes a place before it is divided
+
+  logic burst_hit_q, burst_hit, reserve, give_back, point_pop;
+  logic [LogPoints:0] reserved_q, reserved_d;
+
+  assign burst_hit = hit_q | (burst_hit_q & ~decided_first_q);
+  assign reserve   = decided_q & decided_last_q & burst_hit;
+
+  always_comb begin
+    reserved_d = reserved_q;
+    if (advance) begin
+      reserved_d = reserved_q + (LogPoints + 1)'(reserve) - (LogPoints + 1)'(point_pop)
+                 - (LogPoints + 1)'(give_back);
+    end
+  end
+
+  // One test more is on its way into the decide register when hold_q rises.
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      burst_hit_q <= 1'b0;
+      reserved_q  <= '0;
+      hold_q      <= 1'b0;
+    end else begin
+      if (advance && decided_q) burst_hit_q <= burst_hit;
+      reserved_q <= reserved_d;
+      hold_q     <= reserved_d >= (LogPoints + 1)'(2 ** LogPoints - 1);
+    end
+  end
+
+  // ---- Divide: a sure hit's t, or else a coordinate of P
+
+  logic wants_t, coordinate_valid, coordinate_taken;
+  logic [Width-1:0] coordinate, coordinate_v, quotient;
+  fp_pkg::flags_t unused_flags;
+
+  assign wants_t          = decided_q & hit_q;
+  assign coordinate_taken = advance & coordinate_valid & ~wants_t;
+
+  fp_divider_stages #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .Adder(Adder),
+    .Pipelined(1'b1)
+  ) u_divider (
+    .clk_i,
+    .enable_i(advance),
+    .a_i(wants_t ? decided_d_q : coordinate),
+    .b_i(wants_t ? decided_v_q : coordinate_v),
+    .rounding_mode_i(RoundingMode),
+    .tininess_after_i(1'b0),
+    .result_o(quotient),
+    .flags_o(unused_flags)
+  );
+
+  localparam int unsigned PayloadWidth = 5 * Width;
+  localparam int unsigned DividedWidth = PayloadWidth + TagWidth + TErrorWidth + 5;
+  logic [PayloadWidth-1:0] divided_payload;
+  logic [TagWidth-1:0] divided_tag;
+  logic [TErrorWidth-1:0] divided_t_error;
+  logic divided_first, divided_last, divided_hit, divided_doubt, divided_reserved;
+  logic [DivideLatency-1:0] dividing_test_q, dividing_coordinate_q;
+  logic divided_test, divided_coordinate;
+
+  delay_line #(
+    .Width(DividedWidth),
+    .Depth(DivideLatency)
+  ) u_beside_divider (
+    .clk_i,
+    .enable_i(advance),
+    .data_i({decided_direction_q, decided_v_q, decided_d_q, decided_tag_q, t_error_q,
+             decided_first_q, decided_last_q, hit_q, doubt_q, reserve}),
+    .data_o({divided_payload, divided_tag, divided_t_error, divided_first, divided_last,
+             divided_hit, divided_doubt, divided_reserved})
+  );
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      dividing_test_q       <= '0;
+      dividing_coordinate_q <= '0;
+    end else if (advance) begin
+      dividing_test_q       <= {dividing_test_q[DivideLatency-2:0], decided_q};
+      dividing_coordinate_q <= {dividing_coordinate_q[DivideLatency-2:0], coordinate_taken};
+    end
+  end
+  assign divided_test       = dividing_test_q[DivideLatency-1];
+  assign divided_coordinate = dividing_coordinate_q[DivideLatency-1];
+
+  // ---- Nearest
+
+  hit_test_pkg::report_e report;
+  logic [TagWidth-1:0] report_tag, nearest_tag;
+  logic closed, found, sure_hit, reserved_last_q;
+  logic [Width-1:0] t;
+  logic [TErrorWidth-1:0] nearest_t_error;
+  logic [PayloadWidth-1:0] nearest_payload;
+
+  nearest_hit #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .TagWidth(TagWidth),
+    .PayloadWidth(PayloadWidth)
+  ) u_nearest (
+    .clk_i,
+    .rst_ni,
+    .enable_i(advance),
+    .valid_i(divided_test),
+    .first_i(divided_first),
+    .last_i(divided_last),
+    .hit_i(divided_hit),
+    .doubt_i(divided_doubt),
+    .tag_i(divided_tag),
+    .t_i(quotient),
+    .t_error_i(divided_t_error),
+    .payload_i(divided_payload),
+    .sure_hit_o(sure_hit),
+    .report_o(report),
+    .report_tag_o(report_tag),
+    .closed_o(closed),
+    .found_o(found),
+    .tag_o(nearest_tag),
+    .t_o(t),
+    .t_error_o(nearest_t_error),
+    .payload_o(nearest_payload)
+  );
+
+  always_ff @(posedge clk_i) if (advance) reserved_last_q <= divided_reserved;
+
+  // ---- Point
+
+  logic wants_point, point_valid;
+  logic [3*Width-1:0] point;
+
+  assign wants_point = advance & closed & found;
+  assign give_back   = closed & ~found & reserved_last_q;  // the only hit's t was out of range
+
+  point_unit #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .Adder(Adder),
+    .RoundingMode(RoundingMode),
+    .LogPoints(LogPoints)
+  ) u_point (
+    .clk_i,
+    .rst_ni,
+    .enable_i(advance),
+    .push_i(wants_point),
+    .direction_i(nearest_payload[2*Width +: 3*Width]),
+    .v_i(nearest_payload[Width +: Width]),
+    .d_i(nearest_payload[0 +: Width]),
+    .pop_o(point_pop),
+    .valid_o(coordinate_valid),
+    .taken_i(coordinate_taken),
+    .dividend_o(coordinate),
+    .divisor_o(coordinate_v),
+    .quotient_valid_i(divided_coordinate),
+    .quotient_i(quotient),
+    .point_valid_o(point_valid),
+    .point_o(point)
+  );
+
+  // ---- Results
+
+  fifo #(
+    .Width(2 + TagWidth + 2 + TagWidth + Width + TErrorWidth + 1 + 3 * Width)
+  ) u_results (
+    .clk_i,
+    .rst_ni,
+    .push_i(advance & (report != hit_test_pkg::ReportNone | closed | point_valid)),
+    .data_i({report, report_tag, closed, found, nearest_tag, t, nearest_t_error, point_valid,
+             point}),
+    .space_o(advance),
+    .pop_i(valid_o & ready_i),
+    .valid_o,
+    .data_o({report_o, report_tag_o, closed_o, found_o, tag_o, t_o, t_error_o, point_valid_o,
+             point_o})
+  );
+
+  // ---- Events
+
+  always_comb begin
+    events_o = '0;
+    events_o[hit_test_pkg::CountTests]          = take & valid_i;
+    events_o[hit_test_pkg::CountMisses]         = advance & decided_q & miss_q;
+    events_o[hit_test_pkg::CountHits]           = advance & sure_hit;
+    events_o[hit_test_pkg::CountDoubts]         = advance & (report == hit_test_pkg::ReportDoubt);
+    events_o[hit_test_pkg::CountNearTies]       = advance & (report == hit_test_pkg::ReportNearTie);
+    events_o[hit_test_pkg::CountDistances]      = advance & wants_t;
+    events_o[hit_test_pkg::CountCoordinates]    = coordinate_taken;
+    events_o[hit_test_pkg::CountIdleClocks]     = take & ~valid_i;
+    events_o[hit_test_pkg::CountOutputStalls]   = ~advance;
+    events_o[hit_test_pkg::CountQuotientStalls] = advance & hold_q;
+  end
+
+endmodule

@@ -1,0 +1,101 @@
+// Keeps the nearest sure hit of each burst of tests, one test a clock.
+//
+// Distances are compared as integers, which orders positive floats. Two that differ by no more than
+// the sum of their errors (2**(TErrorUnit + t_error) units in the last place each) may be the other
+// way round in truth: a near tie. The smaller number is kept (of equal ones the first), the other
+// one is reported. So every hit that is dropped in silence is surely farther than the one kept then,
+// and that one is kept, reported, or surely farther than another in its turn.
+//
+// A sure hit whose t is no positive normal number is reported as a doubt.
+//
+// All other outputs are registers, one clock after the test (clocks without enable_i don't count and keep
+// them). What comes out with the last test of a burst:
+//   closed_o  for this clock; then found_o says whether the burst has a nearest hit, and tag, t,
+//             t_error and payload_o are that hit's. closed_o and found_o are reset.
+//   report_o, report_tag_o may come with it, and concern this test or the one it ousted. Where
+//             nothing is reported report_tag_o is the test's own tag.
+//
+// Payload: whatever else is wanted of the nearest hit.
+module nearest_hit #(
+  parameter int unsigned ExpWidth     = 8,
+  parameter int unsigned FracWidth    = 23,
+  parameter int unsigned TagWidth     = 32,
+  parameter int unsigned PayloadWidth = 160,
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth,
+  localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    enable_i,
+  input  logic                    valid_i,  // a test; else nothing below matters
+  input  logic                    first_i,  // of its burst
+  input  logic                    last_i,   // of its burst
+  input  logic                    hit_i,
+  input  logic                    doubt_i,
+  input  logic [TagWidth-1:0]     tag_i,
+  input  logic [Width-1:0]        t_i,
+  input  logic [TErrorWidth-1:0]  t_error_i,
+  input  logic [PayloadWidth-1:0] payload_i,
+  output logic                    sure_hit_o,  // combinational: the test is a sure hit, t and all
+  output hit_test_pkg::report_e   report_o,
+  output logic [TagWidth-1:0]     report_tag_o,
+  output logic                    closed_o,
+  output logic                    found_o,
+  output logic [TagWidth-1:0]     tag_o,
+  output logic [Width-1:0]        t_o,
+  output logic [TErrorWidth-1:0]  t_error_o,
+  output logic [PayloadWidth-1:0] payload_o
+);
+
+  // ---- Is t a positive normal number?
+
+  logic [ExpWidth-1:0] exponent;
+  logic hit, doubt;
+
+  assign exponent = t_i[FracWidth +: ExpWidth];
+  assign hit   = valid_i & hit_i & ~t_i[Width-1] & (exponent != '0) & ~(&exponent);
+  assign doubt = valid_i & (doubt_i | (hit_i & ~hit));
+  assign sure_hit_o = hit;
+
+  // ---- Nearer or farther than the nearest so far, and by more than the errors?
+
+  // Margins stay below 2**(FracWidth+3) and distances below 2**(Width-1): Width + 1 bits do.
+  logic [Width:0] t, best, margin, farther, nearer;
+  logic have, near, smaller, replace;
+
+  assign t       = {1'b0, t_i};
+  assign best    = {1'b0, t_o};
+  assign margin  = ((Width + 1)'(1) << (hit_test_pkg::TErrorUnit + 32'(t_error_i)))
+                 + ((Width + 1)'(1) << (hit_test_pkg::TErrorUnit + 32'(t_error_o)));
+  assign farther = margin + best - t;  // negative: surely farther
+  assign nearer  = margin + t - best;  // negative: surely nearer
+  assign smaller = t_i < t_o;
+
+  assign have    = found_o & ~first_i;
+  assign near    = hit & have & ~farther[Width] & ~nearer[Width];
+  assign replace = hit & (~have | smaller);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      closed_o <= 1'b0;
+      found_o  <= 1'b0;
+      report_o <= hit_test_pkg::ReportNone;
+    end else if (enable_i) begin
+      closed_o <= valid_i & last_i;
+      if (valid_i) found_o <= have | hit;
+      report_o <= doubt ? hit_test_pkg::ReportDoubt
+                : near ? hit_test_pkg::ReportNearTie : hit_test_pkg::ReportNone;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (enable_i) report_tag_o <= (near & smaller) ? tag_o : tag_i;
+    if (enable_i && replace) begin
+      tag_o     <= tag_i;
+      t_o       <= t_i;
+      t_error_o <= t_error_i;
+      payload_o <= payload_i;
+    end
+  end
+
+endmodule

@@ -1,0 +1,33 @@
+// The pipelined hit-test units in simulation, behind the interface of host/hit.
+#pragma once
+
+#include <memory>
+
+#include "host/hit/burst_unit.h"
+
+namespace raygate {
+
+/// Chances, in 1/256 a clock and lane, that no test is offered and that a result is not taken.
+struct BurstStalls {
+  int no_test = 0, not_taken = 0;
+  std::uint64_t seed = 0;
+};
+
+/// What RtlBurstUnit needs of a Verilated array, whatever its number of lanes.
+class BurstModel;
+
+/// hit_test_array, Verilated. Not for use by two threads at once: each thread makes its own.
+class RtlBurstUnit : public BurstUnit {
+ public:
+  /// `lanes`: 1, 2, 4 or 8, others are a bug of the caller.
+  explicit RtlBurstUnit(int lanes, const BurstStalls& stalls = {});
+  ~RtlBurstUnit() override;
+
+  void run(std::span<const RayBundle> batch, BurstResults& results) override;
+  [[nodiscard]] BurstCounters counters() const override;
+
+ private:
+  std::unique_ptr<BurstModel> model_;
+};
+
+}  // namespace raygate

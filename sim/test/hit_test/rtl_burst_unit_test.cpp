@@ -1,0 +1,84 @@
+#include "sim/rtl_burst_unit.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+#include <tuple>
+
+#include "host/hit/check_burst_unit.h"
+#include "host/hit/cpu_burst_unit.h"
+#include "sim/test/hit_test/random_bursts.h"
+
+namespace raygate {
+namespace {
+
+/// Tests for each number of lanes: a quarter of a million; RAYGATE_STRESS asks for another number.
+std::uint64_t tests_wanted() {
+  const char* wanted = std::getenv("RAYGATE_STRESS");
+  return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 250'000;
+}
+
+void expect_same_events(const BurstCounters& rtl, const BurstCounters& cpu) {
+  EXPECT_EQ(rtl.tests, cpu.tests);
+  EXPECT_EQ(rtl.misses, cpu.misses);
+  EXPECT_EQ(rtl.hits, cpu.hits);
+  EXPECT_EQ(rtl.doubts, cpu.doubts);
+  EXPECT_EQ(rtl.near_ties, cpu.near_ties);
+  EXPECT_EQ(rtl.distances, cpu.distances);
+  EXPECT_EQ(rtl.coordinates, cpu.coordinates);
+}
+
+class RtlBurstUnitTest : public testing::TestWithParam<int> {};
+
+/// Every field of every result, under random stalls, in many small and large batches.
+TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
+  const auto seed = static_cast<std::uint64_t>(GetParam());
+  RecordProperty("seed", static_cast<int>(seed));
+  RandomBursts random(seed);
+  std::mt19937_64 size(seed);
+  CpuBurstUnit cpu;
+  BurstCounters rtl_total;
+  std::uint64_t done = 0;
+  const std::uint64_t wanted = tests_wanted();
+  // None, either, both, and so heavy that the unit mostly waits.
+  for (const auto& [no_test, not_taken, share] : {std::tuple{0, 0, 4},
+                                                  {64, 0, 8},
+                                                  {0, 96, 8},
+                                                  {40, 64, 4},
+                                                  {200, 0, 16},
+                                                  {0, 230, 16},
+                                                  {100, 200, 8}}) {
+    RtlBurstUnit rtl(GetParam(), {no_test, not_taken, seed});
+    for (std::uint64_t part = 0; part < wanted / static_cast<std::uint64_t>(share);) {
+      const BurstBatch batch = random.make(1 + size() % 5'000);
+      part += batch.tests;
+      done += batch.tests;
+      BurstResults expected, got;
+      cpu.run(batch.bundles, expected);
+      rtl.run(batch.bundles, got);
+      ASSERT_NO_THROW(require_same(batch.bundles, got, expected));
+    }
+    const BurstCounters counters = rtl.counters();
+    rtl_total.tests += counters.tests;
+    rtl_total.misses += counters.misses;
+    rtl_total.hits += counters.hits;
+    rtl_total.doubts += counters.doubts;
+    rtl_total.near_ties += counters.near_ties;
+    rtl_total.distances += counters.distances;
+    rtl_total.coordinates += counters.coordinates;
+  }
+  expect_same_events(rtl_total, cpu.counters());
+  EXPECT_EQ(cpu.counters().tests, done);
+  // The batches have something of everything.
+  EXPECT_GT(cpu.counters().misses, done / 20);
+  EXPECT_GT(cpu.counters().hits, done / 20);
+  EXPECT_GT(cpu.counters().doubts, done / 20);
+  EXPECT_GT(cpu.counters().near_ties, done / 1000);
+  EXPECT_GT(cpu.counters().distances, cpu.counters().hits);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, RtlBurstUnitTest, testing::Values(1, 2, 4, 8));
+
+}  // namespace
+}  // namespace raygate
