@@ -6,7 +6,7 @@
 //
 // ConstantRow: 1 for the paper's tree, with the constants in a row of their own (14 rows, 12 adders
 // in 6 levels); 0 puts them into free places of the other rows (13 rows, 11 adders in 5 levels),
-// which saves a level and a twentieth of the area.
+// which saves a level.
 // Adder, GroupWidths: the last adder, see there. Combinational.
 module booth_multiplier #(
   parameter int unsigned Width = 24,
@@ -66,13 +66,18 @@ module booth_multiplier #(
         assign rows[2*Width*k+:2*Width] = (2 * Width)'(row) << 2 * k;
       end
     end else begin : gen_full
-      // Above each row its two bits of ~n, below it the bit of n of the row before. In row 0 the 1
-      // joins them: 4 - n[0] at bit Width + 1.
+      // n fits below the last row and ~n above row 0, all but one: at bit Width + 1 the 1 and ~n[0]
+      // are 4 - n[0], whose three bits push ~n[2] into row 1.
       if (k == 0) begin : gen_first
-        assign rows[0+:2*Width] = (2 * Width)'({~negative[0], negative[0], negative[0], row});
+        assign rows[0+:2*Width] = (2 * Width)'({
+          ~negative[2*Digits-1:3], ~negative[0], negative[0], negative[0], row
+        });
       end else begin : gen_next
-        assign rows[2*Width*k +: 2*Width] = ((2 * Width)'({1'b1, ~negative[2*k], row}) << 2 * k)
-            | ((2 * Width)'(negative[2*k-2]) << 2 * k - 2);
+        localparam bit Second = k == 1;
+        localparam bit Last = k == Digits - 1;
+        assign rows[2*Width*k+:2*Width] = (2 * Width)'({
+          {Second & ~negative[2], row}, {(2 * k) {Last}} & negative[2*k-1:0]
+        });
       end
     end
   end
