@@ -17,16 +17,17 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
 
-void print_row(const std::string& scene, std::size_t triangles, Engine engine,
+void print_row(const std::string& scene, std::size_t triangles, const Options& options,
                const RenderStats& stats) {
-  const auto plane_tests = static_cast<double>(stats.hit.plane_tests);
+  const auto unit_tests = static_cast<double>(stats.hit.unit_tests);
   const auto per_second = [](double count, double seconds) {
     return format_count(seconds > 0.0 ? static_cast<std::uint64_t>(count / seconds) : 0);
   };
-  std::printf("%-12s %9s %-6s %9.3f %12s %14s %10s\n", scene.c_str(),
-              format_count(triangles).c_str(), to_string(engine).c_str(), stats.wall_seconds,
+  std::printf("%-12s %9s %-8s %-6s %9.3f %12s %14s %10s\n", scene.c_str(),
+              format_count(triangles).c_str(), options.unit.c_str(),
+              to_string(options.engine).c_str(), stats.wall_seconds,
               per_second(static_cast<double>(stats.rays), stats.wall_seconds).c_str(),
-              per_second(plane_tests, stats.hit_seconds).c_str(),
+              per_second(unit_tests, stats.hit_seconds).c_str(),
               stats.hit.clocks > 0 ? format_fixed(clocks_per_test(stats.hit), 2).c_str() : "-");
 }
 
@@ -34,12 +35,17 @@ void bench(const std::filesystem::path& file) {
   const Scene scene = load_obj(file);
   const Bvh bvh(scene);
   const Camera camera = Camera::frame(scene, static_cast<double>(kWidth) / kHeight);
-  for (const Engine engine : {Engine::kCpu, Engine::kRtl}) {
-    RenderStats stats;
-    const RenderOptions options{
-        .width = kWidth, .height = kHeight, .window = {}, .threads = 1, .seed = 0};
-    (void)render(scene, bvh, camera, options, make_tester_factory(engine), stats);
-    print_row(file.stem().string(), scene.triangles.size(), engine, stats);
+  for (const char* unit : {"pipeline", "serial"}) {
+    for (const Engine engine : {Engine::kCpu, Engine::kRtl}) {
+      Options options;
+      options.unit = unit;
+      options.engine = engine;
+      RenderStats stats;
+      const RenderOptions render_options{
+          .width = kWidth, .height = kHeight, .window = {}, .threads = 1, .seed = 0};
+      (void)render(scene, bvh, camera, render_options, make_tester_factory(options), stats);
+      print_row(file.stem().string(), scene.triangles.size(), options, stats);
+    }
   }
 }
 
@@ -53,8 +59,8 @@ int main(int argc, char** argv) {
   }
   std::printf("%dx%d, one thread. Tests: of the unit, in the time of the hit tests alone.\n",
               raygate::kWidth, raygate::kHeight);
-  std::printf("%-12s %9s %-6s %9s %12s %14s %10s\n", "scene", "triangles", "engine", "seconds",
-              "rays/s", "tests/s", "clocks");
+  std::printf("%-12s %9s %-8s %-6s %9s %12s %14s %10s\n", "scene", "triangles", "unit", "engine",
+              "seconds", "rays/s", "tests/s", "clocks");
   try {
     for (int i = 1; i < argc; ++i) raygate::bench(argv[i]);
   } catch (const std::exception& error) {
