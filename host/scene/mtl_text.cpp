@@ -81,15 +81,17 @@ void MtlText::clean(std::string_view statement, std::string& clean) {
   } else {
     warn_once(keyword, in_quotes(keyword) + " is not supported, ignored");
   }
+  if (nameless_) clean.clear();
 }
 
 void MtlText::begin_material(std::string_view name, std::string& clean) {
-  if (name.empty()) lines().fail("newmtl without a name");
+  in_material_ = true;
+  has_diffuse_ = false;
+  nameless_ = name.empty();
+  if (nameless_) return warn("newmtl without a name: nothing can use this material, ignored");
   if (!names_.emplace(name).second) {
     warn("material " + in_quotes(name) + " was defined before, which stands");
   }
-  in_material_ = true;
-  has_diffuse_ = false;
   const Material defaults;
   clean.append("newmtl ").append(name);
   clean.append("\nKd ").append(shortest(defaults.diffuse));

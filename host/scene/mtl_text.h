@@ -24,6 +24,7 @@ class MtlText final : public CleanText {
 
   std::set<std::string, std::less<>> names_;
   bool in_material_ = false;
+  bool nameless_ = false;     // this material: checked, but not let through
   bool has_diffuse_ = false;  // this material: Kd was there, or stands in for it
 };
 

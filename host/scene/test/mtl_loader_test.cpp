@@ -163,6 +163,15 @@ TEST_F(LoadMtl, TheFirstOfTwoMaterialsOfOneNameStands) {
   EXPECT_EQ(scene.materials[scene.triangles[0].material].diffuse, glm::vec3(1, 0, 0));
 }
 
+// As Blender writes for what has no material.
+TEST_F(LoadMtl, AMaterialWithoutAName) {
+  EXPECT_EQ(warning("newmtl a\nKd 1 0 0\nnewmtl \nKd 0 1 0\n"),
+            "m.mtl:3: newmtl without a name: nothing can use this material, ignored");
+  const Scene scene = load("newmtl \nKd 0 1 0\nnewmtl a\nKd 1 0 0\nnewmtl\nKd 0 0 1\n");
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].diffuse, glm::vec3(1, 0, 0));
+}
+
 TEST_F(LoadMtl, AFileWithoutMaterials) {
   const Scene scene = load("# nothing\n");
   ASSERT_EQ(scene.warnings.size(), 2u);
@@ -185,7 +194,7 @@ TEST_F(LoadMtl, Errors) {
   EXPECT_EQ(error("newmtl a\nd\n"), "m.mtl:2: d: expected one number");
   EXPECT_EQ(error("newmtl a\nd 0.5 0.5\n"), "m.mtl:2: d: expected one number");
   EXPECT_EQ(error("Kd 1 0 0\n"), "m.mtl:1: 'Kd' before the first newmtl");
-  EXPECT_EQ(error("newmtl\n"), "m.mtl:1: newmtl without a name");
+  EXPECT_EQ(error("newmtl\nKd x 0 0\n"), "m.mtl:2: Kd: 'x', expected a number");
   EXPECT_EQ(error(""), "m.mtl: the file is empty");
   EXPECT_EQ(error(std::string_view("newmtl a\n\0", 10)),
             "m.mtl:2: a byte of value 0: not a text file");
