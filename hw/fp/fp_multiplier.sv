@@ -2,9 +2,10 @@
 //
 // Combinational: fp_multiplier_stages without registers; see there.
 module fp_multiplier #(
-  parameter int unsigned ExpWidth  = 8,
-  parameter int unsigned FracWidth = 23,
-  parameter int unsigned Adder     = arith_pkg::AdderGraded
+  parameter int unsigned ExpWidth    = 8,
+  parameter int unsigned FracWidth   = 23,
+  parameter int unsigned Adder       = arith_pkg::AdderGraded,
+  parameter bit          ConstantRow = 1'b0
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
@@ -17,7 +18,8 @@ module fp_multiplier #(
   fp_multiplier_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
-    .Adder(Adder)
+    .Adder(Adder),
+    .ConstantRow(ConstantRow)
   ) u_stages (
     .clk_i(1'b0),
     .enable_i(1'b0),

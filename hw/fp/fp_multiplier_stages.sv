@@ -6,6 +6,7 @@
 // result. Behind the multiplier are left one shift and the shared rounder.
 //
 // Adder: the kind of the significands' and the exponents' adders.
+// ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
 // Cuts: bit 0 and 1 put registers behind the product, and behind the result. As many clocks of
 // latency as cuts, one operation a clock; clocks without enable_i don't count. No cut:
 // combinational. The rounding mode is used in the second stage only.
@@ -14,10 +15,11 @@
 // operands' signs, also that of zeros and infinities. Zero times infinity is invalid.
 // Source: IEEE 754-2019, clause 5.4.1; the paper's multiplier, section 3.4.
 module fp_multiplier_stages #(
-  parameter int unsigned ExpWidth  = 8,
-  parameter int unsigned FracWidth = 23,
-  parameter int unsigned Adder     = arith_pkg::AdderGraded,
-  parameter bit [1:0]    Cuts      = 2'b00
+  parameter int unsigned ExpWidth    = 8,
+  parameter int unsigned FracWidth   = 23,
+  parameter int unsigned Adder       = arith_pkg::AdderGraded,
+  parameter bit          ConstantRow = 1'b0,
+  parameter bit [1:0]    Cuts        = 2'b00
 ) (
   input  logic                        clk_i,
   input  logic                        enable_i,
@@ -74,7 +76,8 @@ module fp_multiplier_stages #(
 
   booth_multiplier #(
     .Width(SigWidth),
-    .Adder(Adder)
+    .Adder(Adder),
+    .ConstantRow(ConstantRow)
   ) u_multiplier (
     .a_i(a_sig),
     .b_i(b_sig),

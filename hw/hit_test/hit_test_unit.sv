@@ -80,9 +80,10 @@ module hit_test_unit #(
   assign unused_flags = ^{multiplier_flags, adder_flags, divider_flags};
 
   fp_multiplier #(
-    .ExpWidth (ExpWidth),
-    .FracWidth(FracWidth),
-    .Adder    (Adder)
+    .ExpWidth   (ExpWidth),
+    .FracWidth  (FracWidth),
+    .Adder      (Adder),
+    .ConstantRow(1'b1)  // the paper's carry-save tree
   ) u_multiplier (
     .a_i             (factor),
     .b_i             (direction_1_q),
