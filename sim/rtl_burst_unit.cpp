@@ -100,10 +100,9 @@ enum Count {
   kDoubts,
   kNearTies,
   kDistances,
-  kCoordinates,
+  kPoints,
   kIdleClocks,
-  kOutputStalls,
-  kQuotientStalls
+  kOutputStalls
 };
 
 template <class Top, int kHardwareLanes>
@@ -153,9 +152,9 @@ class ArrayModel : public BurstModel {
 
   BurstCounters counters() override {
     for (int i = 0; i < 2; ++i) model_.clock();  // the counters are two clocks late
-    return {read(kTests),      read(kMisses),       read(kHits),          read(kDoubts),
-            read(kNearTies),   read(kDistances),    read(kCoordinates),   model_.clocks(),
-            read(kIdleClocks), read(kOutputStalls), read(kQuotientStalls)};
+    return {read(kTests),      read(kMisses),      read(kHits),       read(kDoubts),
+            read(kNearTies),   read(kDistances),   3 * read(kPoints), model_.clocks(),
+            read(kIdleClocks), read(kOutputStalls)};
   }
 
  private:

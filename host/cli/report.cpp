@@ -72,8 +72,7 @@ std::string lane_clocks(const Report& report) {
   const double all = static_cast<double>(hit.clocks) * report.options.lanes;
   const std::pair<const char*, std::uint64_t> parts[] = {{"a test", hit.unit_tests},
                                                          {"idle", hit.idle_clocks},
-                                                         {"results not taken", hit.output_stalls},
-                                                         {"too many points", hit.quotient_stalls}};
+                                                         {"results not taken", hit.output_stalls}};
   std::string text;
   for (const auto& [name, clocks] : parts) {
     text += (text.empty() ? "" : ", ") + std::string(name) + " " +
@@ -155,7 +154,6 @@ std::string to_json(const Report& report) {
       {"clocks", hit.clocks},
       {"idle_clocks", hit.idle_clocks},
       {"output_stalls", hit.output_stalls},
-      {"quotient_stalls", hit.quotient_stalls},
       {"clocks_per_test", clocks_per_test(hit)},
       {"seconds",
        {{"load", report.load_seconds},

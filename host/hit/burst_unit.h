@@ -58,7 +58,6 @@ struct BurstCounters {
   std::uint64_t clocks = 0;           ///< simulated clock cycles
   std::uint64_t idle_clocks = 0;      ///< no test was there
   std::uint64_t output_stalls = 0;    ///< a result was not taken
-  std::uint64_t quotient_stalls = 0;  ///< too many points were wanted
 };
 
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest

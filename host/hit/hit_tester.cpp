@@ -14,7 +14,6 @@ HitCounters& HitCounters::operator+=(const HitCounters& other) {
   clocks += other.clocks;
   idle_clocks += other.idle_clocks;
   output_stalls += other.output_stalls;
-  quotient_stalls += other.quotient_stalls;
   return *this;
 }
 

@@ -70,7 +70,6 @@ struct HitCounters {
   // Clocks of the unit's lanes without a new test, by cause; only the pipelined unit has any.
   std::uint64_t idle_clocks = 0;      ///< no test was there
   std::uint64_t output_stalls = 0;    ///< a result was not taken
-  std::uint64_t quotient_stalls = 0;  ///< too many points were wanted
 
   HitCounters& operator+=(const HitCounters& other);
 };

@@ -66,7 +66,6 @@ HitCounters PipelineHitTester::counters() const {
   counters.clocks = unit.clocks;
   counters.idle_clocks = unit.idle_clocks;
   counters.output_stalls = unit.output_stalls;
-  counters.quotient_stalls = unit.quotient_stalls;
   return counters;
 }
 

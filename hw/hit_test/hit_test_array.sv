@@ -15,7 +15,6 @@ module hit_test_array #(
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
-  parameter int unsigned LogPoints = 3,
   parameter int unsigned CounterWidth = 48,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
   localparam int unsigned RecordWidth = hit_test_pkg::RecordWords * Width,
@@ -59,8 +58,7 @@ module hit_test_array #(
       .FracWidth(FracWidth),
       .Adder(Adder),
       .RoundingMode(RoundingMode),
-      .TagWidth(TagWidth),
-      .LogPoints(LogPoints)
+      .TagWidth(TagWidth)
     ) u_pipeline (
       .clk_i,
       .rst_ni,

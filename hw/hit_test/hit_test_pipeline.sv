@@ -4,9 +4,9 @@
 //   take     I, record                        registers
 //   dot      V = N . I, U_k = E_k . I         12 multipliers, 8 adders
 //   decide   hit, miss or doubt               see hit_decision
-//   divide   t = d / V                        one divider; its free clocks work for `point`
+//   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
-//   point    P_k = (d I_k) / V, equation 10   one multiplier, and the divider, three times a burst
+//   point    P_k = (d I_k) / V, equation 10   3 multipliers, 3 dividers; see point_unit
 //
 // Throughput one test a clock. Latency DotLatency + divide_latency + 4 clocks (see hit_test_pkg): from
 // the clock edge that takes a test to the one after which its report, or its burst's end, is there.
@@ -20,20 +20,18 @@
 //                    If neither found_o nor a report, report_tag_o is the tag of the last test.
 //   point_valid_o    point_o is the P of a burst that was closed (and found) earlier; in their order
 //
-// ready_o and valid_o come straight from registers (ready_o through one gate); ready_o says "not
-// now" in two cases: nobody takes the results (the whole unit stands still), or so many points are
-// wanted that the divider has no clocks left (the divider goes on, the stages before it wait).
+// ready_o and valid_o are registers; ready_o is true but where nobody takes the results, when the
+// whole unit stands still.
 //
 // All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are
 // ((0 + x) + y) + z, rounded after each operation. RoundingMode: one for all, RoundNearestEven for
-// verdicts that are never wrong. LogPoints: log2 of how many points may be wanted at once.
+// verdicts that are never wrong.
 module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
-  parameter int unsigned LogPoints = 3,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
   localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
 ) (
@@ -64,12 +62,11 @@ module hit_test_pipeline #(
   localparam int unsigned DotLatency = hit_test_pkg::DotLatency;
   localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(FracWidth);
 
-  // ---- Who moves: `advance` everything, `take` the stages before the divider
+  // ---- Everything moves or nothing does
 
-  logic advance, take, hold_q;
+  logic advance;
 
-  assign take    = advance & ~hold_q;
-  assign ready_o = take;
+  assign ready_o = advance;
 
   // ---- Take
 
@@ -81,11 +78,11 @@ module hit_test_pipeline #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) test_q <= '0;
-    else if (take) test_q <= {test_q[DotLatency-1:0], valid_i};
+    else if (advance) test_q <= {test_q[DotLatency-1:0], valid_i};
   end
 
   always_ff @(posedge clk_i) begin
-    if (take) begin
+    if (advance) begin
       direction_q <= direction_i;
       record_q    <= record_i;
       tag_q       <= tag_i;
@@ -106,7 +103,7 @@ module hit_test_pipeline #(
     .RoundingMode(RoundingMode)
   ) u_normal (
     .clk_i,
-    .enable_i(take),
+    .enable_i(advance),
     .x_i(record_q[Width*hit_test_pkg::RecordNormal +: 3*Width]),
     .y_i(direction_q),
     .result_o(v)
@@ -120,7 +117,7 @@ module hit_test_pipeline #(
       .RoundingMode(RoundingMode)
     ) u_edge (
       .clk_i,
-      .enable_i(take),
+      .enable_i(advance),
       .x_i(record_q[Width*(hit_test_pkg::RecordEdges+3*k) +: 3*Width]),
       .y_i(direction_q),
       .result_o(u[Width*k +: Width])
@@ -148,7 +145,7 @@ module hit_test_pipeline #(
     .Depth(DotLatency)
   ) u_beside_dot (
     .clk_i,
-    .enable_i(take),
+    .enable_i(advance),
     .data_i({record_q[Width*hit_test_pkg::RecordBounds +: 3*Width], direction_q,
              record_q[Width*hit_test_pkg::RecordD +: Width], tag_q, normal_exponent, first_q,
              last_q}),
@@ -183,7 +180,7 @@ module hit_test_pipeline #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) decided_q <= 1'b0;
-    else if (advance) decided_q <= take & test_q[DotLatency];
+    else if (advance) decided_q <= test_q[DotLatency];
   end
 
   always_ff @(posedge clk_i) begin
@@ -201,43 +198,10 @@ module hit_test_pipeline #(
     end
   end
 
-  // ---- Room for points: a burst that ends with a sure hit takes a place before it is divided
+  // ---- Divide: t, of which a sure hit makes use
 
-  logic burst_hit_q, burst_hit, reserve, give_back, point_pop;
-  logic [LogPoints:0] reserved_q, reserved_d;
-
-  assign burst_hit = hit_q | (burst_hit_q & ~decided_first_q);
-  assign reserve   = decided_q & decided_last_q & burst_hit;
-
-  always_comb begin
-    reserved_d = reserved_q;
-    if (advance) begin
-      reserved_d = reserved_q + (LogPoints + 1)'(reserve) - (LogPoints + 1)'(point_pop)
-                 - (LogPoints + 1)'(give_back);
-    end
-  end
-
-  // One test more is on its way into the decide register when hold_q rises.
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      burst_hit_q <= 1'b0;
-      reserved_q  <= '0;
-      hold_q      <= 1'b0;
-    end else begin
-      if (advance && decided_q) burst_hit_q <= burst_hit;
-      reserved_q <= reserved_d;
-      hold_q     <= reserved_d >= (LogPoints + 1)'(2 ** LogPoints - 1);
-    end
-  end
-
-  // ---- Divide: a sure hit's t, or else a coordinate of P
-
-  logic wants_t, coordinate_valid, coordinate_taken;
-  logic [Width-1:0] coordinate, coordinate_v, quotient;
+  logic [Width-1:0] quotient;
   fp_pkg::flags_t unused_flags;
-
-  assign wants_t          = decided_q & hit_q;
-  assign coordinate_taken = advance & coordinate_valid & ~wants_t;
 
   fp_divider_stages #(
     .ExpWidth(ExpWidth),
@@ -247,8 +211,8 @@ module hit_test_pipeline #(
   ) u_divider (
     .clk_i,
     .enable_i(advance),
-    .a_i(wants_t ? decided_d_q : coordinate),
-    .b_i(wants_t ? decided_v_q : coordinate_v),
+    .a_i(decided_d_q),
+    .b_i(decided_v_q),
     .rounding_mode_i(RoundingMode),
     .tininess_after_i(1'b0),
     .result_o(quotient),
@@ -256,13 +220,12 @@ module hit_test_pipeline #(
   );
 
   localparam int unsigned PayloadWidth = 5 * Width;
-  localparam int unsigned DividedWidth = PayloadWidth + TagWidth + TErrorWidth + 5;
+  localparam int unsigned DividedWidth = PayloadWidth + TagWidth + TErrorWidth + 4;
   logic [PayloadWidth-1:0] divided_payload;
   logic [TagWidth-1:0] divided_tag;
   logic [TErrorWidth-1:0] divided_t_error;
-  logic divided_first, divided_last, divided_hit, divided_doubt, divided_reserved;
-  logic [DivideLatency-1:0] dividing_test_q, dividing_coordinate_q;
-  logic divided_test, divided_coordinate;
+  logic divided_first, divided_last, divided_hit, divided_doubt;
+  logic [DivideLatency-1:0] dividing_q;
 
   delay_line #(
     .Width(DividedWidth),
@@ -271,28 +234,21 @@ module hit_test_pipeline #(
     .clk_i,
     .enable_i(advance),
     .data_i({decided_direction_q, decided_v_q, decided_d_q, decided_tag_q, t_error_q,
-             decided_first_q, decided_last_q, hit_q, doubt_q, reserve}),
+             decided_first_q, decided_last_q, hit_q, doubt_q}),
     .data_o({divided_payload, divided_tag, divided_t_error, divided_first, divided_last,
-             divided_hit, divided_doubt, divided_reserved})
+             divided_hit, divided_doubt})
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      dividing_test_q       <= '0;
-      dividing_coordinate_q <= '0;
-    end else if (advance) begin
-      dividing_test_q       <= {dividing_test_q[DivideLatency-2:0], decided_q};
-      dividing_coordinate_q <= {dividing_coordinate_q[DivideLatency-2:0], coordinate_taken};
-    end
+    if (!rst_ni) dividing_q <= '0;
+    else if (advance) dividing_q <= {dividing_q[DivideLatency-2:0], decided_q};
   end
-  assign divided_test       = dividing_test_q[DivideLatency-1];
-  assign divided_coordinate = dividing_coordinate_q[DivideLatency-1];
 
   // ---- Nearest
 
   hit_test_pkg::report_e report;
   logic [TagWidth-1:0] report_tag, nearest_tag;
-  logic closed, found, sure_hit, reserved_last_q;
+  logic closed, found, sure_hit;
   logic [Width-1:0] t;
   logic [TErrorWidth-1:0] nearest_t_error;
   logic [PayloadWidth-1:0] nearest_payload;
@@ -306,7 +262,7 @@ module hit_test_pipeline #(
     .clk_i,
     .rst_ni,
     .enable_i(advance),
-    .valid_i(divided_test),
+    .valid_i(dividing_q[DivideLatency-1]),
     .first_i(divided_first),
     .last_i(divided_last),
     .hit_i(divided_hit),
@@ -326,38 +282,25 @@ module hit_test_pipeline #(
     .payload_o(nearest_payload)
   );
 
-  always_ff @(posedge clk_i) if (advance) reserved_last_q <= divided_reserved;
-
   // ---- Point
 
-  logic wants_point, point_valid;
+  logic point_valid;
   logic [3*Width-1:0] point;
-
-  assign wants_point = advance & closed & found;
-  assign give_back   = closed & ~found & reserved_last_q;  // the only hit's t was out of range
 
   point_unit #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
     .Adder(Adder),
-    .RoundingMode(RoundingMode),
-    .LogPoints(LogPoints)
+    .RoundingMode(RoundingMode)
   ) u_point (
     .clk_i,
     .rst_ni,
     .enable_i(advance),
-    .push_i(wants_point),
-    .direction_i(nearest_payload[2*Width +: 3*Width]),
-    .v_i(nearest_payload[Width +: Width]),
-    .d_i(nearest_payload[0 +: Width]),
-    .pop_o(point_pop),
-    .valid_o(coordinate_valid),
-    .taken_i(coordinate_taken),
-    .dividend_o(coordinate),
-    .divisor_o(coordinate_v),
-    .quotient_valid_i(divided_coordinate),
-    .quotient_i(quotient),
-    .point_valid_o(point_valid),
+    .valid_i(closed & found),
+    .direction_i(nearest_payload[2*Width+:3*Width]),
+    .v_i(nearest_payload[Width+:Width]),
+    .d_i(nearest_payload[0+:Width]),
+    .valid_o(point_valid),
     .point_o(point)
   );
 
@@ -382,16 +325,15 @@ module hit_test_pipeline #(
 
   always_comb begin
     events_o = '0;
-    events_o[hit_test_pkg::CountTests]          = take & valid_i;
+    events_o[hit_test_pkg::CountTests]          = advance & valid_i;
     events_o[hit_test_pkg::CountMisses]         = advance & decided_q & miss_q;
     events_o[hit_test_pkg::CountHits]           = advance & sure_hit;
     events_o[hit_test_pkg::CountDoubts]         = advance & (report == hit_test_pkg::ReportDoubt);
     events_o[hit_test_pkg::CountNearTies]       = advance & (report == hit_test_pkg::ReportNearTie);
-    events_o[hit_test_pkg::CountDistances]      = advance & wants_t;
-    events_o[hit_test_pkg::CountCoordinates]    = coordinate_taken;
-    events_o[hit_test_pkg::CountIdleClocks]     = take & ~valid_i;
+    events_o[hit_test_pkg::CountDistances] = advance & decided_q & hit_q;
+    events_o[hit_test_pkg::CountPoints] = advance & point_valid;
+    events_o[hit_test_pkg::CountIdleClocks]     = advance & ~valid_i;
     events_o[hit_test_pkg::CountOutputStalls]   = ~advance;
-    events_o[hit_test_pkg::CountQuotientStalls] = advance & hold_q;
   end
 
 endmodule

@@ -60,13 +60,12 @@ package hit_test_pkg;
     CountDoubts         = 4'd3,
     CountNearTies       = 4'd4,
     CountDistances      = 4'd5,  // divisions for t
-    CountCoordinates    = 4'd6,  // divisions for the coordinates of P
+    CountPoints         = 4'd6,  // three divisions each
     CountIdleClocks     = 4'd7,  // a lane could have taken a test, and none was there
-    CountOutputStalls   = 4'd8,  // a lane stood still because nobody took its result
-    CountQuotientStalls = 4'd9   // a lane took no test because too many points were wanted
+    CountOutputStalls   = 4'd8   // a lane stood still because nobody took its result
   } count_e;
 
-  localparam int unsigned NumCounts = 10;
+  localparam int unsigned NumCounts = 9;
 
   // verilator lint_on UNUSEDPARAM
 
