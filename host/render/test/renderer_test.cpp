@@ -157,15 +157,15 @@ TEST(Renderer, ProgressReachesOneAndCanCancel) {
   const Bvh bvh(scene);
   RenderStats stats;
   double last = 0.0;
-  (void)render(scene, bvh, kCamera, size(100, 100, 2), cpu(), stats, [&](double done) {
+  (void)render(scene, bvh, kCamera, size(300, 300, 2), cpu(), stats, [&](double done) {
     EXPECT_GT(done, last);
     last = done;
     return true;
   });
   EXPECT_EQ(last, 1.0);
-  (void)render(scene, bvh, kCamera, size(100, 100), cpu(), stats, [](double) { return false; });
+  (void)render(scene, bvh, kCamera, size(300, 300), cpu(), stats, [](double) { return false; });
   EXPECT_TRUE(stats.cancelled);
-  EXPECT_LT(stats.rays, 100u * 100u);
+  EXPECT_LT(stats.rays, 300u * 300u);
 }
 
 TEST(Renderer, ATestersExceptionReachesTheCaller) {
