@@ -11,14 +11,14 @@
 namespace raygate {
 
 /// The nearest sure hit of a burst, as far as float32 can tell: near ties are reported beside it.
-struct NearestHit {
+struct BurstHit {
   std::uint32_t bundle = 0, lane = 0;  ///< whose burst: index into the batch, lane of the bundle
   std::uint32_t record = 0;            ///< which of the bundle's records
   float t = 0.0f;                      ///< d / (I . N), positive and normal
   std::uint32_t t_error = 0;  ///< at most 2^(6 + t_error) floats lie between t and the truth
   glm::vec3 point{0.0f};      ///< P = d I / (I . N)
 
-  friend bool operator==(const NearestHit& a, const NearestHit& b);  ///< of all bits
+  friend bool operator==(const BurstHit& a, const BurstHit& b);  ///< of all bits
 };
 
 /// A test that float32 leaves open.
@@ -36,7 +36,7 @@ struct TestReport {
 /// What a batch of bursts gave. Both in the order of the batch, bundle by bundle and in it lane by
 /// lane; the reports of a burst in the order in which they arose.
 struct BurstResults {
-  std::vector<NearestHit> hits;
+  std::vector<BurstHit> hits;
   std::vector<TestReport> reports;
 
   void clear() {
@@ -48,16 +48,16 @@ struct BurstResults {
 /// What a unit has done since it was made. Clocks are 0 where nothing is simulated; idle clocks and
 /// stalls are counted for each lane of the hardware, so that they add up to lanes * clocks - tests.
 struct BurstCounters {
-  std::uint64_t tests = 0;            ///< misses + hits + doubts
-  std::uint64_t misses = 0;           ///< surely missed
-  std::uint64_t hits = 0;             ///< surely hit, near ties included
-  std::uint64_t doubts = 0;           ///< neither
-  std::uint64_t near_ties = 0;        ///< sure hits reported beside the one that was kept
-  std::uint64_t distances = 0;        ///< divisions for t
-  std::uint64_t coordinates = 0;      ///< divisions for the coordinates of P
-  std::uint64_t clocks = 0;           ///< simulated clock cycles
-  std::uint64_t idle_clocks = 0;      ///< no test was there
-  std::uint64_t output_stalls = 0;    ///< a result was not taken
+  std::uint64_t tests = 0;          ///< misses + hits + doubts
+  std::uint64_t misses = 0;         ///< surely missed
+  std::uint64_t hits = 0;           ///< surely hit, near ties included
+  std::uint64_t doubts = 0;         ///< neither
+  std::uint64_t near_ties = 0;      ///< sure hits reported beside the one that was kept
+  std::uint64_t distances = 0;      ///< divisions for t
+  std::uint64_t coordinates = 0;    ///< divisions for the coordinates of P
+  std::uint64_t clocks = 0;         ///< simulated clock cycles
+  std::uint64_t idle_clocks = 0;    ///< no test was there
+  std::uint64_t output_stalls = 0;  ///< a result was not taken
 };
 
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest

@@ -19,7 +19,7 @@ std::string hex(std::span<const float> words) {
   return text;
 }
 
-std::string describe(const NearestHit& hit) {
+std::string describe(const BurstHit& hit) {
   const float words[] = {hit.t, hit.point.x, hit.point.y, hit.point.z};
   return "nearest is record " + std::to_string(hit.record) + ", t and P" + hex(words) +
          ", error of t " + std::to_string(hit.t_error);
@@ -60,7 +60,7 @@ void require_same_list(std::span<const RayBundle> batch, std::span<const Result>
 
 void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
                   const BurstResults& expected) {
-  require_same_list<NearestHit>(batch, actual.hits, expected.hits);
+  require_same_list<BurstHit>(batch, actual.hits, expected.hits);
   require_same_list<TestReport>(batch, actual.reports, expected.reports);
 }
 

@@ -53,7 +53,7 @@ std::int64_t floats_between(float from, float to) {
 
 }  // namespace
 
-bool operator==(const NearestHit& a, const NearestHit& b) {
+bool operator==(const BurstHit& a, const BurstHit& b) {
   const auto same = [](float x, float y) {
     return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
   };
@@ -86,7 +86,7 @@ void CpuBurstUnit::run(std::span<const RayBundle> batch, BurstResults& results) 
 void CpuBurstUnit::run_burst(const RayBundle& bundle, std::uint32_t index, std::uint32_t lane,
                              BurstResults& results) {
   const glm::vec3 direction = bundle.lane_direction(static_cast<int>(lane));
-  NearestHit best{index, lane, 0, 0.0f, 0, glm::vec3{0.0f}};
+  BurstHit best{index, lane, 0, 0.0f, 0, glm::vec3{0.0f}};
   bool found = false;
   const auto report = [&](std::uint32_t record, TestReport::Kind kind) {
     results.reports.push_back({index, lane, record, kind});

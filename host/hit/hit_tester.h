@@ -68,8 +68,8 @@ struct HitCounters {
   std::uint64_t clocks = 0;        ///< simulated clock cycles; 0 where nothing is simulated
 
   // Clocks of the unit's lanes without a new test, by cause; only the pipelined unit has any.
-  std::uint64_t idle_clocks = 0;      ///< no test was there
-  std::uint64_t output_stalls = 0;    ///< a result was not taken
+  std::uint64_t idle_clocks = 0;    ///< no test was there
+  std::uint64_t output_stalls = 0;  ///< a result was not taken
 
   HitCounters& operator+=(const HitCounters& other);
 };

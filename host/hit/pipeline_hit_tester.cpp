@@ -42,7 +42,7 @@ void PipelineHitTester::test(std::span<const RayBundle> batch, HitResults& resul
       }
     }
   };
-  for (const NearestHit& hit : found_.hits) {
+  for (const BurstHit& hit : found_.hits) {
     take_reports([&](const TestReport& r) {
       return r.bundle != hit.bundle ? r.bundle < hit.bundle : r.lane <= hit.lane;
     });
