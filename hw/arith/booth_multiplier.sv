@@ -61,9 +61,9 @@ module booth_multiplier #(
 
     if (ConstantRow) begin : gen_bare
       if (k == 0) begin : gen_first  // the 1 finds room above row 0
-        assign rows[0+:2*Width] = (2 * Width)'({1'b1, row});
+        assign rows[2*Width+:2*Width] = (2 * Width)'({1'b1, row});
       end else begin : gen_next
-        assign rows[2*Width*k+:2*Width] = (2 * Width)'(row) << 2 * k;
+        assign rows[2*Width*(k+1)+:2*Width] = (2 * Width)'(row) << 2 * k;
       end
     end else begin : gen_full
       // n fits below the last row and ~n above row 0, all but one: at bit Width + 1 the 1 and ~n[0]
@@ -82,8 +82,8 @@ module booth_multiplier #(
     end
   end
 
-  if (ConstantRow) begin : gen_constant_row
-    assign rows[2*Width*Digits+:2*Width] = {~negative[Width-2:0], (Width + 1)'(negative)};
+  if (ConstantRow) begin : gen_constant_row  // first in the tree, for it is known first
+    assign rows[0+:2*Width] = {~negative[Width-2:0], (Width + 1)'(negative)};
   end
 
   // Add

@@ -2,6 +2,7 @@
 //   the sum of the tree's words = the sum over k of (row[k] + n[k] - n[k] * 2**25) * 4**k, mod 2**48.
 // Shown in two parts, for a sum of so many words is beyond a SAT solver: each word is that of rows
 // that are 0, plus the row in its place; and the words of rows that are 0 are what signs need.
+// With 14 words the row of constants comes first.
 // "assembly" is made of the multiplier itself by booth_assembly.tcl.
 module booth_assembly_sums #(
   parameter int unsigned Words = 13
@@ -17,8 +18,9 @@ module booth_assembly_sums #(
 
   for (genvar k = 0; k < Words; k++) begin : gen_word
     logic [47:0] row;
-    if (k < 13) begin : gen_row
-      assign row = 48'(row_values[25*k +: 25]) << 2 * k;
+    localparam int Digit = k - (Words - 13);
+    if (Digit >= 0) begin : gen_row
+      assign row = 48'(row_values[25*Digit +: 25]) << 2 * Digit;
     end else begin : gen_none
       assign row = '0;
     end
