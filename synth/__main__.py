@@ -1,6 +1,7 @@
 """`python3 -m synth`: see `--help`, or synth/README.md."""
 
 import argparse
+import resource
 import sys
 
 from synth import (adder_study, catalogue, measure, pictures, prove, report, store, tables, tools,
@@ -23,7 +24,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--exp-width", help="exponent bits of a float core")
     parser.add_argument("--frac-width", help="fraction bits of a float core")
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; those installed if not given")
-    parser.add_argument("--budget", default="100", help="groupings tried in each search (%(default)s)")
+    parser.add_argument("--budget", default="24", help="groupings tried in each search (%(default)s)")
     parser.add_argument("--jobs", default="2", help="at once (%(default)s)")
     given = parser.parse_args()
     for name, value in vars(given).items():
@@ -52,8 +53,9 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     """Measures one design and prints it."""
     design = one_design(given)
     cells = design.top == "adder"
-    flows = ("cells", "kept", "default", "fast") if cells else ("small", "fast")
-    records, failures = measure.measure([(design.name, design, flows)], targets)
+    flows = ("cells", "kept", "default", "fast") if cells else ("small", "parts" if design.clock else "fast")
+    plan = {name: flows if name.startswith("osu") else catalogue.PLACED for name in targets.names}
+    records, failures = measure.measure([catalogue.Row(design.name, design, plan)], targets)
     print(report.section_tables(records, design.name))
     timed = [record for record in records if "path" in record]
     if timed:
@@ -82,11 +84,12 @@ def kept_structure(design: catalogue.Design) -> bool:
 
 def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     """Measures everything, writes the report and prints its tables."""
-    rows = catalogue.report_designs()
+    rows = catalogue.report_rows()
     if given.top == "adders":
-        rows = [row for row in rows if row[1].top == "adder"]
+        rows = [row for row in rows if row.design.top == "adder"]
     records, failures = measure.measure(rows, targets)
-    sections = [("The paper's delay model", adder_study.model_table())]
+    sections = [("The paper's delay model", adder_study.model_table()),
+                ("Clock rates", report.clock_table(records))]
     if given.top is None:
         found = []
         for name, flow, look_ahead in adder_study.SEARCHES:
@@ -101,11 +104,14 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
         sections.append(("Best groups of 48 bits", tables.markdown(
             ["library", "flow", "groups add by", "widths, lowest first", "area", "ns", "tried"],
             found)))
+    sections = [section for section in sections if section[1]]
     report.write(records, [*sections, ("Pictures", pictures.draw(records))])
     for section in dict.fromkeys(record["section"] for record in records):
         print(report.section_tables(records, section))
     for title, text in sections:
         print(f"{title}\n\n{text}")
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time.", file=sys.stderr)
     print(f"Report: {(store.OUT / 'report.md').relative_to(tools.ROOT)}")
     return report_failures(failures)
 

@@ -11,11 +11,9 @@ WIDTH = 48
 # (library, flow, groups by look-ahead): where group widths are searched for.
 SEARCHES = [
     ("osu035", "cells", False),
-    ("osu035", "kept", False),
     ("osu035", "kept", True),
-    ("osu035", "fast", True),
-    ("osu018", "kept", True),
-    ("osu018", "fast", True),
+    ("osu035", "fast", False),
+    ("osu018", "fast", False),
 ]
 
 

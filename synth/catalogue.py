@@ -101,6 +101,7 @@ FLOWS = {
     "default": "the tool's own recipe (`synth; abc`)",
     "small": "the tool's own front end, then logic shared and mapped by ABC in one quick pass",
     "fast": "structure preserved by Yosys, then restructured for speed by ABC",
+    "parts": "fast, each float core on its own, then joined",
 }
 
 
@@ -166,26 +167,41 @@ ADDERS = [
 ]
 
 
-def report_designs() -> list[tuple[str, Design, tuple[str, ...]]]:
-    """The rows of the report: section, design, and the flows that make sense for it."""
+@dataclasses.dataclass(frozen=True)
+class Row:
+    """A design of the report, and the flows that earn their time on each target."""
+
+    section: str
+    design: Design
+    flows: dict[str, tuple[str, ...]]  # by the target's name; an FPGA's only one is PLACED
+
+
+PLACED = ("placed",)
+
+
+def report_rows() -> list[Row]:
+    """The rows of the report."""
     rows = []
-    flows = ("kept", "default", "fast")
+    placed = {fpga.name: PLACED for fpga in FPGAS}
     for name, kind, widths, look_ahead in ADDERS:
-        has_cells = kind in ("ripple", "uniform", "graded")
-        rows.append(("48-bit adders",
-                     design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
-                     ("cells", *flows) if has_cells else flows))
-    flows = ("small", "fast")
+        cells = ("cells",) if kind in ("ripple", "uniform", "graded") else ()
+        rows.append(Row("48-bit adders",
+                        design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
+                        {"osu035": (*cells, "kept", "default", "fast"),
+                         "osu018": (*cells, "fast"), **placed}))
     section = "24 x 24 multipliers"
-    rows.append((section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13),
-                 flows))
-    rows += [(section, design("booth_multiplier", f"booth-{kind}", kind, Width=24), flows)
-             for kind in adder_kinds()]
-    rows.append((section, design("tool_multiplier", "tool-multiplier", Width=24), flows))
-    for top in ("fp_multiplier", "fp_adder", "fp_divider"):
-        rows += [("binary32 cores", design(top, f"{top}-{kind}".replace("_", "-"), kind), flows)
-                 for kind in ("ripple", "graded", "prefix") if (HW / "fp" / f"{top}.sv").exists()]
-    for top in ("hit_test_unit", "general_hit_test_unit"):
-        if (HW / "hit_test" / f"{top}.sv").exists():
-            rows.append(("units", design(top), flows))
+    both = {"osu035": ("small", "fast"), "osu018": ("fast",)}
+    rows.append(Row(section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13), both))
+    rows += [Row(section, design("booth_multiplier", f"booth-{kind}", kind, Width=24),
+                 {**both, **(placed if kind == "graded" else {})}) for kind in adder_kinds()]
+    rows.append(Row(section, design("booth_multiplier", "booth-graded-14-rows", "graded", Width=24,
+                                    ConstantRow="1'b1"), both))
+    rows.append(Row(section, design("tool_multiplier", "tool-multiplier", Width=24),
+                    {**both, **placed}))
+    rows += [Row("binary32 cores", design(top, top.replace("_", "-"), "graded"), both)
+             for top in ("fp_multiplier", "fp_adder", "fp_divider")]
+    rows += [Row("units", design("hit_test_unit"), {"osu035": ("small", "parts"),
+                                                    "osu018": ("parts",)}),
+             Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
+             Row("units", design("hit_test_pipeline"), {"osu035": ("parts",)})]
     return rows

@@ -7,7 +7,8 @@ import re
 from synth import store, tools
 from synth.catalogue import Design, Library
 
-ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "small": "small.abc", "fast": "fast.abc"}
+ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "small": "small.abc", "fast": "fast.abc",
+               "parts": "fast.abc"}
 
 # One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
 PATH_STEP = re.compile(
@@ -70,7 +71,9 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
         "CLOCK": design.clock,
     })
     delay, path = critical_path(timing)
+    clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
     return {
+        **clocked,
         "area": area,
         "delay_ns": delay,
         "cells": cells,
@@ -85,6 +88,18 @@ def cell_counts(stat: str) -> tuple[int, dict[str, int]]:
         raise tools.ToolFailed("Yosys stated no area: a cell is missing from the library")
     cells = re.findall(r"^ {5}(\w+) +(\d+)$", stat, re.M)
     return round(float(area.group(1))), {name: int(count) for name, count in cells}
+
+
+def registers(netlist: str, path: list[dict]) -> dict[str, str]:
+    """What the first and the last register of a path hold, or the port that it begins or ends at."""
+    def name(pin: str) -> str:
+        instance, _, port = pin.partition("/")
+        if not port:
+            return instance
+        output = re.search(rf"\b{re.escape(instance)} \([^;]*?\.Q\(\\?([^ )]+)", netlist)
+        return output.group(1) if output else instance
+
+    return {"from": name(path[0]["pin"]), "to": name(path[-1]["pin"])}
 
 
 def critical_path(report: str) -> tuple[float, list[dict]]:

@@ -3,7 +3,7 @@
 import dataclasses
 
 from synth import fpga, mapping, runner, tools
-from synth.catalogue import FPGAS, LIBRARIES, Design
+from synth.catalogue import FPGAS, LIBRARIES, Row
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,23 +39,23 @@ def available(names: list[str] | None) -> tuple[str, ...]:
     return tuple(chosen)
 
 
-def measure(rows: list[tuple[str, Design, tuple[str, ...]]],
-            targets: Targets) -> tuple[list[dict], list[str]]:
-    """One record for each (section, design, flows) of `rows`, target and flow; and the failures."""
+def measure(rows: list[Row], targets: Targets) -> tuple[list[dict], list[str]]:
+    """One record for each target and flow of each row; and the failures."""
     jobs, heads = [], []
-    for section, design, flows in rows:
-        head = {"section": section, "design": design.name, "top": design.top,
+    for row in rows:
+        design = row.design
+        head = {"section": row.section, "design": design.name, "top": design.top,
                 "parameters": dict(design.parameters)}
         for library in LIBRARIES:
             if library.name in targets.names:
-                for flow in flows:
+                for flow in row.flows.get(library.name, ()):
                     heads.append({**head, "target": library.name, "flow": flow})
                     jobs.append(runner.Job(
                         f"{design.name} {library.name} {flow}",
                         lambda d=design, t=library, f=flow: mapping.synthesise(d, t, f),
                         lambda got: f"{got['area']:,} / {got['delay_ns']:.2f} ns"))
         for device in FPGAS:
-            if device.name in targets.names:
+            if device.name in targets.names and device.name in row.flows:
                 heads.append({**head, "target": device.name, "flow": "placed"})
                 jobs.append(runner.Job(
                     f"{design.name} {device.name}",

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 from synth import store  # noqa: E402
 from synth.catalogue import FLOWS, LIBRARIES  # noqa: E402
 
-MARKERS = dict(zip(FLOWS, "sovD^", strict=True))
+MARKERS = dict(zip(FLOWS, "sovD^P", strict=True))
 
 
 def draw(records: list[dict]) -> list[str]:

@@ -128,10 +128,13 @@ def all_proofs() -> list[Proof]:
         Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "z3",
               lambda: holds("timetable", "z3", unit, steps=30)),
     ]
-    for section, design, flows in catalogue.report_designs():
+    for row in catalogue.report_rows():
+        design = row.design
         for library in LIBRARIES:
-            for flow in flows:
-                small = section == "48-bit adders"
+            for flow in row.flows.get(library.name, ()):
+                if design.top == "hit_test_pipeline":
+                    continue  # a hundred thousand cells: Verilator would take an hour
+                small = row.section == "48-bit adders"
                 proofs.append(Proof(
                     f"netlist.{design.name}.{library.name}.{flow}", "the netlist and its RTL agree",
                     "simulation", functools.partial(netlists.agree, design, library, flow,

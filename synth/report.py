@@ -46,6 +46,14 @@ def _table(records: list[dict], title: str, columns: list[tuple[str, str]]) -> s
         [design, *(cost(at.get((design, *column))) for column in columns)] for design in designs])
 
 
+def clock_table(records: list[dict]) -> str:
+    """The clock rates of the designs that have a clock, and where their slowest paths run."""
+    return tables.markdown(["unit", "library", "flow", "MHz", "slowest path from", "to"], [
+        [record["design"], TITLES[record["target"]], record["flow"],
+         f"{1000 / record['delay_ns']:.1f}", record["from"], record["to"]]
+        for record in records if "from" in record])
+
+
 def path_table(record: dict) -> str:
     """A critical path, cell by cell (output pins alone: what a cell and its load take)."""
     steps = [step for step in record["path"]]

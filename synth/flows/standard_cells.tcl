@@ -1,6 +1,6 @@
 # Maps one design to a standard-cell library. Everything comes in through the environment:
 #   SOURCES   files to read, packages first        TOP, PARAMETERS   the design
-#   FLOW      cells | kept | default | small | fast
+#   FLOW      cells | kept | default | small | fast | parts
 #   ABC_SCRIPT  what ABC does, as -script FILE, or "" for Yosys's own
 #   LIBERTY   the library                          CONSTRAINTS       driver and load, for ABC
 #   OUT       prefix of the files written
@@ -12,9 +12,13 @@ switch $::env(FLOW) {
     # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
     yosys synth -flatten -noshare -noabc -top $::env(TOP)
   }
-  fast - kept {
+  fast - kept - parts {
     # Nothing here looks across a multiplexer, so carry-select stays carry-select.
     yosys proc
+    if {$::env(FLOW) eq "parts"} {
+      # ABC maps each float core on its own, and once, however often it is instantiated.
+      yosys setattr -mod -set keep_hierarchy 1 *fp_*_stages*
+    }
     yosys flatten
     yosys opt_expr
     yosys opt_merge
@@ -39,6 +43,8 @@ switch $::env(FLOW) {
 }
 yosys dfflibmap -liberty $::env(LIBERTY)
 yosys abc -liberty $::env(LIBERTY) -constr $::env(CONSTRAINTS) {*}$::env(ABC_SCRIPT)
+yosys setattr -mod -unset keep_hierarchy *
+yosys flatten
 yosys splitnets
 yosys opt_clean -purge
 yosys tee -q -o $::env(OUT).stat stat -liberty $::env(LIBERTY)

@@ -32,6 +32,12 @@ class Parsing(unittest.TestCase):
                          ["a_i[0]", "_1_/A", "_1_/Y", "_2_/D"])
         self.assertEqual(steps[2]["delay"], 0.12)
 
+    def test_registers(self):
+        """A path's ends by what its registers hold; a port as itself."""
+        netlist = "DFFPOSX1 _2_ (\n .CLK(clk_i),\n .D(n1),\n .Q(\\u_core.sum_q[3] )\n);\n"
+        self.assertEqual(mapping.registers(netlist, [{"pin": "bus_i[0]"}, {"pin": "_2_/D"}]),
+                         {"from": "bus_i[0]", "to": "u_core.sum_q[3]"})
+
     def test_no_path(self):
         """A design that was not timed is a failure, not 0 ns."""
         with self.assertRaises(tools.ToolFailed):
