@@ -1,7 +1,6 @@
 #include "host/cli/engines.h"
 
 #include <memory>
-#include <utility>
 
 #include "host/hit/check_burst_unit.h"
 #include "host/hit/check_plane_unit.h"
@@ -44,11 +43,11 @@ std::unique_ptr<BurstUnit> make_burst_unit(Engine engine, int lanes) {
 }  // namespace
 
 HitTesterFactory make_tester_factory(const Options& options) {
-  const auto [engine, lanes] = std::pair(options.engine, options.lanes);
+  const Engine engine = options.engine;
   if (options.unit == "serial") {
     return [engine] { return std::make_unique<SerialHitTester>(make_plane_unit(engine)); };
   }
-  return [engine, lanes] {
+  return [engine, lanes = options.lanes] {
     return std::make_unique<PipelineHitTester>(make_burst_unit(engine, lanes));
   };
 }

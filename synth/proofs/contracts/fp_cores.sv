@@ -2,7 +2,8 @@
 module fp_multiplier #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Adder = 0
+  parameter int unsigned Adder = 0,
+  parameter bit ConstantRow = 1'b0
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
