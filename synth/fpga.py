@@ -30,10 +30,13 @@ def _place(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
         environment["WRAPPER"] = str(wrapper)
     tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "yosys.log", environment)
     rates = []
+    # Relative names, for the ECP5's nextpnr runs in a sandbox with a /tmp of its own.
+    netlist = (folder / "netlist.json").relative_to(tools.ROOT)
     for seed in fpga.seeds:
         report = folder / f"placed.{seed}.json"
-        tools.run([fpga.tool, *fpga.arguments, "--json", folder / "netlist.json", "--seed", seed,
-                   "--freq", fpga.wanted_mhz, "--timing-allow-fail", "--report", report, "--quiet"],
+        tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed,
+                   "--freq", fpga.wanted_mhz, "--timing-allow-fail", "--report",
+                   report.relative_to(tools.ROOT), "--quiet"],
                   folder / f"nextpnr.{seed}.log")
         placed = json.loads(report.read_text())
         rates.append(max(clock["achieved"] for clock in placed["fmax"].values()))
