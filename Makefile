@@ -4,7 +4,7 @@ SCENE ?= scenes/cornell.obj
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
 
-.PHONY: help verilate render bench test stress lint format clean
+.PHONY: help verilate render bench test soak lint format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -26,7 +26,7 @@ bench: ## time each scene with each engine: a table of one run
 test: everything ## build and run all tests, lint among them
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
 
-stress: everything ## ten million tests of the pipelined unit with each number of lanes
+soak: everything ## ten million tests of the pipelined unit with each number of lanes
 	@RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 
 lint: everything ## check style and pitfalls of all sources
@@ -46,3 +46,4 @@ everything:
 	@cmake --build build -j $(JOBS)
 
 include synth/synth.mk
+include host/bench/stress/stress.mk

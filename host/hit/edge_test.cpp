@@ -1,8 +1,14 @@
 #include "host/hit/edge_test.h"
 
 #include <cassert>
+#include <limits>
 
 namespace raygate {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
 
 RAYGATE_LANES void test_edges(const RayBundle& bundle, std::span<EdgeVerdict> verdicts) {
   assert(verdicts.size() == bundle.record_count);
@@ -17,16 +23,19 @@ RAYGATE_LANES void test_edges(const RayBundle& bundle, std::span<EdgeVerdict> ve
       continue;
     }
     const float side = record.d > 0.0f ? 1.0f : -1.0f;  // exact: changes signs alone
-    IntLanes miss = {}, short_of_hit = {};
+    IntLanes miss = {}, hit = IntLanes{} - 1;
+    FloatLanes sum = {};
     for (int k = 0; k < 3; ++k) {
       const glm::vec3 edge = side * record.edges[k];
       const float bound = record.bounds[k];
       const FloatLanes u = (x * edge.x + y * edge.y) + z * edge.z;
       miss |= u < -bound;
-      short_of_hit |= u <= bound;
+      hit &= u > bound;
+      sum += u;
     }
-    const std::uint32_t masks = mask_of(miss, short_of_hit);
-    verdicts[i] = {~(masks >> 8) & bundle.lanes, masks & bundle.lanes};
+    hit &= sum < kInfinity;  // with infinity in a direction, nothing is sure, nor with a NaN
+    const std::uint32_t masks = mask_of(miss, hit);
+    verdicts[i] = {masks >> 8 & bundle.lanes, masks & bundle.lanes};
   }
 }
 

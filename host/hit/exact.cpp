@@ -127,6 +127,11 @@ int order_of_planes(const Ray& ray, const Corners& first, const Corners& second)
 
 }  // namespace
 
+bool is_usable(const glm::vec3& direction) {
+  return std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z) &&
+         direction != glm::vec3(0.0f);
+}
+
 int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
   const Estimate side =
       dot(glm::dvec3(ray.direction), {difference(a, ray.origin), difference(b, a)});
@@ -143,6 +148,7 @@ int plane_side(const glm::vec3& origin, const Corners& t) {
 // are positive. So all edges must have the sign of the plane, and then t = det / (I . N) > 0, as I
 // . N is the sum of the three.
 bool hits_triangle(const Ray& ray, const Corners& t) {
+  if (!is_usable(ray.direction)) return false;
   const int side = plane_side(ray.origin, t);
   return side != 0 && edge_side(ray, t[0], t[1]) == side && edge_side(ray, t[1], t[2]) == side &&
          edge_side(ray, t[2], t[0]) == side;

@@ -9,6 +9,10 @@ namespace raygate {
 /// The vertices of a triangle, in its order.
 using Corners = std::array<glm::vec3, 3>;
 
+/// Whether a ray can go this way: all components finite, not all of them 0. In all others it hits
+/// nothing.
+[[nodiscard]] bool is_usable(const glm::vec3& direction);
+
 /// A ray: origin + t direction for t > 0, an open beginning: what the origin lies on, and what is
 /// behind it, is not hit. Where a ray has a limit, its end is open too: hits have t < limit (see
 /// NearestHits in host/render). All components finite; coordinates, the triangles' too,

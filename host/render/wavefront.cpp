@@ -34,7 +34,10 @@ void Wavefront::make_packets(const glm::vec3& origin, std::span<const glm::vec3>
   active_.clear();
   for (std::size_t first = 0; first < directions.size(); first += kLanes) {
     const std::size_t count = std::min<std::size_t>(kLanes, directions.size() - first);
-    LaneMask left = (1u << count) - 1;
+    LaneMask left = 0;
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (is_usable(directions[first + lane])) left |= 1u << lane;
+    }
     while (left != 0) {
       const int octant = octant_of(directions[first + std::countr_zero(left)]);
       active_.push_back(static_cast<std::uint32_t>(packets_.size()));

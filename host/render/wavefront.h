@@ -29,7 +29,8 @@ class Wavefront {
 
   /// Finds the nearest hit of each ray from `origin`, whose records `records` holds. Directions
   /// scaled (see scaled_direction); each eight in a row should go about the same way. With
-  /// `limits`, one a ray, only hits with t < limits[i] count (see NearestHits::reset).
+  /// `limits`, one a ray, only hits with t < limits[i] count (see NearestHits::reset). Directions
+  /// that are zero or not finite hit nothing.
   void trace(const glm::vec3& origin, std::span<const glm::vec3> directions, RecordCache& records,
              std::span<const float> limits = {});
 
