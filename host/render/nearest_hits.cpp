@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/render/stopwatch.h"
+
 namespace raygate {
 
 bool NearestHits::offer(std::uint32_t number, const Ray& ray, const SureHit& hit) {
@@ -12,8 +14,10 @@ bool NearestHits::offer(std::uint32_t number, const Ray& ray, const SureHit& hit
 bool NearestHits::offer(std::uint32_t number, const Ray& ray, const Doubt& doubt) {
   ++counters_.exact_inside;
   const Corners& corners = bvh_.corners_of(doubt.tag);
-  if (!hits_triangle(ray, corners)) return false;
-  return take_if_nearer(number, ray, {doubt.tag, doubt.point, hit_distance(ray, corners)});
+  Stopwatch watch;
+  const bool hit = hits_triangle(ray, corners);
+  counters_.seconds += watch.lap();
+  return hit && take_if_nearer(number, ray, {doubt.tag, doubt.point, hit_distance(ray, corners)});
 }
 
 bool NearestHits::within_limit(std::uint32_t number, const Ray& ray, const NearestHit& hit) {
@@ -21,7 +25,10 @@ bool NearestHits::within_limit(std::uint32_t number, const Ray& ray, const Neare
   if (hit.t.high < limits_[number]) return true;
   if (hit.t.low >= limits_[number]) return false;
   ++counters_.exact_depth;
-  return compare_hit_to_limit(ray, bvh_.corners_of(hit.slot), limits_[number]) < 0;
+  Stopwatch watch;
+  const int order = compare_hit_to_limit(ray, bvh_.corners_of(hit.slot), limits_[number]);
+  counters_.seconds += watch.lap();
+  return order < 0;
 }
 
 bool NearestHits::take_if_nearer(std::uint32_t number, const Ray& ray, const NearestHit& hit) {
@@ -30,7 +37,9 @@ bool NearestHits::take_if_nearer(std::uint32_t number, const Ray& ray, const Nea
   if (best.slot != NearestHit::kNone && hit.t.high >= best.t.low) {
     if (hit.t.low > best.t.high) return false;
     ++counters_.exact_depth;
+    Stopwatch watch;
     const int order = compare_hits(ray, bvh_.corners_of(hit.slot), bvh_.corners_of(best.slot));
+    counters_.seconds += watch.lap();
     if (order > 0) return false;
     if (order == 0 && bvh_.triangle_of(hit.slot) > bvh_.triangle_of(best.slot)) return false;
   }

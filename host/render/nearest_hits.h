@@ -31,6 +31,7 @@ class NearestHits {
   struct Counters {
     std::uint64_t exact_inside = 0;  ///< doubts about edges settled
     std::uint64_t exact_depth = 0;   ///< pairs of hits, or a hit and a limit, put in order
+    double seconds = 0.0;            ///< that both took
   };
 
   explicit NearestHits(const Bvh& bvh) : bvh_(bvh) {}

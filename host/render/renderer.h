@@ -31,8 +31,8 @@ struct RenderStats {
   std::uint64_t exact_inside = 0;  ///< doubts about edges that exact arithmetic settled
   std::uint64_t exact_depth = 0;   ///< pairs of hits that exact arithmetic put in order
   double traverse_seconds = 0.0;   ///< boxes, and the records made on first touch
-  double hit_seconds = 0.0;        ///< in HitTester::test
-  double doubt_seconds = 0.0;      ///< merging its reports, exact arithmetic included
+  double hit_seconds = 0.0;        ///< in HitTester::test, and merging its reports
+  double doubt_seconds = 0.0;      ///< exact arithmetic about what they leave open
   double shade_seconds = 0.0;      ///< making the rays and shading them
   double wall_seconds = 0.0;
   bool cancelled = false;  ///< the progress function said stop: the film has holes

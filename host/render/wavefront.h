@@ -21,8 +21,8 @@ class Wavefront {
   /// Where the time went.
   struct Seconds {
     double traverse = 0.0;  ///< boxes, and records made on first touch
-    double hit = 0.0;       ///< in HitTester::test
-    double doubt = 0.0;     ///< merging the reports, exact arithmetic included
+    double hit = 0.0;       ///< in HitTester::test, and merging its reports
+    double doubt = 0.0;     ///< exact arithmetic about what they leave open
   };
 
   Wavefront(const Bvh& bvh, HitTester& tester);

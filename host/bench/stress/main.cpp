@@ -54,8 +54,10 @@ int run_stress(int argc, char** argv) {
   const auto write = [&] {
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (json_file.empty() || (std::ofstream(json_file) << report.json())) return;
-    throw std::runtime_error(json_file + ": cannot be written");
+    if (json_file.empty()) return;
+    const std::string json = report.json();  // takes a while: opening the file empties it
+    if (!(std::ofstream(json_file) << json))
+      throw std::runtime_error(json_file + ": cannot be written");
   };
   report.outcomes = run(suites, report.variants, report.options, [&](const SuiteOutcome& outcome) {
     report.outcomes.push_back(outcome);  // a long run that is cut short leaves what it has

@@ -24,6 +24,7 @@ ordered_json to_json(const Tally& tally) {
           {"ties", tally.ties},
           {"wrong_ties", tally.wrong_ties},
           {"leaks", tally.leaks},
+          {"escapes", tally.escapes},
           {"double_hits", tally.double_hits},
           {"wrong_nearest", tally.wrong_nearest},
           {"wrong_tied_nearest", tally.wrong_tied_nearest},

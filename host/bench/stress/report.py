@@ -20,6 +20,11 @@ def table(head: list[str], rows: list[list[str]]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def number(value: float | None, form: str) -> str:
+    """JSON has no infinity: null stands for it."""
+    return "infinite" if value is None else format(value, form)
+
+
 def per_million(count: int, of: int) -> str:
     """A rate, 0 only where there was none."""
     if not of:
@@ -51,10 +56,10 @@ def variants_table(run: dict, known: dict[str, tuple[str, str]]) -> str:
         wrong = t["wrong"] + (t["wrong_ties"] if variant["exact"] else 0)
         nearest = t["wrong_nearest"] + (t["wrong_tied_nearest"] if variant["exact"] else 0)
         rows.append([variant["name"], f"{t['tests']:,}", f"{wrong:,}",
-                     per_million(wrong, t["tests"]), f"{t['leaks']:,}", f"{t['double_hits']:,}",
+                     per_million(wrong, t["tests"]), f"{t['leaks']:,}", f"{t['escapes']:,}", f"{t['double_hits']:,}",
                      f"{nearest:,}", f"{100 * t['doubts'] / max(t['tests'], 1):.2f} %", area, delay])
-    return table(["variant", "tests", "wrong", "wrong per million", "leaks", "double hits",
-                  "wrong nearest", "doubts", "cores, area", "slowest core, ns"], rows)
+    return table(["variant", "tests", "wrong", "wrong per million", "leaks", "of them escapes",
+                  "double hits", "wrong nearest", "doubts", "cores, area", "slowest core, ns"], rows)
 
 
 def suites_table(run: dict) -> str:
@@ -70,19 +75,20 @@ def suites_table(run: dict) -> str:
 
 
 def closed_table(run: dict) -> str:
-    """Leaks and double hits per million rays from inside closed meshes."""
+    """Per million rays from inside closed meshes."""
     rows = []
     for suite in run["suites"]:
         if any(t["leaks"] or t["double_hits"] for t in suite["variants"]):
             rows.append([suite["name"], *(
-                per_million(t["leaks"], t["rays"]) + " / " + per_million(t["double_hits"], t["rays"])
+                " / ".join(per_million(t[key], t["rays"])
+                           for key in ("leaks", "escapes", "double_hits"))
                 for t in suite["variants"])])
     return table(["suite", *(v["name"] for v in run["variants"])], rows)
 
 
 def errors_table(run: dict) -> str:
     def cells(errors: dict, form: str) -> list[str]:
-        return [format(errors[key], form) if errors["count"] else "-"
+        return [number(errors[key], form) if errors["count"] else "-"
                 for key in ("median", "p99", "max")]
 
     rows = []
@@ -109,10 +115,10 @@ def angles_table(run: dict) -> str:
         for variant in exact:
             errors = variant["total"]["t_ulp_by_angle"][decade]
             row.append("-" if not errors["count"] else
-                       f"{errors['median']:.2g} / {errors['p99']:.3g} / {errors['max']:.3g}")
+                       " / ".join(number(errors[key], ".3g") for key in ("median", "p99", "max")))
         rows.append(row)
     rows.append(["largest part of the proven bound",
-                 *(f"{v['total']['worst_of_bound']:.3f}" for v in exact)])
+                 *(number(v["total"]["worst_of_bound"], ".3f") for v in exact)])
     return table(["sine of the angle", *(v["name"] for v in exact)], rows)
 
 
@@ -135,8 +141,9 @@ def plot_angles(run: dict, file: pathlib.Path) -> None:
     figure, axes = plt.subplots(figsize=(8, 5), layout="constrained")
     for variant in run["variants"]:
         points = [(10 ** -(d + 0.5), e["p99"])
-                  for d, e in enumerate(variant["total"]["t_ulp_by_angle"]) if e["count"] > 100]
-        axes.loglog(*zip(*points), marker="o", label=variant["name"])
+                  for d, e in enumerate(variant["total"]["t_ulp_by_angle"])
+                  if e["count"] > 100 and e["p99"] is not None]
+        axes.loglog([x for x, _ in points], [y for _, y in points], marker="o", label=variant["name"])
     axes.set_xlabel("sine of the angle between ray and plane")
     axes.set_ylabel("error of t, 99th percentile, ulp")
     axes.legend(fontsize="small")
@@ -177,7 +184,9 @@ measured them; a serial test takes 7 clocks whatever the width.
 {suites_table(run)}
 {suites}
 
-## Rays from inside closed meshes: leaks / double hits per million
+## Rays from inside closed meshes: leaks / escapes among them / double hits per million
+
+A leak is an even number of hits, an escape none at all.
 
 {closed_table(run)}
 ## Errors of t and P

@@ -69,10 +69,12 @@ void Errors::add(const Errors& other) {
 
 Errors::Summary Errors::summary() const {
   if (sample_.empty()) return {};
-  std::vector<double> sorted = sample_;
-  std::ranges::sort(sorted);
+  std::vector<double> sample = sample_;
   const auto at = [&](double fraction) {
-    return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1))];
+    const auto place = sample.begin() + static_cast<std::ptrdiff_t>(
+                                            fraction * static_cast<double>(sample.size() - 1));
+    std::ranges::nth_element(sample, place);
+    return *place;
   };
   return {count_, at(0.5), at(0.99), max_};
 }
@@ -84,6 +86,7 @@ void Tally::add(const Tally& other) {
   ties += other.ties;
   wrong_ties += other.wrong_ties;
   leaks += other.leaks;
+  escapes += other.escapes;
   double_hits += other.double_hits;
   wrong_nearest += other.wrong_nearest;
   wrong_tied_nearest += other.wrong_tied_nearest;
@@ -134,6 +137,7 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
       ++tally.rays;
       tally.hits += hits;
       tally.leaks += shot.inside && hits % 2 == 0;
+      tally.escapes += shot.inside && hits == 0;
       tally.double_hits += shot.inside && hits > true_hits;
       if (answers.nearest[ray_number] != truth.nearest[ray]) {
         ++(truth.nearest_tied[ray] ? tally.wrong_tied_nearest : tally.wrong_nearest);

@@ -46,6 +46,7 @@ struct Tally {
   std::uint64_t ties = 0;           ///< tests that only the tie-break decides
   std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact variants only
   std::uint64_t leaks = 0;          ///< rays from inside a closed mesh with an even number of hits
+  std::uint64_t escapes = 0;        ///< of these, rays with none
   std::uint64_t double_hits = 0;    ///< rays from inside with more hits than there are
   std::uint64_t wrong_nearest = 0;  ///< rays whose first triangle is another, ties aside
   std::uint64_t wrong_tied_nearest = 0;  ///< the same among ties

@@ -49,7 +49,8 @@ class UnitVariant : public Variant {
 
   [[nodiscard]] Answer decide(const Ray& ray, const PolygonRecord& record, const Corners& t) const {
     Answer answer;
-    if (record.d == 0.0f) return answer;
+    // The host sends no other directions to the unit.
+    if (record.d == 0.0f || !is_usable(ray.direction)) return answer;
     const float side = record.d > 0.0f ? 1.0f : -1.0f;
     const glm::vec3 direction = math_.read(ray.direction);
     bool miss = false, sure = true;
