@@ -31,6 +31,14 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
   arguments->valid[0] = 0;  // go on
 }
 
+/// Whether Debian's Embree takes the ray: it aborts where one is not finite or beyond its range of
+/// coordinates, and leaves out triangles that are.
+bool accepts(const glm::vec3& origin, const glm::vec3& direction) {
+  constexpr float kLargest = 1.8e18f;
+  const glm::vec3 size = glm::abs(origin);
+  return is_usable(direction) && std::max({size.x, size.y, size.z}) < kLargest;
+}
+
 class EmbreeVariant : public Variant {
  public:
   explicit EmbreeVariant(RTCSceneFlags flags) : device_(rtcNewDevice("threads=1")), flags_(flags) {}
@@ -49,7 +57,7 @@ class EmbreeVariant : public Variant {
     for (const Shot& shot : shots) {
       load(shot.mesh);
       for (const glm::vec3& direction : shot.directions) {
-        if (is_usable(direction)) shoot(shot.origin, direction, next);  // Embree aborts otherwise
+        if (accepts(shot.origin, direction)) shoot(shot.origin, direction, next);
         next += shot.mesh->triangles.size();
       }
     }
