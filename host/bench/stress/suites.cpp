@@ -225,7 +225,7 @@ Shot degenerate_shot(Random& random) {
 enum class Aim { kEdges, kVertices };
 
 /// From inside a closed mesh at the places where its triangles meet. A mesh serves for a while.
-Generator closed_mesh(std::function<MeshPointer(Random&)> make_mesh, Aim aim) {
+Generator closed_mesh(const std::function<MeshPointer(Random&)>& make_mesh, Aim aim) {
   return [make_mesh, aim, mesh = MeshPointer(), left = 0](Random& random) mutable {
     if (left-- == 0) {
       mesh = make_mesh(random);
@@ -284,7 +284,7 @@ std::vector<Suite> make_suites() {
       const std::string target = aim == Aim::kEdges ? "edges" : "vertices";
       suites.push_back({std::string(name) + " " + target,
                         "from inside a closed mesh at its " + target,
-                        [mesh, aim] { return closed_mesh(mesh, aim); }});
+                        [mesh = mesh, aim] { return closed_mesh(mesh, aim); }});
     }
   }
   const std::vector<Suite> rest = {
