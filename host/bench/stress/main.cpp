@@ -14,6 +14,7 @@ namespace {
 template <class List, class Name>
 std::vector<std::string> names_of(const List& list, Name name) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& item : list) names.push_back(name(item));
   return names;
 }
