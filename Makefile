@@ -4,24 +4,25 @@ SCENE ?= scenes/cornell.obj
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
 
-.PHONY: help verilate render bench test soak lint format clean
+.PHONY: help verilate render gallery frames test soak lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
-verilate: ## build ./render, with the simulated hardware in it
+verilate: ## build ./render, with the simulated hardware in it, and ./compare
 	@$(SETUP) build
 	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
-	@cmake --build build -j $(JOBS) --target render
+	@cmake --build build -j $(JOBS) --target render compare scenes
 
 render: verilate ## render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
 	./render $(SCENE) $(ARGS)
 
-bench: ## time each scene with each engine: a table of one run
-	@$(SETUP) build
-	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
-	@cmake --build build -j $(JOBS) --target scene_bench scenes
-	@build/scene_bench scenes/*.obj build/scenes/sphere.obj build/scenes/sphereflake.obj
+gallery: verilate ## render the pictures of the README's gallery again, each by its command
+	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' README.md | \
+	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
+
+frames: verilate ## the paper's frame: clocks, and frames a second at 10 MHz, for 1 to 10 lanes
+	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj
 
 test: everything ## build and run all tests, lint among them
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
@@ -32,12 +33,15 @@ soak: everything ## ten million tests of the pipelined unit with each number of 
 lint: everything ## check style and pitfalls of all sources
 	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
 
+analyze: everything ## clang's static analyser over all sources: minutes
+	@.ci/lint analyze
+
 format: ## lay all sources out as lint wants them
 	@$(SETUP) test
 	@.ci/lint format --fix
 
 clean: ## remove what was built (scenes and pictures stay)
-	rm -rf build render
+	rm -rf build render compare
 
 .PHONY: everything
 everything:
@@ -46,4 +50,7 @@ everything:
 	@cmake --build build -j $(JOBS)
 
 include synth/synth.mk
+include host/bench/rays/rays.mk
+include host/bench/bench.mk
+include host/bench/skips/skips.mk
 include host/bench/stress/stress.mk

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <cstring>
+#if defined(__SSE__)
+#include <immintrin.h>
+#endif
 
 namespace raygate {
 
@@ -43,6 +46,26 @@ RAYGATE_INLINE std::uint32_t mask_of(const IntLanes& first, const IntLanes& seco
   bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
   bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2, 5, 4, 7, 6);
   return static_cast<std::uint32_t>(bits[0]);
+}
+
+/// The lanes whose sign bit is set.
+RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
+#if defined(__SSE__)
+  const auto low = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
+  const auto high = __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  return static_cast<LaneMask>(_mm_movemask_ps(reinterpret_cast<__m128>(low)) |
+                               _mm_movemask_ps(reinterpret_cast<__m128>(high)) << 4);
+#else
+  return mask_of(lanes >> 31, IntLanes{});
+#endif
+}
+
+/// The same bits as integers, and back.
+RAYGATE_INLINE void bits_of(const FloatLanes& lanes, IntLanes& bits) {
+  bits = reinterpret_cast<IntLanes>(lanes);
+}
+RAYGATE_INLINE void floats_of(const IntLanes& bits, FloatLanes& lanes) {
+  lanes = reinterpret_cast<FloatLanes>(bits);
 }
 
 }  // namespace raygate

@@ -54,6 +54,23 @@ def faces_outwards(a, b, c):
             + a[2] * (b[0] * c[1] - b[1] * c[0])) > 0
 
 
+def write_vertices(file, vertices, centre, radius):
+    for v in vertices:
+        file.write("v %.7g %.7g %.7g\n" % tuple(c + radius * x for c, x in zip(centre, v)))
+
+
+def write_faces(file, triangles, first):
+    """Faces of a sphere whose vertices begin at number `first` and its normals at 1."""
+    for i, j, k in triangles:
+        file.write(f"f {first + i}//{i + 1} {first + j}//{j + 1} {first + k}//{k + 1}\n")
+
+
+def write_normals(file, vertices):
+    """The vertices of the unit sphere, which are the normals of every sphere in a file."""
+    for v in vertices:
+        file.write("vn %.6f %.6f %.6f\n" % v)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("output")

@@ -8,7 +8,7 @@ import argparse
 import math
 import pathlib
 
-from make_sphere import icosphere, unit
+from make_sphere import icosphere, unit, write_faces, write_normals, write_vertices
 
 MATERIALS = """\
 newmtl floor
@@ -77,18 +77,15 @@ def main():
     vertices, triangles = icosphere(options.fineness)
     with open(options.output, "w", encoding="ascii") as file:
         file.write(f"# A sphereflake: make_sphereflake.py\nmtllib {materials.name}\n")
-        for v in vertices:  # every sphere shares these normals
-            file.write("vn %.6f %.6f %.6f\n" % v)
+        write_normals(file, vertices)
         file.write("o floor\nv -3 -2 3\nv 3 -2 3\nv 3 -2 -3\nv -3 -2 -3\n"
                    "usemtl floor\nf 1 2 3 4\n")
         first = 5
         axis = unit((0.15, 1.0, 0.25))
         for centre, radius, generation in spheres_of((0.0, 0.0, 0.0), 1.0, axis, options.depth):
             file.write(f"o sphere{first}\nusemtl sphere{generation}\n")
-            for v in vertices:
-                file.write("v %.7g %.7g %.7g\n" % tuple(c + radius * x for c, x in zip(centre, v)))
-            for i, j, k in triangles:
-                file.write(f"f {first + i}//{i + 1} {first + j}//{j + 1} {first + k}//{k + 1}\n")
+            write_vertices(file, vertices, centre, radius)
+            write_faces(file, triangles, first)
             first += len(vertices)
 
 

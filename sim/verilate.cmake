@@ -7,6 +7,8 @@
 #     and the signals that visible.vlt lists be read. Name a model after its module and what its
 #     parameters stand for; models that several programs use are built once.
 #
+#     PATCHES <folder>: modules found there are taken instead of those of hw/, to break them on purpose.
+#
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...])
 #     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest.
 #
@@ -39,11 +41,12 @@ set(RAYGATE_HW_PACKAGES ${arith_packages} ${fp_packages} ${hit_test_packages})
 # Every warning stops the build, UNOPTFLAT (a loop in the logic, simulated by repetition) too.
 # Verilator 5.006 folds trees of single-bit operations wrongly: a netlist of fp_divider in bfloat16,
 # which Yosys evaluates rightly, gave wrong quotients. Without that pass the speed is the same.
-set(RAYGATE_VERILATOR_FLAGS -Wall -fno-const-bit-op-tree
+set(RAYGATE_VERILATOR_FLAGS -Wall -fno-const-bit-op-tree)
+set(RAYGATE_HW_FOLDERS
   -y ${CMAKE_SOURCE_DIR}/hw/arith -y ${CMAKE_SOURCE_DIR}/hw/fp -y ${CMAKE_SOURCE_DIR}/hw/hit_test)
 
 function(raygate_model NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP" "PARAMETERS")
+  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES" "PARAMETERS")
   if(NOT MODEL_TOP OR MODEL_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN] [SHARED], "
       "got ${ARGN}")
@@ -64,10 +67,14 @@ function(raygate_model NAME)
   if(MODEL_SHARED)
     list(APPEND open ${CMAKE_SOURCE_DIR}/sim/shared.vlt)
   endif()
+  set(patches)
+  if(MODEL_PATCHES)
+    set(patches -y ${MODEL_PATCHES})
+  endif()
   add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${NAME}.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
     COMMAND ${VERILATOR_BIN} --cc -O3 --x-assign fast --x-initial fast --no-timing
-      ${RAYGATE_VERILATOR_FLAGS} ${open} --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
+      ${RAYGATE_VERILATOR_FLAGS} ${patches} ${RAYGATE_HW_FOLDERS} ${open} --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
       --top-module ${MODEL_TOP} ${MODEL_PARAMETERS} ${RAYGATE_HW_PACKAGES} ${top_file}
     COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${NAME} -P ${CMAKE_SOURCE_DIR}/sim/gather.cmake
     DEPENDS ${top_file} ${RAYGATE_HW_PACKAGES} ${CMAKE_SOURCE_DIR}/sim/gather.cmake

@@ -4,9 +4,8 @@ import argparse
 import resource
 import sys
 
-from synth import (adder_study, catalogue, measure, pictures, prove, report, store, tables, tools,
-                   unit_delay)
-from synth.catalogue import LIBRARIES
+from synth import (adder_study, catalogue, final_adder, measure, pictures, prove, report, store,
+                   throughput, tools, unit_delay)
 
 
 def arguments() -> argparse.Namespace:
@@ -24,7 +23,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--exp-width", help="exponent bits of a float core")
     parser.add_argument("--frac-width", help="fraction bits of a float core")
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; those installed if not given")
-    parser.add_argument("--budget", default="24", help="groupings tried in each search (%(default)s)")
+    parser.add_argument("--budget", default="16", help="groupings tried in each search (%(default)s)")
     parser.add_argument("--jobs", default="2", help="at once (%(default)s)")
     given = parser.parse_args()
     for name, value in vars(given).items():
@@ -53,7 +52,8 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     """Measures one design and prints it."""
     design = one_design(given)
     cells = design.top == "adder"
-    flows = ("cells", "kept", "default", "fast") if cells else ("small", "parts" if design.clock else "fast")
+    flows = (("cells", "kept", "default", "fast") if cells else
+             ("small", "parts") if design.clock else ("area", "small", "fast"))
     plan = {name: flows if name.startswith("osu") else catalogue.PLACED for name in targets.names}
     records, failures = measure.measure([catalogue.Row(design.name, design, plan)], targets)
     print(report.section_tables(records, design.name))
@@ -91,19 +91,9 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     sections = [("The paper's delay model", adder_study.model_table()),
                 ("Clock rates", report.clock_table(records))]
     if given.top is None:
-        found = []
-        for name, flow, look_ahead in adder_study.SEARCHES:
-            if name in targets.names:
-                (library,) = [library for library in LIBRARIES if library.name == name]
-                best = adder_study.search(library, flow, look_ahead, int(given.budget),
-                                          targets.workers)
-                found.append([library.title, flow, "look-ahead" if look_ahead else "ripple",
-                              adder_study.text_of(best["groups"]), f"{best['area']:,}",
-                              f"{best['delay_ns']:.3f}", len(best["tried"])])
-                print("best groups:", *found[-1], file=sys.stderr, flush=True)
-        sections.append(("Best groups of 48 bits", tables.markdown(
-            ["library", "flow", "groups add by", "widths, lowest first", "area", "ns", "tried"],
-            found)))
+        sections += [("The multiplier's last adder", final_adder.table(targets.names)),
+                     ("Best groups of 48 bits", adder_study.search_table(targets, int(given.budget))),
+                     ("Tests a second", throughput.table(records))]
     sections = [section for section in sections if section[1]]
     report.write(records, [*sections, ("Pictures", pictures.draw(records))])
     for section in dict.fromkeys(record["section"] for record in records):

@@ -23,6 +23,13 @@ class Design:
     folder: str  # of hw/, or "yardsticks"
     parameters: tuple[tuple[str, str], ...] = ()
     clock: str = ""  # "" for combinational designs
+    cut: str = ""  # an instance that is left out; its ports become the design's
+    tied: tuple[tuple[str, str], ...] = ()  # ports held at constants, e.g. ("carry_i", "1'b0")
+
+    @property
+    def facts(self) -> tuple:
+        """What elaboration depends on besides the files."""
+        return self.top, self.parameters, self.cut, self.tied
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
         """The files that elaboration may need, packages first.
@@ -36,7 +43,8 @@ class Design:
         packages = [file for file in files if file.stem.endswith("_pkg")]
         modules = [file for file in files if file not in packages]
         if structural:
-            modules = [file for file in modules if file.stem not in ("full_adder", "multiplexer")]
+            replaced = ("full_adder", "multiplexer", "carry_save_adder")
+            modules = [file for file in modules if file.stem not in replaced]
             modules.append(tools.FLOWS / "structure.v")
         return packages + modules
 
@@ -87,6 +95,12 @@ LIBRARIES = [
     Library("osu018", "OSU 0.18 um", "sudo apt-get install qflow-tech-osu018"),
 ]
 
+
+def library(name: str) -> Library:
+    """The library of that name."""
+    return next(library for library in LIBRARIES if library.name == name)
+
+
 FPGAS = [
     Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
          ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), "ICESTORM_LC", 300),
@@ -99,8 +113,10 @@ FLOWS = {
     "cells": "full adders and multiplexers instantiated from the library, timed as they stand",
     "kept": "flat, structure preserved, gates sized",
     "default": "the tool's own recipe (`synth; abc`)",
+    "area": "the tool's own front end, then mapped by ABC for least area",
     "small": "the tool's own front end, then logic shared and mapped by ABC in one quick pass",
     "fast": "structure preserved by Yosys, then restructured for speed by ABC",
+    "faster": "fast, restructured twice",
     "parts": "fast, each float core on its own, then joined",
 }
 
@@ -190,18 +206,51 @@ def report_rows() -> list[Row]:
                         {"osu035": (*cells, "kept", "default", "fast"),
                          "osu018": (*cells, "fast"), **placed}))
     section = "24 x 24 multipliers"
-    both = {"osu035": ("small", "fast"), "osu018": ("fast",)}
-    rows.append(Row(section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13), both))
+    cells = {"osu035": ("small", "fast")}
+    everywhere = {**cells, "osu018": ("fast",), **placed}
+    rows.append(Row(section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13), cells))
     rows += [Row(section, design("booth_multiplier", f"booth-{kind}", kind, Width=24),
-                 {**both, **(placed if kind == "graded" else {})}) for kind in adder_kinds()]
+                 everywhere if kind == "graded" else
+                 {"osu035": ("small", "fast", "faster")} if kind in ("prefix", "tool") else cells)
+             for kind in adder_kinds()]
+    rows.append(Row(section, design("booth_multiplier", "booth-graded-ripple-groups", "graded",
+                                    look_ahead=False, Width=24),
+                    {"osu035": ("cells", "area", "small", "fast", "faster")}))
     rows.append(Row(section, design("booth_multiplier", "booth-graded-14-rows", "graded", Width=24,
-                                    ConstantRow="1'b1"), both))
+                                    ConstantRow="1'b1"), cells))
     rows.append(Row(section, design("tool_multiplier", "tool-multiplier", Width=24),
-                    {**both, **placed}))
-    rows += [Row("binary32 cores", design(top, top.replace("_", "-"), "graded"), both)
-             for top in ("fp_multiplier", "fp_adder", "fp_divider")]
-    rows += [Row("units", design("hit_test_unit"), {"osu035": ("small", "parts"),
-                                                    "osu018": ("parts",)}),
+                    {**everywhere, "osu035": ("small", "fast", "faster")}))
+    rows += core_rows()
+    parts = {"osu035": ("parts",), "osu018": ("parts",)}
+    rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
              Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
-             Row("units", design("hit_test_pipeline"), {"osu035": ("parts",)})]
+             Row("units", design("hit_test_pipeline"), parts)]
+    return rows
+
+
+# Rounding modes that a unit may hold its cores at: what that is called, and the ports tied for it.
+HELD_MODES = {
+    "to-nearest": (("rounding_mode_i", "3'd0"), ("tininess_after_i", "1'b0")),
+    "truncating": (("rounding_mode_i", "3'd1"), ("tininess_after_i", "1'b0")),
+}
+
+
+def core_rows() -> list[Row]:
+    """The float cores: binary32, and what narrower significands, one rounding mode and a short
+    quotient save.
+
+    fp-multiplier is of binary32; fp-multiplier-16-bits has a significand of 16 bits, its leading one
+    counted.
+    """
+    cores = [(top, top.replace("_", "-")) for top in ("fp_multiplier", "fp_adder", "fp_divider")]
+    rows = [Row("binary32 cores", design(top, name, "graded"),
+                {"osu035": ("area", "small", "fast"), "osu018": ("fast",)}) for top, name in cores]
+    for top, name in cores:
+        rows += [Row("reduced cores", design(top, f"{name}-{bits}-bits", "graded", FracWidth=bits - 1),
+                     {"osu035": ("area", "small")}) for bits in (16, 12)]
+        held = [dataclasses.replace(design(top, f"{name}-{mode}", "graded"), tied=ports)
+                for mode, ports in HELD_MODES.items()]
+        if top == "fp_divider":
+            held.append(design(top, f"{name}-21-bit-quotient", "graded", QuotientBits=21))
+        rows += [Row("reduced cores", core, {"osu035": ("area",)}) for core in held]
     return rows

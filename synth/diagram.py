@@ -3,7 +3,6 @@
 `python3 -m synth.diagram TOP OUT`: OUT.svg and OUT.png, by graphviz.
 """
 
-import json
 import pathlib
 import sys
 
@@ -55,9 +54,7 @@ def draw(top: str, out: pathlib.Path, width: int = 32) -> None:
     file = out.with_suffix(".json")
     tools.run(["yosys", "-c", tools.FLOWS / "blocks.tcl"], out.with_suffix(".log"),
               {**mapping.elaboration(design), "OUT": str(file)})
-    modules = json.loads(file.read_text())["modules"]
-    (module,) = [body for body in modules.values() if "top" in body["attributes"]]
-    nodes, arrows = blocks(module, width)
+    nodes, arrows = blocks(mapping.top_module(file), width)
     names = {name: f"n{place}" for place, name in enumerate(sorted(nodes))}
     lines = [f"digraph {top} {{", "  rankdir=LR; node [fontname=sans]; edge [arrowsize=0.7];"]
     lines += [f'  {names[name]} [shape={SHAPES[kind]}, label="{label}"];'

@@ -13,8 +13,8 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     """LUTs, carry cells, registers, DSPs, fmax in MHz (slowest path between registers)."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     files = [*design.sources(), tools.FLOWS / "fpga.tcl", tools.FLOWS / "elaborate.tcl"]
-    wanted = store.key(files, tools.version("yosys"), tools.version(fpga.tool), design.top,
-                       design.parameters, fpga, inspect.getsource(registered))
+    wanted = store.key(files, tools.version("yosys"), tools.version(fpga.tool), design.facts,
+                       fpga, inspect.getsource(registered))
     return store.cached(folder, wanted, lambda: _place(design, fpga, folder))
 
 

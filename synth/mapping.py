@@ -1,14 +1,15 @@
 """Maps one design to one standard-cell library by one flow, and times it."""
 
 import functools
+import json
 import pathlib
 import re
 
 from synth import store, tools
 from synth.catalogue import Design, Library
 
-ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "small": "small.abc", "fast": "fast.abc",
-               "parts": "fast.abc"}
+ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "small": "small.abc",
+               "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc"}
 
 # One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
 PATH_STEP = re.compile(
@@ -25,7 +26,7 @@ def flow_facts() -> tuple[str, ...]:
 def scripts() -> list[pathlib.Path]:
     """The files that say how a netlist is made and timed."""
     names = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "structure.v",
-             "known_selects.v", "osu_cells.v", "timing.tcl", *set(ABC_SCRIPTS.values()))
+             "known_inputs.v", "osu_cells.v", "timing.tcl", *set(ABC_SCRIPTS.values()))
     return sorted(tools.FLOWS / name for name in names)
 
 
@@ -35,7 +36,16 @@ def elaboration(design: Design, structural: bool = False) -> dict[str, str]:
         "SOURCES": " ".join(str(file) for file in design.sources(structural)),
         "TOP": design.top,
         "PARAMETERS": " ".join(f"{name} {value}" for name, value in design.parameters),
+        "CUT": design.cut,
+        "TIED": " ".join(f"{name} {value}" for name, value in design.tied),
     }
+
+
+def top_module(file: pathlib.Path) -> dict:
+    """The top module in Yosys's JSON."""
+    modules = json.loads(file.read_text())["modules"]
+    (module,) = [body for body in modules.values() if "top" in body["attributes"]]
+    return module
 
 
 def synthesise(design: Design, library: Library, flow: str,
@@ -43,7 +53,7 @@ def synthesise(design: Design, library: Library, flow: str,
     """Area (liberty units), delay (ns), cells and critical path; and whether it was cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
     files = [*design.sources(flow == "cells"), library.liberty, *scripts()]
-    wanted = store.key(files, flow_facts(), design.top, design.parameters, library, flow)
+    wanted = store.key(files, flow_facts(), design.facts, library, flow)
     return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
 
 
@@ -69,11 +79,13 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
         "DRIVER": library.driver,
         "LOAD": f"{library.load_pf}",
         "CLOCK": design.clock,
+        "ENDS": f"{bool(design.cut):d}",
     })
     delay, path = critical_path(timing)
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
     return {
         **clocked,
+        **({"ends": ends(timing)} if design.cut else {}),
         "area": area,
         "delay_ns": delay,
         "cells": cells,
@@ -88,6 +100,12 @@ def cell_counts(stat: str) -> tuple[int, dict[str, int]]:
         raise tools.ToolFailed("Yosys stated no area: a cell is missing from the library")
     cells = re.findall(r"^ {5}(\w+) +(\d+)$", stat, re.M)
     return round(float(area.group(1))), {name: int(count) for name, count in cells}
+
+
+def ends(report: str) -> dict[str, float]:
+    """When each output of an OpenSTA report of end points is there, ns, the slowest first."""
+    found = re.findall(r"^(\S+) \(output\) +[\d.]+ +(-?[\d.]+)", report, re.M)
+    return {name: float(arrival) for name, arrival in found}
 
 
 def registers(netlist: str, path: list[dict]) -> dict[str, str]:

@@ -1,6 +1,7 @@
 """Measures designs on all targets: the jobs, and their results as flat records."""
 
 import dataclasses
+import sys
 
 from synth import fpga, mapping, runner, tools
 from synth.catalogue import FPGAS, LIBRARIES, Row
@@ -30,7 +31,10 @@ def available(names: list[str] | None) -> tuple[str, ...]:
     for device in FPGAS:
         if names and device.name in names:
             tools.find(device.tool)
-        if (not names or device.name in names) and tools.installed(device.tool):
+        if not names and not tools.installed(device.tool):
+            print(f"no {device.title}: {device.tool} is not installed: {tools.TOOLS[device.tool][0]}",
+                  file=sys.stderr)
+        elif not names or device.name in names:
             chosen.append(device.name)
     unknown = set(names or []) - set(chosen)
     if unknown:

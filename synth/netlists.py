@@ -15,8 +15,8 @@ def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[di
     folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
     files = [*design.sources(), library.liberty, PROOFS / "netlist_agrees.cpp",
              PROOFS / "netlist_cells.tcl", pathlib.Path(__file__), *mapping.scripts()]
-    wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.top,
-                       design.parameters, library, flow, vectors)
+    wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.facts,
+                       library, flow, vectors)
     return store.cached(folder, wanted, lambda: _agree(design, library, flow, vectors, folder))
 
 
@@ -62,6 +62,7 @@ def twins(design: Design, ports: dict) -> str:
         connections = [f".{name}({name})" for name in ports if name in named]
         connections += [f".{name}({bits})" for name, bits in slices.items()]
         connections += [f".{name}({twin}_{name})" for name, _ in outputs]
+        connections += [f".{name}({value})" for name, value in design.tied if twin == "rtl"]
         head = f"{design.top} #({parameters})" if twin == "rtl" else "netlist"
         lines.append(f"  {head} u_{twin} ({', '.join(connections)});")
     differences = " || ".join(f"rtl_{name} != netlist_{name}" for name, _ in outputs)

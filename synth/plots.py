@@ -1,16 +1,10 @@
 """Area against delay, one picture a section and library, as SVG and PNG."""
 
-import matplotlib
+from synth import drawing, store
+from synth.catalogue import FLOWS, LIBRARIES
+from synth.drawing import plt
 
-matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "raygate"  # the same figures give the same file
-
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
-
-from synth import store  # noqa: E402
-from synth.catalogue import FLOWS, LIBRARIES  # noqa: E402
-
-MARKERS = dict(zip(FLOWS, "sovD^P", strict=True))
+MARKERS = dict(zip(FLOWS, "soXvD^<P", strict=True))
 
 
 def draw(records: list[dict]) -> list[str]:
@@ -30,18 +24,16 @@ def draw(records: list[dict]) -> list[str]:
 def _scatter(points: list[dict], title: str, name: str) -> None:
     figure, axes = plt.subplots(figsize=(9, 6), layout="constrained")
     designs = list(dict.fromkeys(point["design"] for point in points))
-    colours = plt.get_cmap("tab10")
+    colours = plt.get_cmap("tab10" if len(designs) <= 10 else "tab20")
     for point in points:
         axes.scatter(point["delay_ns"], point["area"], marker=MARKERS[point["flow"]],
-                     color=colours(designs.index(point["design"]) % 10))
+                     color=colours(designs.index(point["design"])))
     for place, design in enumerate(designs):
-        axes.scatter([], [], color=colours(place % 10), label=design)
+        axes.scatter([], [], color=colours(place), label=design)
     for flow in dict.fromkeys(point["flow"] for point in points):
         axes.scatter([], [], color="grey", marker=MARKERS[flow], label=f"flow: {flow}")
-    axes.set(title=title, xlabel="slowest path, ns", ylabel="area, liberty units",
+    axes.set(title=title, xlabel="slowest path, ns", ylabel="area of the cells, square micrometres",
              xscale="log", ylim=(0, None))
     axes.legend(fontsize="small")
     axes.grid(alpha=0.3)
-    for suffix, metadata in (("svg", {"Date": None}), ("png", {})):
-        figure.savefig(store.OUT / f"{name}.{suffix}", metadata=metadata)
-    plt.close(figure)
+    drawing.save(figure, store.OUT / name)

@@ -9,8 +9,8 @@ from synth.catalogue import FLOWS, FPGAS, LIBRARIES
 TITLES = {target.name: target.title for target in [*LIBRARIES, *FPGAS]}
 
 CAVEATS = """\
-Areas are in each library's own units (one NAND2X1: 96 in the 0.35 um library, 24 in the 0.18 um one)
-and are those of the cells alone. Delays are those of the slowest path at typical corner, in at an INVX4,
+Areas are square micrometres of the cells alone (one NAND2X1: 96 in the 0.35 um library, 24 in the
+0.18 um one). Delays are those of the slowest path at typical corner, in at an INVX4,
 out into 0.1 pF, with no layout and no wires: silicon is slower, and the order of two designs that
 are close may change. iCE40 and ECP5 figures are placed and routed, between registers, the median of
 several placements.

@@ -1,7 +1,7 @@
 # `make synth` and `make prove`: see synth/README.md.
 SYNTH_PYTHON := build/synth/venv/bin/python3
 SYNTH_JOBS ?= 2
-SYNTH_BUDGET ?= 24
+SYNTH_BUDGET ?= 16
 
 .PHONY: synth prove
 

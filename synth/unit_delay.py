@@ -6,7 +6,6 @@ so every figure goes with its counting.
 """
 
 import dataclasses
-import json
 import pathlib
 
 from synth import mapping, store, tools
@@ -34,9 +33,9 @@ COUNTINGS = [
 def netlist(design: Design) -> dict:
     """The module of `design` as Yosys's JSON, flattened to structure.v's cells and gates."""
     folder = store.OUT / "structure" / design.name
-    scripts = ("structure_json.tcl", "structure.tcl", "elaborate.tcl", "known_selects.v")
+    scripts = ("structure_json.tcl", "structure.tcl", "elaborate.tcl", "known_inputs.v")
     files = [*design.sources(structural=True), *(tools.FLOWS / name for name in scripts)]
-    wanted = store.key(files, tools.version("yosys"), design.top, design.parameters)
+    wanted = store.key(files, tools.version("yosys"), design.facts)
     return store.cached(folder, wanted, lambda: _elaborate(design, folder))[0]
 
 
@@ -44,8 +43,7 @@ def _elaborate(design: Design, folder: pathlib.Path) -> dict:
     file = folder / "structure.json"
     tools.run(["yosys", "-c", tools.FLOWS / "structure_json.tcl"], folder / "yosys.log",
               {**mapping.elaboration(design, structural=True), "OUT": str(file)})
-    modules = json.loads(file.read_text())["modules"]
-    (module,) = [body for body in modules.values() if "top" in body["attributes"]]
+    module = mapping.top_module(file)
     return {"ports": module["ports"], "cells": [
         {"type": cell["type"], "connections": cell["connections"],
          "directions": cell["port_directions"]} for cell in module["cells"].values()]}
@@ -53,7 +51,8 @@ def _elaborate(design: Design, folder: pathlib.Path) -> dict:
 
 def count(module: dict, counting: Counting, output: str = "sum_o",
           arrivals: dict[str, list[float]] | None = None) -> dict:
-    """The longest path from any input to port `output`, and how many cells of each type it has.
+    """The longest path from any input to port `output`, how many cells of each type it has, and when
+    each bit of the port is there.
 
     `arrivals`: when the bits of an input port come, in full-adder delays (0 where not said).
     """
@@ -76,16 +75,16 @@ def count(module: dict, counting: Counting, output: str = "sum_o",
             return given.get(bit, 0), ()
         slowest = max((arrival(source, False) for port, bits in cell["connections"].items()
                        if cell["directions"][port] == "input" for source in bits),
-                      key=lambda found: found[0])
+                      key=lambda arrived: arrived[0])
         kind = cell["type"]
         cost = {"FULL_ADDER": 1,
                 "MULTIPLEXER": counting.last_multiplexer if last else counting.multiplexer}
         done[bit, last] = slowest[0] + cost.get(kind, 0), (*slowest[1], kind)
         return done[bit, last]
 
-    delay, path = max((arrival(bit, True) for bit in module["ports"][output]["bits"]),
-                      key=lambda found: found[0])
-    return {"delay": delay, "full_adders": path.count("FULL_ADDER"),
+    found = [arrival(bit, True) for bit in module["ports"][output]["bits"]]
+    delay, path = max(found, key=lambda arrived: arrived[0])
+    return {"delay": delay, "arrivals": [time for time, _ in found], "full_adders": path.count("FULL_ADDER"),
             "multiplexers": path.count("MULTIPLEXER"),
             "gates": len(path) - path.count("FULL_ADDER") - path.count("MULTIPLEXER")}
 

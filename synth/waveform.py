@@ -8,12 +8,8 @@ import re
 import struct
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "raygate"
-
-import matplotlib.pyplot as plt  # noqa: E402
+from synth import drawing
+from synth.drawing import plt
 
 
 def read(text: str) -> dict[str, list[tuple[int, str]]]:
@@ -69,8 +65,7 @@ def draw(trace: pathlib.Path, out: pathlib.Path, signals: list[str], clock: str 
         axes.axvline(column, color="grey", lw=0.4, ls=":")
     axes.set(xlim=(-2.2, len(edges)), ylim=(-len(signals), 1))
     axes.axis("off")
-    for suffix, metadata in ((".svg", {"Date": None}), (".png", {})):
-        figure.savefig(out.with_suffix(suffix), metadata=metadata, dpi=120)
+    drawing.save(figure, out)
 
 
 if __name__ == "__main__":

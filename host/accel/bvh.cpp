@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/accel/wide_bvh.h"
+
 namespace raygate {
 namespace {
 
@@ -217,6 +219,7 @@ Bvh::Bvh(const Scene& scene) {
     triangles_.push_back(primitive.triangle);
     corners_.push_back(corners[primitive.triangle]);
   }
+  wide_ = std::make_shared<const WideBvh>(*this);
 }
 
 }  // namespace raygate

@@ -5,6 +5,7 @@
 #include "host/hit/check_burst_unit.h"
 #include "host/hit/check_plane_unit.h"
 #include "host/hit/cpu_burst_unit.h"
+#include "host/hit/cpu_hit_tester.h"
 #include "host/hit/cpu_plane_unit.h"
 #include "host/hit/pipeline_hit_tester.h"
 #include "host/hit/serial_hit_tester.h"
@@ -28,14 +29,7 @@ std::unique_ptr<PlaneUnit> make_plane_unit(Engine engine) {
 }
 
 std::unique_ptr<BurstUnit> make_burst_unit(Engine engine, int lanes) {
-  switch (engine) {
-    case Engine::kRtl:
-      return std::make_unique<RtlBurstUnit>(lanes);
-    case Engine::kCpu:
-      return std::make_unique<CpuBurstUnit>();
-    case Engine::kCheck:
-      break;
-  }
+  if (engine == Engine::kRtl) return std::make_unique<RtlBurstUnit>(lanes);
   return std::make_unique<CheckBurstUnit>(std::make_unique<RtlBurstUnit>(lanes),
                                           std::make_unique<CpuBurstUnit>());
 }
@@ -45,8 +39,13 @@ std::unique_ptr<BurstUnit> make_burst_unit(Engine engine, int lanes) {
 HitTesterFactory make_tester_factory(const Options& options) {
   const Engine engine = options.engine;
   if (options.unit == "serial") {
-    return [engine] { return std::make_unique<SerialHitTester>(make_plane_unit(engine)); };
+    const auto order = options.light.skips.divisions ? SerialHitTester::Order::kEdgesFirst
+                                                     : SerialHitTester::Order::kPlanesFirst;
+    return [engine, order] {
+      return std::make_unique<SerialHitTester>(make_plane_unit(engine), order);
+    };
   }
+  if (engine == Engine::kCpu) return [] { return std::make_unique<CpuHitTester>(); };
   return [engine, lanes = options.lanes] {
     return std::make_unique<PipelineHitTester>(make_burst_unit(engine, lanes));
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <string>
 
 namespace raygate {
 
@@ -21,12 +22,15 @@ class InterruptGuard {
 /// What ends a run that was interrupted.
 class Interrupted : public std::exception {
  public:
-  explicit Interrupted(int signal) : signal_(signal) {}
+  /// `outcome` says what became of the files.
+  Interrupted(int signal, const std::string& outcome)
+      : signal_(signal), what_("interrupted; " + outcome) {}
   [[nodiscard]] int signal() const { return signal_; }
-  [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
+  [[nodiscard]] const char* what() const noexcept override { return what_.c_str(); }
 
  private:
   int signal_;
+  std::string what_;
 };
 
 }  // namespace raygate

@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   } catch (const raygate::InputError& error) {
     return fail(kUserError, error.what());
   } catch (const raygate::Interrupted& interrupted) {
-    return fail(kSignalBase + interrupted.signal(), "interrupted; no file was changed");
+    return fail(kSignalBase + interrupted.signal(), interrupted.what());
   } catch (const std::bad_alloc&) {
     return fail(kUserError, "out of memory; a smaller --size or --crop needs less");
   } catch (const std::exception& error) {

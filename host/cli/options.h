@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "host/cli/light_options.h"
+#include "host/cli/output_options.h"
 #include "host/render/film.h"
+#include "host/scene/camera.h"
+#include "host/scene/scene_file.h"
 
 namespace raygate {
 
@@ -18,36 +22,35 @@ enum class Engine {
   kCheck,  ///< both, compared bit for bit
 };
 
-/// Where the camera stands and looks, in the scene file's coordinates.
-struct CameraPlacement {
-  glm::dvec3 eye{0.0};
-  glm::dvec3 target{0.0};
-  std::optional<double> fov;  ///< vertical field of view in degrees, (0, 180); none: the default
-};
-
 /// Checked options: every value is possible. Whether files can be read or written is not checked.
 struct Options {
   /// Text that --help or --version asked for; if not empty nothing else here is of use.
   std::string information;
 
-  std::filesystem::path scene;
-  std::optional<std::filesystem::path> exr;  ///< at least one of the two pictures is there
-  std::optional<std::filesystem::path> png;
-  std::optional<std::filesystem::path> stats;  ///< run statistics as JSON
-  int width = 640, height = 480;               ///< of the whole frame, in pixels
-  PixelRect window;                            ///< to be rendered: the frame or --crop
+  std::filesystem::path scene;          ///< as it was named: an OBJ or a scene file
+  std::optional<SceneFile> scene_file;  ///< named, or found beside the OBJ
+  OutputOptions output;
+  int width = 640, height = 480;  ///< of the whole frame, in pixels
+  PixelRect window;               ///< to be rendered: the frame or --crop
   Engine engine = Engine::kRtl;
   std::string unit = "pipeline";  ///< or "serial"
   int lanes = 1;                  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
   unsigned threads = 1;
-  std::optional<CameraPlacement> camera;  ///< none: framed on the scene
+  std::optional<CameraSetting> camera;  ///< in the OBJ's coordinates; none: framed on the scene
+  std::vector<CameraSetting> path;      ///< of --frames; empty: once round the target
+  LightOptions light;
   std::uint64_t seed = 0;
   bool quiet = false;
   bool skip_degenerate = false;
+
+  [[nodiscard]] const std::filesystem::path& obj() const {
+    return scene_file ? scene_file->obj : scene;
+  }
 };
 
-/// Reads the command line of `main`. Throws InputError, one line that names the option, what was
-/// given and what is allowed.
+/// Reads the command line of `main`, and before it the scene file's options, if there is one: the
+/// command line has the last word. Throws InputError, one line that names the option (or the file
+/// and the line), what was given and what is allowed.
 [[nodiscard]] Options parse_options(int argc, const char* const* argv);
 
 /// "rtl", "cpu" or "check".

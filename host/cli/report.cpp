@@ -1,5 +1,6 @@
 #include "host/cli/report.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -35,7 +36,7 @@ std::string plural(std::uint64_t count, const std::string& noun) {
 
 std::string headline(const Report& report) {
   const Options& options = report.options;
-  std::string line = options.scene.filename().string() + ": " +
+  std::string line = options.obj().filename().string() + ": " +
                      plural(report.triangles, "triangle") + ", " + std::to_string(options.width) +
                      "x" + std::to_string(options.height);
   if (options.window.width() != options.width || options.window.height() != options.height) {
@@ -52,10 +53,10 @@ std::string headline(const Report& report) {
 
 /// "hit tests 80 %, boxes 15 %, ...": of the time of all threads.
 std::string shares(const RenderStats& render) {
-  const std::pair<const char*, double> parts[] = {{"hit tests", render.hit_seconds},
-                                                  {"boxes", render.traverse_seconds},
-                                                  {"doubts", render.doubt_seconds},
-                                                  {"shading", render.shade_seconds}};
+  const std::pair<const char*, double> parts[] = {
+      {"hit tests", render.hit_seconds},        {"boxes", render.traverse_seconds},
+      {"records", render.record_seconds},       {"doubts", render.doubt_seconds},
+      {"departures", render.departure_seconds}, {"shading", render.shade_seconds}};
   double sum = 0.0;
   for (const auto& [name, seconds] : parts) sum += seconds;
   std::string text;
@@ -81,6 +82,49 @@ std::string lane_clocks(const Report& report) {
   return text;
 }
 
+/// What was left out, and about what it would have cost: by the mean cost of what was done.
+std::string skips(const Report& report) {
+  const RenderStats& render = report.render;
+  const SkipCounters& skipped = render.skipped;
+  const auto rays = static_cast<double>(render.rays), tests = static_cast<double>(render.hit.tests);
+  const double ray_seconds = ratio(render.traverse_seconds + render.record_seconds +
+                                       render.departure_seconds + render.shade_seconds,
+                                   rays);
+  const double test_seconds = ratio(render.hit_seconds + render.doubt_seconds, tests);
+  std::string text =
+      "not done, for the picture does not need it (see --no-skip; costs as of what was):\n";
+  const auto add = [&](std::uint64_t count, const char* what, double saved_tests, double seconds) {
+    if (count == 0) return;
+    std::string number = format_count(count);
+    number.insert(0, number.size() < 23 ? 23 - number.size() : 0, ' ');
+    text += number + "  " + what;
+    if (saved_tests > 0.0) {
+      text += ": " + format_count(static_cast<std::uint64_t>(saved_tests)) + " tests";
+    }
+    if (seconds > 0.0) text += (saved_tests > 0.0 ? ", " : ": ") + format_duration(seconds);
+    text += '\n';
+  };
+  const auto rays_left_out = [&](std::uint64_t count, const char* what) {
+    const auto number = static_cast<double>(count);
+    const double saved = number * ratio(tests, rays);
+    add(count, what, saved, number * ray_seconds + saved * test_seconds);
+  };
+  add(skipped.culled_tests, "tests of rays against polygons in boxes off their way", 0.0,
+      static_cast<double>(skipped.culled_tests) * test_seconds);
+  add(skipped.records, "records of polygons that no ray of their origin came near", 0.0, 0.0);
+  rays_left_out(skipped.lights_behind, "shadow rays to lights that bring nothing");
+  rays_left_out(skipped.weightless, "reflected and refracted rays that bring nothing");
+  rays_left_out(skipped.dim, "reflected and refracted rays below --threshold");
+  rays_left_out(skipped.empty_tile_rays, "camera rays where there is nothing");
+  add(skipped.first_occluders, "shadow rays' ways beyond the first occluder found", 0.0, 0.0);
+  if (report.options.unit == "pipeline" || report.options.light.skips.divisions) {
+    const std::uint64_t all = 3 * render.hit.tests;
+    add(all - std::min(all, render.hit.quotients), "divisions of the paper's three for each test",
+        0.0, 0.0);
+  }
+  return text;
+}
+
 }  // namespace
 
 double clocks_per_test(const HitCounters& counters) {
@@ -91,7 +135,10 @@ std::string to_text(const Report& report) {
   const RenderStats& render = report.render;
   const HitCounters& hit = render.hit;
   Table table;
-  table.add("rays", render.rays);
+  table.add("rays", render.rays,
+            format_count(render.camera_rays) + " from the camera, " +
+                format_count(render.shadow_rays) + " to lights, " +
+                format_count(render.rays - render.camera_rays - render.shadow_rays) + " others");
   table.add(
       "tests", hit.tests,
       format_fixed(ratio(static_cast<double>(hit.tests), static_cast<double>(render.rays)), 2) +
@@ -115,7 +162,8 @@ std::string to_text(const Report& report) {
     pictures += (pictures.empty() ? "" : ", ") + path.string();
   }
   table.add("wrote", pictures);
-  return headline(report) + "\n" + table.text();
+  for (const std::string& legend : report.legends) table.add("scale", legend);
+  return headline(report) + "\n" + table.text() + skips(report);
 }
 
 std::string to_json(const Report& report) {
@@ -128,7 +176,7 @@ std::string to_json(const Report& report) {
   for (const auto& path : report.pictures) pictures.push_back(path.string());
   const ordered_json json = {
       {"software", kSoftware},
-      {"scene", options.scene.string()},
+      {"scene", options.obj().string()},
       {"triangles", report.triangles},
       {"width", options.width},
       {"height", options.height},
@@ -139,8 +187,14 @@ std::string to_json(const Report& report) {
       {"threads", options.threads},
       {"seed", options.seed},
       {"pictures", pictures},
+      {"integrator", to_string(options.light.integrator)},
+      {"spp", options.light.samples},
+      {"depth", options.light.max_depth()},
       {"rays", render.rays},
+      {"camera_rays", render.camera_rays},
+      {"shadow_rays", render.shadow_rays},
       {"records", render.records},
+      {"common_records", render.common_records},
       {"tests", hit.tests},
       {"misses", hit.misses},
       {"hits", hit.hits},
@@ -155,6 +209,14 @@ std::string to_json(const Report& report) {
       {"idle_clocks", hit.idle_clocks},
       {"output_stalls", hit.output_stalls},
       {"clocks_per_test", clocks_per_test(hit)},
+      {"skipped",
+       {{"culled_tests", render.skipped.culled_tests},
+        {"records", render.skipped.records},
+        {"lights_behind", render.skipped.lights_behind},
+        {"weightless", render.skipped.weightless},
+        {"dim", render.skipped.dim},
+        {"empty_tile_rays", render.skipped.empty_tile_rays},
+        {"first_occluders", render.skipped.first_occluders}}},
       {"seconds",
        {{"load", report.load_seconds},
         {"tree", report.tree_seconds},
@@ -163,8 +225,10 @@ std::string to_json(const Report& report) {
         {"total", report.total_seconds}}},
       {"thread_seconds",
        {{"boxes", render.traverse_seconds},
+        {"records", render.record_seconds},
         {"hit_tests", render.hit_seconds},
         {"doubts", render.doubt_seconds},
+        {"departures", render.departure_seconds},
         {"shading", render.shade_seconds}}},
   };
   // File names need not be UTF-8, JSON must be.

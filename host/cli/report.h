@@ -21,6 +21,7 @@ struct Report {
   double write_seconds = 0.0;  ///< encoding the pictures and bringing them to disk
   double total_seconds = 0.0;
   std::vector<std::filesystem::path> pictures;
+  std::vector<std::string> legends;  ///< what the colours of false-colour pictures mean
 };
 
 /// Simulated clocks for each test that the unit did; 0 where nothing is simulated.

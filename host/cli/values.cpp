@@ -1,5 +1,6 @@
 #include "host/cli/values.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/scene/input_error.h"
@@ -7,19 +8,14 @@
 namespace raygate {
 namespace {
 
-/// "--size: expected WIDTHxHEIGHT, got 'big'".
-[[noreturn]] void fail(const std::string& option, const std::string& text,
-                       const std::string& expected) {
-  throw InputError(option + ": expected " + expected + ", got '" + text + "'");
-}
-
 /// A frame or crop that fits into memory.
 void require_pixels(const std::string& option, const std::string& text, int width, int height) {
   if (std::int64_t{width} * height <= kMaxPixels) return;
-  fail(option, text,
-       "at most " + std::to_string(kMaxPixels) +
-           " pixels in one run, for their memory (a larger frame can be rendered in parts with "
-           "--crop)");
+  fail_value(
+      option, text,
+      "at most " + std::to_string(kMaxPixels) +
+          " pixels in one run, for their memory (a larger frame can be rendered in parts with "
+          "--crop)");
 }
 
 }  // namespace
@@ -32,8 +28,8 @@ Size parse_size(const std::string& text) {
                           : parse_number<std::int64_t>(std::string_view(text).substr(x + 1));
   const auto possible = [](std::int64_t side) { return side >= 1 && side <= kMaxSide; };
   if (!width || !height || !possible(*width) || !possible(*height)) {
-    fail("--size", text,
-         "WIDTHxHEIGHT, each from 1 to " + std::to_string(kMaxSide) + " pixels (640x480)");
+    fail_value("--size", text,
+               "WIDTHxHEIGHT, each from 1 to " + std::to_string(kMaxSide) + " pixels (640x480)");
   }
   return {static_cast<int>(*width), static_cast<int>(*height)};
 }
@@ -42,18 +38,18 @@ Engine parse_engine(const std::string& text) {
   for (const Engine engine : {Engine::kRtl, Engine::kCpu, Engine::kCheck}) {
     if (text == to_string(engine)) return engine;
   }
-  fail("--engine", text, "rtl, cpu or check");
+  fail_value("--engine", text, "rtl, cpu or check");
 }
 
 std::string parse_unit(const std::string& text) {
-  if (text != "pipeline" && text != "serial") fail("--unit", text, "pipeline or serial");
+  if (text != "pipeline" && text != "serial") fail_value("--unit", text, "pipeline or serial");
   return text;
 }
 
 int parse_lanes(const std::string& text) {
   const auto lanes = parse_number<int>(text);
   if (!lanes || (*lanes != 1 && *lanes != 2 && *lanes != 4 && *lanes != 8)) {
-    fail("--lanes", text, "1, 2, 4 or 8");
+    fail_value("--lanes", text, "1, 2, 4 or 8");
   }
   return *lanes;
 }
@@ -61,25 +57,26 @@ int parse_lanes(const std::string& text) {
 unsigned parse_threads(const std::string& text) {
   const auto threads = parse_number<unsigned>(text);
   if (!threads || *threads < 1 || *threads > 1024) {
-    fail("--threads", text, "a whole number from 1 to 1024");
+    fail_value("--threads", text, "a whole number from 1 to 1024");
   }
   return *threads;
 }
 
-CameraPlacement parse_camera(const std::string& text) {
+CameraSetting parse_camera(const std::string& text) {
   const auto numbers = parse_list<double>(text);
   if (!numbers || (numbers->size() != 6 && numbers->size() != 7)) {
-    fail("--camera", text, "EX,EY,EZ,TX,TY,TZ or EX,EY,EZ,TX,TY,TZ,FOV (eye, target, degrees)");
+    fail_value("--camera", text,
+               "EX,EY,EZ,TX,TY,TZ or EX,EY,EZ,TX,TY,TZ,FOV (eye, target, degrees)");
   }
   const std::vector<double>& n = *numbers;
   for (const double number : n) {
-    if (!std::isfinite(number)) fail("--camera", text, "finite numbers");
+    if (!std::isfinite(number)) fail_value("--camera", text, "finite numbers");
   }
-  CameraPlacement camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, std::nullopt};
-  if (camera.eye == camera.target) fail("--camera", text, "an eye and a target that differ");
+  CameraSetting camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, std::nullopt, std::nullopt};
+  if (camera.eye == camera.target) fail_value("--camera", text, "an eye and a target that differ");
   if (n.size() == 7) {
     if (n[6] <= 0.0 || n[6] >= 180.0) {
-      fail("--camera", text, "a field of view above 0 and below 180 degrees");
+      fail_value("--camera", text, "a field of view above 0 and below 180 degrees");
     }
     camera.fov = n[6];
   }
@@ -100,9 +97,9 @@ PixelRect parse_crop(const std::string& text, Size size) {
   if (!corners || corners->size() != 4 || window.x0 < 0 || window.x0 >= window.x1 ||
       window.x1 > size.width || window.y0 < 0 || window.y0 >= window.y1 ||
       window.y1 > size.height) {
-    fail("--crop", text,
-         "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 within the frame of " + frame +
-             " (0,0 is the top left corner, X1 and Y1 are not included)");
+    fail_value("--crop", text,
+               "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 within the frame of " + frame +
+                   " (0,0 is the top left corner, X1 and Y1 are not included)");
   }
   require_pixels("--crop", text, window.width(), window.height());
   return window;
@@ -110,25 +107,8 @@ PixelRect parse_crop(const std::string& text, Size size) {
 
 std::uint64_t parse_seed(const std::string& text) {
   const auto seed = parse_number<std::uint64_t>(text);
-  if (!seed) fail("--seed", text, "a whole number from 0 to 18446744073709551615");
+  if (!seed) fail_value("--seed", text, "a whole number from 0 to 18446744073709551615");
   return *seed;
-}
-
-Outputs parse_output(const std::string& text, const std::filesystem::path& scene) {
-  std::filesystem::path stem = text;
-  std::error_code ignored;  // a name that cannot be looked up is no folder
-  if (text.empty()) {
-    stem = scene.stem();
-  } else if (!stem.has_filename() || std::filesystem::is_directory(stem, ignored)) {
-    stem /= scene.stem();
-  } else if (stem.extension() == ".exr") {
-    return {stem, std::nullopt};
-  } else if (stem.extension() == ".png") {
-    return {std::nullopt, stem};
-  } else if (stem.has_extension()) {
-    fail("--output", text, "a name that ends in .exr or .png, or one without ending for both");
-  }
-  return {stem.string() + ".exr", stem.string() + ".png"};
 }
 
 }  // namespace raygate

@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "host/hit/exact_vector.h"
+#include "host/exact/exact_vector.h"
 
 namespace raygate {
 namespace {
@@ -159,14 +159,25 @@ int direction_side(const glm::vec3& direction, const Corners& t) {
   return side.sure() ? side.sign() : exact_slope(direction, t).sign();
 }
 
+// Where doubles cancel too much, D and I . N are exact but for their last rounding to double (off
+// by an ulp at most), and then the quotient's.
 Interval hit_distance(const Ray& ray, const Corners& triangle) {
-  const Fraction t(ray, triangle);
-  const auto& [n, d] = t;
-  const double above = std::abs(n.value), below = std::abs(d.value);
-  constexpr double kGrow = 1.0 + 4.0 * kU, kShrink = 1.0 - 4.0 * kU;
-  return {std::max(0.0, (above - n.error) / (below + d.error) * kShrink),
-          d.sure() ? (above + n.error) / (below - d.error) * kGrow
-                   : std::numeric_limits<double>::infinity()};
+  const auto& [n, d] = Fraction(ray, triangle);
+  if (n.error <= 0x1p-37 * std::abs(n.value) && d.error <= 0x1p-37 * std::abs(d.value)) {
+    const double above = std::abs(n.value), below = std::abs(d.value);
+    constexpr double kGrow = 1.0 + 4.0 * kU, kShrink = 1.0 - 4.0 * kU;
+    return {(above - n.error) / (below + d.error) * kShrink,
+            (above + n.error) / (below - d.error) * kGrow};
+  }
+  const double t = exact_plane(ray.origin, triangle).approximate() /
+                   exact_slope(ray.direction, triangle).approximate();
+  return {t * (1.0 - 16.0 * kU), t * (1.0 + 16.0 * kU)};
+}
+
+PreciseHit precise_hit(const Ray& ray, const Corners& triangle) {
+  const Interval interval = hit_distance(ray, triangle);
+  const double t = 0.5 * (interval.low + interval.high);
+  return {static_cast<float>(t), glm::vec3(t * glm::dvec3(ray.direction))};
 }
 
 // The signs of D and of I . N agree for a hit, as t > 0.

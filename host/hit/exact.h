@@ -27,6 +27,12 @@ struct Interval {
   double low, high;
 };
 
+/// Where a ray meets a triangle, as exactly as floats can say it.
+struct PreciseHit {
+  float t = 0.0f;
+  glm::vec3 point{0.0f};  ///< P = t I, seen from the ray's origin
+};
+
 /// The sign (-1, 0, 1) of I . (A x B), for A = a - O and B = b - O: on which side of the edge from
 /// `a` to `b` the ray passes. Where it is exactly 0, the sign for a direction tilted by an
 /// infinitesimal towards +x, by a still smaller one towards +y, and one towards +z. Only for an
@@ -42,8 +48,12 @@ struct Interval {
 /// of a fan is hit. A triangle whose plane holds the origin is never hit, nor one behind it.
 [[nodiscard]] bool hits_triangle(const Ray& ray, const Corners& triangle);
 
-/// The t of a hit: for triangles that hits_triangle says are hit.
+/// The t of a hit: for triangles that hits_triangle says are hit. high <= low (1 + 2^-34).
 [[nodiscard]] Interval hit_distance(const Ray& ray, const Corners& triangle);
+
+/// t and P of a hit, from the corners, whatever the angle: each word is off by at most half the
+/// distance of floats around it and 2^-10 of that.
+[[nodiscard]] PreciseHit precise_hit(const Ray& ray, const Corners& triangle);
 
 /// The sign of t(first) - t(second), exactly. Both must be hits.
 [[nodiscard]] int compare_hits(const Ray& ray, const Corners& first, const Corners& second);

@@ -52,8 +52,9 @@ void PipelineHitTester::test(std::span<const RayBundle> batch, HitResults& resul
   take_reports([](const TestReport&) { return true; });
 }
 
-HitCounters PipelineHitTester::counters() const {
-  const BurstCounters unit = unit_->counters();
+HitCounters PipelineHitTester::counters() const { return hit_counters(unit_->counters()); }
+
+HitCounters hit_counters(const BurstCounters& unit) {
   HitCounters counters;
   counters.tests = unit.tests;
   counters.misses = unit.misses;

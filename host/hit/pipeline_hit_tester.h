@@ -25,4 +25,7 @@ class PipelineHitTester : public HitTester {
   BurstResults found_;  // kept from batch to batch
 };
 
+/// What a burst unit has counted, in a hit tester's terms: three coordinates are a plane test.
+[[nodiscard]] HitCounters hit_counters(const BurstCounters& unit);
+
 }  // namespace raygate

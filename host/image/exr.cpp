@@ -12,6 +12,8 @@
 
 #include <cstddef>
 
+#include "host/image/channels.h"
+
 namespace raygate {
 namespace {
 
@@ -24,30 +26,6 @@ Imath::M44f to_imath(const glm::mat4& m) {
   return result;
 }
 
-/// Adds channels to a header and a frame buffer together.
-class Channels {
- public:
-  Channels(Imf::Header& header, const PixelRect& window) : header_(header), window_(window) {}
-
-  /// One channel: its value at the window's first pixel is at `first`, the next pixel's is
-  /// `stride` bytes on, rows without a gap.
-  void add(const char* name, Imf::PixelType type, const void* first, std::size_t stride) {
-    header_.channels().insert(name, Imf::Channel(type));
-    // The library's slices start at pixel (0, 0), which may lie outside the window.
-    const std::size_t row = stride * static_cast<std::size_t>(window_.width());
-    char* base = static_cast<char*>(const_cast<void*>(first)) -
-                 static_cast<std::ptrdiff_t>(stride) * window_.x0 -
-                 static_cast<std::ptrdiff_t>(row) * window_.y0;
-    buffer_.insert(name, Imf::Slice(type, base, stride, row));
-  }
-  [[nodiscard]] const Imf::FrameBuffer& buffer() const { return buffer_; }
-
- private:
-  Imf::Header& header_;
-  const PixelRect& window_;
-  Imf::FrameBuffer buffer_;
-};
-
 Imf::Header make_header(const Film& film, const ExrMetadata& metadata) {
   const PixelRect& window = film.window;
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
@@ -57,6 +35,7 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata) {
   header.insert("software", Imf::StringAttribute(metadata.software));
   header.insert("scene", Imf::StringAttribute(metadata.scene));
   header.insert("seed", Imf::StringAttribute(std::to_string(metadata.seed)));
+  if (metadata.partial) header.insert("partial", Imf::StringAttribute(kPartial));
   Imf::addWorldToCamera(header, to_imath(metadata.world_to_camera));
   return header;
 }
@@ -65,25 +44,25 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata) {
 
 std::string encode_exr(const Film& film, const ExrMetadata& metadata) {
   Imf::Header header = make_header(film, metadata);
-  Channels channels(header, film.window);
-  const glm::vec4* color = film.color.data();
-  channels.add("R", Imf::FLOAT, &color->r, sizeof *color);
-  channels.add("G", Imf::FLOAT, &color->g, sizeof *color);
-  channels.add("B", Imf::FLOAT, &color->b, sizeof *color);
-  channels.add("A", Imf::FLOAT, &color->a, sizeof *color);
-  channels.add("Z", Imf::FLOAT, film.depth.data(), sizeof(float));
-  const glm::vec3* normal = film.normal.data();
-  channels.add("N.X", Imf::FLOAT, &normal->x, sizeof *normal);
-  channels.add("N.Y", Imf::FLOAT, &normal->y, sizeof *normal);
-  channels.add("N.Z", Imf::FLOAT, &normal->z, sizeof *normal);
-  channels.add("id", Imf::UINT, film.primitive.data(), sizeof(std::uint32_t));
+  Imf::FrameBuffer buffer;
+  const PixelRect& window = film.window;
+  for (const Channel& channel : channels_of(film)) {
+    const auto type = channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
+    header.channels().insert(channel.name, Imf::Channel(type));
+    // The library's slices start at pixel (0, 0), which may lie outside the window.
+    const std::size_t row = channel.stride * static_cast<std::size_t>(window.width());
+    char* base = static_cast<char*>(const_cast<void*>(channel.first)) -
+                 static_cast<std::ptrdiff_t>(channel.stride) * window.x0 -
+                 static_cast<std::ptrdiff_t>(row) * window.y0;
+    buffer.insert(channel.name, Imf::Slice(type, base, channel.stride, row));
+  }
 
   Imf::StdOSStream stream;
   {
     // No threads: they would change no byte, and the destructor completes the file.
     Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(channels.buffer());
-    file.writePixels(film.window.height());
+    file.setFrameBuffer(buffer);
+    file.writePixels(window.height());
   }
   return stream.str();
 }

@@ -21,13 +21,23 @@ struct ExrMetadata {
   glm::mat4 world_to_camera{1.0f};
   /// Attribute "screenWindowWidth": width of the frame in the plane at distance 1.
   float screen_window_width = 1.0f;
+  /// The render was not finished: pixels without a sample are like misses, others may have fewer
+  /// samples than asked for. Attribute "partial", with the words of kPartial; else it is not there.
+  bool partial = false;
 };
+
+inline constexpr const char* kPartial = "not finished when it was saved";
 
 /// The bytes of an OpenEXR scan-line file of `film`, ZIP compressed (without loss):
 ///   R G B A        float   scene-linear, premultiplied
 ///   Z              float   distance along the camera's axis, +infinity for a miss
 ///   N.X N.Y N.Z    float   unit normal in world axes, 0 for a miss
 ///   id             uint    triangle index, 4294967295 for a miss
+/// and, where the film has them,
+///   P.X P.Y P.Z    float   the point that is seen, in world axes, 0 for a miss
+///   Albedo.R .G .B float   diffuse colour, 0 for a miss
+///   objectId       uint    object index, 4294967295 for a miss
+///   tests doubts   uint    counts
 /// The display window is the frame, the data window the film's window within it. Equal arguments
 /// give equal bytes. Throws std::runtime_error if the library fails.
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata);

@@ -2,11 +2,8 @@
 
 #include <png.h>
 
-#include <cstdint>
+#include <cstddef>
 #include <stdexcept>
-#include <vector>
-
-#include "host/image/srgb.h"
 
 namespace raygate {
 namespace {
@@ -27,20 +24,27 @@ class PngWriter {
   PngWriter& operator=(const PngWriter&) = delete;
   ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
 
-  void write_header(const Film& film) {
-    const PixelRect& window = film.window;
+  void write_header(const Picture8& picture) {
+    const PixelRect& window = picture.window;
     // libpng refuses sides of more than a million by default; the film has been made already.
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(window.width()),
                  static_cast<png_uint_32>(window.height()), 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
-    if (window.width() != film.width || window.height() != film.height) {
+    if (window.width() != picture.width || window.height() != picture.height) {
       png_set_oFFs(png_, info_, window.x0, window.y0, PNG_OFFSET_PIXEL);
+    }
+    for (const auto& [name, words] : picture.texts) {
+      png_text text{};
+      text.compression = PNG_TEXT_COMPRESSION_NONE;
+      text.key = const_cast<char*>(name.c_str());
+      text.text = const_cast<char*>(words.c_str());
+      png_set_text(png_, info_, &text, 1);
     }
     png_write_info(png_, info_);
   }
-  void write_row(const std::vector<std::uint8_t>& row) { png_write_row(png_, row.data()); }
+  void write_row(const Rgb8* row) { png_write_row(png_, row->data()); }
   void finish() { png_write_end(png_, info_); }
 
  private:
@@ -58,20 +62,14 @@ class PngWriter {
 
 }  // namespace
 
-std::string encode_png(const Film& film) {
+std::string encode_png(const Picture8& picture) {
+  static_assert(sizeof(Rgb8) == 3, "rows go to libpng as they are");
   std::string bytes;
   PngWriter writer(bytes);
-  writer.write_header(film);
-  const auto width = static_cast<std::size_t>(film.window.width());
-  std::vector<std::uint8_t> row(3 * width);
-  for (int y = 0; y < film.window.height(); ++y) {
-    for (std::size_t x = 0; x < width; ++x) {
-      const glm::vec4& color = film.color[static_cast<std::size_t>(y) * width + x];
-      for (int channel = 0; channel < 3; ++channel) {
-        row[3 * x + static_cast<std::size_t>(channel)] = linear_to_srgb(color[channel]);
-      }
-    }
-    writer.write_row(row);
+  writer.write_header(picture);
+  const auto width = static_cast<std::size_t>(picture.window.width());
+  for (std::size_t start = 0; start < picture.pixels.size(); start += width) {
+    writer.write_row(picture.pixels.data() + start);
   }
   writer.finish();
   return bytes;

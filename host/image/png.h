@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "host/render/film.h"
+#include "host/image/picture8.h"
 
 namespace raygate {
 
-/// The bytes of a PNG file of `film`: 24-bit RGB in sRGB (and marked as such), over black, of the
-/// film's window alone; where the window is a crop, its place is in the oFFs chunk. The bytes
-/// depend on the film's colours and nothing else. Throws std::runtime_error if libpng fails.
-[[nodiscard]] std::string encode_png(const Film& film);
+/// The bytes of a PNG file of `picture`: 24-bit RGB, marked as sRGB; where the window is a part of
+/// the frame, its place is in the oFFs chunk; the texts are tEXt chunks. Equal pictures give equal
+/// bytes. Throws std::runtime_error if libpng fails.
+[[nodiscard]] std::string encode_png(const Picture8& picture);
 
 }  // namespace raygate

@@ -43,6 +43,42 @@ struct HitPoint {
   }
 };
 
+/// Whether no point of the triangle is in the box, as far as double can tell for sure. By the
+/// theorem of separating axes; the boxes' own axes have been looked at already.
+bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& triangle) {
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+  const glm::dvec3 half = 0.5 * (glm::dvec3(high) - glm::dvec3(low));
+  glm::dvec3 v[3];
+  double size = largest(middle) + largest(half);
+  for (int k = 0; k < 3; ++k) {
+    v[k] = glm::dvec3(triangle[k]) - middle;
+    size = std::max(size, largest(v[k]));
+  }
+  const auto separates = [&](const glm::dvec3& axis) {
+    const glm::dvec3 p(glm::dot(axis, v[0]), glm::dot(axis, v[1]), glm::dot(axis, v[2]));
+    const double reach = glm::dot(half, glm::abs(axis)) + 0x1p-48 * size * largest(axis);
+    return std::min({p.x, p.y, p.z}) > reach || std::max({p.x, p.y, p.z}) < -reach;
+  };
+  if (separates(triangle_normal(triangle))) return true;
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3 edge = v[(k + 1) % 3] - v[k];
+    if (separates(glm::dvec3(0.0, edge.z, -edge.y)) ||
+        separates(glm::dvec3(-edge.z, 0.0, edge.x)) ||
+        separates(glm::dvec3(edge.y, -edge.x, 0.0))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether no point of `other` is on the given side of the plane of `hit`. A straight way from that
+/// plane to that side does not meet it then: neighbours along a ridge do not matter, however flat
+/// the ridge.
+bool lies_beyond(const Corners& other, const Corners& hit, int side) {
+  return std::ranges::all_of(
+      other, [&](const glm::vec3& vertex) { return plane_side(vertex, hit) != side; });
+}
+
 /// The side of `other` on which the ray is just before or just after it hits `hit`; 0 where it
 /// runs in the plane.
 int wanted_side(const Ray& ray, const Corners& hit, const Corners& other, Departure way) {
@@ -57,9 +93,9 @@ int wanted_side(const Ray& ray, const Corners& hit, const Corners& other, Depart
 std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot, Departure way) {
   const Corners& hit = bvh_.corners_of(slot);
   const Interval t = hit_distance(ray, hit);
-  if (!std::isfinite(t.high)) return std::nullopt;
   const HitPoint x(ray, t);
-  const int side = wanted_side(ray, hit, hit, way);
+  const int before = plane_side(ray.origin, hit);
+  const int side = way == Departure::kBefore ? before : -before;
   const glm::dvec3 normal = triangle_normal(hit);
   // plane_side is positive behind the normal.
   const glm::dvec3 offsets[2] = {
@@ -74,7 +110,9 @@ std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot
     slots_near(bvh_, low, high, near_);
     return std::ranges::all_of(near_, [&](std::uint32_t other_slot) {
       const Corners& other = bvh_.corners_of(other_slot);
-      const int wanted = other_slot == slot ? side : wanted_side(ray, hit, other, way);
+      if (other_slot == slot || surely_apart(low, high, other)) return true;
+      if (lies_beyond(other, hit, side)) return true;
+      const int wanted = wanted_side(ray, hit, other, way);
       return wanted == 0 || plane_side(candidate, other) == wanted;
     });
   };

@@ -21,8 +21,8 @@ enum class Departure {
 ///
 /// Let X be the point, exact and hardly ever a float, in which a ray first hits a triangle. The
 /// origin O' is a float point near X that lies strictly on the same side of the triangle's plane,
-/// and of the plane of every other triangle near, as the points of the ray just before X (for
-/// kBefore) or just after it (for kAfter), decided in exact arithmetic. So
+/// and of the plane of every other triangle that comes near on that side, as the points of the ray
+/// just before X (for kBefore) or just after it (for kAfter), decided in exact arithmetic. So
 ///   * no triangle lies between the ray at X and O': none is skipped, in the sharpest corner;
 ///   * a ray from O' that goes away from the triangle's plane (leaves() says so exactly) never
 ///     hits that triangle again.

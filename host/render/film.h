@@ -8,7 +8,7 @@
 
 namespace raygate {
 
-/// The id of a pixel whose ray hits nothing.
+/// The primitive or object of a pixel whose ray hits nothing.
 inline constexpr std::uint32_t kNoPrimitive = std::numeric_limits<std::uint32_t>::max();
 
 /// Pixels [x0, x1) x [y0, y1) of a larger picture, row 0 at the top.
@@ -18,8 +18,17 @@ struct PixelRect {
   [[nodiscard]] int height() const { return y1 - y0; }
 };
 
+/// What a film holds only if it was asked for.
+struct ExtraChannels {
+  bool position = false, albedo = false, object = false, tests = false, doubts = false;
+};
+
 /// Scene-linear picture of `window` (the crop) within a `width` x `height` frame.
-/// All arrays have window.width() * window.height() elements, row-major, top row first.
+///
+/// All arrays have window.width() * window.height() elements, row-major, top row first; those of
+/// channels that nobody asked for are empty. With several samples in a pixel, `color` and `albedo`
+/// are their filtered mean, `tests` and `doubts` their sum; the others cannot be mixed and are the
+/// first sample's.
 struct Film {
   int width = 0, height = 0;
   PixelRect window;
@@ -28,6 +37,15 @@ struct Film {
   std::vector<float> depth;  ///< Z: distance along the camera's axis; +infinity for a miss
   std::vector<glm::vec3> normal;         ///< unit shading normal towards the viewer; 0 for a miss
   std::vector<std::uint32_t> primitive;  ///< triangle index of the scene; kNoPrimitive for a miss
+
+  // On demand.
+  std::vector<glm::vec3> position;    ///< what the camera's ray hits, in world axes; 0 for a miss
+  std::vector<glm::vec3> albedo;      ///< its diffuse colour, textured; 0 for a miss
+  std::vector<std::uint32_t> object;  ///< index into Scene::objects; kNoPrimitive for a miss
+  /// Ray against polygon, of the camera's ray and of all that follow from it. How many were needed
+  /// depends on the engine, the skips and the window, not on the number of threads.
+  std::vector<std::uint32_t> tests;
+  std::vector<std::uint32_t> doubts;  ///< those tests that float32 could not decide
 };
 
 }  // namespace raygate

@@ -20,20 +20,19 @@ bool NearestHits::offer(std::uint32_t number, const Ray& ray, const Doubt& doubt
   return hit && take_if_nearer(number, ray, {doubt.tag, doubt.point, hit_distance(ray, corners)});
 }
 
-bool NearestHits::within_limit(std::uint32_t number, const Ray& ray, const NearestHit& hit) {
-  if (limits_.empty() || !std::isfinite(limits_[number])) return true;
-  if (hit.t.high < limits_[number]) return true;
-  if (hit.t.low >= limits_[number]) return false;
+bool NearestHits::is_before(const NearestHit& hit, const Ray& ray, float limit) {
+  if (!std::isfinite(limit) || hit.t.high < limit) return true;
+  if (hit.t.low >= limit) return false;
   ++counters_.exact_depth;
   Stopwatch watch;
-  const int order = compare_hit_to_limit(ray, bvh_.corners_of(hit.slot), limits_[number]);
+  const int order = compare_hit_to_limit(ray, bvh_.corners_of(hit.slot), limit);
   counters_.seconds += watch.lap();
   return order < 0;
 }
 
 bool NearestHits::take_if_nearer(std::uint32_t number, const Ray& ray, const NearestHit& hit) {
   NearestHit& best = nearest_[number];
-  if (!within_limit(number, ray, hit)) return false;
+  if (!limits_.empty() && !is_before(hit, ray, limits_[number])) return false;
   if (best.slot != NearestHit::kNone && hit.t.high >= best.t.low) {
     if (hit.t.low > best.t.high) return false;
     ++counters_.exact_depth;

@@ -50,11 +50,20 @@ class NearestHits {
   /// Offers a doubt. True when it is a hit, and the nearest now.
   bool offer(std::uint32_t number, const Ray& ray, const Doubt& doubt);
 
+  /// Whether the nearest hit of ray `number`, which there must be, has t < limit (positive), in
+  /// exact arithmetic.
+  [[nodiscard]] bool is_before(std::size_t number, const Ray& ray, float limit) {
+    return is_before(nearest_[number], ray, limit);
+  }
+
+  /// Says what the nearest hit of ray `number` is, where it was found otherwise.
+  void put(std::uint32_t number, const NearestHit& hit) { nearest_[number] = hit; }
+
   [[nodiscard]] const NearestHit& operator[](std::size_t number) const { return nearest_[number]; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
  private:
-  bool within_limit(std::uint32_t number, const Ray& ray, const NearestHit& hit);
+  bool is_before(const NearestHit& hit, const Ray& ray, float limit);
   bool take_if_nearer(std::uint32_t number, const Ray& ray, const NearestHit& hit);
 
   const Bvh& bvh_;

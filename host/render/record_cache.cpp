@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <new>
+#include <span>
 #include <thread>
+
+#include "host/hit/record_batch.h"
 
 namespace raygate {
 
@@ -18,19 +21,32 @@ RecordCache::RecordCache(const Bvh& bvh, const glm::vec3& origin) : bvh_(bvh), o
   states_ = std::make_unique<std::atomic<State>[]>(slots);
 }
 
+void RecordCache::make_all() {
+  if (bvh_.slot_count() > 0) make(0, bvh_.slot_count());
+}
+
 void RecordCache::make(std::uint32_t first, std::uint32_t count) {
-  State expected = State::kNone;
-  if (!states_[first].compare_exchange_strong(expected, State::kBusy)) {
-    while (states_[first].load(std::memory_order_acquire) != State::kMade) {
-      std::this_thread::yield();
+  const std::uint32_t end = first + count;
+  for (std::uint32_t slot = first; slot < end;) {
+    const std::uint32_t begin = slot;
+    while (slot < end && claim(slot)) ++slot;
+    if (const std::uint32_t claimed = slot - begin; claimed != 0) {
+      make_records(origin_, bvh_.corners_of(begin, claimed), std::span(&records_[begin], claimed));
+      made_.fetch_add(claimed, std::memory_order_relaxed);
+      for (std::uint32_t i = begin; i < slot; ++i) {
+        states_[i].store(State::kMade, std::memory_order_release);
+      }
     }
-    return;
+    if (slot < end) ++slot;  // somebody else's
   }
-  for (std::uint32_t slot = first; slot < first + count; ++slot) {
-    new (&records_[slot]) PolygonRecord(make_record(origin_, bvh_.corners_of(slot)));
+  for (std::uint32_t slot = first; slot < end; ++slot) {
+    while (states_[slot].load(std::memory_order_acquire) != State::kMade) std::this_thread::yield();
   }
-  made_.fetch_add(count, std::memory_order_relaxed);
-  states_[first].store(State::kMade, std::memory_order_release);
+}
+
+bool RecordCache::claim(std::uint32_t slot) {
+  State expected = State::kNone;
+  return states_[slot].compare_exchange_strong(expected, State::kBusy);
 }
 
 }  // namespace raygate

@@ -1,47 +1,24 @@
 #include "host/render/renderer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
+#include <condition_variable>
 #include <exception>
 #include <limits>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "host/render/lights.h"
 #include "host/render/record_cache.h"
-#include "host/render/shade.h"
 #include "host/render/stopwatch.h"
-#include "host/render/wavefront.h"
+#include "host/render/tile_renderer.h"
+#include "host/render/tiles.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
-
-// Pixels. 16,384 rays in flight: a batch of their tests is long against the 50 clocks that the
-// pipelined unit takes to run empty at its end, also when 8 lanes share it.
-constexpr int kTileSize = 128;
-// Pixels of a packet: eight rays close together, for the boxes to agree about.
-constexpr int kBlockWidth = 4, kBlockHeight = kLanes / kBlockWidth;
-
-int divided_up(int value, int by) { return (value + by - 1) / by; }
-
-/// The window cut into tiles, numbered row by row.
-struct Tiles {
-  PixelRect window;
-  int columns, count;
-
-  explicit Tiles(const PixelRect& rect)
-      : window(rect),
-        columns(divided_up(rect.width(), kTileSize)),
-        count(columns * divided_up(rect.height(), kTileSize)) {}
-
-  [[nodiscard]] PixelRect operator[](int index) const {
-    const int x = window.x0 + index % columns * kTileSize;
-    const int y = window.y0 + index / columns * kTileSize;
-    return {x, y, std::min(x + kTileSize, window.x1), std::min(y + kTileSize, window.y1)};
-  }
-};
 
 Film empty_film(const RenderOptions& options) {
   Film film;
@@ -58,104 +35,92 @@ Film empty_film(const RenderOptions& options) {
   film.depth.assign(pixels, std::numeric_limits<float>::infinity());
   film.normal.assign(pixels, glm::vec3(0.0f));
   film.primitive.assign(pixels, kNoPrimitive);
+  const ExtraChannels& extra = options.channels;
+  if (extra.position) film.position.assign(pixels, glm::vec3(0.0f));
+  if (extra.albedo) film.albedo.assign(pixels, glm::vec3(0.0f));
+  if (extra.object) film.object.assign(pixels, kNoPrimitive);
+  if (extra.tests) film.tests.assign(pixels, 0);
+  if (extra.doubts) film.doubts.assign(pixels, 0);
   return film;
 }
 
-/// One thread's share of a render: tile after tile.
-class Worker {
+/// What the threads share besides the film: pass after pass, all tiles of each.
+class Progress {
  public:
-  Worker(const Scene& scene, const Bvh& bvh, const Camera& camera, RecordCache& records,
-         HitTester& tester, Film& film)
-      : scene_(scene),
-        bvh_(bvh),
-        camera_(camera),
-        records_(records),
-        tester_(tester),
-        film_(film),
-        wavefront_(bvh, tester) {}
+  Progress(const Tiles& tiles, const RenderOptions& options, const ProgressFunction& report)
+      : tiles_(tiles), options_(options), report_(report) {}
 
-  void render(const PixelRect& tile) {
-    Stopwatch watch;
-    make_rays(tile);
-    stats_.shade_seconds += watch.lap();
-    wavefront_.trace(camera_.eye(), directions_, records_);
-    watch.lap();
-    for (std::size_t i = 0; i < pixels_.size(); ++i) write_pixel(i);
-    stats_.shade_seconds += watch.lap();
-    stats_.rays += pixels_.size();
+  /// The next tile and pass; false when there is none, or the render is to stop. A pass begins
+  /// when the one before is done: a pixel's samples are added up in their order.
+  bool next(int& tile, int& pass) {
+    std::unique_lock lock(mutex_);
+    const int total = tiles_.count * tiles_.passes();
+    if (stopped_ || next_ >= total) return false;
+    pass = next_ / tiles_.count;
+    tile = next_++ % tiles_.count;
+    pass_done_.wait(lock, [&] { return stopped_ || done_ >= pass * tiles_.count; });
+    return !stopped_;
   }
 
-  void add_to(RenderStats& stats) const {
-    stats.rays += stats_.rays;
-    stats.hit += tester_.counters();
-    stats.exact_inside += wavefront_.counters().exact_inside;
-    stats.exact_depth += wavefront_.counters().exact_depth;
-    stats.traverse_seconds += wavefront_.seconds().traverse;
-    stats.hit_seconds += wavefront_.seconds().hit;
-    stats.doubt_seconds += wavefront_.seconds().doubt;
-    stats.shade_seconds += stats_.shade_seconds;
+  /// Called between waves: false when the render is to stop.
+  bool keep_going() {
+    const std::scoped_lock lock(mutex_);
+    report();
+    return !stopped_;
+  }
+
+  /// Writes a tile; lets the caller look at the film if it is time.
+  void tile_done(TileRenderer& renderer, const Film& film) {
+    const std::scoped_lock lock(mutex_);
+    renderer.write();
+    ++done_;
+    report();
+    pass_done_.notify_all();
+    if (!options_.snapshot || is_complete() || stopped_) return;
+    since_snapshot_ += watch_.lap();
+    if (since_snapshot_ < options_.snapshot_seconds) return;
+    options_.snapshot(film);
+    since_snapshot_ = 0.0;
+    watch_.lap();
+  }
+
+  void failed(std::exception_ptr error) {
+    const std::scoped_lock lock(mutex_);
+    if (!error_) error_ = std::move(error);
+    stopped_ = true;
+    pass_done_.notify_all();
+  }
+
+  void add(const TileRenderer& renderer, RenderStats& stats) {
+    const std::scoped_lock lock(mutex_);
+    renderer.add_to(stats);
+  }
+
+  // When the threads are gone.
+  [[nodiscard]] bool is_complete() const { return done_ == tiles_.count * tiles_.passes(); }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
   }
 
  private:
-  /// Block by block, so that the wavefront's packets are blocks.
-  void make_rays(const PixelRect& tile) {
-    directions_.clear();
-    pixels_.clear();
-    for (int block_y = tile.y0; block_y < tile.y1; block_y += kBlockHeight) {
-      for (int block_x = tile.x0; block_x < tile.x1; block_x += kBlockWidth) {
-        for (int y = block_y; y < std::min(block_y + kBlockHeight, tile.y1); ++y) {
-          for (int x = block_x; x < std::min(block_x + kBlockWidth, tile.x1); ++x) {
-            directions_.push_back(
-                camera_.direction((x + 0.5) / film_.width, (y + 0.5) / film_.height));
-            pixels_.push_back(std::size_t(y - film_.window.y0) * film_.window.width() +
-                              std::size_t(x - film_.window.x0));
-          }
-        }
-      }
+  void report() {
+    const double fraction = static_cast<double>(done_) / (tiles_.count * tiles_.passes());
+    if (report_ && !stopped_ && !report_(fraction)) {
+      stopped_ = true;
+      pass_done_.notify_all();
     }
   }
 
-  void write_pixel(std::size_t ray) {
-    const NearestHit& hit = wavefront_.nearest(ray);
-    if (hit.slot == NearestHit::kNone) return;
-    const std::uint32_t index = bvh_.triangle_of(hit.slot);
-    const Appearance look = shade(scene_, scene_.triangles[index], bvh_.corners_of(hit.slot),
-                                  {camera_.eye(), directions_[ray]});
-    const std::size_t pixel = pixels_[ray];
-    film_.color[pixel] = glm::vec4(look.color, 1.0f);
-    film_.depth[pixel] = static_cast<float>(glm::dot(glm::dvec3(hit.point), camera_.forward()));
-    film_.normal[pixel] = look.normal;
-    film_.primitive[pixel] = index;
-  }
-
-  const Scene& scene_;
-  const Bvh& bvh_;
-  const Camera& camera_;
-  RecordCache& records_;
-  HitTester& tester_;
-  Film& film_;
-  Wavefront wavefront_;
-  RenderStats stats_;
-  std::vector<glm::vec3> directions_;
-  std::vector<std::size_t> pixels_;  // where in the film each ray's pixel is
-};
-
-/// What the threads share besides the film.
-struct Progress {
-  explicit Progress(const ProgressFunction& function) : report(function) {}
-
-  const ProgressFunction& report;
-  std::mutex mutex;  // of report, done, error and the statistics
-  int done = 0;
-  std::exception_ptr error;
-  std::atomic<int> next_tile{0};
-  std::atomic<bool> stop{false};
-
-  void tile_done(int count) {
-    const std::scoped_lock lock(mutex);
-    ++done;
-    if (report && !stop && !report(static_cast<double>(done) / count)) stop = true;
-  }
+  const Tiles& tiles_;
+  const RenderOptions& options_;
+  const ProgressFunction& report_;
+  std::mutex mutex_;  // of all that follows, and of the film
+  std::condition_variable pass_done_;
+  int next_ = 0, done_ = 0;
+  bool stopped_ = false;
+  std::exception_ptr error_;
+  Stopwatch watch_;
+  double since_snapshot_ = 0.0;
 };
 
 }  // namespace
@@ -163,30 +128,37 @@ struct Progress {
 Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const RenderOptions& options,
             const HitTesterFactory& make_tester, RenderStats& stats,
             const ProgressFunction& progress_function) {
-  assert(options.width > 0 && options.height > 0 && options.threads > 0);
+  assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
   stats = {};
   Film film = empty_film(options);
-  const Tiles tiles(film.window);
+  const Tiles tiles(film.window, options.samples);
+  FilmSums sums;
+  if (tiles.passes() > 1) {
+    sums.color.assign(film.color.size(), glm::dvec4(0.0));
+    sums.albedo.assign(film.albedo.size(), glm::dvec3(0.0));
+  }
+  const Lights lights(scene, bvh, options.skips.records);
   RecordCache records(bvh, camera.eye());
-  Progress progress(progress_function);
+  if (!options.skips.records) records.make_all();
+  const RenderJob job{scene, bvh, camera, options, lights, records};
+  Progress progress(tiles, options, progress_function);
 
   const auto work = [&] {
     try {
       const auto tester = make_tester();
-      Worker worker(scene, bvh, camera, records, *tester, film);
-      while (!progress.stop) {
-        const int tile = progress.next_tile++;
-        if (tile >= tiles.count) break;
-        worker.render(tiles[tile]);
-        progress.tile_done(tiles.count);
+      TileRenderer renderer(job, *tester, film, sums);
+      const auto keep_going = [&] { return progress.keep_going(); };
+      for (int tile = 0, pass = 0; progress.next(tile, pass);) {
+        if (!renderer.trace(tiles[tile], tiles.first_sample(pass), tiles.samples_of(pass),
+                            keep_going)) {
+          break;
+        }
+        progress.tile_done(renderer, film);
       }
-      const std::scoped_lock lock(progress.mutex);
-      worker.add_to(stats);
+      progress.add(renderer, stats);
     } catch (...) {
-      const std::scoped_lock lock(progress.mutex);
-      if (!progress.error) progress.error = std::current_exception();
-      progress.stop = true;
+      progress.failed(std::current_exception());
     }
   };
   {
@@ -194,9 +166,13 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
     for (int i = 1; i < std::min(options.threads, tiles.count); ++i) threads.emplace_back(work);
     work();
   }
-  if (progress.error) std::rethrow_exception(progress.error);
-  stats.records = records.made();
-  stats.cancelled = progress.done < tiles.count;
+  progress.rethrow();
+  stats.common_records = records.made() + lights.records_made();
+  stats.records += stats.common_records;
+  stats.skipped.records = bvh.slot_count() * (1 + lights.points().size()) - stats.common_records;
+  const std::uint64_t every_test = stats.rays * bvh.slot_count();
+  stats.skipped.culled_tests = every_test - std::min(every_test, stats.hit.tests);
+  stats.cancelled = !progress.is_complete();
   stats.wall_seconds = wall.lap();
   return film;
 }

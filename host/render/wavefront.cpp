@@ -1,8 +1,10 @@
 #include "host/render/wavefront.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
+#include <cassert>
 
+#include "host/render/cone_search.h"
 #include "host/render/stopwatch.h"
 
 namespace raygate {
@@ -10,88 +12,200 @@ namespace raygate {
 Wavefront::Wavefront(const Bvh& bvh, HitTester& tester)
     : bvh_(bvh), tester_(tester), nearest_(bvh) {}
 
-void Wavefront::trace(const glm::vec3& origin, std::span<const glm::vec3> directions,
-                      RecordCache& records, std::span<const float> limits) {
+void Wavefront::trace(std::span<const Ray> rays, const Search& search) {
   Stopwatch watch;
-  nearest_.reset(directions.size(), limits);
-  make_packets(origin, directions, limits);
+  nearest_.reset(rays.size(), search.limits);
+  if (counting_) work_.assign(rays.size(), {});
+  if (trace_in_place(rays, search)) {
+    const double before = seconds_.doubt;
+    seconds_.doubt = nearest_.counters().seconds;
+    seconds_.hit += watch.lap() - (seconds_.doubt - before);
+    return;
+  }
+  make_packets(rays, search);
   for (;;) {
-    collect(directions, records);
+    collect(rays, search);
     seconds_.traverse += watch.lap();
     if (batch_.empty()) return;
+    if (search.common == nullptr) make_own_records(rays);
+    seconds_.record += watch.lap();
     results_.clear();
     tester_.test(batch_, results_);
     seconds_.hit += watch.lap();
-    merge(origin, directions);
+    merge(rays, search);
+    if (counting_) count_batch();
     const double before = seconds_.doubt;
     seconds_.doubt = nearest_.counters().seconds;
     seconds_.hit += watch.lap() - (seconds_.doubt - before);
   }
 }
 
-/// Each eight rays make one packet, or, where they point into several octants, one for each.
-void Wavefront::make_packets(const glm::vec3& origin, std::span<const glm::vec3> directions,
-                             std::span<const float> limits) {
+/// What the host can do without batches; false where batches are needed.
+bool Wavefront::trace_in_place(std::span<const Ray> rays, const Search& search) {
+  HitCounters* const counters = tester_.in_place();
+  if (counters == nullptr || search.common == nullptr || !search.culling || counting_) return false;
+  ConeSearch cones(bvh_, *search.common, nearest_, *counters);
+  cones.trace(rays, {search.limits, search.ignored, search.enough_before});
+  ended_early_ += cones.ended_early();
+  return true;
+}
+
+/// Packets are filled octant by octant, each in the order of the rays.
+void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
   packets_.clear();
   active_.clear();
-  for (std::size_t first = 0; first < directions.size(); first += kLanes) {
-    const std::size_t count = std::min<std::size_t>(kLanes, directions.size() - first);
-    LaneMask left = 0;
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      if (is_usable(directions[first + lane])) left |= 1u << lane;
+  std::array<std::uint32_t, 8> open;  // the packet of each octant that has room
+  std::array<int, 8> filled{};
+  open.fill(kNone);
+  for (std::uint32_t number = 0; number < rays.size(); ++number) {
+    const Ray& ray = rays[number];
+    if (!is_usable(ray.direction)) continue;
+    const int octant = octant_of(ray.direction);
+    if (open[octant] == kNone) {
+      open[octant] = static_cast<std::uint32_t>(packets_.size());
+      filled[octant] = 0;
+      active_.push_back(open[octant]);
+      packets_.push_back({PacketTraversal(bvh_, octant), {}});
+      packets_.back().rays.fill(number);
     }
-    while (left != 0) {
-      const int octant = octant_of(directions[first + std::countr_zero(left)]);
-      active_.push_back(static_cast<std::uint32_t>(packets_.size()));
-      auto& traversal = packets_
-                            .emplace_back(Packet{PacketTraversal(bvh_, octant),
-                                                 static_cast<std::uint32_t>(first)})
-                            .traversal;
-      for (LaneMask lanes = left; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        const glm::vec3& direction = directions[first + lane];
-        if (octant_of(direction) != octant) continue;
-        traversal.set_ray(lane, origin, direction);
-        if (!limits.empty()) traversal.set_cutoff(lane, limits[first + lane]);
-        left &= ~(1u << lane);
-      }
-    }
+    Packet& packet = packets_[open[octant]];
+    const int lane = filled[octant]++;
+    packet.rays[lane] = number;
+    packet.traversal.set_ray(lane, ray.origin, ray.direction);
+    packet.lanes |= 1u << lane;
+    if (!search.limits.empty()) packet.traversal.set_cutoff(lane, search.limits[number]);
+    if (filled[octant] == kLanes) open[octant] = kNone;
   }
+}
+
+std::optional<LeafVisit> Wavefront::next_visit(Packet& packet, const Search& search) {
+  if (search.culling) return packet.traversal.next_leaf();
+  const std::uint32_t first = packet.next_slot;
+  if (first >= bvh_.slot_count()) return std::nullopt;
+  const std::uint32_t count = std::min(Bvh::kMaxLeafSize, bvh_.slot_count() - first);
+  packet.next_slot += count;
+  return LeafVisit{first, count, packet.lanes};
 }
 
 /// Sends every packet to its next leaf and writes the tests found there into the batch. Packets
 /// that are through leave the active ones.
-void Wavefront::collect(std::span<const glm::vec3> directions, RecordCache& records) {
+void Wavefront::collect(std::span<const Ray> rays, const Search& search) {
   batch_.clear();
+  owner_.clear();
   std::size_t kept = 0;
   for (const std::uint32_t index : active_) {
     Packet& packet = packets_[index];
-    const auto visit = packet.traversal.next_leaf();
+    const auto visit = next_visit(packet, search);
     if (!visit) continue;
     active_[kept++] = index;
-    RayBundle& bundle = batch_.emplace_back();
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const std::size_t ray = std::min(packet.first_ray + std::size_t(lane), directions.size() - 1);
-      for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = directions[ray][k];
+    if (search.common != nullptr) {
+      assert(rays[packet.rays[0]].origin == search.common->origin());
+      add_bundle(rays, packet, *visit, visit->lanes);
+      batch_.back().records = search.common->leaf(visit->first, visit->count);
+    } else {
+      add_own_bundles(rays, packet, *visit);
     }
-    bundle.records = records.leaf(visit->first, visit->count);
-    bundle.record_count = visit->count;
-    bundle.first_tag = visit->first;
-    bundle.lanes = visit->lanes;
+    owner_.resize(batch_.size(), index);
   }
   active_.resize(kept);
 }
 
-void Wavefront::merge(const glm::vec3& origin, std::span<const glm::vec3> directions) {
-  const auto offer = [&](const auto& report) {
-    Packet& packet = packets_[active_[report.bundle]];
-    const std::uint32_t ray = packet.first_ray + report.lane;
-    if (nearest_.offer(ray, {origin, directions[ray]}, report)) {
-      packet.traversal.set_cutoff(static_cast<int>(report.lane), nearest_[ray].t.high);
+/// A bundle for each origin among the visiting rays.
+void Wavefront::add_own_bundles(std::span<const Ray> rays, const Packet& packet,
+                                const LeafVisit& visit) {
+  for (LaneMask left = visit.lanes; left != 0;) {
+    const glm::vec3& origin = rays[packet.rays[std::countr_zero(left)]].origin;
+    LaneMask lanes = 0;
+    for (LaneMask others = left; others != 0; others &= others - 1) {
+      const int lane = std::countr_zero(others);
+      if (rays[packet.rays[lane]].origin == origin) lanes |= 1u << lane;
     }
+    add_bundle(rays, packet, visit, lanes);
+    left &= ~lanes;
+  }
+}
+
+void Wavefront::add_bundle(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit,
+                           LaneMask lanes) {
+  RayBundle& bundle = batch_.emplace_back();
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const glm::vec3& direction = rays[packet.rays[lane]].direction;
+    for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = direction[k];
+  }
+  bundle.record_count = visit.count;
+  bundle.first_tag = visit.first;
+  bundle.lanes = lanes;
+}
+
+/// All at once, when it is known how many: bundles point at their records.
+void Wavefront::make_own_records(std::span<const Ray> rays) {
+  std::size_t count = 0;
+  for (const RayBundle& bundle : batch_) count += bundle.record_count;
+  if (records_.size() < count) records_.resize(count);
+  PolygonRecord* next = records_.data();
+  for (std::size_t i = 0; i < batch_.size(); ++i) {
+    RayBundle& bundle = batch_[i];
+    const Ray& ray = rays[packets_[owner_[i]].rays[std::countr_zero(bundle.lanes)]];
+    bundle.records = next;
+    for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
+      *next++ = make_record(ray.origin, bvh_.corners_of(bundle.first_tag + k));
+    }
+  }
+  own_records_ += count;
+}
+
+template <class Report>
+void Wavefront::offer(std::span<const Ray> rays, const Search& search, const Report& report) {
+  Packet& packet = packets_[owner_[report.bundle]];
+  const std::uint32_t number = packet.rays[report.lane];
+  if (!nearest_.offer(number, rays[number], report)) return;
+  const bool ends = !search.enough_before.empty() &&
+                    nearest_.is_before(number, rays[number], search.enough_before[number]);
+  ended_early_ += ends;
+  packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : nearest_[number].t.high);
+}
+
+/// A burst reports no hit that is surely farther than another one: where that one is ignored, exact
+/// arithmetic tries them all.
+void Wavefront::offer_hidden(std::span<const Ray> rays, const Search& search,
+                             const SureHit& ignored) {
+  const RayBundle& bundle = batch_[ignored.bundle];
+  const std::uint32_t number = packets_[owner_[ignored.bundle]].rays[ignored.lane];
+  if (!search.limits.empty() && ignored.t.low >= search.limits[number]) return;
+  for (std::uint32_t tag = bundle.first_tag; tag < bundle.first_tag + bundle.record_count; ++tag) {
+    if (tag == ignored.tag) continue;
+    offer(rays, search, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
+  }
+}
+
+void Wavefront::merge(std::span<const Ray> rays, const Search& search) {
+  const auto is_ignored = [&](const auto& report) {
+    return !search.ignored.empty() &&
+           search.ignored[packets_[owner_[report.bundle]].rays[report.lane]] == report.tag;
   };
-  for (const SureHit& hit : results_.hits) offer(hit);
-  for (const Doubt& doubt : results_.doubts) offer(doubt);
+  for (const SureHit& hit : results_.hits) {
+    if (is_ignored(hit)) {
+      offer_hidden(rays, search, hit);
+    } else {
+      offer(rays, search, hit);
+    }
+  }
+  for (const Doubt& doubt : results_.doubts) {
+    if (!is_ignored(doubt)) offer(rays, search, doubt);
+  }
+}
+
+void Wavefront::count_batch() {
+  for (std::size_t i = 0; i < batch_.size(); ++i) {
+    for (LaneMask lanes = batch_[i].lanes; lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t ray = packets_[owner_[i]].rays[std::countr_zero(lanes)];
+      work_[ray].tests += batch_[i].record_count;
+    }
+  }
+  for (const Doubt& doubt : results_.doubts) {
+    ++work_[packets_[owner_[doubt.bundle]].rays[doubt.lane]].doubts;
+  }
 }
 
 }  // namespace raygate

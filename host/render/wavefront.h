@@ -1,8 +1,10 @@
 // Many rays in flight: while some wait for their hit tests, others walk the tree.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,53 +15,102 @@
 
 namespace raygate {
 
-/// Traces a few hundred to a thousand rays at once. In each round every packet of eight goes on to
-/// its next leaf; the leaves' tests together are one batch for the tester; its answers shorten the
-/// rays. The unit sees few large batches, the host's memory a few packets.
+/// What a search is about, besides its rays. Spans are read during the search only.
+struct Search {
+  /// Where all rays begin at its origin, its records are used. Otherwise records are made for the
+  /// leaf that a ray comes to, once for those rays of a packet that have one origin. Changes
+  /// nothing of what is found.
+  RecordCache* common = nullptr;
+  /// One a ray, positive: only hits with t < limits[i] count (see NearestHits::reset).
+  std::span<const float> limits{};
+  /// One a ray: a slot whose hits do not count, or NearestHit::kNone. With it, NearestHit::point
+  /// says nothing.
+  std::span<const std::uint32_t> ignored{};
+  /// One a ray, for rays that need not know their nearest hit: a ray ends at the first hit that it
+  /// finds with t < enough_before[i]; that one is reported as the nearest.
+  std::span<const float> enough_before{};
+  /// False: every ray is tested against every polygon, whatever the boxes say.
+  bool culling = true;
+};
+
+/// Traces many rays at once; some ten thousand are best. In each round every packet of eight goes
+/// on to its next leaf; the leaves' tests together are one batch for the tester; its answers
+/// shorten the rays. The unit sees few large batches, the host's memory a few packets.
 class Wavefront {
  public:
   /// Where the time went.
   struct Seconds {
-    double traverse = 0.0;  ///< boxes, and records made on first touch
-    double hit = 0.0;       ///< in HitTester::test, and merging its reports
+    double traverse = 0.0;  ///< boxes
+    double record = 0.0;    ///< making polygon records
+    double hit = 0.0;       ///< in HitTester::test, and merging its reports; of tests in place: all
     double doubt = 0.0;     ///< exact arithmetic about what they leave open
   };
 
   Wavefront(const Bvh& bvh, HitTester& tester);
 
-  /// Finds the nearest hit of each ray from `origin`, whose records `records` holds. Directions
-  /// scaled (see scaled_direction); each eight in a row should go about the same way. With
-  /// `limits`, one a ray, only hits with t < limits[i] count (see NearestHits::reset). Directions
-  /// that are zero or not finite hit nothing.
-  void trace(const glm::vec3& origin, std::span<const glm::vec3> directions, RecordCache& records,
-             std::span<const float> limits = {});
+  /// Finds the nearest hit of each ray. Directions scaled (see scaled_direction); rays near each
+  /// other in `rays` should go about the same way. Directions that are zero or not finite hit
+  /// nothing. What a ray finds does not depend on the others.
+  void trace(std::span<const Ray> rays, const Search& search = {});
 
-  /// Of the ray directions[number] of the last trace.
+  /// Of rays[number] of the last trace.
   [[nodiscard]] const NearestHit& nearest(std::size_t number) const { return nearest_[number]; }
 
   [[nodiscard]] const Seconds& seconds() const { return seconds_; }
   [[nodiscard]] const NearestHits::Counters& counters() const { return nearest_.counters(); }
+  /// Whether that ray's nearest hit has t < limit (positive, finite), in exact arithmetic.
+  [[nodiscard]] bool nearest_is_before(std::size_t number, const Ray& ray, float limit) {
+    return nearest_.is_before(number, ray, limit);
+  }
+
+  /// Whether to count tests and doubts by ray from now on.
+  void count_work(bool on) { counting_ = on; }
+  /// One a ray of the last trace, if that was counted.
+  struct Work {
+    std::uint32_t tests = 0, doubts = 0;
+  };
+  [[nodiscard]] std::span<const Work> work() const { return work_; }
+  /// Rays that Search::enough_before has ended before their time.
+  [[nodiscard]] std::uint64_t ended_early() const { return ended_early_; }
+  /// Records made for rays without a common origin.
+  [[nodiscard]] std::uint64_t own_records() const { return own_records_; }
 
  private:
-  /// Up to eight rays of one octant; lane k is ray first_ray + k.
+  /// Up to eight rays of one octant.
   struct Packet {
     PacketTraversal traversal;
-    std::uint32_t first_ray;
+    std::array<std::uint32_t, kLanes> rays;  // numbers; lanes without a ray repeat lane 0
+    LaneMask lanes = 0;
+    std::uint32_t next_slot = 0;  // without culling
   };
 
-  void make_packets(const glm::vec3& origin, std::span<const glm::vec3> directions,
-                    std::span<const float> limits);
-  void collect(std::span<const glm::vec3> directions, RecordCache& records);
-  void merge(const glm::vec3& origin, std::span<const glm::vec3> directions);
+  bool trace_in_place(std::span<const Ray> rays, const Search& search);
+  void make_packets(std::span<const Ray> rays, const Search& search);
+  std::optional<LeafVisit> next_visit(Packet& packet, const Search& search);
+  void collect(std::span<const Ray> rays, const Search& search);
+  void add_own_bundles(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit);
+  void add_bundle(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit,
+                  LaneMask lanes);
+  void make_own_records(std::span<const Ray> rays);
+  template <class Report>
+  void offer(std::span<const Ray> rays, const Search& search, const Report& report);
+  void offer_hidden(std::span<const Ray> rays, const Search& search, const SureHit& ignored);
+  void merge(std::span<const Ray> rays, const Search& search);
+  void count_batch();
 
   const Bvh& bvh_;
   HitTester& tester_;
   NearestHits nearest_;
   Seconds seconds_;
+  std::uint64_t own_records_ = 0, ended_early_ = 0;
+  bool counting_ = false;
+  std::vector<Work> work_;
   // Room to work in, kept from trace to trace.
   std::vector<Packet> packets_;
-  std::vector<std::uint32_t> active_;  // packets still on their way; batch_[i] is active_[i]'s
+  std::vector<std::uint32_t> active_;  // packets still on their way
   std::vector<RayBundle> batch_;
+  std::vector<std::uint32_t> owner_;    // the packet of each bundle
+  std::vector<PolygonRecord> records_;  // of rays of their own origins, in the batch's order
   HitResults results_;
 };
 

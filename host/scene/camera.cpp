@@ -95,7 +95,19 @@ Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const gl
   return camera;
 }
 
+Camera Camera::look_at(const CameraSetting& setting, double aspect) {
+  const glm::dvec3 view = setting.target - setting.eye;
+  const bool vertical = view.x == 0.0 && view.z == 0.0;
+  const glm::dvec3 up = vertical ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(0.0, 1.0, 0.0);
+  return look_at(setting.eye, setting.target, setting.up.value_or(up),
+                 setting.fov.value_or(kDefaultFov), aspect);
+}
+
 Camera Camera::frame(const Scene& scene, double aspect, double vertical_fov_degrees) {
+  return look_at(framing(scene, aspect, vertical_fov_degrees), aspect);
+}
+
+CameraSetting framing(const Scene& scene, double aspect, double fov) {
   const Box box = bounding_box(scene);
   const glm::dvec3 centre = 0.5 * (box.low + box.high);
   const glm::dvec3 half = 0.5 * (box.high - box.low);
@@ -105,21 +117,23 @@ Camera Camera::frame(const Scene& scene, double aspect, double vertical_fov_degr
   const double raised = (3.0 + 27.0 * flatness) * kRadiansPerDegree;
   const glm::dvec3 towards_eye(0.0, std::sin(raised), std::cos(raised));
   const glm::dvec3 y_axis(0.0, 1.0, 0.0);
-  const Camera at_centre = look_at(centre + towards_eye * largest_magnitude(half), centre, y_axis,
-                                   vertical_fov_degrees, aspect);
+  const Camera at_centre =
+      Camera::look_at(centre + towards_eye * largest_magnitude(half), centre, y_axis, fov, aspect);
 
   // The least distance at which the eight corners are within the four sides of the view.
   constexpr double kFilled = 0.96;
+  const double half_height = std::tan(fov * 0.5 * kRadiansPerDegree);
+  const double half_width = half_height * aspect;
   double distance = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 offset =
         half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    const double nearer = -glm::dot(offset, at_centre.forward_);
-    const double across = std::abs(glm::dot(offset, at_centre.right_)) / at_centre.half_width_;
-    const double upwards = std::abs(glm::dot(offset, at_centre.up_)) / at_centre.half_height_;
+    const double nearer = -glm::dot(offset, at_centre.forward());
+    const double across = std::abs(glm::dot(offset, at_centre.right())) / half_width;
+    const double upwards = std::abs(glm::dot(offset, at_centre.up())) / half_height;
     distance = std::max(distance, std::max(across, upwards) / kFilled + nearer);
   }
-  return look_at(centre + distance * towards_eye, centre, y_axis, vertical_fov_degrees, aspect);
+  return {centre + distance * towards_eye, centre, y_axis, fov};
 }
 
 glm::vec3 Camera::direction(double x, double y) const {

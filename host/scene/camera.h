@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "host/scene/scene.h"
 
@@ -11,6 +12,19 @@ namespace raygate {
 /// float. Scaling so changes no rounding of a hit test, and lets its error bounds be constants.
 /// `direction` must be finite and not zero.
 [[nodiscard]] glm::vec3 scaled_direction(const glm::dvec3& direction);
+
+/// Where a camera stands and looks. What is left out has a default.
+struct CameraSetting {
+  glm::dvec3 eye{0.0}, target{0.0};  ///< not the same point
+  std::optional<glm::dvec3> up;      ///< upwards in the picture; not zero and not along the view
+  std::optional<double> fov;         ///< from the lower to the upper edge in degrees, in (0, 180)
+};
+
+/// A setting that shows all of `scene` from the front, in the scene's coordinates: along -z, raised
+/// a little, the more the flatter the scene is. The box around the scene fills the picture but for
+/// a margin of 4 %; its middle is the target. `aspect` is width / height of the picture.
+/// Throws InputError for a scene without triangles or one too large for float.
+[[nodiscard]] CameraSetting framing(const Scene& scene, double aspect, double fov);
 
 /// Coordinates are the scene's (a world point minus Scene::origin). Right-handed: seen from the
 /// eye, `right` is +x and `up` is +y of the picture, and the view goes along `forward`.
@@ -28,9 +42,11 @@ class Camera {
                                       const glm::dvec3& up, double vertical_fov_degrees,
                                       double aspect);
 
-  /// Shows all of `scene` from the front: along -z, raised a little, the more the flatter the
-  /// scene is. The box around the scene fills the picture but for a margin of 4 %.
-  /// Throws InputError for a scene without triangles or one too large for float.
+  /// Looks as `setting` says. Without `up`, +y is up; where the view goes along it, up is what a
+  /// map has there, -z. Without `fov` it is kDefaultFov. Throws as above.
+  [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
+
+  /// Looks as framing() says.
   [[nodiscard]] static Camera frame(const Scene& scene, double aspect,
                                     double vertical_fov_degrees = kDefaultFov);
 

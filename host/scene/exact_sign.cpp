@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "host/exact/exact_sum.h"
+
 namespace raygate {
 namespace {
 
@@ -13,22 +15,6 @@ double exact_product(float a, float b) { return static_cast<double>(a) * static_
 int sign_of(double x) { return (x > 0.0) - (x < 0.0); }
 
 }  // namespace
-
-void ExactSum::add(double term) {
-  std::size_t kept = 0;
-  for (const double part : parts_) {
-    // Knuth's two-sum: sum + error is exactly term + part.
-    const double sum = term + part;
-    const double part_rounded = sum - term;
-    const double error = (term - (sum - part_rounded)) + (part - part_rounded);
-    if (error != 0.0) parts_[kept++] = error;
-    term = sum;
-  }
-  parts_.resize(kept);
-  if (term != 0.0) parts_.push_back(term);
-}
-
-int ExactSum::sign() const { return parts_.empty() ? 0 : sign_of(parts_.back()); }
 
 int turn(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
   const glm::dvec2 from_c_to_a = glm::dvec2(a) - glm::dvec2(c);

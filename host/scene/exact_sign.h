@@ -1,24 +1,10 @@
-// Exact signs of sums of doubles, and the two questions of plane geometry that rest on them.
+// Questions of plane geometry, answered exactly.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <span>
-#include <vector>
 
 namespace raygate {
-
-/// A sum of doubles without rounding: a list of doubles of growing magnitude whose bits do not
-/// overlap (Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
-/// Predicates", 1997, GROW-EXPANSION with zero elimination). Terms must not overflow.
-class ExactSum {
- public:
-  void add(double term);
-  /// -1, 0 or 1.
-  [[nodiscard]] int sign() const;
-
- private:
-  std::vector<double> parts_;
-};
 
 /// 1 if a, b, c turn counter-clockwise, -1 if clockwise, 0 if they are exactly on one line.
 /// For all finite floats.

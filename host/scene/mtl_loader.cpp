@@ -11,6 +11,19 @@ namespace {
 
 glm::vec3 colour(const tinyobj::real_t (&rgb)[3]) { return glm::vec3(rgb[0], rgb[1], rgb[2]); }
 
+// Files made on Windows name folders with backslashes.
+std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                               std::string_view name) {
+  std::string slashed(name);
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  for (const std::string& spelling : {std::string(name), slashed}) {
+    std::error_code ignored;
+    std::filesystem::path file = folder / spelling;
+    if (std::filesystem::is_regular_file(file, ignored)) return file;
+  }
+  return std::nullopt;
+}
+
 Material converted(const tinyobj::material_t& read, const std::filesystem::path& folder) {
   Material material;
   material.name = read.name;
@@ -23,36 +36,29 @@ Material converted(const tinyobj::material_t& read, const std::filesystem::path&
   material.opacity = static_cast<float>(read.dissolve);
   material.illumination_model = read.illum;
   if (!read.diffuse_texname.empty()) {
-    material.diffuse_map = (folder / read.diffuse_texname).string();
+    material.diffuse_map =
+        find_file(folder, read.diffuse_texname).value_or(folder / read.diffuse_texname).string();
+    const tinyobj::texture_option_t& options = read.diffuse_texopt;
+    material.diffuse_mapping.scale = glm::vec2(options.scale[0], options.scale[1]);
+    material.diffuse_mapping.offset = glm::vec2(options.origin_offset[0], options.origin_offset[1]);
+    material.diffuse_mapping.clamp = options.clamp;
   }
   return material;
 }
 
 }  // namespace
 
-// Files made on Windows name folders with backslashes.
-std::optional<std::filesystem::path> MtlLoader::find_file(std::string_view name) const {
-  std::string slashed(name);
-  std::replace(slashed.begin(), slashed.end(), '\\', '/');
-  for (const std::string& spelling : {std::string(name), slashed}) {
-    std::error_code ignored;
-    const std::filesystem::path file = folder_ / spelling;
-    if (std::filesystem::is_regular_file(file, ignored)) return file;
-  }
-  return std::nullopt;
-}
-
 bool MtlLoader::operator()(const std::string& names, std::vector<tinyobj::material_t>*,
                            std::map<std::string, int>*, std::string*, std::string*) {
   std::string_view rest = names;
   if (rest.empty()) warnings_.push_back(obj_.place() + "mtllib without a file");
-  std::optional<std::filesystem::path> file = find_file(rest);
+  std::optional<std::filesystem::path> file = find_file(folder_, rest);
   if (file) {
     load(*file);
     return true;
   }
   for (std::string_view name = take_word(rest); !name.empty(); name = take_word(rest)) {
-    file = find_file(name);
+    file = find_file(folder_, name);
     if (file) {
       load(*file);
     } else {

@@ -36,7 +36,6 @@ class MtlLoader final : public tinyobj::MaterialReader {
   [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
 
  private:
-  [[nodiscard]] std::optional<std::filesystem::path> find_file(std::string_view name) const;
   void load(const std::filesystem::path& file);  // once each
 
   std::filesystem::path folder_;

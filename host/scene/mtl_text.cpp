@@ -156,6 +156,7 @@ void MtlText::check_value(std::string_view keyword, std::string_view words, std:
 }
 
 void MtlText::check_diffuse_map(std::string_view words, std::string& clean) {
+  std::string kept;
   while (words.starts_with('-')) {
     std::string_view rest = words;
     const std::string_view name = take_word(rest);
@@ -163,18 +164,40 @@ void MtlText::check_diffuse_map(std::string_view words, std::string& clean) {
         std::find_if(kTextureOptions.begin(), kTextureOptions.end(),
                      [&](const TextureOption& known) { return known.name == name; });
     if (option == kTextureOptions.end()) break;  // a file whose name begins with '-'
-    warn_once("map_Kd option", "map_Kd " + std::string(name) + ": texture options are ignored");
     words = rest;
-    for (int i = 0; i < option->words; ++i) {
-      const std::string_view word = take_word(rest);
-      if (i > 0 && !to_number(word)) break;
+    if (name == "-clamp") {
+      kept += take_word(rest) == "on" ? "-clamp on " : "";
       words = rest;
+    } else if (name == "-s" || name == "-o") {
+      kept += std::string(name) + " " + take_texture_vector(name, words) + " ";
+    } else {
+      warn_once("map_Kd option", "map_Kd " + std::string(name) + " is not supported, ignored");
+      for (int i = 0; i < option->words; ++i) {
+        const std::string_view word = take_word(rest);
+        if (i > 0 && !to_number(word)) break;
+        words = rest;
+      }
     }
   }
   if (words.empty()) return warn("map_Kd without a file, ignored");
   // Without a Kd of its own the texture's colours stand as they are. (A later Kd still counts.)
   if (!has_diffuse_) clean.append("Kd 1 1 1\n");
-  clean.append("map_Kd ").append(words).append("\n");
+  clean.append("map_Kd ").append(kept).append(words).append("\n");
+}
+
+std::string MtlText::take_texture_vector(std::string_view option, std::string_view& words) const {
+  // One to three numbers; the third is for solid textures. The library wants all three.
+  const bool is_scale = option == "-s";
+  std::array<double, 3> uvw{};
+  uvw.fill(is_scale ? 1.0 : 0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::string_view rest = words;
+    const std::string_view word = take_word(rest);
+    if (i > 0 && !to_number(word)) break;
+    uvw[i] = expect_number(lines(), word, "map_Kd " + std::string(option));
+    words = rest;
+  }
+  return shortest(uvw[0]) + " " + shortest(uvw[1]) + " " + shortest(uvw[2]);
 }
 
 }  // namespace raygate

@@ -8,9 +8,9 @@
 namespace raygate {
 
 /// Lets through what Material holds, well-formed: finite numbers, a single one written out for
-/// three where it means three, texture options taken out, the defaults of Material stated where
-/// the library has others. Values out of range are clamped with a warning; what Material does not
-/// hold is left out, with a warning where that shows in a picture.
+/// three where it means three, texture options but -s, -o and -clamp taken out, the defaults of
+/// Material stated where the library has others. Values out of range are clamped with a warning;
+/// what Material does not hold is left out, with a warning where that shows in a picture.
 class MtlText final : public CleanText {
  public:
   using CleanText::CleanText;
@@ -21,6 +21,7 @@ class MtlText final : public CleanText {
   void check_colour(std::string_view keyword, std::string_view words, std::string& clean);
   void check_value(std::string_view keyword, std::string_view words, std::string& clean);
   void check_diffuse_map(std::string_view words, std::string& clean);
+  std::string take_texture_vector(std::string_view option, std::string_view& words) const;
 
   std::set<std::string, std::less<>> names_;
   bool in_material_ = false;

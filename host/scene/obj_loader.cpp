@@ -44,6 +44,7 @@ class ObjReader {
     mesh_.build(options_, scene_);
     scene_.objects = std::move(objects_.names());
     give_materials();
+    load_textures(scene_);
     return std::move(scene_);
   }
 

@@ -13,7 +13,7 @@ struct LoadOptions {
   bool skip_degenerate = false;
 };
 
-/// Loads `file` and the MTL files that it names (relative to its own folder).
+/// Loads `file`, the MTL files that it names (relative to its own folder), and their textures.
 ///
 /// The triangles keep the order of the file's faces. Polygons, also concave ones, are cut into
 /// triangles of non-zero area. Only vertices that some face uses are kept, in the file's order;
@@ -21,9 +21,10 @@ struct LoadOptions {
 /// double.
 ///
 /// Throws InputError with file and line: what cannot be read, what is not OBJ, an index that no
-/// vertex answers to, a number that is not finite, a face of no area, a file with no face.
-/// Warns (Scene::warnings) and goes on: a missing MTL file or material, statements that say
-/// nothing to a ray tracer of polygons (points, lines, curves).
+/// vertex answers to, a number that is not finite, a face of no area, a file with no face,
+/// a texture that is damaged.
+/// Warns (Scene::warnings) and goes on: a missing MTL file, material or texture, statements that
+/// say nothing to a ray tracer of polygons (points, lines, curves).
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace raygate

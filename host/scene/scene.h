@@ -8,10 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "host/scene/texture.h"
+
 namespace raygate {
 
 /// No normal, texture coordinate or material stands behind this index.
 inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
+
+/// Where on a texture a surface's texture coordinates lead: scale * (u, v) + offset.
+struct TextureMapping {
+  glm::vec2 scale{1.0f};   ///< -s
+  glm::vec2 offset{0.0f};  ///< -o
+  bool clamp = false;      ///< -clamp on: its border goes on for ever, instead of repeating it
+};
 
 /// One MTL material. Colours are scene-linear RGB, usually in [0, 1].
 struct Material {
@@ -25,6 +34,8 @@ struct Material {
   float opacity = 1.0f;           ///< d, or 1 - Tr
   int illumination_model = 2;     ///< illum
   std::string diffuse_map;        ///< map_Kd, joined to the MTL file's folder; empty: none
+  TextureMapping diffuse_mapping;
+  std::uint32_t diffuse_texture = kNoIndex;  ///< index into Scene::textures
 };
 
 /// One triangle: indices into the scene's arrays. Vertices run counter-clockwise seen from the
@@ -37,15 +48,26 @@ struct Triangle {
   std::uint32_t object = 0;    ///< always valid: index into Scene::objects
 };
 
-/// All geometry and materials. Positions are relative to `origin`, which is subtracted in double
-/// before rounding to float, so that a scene far from the world's origin keeps its digits.
+/// A light without size, whose irradiance at distance r is intensity / r^2.
+struct PointLight {
+  glm::vec3 position{0.0f};  ///< relative to the scene's origin
+  /// Radiant intensity, scene-linear RGB; double, for it goes with the square of lengths.
+  glm::dvec3 intensity{0.0};
+};
+
+/// All geometry, materials and lights besides the faces that emit. Positions are relative to
+/// `origin`, which is subtracted in double before rounding to float, so that a scene far from the
+/// world's origin keeps its digits.
 struct Scene {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;  ///< unit length, where a triangle uses them
   std::vector<glm::vec2> texcoords;
   std::vector<Triangle> triangles;
-  std::vector<Material> materials;    ///< never empty; a default stands where the file names none
-  std::vector<std::string> objects;   ///< never empty; "o" and "g" names of the file
+  std::vector<Material> materials;   ///< never empty; a default stands where the file names none
+  std::vector<Texture> textures;     ///< that materials of triangles name
+  std::vector<std::string> objects;  ///< never empty; "o" and "g" names of the file
+  std::vector<PointLight> lights;
+  glm::vec3 background{0.0f};         ///< radiance from where no geometry is, scene-linear RGB
   glm::dvec3 origin{0.0};             ///< world = origin + position
   std::vector<std::string> warnings;  ///< "file:line: ...": of statements, then of faces
 };

@@ -2,7 +2,7 @@
 //
 // The highest one is smeared over all places below it, which leaves a mark where the ones begin; bit j
 // of the count is the OR of all places whose number of zeros above has that bit. Written as word-wide
-// steps, a third of what a tree of partial counts takes to simulate.
+// steps, a third of what a tree of partial counts takes to simulate; none where the top bit is set.
 //
 // Combinational, $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1
 // and count_o is all ones.
@@ -25,16 +25,17 @@ module leading_zero_counter #(
 
   always_comb begin
     smeared = a_i;
-    for (int unsigned step = 1; step < Width; step = step * 2) begin
-      smeared = smeared | (smeared >> step);
+    highest = a_i;
+    count_o = '0;
+    if (!a_i[Width-1]) begin  // the usual case, and then a simulation has nothing to do
+      for (int unsigned step = 1; step < Width; step = step * 2) begin
+        smeared = smeared | (smeared >> step);
+      end
+      highest = smeared & ~(smeared >> 1);
+      for (int unsigned j = 0; j < CountWidth; j++)
+      count_o[j] = ~smeared[0] | (|(highest & places(j)));
     end
   end
-  assign highest = smeared & ~(smeared >> 1);
-  assign zero_o = ~smeared[0];
-
-  for (genvar j = 0; j < CountWidth; j++) begin : gen_count
-    localparam bit [Width-1:0] Places = places(j);
-    assign count_o[j] = zero_o | (|(highest & Places));
-  end
+  assign zero_o = a_i == '0;
 
 endmodule

@@ -9,7 +9,8 @@
 //
 // Pipelined = 0: combinational, all rows in one go. Pipelined = 1: registers behind the first digit,
 // every row, the remainder and the quotient, a division a clock, latency Rows + 3; clocks without
-// enable_i don't count.
+// enable_i don't count. Only what is valid moves: valid_o is valid_i, as much later, and while it is
+// low the outputs mean nothing. Nothing is reset, so that valid_o means nothing at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection
 // constants and why they hold in srt_pkg.
 module srt_divider_stages #(
@@ -20,10 +21,12 @@ module srt_divider_stages #(
 ) (
   input  logic                clk_i,
   input  logic                enable_i,
+  input  logic                valid_i,
   input  logic [Width-1:0]    dividend_i,
   input  logic [Width-1:0]    divisor_i,
   output logic [2*Rows+1:0]   quotient_o,
-  output logic                remainder_o
+  output logic                remainder_o,
+  output logic                valid_o
 );
 
   // Fraction bits of the residual: the divisor's, and no fewer than the selection looks at.
@@ -46,94 +49,80 @@ module srt_divider_stages #(
     assign dividend_doubled = {dividend_i, {(PadWidth + 1) {1'b0}}};
   end
 
-  // ---- First digit, 1 .. 4: w = 2 x - digit * d, the digit being 2 or 4 or nothing, and 1 or nothing
+  // ---- First digit, 1 .. 4: w = 2 x - digit * d, the digit being 2 or 4 or nothing, and 1 or nothing.
+  // The digit is given modulo 4; a one for each complement goes to two free last places
 
   localparam bit [8*16-1:0] First2 = srt_pkg::first_thresholds(2);
   localparam bit [8*16-1:0] First3 = srt_pkg::first_thresholds(3);
   localparam bit [8*16-1:0] First4 = srt_pkg::first_thresholds(4);
 
-  logic [3:0] sixteenth;
-  logic [5:0] first_estimate;
-  logic from_2, from_3, from_4, subtract_1, subtract_2;
-  logic [ResWidth-1:0] first_sum, first_carry;
-  logic [1:0] first_digit;  // modulo 4
-
-  assign sixteenth = padded_divisor[FracWidth-1-:4];
-  assign first_estimate = {1'b0, dividend_doubled[ResWidth-1-:5]};
-  assign from_2 = first_estimate >= First2[{sixteenth, 3'b000} +: 6];
-  assign from_3 = first_estimate >= First3[{sixteenth, 3'b000} +: 6];
-  assign from_4 = first_estimate >= First4[{sixteenth, 3'b000} +: 6];
-  assign subtract_1 = ~from_2 | (from_3 & ~from_4);
-  assign subtract_2 = from_2 & ~from_4;
-  assign first_digit = {subtract_2, subtract_1};
-
-  carry_save_adder #(
-    .Width(ResWidth)
-  ) u_first (
-    .a_i(dividend_doubled | ResWidth'(1)),  // a one for each complement, in two free last places
-    .b_i(~(padded_divisor & {ResWidth{subtract_1}})),
-    .c_i(~(({ResWidth{subtract_2}} & (padded_divisor << 1))
-         | ({ResWidth{from_4}} & (padded_divisor << 2)))),
-    .sum_o(first_sum),
-    .carry_o(first_carry)
-  );
-
-  localparam bit [8*8-1:0] MMinus1 = srt_pkg::thresholds(-1);
-  localparam bit [8*8-1:0] M0 = srt_pkg::thresholds(0);
-  localparam bit [8*8-1:0] M1 = srt_pkg::thresholds(1);
-  localparam bit [8*8-1:0] M2 = srt_pkg::thresholds(2);
+  task automatic divide_first(input logic [ResWidth-1:0] x_doubled, input logic [ResWidth-1:0] d,
+                              output logic [ResWidth-1:0] sum, output logic [ResWidth-1:0] carry,
+                              output logic [1:0] digit);
+    logic [5:0] estimate;
+    logic [6:0] sixteenth;  // of the divisor, in bits of the thresholds
+    logic from_2, from_3, from_4;  // the digit is that or more
+    logic [ResWidth-1:0] a, b, c;
+    estimate = {1'b0, x_doubled[ResWidth-1-:5]};
+    sixteenth = {d[FracWidth-1-:4], 3'b000};
+    from_2 = estimate >= First2[sixteenth+:6];
+    from_3 = estimate >= First3[sixteenth+:6];
+    from_4 = estimate >= First4[sixteenth+:6];
+    digit = {from_2 & ~from_4, ~from_2 | (from_3 & ~from_4)};
+    a = x_doubled | ResWidth'(1);
+    b = ~({ResWidth{digit[0]}} & d);
+    c = ~(({ResWidth{digit[1]}} & (d << 1)) | ({ResWidth{from_4}} & (d << 2)));
+    sum = a ^ b ^ c;
+    carry = (((a & b) | ((a ^ b) & c)) << 1) | ResWidth'(1);
+  endtask
 
   // ---- Rows: residuals, and the digits so far, the first one at the top of the words
 
+  logic [Rows+3:0] load;  // stage by stage: it takes a division in
+
   for (genvar r = 0; r <= Rows; r++) begin : gen_row
     localparam int unsigned DigitsWidth = 2 * (r + 1);
-    logic [ResWidth-1:0] sum_d, carry_d, divisor_d, sum, carry, divisor;
-    logic [DigitsWidth-1:0] positives_d, negatives_d, positives, negatives;
+    logic [ResWidth-1:0] sum, carry, divisor;
+    logic [DigitsWidth-1:0] positives, negatives;
 
     if (r == 0) begin : gen_first
-      assign sum_d = first_sum;
-      assign carry_d = first_carry | ResWidth'(1);
-      assign divisor_d = padded_divisor;
-      assign positives_d = first_digit;
-      assign negatives_d = 2'b00;
+      assign negatives = 2'b00;
+      if (Pipelined) begin : gen_registers
+        always_ff @(posedge clk_i) begin
+          if (load[0]) begin : take
+            logic [ResWidth-1:0] first_sum, first_carry;
+            logic [1:0] digit;
+            divide_first(dividend_doubled, padded_divisor, first_sum, first_carry, digit);
+            sum <= first_sum;
+            carry <= first_carry;
+            divisor <= padded_divisor;
+            positives <= digit;
+          end
+        end
+      end else begin : gen_wires
+        always_comb divide_first(dividend_doubled, padded_divisor, sum, carry, positives);
+        assign divisor = padded_divisor;
+      end
     end else begin : gen_next
-      logic [1:0] positive, negative;
-      logic [2:0] eighth;  // of the divisor: says where the digits begin, see srt_pkg
-
-      assign eighth = gen_row[r-1].divisor[FracWidth-1-:3];
       srt_row #(
         .Width(ResWidth),
-        .Adder(Adder)
+        .DigitsWidth(DigitsWidth - 2),
+        .Adder(Adder),
+        .Pipelined(Pipelined)
       ) u_row (
+        .clk_i,
+        .enable_i(load[r]),
         .sum_i(gen_row[r-1].sum),
         .carry_i(gen_row[r-1].carry),
         .divisor_i(gen_row[r-1].divisor),
-        .m_minus_1_i(MMinus1[{eighth, 3'b000} +: 7]),
-        .m_0_i(M0[{eighth, 3'b000} +: 7]),
-        .m_1_i(M1[{eighth, 3'b000} +: 7]),
-        .m_2_i(M2[{eighth, 3'b000} +: 7]),
-        .sum_o(sum_d),
-        .carry_o(carry_d),
-        .positive_o(positive),
-        .negative_o(negative)
+        .positives_i(gen_row[r-1].positives),
+        .negatives_i(gen_row[r-1].negatives),
+        .sum_o(sum),
+        .carry_o(carry),
+        .divisor_o(divisor),
+        .positives_o(positives),
+        .negatives_o(negatives)
       );
-      assign divisor_d = gen_row[r-1].divisor;
-      assign positives_d = {gen_row[r-1].positives, positive};
-      assign negatives_d = {gen_row[r-1].negatives, negative};
-    end
-
-    if (Pipelined) begin : gen_registers
-      always_ff @(posedge clk_i) begin
-        if (enable_i) begin
-          {sum, carry, divisor, positives, negatives} <= {
-            sum_d, carry_d, divisor_d, positives_d, negatives_d
-          };
-        end
-      end
-    end else begin : gen_wires
-      assign {sum, carry, divisor, positives, negatives} = {
-        sum_d, carry_d, divisor_d, positives_d, negatives_d
-      };
     end
   end
 
@@ -156,33 +145,6 @@ module srt_divider_stages #(
     .sum_o(remainder),
     .carry_o(unused_remainder_carry)
   );
-  delay_line #(
-    .Width(2),
-    .Depth(32'(Pipelined))
-  ) u_remainder_stage (
-    .clk_i,
-    .enable_i,
-    .data_i({remainder[ResWidth-1], |remainder}),
-    .data_o({remainder_negative, remainder_left})
-  );
-  delay_line #(
-    .Width(QuotientWidth),
-    .Depth(32'(Pipelined))
-  ) u_positives_stage (
-    .clk_i,
-    .enable_i,
-    .data_i(gen_row[Rows].positives),
-    .data_o(positives)
-  );
-  delay_line #(
-    .Width(QuotientWidth),
-    .Depth(32'(Pipelined))
-  ) u_negatives_stage (
-    .clk_i,
-    .enable_i,
-    .data_i(gen_row[Rows].negatives),
-    .data_o(negatives)
-  );
 
   // ---- Quotient: positive less negative digits, less that unit
 
@@ -199,14 +161,35 @@ module srt_divider_stages #(
     .sum_o(quotient),
     .carry_o(unused_quotient_carry)
   );
-  delay_line #(
-    .Width(QuotientWidth + 1),
-    .Depth(32'(Pipelined))
-  ) u_quotient_stage (
-    .clk_i,
-    .enable_i,
-    .data_i({quotient, remainder_left}),
-    .data_o({quotient_o, remainder_o})
-  );
+
+  if (Pipelined) begin : gen_end_registers
+    always_ff @(posedge clk_i) begin
+      if (load[Rows+1]) begin
+        {remainder_negative, remainder_left} <= {remainder[ResWidth-1], |remainder};
+        positives <= gen_row[Rows].positives;
+        negatives <= gen_row[Rows].negatives;
+      end
+      if (load[Rows+2]) {quotient_o, remainder_o} <= {quotient, remainder_left};
+    end
+  end else begin : gen_end_wires
+    assign {remainder_negative, remainder_left} = {remainder[ResWidth-1], |remainder};
+    assign positives = gen_row[Rows].positives;
+    assign negatives = gen_row[Rows].negatives;
+    assign {quotient_o, remainder_o} = {quotient, remainder_left};
+  end
+
+  // ---- What is where
+
+  logic [Rows+2:0] valid_q;  // behind each stage
+
+  assign load = {Rows + 4{enable_i}} & {valid_q, valid_i};
+  assign valid_o = Pipelined ? valid_q[Rows+2] : valid_i;
+  if (Pipelined) begin : gen_valid
+    always_ff @(posedge clk_i) if (enable_i) valid_q <= {valid_q[Rows+1:0], valid_i};
+  end else begin : gen_no_valid
+    logic unused;
+    assign valid_q = '0;
+    assign unused = clk_i & (|load);
+  end
 
 endmodule

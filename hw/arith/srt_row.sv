@@ -2,34 +2,36 @@
 //
 // Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is
 // the sign) and Width - 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in
-// and comes out. The digit is positive_o - negative_o, one of them 0.
+// and comes out. The digit joins those so far from below, in two words of which one is subtracted
+// from the other in the end: positives_o those of positive sign, negatives_o those of negative.
 //
-// m_minus_1_i .. m_2_i: where the digits begin for this divisor, see srt_pkg.
-//
-// Combinational.
+// Pipelined = 0: combinational. Pipelined = 1: the outputs are registers, loaded with enable_i. The row
+// is written as what they load: it costs a simulation nothing while they don't.
 module srt_row #(
   parameter int unsigned Width = 25,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned DigitsWidth = 2,  // of the digits so far
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter bit          Pipelined = 1'b0
 ) (
-  input  logic [Width-1:0] sum_i,
-  input  logic [Width-1:0] carry_i,
-  input  logic [Width-1:0] divisor_i,
-  input  logic [6:0]       m_minus_1_i,
-  input  logic [6:0]       m_0_i,
-  input  logic [6:0]       m_1_i,
-  input  logic [6:0]       m_2_i,
-  output logic [Width-1:0] sum_o,
-  output logic [Width-1:0] carry_o,
-  output logic [1:0]       positive_o,
-  output logic [1:0]       negative_o
+  input  logic                   clk_i,
+  input  logic                   enable_i,
+  input  logic [Width-1:0]       sum_i,
+  input  logic [Width-1:0]       carry_i,
+  input  logic [Width-1:0]       divisor_i,
+  input  logic [DigitsWidth-1:0] positives_i,
+  input  logic [DigitsWidth-1:0] negatives_i,
+  output logic [Width-1:0]       sum_o,
+  output logic [Width-1:0]       carry_o,
+  output logic [Width-1:0]       divisor_o,
+  output logic [DigitsWidth+1:0] positives_o,
+  output logic [DigitsWidth+1:0] negatives_o
 );
 
   localparam int unsigned EstimateWidth = 7;  // of 4 w: 4 integer bits with the sign, 3 more
 
-  // ---- Estimate 4 w from the first bits of both words; with its sign bit inverted it compares as
-  // an unsigned number
+  // ---- Estimate 4 w from the first bits of both words
 
-  logic [EstimateWidth-1:0] sum, estimate;
+  logic [EstimateWidth-1:0] estimate;
   logic unused_carry;
 
   adder #(
@@ -39,44 +41,69 @@ module srt_row #(
     .a_i(sum_i[Width-1-:EstimateWidth]),
     .b_i(carry_i[Width-1-:EstimateWidth]),
     .carry_i(1'b0),
-    .sum_o(sum),
+    .sum_o(estimate),
     .carry_o(unused_carry)
   );
-  assign estimate = {~sum[EstimateWidth-1], sum[EstimateWidth-2:0]};
 
-  // ---- Choose the digit
+  // ---- Choose the digit: see srt_pkg; with its sign bit inverted the estimate compares as an unsigned
+  // number
 
-  logic from_minus_1, from_0, from_1, from_2;  // the digit is that or more
-  logic is_minus_1, is_1;
+  localparam bit [8*8-1:0] MMinus1 = srt_pkg::thresholds(-1);
+  localparam bit [8*8-1:0] M0 = srt_pkg::thresholds(0);
+  localparam bit [8*8-1:0] M1 = srt_pkg::thresholds(1);
+  localparam bit [8*8-1:0] M2 = srt_pkg::thresholds(2);
 
-  assign from_minus_1 = estimate >= m_minus_1_i;
-  assign from_0 = estimate >= m_0_i;
-  assign from_1 = estimate >= m_1_i;
-  assign from_2 = estimate >= m_2_i;
-  assign is_minus_1 = from_minus_1 & ~from_0;
-  assign is_1 = from_1 & ~from_2;
-  assign positive_o = {from_2, is_1};
-  assign negative_o = {~from_minus_1, is_minus_1};
+  // ---- And subtract digit * d: a positive digit adds the complement, and the one that completes it goes
+  // to the free last place of the carries
 
-  // ---- Subtract digit * d: a positive digit adds the complement, and the one that completes it
-  // goes to the free last place of the carries
+  task automatic divide(input logic [EstimateWidth-1:0] signed_estimate, input logic [Width-1:0] a,
+                        input logic [Width-1:0] b, input logic [Width-1:0] divisor,
+                        output logic [Width-1:0] sum, output logic [Width-1:0] carry,
+                        output logic [1:0] positive, output logic [1:0] negative);
+    logic [EstimateWidth-1:0] y;
+    logic [5:0] eighth;  // of the divisor, in bits of the thresholds
+    logic from_minus_1, from_0, from_1, from_2;  // the digit is that or more
+    logic one, two;  // its magnitude
+    logic [Width-1:0] c;
+    y = signed_estimate ^ {1'b1, {(EstimateWidth - 1) {1'b0}}};
+    eighth = {divisor[Width-3-:3], 3'b000};
+    from_minus_1 = y >= MMinus1[eighth+:EstimateWidth];
+    from_0 = y >= M0[eighth+:EstimateWidth];
+    from_1 = y >= M1[eighth+:EstimateWidth];
+    from_2 = y >= M2[eighth+:EstimateWidth];
+    one = (from_minus_1 ^ from_0) | (from_1 ^ from_2);
+    two = ~from_minus_1 | from_2;
+    c = (({Width{one}} & divisor) | ({Width{two}} & (divisor << 1))) ^ {Width{from_1}};
+    sum = a ^ b ^ c;
+    carry = (((a & b) | ((a ^ b) & c)) << 1) | Width'(from_1);
+    positive = {from_2, from_1 ^ from_2};
+    negative = {~from_minus_1, from_minus_1 ^ from_0};
+  endtask
 
-  logic [Width-1:0] addend, carry;
+  if (Pipelined) begin : gen_registers
+    always_ff @(posedge clk_i) begin
+      if (enable_i) begin : load
+        logic [Width-1:0] sum, carry;
+        logic [1:0] positive, negative;
+        divide(estimate, sum_i << 2, carry_i << 2, divisor_i, sum, carry, positive, negative);
+        sum_o <= sum;
+        carry_o <= carry;
+        divisor_o <= divisor_i;
+        positives_o <= {positives_i, positive};
+        negatives_o <= {negatives_i, negative};
+      end
+    end
+  end else begin : gen_wires
+    logic [1:0] positive, negative;
+    logic unused_clock;
 
-  assign addend = ({Width{from_2}} & ~(divisor_i << 1))
-                | ({Width{is_1}} & ~divisor_i)
-                | ({Width{is_minus_1}} & divisor_i)
-                | ({Width{~from_minus_1}} & (divisor_i << 1));
-
-  carry_save_adder #(
-    .Width(Width)
-  ) u_subtract (
-    .a_i(sum_i << 2),
-    .b_i(carry_i << 2),
-    .c_i(addend),
-    .sum_o,
-    .carry_o(carry)
-  );
-  assign carry_o = carry | Width'(from_1);
+    assign unused_clock = clk_i & enable_i;
+    always_comb begin
+      divide(estimate, sum_i << 2, carry_i << 2, divisor_i, sum_o, carry_o, positive, negative);
+    end
+    assign divisor_o = divisor_i;
+    assign positives_o = {positives_i, positive};
+    assign negatives_o = {negatives_i, negative};
+  end
 
 endmodule

@@ -41,7 +41,7 @@ module fp_adder_stages #(
   logic a_sign, b_sign_packed, b_sign, subtract;
   logic [ExpWidth-1:0] a_exp, b_exp;
   logic [SigWidth-1:0] a_sig, b_sig;
-  logic a_zero, a_inf, a_nan, a_snan, b_zero, b_inf, b_nan, b_snan;
+  logic a_special, a_zero, a_inf, a_nan, a_snan, b_special, b_zero, b_inf, b_nan, b_snan;
 
   fp_unpack #(
     .ExpWidth(ExpWidth),
@@ -51,6 +51,7 @@ module fp_adder_stages #(
     .sign_o(a_sign),
     .exponent_o(a_exp),
     .significand_o(a_sig),
+    .special_o(a_special),
     .zero_o(a_zero),
     .infinity_o(a_inf),
     .nan_o(a_nan),
@@ -64,6 +65,7 @@ module fp_adder_stages #(
     .sign_o(b_sign_packed),
     .exponent_o(b_exp),
     .significand_o(b_sig),
+    .special_o(b_special),
     .zero_o(b_zero),
     .infinity_o(b_inf),
     .nan_o(b_nan),
@@ -88,7 +90,8 @@ module fp_adder_stages #(
     .equal_o(equal)
   );
   assign big_exp = swap ? b_exp : a_exp;
-  assign {big_sig, small_sig} = swap ? {b_sig, a_sig} : {a_sig, b_sig};
+  assign big_sig = swap ? b_sig : a_sig;
+  assign small_sig = swap ? a_sig : b_sig;
   assign sign = (equal & subtract) ? rounding_mode_i == fp_pkg::RoundDown : swap ? b_sign : a_sign;
 
   // ---- Distance of the exponents, both ways at once beside the ordering
@@ -126,10 +129,16 @@ module fp_adder_stages #(
   logic odd, near_0, near_1, nan, infinity, invalid;
 
   assign odd = a_exp[0] ^ b_exp[0];
-  assign nan = a_nan | b_nan | (a_inf & b_inf & subtract);
-  assign invalid = a_snan | b_snan | (a_inf & b_inf & subtract);
-  assign infinity = a_inf | b_inf;
-  assign near_0 = subtract & ~nan & ~infinity & (a_exp == b_exp);
+
+  always_comb begin
+    {nan, infinity, invalid} = 3'b000;
+    if (a_special | b_special) begin
+      nan = a_nan | b_nan | (a_inf & b_inf & subtract);
+      invalid = a_snan | b_snan | (a_inf & b_inf & subtract);
+      infinity = a_inf | b_inf;
+    end
+  end
+  assign near_0 = subtract & ~nan & ~infinity & (distance == '0);
   assign near_1 = subtract & ~nan & ~infinity & (distance == ExpWidth'(1));
 
   if (Cuts[0]) begin : gen_cut_0
@@ -203,26 +212,32 @@ module fp_adder_stages #(
 
   // ---- Far path: exponent for the rounder, less one for a sum and less two for a difference
 
-  logic [ExpWidth-1:0] exp_plus_1_n, exp_plus_2_n, far_exp;  // complements count downwards
+  logic [ExpWidth-1:0] far_exp;
 
-  incrementer #(
-    .Width(ExpWidth),
-    .Adder(Adder)
-  ) u_exp_less_1 (
-    .a_i(~big_exp_1),
-    .carry_i(1'b1),
-    .sum_o(exp_plus_1_n)
-  );
-  incrementer #(
-    .Width(ExpWidth - 1),
-    .Adder(Adder)
-  ) u_exp_less_2 (
-    .a_i(~big_exp_1[ExpWidth-1:1]),
-    .carry_i(1'b1),
-    .sum_o(exp_plus_2_n[ExpWidth-1:1])
-  );
-  assign exp_plus_2_n[0] = ~big_exp_1[0];
-  assign far_exp = ~(subtract_1 ? exp_plus_2_n : exp_plus_1_n);
+  if (Adder == arith_pkg::AdderTool) begin : gen_tool_exp
+    assign far_exp = big_exp_1 - ExpWidth'(1) - ExpWidth'(subtract_1);
+  end else begin : gen_exp
+    logic [ExpWidth-1:0] exp_plus_1_n, exp_plus_2_n;  // complements count downwards
+
+    incrementer #(
+      .Width(ExpWidth),
+      .Adder(Adder)
+    ) u_exp_less_1 (
+      .a_i(~big_exp_1),
+      .carry_i(1'b1),
+      .sum_o(exp_plus_1_n)
+    );
+    incrementer #(
+      .Width(ExpWidth - 1),
+      .Adder(Adder)
+    ) u_exp_less_2 (
+      .a_i(~big_exp_1[ExpWidth-1:1]),
+      .carry_i(1'b1),
+      .sum_o(exp_plus_2_n[ExpWidth-1:1])
+    );
+    assign exp_plus_2_n[0] = ~big_exp_1[0];
+    assign far_exp = ~(subtract_1 ? exp_plus_2_n : exp_plus_1_n);
+  end
 
   // ---- Near path: subtract, the distance known from the exponents' lowest bits
 
@@ -293,7 +308,8 @@ module fp_adder_stages #(
   end
 
   // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one:
-  // what is left is subnormal, or zero, and has the exponent field 0.
+  // what is left is subnormal, or zero, and has the exponent field 0. Where this path isn't taken there
+  // is nothing to count, which a simulation is glad of.
 
   logic [NearWidth-1:0] near_normal;
   logic [CountWidth-1:0] near_count;
@@ -304,7 +320,7 @@ module fp_adder_stages #(
   leading_zero_counter #(
     .Width(NearWidth)
   ) u_near_count (
-    .a_i(near_difference_2 | near_mark_2),
+    .a_i(near_difference_2 | near_mark_2 | {~near_2, {(NearWidth - 1) {1'b0}}}),
     .count_o(near_count),
     .zero_o(unused_near_zero)
   );

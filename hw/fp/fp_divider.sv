@@ -23,6 +23,7 @@ module fp_divider #(
   ) u_stages (
     .clk_i(1'b0),
     .enable_i(1'b0),
+    .valid_i(1'b0),
     .a_i,
     .b_i,
     .rounding_mode_i,

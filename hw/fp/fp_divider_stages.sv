@@ -9,8 +9,9 @@
 //
 // Pipelined = 0: combinational. Pipelined = 1: registers behind normalising, behind every stage of the
 // significands' division and behind the result, a division a clock, latency Rows + 5 (Rows: two bits
-// of the quotient each, 12 in binary32); clocks without enable_i don't count. The rounding mode is
-// used in the last stage only.
+// of the quotient each, 12 in binary32); clocks without enable_i don't count. Only what came with
+// valid_i moves; in other clocks the outputs mean nothing. The rounding mode is used in the last stage
+// only.
 //
 // Takes every bit pattern. A finite number by zero is infinity and raises
 // divide_by_zero; 0/0 and inf/inf are invalid.
@@ -24,6 +25,7 @@ module fp_divider_stages #(
 ) (
   input  logic                        clk_i,
   input  logic                        enable_i,
+  input  logic                        valid_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  fp_pkg::rounding_mode_e      rounding_mode_i,
@@ -51,7 +53,7 @@ module fp_divider_stages #(
   logic a_sign, b_sign;
   logic [ExpWidth-1:0] a_exp, b_exp;
   logic [SigWidth-1:0] a_sig, b_sig;
-  logic a_zero, a_inf, a_nan, a_snan, b_zero, b_inf, b_nan, b_snan;
+  logic a_special, a_zero, a_inf, a_nan, a_snan, b_special, b_zero, b_inf, b_nan, b_snan;
 
   fp_unpack #(
     .ExpWidth(ExpWidth),
@@ -61,6 +63,7 @@ module fp_divider_stages #(
     .sign_o(a_sign),
     .exponent_o(a_exp),
     .significand_o(a_sig),
+    .special_o(a_special),
     .zero_o(a_zero),
     .infinity_o(a_inf),
     .nan_o(a_nan),
@@ -74,6 +77,7 @@ module fp_divider_stages #(
     .sign_o(b_sign),
     .exponent_o(b_exp),
     .significand_o(b_sig),
+    .special_o(b_special),
     .zero_o(b_zero),
     .infinity_o(b_inf),
     .nan_o(b_nan),
@@ -144,37 +148,46 @@ module fp_divider_stages #(
 
   logic nan, infinity, zero, invalid, by_zero;
 
-  assign invalid = a_snan | b_snan | (a_zero & b_zero) | (a_inf & b_inf);
-  assign nan = a_nan | b_nan | invalid;
-  assign infinity = a_inf | b_zero;
-  assign zero = a_zero | b_inf;
-  assign by_zero = b_zero & ~a_zero & ~a_inf & ~a_nan;
+  always_comb begin
+    {nan, infinity, zero, invalid, by_zero} = 5'b00000;
+    if (a_special | b_special) begin
+      invalid = a_snan | b_snan | (a_zero & b_zero) | (a_inf & b_inf);
+      nan = a_nan | b_nan | invalid;
+      infinity = a_inf | b_zero;
+      zero = a_zero | b_inf;
+      by_zero = b_zero & ~a_zero & ~a_inf & ~a_nan;
+    end
+  end
 
   // ---- First cut, and what waits beside the division
 
   localparam int unsigned DivideLatency = Pipelined ? Rows + 3 : 0;
   logic [SigWidth-1:0] a_norm_1, b_norm_1;
   logic [RoundExpWidth-1:0] exp_difference_1, count_difference_1, exponent, exponent_2;
+  logic [5:0] specials_1;
   logic sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2;
+  logic valid_1, divided;
 
-  delay_line #(
-    .Width(2 * SigWidth),
-    .Depth(32'(Pipelined))
-  ) u_operands (
-    .clk_i,
-    .enable_i,
-    .data_i({a_norm, b_norm}),
-    .data_o({a_norm_1, b_norm_1})
-  );
-  delay_line #(
-    .Width(2 * RoundExpWidth),
-    .Depth(32'(Pipelined))
-  ) u_exponents (
-    .clk_i,
-    .enable_i,
-    .data_i({exp_difference, count_difference}),
-    .data_o({exp_difference_1, count_difference_1})
-  );
+  if (Pipelined) begin : gen_first_cut
+    always_ff @(posedge clk_i) begin
+      if (enable_i) valid_1 <= valid_i;
+      if (enable_i & valid_i) begin
+        a_norm_1 <= a_norm;
+        b_norm_1 <= b_norm;
+        exp_difference_1 <= exp_difference;
+        count_difference_1 <= count_difference;
+        specials_1 <= {a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero};
+      end
+    end
+  end else begin : gen_no_first_cut
+    assign valid_1 = valid_i;
+    assign a_norm_1 = a_norm;
+    assign b_norm_1 = b_norm;
+    assign exp_difference_1 = exp_difference;
+    assign count_difference_1 = count_difference;
+    assign specials_1 = {a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero};
+  end
+
   adder #(
     .Width(RoundExpWidth),
     .Adder(Adder)
@@ -187,22 +200,13 @@ module fp_divider_stages #(
   );
 
   delay_line #(
-    .Width(RoundExpWidth),
+    .Width(RoundExpWidth + 6),
     .Depth(DivideLatency)
-  ) u_exponent_beside (
+  ) u_beside (
     .clk_i,
     .enable_i,
-    .data_i(exponent),
-    .data_o(exponent_2)
-  );
-  delay_line #(
-    .Width(6),
-    .Depth(DivideLatency + 32'(Pipelined))
-  ) u_specials_beside (
-    .clk_i,
-    .enable_i,
-    .data_i({a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero}),
-    .data_o({sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2})
+    .data_i({exponent, specials_1}),
+    .data_o({exponent_2, sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2})
   );
 
   // ---- Divide: the doubled quotient, in (1, 4)
@@ -218,10 +222,12 @@ module fp_divider_stages #(
   ) u_divide (
     .clk_i,
     .enable_i,
+    .valid_i(valid_1),
     .dividend_i(a_norm_1),
     .divisor_i(b_norm_1),
     .quotient_o(quotient),
-    .remainder_o(remainder)
+    .remainder_o(remainder),
+    .valid_o(divided)
   );
 
   // ---- Place it for the rounder; or cut it off, one place further down where it is below 2
@@ -267,8 +273,10 @@ module fp_divider_stages #(
   // ---- Last cut
 
   if (Pipelined) begin : gen_result
-    always_ff @(posedge clk_i) if (enable_i) {result_o, flags_o} <= {result, flags};
+    always_ff @(posedge clk_i) if (enable_i & divided) {result_o, flags_o} <= {result, flags};
   end else begin : gen_combinational
+    logic unused;
+    assign unused = clk_i & enable_i & divided;
     assign {result_o, flags_o} = {result, flags};
   end
 

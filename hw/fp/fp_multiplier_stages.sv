@@ -41,7 +41,7 @@ module fp_multiplier_stages #(
   logic a_sign, b_sign;
   logic [ExpWidth-1:0] a_exp, b_exp;
   logic [SigWidth-1:0] a_sig, b_sig;
-  logic a_zero, a_inf, a_nan, a_snan, b_zero, b_inf, b_nan, b_snan;
+  logic a_special, a_zero, a_inf, a_nan, a_snan, b_special, b_zero, b_inf, b_nan, b_snan;
 
   fp_unpack #(
     .ExpWidth(ExpWidth),
@@ -51,6 +51,7 @@ module fp_multiplier_stages #(
     .sign_o(a_sign),
     .exponent_o(a_exp),
     .significand_o(a_sig),
+    .special_o(a_special),
     .zero_o(a_zero),
     .infinity_o(a_inf),
     .nan_o(a_nan),
@@ -64,6 +65,7 @@ module fp_multiplier_stages #(
     .sign_o(b_sign),
     .exponent_o(b_exp),
     .significand_o(b_sig),
+    .special_o(b_special),
     .zero_o(b_zero),
     .infinity_o(b_inf),
     .nan_o(b_nan),
@@ -88,21 +90,20 @@ module fp_multiplier_stages #(
   // a_exp + b_exp - bias - 1 = a_exp + b_exp - 2**(ExpWidth-1), which leaves the low bits alone.
 
   logic [ExpWidth:0] exp_sum, exp;
-  logic exp_negative;
+  logic exp_negative, unused_exp_carry;
 
   adder #(
-    .Width(ExpWidth),
+    .Width(ExpWidth + 1),
     .Adder(Adder)
   ) u_exp_sum (
-    .a_i(a_exp),
-    .b_i(b_exp),
+    .a_i({1'b0, a_exp}),
+    .b_i({1'b0, b_exp}),
     .carry_i(1'b0),
-    .sum_o(exp_sum[ExpWidth-1:0]),
-    .carry_o(exp_sum[ExpWidth])
+    .sum_o(exp_sum),
+    .carry_o(unused_exp_carry)
   );
   assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
-  assign exp = {~(exp_sum[ExpWidth] ^ exp_sum[ExpWidth-1]), ~exp_sum[ExpWidth-1],
-                exp_sum[ExpWidth-2:0]};
+  assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
 
   // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two
   // is far below the smallest subnormal). A mark stops the count where the exponent is the smallest.
@@ -135,10 +136,16 @@ module fp_multiplier_stages #(
   logic sign, nan, infinity, zero, invalid;
 
   assign sign = a_sign ^ b_sign;
-  assign invalid = a_snan | b_snan | (a_inf & b_zero) | (a_zero & b_inf);
-  assign nan = a_nan | b_nan | invalid;
-  assign infinity = a_inf | b_inf;
-  assign zero = a_zero | b_zero;
+
+  always_comb begin
+    {nan, infinity, zero, invalid} = 4'b0000;
+    if (a_special | b_special) begin
+      invalid = a_snan | b_snan | (a_inf & b_zero) | (a_zero & b_inf);
+      nan = a_nan | b_nan | invalid;
+      infinity = a_inf | b_inf;
+      zero = a_zero | b_zero;
+    end
+  end
 
   // ---- Exponent after the shift
 

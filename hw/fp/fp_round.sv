@@ -25,7 +25,7 @@ module fp_round #(
   parameter int unsigned ExpWidth       = 8,
   parameter int unsigned FracWidth      = 23,
   parameter bit          SubnormalShift = 1'b1,
-  parameter int unsigned Adder          = arith_pkg::AdderGraded  // AdderTool: see incrementer
+  parameter int unsigned Adder          = arith_pkg::AdderGraded  // AdderTool: + alone
 ) (
   input  logic                          sign_i,
   input  logic signed [ExpWidth+1:0]    exponent_i,
@@ -86,59 +86,69 @@ module fp_round #(
 
   // ---- Normalise: the integer bits say which of the three possible exponents it is
 
-  logic [FieldWidth-1:0] base_plus_1, base_plus_2, field;
+  logic [SigWidth-2:0] normal;  // with one integer bit; below the guard bit all is sticky
   logic [FracWidth-1:0] fraction;
   logic guard, sticky;
 
-  incrementer #(
-    .Width(FieldWidth),
-    .Adder(Adder)
-  ) u_base_plus_1 (
-    .a_i(base),
-    .carry_i(1'b1),
-    .sum_o(base_plus_1)
-  );
-  incrementer #(
-    .Width(FieldWidth - 1),
-    .Adder(Adder)
-  ) u_base_plus_2 (
-    .a_i(base[FieldWidth-1:1]),
-    .carry_i(1'b1),
-    .sum_o(base_plus_2[FieldWidth-1:1])
-  );
-  assign base_plus_2[0] = base[0];
-
-  always_comb begin
-    if (placed[SigWidth-1]) begin
-      field = base_plus_2;
-      fraction = placed[SigWidth-2-:FracWidth];
-      guard = placed[3];
-      sticky = |placed[2:0];
-    end else begin
-      field = placed[SigWidth-2] ? base_plus_1 : base;
-      fraction = placed[SigWidth-3-:FracWidth];
-      guard = placed[2];
-      sticky = |placed[1:0];
-    end
-  end
+  assign normal = placed[SigWidth-1] ? {placed[SigWidth-1:2], |placed[1:0]}
+                                     : placed[SigWidth-2:0];
+  assign fraction = normal[SigWidth-3-:FracWidth];
+  assign guard = normal[2];
+  assign sticky = |normal[1:0];
 
   // ---- Round: a carry out of the fraction makes the next exponent by itself
 
-  logic increment, inexact;
+  logic increment, inexact, overflow;
   logic [WordWidth-1:0] rounded;  // right unless there is overflow
 
   assign increment = (nearest & guard & (sticky | fraction[0] | ~nearest_even))
                    | (away & (guard | sticky));
   assign inexact = guard | sticky;
 
-  incrementer #(
-    .Width(WordWidth),
-    .Adder(Adder)
-  ) u_round (
-    .a_i({field[ExpWidth-1:0], fraction}),
-    .carry_i(increment),
-    .sum_o(rounded)
-  );
+  if (Adder == arith_pkg::AdderTool) begin : gen_tool
+    logic [FieldWidth-1:0] above;  // of the integer bit that `normal` has
+    logic [WordWidth:0] word;
+
+    assign above = base + FieldWidth'(placed[SigWidth-1]);
+    assign word = {above, {FracWidth{1'b0}}} + (WordWidth + 1)'(normal[SigWidth-2:3])
+                + (WordWidth + 1)'(increment);
+    assign rounded = word[WordWidth-1:0];
+    assign overflow = word >= {InfField, {FracWidth{1'b0}}};
+  end else begin : gen_incrementers
+    logic [FieldWidth-1:0] base_plus_1, base_plus_2, field;
+    logic unused_integer_bit;
+
+    assign unused_integer_bit = normal[SigWidth-2];
+    incrementer #(
+      .Width(FieldWidth),
+      .Adder(Adder)
+    ) u_base_plus_1 (
+      .a_i(base),
+      .carry_i(1'b1),
+      .sum_o(base_plus_1)
+    );
+    incrementer #(
+      .Width(FieldWidth - 1),
+      .Adder(Adder)
+    ) u_base_plus_2 (
+      .a_i(base[FieldWidth-1:1]),
+      .carry_i(1'b1),
+      .sum_o(base_plus_2[FieldWidth-1:1])
+    );
+    assign base_plus_2[0] = base[0];
+    assign field = placed[SigWidth-1] ? base_plus_2 : placed[SigWidth-2] ? base_plus_1 : base;
+
+    incrementer #(
+      .Width(WordWidth),
+      .Adder(Adder)
+    ) u_round (
+      .a_i({field[ExpWidth-1:0], fraction}),
+      .carry_i(increment),
+      .sum_o(rounded)
+    );
+    // Found beside the increment and not after it.
+    assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
+  end
 
   // ---- Tininess: a leading bit below the smallest exponent. After rounding, it is not tiny if the
   // unbounded rounding, one bit further down, carries into that bit: all ones, and an increment.
@@ -148,12 +158,8 @@ module fp_round #(
   assign tiny = (placed[SigWidth-1-:2] == 2'b00)
               & ~(tininess_after_i & (&fraction) & guard & increment_below);
 
-  // ---- Overflow, found beside the increment and not after it
-
-  logic special, overflow, to_infinity;
+  logic special, to_infinity;
   assign special = nan_i | infinity_i | zero_i;
-  assign overflow = (field >= InfField)
-                  | ((field == InfField - 1'b1) & (&fraction) & increment);
   assign to_infinity = nearest | away;
 
   // ---- Result
@@ -164,11 +170,13 @@ module fp_round #(
   logic [WordWidth-1:0] magnitude;
 
   always_comb begin
-    if (nan_i) magnitude = NotANumber;
-    else if (infinity_i) magnitude = Infinity;
-    else if (zero_i) magnitude = '0;
-    else if (overflow) magnitude = to_infinity ? Infinity : Largest;
-    else magnitude = rounded;
+    magnitude = rounded;
+    if (special | overflow) begin
+      if (nan_i) magnitude = NotANumber;
+      else if (infinity_i) magnitude = Infinity;
+      else if (zero_i) magnitude = '0;
+      else magnitude = to_infinity ? Infinity : Largest;
+    end
   end
 
   assign result_o = {sign_i & ~nan_i, magnitude};

@@ -14,6 +14,7 @@ module fp_unpack #(
   output logic                        sign_o,
   output logic [ExpWidth-1:0]         exponent_o,      // biased, 1 or more
   output logic [FracWidth:0]          significand_o,   // one integer bit
+  output logic                        special_o,       // one of the next three
   output logic                        zero_o,
   output logic                        infinity_o,
   output logic                        nan_o,           // quiet or signalling
@@ -31,9 +32,16 @@ module fp_unpack #(
 
   assign exponent_o = {field[ExpWidth-1:1], field[0] | field_zero};
   assign significand_o = {~field_zero, fraction};
-  assign zero_o = field_zero & fraction_zero;
-  assign infinity_o = field_ones & fraction_zero;
-  assign nan_o = field_ones & ~fraction_zero;
-  assign signaling_nan_o = nan_o & ~fraction[FracWidth-1];
+  assign special_o = field_ones | (packed_i[ExpWidth+FracWidth-1:0] == '0);
+
+  always_comb begin
+    {zero_o, infinity_o, nan_o, signaling_nan_o} = 4'b0000;
+    if (special_o) begin  // seldom, and else a simulation has nothing to do
+      zero_o = field_zero;
+      infinity_o = field_ones & fraction_zero;
+      nan_o = field_ones & ~fraction_zero;
+      signaling_nan_o = field_ones & ~fraction_zero & ~fraction[FracWidth-1];
+    end
+  end
 
 endmodule

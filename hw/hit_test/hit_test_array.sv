@@ -6,7 +6,7 @@
 // of every port is the n-th from the bottom.
 //
 // Counters: counter_o is the count_select_i-th of hit_test_pkg::count_e, summed over the lanes since
-// reset, modulo 2**CounterWidth, two clocks late; other numbers give 0. Clocks are counted per lane:
+// reset, modulo 2**CounterWidth, three clocks late; other numbers give 0. Clocks are counted per lane:
 // with 4 lanes, 4 a clock.
 module hit_test_array #(
   parameter int unsigned Lanes     = 1,

@@ -2,11 +2,12 @@
 // of each test, and the nearest hit of each burst of tests with its t and P.
 //
 //   take     I, record                        registers
-//   dot      V = N . I, U_k = E_k . I         12 multipliers, 8 adders
+//   scale    each coordinate of I times five  15 multipliers, see scaler
+//   add      V = N . I, U_k = E_k . I         8 adders, see sum_of_three
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
-//   point    P_k = (d I_k) / V, equation 10   3 multipliers, 3 dividers; see point_unit
+//   point    P_k = (d I_k) / V, equation 10   3 dividers, see point_unit
 //
 // Throughput one test a clock. Latency DotLatency + divide_latency + 4 clocks (see hit_test_pkg): from
 // the clock edge that takes a test to the one after which its report, or its burst's end, is there.
@@ -91,36 +92,48 @@ module hit_test_pipeline #(
     end
   end
 
-  // ---- Dot
+  // ---- Scale: all that a coordinate of I is multiplied by, and d for the point
 
-  logic [Width-1:0] v;
-  logic [3*Width-1:0] u;
+  localparam int unsigned ScaledWords = 5;  // of N, E0, E1, E2 a component each; d
+  logic [ScaledWords*Width-1:0] scaled[3];
 
-  dot_product #(
-    .ExpWidth(ExpWidth),
-    .FracWidth(FracWidth),
-    .Adder(Adder),
-    .RoundingMode(RoundingMode)
-  ) u_normal (
-    .clk_i,
-    .enable_i(advance),
-    .x_i(record_q[Width*hit_test_pkg::RecordNormal +: 3*Width]),
-    .y_i(direction_q),
-    .result_o(v)
-  );
+  for (genvar k = 0; k < 3; k++) begin : gen_coordinate
+    scaler #(
+      .ExpWidth(ExpWidth),
+      .FracWidth(FracWidth),
+      .Adder(Adder),
+      .RoundingMode(RoundingMode),
+      .Words(ScaledWords)
+    ) u_scaler (
+      .clk_i,
+      .enable_i(advance),
+      .words_i({record_q[Width*hit_test_pkg::RecordD +: Width],
+                record_q[Width*(hit_test_pkg::RecordEdges+6+k) +: Width],
+                record_q[Width*(hit_test_pkg::RecordEdges+3+k) +: Width],
+                record_q[Width*(hit_test_pkg::RecordEdges+k) +: Width],
+                record_q[Width*(hit_test_pkg::RecordNormal+k) +: Width]}),
+      .factor_i(direction_q[Width*k +: Width]),
+      .products_o(scaled[k])
+    );
+  end
 
-  for (genvar k = 0; k < 3; k++) begin : gen_edge
-    dot_product #(
+  // ---- Add: V and U_k
+
+  logic [4*Width-1:0] dots;
+
+  for (genvar n = 0; n < 4; n++) begin : gen_dot
+    sum_of_three #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Adder(Adder),
       .RoundingMode(RoundingMode)
-    ) u_edge (
+    ) u_sum (
       .clk_i,
       .enable_i(advance),
-      .x_i(record_q[Width*(hit_test_pkg::RecordEdges+3*k) +: 3*Width]),
-      .y_i(direction_q),
-      .result_o(u[Width*k +: Width])
+      .x_i(scaled[0][Width*n +: Width]),
+      .y_i(scaled[1][Width*n +: Width]),
+      .z_i(scaled[2][Width*n +: Width]),
+      .sum_o(dots[Width*n +: Width])
     );
   end
 
@@ -133,23 +146,32 @@ module hit_test_pipeline #(
   assign nxy_exponent    = (nx_exponent > ny_exponent) ? nx_exponent : ny_exponent;
   assign normal_exponent = (nz_exponent > nxy_exponent) ? nz_exponent : nxy_exponent;
 
-  localparam int unsigned BesideWidth = 7 * Width + TagWidth + ExpWidth + 2;
-  logic [3*Width-1:0] dot_bounds, dot_direction;
+  logic [3*Width-1:0] dot_bounds, dot_dividends;
   logic [Width-1:0] dot_d;
   logic [TagWidth-1:0] dot_tag;
   logic [ExpWidth-1:0] dot_exponent;
   logic dot_first, dot_last;
 
   delay_line #(
-    .Width(BesideWidth),
+    .Width(4 * Width + TagWidth + ExpWidth + 2),
     .Depth(DotLatency)
   ) u_beside_dot (
     .clk_i,
     .enable_i(advance),
-    .data_i({record_q[Width*hit_test_pkg::RecordBounds +: 3*Width], direction_q,
-             record_q[Width*hit_test_pkg::RecordD +: Width], tag_q, normal_exponent, first_q,
-             last_q}),
-    .data_o({dot_bounds, dot_direction, dot_d, dot_tag, dot_exponent, dot_first, dot_last})
+    .data_i({normal_exponent, first_q, last_q, tag_q,
+             record_q[Width*hit_test_pkg::RecordBounds +: 3*Width],
+             record_q[Width*hit_test_pkg::RecordD +: Width]}),
+    .data_o({dot_exponent, dot_first, dot_last, dot_tag, dot_bounds, dot_d})
+  );
+  delay_line #(
+    .Width(3 * Width),
+    .Depth(DotLatency - hit_test_pkg::MultiplierLatency)
+  ) u_dividends (
+    .clk_i,
+    .enable_i(advance),
+    .data_i({scaled[2][4*Width +: Width], scaled[1][4*Width +: Width],
+             scaled[0][4*Width +: Width]}),
+    .data_o(dot_dividends)
   );
 
   // ---- Decide
@@ -163,8 +185,8 @@ module hit_test_pipeline #(
   ) u_decision (
     .d_i(dot_d),
     .normal_exponent_i(dot_exponent),
-    .v_i(v),
-    .u_i(u),
+    .v_i(dots[0 +: Width]),
+    .u_i(dots[Width +: 3*Width]),
     .bounds_i(dot_bounds),
     .miss_o(miss),
     .hit_o(hit),
@@ -175,7 +197,7 @@ module hit_test_pipeline #(
   logic decided_q, miss_q, hit_q, doubt_q, decided_first_q, decided_last_q;
   logic [TErrorWidth-1:0] t_error_q;
   logic [TagWidth-1:0] decided_tag_q;
-  logic [3*Width-1:0] decided_direction_q;
+  logic [3*Width-1:0] decided_dividends_q;
   logic [Width-1:0] decided_d_q, decided_v_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -192,9 +214,9 @@ module hit_test_pipeline #(
       decided_first_q     <= dot_first;
       decided_last_q      <= dot_last;
       decided_tag_q       <= dot_tag;
-      decided_direction_q <= dot_direction;
+      decided_dividends_q <= dot_dividends;
       decided_d_q         <= dot_d;
-      decided_v_q         <= v;
+      decided_v_q         <= dots[0 +: Width];
     end
   end
 
@@ -211,6 +233,7 @@ module hit_test_pipeline #(
   ) u_divider (
     .clk_i,
     .enable_i(advance),
+    .valid_i(decided_q & hit_q),
     .a_i(decided_d_q),
     .b_i(decided_v_q),
     .rounding_mode_i(RoundingMode),
@@ -219,7 +242,7 @@ module hit_test_pipeline #(
     .flags_o(unused_flags)
   );
 
-  localparam int unsigned PayloadWidth = 5 * Width;
+  localparam int unsigned PayloadWidth = 4 * Width;
   localparam int unsigned DividedWidth = PayloadWidth + TagWidth + TErrorWidth + 4;
   logic [PayloadWidth-1:0] divided_payload;
   logic [TagWidth-1:0] divided_tag;
@@ -233,10 +256,10 @@ module hit_test_pipeline #(
   ) u_beside_divider (
     .clk_i,
     .enable_i(advance),
-    .data_i({decided_direction_q, decided_v_q, decided_d_q, decided_tag_q, t_error_q,
-             decided_first_q, decided_last_q, hit_q, doubt_q}),
-    .data_o({divided_payload, divided_tag, divided_t_error, divided_first, divided_last,
-             divided_hit, divided_doubt})
+    .data_i({t_error_q, decided_first_q, decided_last_q, hit_q, doubt_q, decided_tag_q,
+             decided_dividends_q, decided_v_q}),
+    .data_o({divided_t_error, divided_first, divided_last, divided_hit, divided_doubt, divided_tag,
+             divided_payload})
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -297,9 +320,8 @@ module hit_test_pipeline #(
     .rst_ni,
     .enable_i(advance),
     .valid_i(closed & found),
-    .direction_i(nearest_payload[2*Width+:3*Width]),
-    .v_i(nearest_payload[Width+:Width]),
-    .d_i(nearest_payload[0+:Width]),
+    .dividends_i(nearest_payload[Width+:3*Width]),
+    .v_i(nearest_payload[0+:Width]),
     .valid_o(point_valid),
     .point_o(point)
   );
@@ -312,12 +334,12 @@ module hit_test_pipeline #(
     .clk_i,
     .rst_ni,
     .push_i(advance & (report != hit_test_pkg::ReportNone | closed | point_valid)),
-    .data_i({report, report_tag, closed, found, nearest_tag, t, nearest_t_error, point_valid,
+    .data_i({report, closed, found, nearest_t_error, point_valid, report_tag, nearest_tag, t,
              point}),
     .space_o(advance),
     .pop_i(valid_o & ready_i),
     .valid_o,
-    .data_o({report_o, report_tag_o, closed_o, found_o, tag_o, t_o, t_error_o, point_valid_o,
+    .data_o({report_o, closed_o, found_o, t_error_o, point_valid_o, report_tag_o, tag_o, t_o,
              point_o})
   );
 
@@ -325,14 +347,14 @@ module hit_test_pipeline #(
 
   always_comb begin
     events_o = '0;
-    events_o[hit_test_pkg::CountTests]          = advance & valid_i;
+    events_o[hit_test_pkg::CountTests]          = advance & test_q[0];
     events_o[hit_test_pkg::CountMisses]         = advance & decided_q & miss_q;
     events_o[hit_test_pkg::CountHits]           = advance & sure_hit;
     events_o[hit_test_pkg::CountDoubts]         = advance & (report == hit_test_pkg::ReportDoubt);
     events_o[hit_test_pkg::CountNearTies]       = advance & (report == hit_test_pkg::ReportNearTie);
     events_o[hit_test_pkg::CountDistances] = advance & decided_q & hit_q;
     events_o[hit_test_pkg::CountPoints] = advance & point_valid;
-    events_o[hit_test_pkg::CountIdleClocks]     = advance & ~valid_i;
+    events_o[hit_test_pkg::CountIdleClocks]     = advance & ~test_q[0];
     events_o[hit_test_pkg::CountOutputStalls]   = ~advance;
   end
 

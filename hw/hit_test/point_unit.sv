@@ -1,10 +1,11 @@
-// Where a ray meets a plane: P_k = (d I_k) / V (equation 10), all three coordinates at once.
+// Where a ray meets a plane: P_k = (d I_k) / V (equation 10), all three coordinates at once, from the
+// products d I_k.
 //
-// Three multipliers, three dividers: no fewer do for streams in which nearly every other test is a
-// nearest hit, which is what is left when a tree of boxes has ruled out most polygons.
+// Three dividers: no fewer do for streams in which nearly every other test is a nearest hit, which is
+// what is left when a tree of boxes has ruled out most polygons.
 //
-// Throughput one point a clock, latency MultiplierLatency + divide_latency (see hit_test_pkg);
-// clocks without enable_i don't count. valid_o is valid_i, as much later; it is reset.
+// Throughput one point a clock, latency divide_latency (see hit_test_pkg); clocks without enable_i
+// don't count. valid_o is valid_i, as much later; it is reset.
 module point_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
@@ -16,15 +17,13 @@ module point_unit #(
   input  logic               rst_ni,
   input  logic               enable_i,
   input  logic               valid_i,
-  input  logic [3*Width-1:0] direction_i,
+  input  logic [3*Width-1:0] dividends_i,
   input  logic [Width-1:0]   v_i,
-  input  logic [Width-1:0]   d_i,
   output logic               valid_o,
   output logic [3*Width-1:0] point_o
 );
 
-  localparam int unsigned MultiplierLatency = hit_test_pkg::MultiplierLatency;
-  localparam int unsigned Latency = MultiplierLatency + hit_test_pkg::divide_latency(FracWidth);
+  localparam int unsigned Latency = hit_test_pkg::divide_latency(FracWidth);
 
   logic [Latency-1:0] valid_q;
 
@@ -34,37 +33,8 @@ module point_unit #(
   end
   assign valid_o = valid_q[Latency-1];
 
-  logic [Width-1:0] divisor;
-
-  delay_line #(
-    .Width(Width),
-    .Depth(MultiplierLatency)
-  ) u_divisor (
-    .clk_i,
-    .enable_i,
-    .data_i(v_i),
-    .data_o(divisor)
-  );
-
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
-    logic [Width-1:0] dividend;
-    fp_pkg::flags_t unused_product_flags, unused_quotient_flags;
-
-    fp_multiplier_stages #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
-      .Adder(Adder),
-      .Cuts(hit_test_pkg::MultiplierCuts)
-    ) u_multiplier (
-      .clk_i,
-      .enable_i,
-      .a_i(d_i),
-      .b_i(direction_i[Width*k+:Width]),
-      .rounding_mode_i(RoundingMode),
-      .tininess_after_i(1'b0),
-      .result_o(dividend),
-      .flags_o(unused_product_flags)
-    );
+    fp_pkg::flags_t unused_flags;
 
     fp_divider_stages #(
       .ExpWidth(ExpWidth),
@@ -74,12 +44,13 @@ module point_unit #(
     ) u_divider (
       .clk_i,
       .enable_i,
-      .a_i(dividend),
-      .b_i(divisor),
+      .valid_i,
+      .a_i(dividends_i[Width*k+:Width]),
+      .b_i(v_i),
       .rounding_mode_i(RoundingMode),
       .tininess_after_i(1'b0),
       .result_o(point_o[Width*k+:Width]),
-      .flags_o(unused_quotient_flags)
+      .flags_o(unused_flags)
     );
   end
 

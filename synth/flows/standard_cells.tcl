@@ -1,6 +1,6 @@
 # Maps one design to a standard-cell library. Everything comes in through the environment:
 #   SOURCES   files to read, packages first        TOP, PARAMETERS   the design
-#   FLOW      cells | kept | default | small | fast | parts
+#   FLOW      cells | kept | default | area | small | fast | faster | parts
 #   ABC_SCRIPT  what ABC does, as -script FILE, or "" for Yosys's own
 #   LIBERTY   the library                          CONSTRAINTS       driver and load, for ABC
 #   OUT       prefix of the files written
@@ -8,11 +8,11 @@ set flows [file dirname [info script]]
 source [file join $flows elaborate.tcl]
 
 switch $::env(FLOW) {
-  default - small {
+  default - area - small {
     # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
     yosys synth -flatten -noshare -noabc -top $::env(TOP)
   }
-  fast - kept - parts {
+  fast - faster - kept - parts {
     # Nothing here looks across a multiplexer, so carry-select stays carry-select.
     yosys proc
     if {$::env(FLOW) eq "parts"} {

@@ -3,6 +3,9 @@ yosys proc
 yosys flatten
 yosys opt_expr
 yosys opt_clean
-yosys techmap -map [file join [file dirname [info script]] known_selects.v]
+set here [file dirname [info script]]
+# The cells' ports, even where none was instantiated until now.
+yosys read_verilog -sv -nooverwrite -lib [file join $here structure.v]
+yosys techmap -map [file join $here known_inputs.v]
 yosys opt_expr
 yosys opt_clean

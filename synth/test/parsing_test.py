@@ -2,7 +2,8 @@
 
 import unittest
 
-from synth import mapping, tools
+from synth import fpga, mapping, netlists, tools
+from synth.catalogue import Design
 
 OPENSTA = """\
     Cap    Slew   Delay    Time   Description
@@ -43,12 +44,37 @@ class Parsing(unittest.TestCase):
         with self.assertRaises(tools.ToolFailed):
             mapping.critical_path("Error: netlist.v, line 3 syntax error\nNo paths found.\n")
 
+    def test_ends(self):
+        """When each output is there; registers are no outputs."""
+        report = ("u_adder.a_i[24] (output)   1000.000    4.089  995.911 (MET)\n"
+                  "q[0]/D (DFFPOSX1)           999.900    1.000  998.900 (MET)\n")
+        self.assertEqual(mapping.ends(report), {"u_adder.a_i[24]": 4.089})
+
     def test_cell_counts(self):
         """Area and cells of Yosys's statistics; no area is a failure."""
         stat = "     FAX1                           48\n\n   Chip area for module '\\top': 23040.0\n"
         self.assertEqual(mapping.cell_counts(stat), (23040, {"FAX1": 48}))
         with self.assertRaises(tools.ToolFailed):
             mapping.cell_counts("     FAX1                           48\n")
+
+
+class Wrappers(unittest.TestCase):
+    """The Verilog that is written around a design."""
+
+    PORTS = {"a_i": {"direction": "input", "bits": [2, 3]}, "b_o": {"direction": "output", "bits": [4]}}
+
+    def test_registered(self):
+        """All inputs and outputs between registers, as many as there are."""
+        text = fpga.registered("d", {"modules": {"d": {"ports": self.PORTS}}})
+        self.assertIn("reg [1:0] in;", text)
+        self.assertIn(".a_i(in[0 +: 2])", text)
+        self.assertIn(".b_o(result[0 +: 1])", text)
+
+    def test_twins(self):
+        """One vector for both; a tied port of the RTL gets its constant."""
+        text = netlists.twins(Design("d", "d", "arith", tied=(("mode_i", "3'd1"),)), self.PORTS)
+        self.assertIn("d #() u_rtl (.a_i(in_i[0 +: 2]), .b_o(rtl_b_o), .mode_i(3'd1));", text)
+        self.assertIn("netlist u_netlist (.a_i(in_i[0 +: 2]), .b_o(netlist_b_o));", text)
 
 
 if __name__ == "__main__":

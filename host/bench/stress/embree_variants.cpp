@@ -70,8 +70,7 @@ class EmbreeVariant : public Variant {
     mesh_ = mesh;
     if (scene_ != nullptr) rtcReleaseScene(scene_);
     scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_,
-                     static_cast<RTCSceneFlags>(flags_ | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    rtcSetSceneFlags(scene_, flags_ | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     const std::size_t count = mesh->triangles.size();
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(

@@ -91,7 +91,7 @@ class EngineVariant : public Variant {
                          place.triangle];
   }
 
-  /// P as reported, and t as the unit's formula gives it.
+  /// P as reported, t as the unit's formula gives it, and both as refined.
   template <class Report>
   Answer found(const Report& report) {
     const RayBundle& bundle = batch_[report.bundle];
@@ -101,6 +101,9 @@ class EngineVariant : public Variant {
     answer.hit = true;
     answer.t = record.d / ((n.x * i.x + n.y * i.y) + n.z * i.z);
     answer.point = report.point;
+    const Place& place = places_[report.bundle];
+    answer.delivered = precise_hit({place.shot->origin, place.shot->directions[report.lane]},
+                                   place.shot->mesh->triangles[place.triangle]);
     return answer;
   }
 
@@ -112,7 +115,9 @@ class EngineVariant : public Variant {
       wavefront_ = std::make_unique<Wavefront>(*bvh_, *tester_);
     }
     RecordCache records(*bvh_, shot.origin);
-    wavefront_->trace(shot.origin, shot.directions, records);
+    rays_.clear();
+    for (const glm::vec3& direction : shot.directions) rays_.push_back({shot.origin, direction});
+    wavefront_->trace(rays_, {.common = &records});
     for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
       const NearestHit& hit = wavefront_->nearest(ray);
       nearest[ray] =
@@ -130,6 +135,7 @@ class EngineVariant : public Variant {
   std::vector<RayBundle> batch_;
   std::vector<Place> places_;
   HitResults results_;
+  std::vector<Ray> rays_;
 };
 
 template <class Tester, class Unit, class... Lanes>

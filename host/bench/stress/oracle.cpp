@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace raygate::stress {
 namespace {
@@ -89,14 +90,43 @@ struct Depth {
   Int distance, slope;
 };
 
-double quotient(const Depth<Wide>& depth) {
-  return magnitude(depth.distance) / magnitude(depth.slope);
+/// value * 2^exponent: what may not fit a double.
+struct Scaled {
+  double value;
+  long exponent;
+};
+
+Scaled scaled(const Wide& x) { return {magnitude(x), 0}; }
+Scaled scaled(const mpz_class& x) {
+  Scaled result{};
+  result.value = std::abs(mpz_get_d_2exp(&result.exponent, x.get_mpz_t()));
+  return result;
 }
-double quotient(const Depth<mpz_class>& depth) {  // neither fits a double, perhaps
-  long exponent, exponent_below;
-  const double above = mpz_get_d_2exp(&exponent, depth.distance.get_mpz_t());
-  const double below = mpz_get_d_2exp(&exponent_below, depth.slope.get_mpz_t());
-  return std::ldexp(std::abs(above / below), static_cast<int>(exponent - exponent_below));
+
+double quotient(const Scaled& above, const Scaled& below) {
+  return std::ldexp(above.value / below.value, static_cast<int>(above.exponent - below.exponent));
+}
+
+template <class Int>
+double quotient(const Depth<Int>& depth) {
+  return quotient(scaled(depth.distance), scaled(depth.slope));
+}
+
+template <class Int>
+Scaled length(const Vector<Int>& v) {
+  const Scaled parts[] = {scaled(v.x), scaled(v.y), scaled(v.z)};
+  Scaled result{0.0, std::numeric_limits<long>::min()};
+  for (const Scaled& part : parts) {
+    if (part.value != 0.0) result.exponent = std::max(result.exponent, part.exponent);
+  }
+  for (const Scaled& part : parts) {
+    if (part.value == 0.0) continue;
+    const double value =
+        std::ldexp(part.value, static_cast<int>(std::max(part.exponent - result.exponent, -999L)));
+    result.value += value * value;
+  }
+  result.value = std::sqrt(result.value);
+  return result;
 }
 
 template <class Int>
@@ -163,12 +193,16 @@ Truth find(const Shot& shot, int low, int direction_low) {
       continue;
     }
     const Vector<Int> direction = whole<Int>(ray, direction_low);
+    const Scaled direction_length = length(direction);
     for (std::uint32_t i = 0; i < targets.size(); ++i) {
       Verdict verdict = decide(targets[i], direction);
       tied = tied || verdict.tie;
       if (verdict.hit) {
         const Depth<Int> depth{targets[i].distance, dot(direction, targets[i].normal)};
         verdict.t = std::ldexp(quotient(depth), low - direction_low);
+        const Scaled normal = length(targets[i].normal);
+        verdict.sine = quotient(scaled(depth.slope), {normal.value * direction_length.value,
+                                                      normal.exponent + direction_length.exponent});
         const int order = nearest ? compare(depth, nearest_depth) : -1;
         tied = tied || order == 0;
         if (order < 0) {

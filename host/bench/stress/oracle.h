@@ -12,8 +12,9 @@ namespace raygate::stress {
 /// The truth about one ray and one triangle.
 struct Verdict {
   bool hit = false;
-  bool tie = false;  ///< the ray meets an edge's line exactly: only the tie-break decides
-  double t = 0.0;    ///< of a hit, off by 2^-50 of itself at most
+  bool tie = false;   ///< the ray meets an edge's line exactly: only the tie-break decides
+  double t = 0.0;     ///< of a hit, off by 2^-50 of itself at most
+  double sine = 0.0;  ///< of a hit: of the angle between ray and plane, as good
 };
 
 struct Truth {

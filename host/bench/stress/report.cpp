@@ -1,42 +1,16 @@
 #include "host/bench/stress/report.h"
 
-#include <bit>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "host/bench/stress/error_bounds.h"
+#include "host/bench/stress/tally_json.h"
 
 namespace raygate::stress {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json to_json(const Errors& errors) {
-  const Errors::Summary s = errors.summary();
-  return {{"count", s.count}, {"median", s.median}, {"p99", s.p99}, {"max", s.max}};
-}
-
-ordered_json to_json(const Tally& tally) {
-  ordered_json angles = ordered_json::array(), failures = ordered_json::array();
-  for (const Errors& errors : tally.t_ulp_by_angle) angles.push_back(to_json(errors));
-  for (const Failure& failure : tally.failures) failures.push_back(to_text(failure));
-  return {{"tests", tally.tests},
-          {"rays", tally.rays},
-          {"wrong", tally.wrong},
-          {"ties", tally.ties},
-          {"wrong_ties", tally.wrong_ties},
-          {"leaks", tally.leaks},
-          {"escapes", tally.escapes},
-          {"double_hits", tally.double_hits},
-          {"wrong_nearest", tally.wrong_nearest},
-          {"wrong_tied_nearest", tally.wrong_tied_nearest},
-          {"hits", tally.hits},
-          {"doubts", tally.doubts},
-          {"t_ulp", to_json(tally.t_ulp)},
-          {"t_relative", to_json(tally.t_relative)},
-          {"point_ulp", to_json(tally.point_ulp)},
-          {"t_ulp_by_angle", angles},
-          {"worst_of_bound", tally.worst_of_bound},
-          {"failures", failures}};
-}
 
 Tally total(const Report& report, std::size_t variant) {
   Tally sum;
@@ -60,9 +34,16 @@ bool Report::passed() const {
   return any;
 }
 
+bool Report::complete() const {
+  return outcomes.size() == all_suites().size() && variants.size() == all_variants().size();
+}
+
 std::string Report::summary() const {
   Tally exact;
   std::uint64_t broken_claims = 0;
+  bool any_exact = false;
+  for (const VariantKind& variant : variants) any_exact = any_exact || variant.exact;
+  if (!any_exact) return "stress: none of the engines was asked for, so nothing can pass or fail";
   for (const SuiteOutcome& outcome : outcomes) {
     broken_claims += outcome.broken_claims;
     for (std::size_t v = 0; v < variants.size(); ++v) {
@@ -70,14 +51,16 @@ std::string Report::summary() const {
     }
   }
   const auto n = [](std::uint64_t count) { return std::to_string(count); };
-  char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%.0f s", this->seconds);
+  double seconds = 0.0;
+  for (const SuiteOutcome& outcome : outcomes) seconds += outcome.seconds;
+  char time[64];
+  std::snprintf(time, sizeof time, "%.0f s of processor time", seconds);
   return std::string("stress: ") + (passed() ? "PASSED" : "FAILED") + ": " + n(outcomes.size()) +
          " suites, " + n(exact.tests) +
          " tests by the engines: " + n(exact.wrong + exact.wrong_ties) + " wrong, " +
          n(exact.leaks) + " leaks, " + n(exact.double_hits) + " double hits, " +
          n(exact.wrong_nearest + exact.wrong_tied_nearest) + " wrong nearest, " + n(broken_claims) +
-         " broken claims, " + n(exact.doubts) + " doubts; seed " + n(options.seed) + ", " + seconds;
+         " broken claims, " + n(exact.doubts) + " doubts; seed " + n(options.seed) + ", " + time;
 }
 
 std::string Report::json() const {
@@ -87,38 +70,29 @@ std::string Report::json() const {
                      {"what", variants[v].what},
                      {"exact", variants[v].exact},
                      {"significand", variants[v].significand},
-                     {"total", to_json(total(*this, v))}});
+                     {"total", summed_up(total(*this, v))}});
   }
   for (const SuiteOutcome& outcome : outcomes) {
     ordered_json tallies = ordered_json::array();
-    for (const Tally& tally : outcome.tallies) tallies.push_back(to_json(tally));
+    for (const Tally& tally : outcome.tallies) tallies.push_back(summed_up(tally));
     suites.push_back({{"name", outcome.suite->name},
                       {"what", outcome.suite->what},
                       {"broken_claims", outcome.broken_claims},
                       {"seconds", outcome.seconds},
                       {"variants", tallies}});
   }
-  const ordered_json json = {{"passed", passed()},   {"tests", options.tests},
-                             {"seed", options.seed}, {"threads", options.threads},
-                             {"seconds", seconds},   {"variants", kinds},
+  ordered_json bounds = ordered_json::array();
+  for (int tenths = 0; tenths <= 80; ++tenths) {
+    const double sine = std::pow(10.0, -0.1 * tenths);
+    bounds.push_back({{"sine", sine},
+                      {"t_ulp", in_ulp(bound_of_t(sine))},
+                      {"point_ulp", in_ulp(bound_of_point(sine))}});
+  }
+  const ordered_json json = {{"passed", passed()},     {"complete", complete()},
+                             {"tests", options.tests}, {"seed", options.seed},
+                             {"bounds", bounds},       {"variants", kinds},
                              {"suites", suites}};
   return json.dump(1) + "\n";
-}
-
-std::string to_text(const Failure& failure) {
-  std::string text;
-  const auto add = [&](const glm::vec3& v) {
-    for (int k = 0; k < 3; ++k) {
-      char word[16];
-      std::snprintf(word, sizeof word, "%s%08X", text.empty() ? "" : " ",
-                    std::bit_cast<std::uint32_t>(v[k]));
-      text += word;
-    }
-  };
-  add(failure.origin);
-  add(failure.direction);
-  for (const glm::vec3& vertex : failure.triangle) add(vertex);
-  return text;
 }
 
 }  // namespace raygate::stress

@@ -12,17 +12,15 @@ struct Report {
   RunOptions options;
   std::vector<VariantKind> variants;
   std::vector<SuiteOutcome> outcomes;
-  double seconds = 0.0;
 
-  /// Every exact variant spotless, in tests that were really done, and no claim broken.
+  /// Every exact variant spotless (see Tally), in tests that were really done, and no claim broken.
   [[nodiscard]] bool passed() const;
-  /// "stress: PASSED: 21 suites, ...".
+  /// Every suite against every variant of this build.
+  [[nodiscard]] bool complete() const;
+  /// One line: "stress: PASSED: 20 suites, ...".
   [[nodiscard]] std::string summary() const;
   /// Everything, for plots and other programs.
   [[nodiscard]] std::string json() const;
 };
-
-/// As tests/regressions.txt has it: 15 words in hex, origin, direction, triangle.
-[[nodiscard]] std::string to_text(const Failure& failure);
 
 }  // namespace raygate::stress

@@ -1,17 +1,21 @@
-"""Tables (Markdown) and plots of a stress run: report.py RUN.json FOLDER [SYNTH_RESULTS.json]."""
+"""Tables and plots of a stress run; one of enough tests also renews the tables in README.md."""
 
+import argparse
 import json
 import pathlib
-import sys
 
-import matplotlib
+import plots
 
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402  (after the choice of its back end)
+# A run of all suites with so many tests in each may renew the README.
+ENOUGH = 1_000_000
+BEGIN, END = "<!-- begin of what `make stress` writes -->\n", "<!-- end of what `make stress` writes -->\n"
 
-# Which rows of synthesis make up a variant's arithmetic: a suffix of the three cores' names.
+# Which rows of synthesis (see core_rows in synth/catalogue.py) make up a variant's arithmetic: what
+# the names of multiplier, adder and divider end in, by the variant's name or else its significand.
 CORES = ("fp-multiplier", "fp-adder", "fp-divider")
-SUFFIXES = {"24": "-graded", "16": "-16-bits", "12": "-12-bits"}
+SUFFIXES = {"24": ("", "", ""), "16": ("-16-bits",) * 3, "12": ("-12-bits",) * 3,
+            "truncate": ("-truncating",) * 3, "21-bit quotients": ("", "", "-21-bit-quotient")}
+UNMEASURED = ("flush",)  # its cores are not written
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
@@ -34,25 +38,32 @@ def per_million(count: int, of: int) -> str:
 
 
 def costs(file: pathlib.Path | None) -> dict[str, tuple[str, str]]:
-    """Area and delay for each significand width of which synthesis knows all three cores."""
+    """Area and delay for each of SUFFIXES of which synthesis knows all three cores."""
     if file is None or not file.exists():
         return {}
     at = {(row["design"], row["target"], row["flow"]): row
           for row in json.loads(file.read_text())["results"]}
     known = {}
-    for bits, suffix in SUFFIXES.items():
-        cores = [at.get((core + suffix, "osu035", "small")) for core in CORES]
+    for kind, suffixes in SUFFIXES.items():
+        cores = [at.get((core + suffix, "osu035", "small"))
+                 for core, suffix in zip(CORES, suffixes, strict=True)]
         if all(cores):
-            known[bits] = (f"{sum(core['area'] for core in cores):,}",
+            known[kind] = (f"{sum(core['area'] for core in cores):,}",
                            f"{max(core['delay_ns'] for core in cores):.1f}")
     return known
+
+
+def cost(variant: dict, known: dict[str, tuple[str, str]]) -> tuple[str, str]:
+    name = variant["name"]
+    kind = name if name in SUFFIXES else variant["significand"]
+    return ("-", "-") if name in UNMEASURED else known.get(kind, ("-", "-"))
 
 
 def variants_table(run: dict, known: dict[str, tuple[str, str]]) -> str:
     rows = []
     for variant in run["variants"]:
         t = variant["total"]
-        area, delay = known.get(variant["significand"], ("-", "-"))
+        area, delay = cost(variant, known)
         wrong = t["wrong"] + (t["wrong_ties"] if variant["exact"] else 0)
         nearest = t["wrong_nearest"] + (t["wrong_tied_nearest"] if variant["exact"] else 0)
         rows.append([variant["name"], f"{t['tests']:,}", f"{wrong:,}",
@@ -86,117 +97,91 @@ def closed_table(run: dict) -> str:
     return table(["suite", *(v["name"] for v in run["variants"])], rows)
 
 
-def errors_table(run: dict) -> str:
-    def cells(errors: dict, form: str) -> list[str]:
-        return [number(errors[key], form) if errors["count"] else "-"
-                for key in ("median", "p99", "max")]
+def cells(errors: dict, form: str) -> str:
+    return " / ".join(number(errors[key], form) for key in ("median", "p99", "max")) \
+        if errors["count"] else "-"
 
+
+def errors_table(run: dict, suite_name: str | None) -> str:
+    """Median / p99 / max of one suite, or of all."""
+    suite = next((s for s in run["suites"] if s["name"] == suite_name), None)
     rows = []
-    for suite_name in ("random", None):
-        for i, variant in enumerate(run["variants"]):
-            if suite_name is None:
-                t = variant["total"]
-            else:
-                t = next((s["variants"][i] for s in run["suites"] if s["name"] == suite_name), None)
-                if t is None:
-                    continue
-            rows.append([f"{variant['name']}, {suite_name or 'all suites'}",
-                         *cells(t["t_ulp"], ".3g"), *cells(t["t_relative"], ".1e"),
-                         *cells(t["point_ulp"], ".3g")])
-    return table(["variant", *(f"{what} {key}" for what in ("t, ulp:", "t, relative:", "P, ulp:")
-                               for key in ("median", "p99", "max"))], rows)
+    for i, variant in enumerate(run["variants"]):
+        t = suite["variants"][i] if suite else variant["total"]
+        rows.append([variant["name"], cells(t["t_ulp"], ".3g"), cells(t["t_relative"], ".1e"),
+                     cells(t["point_ulp"], ".3g"), cells(t["delivered_t_ulp"], ".4g"),
+                     cells(t["delivered_point_ulp"], ".4g")])
+    return table([f"{suite_name or 'all suites'}: median / p99 / max", "t, ulp", "t, relative",
+                  "P, ulp", "delivered t, ulp", "delivered P, ulp"], rows)
 
 
 def angles_table(run: dict) -> str:
     exact = [v for v in run["variants"] if v["exact"]]
     rows = []
     for decade in range(8):
-        row = [f"1e-{decade + 1} to 1e-{decade}"]
-        for variant in exact:
-            errors = variant["total"]["t_ulp_by_angle"][decade]
-            row.append("-" if not errors["count"] else
-                       " / ".join(number(errors[key], ".3g") for key in ("median", "p99", "max")))
-        rows.append(row)
-    rows.append(["largest part of the proven bound",
-                 *(number(v["total"]["worst_of_bound"], ".3f") for v in exact)])
-    return table(["sine of the angle", *(v["name"] for v in exact)], rows)
+        least = min(run["bounds"], key=lambda b: abs(b["sine"] - 10 ** -(decade + 1)))
+        rows.append([f"1e-{decade + 1} to 1e-{decade}",
+                     number(least["t_ulp"], ".3g"),
+                     *(cells(v["total"]["t_ulp_by_angle"][decade], ".3g") for v in exact)])
+    for what, key in (("t", "t_of_bound"), ("P", "point_of_bound")):
+        rows.append([f"largest part of its bound that {what} came to", "1",
+                     *(number(v["total"][key], ".3f") for v in exact)])
+    return table(["sine of the angle", "proven bound at the lower end",
+                  *(v["name"] for v in exact)], rows)
 
 
-def plot_wrong(run: dict, file: pathlib.Path) -> None:
-    suites = [suite["name"] for suite in run["suites"]]
-    others = [(i, v["name"]) for i, v in enumerate(run["variants"]) if not v["exact"]]
-    figure, axes = plt.subplots(figsize=(11, 6), layout="constrained")
-    rates = [[100 * s["variants"][i]["wrong"] / max(s["variants"][i]["tests"], 1) for s in run["suites"]]
-             for i, _ in others]
-    image = axes.imshow(rates, aspect="auto", cmap="magma_r", vmin=0)
-    axes.set_xticks(range(len(suites)), suites, rotation=60, ha="right")
-    axes.set_yticks(range(len(others)), [name for _, name in others])
-    axes.set_title("Wrong decisions, % of tests (the engines: 0 everywhere)")
-    figure.colorbar(image)
-    figure.savefig(file)
-    plt.close(figure)
-
-
-def plot_angles(run: dict, file: pathlib.Path) -> None:
-    figure, axes = plt.subplots(figsize=(8, 5), layout="constrained")
-    for variant in run["variants"]:
-        points = [(10 ** -(d + 0.5), e["p99"])
-                  for d, e in enumerate(variant["total"]["t_ulp_by_angle"])
-                  if e["count"] > 100 and e["p99"] is not None]
-        axes.loglog([x for x, _ in points], [y for _, y in points], marker="o", label=variant["name"])
-    axes.set_xlabel("sine of the angle between ray and plane")
-    axes.set_ylabel("error of t, 99th percentile, ulp")
-    axes.legend(fontsize="small")
-    axes.grid(True, alpha=0.3)
-    figure.savefig(file)
-    plt.close(figure)
-
-
-def main() -> None:
-    run = json.loads(pathlib.Path(sys.argv[1]).read_text())
-    folder = pathlib.Path(sys.argv[2])
-    known = costs(pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None)
-    folder.mkdir(parents=True, exist_ok=True)
-    plot_wrong(run, folder / "wrong.svg")
-    plot_angles(run, folder / "t_by_angle.svg")
-    broken = sum(suite["broken_claims"] for suite in run["suites"])
+def tables(run: dict, known: dict[str, tuple[str, str]]) -> str:
     about = "\n".join(f"* **{v['name']}**: {v['what']}" for v in run["variants"])
     suites = "\n".join(f"* **{s['name']}**: {s['what']}" for s in run["suites"])
-    (folder / "report.md").write_text(f"""# Stress test: {"passed" if run["passed"] else "FAILED"}
+    tests = {v["name"]: v["total"]["tests"] for v in run["variants"] if v["exact"]}
+    seconds = sum(s["seconds"] for s in run["suites"])
+    synthesis = "" if known else " (run `make synth` first: it has not measured them here)"
+    return f"""**{"Passed" if run["passed"] else "FAILED"}**: {len(run["suites"])} suites{"" if run["complete"] else " (a part of them)"}, seed {run["seed"]},
+{seconds:,.0f} s of processor time. Tests by {", ".join(f"{name}: {n:,}" for name, n in tests.items())}.
+Broken claims (rays from inside that are not): {sum(s["broken_claims"] for s in run["suites"])}.
 
-Seed {run["seed"]}, {len(run["suites"])} suites, {run["seconds"]:.0f} s. A test is one ray against one
-triangle, judged by exact integers. Ties (the ray meets an edge exactly) count as wrong for the
-engines alone: others may break them as they like. Broken claims (rays from inside, by the rule for
-mirrored rays' origins, that are not): {broken}.
-
-## Variants
+### Variants
 
 {variants_table(run, known)}
-Area and delay: multiplier, adder and divider of that significand, OSU 0.35 um, where synthesis has
-measured them; a serial test takes 7 clocks whatever the width.
+Area and delay: multiplier, adder and divider of that significand, OSU 0.35 um{synthesis}. A test takes
+7 clocks in the paper's unit and 1 in the pipelined one, whatever the width.
 
 {about}
 
-![wrong decisions](wrong.svg)
-
-## Wrong decisions per million tests
+### Wrong decisions per million tests
 
 {suites_table(run)}
 {suites}
 
-## Rays from inside closed meshes: leaks / escapes among them / double hits per million
-
-A leak is an even number of hits, an escape none at all.
+### Rays from inside closed meshes: leaks / escapes among them / double hits per million
 
 {closed_table(run)}
-## Errors of t and P
+### Errors of t and P
 
-{errors_table(run)}
-## Error of t by angle: median / p99 / max, ulp
+{errors_table(run, "random")}
+{errors_table(run, None)}
+### Error of the unit's t by angle, sure hits: median / p99 / max, ulp
 
-{angles_table(run)}
-![error of t](t_by_angle.svg)
-""")
+{angles_table(run)}"""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=pathlib.Path, help="with a run.json; the report goes there")
+    parser.add_argument("--synth", type=pathlib.Path, help="results.json of `make synth`")
+    parser.add_argument("--readme", type=pathlib.Path, help="renewed by a run of enough tests")
+    options = parser.parse_args()
+    run = json.loads((options.folder / "run.json").read_text())
+    text = tables(run, costs(options.synth))
+    plots.wrong_decisions(run, options.folder / "wrong.png")
+    plots.error_by_angle(run, options.folder / "t_by_angle.png")
+    (options.folder / "report.md").write_text(
+        f"# Stress test\n\n{text}\n![wrong decisions](wrong.png)\n![error of t](t_by_angle.png)\n")
+    if options.readme and run["tests"] >= ENOUGH and run["complete"]:
+        old = options.readme.read_text()
+        before, after = old.split(BEGIN)[0], old.split(END)[1]
+        options.readme.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}")
+        print(f"Renewed: {options.readme}")
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ struct SuiteOutcome {
   /// Rays that start inside a closed mesh but cross it an even number of times, in truth: the
   /// generator's own claim is broken, or the rule for the origins of mirrored rays.
   std::uint64_t broken_claims = 0;
-  double seconds = 0.0;
+  double seconds = 0.0;  ///< of a processor
 };
 
 /// Every suite against every variant. Each suite draws from its own random numbers and is run by

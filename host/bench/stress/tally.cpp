@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "host/hit/polygon_record.h"
+#include "host/bench/stress/error_bounds.h"
 
 namespace raygate::stress {
 namespace {
@@ -16,68 +17,56 @@ double ulp(double x) { return std::ldexp(1.0, std::max(std::ilogb(x), -126) - 23
 /// Whether a float can hold x with all its digits.
 bool ordinary(double x) { return std::abs(x) >= 0x1p-126 && std::abs(x) < 0x1p127; }
 
-double sine_between(const glm::vec3& direction, const Corners& t) {
-  const glm::dvec3 a(t[0]), i(direction);
-  const glm::dvec3 u = glm::dvec3(t[1]) - a, v = glm::dvec3(t[2]) - a;
-  const glm::dvec3 normal = glm::cross(u / glm::length(u), v / glm::length(v));
-  return std::abs(glm::dot(i, normal)) / (glm::length(i) * glm::length(normal));
+/// The error of `value` in ulp of `exact`, and relative to it; none where a float does not hold it.
+struct Off {
+  double ulps, relative;
+};
+
+std::optional<Off> off(float value, double exact) {
+  if (std::isnan(value) || !ordinary(exact)) return std::nullopt;
+  const double difference = std::abs(value - exact);
+  return Off{difference / ulp(exact), difference / std::abs(exact)};
+}
+
+/// The worst of the three coordinates.
+std::optional<Off> off(const glm::vec3& point, const glm::vec3& direction, double t) {
+  std::optional<Off> worst;
+  for (int k = 0; k < 3; ++k) {
+    const auto error = off(point[k], t * direction[k]);
+    if (!error) continue;
+    if (!worst) worst = Off{0.0, 0.0};
+    worst = Off{std::max(worst->ulps, error->ulps), std::max(worst->relative, error->relative)};
+  }
+  return worst;
 }
 
 void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& direction,
-                const Corners& triangle, Tally& tally) {
+                Tally& tally) {
   if (!ordinary(truth.t)) return;
-  if (!std::isnan(answer.t)) {
-    const double off = std::abs(answer.t - truth.t);
-    tally.t_ulp.add(off / ulp(truth.t));
-    tally.t_relative.add(off / truth.t);
-    const double sine = sine_between(direction, triangle);
-    if (sine > 0.0 && sine <= 1.0001) {
-      const int decade = std::clamp(static_cast<int>(-std::log10(sine)), 0, Tally::kDecades - 1);
-      tally.t_ulp_by_angle[decade].add(off / ulp(truth.t));
-      tally.worst_of_bound = std::max(tally.worst_of_bound, off / truth.t / bound_of_t(sine));
+  if (const auto error = off(answer.t, truth.t)) {
+    tally.t_ulp.add(error->ulps);
+    tally.t_relative.add(error->relative);
+    if (!answer.doubt) {
+      const int decade =
+          std::clamp(static_cast<int>(-std::log10(truth.sine)), 0, Tally::kDecades - 1);
+      tally.t_ulp_by_angle[decade].add(error->ulps);
+      tally.t_of_bound = std::max(tally.t_of_bound, error->relative / bound_of_t(truth.sine));
     }
   }
-  double worst = -1.0;
-  for (int k = 0; k < 3; ++k) {
-    const double exact = truth.t * direction[k];
-    if (std::isnan(answer.point[k]) || !ordinary(exact)) continue;
-    worst = std::max(worst, std::abs(answer.point[k] - exact) / ulp(exact));
+  if (const auto error = off(answer.point, direction, truth.t)) {
+    tally.point_ulp.add(error->ulps);
+    if (!answer.doubt) {
+      tally.point_of_bound =
+          std::max(tally.point_of_bound, error->relative / bound_of_point(truth.sine));
+    }
   }
-  if (worst >= 0.0) tally.point_ulp.add(worst);
+  if (const auto error = off(answer.delivered.t, truth.t)) tally.delivered_t_ulp.add(error->ulps);
+  if (const auto error = off(answer.delivered.point, direction, truth.t)) {
+    tally.delivered_point_ulp.add(error->ulps);
+  }
 }
 
 }  // namespace
-
-void Errors::add(double error) {
-  ++count_;
-  max_ = std::max(max_, error);
-  if (sample_.size() < kSample) {
-    sample_.push_back(error);
-  } else if (const auto place =
-                 static_cast<std::size_t>(random_.uniform(0, 1) * static_cast<double>(count_));
-             place < kSample) {
-    sample_[place] = error;
-  }
-}
-
-void Errors::add(const Errors& other) {
-  // Each suite's sample has equal weight where they do not fit in one.
-  sample_.insert(sample_.end(), other.sample_.begin(), other.sample_.end());
-  count_ += other.count_;
-  max_ = std::max(max_, other.max_);
-}
-
-Errors::Summary Errors::summary() const {
-  if (sample_.empty()) return {};
-  std::vector<double> sample = sample_;
-  const auto at = [&](double fraction) {
-    const auto place = sample.begin() + static_cast<std::ptrdiff_t>(
-                                            fraction * static_cast<double>(sample.size() - 1));
-    std::ranges::nth_element(sample, place);
-    return *place;
-  };
-  return {count_, at(0.5), at(0.99), max_};
-}
 
 void Tally::add(const Tally& other) {
   tests += other.tests;
@@ -95,19 +84,27 @@ void Tally::add(const Tally& other) {
   t_ulp.add(other.t_ulp);
   point_ulp.add(other.point_ulp);
   t_relative.add(other.t_relative);
+  delivered_t_ulp.add(other.delivered_t_ulp);
+  delivered_point_ulp.add(other.delivered_point_ulp);
   for (int k = 0; k < kDecades; ++k) t_ulp_by_angle[k].add(other.t_ulp_by_angle[k]);
-  worst_of_bound = std::max(worst_of_bound, other.worst_of_bound);
+  t_of_bound = std::max(t_of_bound, other.t_of_bound);
+  point_of_bound = std::max(point_of_bound, other.point_of_bound);
   failures.insert(failures.end(), other.failures.begin(), other.failures.end());
 }
 
-double bound_of_t(double sine) {
-  const double distance = 0x1p-24 + 0x1p-32, slope = kEdgeBound * std::sqrt(3.0) * 0x1p-24 / sine;
-  if (slope >= 1.0) return std::numeric_limits<double>::infinity();
-  return (1.0 + distance) / (1.0 - slope) * (1.0 + 0x1p-24) - 1.0;
+bool Tally::spotless() const {
+  return wrong_decisions(true) + leaks + double_hits == 0 && t_of_bound <= 1.0 &&
+         point_of_bound <= 1.0 && delivered_t_ulp.max() <= kDeliveredUlp &&
+         delivered_point_ulp.max() <= kDeliveredUlp;
 }
 
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
-           Tally& tally) {
+           bool exact_variant, Tally& tally) {
+  const auto fails = [&](const Shot& shot, const glm::vec3& direction,
+                         std::span<const Corners> triangles) {
+    if (tally.failures.size() == kFailures) return;
+    tally.failures.push_back({shot.origin, direction, {triangles.begin(), triangles.end()}});
+  };
   std::size_t test = 0, ray_number = 0;
   for (std::size_t s = 0; s < shots.size(); ++s) {
     const Shot& shot = shots[s];
@@ -127,11 +124,9 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
         true_hits += exact.hit;
         if (answer.hit != exact.hit) {
           ++(exact.tie ? tally.wrong_ties : tally.wrong);
-          if (tally.failures.size() < kFailures) {
-            tally.failures.push_back({shot.origin, direction, triangle});
-          }
+          if (exact_variant || !exact.tie) fails(shot, direction, {&triangle, 1});
         } else if (exact.hit) {
-          add_errors(answer, exact, direction, triangle, tally);
+          add_errors(answer, exact, direction, tally);
         }
       }
       ++tally.rays;
@@ -140,7 +135,9 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
       tally.escapes += shot.inside && hits == 0;
       tally.double_hits += shot.inside && hits > true_hits;
       if (answers.nearest[ray_number] != truth.nearest[ray]) {
-        ++(truth.nearest_tied[ray] ? tally.wrong_tied_nearest : tally.wrong_nearest);
+        const bool tied = truth.nearest_tied[ray];
+        ++(tied ? tally.wrong_tied_nearest : tally.wrong_nearest);
+        if (exact_variant || !tied) fails(shot, direction, triangles);
       }
     }
   }

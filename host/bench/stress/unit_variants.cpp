@@ -1,8 +1,8 @@
 // The hit-test unit with cheaper arithmetic, and with or without its doubt output.
 #include <cmath>
 
-#include "host/bench/stress/arithmetic.h"
 #include "host/bench/stress/variants.h"
+#include "host/bench/variants/arithmetic.h"
 #include "host/hit/polygon_record.h"
 
 namespace raygate::stress {
@@ -90,7 +90,8 @@ std::vector<VariantKind> unit_variants() {
           unit("21-bit quotients", "doubts resolved; the paper's divider cuts off after 21 bits",
                "24", {.quotient_digits = 21}, true),
           unit("flush", "no doubts; subnormals are zeros", "24", {.flush = true}),
-          unit("truncate", "no doubts; rounding towards zero", "24", {.truncate = true}),
+          unit("truncate", "no doubts; rounding towards zero", "24",
+               {.rounding = Rounding::kTowardZero}),
           unit("16 bits", "no doubts; significands of 16 bits", "16", {.digits = 16}),
           unit("12 bits", "no doubts; significands of 12 bits", "12", {.digits = 12}),
           unit("16 bits + doubts", "significands of 16 bits, doubts resolved", "16", {.digits = 16},

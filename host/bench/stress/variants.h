@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/bench/stress/shot.h"
+#include "host/hit/exact.h"
 #include "host/scene/scene.h"
 
 namespace raygate::stress {
@@ -21,6 +22,9 @@ struct Answer {
   bool doubt = false;                                 ///< exact arithmetic on the host was asked
   float t = std::numeric_limits<float>::quiet_NaN();  ///< of a hit; NaN: the variant has none
   glm::vec3 point{std::numeric_limits<float>::quiet_NaN()};  ///< P, seen from the origin; likewise
+  /// What the renderer goes on with, where that is another.
+  PreciseHit delivered{std::numeric_limits<float>::quiet_NaN(),
+                       glm::vec3(std::numeric_limits<float>::quiet_NaN())};
 };
 
 /// What a variant says about some shots.

@@ -19,21 +19,21 @@ class BadInput : public testing::Test {
  protected:
   /// Pictures of an earlier run, and statistics: not to be touched.
   void SetUp() override {
-    for (const char* name : {"scene.exr", "scene.png", "scene.json"}) {
+    for (const char* name : {"scene.exr", "scene.png", "stats.json"}) {
       folder_.write(name, std::string("old ") + name);
     }
   }
 
   [[nodiscard]] Outcome render(std::vector<std::string> arguments) const {
     Invocation invocation{
-        .arguments = {"--engine", "cpu", "--size", "8x6", "--stats", "scene.json"},
+        .arguments = {"--engine", "cpu", "--size", "8x6", "--stats", "stats.json"},
         .folder = folder_.path()};
     invocation.arguments.insert(invocation.arguments.end(), arguments.begin(), arguments.end());
     return run_program(invocation);
   }
 
   void expect_old_files() const {
-    for (const char* name : {"scene.exr", "scene.png", "scene.json"}) {
+    for (const char* name : {"scene.exr", "scene.png", "stats.json"}) {
       EXPECT_EQ(folder_.read(name), std::string("old ") + name);
     }
     for (const std::string& name : folder_.list()) {
@@ -68,7 +68,7 @@ TEST_F(BadInput, TheGoodSceneIsGood) {
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(folder_.read("scene.png").substr(0, 4), "\x89PNG");
   EXPECT_EQ(folder_.read("scene.exr").substr(0, 4), "\x76\x2f\x31\x01");
-  EXPECT_EQ(folder_.read("scene.json").substr(0, 1), "{");
+  EXPECT_EQ(folder_.read("stats.json").substr(0, 1), "{");
   EXPECT_EQ(folder_.list().size(), 4u);
 }
 
@@ -83,7 +83,7 @@ TEST_F(BadInput, UnreadableFile) {
   folder_.write("scene.obj", kGoodScene);
   ::chmod((folder_.path() / "scene.obj").c_str(), 0);
   ::chmod(folder_.path().c_str(), 0777);
-  for (const char* name : {"scene.exr", "scene.png", "scene.json"}) {
+  for (const char* name : {"scene.exr", "scene.png", "stats.json"}) {
     ::chmod((folder_.path() / name).c_str(), 0666);
   }
   const Outcome outcome = run_program({.arguments = {"scene.obj", "--engine", "cpu"},
@@ -206,6 +206,22 @@ TEST_F(BadInput, ImpossibleOptions) {
   expect_refused(render({"scene.obj", "--frobnicate"}), "--frobnicate: unknown option; [^\n]+");
   expect_refused(render({"scene.obj", "scene.obj"}), "scene\\.obj: a second scene; [^\n]+");
   expect_refused(render({}), "no scene given; [^\n]+");
+}
+
+TEST_F(BadInput, SceneFiles) {
+  folder_.write("scene.obj", kGoodScene);
+  const auto refused = [&](const std::string& text, int line) {
+    folder_.write("scene.json", text);
+    for (const char* scene : {"scene.obj", "scene.json"}) {
+      expect_refused(render({scene}), "scene\\.json:" + std::to_string(line) + ": [^\n]+");
+    }
+  };
+  refused("{", 1);
+  refused("{\"colour\": 1}", 1);
+  refused("{\"camera\": {\n\"eye\": [0, 0, 1],\n\"target\": [0, 0, 1]}}", 3);
+  refused("{\"render\":\n{\"size\": \"0x0\"}}", 2);
+  folder_.write("scene.json", "{\"obj\": \"none.obj\"}");
+  expect_refused(render({"scene.json"}), "none\\.obj: [^\n]+");
 }
 
 /// Numbers so large that differences, products or the camera's distance leave float's range.

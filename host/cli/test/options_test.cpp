@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/scene/input_error.h"
+#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {
@@ -34,11 +35,11 @@ void expect_error(std::initializer_list<const char*> arguments, const std::strin
 }
 
 TEST(Options, OnlyASceneMeansTheDefaults) {
-  const Options options = parse({"scenes/cornell.obj"});
-  EXPECT_EQ(options.scene, "scenes/cornell.obj");
-  EXPECT_EQ(options.exr, "cornell.exr");  // in the current folder
-  EXPECT_EQ(options.png, "cornell.png");
-  EXPECT_FALSE(options.stats);
+  const Options options = parse({"d/cornell.obj"});
+  EXPECT_EQ(options.scene, "d/cornell.obj");
+  EXPECT_EQ(options.output.exr, "cornell.exr");  // in the current folder
+  EXPECT_EQ(options.output.png, "cornell.png");
+  EXPECT_FALSE(options.output.stats);
   EXPECT_EQ(options.width, 640);
   EXPECT_EQ(options.height, 480);
   EXPECT_EQ(options.window.x1, 640);
@@ -89,9 +90,9 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_EQ(options.seed, 18446744073709551615u);
   EXPECT_TRUE(options.skip_degenerate);
   EXPECT_TRUE(options.quiet);
-  EXPECT_EQ(options.stats, "run.json");
-  EXPECT_EQ(options.exr, "b.exr");
-  EXPECT_EQ(options.png, "b.png");
+  EXPECT_EQ(options.output.stats, "run.json");
+  EXPECT_EQ(options.output.exr, "b.exr");
+  EXPECT_EQ(options.output.png, "b.png");
 }
 
 TEST(Options, TheLastOfSeveralValuesCounts) {
@@ -99,14 +100,15 @@ TEST(Options, TheLastOfSeveralValuesCounts) {
 }
 
 TEST(Options, OutputNames) {
-  EXPECT_EQ(parse({"a.obj", "-o", "x.exr"}).exr, "x.exr");
-  EXPECT_FALSE(parse({"a.obj", "-o", "x.exr"}).png);
-  EXPECT_EQ(parse({"a.obj", "-o", "x.png"}).png, "x.png");
-  EXPECT_FALSE(parse({"a.obj", "-o", "x.png"}).exr);
-  EXPECT_EQ(parse({"d/my.scene.obj"}).exr, "my.scene.exr");
+  EXPECT_EQ(parse({"a.obj", "-o", "x.exr"}).output.exr, "x.exr");
+  EXPECT_FALSE(parse({"a.obj", "-o", "x.exr"}).output.png);
+  EXPECT_EQ(parse({"a.obj", "-o", "x.png"}).output.png, "x.png");
+  EXPECT_FALSE(parse({"a.obj", "-o", "x.png"}).output.exr);
+  EXPECT_EQ(parse({"d/my.scene.obj"}).output.exr, "my.scene.exr");
   const std::string folder = std::filesystem::temp_directory_path().string();
-  EXPECT_EQ(parse({"d/a.obj", "-o", folder.c_str()}).exr, std::filesystem::path(folder) / "a.exr");
-  EXPECT_EQ(parse({"d/a.obj", "-o", "missing/"}).png, "missing/a.png");
+  EXPECT_EQ(parse({"d/a.obj", "-o", folder.c_str()}).output.exr,
+            std::filesystem::path(folder) / "a.exr");
+  EXPECT_EQ(parse({"d/a.obj", "-o", "missing/"}).output.png, "missing/a.png");
   expect_error({"a.obj", "-o", "x.jpg"}, ".exr or .png");
   expect_error({"a.obj", "-o", ""}, "--output");
 }
@@ -153,6 +155,151 @@ TEST(Options, CamerasThatAreImpossible) {
   }
 }
 
+TEST(Options, ChannelsByName) {
+  EXPECT_FALSE(parse({"a.obj"}).output.channels.position);
+  const ExtraChannels some = parse({"a.obj", "--channels", "P,doubts"}).output.channels;
+  EXPECT_TRUE(some.position && some.doubts);
+  EXPECT_FALSE(some.albedo || some.object || some.tests);
+  const ExtraChannels others =
+      parse({"a.obj", "--channels", "tests,objectId,Albedo"}).output.channels;
+  EXPECT_TRUE(others.albedo && others.object && others.tests);
+  for (const char* names : {"p", "P,", ",P", "P tests", "Z", "P,,tests"}) {
+    expect_error({"a.obj", "--channels", names}, "--channels: expected some of P, Albedo, ");
+  }
+  expect_error({"a.obj", "--channels", "P", "-o", "a.png"}, "--channels: expected an EXR");
+}
+
+TEST(Options, WhatThePngShows) {
+  EXPECT_EQ(parse({"a.obj"}).output.display.exposure, 0.0);
+  EXPECT_EQ(parse({"a.obj", "--exposure", "-1.5"}).output.display.exposure, -1.5);
+  EXPECT_EQ(parse({"a.obj"}).output.display.tone, Tone::kClip);
+  EXPECT_EQ(parse({"a.obj", "--tone", "filmic"}).output.display.tone, Tone::kFilmic);
+  for (const char* stops : {"bright", "101", "nan", "inf", "1,5"}) {
+    expect_error({"a.obj", "--exposure", stops}, "--exposure: expected a number of stops");
+  }
+  expect_error({"a.obj", "--tone", "aces"}, "--tone: expected clip or filmic");
+}
+
+TEST(Options, FalseColours) {
+  const Options options = parse({"a.obj", "--false-colour", "tests=t.png", "--false-color",
+                                 "N.X:-1:1=x=y.png", "-o", "b.png"});
+  ASSERT_EQ(options.output.false_colors.size(), 2u);
+  EXPECT_EQ(options.output.false_colors[0].channel, "tests");
+  EXPECT_FALSE(options.output.false_colors[0].scale);
+  EXPECT_EQ(options.output.false_colors[0].path, "t.png");
+  EXPECT_EQ(options.output.false_colors[1].channel, "N.X");
+  ASSERT_TRUE(options.output.false_colors[1].scale);
+  EXPECT_EQ(options.output.false_colors[1].scale->low, -1.0);
+  EXPECT_EQ(options.output.false_colors[1].scale->high, 1.0);
+  EXPECT_EQ(options.output.false_colors[1].path, "x=y.png");
+  for (const char* text : {"tests", "tests=", "tests=t.exr", "tests=t"}) {
+    expect_error({"a.obj", "--false-colour", text}, "expected CHANNEL=FILE.png");
+  }
+  for (const char* text : {"=t.png", "N=t.png", "speed=t.png"}) {
+    expect_error({"a.obj", "--false-colour", text}, "expected one of the EXR's channels");
+  }
+  for (const char* text :
+       {"Z:=t.png", "Z:1=t.png", "Z:1:1=t.png", "Z:2:1=t.png", "Z:0:inf=t.png", "Z:0:1:2=t.png"}) {
+    expect_error({"a.obj", "--false-colour", text}, "with numbers LOW < HIGH");
+  }
+  expect_error({"a.obj", "--false-colour", "Z=a.png"}, "a.png: would overwrite a.png");
+}
+
+TEST(Options, LightByName) {
+  const LightOptions plain = parse({"a.obj"}).light;
+  EXPECT_EQ(plain.integrator, IntegratorKind::kWhitted);
+  EXPECT_EQ(plain.max_depth(), 4);
+  EXPECT_EQ(plain.samples, 1);
+  const LightOptions path =
+      parse({"a.obj", "--integrator", "path", "--spp", "16", "--filter", "tent", "--threshold",
+             "0.5", "--ambient", "0", "--no-skip", "culling,records"})
+          .light;
+  EXPECT_EQ(path.integrator, IntegratorKind::kPath);
+  EXPECT_EQ(path.max_depth(), 64);
+  EXPECT_EQ(path.samples, 16);
+  EXPECT_EQ(path.filter, PixelFilter::kTent);
+  EXPECT_EQ(path.threshold, 0.5);
+  EXPECT_EQ(path.ambient, 0.0);
+  EXPECT_FALSE(path.skips.culling || path.skips.records);
+  EXPECT_TRUE(path.skips.weightless && path.skips.divisions);
+  EXPECT_EQ(parse({"a.obj", "--depth", "0"}).light.max_depth(), 0);
+  const Skips none = parse({"a.obj", "--no-skip", "all"}).light.skips;
+  for (const SkipName& skip : kSkipNames) EXPECT_FALSE(none.*skip.on) << skip.name;
+  expect_error({"a.obj", "--integrator", "photon"}, "--integrator: expected primary, whitted or");
+  expect_error({"a.obj", "--spp", "0"}, "--spp: expected a whole number from 1");
+  expect_error({"a.obj", "--depth", "-1"}, "--depth: expected a whole number from 0");
+  expect_error({"a.obj", "--filter", "lanczos"}, "--filter: expected box, tent, gauss");
+  expect_error({"a.obj", "--threshold", "2"}, "--threshold: expected a number from 0 to 1");
+  expect_error({"a.obj", "--threshold", "nan"}, "--threshold: expected");
+  expect_error({"a.obj", "--ambient", "inf"}, "--ambient: expected a radiance");
+  expect_error({"a.obj", "--no-skip", "rays"}, "--no-skip: expected some of culling, records");
+}
+
+TEST(Options, Films) {
+  EXPECT_EQ(parse({"a.obj"}).output.frames, 0);
+  const OutputOptions output = parse({"a.obj", "--frames", "24", "-o", "f/x", "--stats", "s.json",
+                                      "--false-colour", "Z=z.png"})
+                                   .output;
+  EXPECT_EQ(output.frames, 24);
+  const OutputOptions seventh = output.numbered(7);
+  EXPECT_EQ(seventh.exr, "f/x-0007.exr");
+  EXPECT_EQ(seventh.png, "f/x-0007.png");
+  EXPECT_EQ(seventh.stats, "s-0007.json");
+  EXPECT_EQ(seventh.false_colors[0].path, "z-0007.png");
+  for (const char* frames : {"0", "-1", "10000", "1.5", "all"}) {
+    expect_error({"a.obj", "--frames", frames}, "--frames: expected a whole number from 1 to 9999");
+  }
+}
+
+/// A scene file in a folder of its own.
+class OptionsOfASceneFile : public testing::Test {
+ protected:
+  [[nodiscard]] std::string write(const char* name, std::string_view text) const {
+    return folder_.write(name, text).string();
+  }
+  const TempFolder folder_;
+};
+
+TEST_F(OptionsOfASceneFile, AreTakenWhereTheCommandLineHasNone) {
+  const std::string json = write("a.json", R"({
+      "camera": {"eye": [1, 2, 3], "target": [0, 0, 0],
+                 "path": [{"eye": [1, 2, 3], "target": [0, 0, 0]},
+                          {"eye": [4, 2, 3], "target": [0, 0, 0]}]},
+      "render": {"size": "20x10", "exposure": -1.5, "seed": 18446744073709551615}})");
+  const std::string obj = (folder_.path() / "a.obj").string();
+  for (const std::string& scene : {json, obj}) {
+    const Options options = parse({scene.c_str(), "--exposure", "2"});
+    EXPECT_EQ(options.obj(), obj);
+    EXPECT_EQ(options.width, 20);
+    EXPECT_EQ(options.window.y1, 10);
+    EXPECT_EQ(options.output.display.exposure, 2.0) << "the command line has the last word";
+    EXPECT_EQ(options.output.exr, "a.exr");
+    EXPECT_EQ(options.seed, 18446744073709551615u);
+    ASSERT_TRUE(options.camera);
+    EXPECT_EQ(options.camera->eye, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(options.path.size(), 2u);
+    const Options other = parse({scene.c_str(), "--camera", "0,0,9,0,0,0"});
+    EXPECT_EQ(other.camera->eye, glm::dvec3(0, 0, 9));
+    EXPECT_TRUE(other.path.empty()) << "the camera of the command line goes round its target";
+  }
+  EXPECT_EQ(parse({obj.c_str(), "--no-scene-file"}).width, 640);
+  expect_error({json.c_str(), "--no-scene-file"}, "--no-scene-file: expected an OBJ");
+  expect_error({obj.c_str(), "--stats", json.c_str()}, "would overwrite");
+}
+
+TEST_F(OptionsOfASceneFile, AreRefusedWithTheirPlace) {
+  const std::string json = write("a.json", "{\"render\": {\n\"size\": \"big\"}}");
+  expect_error({json.c_str()}, json + ":2: --size: expected WIDTHxHEIGHT");
+  const std::string other = write("b.json", R"({"obj": "c.obj"})");
+  expect_error({(folder_.path() / "b.obj").c_str()}, "b.json: is about ");
+  EXPECT_EQ(parse({other.c_str()}).obj(), folder_.path() / "c.obj");
+  expect_error({"missing.json"}, "missing.json: cannot read");
+}
+
+TEST_F(OptionsOfASceneFile, MayNotBeOverwrittenBeforeItIsThere) {
+  expect_error({"a.obj", "--stats", "a.json"}, "a.json: would overwrite a.json");
+}
+
 TEST(Options, OtherValuesThatAreImpossible) {
   expect_error({"a.obj", "--engine", "gpu"}, "--engine: expected rtl, cpu or check");
   expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline or serial");
@@ -174,7 +321,7 @@ TEST(Options, OtherValuesThatAreImpossible) {
 
 TEST(Options, UnknownOptionsAreAnsweredWithTheKnownOnes) {
   for (const char* unknown : {"--foo", "-x", "--siz", "--size2=5"}) {
-    expect_error({"a.obj", unknown}, "unknown option; the options are -o/--output, --size, ");
+    expect_error({"a.obj", unknown}, "unknown option; the options are --size, --crop, ");
     expect_error({"a.obj", unknown}, "--version");
   }
   expect_error({"a.obj", "b.obj"}, "b.obj: a second scene");
@@ -183,10 +330,10 @@ TEST(Options, UnknownOptionsAreAnsweredWithTheKnownOnes) {
 
 TEST(Options, HelpNamesEveryOptionAndStatus) {
   const std::string help = parse({"--help"}).information;
-  for (const char* word :
-       {"--output", "--size", "--crop", "--camera", "--engine", "--unit", "--lanes", "--threads",
-        "--seed", "--skip-degenerate", "--stats", "--quiet", "--help", "--version", "rtl|cpu|check",
-        "  0  ", "  1  ", "  2  ", "  130  "}) {
+  for (const char* word : {"--output",          "--size",  "--crop",  "--camera",  "--channels",
+                           "--engine",          "--unit",  "--lanes", "--threads", "--seed",
+                           "--skip-degenerate", "--stats", "--quiet", "--help",    "--version",
+                           "rtl|cpu|check",     "  0  ",   "  1  ",   "  2  ",     "  130  "}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(parse({"-h"}).information, help);

@@ -5,47 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "host/hit/test/meshes.h"
+#include "host/hit/test/rational_oracle.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
 
+using test::cross;
+using test::dot;
+using test::minus;
 using test::Random;
-using Rational3 = std::array<mpq_class, 3>;
-
-Rational3 rational(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-Rational3 minus(const Rational3& a, const Rational3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Rational3 cross(const Rational3& a, const Rational3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-mpq_class dot(const Rational3& a, const Rational3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// The definitions of exact.h, spelt out in rationals and sharing nothing with exact.cpp.
-struct Oracle {
-  Rational3 direction, v[3];
-
-  Oracle(const Ray& ray, const Corners& t) : direction(rational(ray.direction)) {
-    for (int k = 0; k < 3; ++k) v[k] = minus(rational(t[k]), rational(ray.origin));
-  }
-  [[nodiscard]] int side(int k) const {
-    const Rational3 normal = cross(v[k], v[(k + 1) % 3]);
-    int result = sgn(dot(direction, normal));
-    for (int i = 0; i < 3 && result == 0; ++i) result = sgn(normal[i]);
-    return result;
-  }
-  [[nodiscard]] mpq_class plane() const { return dot(v[0], cross(v[1], v[2])); }
-  [[nodiscard]] mpq_class t() const {
-    return plane() / dot(direction, cross(minus(v[1], v[0]), minus(v[2], v[0])));
-  }
-  [[nodiscard]] bool hit() const {
-    const int d = sgn(plane());
-    return d != 0 && side(0) == d && side(1) == d && side(2) == d;
-  }
-};
+using test::rational;
+using test::Rational3;
+using Oracle = test::RationalOracle;
 
 struct Case {
   Ray ray;
@@ -86,6 +58,16 @@ Case hard_case(Random& random) {
   return {{origin, scaled_direction(direction)}, t};
 }
 
+/// `rounded` is off by half the distance of floats around `exact` and 2^-10 of that at most.
+void expect_near_half_an_ulp(float rounded, const mpq_class& exact) {
+  if (!std::isfinite(rounded)) {
+    EXPECT_GT(abs(exact), 0x1.fffffep127);
+    return;
+  }
+  const int exponent = rounded == 0.0f ? -126 : std::max(std::ilogb(rounded), -126);
+  EXPECT_LE(abs(rounded - exact), std::ldexp(0.5 + 0x1p-11, exponent - 23)) << rounded;
+}
+
 TEST(Exact, AgreesWithRationals) {
   Random random;
   int hits = 0, ties = 0;
@@ -104,8 +86,12 @@ TEST(Exact, AgreesWithRationals) {
     const mpq_class exact = oracle.t();
     ASSERT_GT(exact, 0);
     ASSERT_LE(mpq_class(interval.low), exact);
-    if (std::isfinite(interval.high)) {
-      ASSERT_GE(mpq_class(interval.high), exact);
+    ASSERT_GE(mpq_class(interval.high), exact);
+    ASSERT_LE(interval.high, interval.low * (1.0 + 0x1p-34));
+    const PreciseHit precise = precise_hit(ray, t);
+    expect_near_half_an_ulp(precise.t, exact);
+    for (int k = 0; k < 3; ++k) {
+      expect_near_half_an_ulp(precise.point[k], exact * oracle.direction[k]);
     }
   }
   EXPECT_GT(hits, 1000);

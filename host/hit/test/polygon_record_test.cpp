@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/hit/exact_vector.h"
+#include "host/exact/exact_vector.h"
 #include "host/hit/test/meshes.h"
 #include "host/scene/camera.h"
 

@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <glm/gtc/matrix_transform.hpp>
+#include <set>
 
 #include "host/image/test/exr_reader.h"
 #include "host/image/test/sample_film.h"
@@ -46,6 +47,39 @@ void expect_all_channels_kept(const Film& film) {
 TEST(Exr, KeepsEveryBitOfEveryChannel) {
   expect_all_channels_kept(make_sample_film(67, 41, {0, 0, 67, 41}));
   expect_all_channels_kept(make_sample_film(1, 1, {0, 0, 1, 1}));
+}
+
+std::set<std::string> channel_names(const Film& film) {
+  const ExrReader reader(encode_exr(film, {}));
+  std::set<std::string> names;
+  const Imf::ChannelList& channels = reader.header().channels();
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    names.insert(channel.name());
+  }
+  return names;
+}
+
+TEST(Exr, ChannelsOnDemandAreThereWhereTheFilmHasThem) {
+  std::set<std::string> names{"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "id"};
+  EXPECT_EQ(channel_names(make_sample_film(5, 4, {0, 0, 5, 4})), names);
+  const Film film = make_sample_film(40, 30, {3, 7, 40, 30}, true);
+  names.insert(
+      {"P.X", "P.Y", "P.Z", "Albedo.R", "Albedo.G", "Albedo.B", "objectId", "tests", "doubts"});
+  EXPECT_EQ(channel_names(film), names);
+  expect_all_channels_kept(film);
+  ExrReader reader(encode_exr(film, {}));
+  for (int k = 0; k < 3; ++k) {
+    const std::string position = std::string("P.") + "XYZ"[k];
+    const std::string albedo = std::string("Albedo.") + "RGB"[k];
+    SCOPED_TRACE(k);
+    expect_same_bits(reader.read<float>(position.c_str(), Imf::FLOAT), film.position.size(),
+                     [&](std::size_t i) { return film.position[i][k]; });
+    expect_same_bits(reader.read<float>(albedo.c_str(), Imf::FLOAT), film.albedo.size(),
+                     [&](std::size_t i) { return film.albedo[i][k]; });
+  }
+  EXPECT_EQ(reader.read<std::uint32_t>("objectId", Imf::UINT), film.object);
+  EXPECT_EQ(reader.read<std::uint32_t>("tests", Imf::UINT), film.tests);
+  EXPECT_EQ(reader.read<std::uint32_t>("doubts", Imf::UINT), film.doubts);
 }
 
 TEST(Exr, CropIsTheDataWindow) {

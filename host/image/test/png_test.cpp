@@ -4,9 +4,6 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "host/image/srgb.h"
-#include "host/image/test/sample_film.h"
-
 namespace raygate {
 namespace {
 
@@ -38,43 +35,61 @@ std::string chunk(const std::string& bytes, const std::string& type) {
   return "(none)";
 }
 
-void expect_all_codes_kept(const Film& film) {
-  const Decoded decoded = decode(encode_png(film));
-  ASSERT_EQ(decoded.image.width, static_cast<unsigned>(film.window.width()));
-  ASSERT_EQ(decoded.image.height, static_cast<unsigned>(film.window.height()));
-  for (std::size_t i = 0; i < film.color.size(); ++i) {
+/// A picture whose every pixel is another one.
+Picture8 sample(int width, int height, PixelRect window) {
+  Picture8 picture{width, height, window, {}, {}};
+  for (int i = 0; i < window.width() * window.height(); ++i) {
+    const auto code = [&](int factor) { return static_cast<std::uint8_t>(i * factor); };
+    picture.pixels.push_back({code(1), code(7), code(i)});
+  }
+  return picture;
+}
+
+void expect_all_codes_kept(const Picture8& picture) {
+  const Decoded decoded = decode(encode_png(picture));
+  ASSERT_EQ(decoded.image.width, static_cast<unsigned>(picture.window.width()));
+  ASSERT_EQ(decoded.image.height, static_cast<unsigned>(picture.window.height()));
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      ASSERT_EQ(decoded.pixels[3 * i + k], linear_to_srgb(film.color[i][static_cast<int>(k)]))
+      ASSERT_EQ(decoded.pixels[3 * i + k], picture.pixels[i][k])
           << "pixel " << i << " channel " << k;
     }
   }
 }
 
-TEST(Png, HoldsTheSrgbCodesOfTheFilm) {
-  expect_all_codes_kept(make_sample_film(67, 41, {0, 0, 67, 41}));
-  expect_all_codes_kept(make_sample_film(1, 1, {0, 0, 1, 1}));
+TEST(Png, KeepsEveryCode) {
+  expect_all_codes_kept(sample(67, 41, {0, 0, 67, 41}));
+  expect_all_codes_kept(sample(1, 1, {0, 0, 1, 1}));
 }
 
 TEST(Png, SaysThatItIsSrgb) {
-  const std::string bytes = encode_png(make_sample_film(3, 3, {0, 0, 3, 3}));
+  const std::string bytes = encode_png(sample(3, 3, {0, 0, 3, 3}));
   EXPECT_EQ(chunk(bytes, "sRGB"), std::string(1, '\0'));            // intent: perceptual
   EXPECT_EQ(chunk(bytes, "gAMA"), std::string("\0\0\xb1\x8f", 4));  // 0.45455 for older readers
   EXPECT_EQ(chunk(bytes, "oFFs"), "(none)");
   EXPECT_EQ(chunk(bytes, "tIME"), "(none)");
+  EXPECT_EQ(chunk(bytes, "tEXt"), "(none)");
 }
 
 TEST(Png, CropHoldsTheWindowAndItsPlace) {
-  const Film film = make_sample_film(640, 480, {300, 258, 333, 298});
-  expect_all_codes_kept(film);
-  EXPECT_EQ(chunk(encode_png(film), "oFFs"), std::string("\0\0\1\x2c\0\0\1\2\0", 9));
+  const Picture8 picture = sample(640, 480, {300, 258, 333, 298});
+  expect_all_codes_kept(picture);
+  EXPECT_EQ(chunk(encode_png(picture), "oFFs"), std::string("\0\0\1\x2c\0\0\1\2\0", 9));
 }
 
-TEST(Png, EqualFilmsGiveEqualBytes) {
-  Film film = make_sample_film(50, 40, {0, 0, 50, 40});
-  const std::string first = encode_png(film);
-  EXPECT_EQ(first, encode_png(Film(film)));
-  film.color[9].g = 0.9f;
-  EXPECT_NE(first, encode_png(film));
+TEST(Png, SaysItsTexts) {
+  Picture8 picture = sample(3, 3, {0, 0, 3, 3});
+  picture.texts.emplace_back("Scale", "tests: 0 to 9");
+  EXPECT_EQ(chunk(encode_png(picture), "tEXt"), std::string("Scale\0tests: 0 to 9", 19));
+  expect_all_codes_kept(picture);
+}
+
+TEST(Png, EqualPicturesGiveEqualBytes) {
+  Picture8 picture = sample(50, 40, {0, 0, 50, 40});
+  const std::string first = encode_png(picture);
+  EXPECT_EQ(first, encode_png(Picture8(picture)));
+  ++picture.pixels[9][1];
+  EXPECT_NE(first, encode_png(picture));
 }
 
 }  // namespace

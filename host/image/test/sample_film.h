@@ -7,8 +7,9 @@
 
 namespace raygate {
 
-/// Window [x0, x1) x [y0, y1) of a `width` x `height` frame; the first pixel is a miss.
-inline Film make_sample_film(int width, int height, PixelRect window) {
+/// Window [x0, x1) x [y0, y1) of a `width` x `height` frame; the first pixel is a miss. Channels on
+/// demand only with `all_channels`.
+inline Film make_sample_film(int width, int height, PixelRect window, bool all_channels = false) {
   Film film;
   film.width = width;
   film.height = height;
@@ -25,6 +26,16 @@ inline Film make_sample_film(int width, int height, PixelRect window) {
   film.depth[0] = std::numeric_limits<float>::infinity();
   film.normal[0] = glm::vec3(0.0f);
   film.primitive[0] = kNoPrimitive;
+  if (all_channels) {
+    for (int i = 0; i < count; ++i) {
+      const float value = static_cast<float>(i);
+      film.position.emplace_back(value, -value, value * 1e10f);
+      film.albedo.emplace_back(0.5f, value, 1.0f / (value + 1.0f));
+      film.object.push_back(static_cast<std::uint32_t>(i) * 33554467u);
+      film.tests.push_back(static_cast<std::uint32_t>(i) * 7u);
+      film.doubts.push_back(static_cast<std::uint32_t>(i) % 3u);
+    }
+  }
   return film;
 }
 

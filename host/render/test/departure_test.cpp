@@ -133,6 +133,33 @@ TEST(Departure, NoBounceLeavesASharpCorner) {
   }
 }
 
+// Onto the edges of a ball from outside, so flat that one neighbour's plane is no float away from
+// the other: no ray ends there, and both points are on their sides of the surface.
+TEST(Departure, NoRayEndsOnARidge) {
+  Random random;
+  const std::vector<Corners> mesh = test::sphere(4);
+  const Bvh bvh(test::scene_of(mesh));
+  DeparturePoint departure(bvh);
+  int hits = 0;
+  for (int i = 0; i < 600; ++i) {
+    const glm::vec3 eye = 3.0f * glm::normalize(random.point() + 1e-3f);
+    const Corners& target = mesh[random.below(static_cast<int>(mesh.size()))];
+    const glm::dvec3 aim =
+        glm::mix(glm::dvec3(target[0]), glm::dvec3(target[1]), random.uniform(0, 1)) +
+        glm::dvec3(random.point(std::exp(random.uniform(-18, -13)))) - glm::dvec3(eye);
+    const Ray ray = {eye, scaled_direction(aim)};
+    const auto slot = nearest(bvh, ray);
+    if (!slot) continue;
+    ++hits;
+    const auto before = departure.find(ray, *slot, Departure::kBefore);
+    const auto after = departure.find(ray, *slot, Departure::kAfter);
+    ASSERT_TRUE(before && after) << i;
+    ASSERT_FALSE(inside(bvh, *before)) << i;
+    ASSERT_TRUE(inside(bvh, *after)) << i;
+  }
+  EXPECT_GT(hits, 500);
+}
+
 // Away from other triangles the distance is what departure.h says, whatever the angle.
 TEST(Departure, StaysWithinTheBoundOnBothSides) {
   Random random;

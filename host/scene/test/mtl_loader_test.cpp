@@ -6,10 +6,12 @@
 #include "host/scene/input_error.h"
 #include "host/scene/obj_loader.h"
 #include "host/scene/test/temp_folder.h"
+#include "host/scene/test/tga.h"
 
 namespace raygate {
 namespace {
 
+const std::string kPicture = test::tga(1, 1, {{1, 2, 3}});
 constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 class LoadMtl : public testing::Test {
@@ -46,6 +48,7 @@ class LoadMtl : public testing::Test {
 };
 
 TEST_F(LoadMtl, EveryField) {
+  folder_.write("wood grain.png", kPicture);
   const Material m = material(
       "newmtl a\nKa 1 1 1\nKd 0.1 0.2 0.3\nKs .4 .5 .6\nKe 7 8 9\nTf 0.7 0.8 0.9\nNs 96.5\nNi "
       "1.45\n"
@@ -87,18 +90,25 @@ TEST_F(LoadMtl, TransparencyIsTheOppositeOfOpacity) {
 }
 
 TEST_F(LoadMtl, ATextureWithoutKdStandsAsItIs) {
+  folder_.write("t.png", kPicture);
   EXPECT_EQ(material("newmtl a\nmap_Kd t.png\n").diffuse, glm::vec3(1));
   EXPECT_EQ(material("newmtl a\nmap_Kd t.png\nKd 0.5 0.5 0.5\n").diffuse, glm::vec3(0.5f));
   EXPECT_EQ(material("newmtl a\nKd 0.5 0.5 0.5\nmap_Kd t.png\n").diffuse, glm::vec3(0.5f));
 }
 
 TEST_F(LoadMtl, TextureOptionsAreNotTheFile) {
-  for (const char* options :
-       {"-s 2 2", "-o 1", "-t 1 2 3", "-clamp on -bm 2 -mm 0 1", "-imfchan r"}) {
+  folder_.write("3d model.png", kPicture);
+  folder_.write("-minus.png", kPicture);
+  for (const char* options : {"-t 1 2 3", "-clamp on -bm 2 -mm 0 1", "-imfchan r"}) {
     const Scene scene = load(std::string("newmtl a\nmap_Kd ") + options + " 3d model.png\n");
     EXPECT_EQ(scene.materials[0].diffuse_map, (folder_.path() / "3d model.png").string());
     EXPECT_EQ(scene.warnings.size(), 1u);
   }
+  const Material m = material("newmtl a\nmap_Kd -s 2 -clamp on -o 0.5 0.25 3d model.png\n");
+  EXPECT_EQ(m.diffuse_map, (folder_.path() / "3d model.png").string());
+  EXPECT_EQ(m.diffuse_mapping.scale, glm::vec2(2, 1));
+  EXPECT_EQ(m.diffuse_mapping.offset, glm::vec2(0.5f, 0.25f));
+  EXPECT_TRUE(m.diffuse_mapping.clamp);
   EXPECT_EQ(material("newmtl a\nmap_Kd -minus.png\n").diffuse_map,
             (folder_.path() / "-minus.png").string());
 }
@@ -117,6 +127,7 @@ TEST_F(LoadMtl, NamesMayHoldSpaces) {
 
 TEST_F(LoadMtl, SeveralFilesAndFolders) {
   folder_.write("1.mtl", "newmtl a\nKd 1 0 0\n");
+  folder_.write("sub/t.png", kPicture);
   folder_.write("sub/2.mtl", "newmtl b\nKd 0 1 0\nmap_Kd t.png\n");
   folder_.write("3.mtl", "newmtl c\nKd 0 0 1\n");
   const Scene scene = load_obj_text(
@@ -153,6 +164,8 @@ TEST_F(LoadMtl, Warnings) {
   EXPECT_EQ(warning("newmtl a\nKd spectral red.rfl\n"),
             "m.mtl:2: Kd spectral is not supported, ignored");
   EXPECT_EQ(warning("newmtl a\nd -halo 0.5\n"), "m.mtl:2: d -halo is not supported, taken as d");
+  EXPECT_EQ(warning("newmtl a\nmap_Kd none.png\n"),
+            "none.png: the texture is missing, its material is plain instead");
   EXPECT_EQ(warning("newmtl a\nmap_Kd\n"), "m.mtl:2: map_Kd without a file, ignored");
   EXPECT_EQ(warning("newmtl a\nKd 1 0 0\nnewmtl b\nnewmtl a\nKd 0 1 0\n"),
             "m.mtl:4: material 'a' was defined before, which stands");
@@ -192,6 +205,9 @@ TEST_F(LoadMtl, Errors) {
   EXPECT_EQ(error("newmtl a\nillum 1.5\n"),
             "m.mtl:2: illum: '1.5', expected a whole number from 0 to 10");
   EXPECT_EQ(error("newmtl a\nd\n"), "m.mtl:2: d: expected one number");
+  EXPECT_EQ(error("newmtl a\nmap_Kd -s wide t.png\n"),
+            "m.mtl:2: map_Kd -s: 'wide', expected a number");
+  EXPECT_EQ(error("newmtl a\nmap_Kd -o\n"), "m.mtl:2: map_Kd -o: '', expected a number");
   EXPECT_EQ(error("newmtl a\nd 0.5 0.5\n"), "m.mtl:2: d: expected one number");
   EXPECT_EQ(error("Kd 1 0 0\n"), "m.mtl:1: 'Kd' before the first newmtl");
   EXPECT_EQ(error("newmtl\nKd x 0 0\n"), "m.mtl:2: Kd: 'x', expected a number");

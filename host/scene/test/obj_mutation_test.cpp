@@ -8,6 +8,7 @@
 #include "host/scene/input_error.h"
 #include "host/scene/obj_loader.h"
 #include "host/scene/test/temp_folder.h"
+#include "host/scene/test/tga.h"
 
 namespace raygate {
 namespace {
@@ -141,6 +142,7 @@ TEST(DamagedObj, LoadsSoundlyOrIsRefused) {
   const std::uint64_t seed = 20240521;
   RecordProperty("seed", std::to_string(seed));
   Mutator mutator(seed);
+  folder.write("a b.png", test::tga(1, 1, {{9, 9, 9}}));
   int loaded = 0, refused = 0;
   for (int round = 0; round < 20000; ++round) {
     std::string obj(kObj), mtl(kMtl);

@@ -1,11 +1,14 @@
 // The scenes of scenes/: they load without a warning and are what they claim to be.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "host/scene/camera.h"
 #include "host/scene/obj_loader.h"
+#include "host/scene/scene_file.h"
 
 namespace raygate {
 namespace {
@@ -74,6 +77,29 @@ TEST(StoredScenes, SphereIsClosed) {
   for (const glm::vec3& position : scene.positions) {
     EXPECT_NEAR(glm::length(position), 1.0f, 1e-6f);
   }
+}
+
+TEST(StoredScenes, SceneFilesAndTheirObjsGoTogether) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(RAYGATE_SCENES)) {
+    if (entry.path().extension() != ".json") continue;
+    SCOPED_TRACE(entry.path());
+    SceneFile file = read_scene_file(entry.path());
+    // Scenes that are made are in this build's folder.
+    if (file.obj.parent_path() != entry.path().parent_path()) {
+      file.obj = RAYGATE_MADE_SCENES / file.obj.filename();
+    }
+    Scene scene = load_obj(file.obj);
+    add_lights(file, scene);
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    EXPECT_TRUE(file.camera);
+    const bool shines = std::ranges::any_of(scene.materials, [](const Material& material) {
+      return material.emission != glm::vec3(0.0f);
+    });
+    EXPECT_TRUE(shines || !scene.lights.empty());
+    ++count;
+  }
+  EXPECT_GE(count, 6);
 }
 
 TEST(StoredScenes, SphereflakeIsLarge) {

@@ -1,0 +1,100 @@
+// A bundle of rays of one origin against the eight boxes of a node, as if it were one ray; and
+// eight bundles against one box.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "host/accel/wide_bvh.h"
+#include "host/lanes.h"
+
+// Why no true hit is culled
+//
+// packet_traversal.cpp has it for one ray, whose entry into a box is the largest of 0 and
+// float32((near - O) * inverse_near) of each axis, and whose exit the smallest of its cutoff and
+// float32((far - O) * inverse_far). Both inverses have the sign of the direction's component, and
+// never grow when its magnitude does: rounding keeps order. So a beam that takes inverse_near for
+// a magnitude no smaller than any of its rays', and inverse_far for one no larger, enters
+//   * where near - O has the sign of I: no later than any of them;
+//   * else: at 0 or before, as they do;
+// and leaves, where far - O has the sign of I, no earlier than any of them (else none of them hits
+// anything in the box). Its cutoff is no nearer than any of theirs.
+
+namespace raygate {
+
+/// For boxes as for single rays: direction components below are as good as 0, and exits grow.
+inline constexpr float kSmallestComponent = 0x1p-100f;
+inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
+
+/// Rays from one origin into one octant.
+struct Beam {
+  float origin[3];
+  float inverse_near[3], inverse_far[3];
+  int octant;  ///< see octant_of
+};
+
+/// Sets bit i of the result where the beam meets the box of child i before `cutoff` (see
+/// PacketTraversal::set_cutoff), and entry[i] to where it enters it.
+RAYGATE_INLINE LaneMask meet_children(const Beam& beam, const WideBvh::Node& node, float cutoff,
+                                      FloatLanes& entry) {
+  FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
+  for (int k = 0; k < 3; ++k) {
+    const int negative = beam.octant >> k & 1;
+    FloatLanes near, far;
+    load_lanes(node.bounds[negative][k], near);
+    load_lanes(node.bounds[negative ^ 1][k], far);
+    const FloatLanes t_near = (near - beam.origin[k]) * beam.inverse_near[k];
+    const FloatLanes t_far = (far - beam.origin[k]) * beam.inverse_far[k];
+    enter = t_near > enter ? t_near : enter;
+    leave = t_far < leave ? t_far : leave;
+  }
+  entry = enter;
+  return sign_mask(enter <= leave);
+}
+
+/// Eight beams of one origin and octant; an absent one has a negative cutoff.
+struct Beams {
+  FloatLanes inverse_near[3], inverse_far[3];
+  FloatLanes cutoff;
+
+  /// From magnitudes of direction components: no smaller and no larger than any of the rays'.
+  RAYGATE_INLINE void set(int axis, int octant, const FloatLanes& smallest,
+                          const FloatLanes& largest) {
+    const float sign = (octant >> axis & 1) != 0 ? -1.0f : 1.0f;
+    const FloatLanes least = FloatLanes{} + kSmallestComponent;
+    inverse_near[axis] = sign / (largest > least ? largest : least);
+    inverse_far[axis] = smallest < least
+                            ? FloatLanes{} + sign * std::numeric_limits<float>::infinity()
+                            : kExitGrowth * (sign / smallest);
+  }
+};
+
+/// One of the eight, in a form for meet_children.
+RAYGATE_INLINE Beam one_of(const Beams& beams, int which, const Beam& like) {
+  Beam beam = like;
+  for (int k = 0; k < 3; ++k) {
+    beam.inverse_near[k] = beams.inverse_near[k][which];
+    beam.inverse_far[k] = beams.inverse_far[k][which];
+  }
+  return beam;
+}
+
+/// The beams that meet the box of a node's child.
+RAYGATE_INLINE LaneMask meet_beams(const Beams& beams, const glm::vec3& origin, int octant,
+                                   const WideBvh::Node& node, int child) {
+  FloatLanes enter = {}, leave = beams.cutoff;
+  for (int k = 0; k < 3; ++k) {
+    const int negative = octant >> k & 1;
+    const float near = node.bounds[negative][k][child] - origin[k];
+    const float far = node.bounds[negative ^ 1][k][child] - origin[k];
+    const FloatLanes t_near = near * beams.inverse_near[k];
+    const FloatLanes t_far = far * beams.inverse_far[k];
+    enter = t_near > enter ? t_near : enter;
+    leave = t_far < leave ? t_far : leave;
+  }
+  return sign_mask(enter <= leave);
+}
+
+}  // namespace raygate

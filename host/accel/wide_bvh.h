@@ -1,0 +1,45 @@
+// The tree of boxes once more, with eight children to a node: for one beam against eight boxes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/accel/bvh.h"
+
+namespace raygate {
+
+/// A Bvh whose nodes have taken in the children of their largest children, until there are eight.
+/// Slots and boxes are those of the binary tree, which must outlive this one's making only.
+/// Memory: 256 bytes a node; a node for each three or four inner nodes of the binary tree.
+class WideBvh {
+ public:
+  static constexpr int kWidth = 8;
+  /// Two sibling leaves that are no larger together are one leaf here.
+  static constexpr std::uint32_t kMaxLeafSize = 4;
+  /// What a traversal's stack must hold: each level leaves at most seven children waiting.
+  static constexpr int kStackSize = (kWidth - 1) * Bvh::kMaxDepth + kWidth;
+
+  struct Child {
+    std::uint32_t first;  ///< inner: index of the node; leaf: the slots first .. first + count
+    std::uint32_t count;  ///< 0: an inner node
+  };
+
+  /// Absent children have empty boxes, low = +infinity and high = -infinity.
+  struct alignas(64) Node {
+    float bounds[2][3][kWidth];  ///< [low = 0, high = 1][axis][child]
+    Child child[kWidth];
+  };
+
+  /// The root is nodes()[0].
+  explicit WideBvh(const Bvh& bvh);
+
+  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+
+ private:
+  void fill(std::uint32_t index, const Bvh& bvh, const Bvh::Node& from);
+
+  std::vector<Node> nodes_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,1 @@
+"""`make bench`: run time against error, from the adder to the picture."""

@@ -1,0 +1,38 @@
+#include "host/cli/outputs.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "host/image/channels.h"
+#include "host/image/display.h"
+#include "host/image/false_color.h"
+#include "host/image/png.h"
+
+namespace raygate {
+
+ReadyPictures make_ready(const OutputOptions& options, const Film& film,
+                         const ExrMetadata& metadata) {
+  ReadyPictures ready;
+  const auto add = [&](const std::filesystem::path& path, const std::string& bytes) {
+    ready.files.emplace_back(path, bytes);
+    ready.paths.push_back(path);
+  };
+  if (options.exr) add(*options.exr, encode_exr(film, metadata));
+  const auto add_png = [&](const std::filesystem::path& path, Picture8 picture) {
+    if (metadata.partial) picture.texts.emplace_back("Comment", kPartial);
+    add(path, encode_png(picture));
+  };
+  if (options.png) add_png(*options.png, to_display(film, options.display));
+  const std::vector<Channel> channels = channels_of(film);
+  for (const FalseColorOutput& output : options.false_colors) {
+    const auto channel = std::ranges::find(channels, output.channel, &Channel::name);
+    assert(channel != channels.end());
+    const Picture8 picture =
+        false_color(film.width, film.height, film.window, *channel, output.scale);
+    add_png(output.path, picture);
+    ready.legends.push_back(picture.texts.at(0).second);
+  }
+  return ready;
+}
+
+}  // namespace raygate

@@ -1,0 +1,27 @@
+// The files of a picture.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/cli/output_options.h"
+#include "host/image/exr.h"
+#include "host/image/pending_file.h"
+#include "host/render/film.h"
+
+namespace raygate {
+
+/// The pictures of one film, written and not yet named.
+struct ReadyPictures {
+  std::vector<PendingFile> files;
+  std::vector<std::filesystem::path> paths;
+  std::vector<std::string> legends;  ///< of the false-colour pictures
+};
+
+/// Encodes and writes; all or nothing. A picture of which only a part was rendered says so in its
+/// metadata (see ExrMetadata::partial). Throws InputError as PendingFile does.
+[[nodiscard]] ReadyPictures make_ready(const OutputOptions& options, const Film& film,
+                                       const ExrMetadata& metadata);
+
+}  // namespace raygate

@@ -1,0 +1,94 @@
+// The program `compare` as its users run it: exit status, what it prints, the difference picture.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "host/cli/test/program.h"
+#include "host/image/exr.h"
+#include "host/image/test/sample_film.h"
+
+namespace raygate {
+namespace {
+
+using nlohmann::json;
+
+class ComparePictures : public testing::Test {
+ protected:
+  void SetUp() override {
+    Film film = make_sample_film(40, 30, {0, 0, 40, 30});
+    folder_.write("a.exr", encode_exr(film, {}));
+    film.color[77].g += 0.25f;
+    folder_.write("b.exr", encode_exr(film, {}));
+    folder_.write("crop.exr", encode_exr(make_sample_film(40, 30, {3, 4, 9, 9}), {}));
+    folder_.write("small.exr", encode_exr(make_sample_film(20, 30, {0, 0, 20, 30}), {}));
+    folder_.write("text.exr", "no picture");
+  }
+  [[nodiscard]] Outcome compare(std::vector<std::string> arguments) const {
+    return run_program({.arguments = std::move(arguments), .folder = folder_.path()});
+  }
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& line) const {
+    const Outcome outcome = compare(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.err.substr(0, 7 + line.size()), "error: " + line);
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(ComparePictures, SaysHowFarTheyAre) {
+  const Outcome outcome = compare({"a.exr", "b.exr", "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const json measures = json::parse(outcome.out);
+  EXPECT_EQ(measures.at("pixels"), 1200);
+  EXPECT_EQ(measures.at("differing"), 1);
+  EXPECT_EQ(measures.at("max"), 0.25);
+  EXPECT_DOUBLE_EQ(measures.at("mse").get<double>(), 0.0625 / 3600);
+  EXPECT_LT(measures.at("ssim"), 1.0);
+  const Outcome text = compare({"a.exr", "b.exr"});
+  EXPECT_NE(text.out.find("\nmax           0.25\n"), std::string::npos) << text.out;
+  const Outcome same = compare({"a.exr", "a.exr"});
+  EXPECT_NE(same.out.find("psnr          inf\nssim          1\ndiffering     0\n"),
+            std::string::npos)
+      << same.out;
+}
+
+TEST_F(ComparePictures, ThresholdsDecideTheStatus) {
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--threshold", "max=0.25"}).status, 0);
+  const Outcome exceeded =
+      compare({"a.exr", "b.exr", "--threshold", "max=0.2", "--threshold", "mse=1"});
+  EXPECT_EQ(exceeded.status, 1);
+  EXPECT_EQ(exceeded.err, "threshold max=0.2 is exceeded\n");
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--threshold", "psnr=40"}).status, 0);
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--threshold", "psnr=60"}).status, 1);
+  EXPECT_EQ(compare({"a.exr", "a.exr", "--threshold", "differing=0"}).status, 0);
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--channels", "Z,id", "--threshold", "max=0"}).status, 0);
+}
+
+TEST_F(ComparePictures, DifferenceAsAPicture) {
+  const Outcome outcome = compare({"a.exr", "b.exr", "--difference", "d.png"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("difference: 0 (dark violet) to 0.25 (yellow)"), std::string::npos);
+  EXPECT_EQ(folder_.read("d.png").substr(0, 4), "\x89PNG");
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--difference", "d.png", "--scale", "1"}).status, 0);
+}
+
+TEST_F(ComparePictures, WhatCannotBeComparedIsRefused) {
+  expect_refused({"a.exr", "small.exr"}, "the pictures differ in size: 40x30 and 20x30");
+  expect_refused({"a.exr", "none.exr"}, "none.exr: cannot read: ");
+  expect_refused({"text.exr", "a.exr"}, "text.exr: not an OpenEXR file");
+  expect_refused({"a.exr", "b.exr", "--channels", "P.X"}, "a.exr: no channel P.X; ");
+  expect_refused({"a.exr", "b.exr", "--channels", "R,,G"}, "--channels: expected ");
+  expect_refused({"a.exr", "b.exr", "--threshold", "beauty=1"}, "--threshold: expected ");
+  expect_refused({"a.exr", "b.exr", "--threshold", "mse"}, "--threshold: expected ");
+  expect_refused({"a.exr", "crop.exr", "--threshold", "ssim=1"}, "--threshold: ssim needs ");
+  expect_refused({"a.exr", "b.exr", "--scale", "-1"}, "--scale: ");
+  expect_refused({"a.exr", "b.exr", "--difference", "none/d.png"}, "none/d.png: cannot write: ");
+  expect_refused({"a.exr", "b.exr", "c.exr"}, "");
+  expect_refused({"a.exr"}, "");
+}
+
+}  // namespace
+}  // namespace raygate

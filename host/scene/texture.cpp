@@ -1,0 +1,145 @@
+#include "host/scene/texture.h"
+
+#include <stb_image.h>
+
+#include <algorithm>
+#include <cassert>
+#include <climits>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "host/scene/input_error.h"
+#include "host/scene/scene.h"
+#include "host/scene/srgb.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::int64_t kMaxTexels = std::int64_t{1} << 26;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw InputError(file.string() + ": " + what);
+}
+
+std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.good()) fail(file, "cannot read the texture");
+  return bytes;
+}
+
+const std::array<float, 256>& linear_of_code() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> values{};
+    for (std::size_t code = 0; code < values.size(); ++code) {
+      values[code] = static_cast<float>(srgb_to_linear(static_cast<double>(code)));
+    }
+    return values;
+  }();
+  return table;
+}
+
+/// Two neighbouring texels of one row or column, and how much the second one counts.
+struct Neighbours {
+  int first, second;
+  double share;
+};
+
+Neighbours neighbours(double coordinate, int size, Wrap wrap) {
+  if (!std::isfinite(coordinate)) coordinate = 0.0;
+  coordinate = wrap == Wrap::kRepeat ? coordinate - std::floor(coordinate)
+                                     : std::clamp(coordinate, 0.0, 1.0);
+  const double place = coordinate * size - 0.5;  // in [-0.5, size - 0.5]
+  const double below = std::floor(place);
+  Neighbours found{static_cast<int>(below), static_cast<int>(below) + 1, place - below};
+  if (wrap == Wrap::kRepeat) {
+    found.first = (found.first + size) % size;
+    found.second %= size;
+  } else {
+    found.first = std::max(found.first, 0);
+    found.second = std::min(found.second, size - 1);
+  }
+  return found;
+}
+
+}  // namespace
+
+Texture::Texture(int width, int height, std::vector<Texel> texels)
+    : width_(width), height_(height), texels_(std::move(texels)) {
+  assert(width > 0 && height > 0);
+  assert(texels_.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+}
+
+Texture Texture::load(const std::filesystem::path& file) {
+  const std::vector<unsigned char> bytes = read_bytes(file);
+  const std::string unreadable = "not a PNG, JPEG, TGA or BMP picture that can be read: ";
+  if (bytes.size() > INT_MAX) fail(file, unreadable + "too large");
+  const int size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
+    fail(file, unreadable + stbi_failure_reason());
+  }
+  if (std::int64_t{width} * height > kMaxTexels) {
+    fail(file, "a texture of more than " + std::to_string(kMaxTexels) + " pixels");
+  }
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 3), stbi_image_free);
+  if (!pixels) fail(file, unreadable + stbi_failure_reason());
+  std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::memcpy(texels.data(), pixels.get(), sizeof(Texel) * texels.size());
+  return {width, height, std::move(texels)};
+}
+
+glm::vec3 Texture::at(const glm::dvec2& uv, Wrap wrap) const {
+  const Neighbours x = neighbours(uv.x, width_, wrap);
+  const Neighbours y = neighbours(1.0 - uv.y, height_, wrap);
+  const auto& linear = linear_of_code();
+  const auto texel = [&](int column, int row) {
+    const Texel& codes = texels_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+                                 static_cast<std::size_t>(column)];
+    return glm::dvec3(linear[codes[0]], linear[codes[1]], linear[codes[2]]);
+  };
+  const glm::dvec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.share);
+  const glm::dvec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.share);
+  return glm::vec3(glm::mix(upper, lower, y.share));
+}
+
+glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const Material& material = scene.materials[triangle.material];
+  if (material.diffuse_texture == kNoIndex || triangle.texcoords[0] == kNoIndex) {
+    return material.diffuse;
+  }
+  glm::dvec2 uv(0.0);
+  for (int k = 0; k < 3; ++k) {
+    uv += weights[k] * glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(k)]]);
+  }
+  const TextureMapping& mapping = material.diffuse_mapping;
+  uv = uv * glm::dvec2(mapping.scale) + glm::dvec2(mapping.offset);
+  return material.diffuse * scene.textures[material.diffuse_texture].at(
+                                uv, mapping.clamp ? Wrap::kClamp : Wrap::kRepeat);
+}
+
+void load_textures(Scene& scene) {
+  std::map<std::string, std::uint32_t> loaded;
+  for (const Triangle& triangle : scene.triangles) {
+    Material& material = scene.materials[triangle.material];
+    if (material.diffuse_map.empty() || material.diffuse_texture != kNoIndex) continue;
+    const auto [entry, is_new] = loaded.emplace(material.diffuse_map, kNoIndex);
+    std::error_code ignored;
+    if (is_new && !std::filesystem::is_regular_file(material.diffuse_map, ignored)) {
+      scene.warnings.push_back(material.diffuse_map +
+                               ": the texture is missing, its material is plain instead");
+    } else if (is_new) {
+      entry->second = static_cast<std::uint32_t>(scene.textures.size());
+      scene.textures.push_back(Texture::load(material.diffuse_map));
+    }
+    material.diffuse_texture = entry->second;
+  }
+}
+
+}  // namespace raygate

@@ -1,0 +1,42 @@
+// Multiplies several words by one: product[n] = word[n] * factor.
+//
+// The factor is what the multipliers recode, alike in all of them: tools keep one recoder.
+// Throughput one factor a clock, latency hit_test_pkg::MultiplierLatency; clocks without enable_i don't
+// count. Takes every bit pattern; no flags.
+module scaler #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter bit [2:0]    RoundingMode = 3'd0,
+  parameter int unsigned Words     = 5,
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth
+) (
+  input  logic                   clk_i,
+  input  logic                   enable_i,
+  input  logic [Words*Width-1:0] words_i,
+  input  logic [Width-1:0]       factor_i,
+  output logic [Words*Width-1:0] products_o
+);
+  /* verilator no_inline_module */  // simulated by one piece of code, three times a lane
+
+  for (genvar n = 0; n < Words; n++) begin : gen_word
+    fp_pkg::flags_t unused_flags;
+
+    fp_multiplier_stages #(
+      .ExpWidth(ExpWidth),
+      .FracWidth(FracWidth),
+      .Adder(Adder),
+      .Cuts(hit_test_pkg::MultiplierCuts)
+    ) u_multiplier (
+      .clk_i,
+      .enable_i,
+      .a_i(words_i[Width*n +: Width]),
+      .b_i(factor_i),
+      .rounding_mode_i(RoundingMode),
+      .tininess_after_i(1'b0),
+      .result_o(products_o[Width*n +: Width]),
+      .flags_o(unused_flags)
+    );
+  end
+
+endmodule

@@ -1,0 +1,61 @@
+// The latency that hit_test_pipeline promises, counted.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "Vhit_test_array_1.h"
+#include "sim/model.h"
+
+namespace raygate {
+namespace {
+
+// hit_test_pkg, in binary32
+constexpr int kDotLatency = 8, kDivideLatency = 17;
+constexpr int kClosedLatency = kDotLatency + kDivideLatency + 4;
+constexpr int kPointLatency = kClosedLatency + kDivideLatency;
+
+/// Puts a burst of one test in and counts the clocks, that which takes it included, until its end
+/// and its point are there; 0 for what never came.
+struct Latencies {
+  int closed = 0, point = 0;
+};
+
+Latencies run(const float (&direction)[3], const float (&record)[16]) {
+  Model<Vhit_test_array_1> model;
+  model->valid_i = 0;
+  model->ready_i = 1;
+  model->count_select_i = 0;
+  model.reset();
+  for (int i = 0; i < 5; ++i) model.clock();
+  std::memcpy(&model->direction_i, direction, sizeof direction);
+  std::memcpy(&model->record_i, record, sizeof record);
+  model->first_i = model->last_i = 1;
+  model->valid_i = 1;
+  EXPECT_EQ(model->ready_o, 1);
+  Latencies latencies;
+  for (int clock = 1; clock < 100; ++clock) {
+    model.clock();
+    model->valid_i = 0;
+    if (model->valid_o && model->closed_o) latencies.closed = clock;
+    if (model->valid_o && model->point_valid_o) latencies.point = clock;
+  }
+  return latencies;
+}
+
+// The triangle (-1, -1, 4), (3, -1, 4), (-1, 3, 4), seen from the origin; generous bounds.
+constexpr float kRecord[16] = {0, 0, 16, 64, 0, 16, 4, -16, -16, 8, 16, 0, 4, 1e-3f, 1e-3f, 1e-3f};
+
+TEST(LatencyTest, OfAHit) {
+  const Latencies latencies = run({0.0f, 0.0f, 1.0f}, kRecord);
+  EXPECT_EQ(latencies.closed, kClosedLatency);
+  EXPECT_EQ(latencies.point, kPointLatency);
+}
+
+TEST(LatencyTest, OfAMissWhichHasNoPoint) {
+  const Latencies latencies = run({-1.0f, -1.0f, 1.0f}, kRecord);
+  EXPECT_EQ(latencies.closed, kClosedLatency);
+  EXPECT_EQ(latencies.point, 0);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,51 @@
+"""What is written and compared: tables, tests a second, two runs' figures."""
+
+import json
+import unittest
+
+from synth import compare, tables, throughput
+
+
+class Tables(unittest.TestCase):
+    """tables' two forms."""
+
+    def test_markdown(self):
+        """Columns line up, numbers to the right."""
+        self.assertEqual(tables.markdown(["what", "ns"], [["a", "9.5"], ["b", "10.5"]]),
+                         "| what |   ns |\n|------|-----:|\n| a    |  9.5 |\n| b    | 10.5 |\n")
+
+    def test_comma_separated(self):
+        """What a row has not is left empty; what is not asked for is left out."""
+        self.assertEqual(tables.comma_separated([{"a": 1, "c": 2}], ["a", "b"]), "a,b\n1,\n")
+
+
+class Throughput(unittest.TestCase):
+    """throughput.nand2."""
+
+    def test_nand2(self):
+        """The gate's area, and not that of a cell before it."""
+        self.assertEqual(throughput.nand2(
+            "cell (NAND2X1x) {\n area : 1;\n}\ncell (INVX1) {\n area : 64;\n}\n"
+            "cell (NAND2X1) {\n cell_footprint : nand2x1;\n area : 96;\n}\n"), 96)
+
+
+class Compare(unittest.TestCase):
+    """Figures of two runs."""
+
+    @staticmethod
+    def results(**figures: float) -> compare.Figures:
+        row = {"design": "d", "target": "t", "flow": "f", "path": [], **figures}
+        return compare.figures(json.dumps({"tools": "", "results": [row]}))
+
+    def test_same(self):
+        """Figures count, other facts do not."""
+        self.assertEqual(compare.differences(self.results(area=1), self.results(area=1)), [])
+
+    def test_differ(self):
+        """Another figure and a missing row are both told."""
+        self.assertEqual(len(compare.differences(self.results(area=1), self.results(area=2))), 1)
+        self.assertEqual(len(compare.differences(self.results(area=1), {})), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
