@@ -97,7 +97,7 @@ Outcome run_program(const Invocation& invocation) {
         waits[i].fd = -1;  // poll leaves it out
       }
     }
-    if (!signalled && outcome.err.find("rendering") != std::string::npos) {
+    if (!signalled && outcome.err.find("[=") != std::string::npos) {
       ::kill(child, invocation.signal_when_busy);
       signalled = true;
     }

@@ -12,7 +12,7 @@ struct Invocation {
   std::vector<std::string> arguments;
   std::filesystem::path folder;  ///< the current folder; also what file names are relative to
   bool terminal = false;         ///< standard error is a terminal of 80 columns, not a pipe
-  int signal_when_busy = 0;      ///< with a terminal: sent when the progress bar appears
+  int signal_when_busy = 0;      ///< with a terminal: sent when the progress bar has begun to fill
   long file_size_limit = 0;      ///< bytes that a file may grow to; 0: no limit
   bool without_rights = false;   ///< as a user who is not root
 };
