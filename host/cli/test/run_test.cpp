@@ -344,8 +344,7 @@ TEST_F(Render, InterruptedRunsWriteWhatThereIs) {
     // A crop without the empty border, so that the first tile has something to see.
     const Outcome outcome =
         run_program({.arguments = {kCornell, "--size", "640x480", "--crop", "200,120,520,440",
-                                   "--threads", "1", "--spp", "4", "-o", "a", "--stats",
-                                   "s.json"},
+                                   "--threads", "1", "--spp", "4", "-o", "a", "--stats", "s.json"},
                      .folder = folder_.path(),
                      .terminal = true,
                      .signal_when_busy = signal});
