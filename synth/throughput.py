@@ -22,7 +22,7 @@ def simulated() -> dict[str, float]:
     if table_1.exists():
         said = subprocess.run([table_1], check=True, capture_output=True, text=True).stdout
         for unit, word in COUNTED.items():
-            clocks[unit] = float(re.search(rf"{word} ([\d.]+)", said.splitlines()[-1]).group(1))
+            clocks[unit] = float(re.search(rf"{word} (\d+\.\d+)", said.splitlines()[-1]).group(1))
     if render.exists():
         with tempfile.TemporaryDirectory(dir=store.OUT) as folder:
             file = pathlib.Path(folder) / "stats.json"
