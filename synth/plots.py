@@ -1,5 +1,7 @@
 """Area against delay, one picture a section and library, as SVG and PNG."""
 
+from matplotlib import ticker
+
 from synth import drawing, store
 from synth.catalogue import FLOWS, LIBRARIES
 from synth.drawing import plt
@@ -21,19 +23,29 @@ def draw(records: list[dict]) -> list[str]:
     return names
 
 
+def _colours(count: int) -> list:
+    """As many colours that differ; grey is left to the flows."""
+    palette = plt.get_cmap("tab10" if count < 10 else "tab20").colors
+    return [colour for colour in palette if max(colour) - min(colour) > 0.01]
+
+
 def _scatter(points: list[dict], title: str, name: str) -> None:
     figure, axes = plt.subplots(figsize=(9, 6), layout="constrained")
     designs = list(dict.fromkeys(point["design"] for point in points))
-    colours = plt.get_cmap("tab10" if len(designs) <= 10 else "tab20")
+    colours = _colours(len(designs))
     for point in points:
         axes.scatter(point["delay_ns"], point["area"], marker=MARKERS[point["flow"]],
-                     color=colours(designs.index(point["design"])))
+                     color=colours[designs.index(point["design"])])
     for place, design in enumerate(designs):
-        axes.scatter([], [], color=colours(place), label=design)
+        axes.scatter([], [], color=colours[place], label=design)
     for flow in dict.fromkeys(point["flow"] for point in points):
         axes.scatter([], [], color="grey", marker=MARKERS[flow], label=f"flow: {flow}")
     axes.set(title=title, xlabel="slowest path, ns", ylabel="area of the cells, square micrometres",
              xscale="log", ylim=(0, None))
-    axes.legend(fontsize="small")
+    axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 1.5, 2, 3, 4, 5, 6, 8)))
+    axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    axes.yaxis.set_major_formatter(ticker.StrMethodFormatter("{x:,.0f}"))
+    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     axes.grid(alpha=0.3)
     drawing.save(figure, store.OUT / name)
