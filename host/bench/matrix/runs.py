@@ -30,16 +30,9 @@ def _path(file: pathlib.Path) -> str:
     return str(file.relative_to(ROOT))
 
 
-def is_plain(variant: dict) -> bool:
-    """Whether the variant is binary32 as it stands, which the engine `cpu` computes."""
-    return (variant["digits"] == 24 and variant["exponent_bits"] == 8 and variant["rounding"] == 0
-            and not variant["flush"] and not variant["quotient_digits"] and not variant["fused"]
-            and variant["doubts"])
-
-
 def variants(table: list[dict], quick: bool) -> list[dict]:
     """Every variant on some scenes, by its twin, and by its hardware in small for the clocks."""
-    width, height = (96, 72) if quick else (320, 240)
+    width, height = (160, 120) if quick else (320, 240)
     lights = {"cornell": {"integrator": "path", "samples": 1 if quick else 4},
               "paper": {"integrator": "whitted"}, "teapot": {"integrator": "primary"}}
     rows = []
@@ -49,7 +42,7 @@ def variants(table: list[dict], quick: bool) -> list[dict]:
             picture = f"build/bench/pictures/{name}-{variant['name']}"
             rows.append({"scene": _path(scene), "width": width, "height": height, **light,
                          "variant": variant["name"], "audit": True, "picture": picture,
-                         "engine": "cpu" if is_plain(variant) else "twin"})
+                         "engine": "twin"})
             if variant["hardware"] and name == "cornell":
                 rows.append({"scene": _path(scene), "width": 64 if quick else 160,
                              "height": 48 if quick else 120, "variant": variant["name"],
@@ -81,10 +74,10 @@ def engines(_: list[dict], quick: bool) -> list[dict]:
 
 
 def lanes(_: list[dict], quick: bool) -> list[dict]:
-    """The paper's scene in the paper's size, by 1 to 8 lanes."""
-    size = {"width": 160, "height": 100} if quick else {"width": 320, "height": 200}
-    return [{"scene": _path(SCENES / "paper.obj"), **size, "engine": "rtl", "lanes": count,
-             "repeats": 1 if quick else 3} for count in (1, 2, 4, 8)]
+    """The paper's frame, with shadows and 4 bounces, by 1 to 8 lanes and by the paper's own unit."""
+    frame = {"scene": _path(SCENES / "paper.obj"), "width": 320, "height": 200,
+             "integrator": "whitted", "engine": "rtl", "repeats": 1 if quick else 3}
+    return [{**frame, "lanes": count} for count in (1, 2, 4, 8)] + [{**frame, "variant": "serial"}]
 
 
 def triangles(_: list[dict], quick: bool) -> list[dict]:

@@ -68,7 +68,7 @@ class AuditTester : public HitTester {
         ++audit_.doubts;
         return;
       }
-      const float t = variant_distance(variant_.math, record, host_.read(direction)).t;
+      const float t = unit_.distance(record, host_.read(direction)).t;
       hit = t > 0.0f && !std::isinf(t);
     }
     const bool truth = hits_triangle({origin_, direction}, bvh_.corners_of(slot));
@@ -116,7 +116,9 @@ float unit_t(const Variant& any_variant, const PolygonRecord& wide,
   const Variant variant = any_variant.unit == Variant::Unit::kSerial ? Variant{} : any_variant;
   Arithmetic host = variant.math;
   host.rounding = Rounding::kNearestEven;
-  return variant_distance(variant.math, variant_record(variant, wide), host.read(wide_direction)).t;
+  return VariantBurstUnit(variant.math)
+      .distance(variant_record(variant, wide), host.read(wide_direction))
+      .t;
 }
 
 }  // namespace

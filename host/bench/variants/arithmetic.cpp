@@ -124,6 +124,11 @@ float Arithmetic::dot(const glm::vec3& a, const glm::vec3& b) const {
 
 double Arithmetic::unit_roundoff() const { return std::ldexp(1.0, -digits); }
 
+bool Arithmetic::is_normal(float x) const {
+  const double magnitude = std::abs(static_cast<double>(x));
+  return magnitude >= std::ldexp(1.0, min_exponent()) && std::isfinite(magnitude);
+}
+
 std::uint32_t Arithmetic::to_word(float x) const {
   const std::uint32_t fraction_width = static_cast<std::uint32_t>(fraction_bits());
   const auto bits = std::bit_cast<std::uint32_t>(x);

@@ -48,6 +48,13 @@ struct Arithmetic {
   [[nodiscard]] int min_exponent() const { return 2 - (1 << (exponent_bits - 1)); }
   [[nodiscard]] int max_exponent() const { return (1 << (exponent_bits - 1)) - 1; }
 
+  /// Whether x has an exponent field that is neither 0 nor the largest.
+  [[nodiscard]] bool is_normal(float x) const;
+  /// The biased exponent of x's word.
+  [[nodiscard]] int exponent_field(float x) const {
+    return static_cast<int>(to_word(x) >> fraction_bits() & ((1u << exponent_bits) - 1));
+  }
+
   /// The format's own bits of one of its numbers, and back: sign, biased exponent, fraction.
   [[nodiscard]] std::uint32_t to_word(float x) const;
   [[nodiscard]] float from_word(std::uint32_t word) const;

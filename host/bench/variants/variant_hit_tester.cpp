@@ -85,7 +85,7 @@ PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) 
   record.normal = math.read(scaled(wide.normal, shift));
   record.d = math.read(std::ldexp(wide.d, shift));
   bool too_far = false;
-  if (wide.d != 0.0f && !is_normal(math, record.d)) {
+  if (wide.d != 0.0f && !math.is_normal(record.d)) {
     // Its sign must stay; what else is lost is for exact arithmetic to find.
     too_far = true;
     const double low = std::ldexp(1.0, math.min_exponent());
@@ -110,7 +110,7 @@ PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) 
 }
 
 VariantHitTester::VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
-    : variant_(variant), unit_(std::move(unit)) {}
+    : variant_(variant), unit_(std::move(unit)), twin_(variant.math) {}
 
 /// The batch in the variant's format.
 void VariantHitTester::narrow(std::span<const RayBundle> batch) {
@@ -160,11 +160,11 @@ void VariantHitTester::report(const RayBundle& wide, HitResults& results,
   const PolygonRecord& record = bundle.records[report.record];
   const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report.lane));
   const std::uint32_t tag = wide.first_tag + report.record;
-  const glm::vec3 point = variant_point(variant_.math, record, direction);
+  const glm::vec3 point = twin_.point(record, direction);
   if (report.kind == TestReport::Kind::kDoubt) {
     results.doubts.push_back({report.bundle, report.lane, tag, point});
   } else {
-    const VariantDistance distance = variant_distance(variant_.math, record, direction);
+    const HitDistance distance = twin_.distance(record, direction);
     results.hits.push_back({report.bundle, report.lane, tag, point,
                             around(variant_.math, distance.t, distance.error)});
   }
@@ -200,10 +200,9 @@ void VariantHitTester::resolve_nothing(std::span<const RayBundle> batch, HitResu
     const RayBundle& bundle = batch_[report.bundle];
     const PolygonRecord& record = bundle.records[report.record];
     const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report.lane));
-    const float t = variant_distance(variant_.math, record, direction).t;
+    const float t = twin_.distance(record, direction).t;
     if (!(t > 0.0f) || std::isinf(t)) continue;
-    offer(report.bundle, report.lane, report.record, t,
-          variant_point(variant_.math, record, direction));
+    offer(report.bundle, report.lane, report.record, t, twin_.point(record, direction));
   }
   offer_hits([](const BurstHit&) { return true; });
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/bench/variants/variant_table.h"
-#include "host/hit/burst_unit.h"
+#include "host/bench/variants/variant_units.h"
 #include "host/hit/hit_tester.h"
 
 namespace raygate {
@@ -43,6 +43,7 @@ class VariantHitTester : public HitTester {
 
   Variant variant_;
   std::unique_ptr<BurstUnit> unit_;
+  VariantBurstUnit twin_;  // t and P of what the unit only reports
   // Room to work in.
   std::vector<PolygonRecord> records_;
   std::vector<RayBundle> batch_;
