@@ -2,6 +2,8 @@
 // eight bundles against one box.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -28,11 +30,38 @@ namespace raygate {
 inline constexpr float kSmallestComponent = 0x1p-100f;
 inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 
+/// Which octant a direction points into: bit k is set where component k is negative.
+[[nodiscard]] inline int octant_of(const glm::vec3& direction) {
+  return (direction.x < 0.0f ? 1 : 0) | (direction.y < 0.0f ? 2 : 0) | (direction.z < 0.0f ? 4 : 0);
+}
+
+/// Where boxes end to matter for a ray that ends at `t`: stored as t (1 + 8 u), rounded up; finite,
+/// so that an entry of +infinity stands for a box that is not entered. A t below 0 leaves nothing.
+[[nodiscard]] inline float cutoff_beyond(double t) {
+  constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float: no t is, nor any entry
+  if (t < 0.0) return -1.0f;
+  const auto nearest = std::bit_cast<std::int32_t>(static_cast<float>(t * kExitGrowth));
+  return std::bit_cast<float>(std::min(nearest + 1, kFarthest));
+}
+
 /// Rays from one origin into one octant.
 struct Beam {
   float origin[3];
   float inverse_near[3], inverse_far[3];
   int octant;  ///< see octant_of
+
+  Beam() = default;
+  /// Around one ray; its direction is scaled.
+  Beam(const glm::vec3& from, const glm::vec3& direction) : octant(octant_of(direction)) {
+    for (int k = 0; k < 3; ++k) {
+      const bool small = std::abs(direction[k]) < kSmallestComponent;
+      const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
+      constexpr float kInfinity = std::numeric_limits<float>::infinity();
+      origin[k] = from[k];
+      inverse_near[k] = small ? sign / kSmallestComponent : 1.0f / direction[k];
+      inverse_far[k] = small ? sign * kInfinity : kExitGrowth * (1.0f / direction[k]);
+    }
+  }
 };
 
 /// Sets bit i of the result where the beam meets the box of child i before `cutoff` (see

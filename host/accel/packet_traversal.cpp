@@ -39,14 +39,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFarthest = std::numeric_limits<float>::max();  // no t is, nor any entry
-constexpr float kSmallest = 0x1p-100f;                          // components below are as good as 0
-constexpr float kGrow = 1.0f + 0x1p-21f;
 
 }  // namespace
-
-int octant_of(const glm::vec3& direction) {
-  return (direction.x < 0.0f ? 1 : 0) | (direction.y < 0.0f ? 2 : 0) | (direction.z < 0.0f ? 4 : 0);
-}
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
     : nodes_(bvh.nodes().data()), octant_(octant) {
@@ -60,19 +54,15 @@ PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
 void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction) {
   assert(octant_of(direction) == octant_);
   cutoff_[lane] = kFarthest;
+  const Beam beam(origin, direction);
   for (int k = 0; k < 3; ++k) {
-    const float sign = (octant_ >> k & 1) != 0 ? -1.0f : 1.0f;
-    const bool small = std::abs(direction[k]) < kSmallest;
     origin_[k][lane] = origin[k];
-    inverse_near_[k][lane] = small ? sign / kSmallest : 1.0f / direction[k];
-    inverse_far_[k][lane] = small ? sign * kInfinity : kGrow * (1.0f / direction[k]);
+    inverse_near_[k][lane] = beam.inverse_near[k];
+    inverse_far_[k][lane] = beam.inverse_far[k];
   }
 }
 
-void PacketTraversal::set_cutoff(int lane, double t) {
-  const double grown = std::min<double>(t * kGrow, kFarthest);
-  cutoff_[lane] = std::min(std::nextafter(static_cast<float>(grown), kInfinity), kFarthest);
-}
+void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_beyond(t); }
 
 /// Goes on to the next leaf: false when there is none.
 RAYGATE_LANES bool advance(PacketTraversal& packet, LeafVisit& visit) {

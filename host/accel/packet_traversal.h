@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "host/accel/beam.h"
 #include "host/accel/bvh.h"
 #include "host/lanes.h"
 
@@ -16,9 +17,6 @@ struct LeafVisit {
   std::uint32_t count = 0;
   LaneMask lanes = 0;
 };
-
-/// Which octant a direction points into: bit k is set where component k is negative.
-[[nodiscard]] int octant_of(const glm::vec3& direction);
 
 /// A traversal that can be left at every leaf and resumed, front to back along the octant of its
 /// rays. Many packets in flight keep a hit-test unit busy while each waits for its own results.

@@ -5,6 +5,10 @@
 namespace raygate {
 namespace {
 
+/// Two leaves are better one while its box has at most that many times their boxes' area: testing
+/// up to four triangles costs one ray as much as testing one, and another box a little.
+constexpr double kMergedArea = 1.5;
+
 /// A child of a binary node, with its box.
 struct Part {
   glm::vec3 low, high;
@@ -14,12 +18,14 @@ struct Part {
   Part(const Bvh& bvh, const Bvh::Node& node, int side)
       : low(node.bounds[0][side]), high(node.bounds[1][side]), ref(node.child[side]) {
     if (ref.count != 0 || absent()) return;
-    const auto& [first, second] = bvh.nodes()[ref.first].child;
+    const Bvh::Node& inner = bvh.nodes()[ref.first];
+    const auto& [first, second] = inner.child;
     const std::uint32_t count = first.count + second.count;
+    if (first.count == 0 || second.count == 0 || count > WideBvh::kMaxLeafSize) return;
+    const double parts = Part(bvh, inner, 0).half_area() + Part(bvh, inner, 1).half_area();
+    if (half_area() > kMergedArea * parts) return;
     // Siblings have neighbouring slots.
-    if (first.count != 0 && second.count != 0 && count <= WideBvh::kMaxLeafSize) {
-      ref = {first.first, static_cast<std::uint16_t>(count), 0};
-    }
+    ref = {first.first, static_cast<std::uint16_t>(count), 0};
   }
 
   [[nodiscard]] bool absent() const { return low.x > high.x; }
@@ -31,7 +37,7 @@ struct Part {
 
 }  // namespace
 
-WideBvh::WideBvh(const Bvh& bvh) {
+WideBvh::WideBvh(const Bvh& bvh) : corners_(9 * std::size_t{bvh.slot_count()} + kMaxLeafSize) {
   nodes_.emplace_back();
   fill(0, bvh, bvh.nodes()[bvh.root().first]);
 }
@@ -62,11 +68,26 @@ void WideBvh::fill(std::uint32_t index, const Bvh& bvh, const Bvh::Node& from) {
       nodes_[index].bounds[1][k][i] = present ? parts[i].high[k] : -kInfinity;
     }
     nodes_[index].child[i] = present ? Child{parts[i].ref.first, parts[i].ref.count} : Child{};
-    if (!present || parts[i].ref.count != 0) continue;
+    if (!present) continue;
+    if (parts[i].ref.count != 0) {
+      fill_corners(bvh, nodes_[index].child[i]);
+      continue;
+    }
     const auto child = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
     nodes_[index].child[i].first = child;
     fill(child, bvh, bvh.nodes()[parts[i].ref.first]);
+  }
+}
+
+void WideBvh::fill_corners(const Bvh& bvh, const Child& leaf) {
+  float* next = &corners_[9 * std::size_t{leaf.first}];
+  for (int v = 0; v < 3; ++v) {
+    for (int k = 0; k < 3; ++k) {
+      for (const Bvh::Corners& corners : bvh.corners_of(leaf.first, leaf.count)) {
+        *next++ = corners[v][k];
+      }
+    }
   }
 }
 

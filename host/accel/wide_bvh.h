@@ -1,6 +1,7 @@
 // The tree of boxes once more, with eight children to a node: for one beam against eight boxes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,11 +12,13 @@ namespace raygate {
 
 /// A Bvh whose nodes have taken in the children of their largest children, until there are eight.
 /// Slots and boxes are those of the binary tree, which must outlive this one's making only.
-/// Memory: 256 bytes a node; a node for each three or four inner nodes of the binary tree.
+/// Memory: 256 bytes a node, a node for each three or four inner nodes of the binary tree, and 36
+/// bytes a slot.
 class WideBvh {
  public:
   static constexpr int kWidth = 8;
-  /// Two sibling leaves that are no larger together are one leaf here.
+  /// Two sibling leaves that are no larger together, and about as near to each other as they are
+  /// large, are one leaf here.
   static constexpr std::uint32_t kMaxLeafSize = 4;
   /// What a traversal's stack must hold: each level leaves at most seven children waiting.
   static constexpr int kStackSize = (kWidth - 1) * Bvh::kMaxDepth + kWidth;
@@ -36,10 +39,19 @@ class WideBvh {
 
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
 
+  /// The corners of a leaf's triangles, one coordinate of all of them after the other: coordinate k
+  /// of corner v of triangle i is [(3 v + k) count + i]. What comes after the last one may be read,
+  /// and means nothing, as far as for four triangles.
+  [[nodiscard]] const float* corners_of(const Child& leaf) const {
+    return corners_.data() + 9 * std::size_t{leaf.first};
+  }
+
  private:
   void fill(std::uint32_t index, const Bvh& bvh, const Bvh::Node& from);
+  void fill_corners(const Bvh& bvh, const Child& leaf);
 
   std::vector<Node> nodes_;
+  std::vector<float> corners_;
 };
 
 }  // namespace raygate

@@ -159,6 +159,12 @@ int direction_side(const glm::vec3& direction, const Corners& t) {
   return side.sure() ? side.sign() : exact_slope(direction, t).sign();
 }
 
+bool is_ahead(const Ray& ray, const Corners& t) {
+  const auto& [n, d] = Fraction(ray, t);
+  if (n.sure() && d.sure()) return n.sign() == d.sign();
+  return plane_side(ray.origin, t) * direction_side(ray.direction, t) > 0;
+}
+
 // Where doubles cancel too much, D and I . N are exact but for their last rounding to double (off
 // by an ulp at most), and then the quotient's.
 Interval hit_distance(const Ray& ray, const Corners& triangle) {

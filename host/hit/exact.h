@@ -48,6 +48,9 @@ struct PreciseHit {
 /// of a fan is hit. A triangle whose plane holds the origin is never hit, nor one behind it.
 [[nodiscard]] bool hits_triangle(const Ray& ray, const Corners& triangle);
 
+/// Whether the ray's line meets the triangle's plane ahead of the origin, at t > 0.
+[[nodiscard]] bool is_ahead(const Ray& ray, const Corners& triangle);
+
 /// The t of a hit: for triangles that hits_triangle says are hit. high <= low (1 + 2^-34).
 [[nodiscard]] Interval hit_distance(const Ray& ray, const Corners& triangle);
 

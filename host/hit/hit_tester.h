@@ -86,8 +86,8 @@ class HitTester {
   /// Tests all bursts of `batch` and adds what it found to `results`, in the order of the batch.
   virtual void test(std::span<const RayBundle> batch, HitResults& results) = 0;
 
-  /// Where the caller may do this engine's tests itself, one by one as it comes to them, by the
-  /// formulas of BurstUnit: the counts to add them to. Else nullptr.
+  /// Where the caller may do this engine's tests itself, one by one as it comes to them, with the
+  /// same promise: the counts to add them to. Else nullptr.
   [[nodiscard]] virtual HitCounters* in_place() { return nullptr; }
 
   [[nodiscard]] virtual HitCounters counters() const = 0;

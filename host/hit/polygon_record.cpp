@@ -65,31 +65,53 @@ float edge_bound(const glm::vec3& edge) {
   return rounded_up(kEdgeBound * 0x1p-24 * (e.x + e.y + e.z));
 }
 
-}  // namespace
+/// A plane of the record's scale.
+struct Plane {
+  glm::dvec3 normal;
+  double d;
 
-PolygonRecord make_record(const glm::vec3& origin, const Corners& t) {
-  PolygonRecord record;
-  glm::dvec3 normal = triangle_normal(t);
-  double d = plane_distance(origin, t);
-  if (!ordinary(largest(normal)) || !ordinary(d)) {
+  Plane(const glm::vec3& origin, const Corners& t)
+      : normal(triangle_normal(t)), d(plane_distance(origin, t)) {
+    if (ordinary(largest(normal)) && ordinary(d)) return;
     const int exponent = normal == glm::dvec3(0.0) ? 0 : -std::ilogb(largest(normal));
     normal = scaled(normal, exponent);
     d = std::ldexp(d, exponent);
   }
-  record.normal = glm::vec3(normal);
-  record.d = static_cast<float>(d);
+
+  /// Whether float cannot hold the distance.
+  [[nodiscard]] bool is_beyond_float() const {
+    return d != 0.0 && !std::isnormal(static_cast<float>(d));
+  }
+
+  void put(PolygonRecord& record) const {
+    record.normal = glm::vec3(normal);
+    record.d = static_cast<float>(d);
+    if (!is_beyond_float()) return;
+    // Its sign counts.
+    record.d = std::copysign(std::clamp(std::abs(record.d), std::numeric_limits<float>::min(),
+                                        std::numeric_limits<float>::max()),
+                             static_cast<float>(d < 0.0 ? -1.0 : 1.0));
+  }
+};
+
+}  // namespace
+
+PolygonRecord make_plane(const glm::vec3& origin, const Corners& t) {
+  PolygonRecord record;
+  Plane(origin, t).put(record);
+  return record;
+}
+
+PolygonRecord make_record(const glm::vec3& origin, const Corners& t) {
+  PolygonRecord record;
+  const Plane plane(origin, t);
+  plane.put(record);
   for (int k = 0; k < 3; ++k) {
     record.edges[k] = edge_words(origin, t[k], t[(k + 1) % 3]);
     record.bounds[k] = edge_bound(record.edges[k]);
   }
-  // A distance that a float cannot hold: keep its sign, and let exact arithmetic have the last
-  // word.
-  if (d != 0.0 && !std::isnormal(record.d)) {
-    record.d = std::copysign(std::clamp(std::abs(record.d), std::numeric_limits<float>::min(),
-                                        std::numeric_limits<float>::max()),
-                             static_cast<float>(d < 0.0 ? -1.0 : 1.0));
-    record.bounds.fill(std::numeric_limits<float>::infinity());
-  }
+  // Then exact arithmetic has the last word.
+  if (plane.is_beyond_float()) record.bounds.fill(std::numeric_limits<float>::infinity());
   return record;
 }
 

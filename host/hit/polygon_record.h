@@ -32,4 +32,7 @@ inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 /// 2^126. A triangle whose plane holds the origin, or without area, gets d = 0: no ray hits it.
 [[nodiscard]] PolygonRecord make_record(const glm::vec3& origin, const Corners& triangle);
 
+/// The plane alone: words 0-3 of that record, the others being 0.
+[[nodiscard]] PolygonRecord make_plane(const glm::vec3& origin, const Corners& triangle);
+
 }  // namespace raygate

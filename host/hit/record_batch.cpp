@@ -14,7 +14,7 @@
 namespace raygate {
 namespace {
 
-constexpr int kBatch = 4;
+constexpr int kBatch = kPlanes;
 
 using Doubles = double __attribute__((vector_size(8 * kBatch), aligned(8 * kBatch)));
 using Longs = std::int64_t __attribute__((vector_size(8 * kBatch), aligned(8 * kBatch)));
@@ -62,9 +62,10 @@ RAYGATE_INLINE void cross(const Points& u, const Points& v, Points& value, Point
   require_ordinary(largest_value, good);
 }
 
-/// Words 4 i to 4 i + 3 of four records, from four vectors of one word each.
+/// Four words of four records each, from four vectors of one word each; words[i] begins record i.
+template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& c, const Floats& d,
-                                std::size_t quarter, float (&words)[kBatch][16]) {
+                                float (&words)[kBatch][kWords], std::size_t first = 0) {
   const Floats ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
   const Floats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
   const Floats cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
@@ -73,7 +74,7 @@ RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& 
                                  __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
                                  __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5),
                                  __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
-  for (int i = 0; i < kBatch; ++i) std::memcpy(&words[i][4 * quarter], &record[i], 16);
+  for (int i = 0; i < kBatch; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 
 RAYGATE_INLINE void to_floats(const Points& p, Floats (&words)[3]) {
@@ -93,41 +94,58 @@ RAYGATE_INLINE void edge_bound(const Floats (&words)[3], Floats& bound) {
                                    __builtin_convertvector(below, Ints));
 }
 
-}  // namespace
-
-/// Four words of 16 each, and bit i of the result where record i is right.
-RAYGATE_LANES LaneMask make_four(const glm::vec3& origin, const Corners* const (&triangles)[kBatch],
-                                 float (&words)[kBatch][16]) {
+/// The corners of four triangles, in double.
+RAYGATE_INLINE void load_corners(const Corners* const (&triangles)[kBatch], Points (&t)[3]) {
   alignas(16) float corners[3][3][kBatch];
   for (int i = 0; i < kBatch; ++i) {
     for (int v = 0; v < 3; ++v) {
       for (int k = 0; k < 3; ++k) corners[v][k][i] = (*triangles[i])[v][k];
     }
   }
-  Points t[3];
   for (int v = 0; v < 3; ++v) {
     Floats f[3];
     std::memcpy(f, corners[v], sizeof f);
     t[v] = {__builtin_convertvector(f[0], Doubles), __builtin_convertvector(f[1], Doubles),
             __builtin_convertvector(f[2], Doubles)};
   }
-  const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
-  Longs good = Longs{} - 1;
-  Points to_b, to_c, normal, size, from_o[3];
+}
+
+/// N and d, from the corners and the first one seen from the origin; leaves those lanes good in
+/// which they are right.
+RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal, Doubles& d,
+                                Longs& good) {
+  Points to_b, to_c, size, far;
   subtract(t[1], t[0], to_b);
   subtract(t[2], t[0], to_c);
   cross(to_b, to_c, normal, size, good);
-  for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
-
-  const Points& a = from_o[0];
-  const Doubles d = a.x * normal.x + a.y * normal.y + a.z * normal.z;
-  Points far;
+  d = a.x * normal.x + a.y * normal.y + a.z * normal.z;
   magnitude(a.x, far.x), magnitude(a.y, far.y), magnitude(a.z, far.z);
   const Doubles error = 10.0 * kU * (far.x * size.x + far.y * size.y + far.z * size.z);
   Doubles distance;
   magnitude(d, distance);
   good &= (error <= 0x1p-32 * distance) & (distance > error);
   require_ordinary(distance, good);
+}
+
+RAYGATE_INLINE LaneMask mask_of(const Longs& lanes) {
+  LaneMask mask = 0;
+  for (int i = 0; i < kBatch; ++i) mask |= static_cast<LaneMask>(lanes[i] & 1) << i;
+  return mask;
+}
+
+}  // namespace
+
+/// Four words of 16 each, and bit i of the result where record i is right.
+RAYGATE_LANES LaneMask make_four(const glm::vec3& origin, const Corners* const (&triangles)[kBatch],
+                                 float (&words)[kBatch][16]) {
+  Points t[3], from_o[3];
+  load_corners(triangles, t);
+  const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
+  for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
+  Longs good = Longs{} - 1;
+  Points normal, size;
+  Doubles d;
+  find_planes(t, from_o[0], normal, d, good);
   Floats n[3], edges[3][3], bounds[3];
   to_floats(normal, n);
 
@@ -145,13 +163,49 @@ RAYGATE_LANES LaneMask make_four(const glm::vec3& origin, const Corners* const (
     to_floats(edge, edges[k]);
     edge_bound(edges[k], bounds[k]);
   }
-  store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), 0, words);
-  store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], 1, words);
-  store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], 2, words);
-  store_words(edges[2][2], bounds[0], bounds[1], bounds[2], 3, words);
-  LaneMask mask = 0;
-  for (int i = 0; i < kBatch; ++i) mask |= static_cast<LaneMask>(good[i] & 1) << i;
-  return mask;
+  store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+  store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], words, 4);
+  store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], words, 8);
+  store_words(edges[2][2], bounds[0], bounds[1], bounds[2], words, 12);
+  return mask_of(good);
+}
+
+/// Four words of four planes, and bit i of the result where plane i is right.
+RAYGATE_LANES LaneMask make_four_planes(const std::array<PlaneView, kBatch>& views,
+                                        float (&words)[kBatch][4]) {
+  const Corners* triangles[kBatch];
+  alignas(16) float origins[3][kBatch];
+  for (int i = 0; i < kBatch; ++i) {
+    triangles[i] = views[i].triangle;
+    for (int k = 0; k < 3; ++k) origins[k][i] = (*views[i].origin)[k];
+  }
+  Floats o[3], n[3];
+  std::memcpy(o, origins, sizeof o);
+  Points t[3], a, normal;
+  load_corners(triangles, t);
+  subtract(t[0],
+           {__builtin_convertvector(o[0], Doubles), __builtin_convertvector(o[1], Doubles),
+            __builtin_convertvector(o[2], Doubles)},
+           a);
+  Longs good = Longs{} - 1;
+  Doubles d;
+  find_planes(t, a, normal, d, good);
+  to_floats(normal, n);
+  store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+  return mask_of(good);
+}
+
+void make_planes(const std::array<PlaneView, kPlanes>& views,
+                 std::array<PolygonRecord, kPlanes>& planes) {
+  float words[kBatch][4];
+  const LaneMask good = make_four_planes(views, words);
+  for (int i = 0; i < kPlanes; ++i) {
+    if ((good >> i & 1) != 0) {
+      std::memcpy(static_cast<void*>(&planes[i]), words[i], sizeof words[i]);
+    } else {
+      planes[i] = make_plane(*views[i].origin, *views[i].triangle);
+    }
+  }
 }
 
 void make_records(const glm::vec3& origin, std::span<const Corners> triangles,

@@ -334,7 +334,7 @@ RAYGATE_LANES void walk_tree(ConeSearch& search, ConeSearch::Walk& walk) {
   search.counters_.quotients += hits;
 }
 
-void ConeSearch::trace(std::span<const Ray> rays, const Wishes& wishes) {
+void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
   rays_ = rays;
   wishes_ = wishes;
   RayBlock block;

@@ -9,6 +9,7 @@
 #include "host/render/cone.h"
 #include "host/render/nearest_hits.h"
 #include "host/render/record_cache.h"
+#include "host/render/search_wishes.h"
 
 namespace raygate {
 
@@ -18,21 +19,14 @@ namespace raygate {
 /// what float32 leaves open is settled by NearestHits.
 class ConeSearch {
  public:
-  /// As Search has them; spans may be empty.
-  struct Wishes {
-    std::span<const float> limits{};
-    std::span<const std::uint32_t> ignored{};
-    std::span<const float> enough_before{};
-  };
-
   /// Reports go to `nearest`, counts to `counters`.
   ConeSearch(const Bvh& bvh, RecordCache& records, NearestHits& nearest, HitCounters& counters)
       : bvh_(bvh), records_(records), nearest_(nearest), counters_(counters) {}
 
   /// All rays begin at the origin of the records. `nearest` has been reset for them.
-  void trace(std::span<const Ray> rays, const Wishes& wishes);
+  void trace(std::span<const Ray> rays, const SearchWishes& wishes);
 
-  /// Rays that Wishes::enough_before has ended before their time.
+  /// Rays that SearchWishes::enough_before has ended before their time.
   [[nodiscard]] std::uint64_t ended_early() const { return ended_early_; }
 
  private:
@@ -69,7 +63,7 @@ class ConeSearch {
   RecordCache& records_;
   NearestHits& nearest_;
   HitCounters& counters_;
-  Wishes wishes_;
+  SearchWishes wishes_;
   std::span<const Ray> rays_;
   std::uint64_t ended_early_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "host/render/cone_search.h"
+#include "host/render/ray_search.h"
 #include "host/render/stopwatch.h"
 
 namespace raygate {
@@ -43,10 +44,17 @@ void Wavefront::trace(std::span<const Ray> rays, const Search& search) {
 /// What the host can do without batches; false where batches are needed.
 bool Wavefront::trace_in_place(std::span<const Ray> rays, const Search& search) {
   HitCounters* const counters = tester_.in_place();
-  if (counters == nullptr || search.common == nullptr || !search.culling || counting_) return false;
-  ConeSearch cones(bvh_, *search.common, nearest_, *counters);
-  cones.trace(rays, {search.limits, search.ignored, search.enough_before});
-  ended_early_ += cones.ended_early();
+  if (counters == nullptr || !search.culling || counting_) return false;
+  const SearchWishes wishes = {search.limits, search.ignored, search.enough_before};
+  const auto trace_by = [&](auto&& way) {
+    way.trace(rays, wishes);
+    ended_early_ += way.ended_early();
+  };
+  if (search.common != nullptr) {
+    trace_by(ConeSearch(bvh_, *search.common, nearest_, *counters));
+  } else {
+    trace_by(RaySearch(bvh_, nearest_, *counters));
+  }
   return true;
 }
 

@@ -23,8 +23,8 @@ struct Search {
   RecordCache* common = nullptr;
   /// One a ray, positive: only hits with t < limits[i] count (see NearestHits::reset).
   std::span<const float> limits{};
-  /// One a ray: a slot whose hits do not count, or NearestHit::kNone. With it, NearestHit::point
-  /// says nothing.
+  /// One a ray: a slot whose hits do not count, or NearestHit::kNone. With it, or with
+  /// `enough_before`, NearestHit::point says nothing.
   std::span<const std::uint32_t> ignored{};
   /// One a ray, for rays that need not know their nearest hit: a ray ends at the first hit that it
   /// finds with t < enough_before[i]; that one is reported as the nearest.

@@ -19,10 +19,27 @@ void expect_same(const glm::vec3& origin, const std::vector<Corners>& triangles)
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const PolygonRecord expected = make_record(origin, triangles[i]);
     ASSERT_EQ(std::memcmp(&records[i], &expected, sizeof expected), 0) << "triangle " << i;
+    const PolygonRecord plane = make_plane(origin, triangles[i]);
+    ASSERT_EQ(std::memcmp(&plane, &expected, 16), 0) << "triangle " << i;
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    // Four origins, four triangles.
+    std::array<glm::vec3, kPlanes> origins;
+    std::array<PlaneView, kPlanes> views;
+    for (std::size_t k = 0; k < kPlanes; ++k) {
+      origins[k] = origin * static_cast<float>(k + 1);
+      views[k] = {&origins[k], &triangles[(i + k) % triangles.size()]};
+    }
+    std::array<PolygonRecord, kPlanes> planes;
+    make_planes(views, planes);
+    for (std::size_t k = 0; k < kPlanes; ++k) {
+      const PolygonRecord expected = make_plane(*views[k].origin, *views[k].triangle);
+      ASSERT_EQ(std::memcmp(&planes[k], &expected, sizeof expected), 0);
+    }
   }
 }
 
-TEST(RecordBatch, HasTheBitsOfSingleRecords) {
+TEST(RecordBatch, HasTheBitsOfSingleRecordsAndPlanes) {
   Random random;
   for (int round = 0; round < 2000; ++round) {
     const float size = std::ldexp(1.0f, random.below(5) == 0 ? random.below(240) - 120 : 0);
