@@ -5,7 +5,7 @@ import os
 import pathlib
 import re
 
-from synth import tools
+from synth import store, tools
 
 HW = tools.ROOT / "hw"
 YARDSTICKS = tools.ROOT / "synth" / "yardsticks"
@@ -49,6 +49,11 @@ class Design:
         return packages + modules
 
 
+def without_pads(liberty: str) -> str:
+    """A Liberty file without its cells named PAD..., each of which begins and ends a line."""
+    return re.sub(r"^cell \(PAD\w+\) \{(?:[^\n]*\}|.*?^\})$\n?", "", liberty, flags=re.M | re.S)
+
+
 @dataclasses.dataclass(frozen=True)
 class Library:
     """A standard-cell library of Debian's qflow-tech packages."""
@@ -61,8 +66,16 @@ class Library:
 
     @property
     def liberty(self) -> pathlib.Path:
-        """The timing tables; raises MissingTool where the package is absent."""
-        return self._file("lib")
+        """The timing tables of all cells but the pads, which ABC would take for strong buffers;
+        raises MissingTool where the package is absent."""
+        text = without_pads(self._file("lib").read_text())
+        kept = store.OUT / f"{self.name}.lib"
+        if not kept.exists() or kept.read_text() != text:
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            written = kept.with_suffix(f".{os.getpid()}")  # readers see the whole file or none
+            written.write_text(text)
+            written.replace(kept)
+        return kept
 
     @property
     def models(self) -> pathlib.Path:

@@ -2,7 +2,7 @@
 
 import unittest
 
-from synth import fpga, mapping, netlists, tools
+from synth import catalogue, fpga, mapping, netlists, tools
 from synth.catalogue import Design
 
 OPENSTA = """\
@@ -20,6 +20,17 @@ OPENSTA = """\
                   -0.09  999.91   library setup time
                          999.91   data required time
 """
+
+
+class Pads(unittest.TestCase):
+    """catalogue.without_pads."""
+
+    def test_without_pads(self):
+        """Pads of several lines and of one go; what is around them stays."""
+        pads = "cell (PADINC) {\n  pin(DI) {\n  }\n}\ncell (PADFC) { area : 1; }\n"
+        gate = "cell (INVX1) {\n  area : 64;\n}\n"
+        self.assertEqual(catalogue.without_pads(f"library (x) {{\n{gate}{pads}{gate}}}\n"),
+                         f"library (x) {{\n{gate}{gate}}}\n")
 
 
 class Parsing(unittest.TestCase):

@@ -37,8 +37,9 @@ def synthesise(variants: list[dict], workers: int) -> tuple[list[dict], list[str
     rows = {}
     for variant in variants:
         parameters = {"ExpWidth": variant["exponent_bits"], "FracWidth": variant["digits"] - 1,
-                      "QuotientBits": variant["quotient_digits"]}
-        usual = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0}
+                      "QuotientBits": variant["quotient_digits"],
+                      "RoundingMode": variant["rounding"]}
+        usual = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0}
         changed = {name: value for name, value in parameters.items() if value != usual[name]}
         if variant["hardware"]:
             design = catalogue.design(UNITS[variant["unit"]], **changed)
@@ -55,12 +56,14 @@ def _number(record: dict, name: str, default: int) -> int:
 
 
 def _find(records: list[dict], top: str, variant: dict, flow: str) -> dict | None:
+    divides = top in ("fp_divider", UNITS["serial"])
     for record in records:
         if (record.get("top") == top and record.get("target") == LIBRARY
                 and record.get("flow") == flow and "area" in record
                 and _number(record, "ExpWidth", 8) == variant["exponent_bits"]
                 and _number(record, "FracWidth", 23) == variant["digits"] - 1
-                and _number(record, "QuotientBits", 0) in (0, variant["quotient_digits"])
+                and _number(record, "QuotientBits", 0) == divides * variant["quotient_digits"]
+                and (top in CORES or _number(record, "RoundingMode", 0) == variant["rounding"])
                 and _number(record, "Adder", 2) == 2):
             return record
     return None

@@ -59,10 +59,14 @@ def _annotate(axes: plt.Axes, points: list[dict], drawn: list[tuple[float, float
                 break
         else:
             groups.append([i])
+    middle = axes.bbox.x0 + 0.7 * axes.bbox.width  # beyond it, names stand to the left
     for group in groups:
-        right = max(group, key=lambda i: places[i][0])
-        axes.annotate("\n".join(points[i]["name"] for i in group), drawn[right], fontsize=7,
-                      textcoords="offset points", xytext=(6, 3), va="top" if len(group) > 1 else "bottom")
+        leftwards = max(places[i][0] for i in group) > middle
+        end = (min if leftwards else max)(group, key=lambda i: places[i][0])
+        axes.annotate("\n".join(points[i]["name"] for i in group), drawn[end], fontsize=7,
+                      textcoords="offset points", xytext=(-6 if leftwards else 6, 3),
+                      ha="right" if leftwards else "left",
+                      va="top" if len(group) > 1 else "bottom")
 
 
 def scaling(series: dict[str, list[tuple[float, float]]], xlabel: str, ylabel: str, title: str,
