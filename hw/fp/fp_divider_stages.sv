@@ -238,10 +238,12 @@ module fp_divider_stages #(
     assign significand = {quotient, {(RoundSigWidth - QuotientWidth - 1) {1'b0}}, remainder};
   end else begin : gen_cut_off
     // Not made from '1, which Yosys 0.23 takes for a single bit here.
-    localparam logic [QuotientWidth-1:0] KeepFrom2 =
-        {{QuotientBits{1'b1}}, {(QuotientWidth - QuotientBits) {1'b0}}};
-    localparam logic [QuotientWidth-1:0] KeepFrom1 =
-        {{(QuotientBits + 1) {1'b1}}, {(QuotientWidth - 1 - QuotientBits) {1'b0}}};
+    localparam logic [QuotientWidth-1:0] KeepFrom2 = {
+      {QuotientBits{1'b1}}, {(QuotientWidth - QuotientBits) {1'b0}}
+    };
+    localparam logic [QuotientWidth-1:0] KeepFrom1 = {
+      {(QuotientBits + 1) {1'b1}}, {(QuotientWidth - 1 - QuotientBits) {1'b0}}
+    };
     logic unused_remainder;
     assign unused_remainder = remainder;
     assign significand = {quotient & (quotient[QuotientWidth-1] ? KeepFrom2 : KeepFrom1),
