@@ -4,10 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #include "host/hit/exact.h"
-#include "host/lanes.h"
+#include "host/hit/float_quad.h"
 
 // Why a sure answer is right
 //
@@ -62,11 +61,6 @@
 
 namespace raygate {
 
-/// Four triangles at a time: one SSE register of floats.
-inline constexpr int kQuad = 4;
-using FloatQuad = float __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
-using IntQuad = std::int32_t __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
-
 /// A ray, made ready to be tested against triangles one quad after the other.
 struct ShearedRay {
   int axes[3];        ///< x, y, z of the shear: the ray goes farthest along the last one
@@ -98,16 +92,6 @@ struct QuadVerdict {
   FloatQuad low, high;
 };
 
-RAYGATE_INLINE LaneMask sign_mask(const IntQuad& lanes) {
-#if defined(__SSE__)
-  return static_cast<LaneMask>(_mm_movemask_ps(reinterpret_cast<__m128>(lanes)));
-#else
-  LaneMask mask = 0;
-  for (int i = 0; i < kQuad; ++i) mask |= static_cast<LaneMask>(lanes[i] < 0) << i;
-  return mask;
-#endif
-}
-
 /// Tests 1 to 4 triangles. Coordinate k of corner v of triangle i is corners[(3 v + k) count + i];
 /// whatever comes after the last one must be readable up to corners[8 count + 3].
 RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
@@ -117,14 +101,10 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
   const std::ptrdiff_t stride = count;
   FloatQuad x[3], y[3], z[3];
   FloatQuad sum = {}, farthest = {};
-  const auto magnitude = [](const FloatQuad& v, FloatQuad& size) __attribute__((always_inline)) {
-    size = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(v) & 0x7FFFFFFF);
-  };
   for (int v = 0; v < 3; ++v) {
-    const float* const corner = corners + stride * (3 * v);
-    std::memcpy(&x[v], corner + ray.axes[0] * stride, sizeof x[v]);
-    std::memcpy(&y[v], corner + ray.axes[1] * stride, sizeof y[v]);
-    std::memcpy(&z[v], corner + ray.axes[2] * stride, sizeof z[v]);
+    load_quad(corners + stride * (3 * v + ray.axes[0]), x[v]);
+    load_quad(corners + stride * (3 * v + ray.axes[1]), y[v]);
+    load_quad(corners + stride * (3 * v + ray.axes[2]), z[v]);
     z[v] = z[v] - ray.origin[2];
     x[v] = (x[v] - ray.origin[0]) - ray.shear[0] * z[v];
     y[v] = (y[v] - ray.origin[1]) - ray.shear[1] * z[v];

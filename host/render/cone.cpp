@@ -4,34 +4,21 @@
 #include <bit>
 
 #include "host/hit/exact.h"
+#include "host/render/lane_math.h"
 
 namespace raygate {
 namespace {
 
 constexpr int kGroups = RayBlock::kGroups;
 
-RAYGATE_INLINE void magnitude(const FloatLanes& x, FloatLanes& result) {
-  result = reinterpret_cast<FloatLanes>(reinterpret_cast<IntLanes>(x) & 0x7FFFFFFF);
-}
-
-RAYGATE_INLINE float largest_of(const FloatLanes& lanes) {
-  FloatLanes x = lanes, other = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
-  x = x > other ? x : other;
-  other = __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
-  x = x > other ? x : other;
-  other = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
-  x = x > other ? x : other;
-  return x[0];
-}
-
 /// The axis along which the active rays go farthest, by the one that goes least; -1 where that is
 /// less than 1/4 on every axis.
 RAYGATE_INLINE int pace_axis(const RayBlock& block, const LaneMask* active) {
-  constexpr IntLanes kBit = {1, 2, 4, 8, 16, 32, 64, 128};
   FloatLanes least[3] = {FloatLanes{} + 4.0f, FloatLanes{} + 4.0f, FloatLanes{} + 4.0f};
   for (int g = 0; g < kGroups; ++g) {
     if (active[g] == 0) continue;
-    const IntLanes taken = ((IntLanes{} + static_cast<std::int32_t>(active[g])) & kBit) != 0;
+    IntLanes taken;
+    lanes_of(active[g], taken);
     for (int k = 0; k < 3; ++k) {
       FloatLanes size;
       magnitude(block.direction[k][g], size);
@@ -59,21 +46,20 @@ RAYGATE_LANES void load_block(std::span<const Ray> rays, RayBlock& block) {
     const std::size_t begin = std::size_t(group) * kLanes;
     const std::size_t count =
         begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
-    alignas(32) float components[3][kLanes] = {};
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      for (int k = 0; k < 3; ++k) components[k][lane] = rays[begin + lane].direction[k];
-    }
+    const Ray* of[kLanes];  // past the end: the last one
+    for (std::size_t i = 0; i < kLanes; ++i) of[i] = &rays[std::min(begin + i, rays.size() - 1)];
     IntLanes unusable = {}, zero = IntLanes{} - 1;
     for (int k = 0; k < 3; ++k) {
-      FloatLanes d;
-      load_lanes(components[k], d);
+      const FloatLanes d = {of[0]->direction[k], of[1]->direction[k], of[2]->direction[k],
+                            of[3]->direction[k], of[4]->direction[k], of[5]->direction[k],
+                            of[6]->direction[k], of[7]->direction[k]};
       block.direction[k][group] = d;
       block.negative[k][group] = sign_mask(d < 0.0f);
       const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;
       unusable |= size >= 0x7F800000;
       zero &= size == 0;
     }
-    LaneMask left = block.usable[group] = 0xFF & ~sign_mask(unusable | zero);
+    LaneMask left = block.usable[group] = ((1u << count) - 1) & ~sign_mask(unusable | zero);
     while (left != 0) {
       const int lane = std::countr_zero(left);
       int octant = 0;
@@ -87,7 +73,6 @@ RAYGATE_LANES void load_block(std::span<const Ray> rays, RayBlock& block) {
 
 RAYGATE_LANES void make_cones(const RayBlock& block, const glm::vec3& origin, int octant,
                               Cones& cones) {
-  constexpr IntLanes kBit = {1, 2, 4, 8, 16, 32, 64, 128};
   // Each rounding of what follows is off by a factor 1 + 2^-24 at most. Components over a pace are
   // below 8, so that two roundings have them off by less than kPaceError.
   constexpr float kPaceError = 0x1p-20f;
@@ -100,7 +85,8 @@ RAYGATE_LANES void make_cones(const RayBlock& block, const glm::vec3& origin, in
     if (active == 0) continue;
     cones.groups |= 1u << g;
     const int low = std::countr_zero(active), high = 31 - std::countl_zero(active);
-    const IntLanes taken = ((IntLanes{} + static_cast<std::int32_t>(active)) & kBit) != 0;
+    IntLanes taken;
+    lanes_of(active, taken);
     FloatLanes pace = FloatLanes{} + 1.0f;
     if (axis >= 0) {
       FloatLanes size;
@@ -120,7 +106,8 @@ RAYGATE_LANES void make_cones(const RayBlock& block, const glm::vec3& origin, in
     }
   }
   cones.whole.octant = octant;
-  const IntLanes present = ((IntLanes{} + static_cast<std::int32_t>(cones.groups)) & kBit) != 0;
+  IntLanes present;
+  lanes_of(cones.groups, present);
   for (int k = 0; k < 3; ++k) {
     FloatLanes size;
     magnitude(cones.center[k], size);

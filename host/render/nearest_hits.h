@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// The nearest hit of a ray so far.
+/// The nearest hit of a ray so far; without one, `slot` alone has a meaning.
 struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -40,7 +40,8 @@ class NearestHits {
   /// (positive; +infinity for none), ray i ends at t = limits[i]: only hits with t < limits[i], in
   /// exact arithmetic, are taken. The span is read until the next reset.
   void reset(std::size_t rays, std::span<const float> limits = {}) {
-    nearest_.assign(rays, {});
+    nearest_.resize(rays);
+    for (NearestHit& hit : nearest_) hit.slot = NearestHit::kNone;
     limits_ = limits;
   }
 

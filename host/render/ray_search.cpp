@@ -71,10 +71,9 @@ namespace {
 
 /// Goes down from an inner node to the leaf that is met first: `child` is either. False where
 /// there is none.
-RAYGATE_INLINE bool go_down(const WideBvh::Node* nodes, RaySearch::Walk& walk,
-                            WideBvh::Child& child) {
+RAYGATE_INLINE bool go_down(const WideBvh& tree, RaySearch::Walk& walk, WideBvh::Child& child) {
   while (child.count == 0) {
-    const WideBvh::Node& node = nodes[child.first];
+    const WideBvh::Node& node = tree.nodes()[child.first];
     FloatLanes entry;
     LaneMask met = meet_children(walk.beam, node, walk.cutoff, entry);
     if (met == 0) return false;
@@ -90,6 +89,7 @@ RAYGATE_INLINE bool go_down(const WideBvh::Node* nodes, RaySearch::Walk& walk,
         walk.waiting[place] = walk.waiting[place - 1];
       }
       walk.waiting[place] = next;
+      tree.prefetch(next.child);
     }
     child = nearest.child;
   }
@@ -106,7 +106,7 @@ RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
   while (walk.count > 0) {
     const Waiting item = walk.waiting[--walk.count];
     WideBvh::Child leaf = item.child;
-    if (item.entry > walk.cutoff || !go_down(tree.nodes().data(), walk, leaf)) continue;
+    if (item.entry > walk.cutoff || !go_down(tree, walk, leaf)) continue;
     QuadVerdict verdict;
     test_quad(walk.sheared, tree.corners_of(leaf), leaf.count, verdict);
     tests += leaf.count;

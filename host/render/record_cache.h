@@ -34,9 +34,6 @@ class RecordCache {
   /// Makes the records that are not there yet. Not while others ask.
   void make_all();
 
-  /// The record of a slot whose leaf was asked for before.
-  [[nodiscard]] const PolygonRecord& made(std::uint32_t slot) const { return records_[slot]; }
-
   /// Records made so far, once no thread is asking.
   [[nodiscard]] std::uint64_t made() const { return made_; }
 

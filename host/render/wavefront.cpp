@@ -51,7 +51,7 @@ bool Wavefront::trace_in_place(std::span<const Ray> rays, const Search& search) 
     ended_early_ += way.ended_early();
   };
   if (search.common != nullptr) {
-    trace_by(ConeSearch(bvh_, *search.common, nearest_, *counters));
+    trace_by(ConeSearch(bvh_, search.common->origin(), nearest_, *counters));
   } else {
     trace_by(RaySearch(bvh_, nearest_, *counters));
   }

@@ -19,7 +19,8 @@ namespace raygate {
 struct Search {
   /// Where all rays begin at its origin, its records are used. Otherwise records are made for the
   /// leaf that a ray comes to, once for those rays of a packet that have one origin. Changes
-  /// nothing of what is found.
+  /// nothing of what is found. A tester that lets its caller test in place needs no records; rays
+  /// of one origin then go as cones (ConeSearch), others one by one (RaySearch).
   RecordCache* common = nullptr;
   /// One a ray, positive: only hits with t < limits[i] count (see NearestHits::reset).
   std::span<const float> limits{};

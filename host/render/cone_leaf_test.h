@@ -1,0 +1,94 @@
+// A cone walk's tests at a leaf: one triangle against eight rays at a time.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "host/hit/quad_record.h"
+#include "host/render/cone_walk.h"
+
+// Why a group is never wrongly spared a triangle
+//
+// Let F be an edge's words, E the exact edge, b its bound, L and u as in quad_record.h, C the
+// group's middle and R its radius, I one of its rays over its pace; components are below 8. As it
+// has there for components below 2, float32(C . F) is off C . E by less than 8 (4 + 3.001) u L +
+// 2^-143 < 3.9 b, and b >= kQuadBound u L. And |I . E - C . E| <= R |E|_1 <= R L (1 + 4 u). So
+// where float32(C . F) < -b (4.1 + R / (kQuadBound u)), I . E < 0 for all the group's rays: the
+// edge has them all on its wrong side, and all miss. `slack`, the factor of b, is rounded up by
+// 2^-20 of itself, which covers the roundings of slack and of the product.
+
+namespace raygate {
+
+/// I . E for eight directions.
+RAYGATE_INLINE void side_of(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
+                            const float (&words)[3][kQuad], int triangle, FloatLanes& side) {
+  side = (x * words[0][triangle] + y * words[1][triangle]) + z * words[2][triangle];
+}
+
+/// The least of the three.
+RAYGATE_INLINE void worst_side_of(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
+                                  const QuadRecord& record, int triangle, FloatLanes& worst) {
+  FloatLanes side;
+  side_of(x, y, z, record.edges[0], triangle, worst);
+  side_of(x, y, z, record.edges[1], triangle, side);
+  worst = side < worst ? side : worst;
+  side_of(x, y, z, record.edges[2], triangle, side);
+  worst = side < worst ? side : worst;
+}
+
+/// A factor of bounds for cones of these radii.
+RAYGATE_INLINE void slack_of(const FloatLanes (&radius)[3], FloatLanes& slack) {
+  FloatLanes largest = radius[0] > radius[1] ? radius[0] : radius[1];
+  largest = largest > radius[2] ? largest : radius[2];
+  slack = static_cast<float>(1.0 + 0x1p-20) *
+          (4.1f + largest * static_cast<float>(1.0 / (kQuadBound * 0x1p-24)));
+}
+
+/// The groups among these with rays that may hit the triangle.
+RAYGATE_INLINE LaneMask groups_near(const ConeWalk& walk, const QuadRecord& record, int triangle,
+                                    LaneMask groups) {
+  if (!several(groups)) return groups;
+  const FloatLanes(&center)[3] = walk.cones.center;
+  FloatLanes worst;
+  worst_side_of(center[0], center[1], center[2], record, triangle, worst);
+  return groups & ~sign_mask(worst < -(record.bounds[triangle] * walk.slack));
+}
+
+/// What float32 says about a group's rays and a triangle.
+struct GroupVerdict {
+  LaneMask hit;        ///< surely hit, ahead of the origin
+  LaneMask open;       ///< that, or in doubt
+  IntLanes low, high;  ///< of sure hits: bounds of t, as the bits of floats
+};
+
+RAYGATE_INLINE void test_group(const ConeWalk& walk, const QuadRecord& record, int triangle,
+                               int group, LaneMask tested, GroupVerdict& verdict) {
+  const RayBlock& block = *walk.block;
+  const FloatLanes &x = block.direction[0][group], &y = block.direction[1][group],
+                   &z = block.direction[2][group];
+  FloatLanes worst;
+  worst_side_of(x, y, z, record, triangle, worst);
+  const float bound = record.bounds[triangle];
+  verdict.open = tested & ~sign_mask(worst < -bound);
+  verdict.hit = 0;
+  if (verdict.open == 0) return;
+  verdict.hit = verdict.open & sign_mask(worst > bound);
+  // |d| and I . N are positive, whatever float32 makes of the latter. Four roundings each; a
+  // quotient that underflows is somewhere between 0 and the smallest normal float.
+  constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
+  constexpr float kSmallest = std::numeric_limits<float>::min();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  FloatLanes v;
+  side_of(x, y, z, record.normal, triangle, v);
+  const FloatLanes least = v - record.normal_bound[triangle];
+  const FloatLanes most = v + record.normal_bound[triangle];
+  FloatLanes low = kDown * record.low[triangle] / most;
+  FloatLanes high = kUp * record.high[triangle] / least;
+  low = low > kSmallest ? low : FloatLanes{};
+  high = high > kSmallest ? high : FloatLanes{} + kSmallest;
+  high = least > 0.0f ? high : FloatLanes{} + kInfinity;
+  verdict.low = reinterpret_cast<IntLanes>(low);
+  verdict.high = reinterpret_cast<IntLanes>(high);
+}
+
+}  // namespace raygate
