@@ -95,7 +95,8 @@ module hit_test_pipeline #(
   // ---- Scale: all that a coordinate of I is multiplied by, and d for the point
 
   localparam int unsigned ScaledWords = 5;  // of N, E0, E1, E2 a component each; d
-  logic [ScaledWords*Width-1:0] scaled[3];
+  localparam int unsigned ScaledWidth = ScaledWords * Width;
+  logic [3*ScaledWidth-1:0] scaled;  // not an array: Yosys 0.23 takes one for a memory here
 
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
     scaler #(
@@ -113,7 +114,7 @@ module hit_test_pipeline #(
                 record_q[Width*(hit_test_pkg::RecordEdges+k) +: Width],
                 record_q[Width*(hit_test_pkg::RecordNormal+k) +: Width]}),
       .factor_i(direction_q[Width*k +: Width]),
-      .products_o(scaled[k])
+      .products_o(scaled[ScaledWidth*k +: ScaledWidth])
     );
   end
 
@@ -130,9 +131,9 @@ module hit_test_pipeline #(
     ) u_sum (
       .clk_i,
       .enable_i(advance),
-      .x_i(scaled[0][Width*n +: Width]),
-      .y_i(scaled[1][Width*n +: Width]),
-      .z_i(scaled[2][Width*n +: Width]),
+      .x_i(scaled[Width*n +: Width]),
+      .y_i(scaled[ScaledWidth+Width*n +: Width]),
+      .z_i(scaled[2*ScaledWidth+Width*n +: Width]),
       .sum_o(dots[Width*n +: Width])
     );
   end
@@ -169,8 +170,8 @@ module hit_test_pipeline #(
   ) u_dividends (
     .clk_i,
     .enable_i(advance),
-    .data_i({scaled[2][4*Width +: Width], scaled[1][4*Width +: Width],
-             scaled[0][4*Width +: Width]}),
+    .data_i({scaled[2*ScaledWidth+4*Width +: Width], scaled[ScaledWidth+4*Width +: Width],
+             scaled[4*Width +: Width]}),
     .data_o(dot_dividends)
   );
 

@@ -45,7 +45,7 @@ def costs(file: pathlib.Path | None) -> dict[str, tuple[str, str]]:
           for row in json.loads(file.read_text())["results"]}
     known = {}
     for kind, suffixes in SUFFIXES.items():
-        cores = [at.get((core + suffix, "osu035", "small"))
+        cores = [at.get((core + suffix, "osu035", "area"))
                  for core, suffix in zip(CORES, suffixes, strict=True)]
         if all(cores):
             known[kind] = (f"{sum(core['area'] for core in cores):,}",
@@ -143,8 +143,8 @@ Broken claims (rays from inside that are not): {sum(s["broken_claims"] for s in 
 ### Variants
 
 {variants_table(run, known)}
-Area and delay: multiplier, adder and divider of that significand, OSU 0.35 um{synthesis}. A test takes
-7 clocks in the paper's unit and 1 in the pipelined one, whatever the width.
+Area and delay: multiplier, adder and divider of that significand, OSU 0.35 um, flow `area`{synthesis};
+of truncate, cores that can do nothing else. A test takes 7 clocks in the paper's unit and 1 in the pipelined one, whatever the width.
 
 {about}
 
