@@ -63,7 +63,7 @@ class Lights {
 
   /// A point of an area light, uniform in area, for a point of the unit square.
   [[nodiscard]] LightPoint sample(const AreaLight& light, const glm::dvec2& u) const;
-  /// The middle of a flat light, as a sample. Its slot is one of the light's.
+  /// The middle of a flat light, or very near, as a sample. Its slot is one of the light's.
   [[nodiscard]] static LightPoint middle(const AreaLight& light);
 
   /// Which area light a slot belongs to; nullptr for none.

@@ -12,12 +12,17 @@ bool NearestHits::offer(std::uint32_t number, const Ray& ray, const SureHit& hit
 }
 
 bool NearestHits::offer(std::uint32_t number, const Ray& ray, const Doubt& doubt) {
-  ++counters_.exact_inside;
   const Corners& corners = bvh_.corners_of(doubt.tag);
+  const NearestHit& best = nearest_[number];
   Stopwatch watch;
-  const bool hit = hits_triangle(ray, corners);
+  // Where it is hit, if at all, is asked first: as a rule that takes doubles alone.
+  const Interval t = hit_distance(ray, corners);
+  const bool too_far = (!limits_.empty() && t.low >= limits_[number]) ||
+                       (best.slot != NearestHit::kNone && t.low > best.t.high);
+  counters_.exact_inside += !too_far;
+  const bool hit = !too_far && hits_triangle(ray, corners);
   counters_.seconds += watch.lap();
-  return hit && take_if_nearer(number, ray, {doubt.tag, doubt.point, hit_distance(ray, corners)});
+  return hit && take_if_nearer(number, ray, {doubt.tag, doubt.point, t});
 }
 
 bool NearestHits::is_before(const NearestHit& hit, const Ray& ray, float limit) {

@@ -29,7 +29,7 @@ struct NearestHit {
 class NearestHits {
  public:
   struct Counters {
-    std::uint64_t exact_inside = 0;  ///< doubts about edges settled
+    std::uint64_t exact_inside = 0;  ///< doubts about edges settled: not those surely too far away
     std::uint64_t exact_depth = 0;   ///< pairs of hits, or a hit and a limit, put in order
     double seconds = 0.0;            ///< that both took
   };
@@ -48,7 +48,7 @@ class NearestHits {
   /// Offers a sure hit of ray `number`. True when it is the nearest now.
   bool offer(std::uint32_t number, const Ray& ray, const SureHit& hit);
 
-  /// Offers a doubt. True when it is a hit, and the nearest now.
+  /// Offers a doubt. True when it is a hit, and the nearest now. Asks for its distance first.
   bool offer(std::uint32_t number, const Ray& ray, const Doubt& doubt);
 
   /// Whether the nearest hit of ray `number`, which there must be, has t < limit (positive), in

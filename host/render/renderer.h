@@ -48,7 +48,7 @@ struct RenderStats {
   std::uint64_t common_records = 0;  ///< of these, for origins that many rays share
   SkipCounters skipped;
   HitCounters hit;                 ///< summed over the threads' testers
-  std::uint64_t exact_inside = 0;  ///< doubts about edges that exact arithmetic settled
+  std::uint64_t exact_inside = 0;  ///< doubts about edges settled, where they were not too far away
   std::uint64_t exact_depth = 0;   ///< pairs of hits that exact arithmetic put in order
   double traverse_seconds = 0.0;   ///< boxes, and records of common origins made on first touch
   double record_seconds = 0.0;     ///< records made for rays of their own origins

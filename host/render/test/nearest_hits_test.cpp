@@ -38,7 +38,10 @@ TEST(NearestHits, EveryOrderOfReportsGivesTheSame) {
       ASSERT_EQ(bvh.triangle_of(nearest[0].slot), 2u);
     }
   } while (std::ranges::next_permutation(slots).found);
-  EXPECT_EQ(nearest.counters().exact_inside, 120u * 5u);
+  // No doubt that is surely farther than a hit is settled: of 120 orders, the two nearest always
+  // are, those an ulp behind in the third in which they come before both, the last one where it is
+  // first.
+  EXPECT_EQ(nearest.counters().exact_inside, 2u * 120 + 2u * 40 + 24);
   EXPECT_GT(nearest.counters().exact_depth, 0u);
 }
 
