@@ -96,8 +96,10 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
 def cell_counts(stat: str) -> tuple[int, dict[str, int]]:
     """The area (liberty units) and the number of cells of each type in Yosys's statistics."""
     area = re.search(r"Chip area for (?:top )?module '[^']*': ([\d.]+)", stat)
-    if area is None:
-        raise tools.ToolFailed("Yosys stated no area: a cell is missing from the library")
+    unknown = re.search(r"Area for cell type (\S+) is unknown", stat)
+    if area is None or unknown:
+        raise tools.ToolFailed("Yosys stated no area: the library has no "
+                               f"{unknown.group(1) if unknown else 'such cell'}")
     cells = re.findall(r"^ {5}(\w+) +(\d+)$", stat, re.M)
     return round(float(area.group(1))), {name: int(count) for name, count in cells}
 

@@ -128,12 +128,14 @@ def all_proofs() -> list[Proof]:
         Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "z3",
               lambda: holds("timetable", "z3", unit, steps=30)),
     ]
-    for row in catalogue.report_rows():
+    # The pipelined unit in binary16: Verilator would take an hour for binary32's hundred thousand
+    # cells.
+    narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)
+    rows = [row for row in catalogue.report_rows() if row.design.top != narrow.top]
+    for row in [*rows, catalogue.Row("units", narrow, {"osu035": ("parts",)})]:
         design = row.design
         for library in LIBRARIES:
             for flow in row.flows.get(library.name, ()):
-                if design.top == "hit_test_pipeline":
-                    continue  # a hundred thousand cells: Verilator would take an hour
                 small = row.section == "48-bit adders"
                 proofs.append(Proof(
                     f"netlist.{design.name}.{library.name}.{flow}", "the netlist and its RTL agree",

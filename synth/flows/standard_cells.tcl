@@ -23,6 +23,7 @@ switch $::env(FLOW) {
     yosys opt_expr
     yosys opt_merge
     yosys opt_clean
+    yosys memory
     yosys wreduce
     yosys alumacc
     yosys opt_expr

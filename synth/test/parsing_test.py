@@ -62,11 +62,13 @@ class Parsing(unittest.TestCase):
         self.assertEqual(mapping.ends(report), {"u_adder.a_i[24]": 4.089})
 
     def test_cell_counts(self):
-        """Area and cells of Yosys's statistics; no area is a failure."""
+        """Area and cells of Yosys's statistics; no area, or not of all cells, is a failure."""
         stat = "     FAX1                           48\n\n   Chip area for module '\\top': 23040.0\n"
         self.assertEqual(mapping.cell_counts(stat), (23040, {"FAX1": 48}))
         with self.assertRaises(tools.ToolFailed):
             mapping.cell_counts("     FAX1                           48\n")
+        with self.assertRaises(tools.ToolFailed):
+            mapping.cell_counts(f"   Area for cell type $memrd is unknown!\n{stat}")
 
 
 class Wrappers(unittest.TestCase):
