@@ -1,0 +1,155 @@
+// What is in the pictures: their channels, colours, cameras and names.
+#include <ImfStandardAttributes.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+#include "host/cli/test/render_run.h"
+#include "host/image/test/exr_reader.h"
+
+namespace raygate {
+namespace {
+
+TEST_F(Render, OnlyASceneGivesBothPicturesHere) {
+  const Outcome outcome = render({kCornell});
+  EXPECT_EQ(folder_.list(), (std::vector<std::string>{"cornell.exr", "cornell.png", "stats.json"}));
+  EXPECT_NE(outcome.out.find("wrote   cornell.exr, cornell.png\n"), std::string::npos);
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(Render, ChannelsOnDemand) {
+  render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "plain.exr"});
+  render({kCornell, "--size", "40x30", "--engine", "cpu", "--channels",
+          "P,Albedo,objectId,tests,doubts", "-o", "all.exr"});
+  ExrReader plain(folder_.read("plain.exr")), all(folder_.read("all.exr"));
+  EXPECT_TRUE(plain.read<float>("P.X", Imf::FLOAT).empty());
+  EXPECT_TRUE(plain.read<float>("R", Imf::FLOAT) == all.read<float>("R", Imf::FLOAT));
+  for (const char* name : {"P.X", "P.Y", "P.Z", "Albedo.R", "Albedo.G", "Albedo.B"}) {
+    EXPECT_EQ(all.read<float>(name, Imf::FLOAT).size(), 40u * 30u) << name;
+  }
+  const auto objects = all.read<std::uint32_t>("objectId", Imf::UINT);
+  const std::set<std::uint32_t> seen(objects.begin(), objects.end());
+  EXPECT_GE(seen.size(), 6u) << "the box has 8 objects";
+  const auto tests = all.read<std::uint32_t>("tests", Imf::UINT);
+  const auto doubts = all.read<std::uint32_t>("doubts", Imf::UINT);
+  const auto sum = [](const std::vector<std::uint32_t>& values) {
+    return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
+  };
+  EXPECT_EQ(sum(tests), stats_.at("tests"));
+  EXPECT_EQ(sum(doubts), stats_.at("edge_doubts"));
+}
+
+TEST_F(Render, FalseColoursOfAnyChannel) {
+  const Outcome outcome = render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "a.exr",
+                                  "--false-colour", "tests=t.png", "--false-colour",
+                                  "Z:500:2000=z.png", "--false-colour", "objectId=o.png"});
+  EXPECT_EQ(stats_.at("pictures"), (json{"a.exr", "t.png", "z.png", "o.png"}));
+  for (const char* name : {"t.png", "z.png", "o.png"}) {
+    const std::vector<std::uint8_t> pixels = decode_png(folder_.read(name));
+    EXPECT_EQ(pixels.size(), 40u * 30u * 3u);
+    EXPECT_GT(std::set<std::uint8_t>(pixels.begin(), pixels.end()).size(), 5u) << name;
+  }
+  EXPECT_NE(outcome.out.find("scale   tests: 0 (dark violet) to "), std::string::npos);
+  EXPECT_NE(outcome.out.find("scale   Z: 500 (dark violet) to 2000 (yellow)"), std::string::npos);
+}
+
+TEST_F(Render, ExposureChangesThePngAlone) {
+  render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "a"});
+  render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "b", "--exposure", "1"});
+  render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "c", "--tone", "filmic"});
+  EXPECT_TRUE(folder_.read("a.exr") == folder_.read("b.exr"));
+  EXPECT_TRUE(folder_.read("a.exr") == folder_.read("c.exr"));
+  EXPECT_FALSE(decode_png(folder_.read("a.png")) == decode_png(folder_.read("c.png")));
+  const auto before = decode_png(folder_.read("a.png")), after = decode_png(folder_.read("b.png"));
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_GE(after[i], before[i]);
+    EXPECT_TRUE(after[i] > before[i] || before[i] == 0 || before[i] == 255);
+  }
+}
+
+TEST_F(Render, CameraIsTakenInTheFilesCoordinates) {
+  // A square at z = -5, far from the world's origin, seen from 10 in front of it.
+  folder_.write("square.obj",
+                "v 99999 -1 -5\nv 100001 -1 -5\nv 100001 1 -5\nv 99999 1 -5\nf 1 2 3 4\n");
+  render({"square.obj", "--size", "9x9", "--engine", "cpu", "--camera", "100000,0,5,100000,0,0,20",
+          "-o", "a.exr"});
+  ExrReader reader(folder_.read("a.exr"));
+  const std::vector<float> depth = reader.read<float>("Z", Imf::FLOAT);
+  ASSERT_EQ(depth.size(), 81u);
+  EXPECT_EQ(depth[40], 10.0f);
+  EXPECT_EQ(reader.read<float>("N.Z", Imf::FLOAT)[40], 1.0f);
+  // OpenEXR's camera looks along +z: the square's centre is at (0, 0, 10).
+  ASSERT_TRUE(Imf::hasWorldToCamera(reader.header()));
+  const Imath::V3f seen = Imath::V3f(100000, 0, -5) * Imf::worldToCamera(reader.header());
+  EXPECT_EQ(seen, Imath::V3f(0, 0, 10));
+}
+
+TEST_F(Render, LooksStraightDown) {
+  folder_.write("floor.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 4 3 2\n");
+  render(
+      {"floor.obj", "--size", "9x9", "--engine", "cpu", "--camera", "0,3,0,0,0,0", "-o", "a.exr"});
+  EXPECT_EQ(ExrReader(folder_.read("a.exr")).read<float>("Z", Imf::FLOAT)[40], 3.0f);
+}
+
+TEST_F(Render, FinishedPicturesAreNotCalledPartial) {
+  render({kCornell, "--size", "9x9", "--engine", "cpu", "-o", "a"});
+  EXPECT_EQ(ExrReader(folder_.read("a.exr")).text("partial"), "(none)");
+  EXPECT_EQ(folder_.read("a.png").find("Comment"), std::string::npos);
+}
+
+/// Where the camera stands, from the file.
+Imath::V3f eye_of(const std::string& bytes) {
+  const ExrReader reader(bytes);
+  return Imath::V3f(0) * Imf::worldToCamera(reader.header()).inverse();
+}
+
+TEST_F(Render, FramesGoRoundTheTarget) {
+  const Outcome outcome =
+      run_program({.arguments = {kCornell, "--size", "20x15", "--engine", "cpu", "--frames", "4",
+                                 "--camera", "278,273,1300,278,273,280", "-o", "f.exr"},
+                   .folder = folder_.path()});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(folder_.list(),
+            (std::vector<std::string>{"f-0001.exr", "f-0002.exr", "f-0003.exr", "f-0004.exr"}));
+  EXPECT_NE(outcome.out.find("frame 4 of 4: "), std::string::npos);
+  const Imath::V3f eyes[] = {
+      {278, 273, 1300}, {1298, 273, 280}, {278, 273, -740}, {-742, 273, 280}};
+  for (int i = 0; i < 4; ++i) {
+    const Imath::V3f eye = eye_of(folder_.read("f-000" + std::to_string(i + 1) + ".exr"));
+    EXPECT_LT((eye - eyes[i]).length(), 1e-2f) << i;
+  }
+}
+
+constexpr const char* kSquare = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+
+TEST_F(Render, FramesFollowThePathOfTheSceneFile) {
+  folder_.write("s.obj", kSquare);
+  folder_.write("s.json", R"({"camera": {"path": [{"eye": [0, 0, 4], "target": [0, 0, 0]},
+                                                  {"eye": [2, 0, 4], "target": [0, 0, 0]}]}})");
+  const Outcome outcome = run_program(
+      {.arguments = {"s.json", "--size", "8x8", "--engine", "cpu", "--frames", "3", "-o", "f.exr"},
+       .folder = folder_.path()});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (int i = 0; i < 3; ++i) {
+    const Imath::V3f eye = eye_of(folder_.read("f-000" + std::to_string(i + 1) + ".exr"));
+    EXPECT_LT((eye - Imath::V3f(static_cast<float>(i), 0, 4)).length(), 1e-5f) << i;
+  }
+}
+
+TEST_F(Render, TheSceneFileBesideAnObjIsReadWithIt) {
+  folder_.write("s.obj", kSquare);
+  folder_.write("s.json", R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
+                              "render": {"size": "30x20"}})");
+  render({"s.obj", "--engine", "cpu", "-o", "obj"});
+  EXPECT_EQ(stats_.at("width"), 30);
+  render({"s.json", "--engine", "cpu", "-o", "json"});
+  expect_same_pictures("obj", "json");
+  EXPECT_EQ(eye_of(folder_.read("obj.exr")), Imath::V3f(0, 0, 3));
+  render({"s.obj", "--engine", "cpu", "-o", "alone", "--no-scene-file"});
+  EXPECT_EQ(stats_.at("width"), 640);
+}
+
+}  // namespace
+}  // namespace raygate
