@@ -2,6 +2,8 @@
 
 import pathlib
 
+from matplotlib import ticker
+
 from host.bench.matrix import statistics
 from synth.drawing import plt, save
 
@@ -39,6 +41,9 @@ def pareto(points: list[dict], xlabel: str, ylabel: str, title: str,
         axes.axhspan(floor / 1.6, floor * 1.6, color="0.95", zorder=-1)
         axes.annotate("no error", (0.005, floor), xycoords=("axes fraction", "data"), va="center",
                       fontsize=8, color="0.4")
+    axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 1.5, 2, 3, 4, 5, 7)))
+    axes.xaxis.set_major_formatter(ticker.StrMethodFormatter("{x:,g}"))
+    axes.xaxis.set_minor_locator(ticker.NullLocator())
     axes.margins(x=0.12, y=0.1)
     axes.grid(alpha=0.3, which="both", linewidth=0.5)
     axes.legend(fontsize=8)
@@ -60,13 +65,14 @@ def _annotate(axes: plt.Axes, points: list[dict], drawn: list[tuple[float, float
         else:
             groups.append([i])
     middle = axes.bbox.x0 + 0.7 * axes.bbox.width  # beyond it, names stand to the left
+    low = axes.bbox.y0 + 0.3 * axes.bbox.height  # below it, they stack upwards
     for group in groups:
         leftwards = max(places[i][0] for i in group) > middle
         end = (min if leftwards else max)(group, key=lambda i: places[i][0])
         axes.annotate("\n".join(points[i]["name"] for i in group), drawn[end], fontsize=7,
                       textcoords="offset points", xytext=(-6 if leftwards else 6, 3),
                       ha="right" if leftwards else "left",
-                      va="top" if len(group) > 1 else "bottom")
+                      va="top" if len(group) > 1 and places[end][1] > low else "bottom")
 
 
 def scaling(series: dict[str, list[tuple[float, float]]], xlabel: str, ylabel: str, title: str,
