@@ -32,7 +32,7 @@
 namespace raygate {
 
 /// Word i of each belongs to triangle i.
-struct QuadRecord {
+struct alignas(4 * kQuad) QuadRecord {
   float edges[3][3][kQuad];       ///< [edge][axis]: E, of d's sign
   float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each of the edges
   float normal[3][kQuad];         ///< [axis]: N, of d's sign

@@ -1,4 +1,5 @@
-// A cone walk's tests at a leaf: one triangle against eight rays at a time.
+// A cone walk's tests at a leaf: a triangle against eight rays at a time, where most of a group's
+// rays come to it, or a ray against four triangles.
 #pragma once
 
 #include <cstdint>
@@ -54,6 +55,21 @@ RAYGATE_INLINE LaneMask groups_near(const ConeWalk& walk, const QuadRecord& reco
   return groups & ~sign_mask(worst < -(record.bounds[triangle] * walk.slack));
 }
 
+/// From bounds of |d| and of I . N to those of t, which is their quotient. Both are positive,
+/// whatever float32 makes of the latter. Four roundings each; a quotient that underflows is
+/// somewhere between 0 and the smallest normal float.
+template <class Lanes>
+RAYGATE_INLINE void bound_distance(Lanes& low, Lanes& high, const Lanes& least, const Lanes& most) {
+  constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
+  constexpr float kSmallest = std::numeric_limits<float>::min();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  low = kDown * low / most;
+  high = kUp * high / least;
+  low = low > kSmallest ? low : Lanes{};
+  high = high > kSmallest ? high : Lanes{} + kSmallest;
+  high = least > 0.0f ? high : Lanes{} + kInfinity;
+}
+
 /// What float32 says about a group's rays and a triangle.
 struct GroupVerdict {
   LaneMask hit;        ///< surely hit, ahead of the origin
@@ -73,22 +89,57 @@ RAYGATE_INLINE void test_group(const ConeWalk& walk, const QuadRecord& record, i
   verdict.hit = 0;
   if (verdict.open == 0) return;
   verdict.hit = verdict.open & sign_mask(worst > bound);
-  // |d| and I . N are positive, whatever float32 makes of the latter. Four roundings each; a
-  // quotient that underflows is somewhere between 0 and the smallest normal float.
-  constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
-  constexpr float kSmallest = std::numeric_limits<float>::min();
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  FloatLanes v;
+  FloatLanes v, low = FloatLanes{} + record.low[triangle],
+                high = FloatLanes{} + record.high[triangle];
   side_of(x, y, z, record.normal, triangle, v);
-  const FloatLanes least = v - record.normal_bound[triangle];
-  const FloatLanes most = v + record.normal_bound[triangle];
-  FloatLanes low = kDown * record.low[triangle] / most;
-  FloatLanes high = kUp * record.high[triangle] / least;
-  low = low > kSmallest ? low : FloatLanes{};
-  high = high > kSmallest ? high : FloatLanes{} + kSmallest;
-  high = least > 0.0f ? high : FloatLanes{} + kInfinity;
+  const float v_bound = record.normal_bound[triangle];
+  bound_distance(low, high, v - v_bound, v + v_bound);
   verdict.low = reinterpret_cast<IntLanes>(low);
   verdict.high = reinterpret_cast<IntLanes>(high);
+}
+
+/// Whether few enough of the groups' rays come to a leaf for tests ray by ray to be the faster.
+RAYGATE_INLINE bool is_sparse(std::uint64_t rays, LaneMask groups, std::uint32_t triangles) {
+  return static_cast<std::uint32_t>(std::popcount(rays)) <
+         2 * static_cast<std::uint32_t>(std::popcount(groups)) * triangles;
+}
+
+/// As test_group, for one ray and the triangles that are there: lanes stand for these.
+struct RayVerdict {
+  LaneMask hit, open;
+  FloatQuad low, high;
+};
+
+RAYGATE_INLINE void side_of(const float (&direction)[3], const float (&words)[3][kQuad],
+                            FloatQuad& side) {
+  FloatQuad w[3];
+  for (int k = 0; k < 3; ++k) load_quad(words[k], w[k]);
+  side = (direction[0] * w[0] + direction[1] * w[1]) + direction[2] * w[2];
+}
+
+RAYGATE_INLINE void test_ray(const ConeWalk& walk, const QuadRecord& record, int group, int lane,
+                             LaneMask there, RayVerdict& verdict) {
+  const auto& from = walk.block->direction;
+  const float direction[3] = {from[0][group][lane], from[1][group][lane], from[2][group][lane]};
+  FloatQuad worst, side, bound;
+  side_of(direction, record.edges[0], worst);
+  side_of(direction, record.edges[1], side);
+  worst = side < worst ? side : worst;
+  side_of(direction, record.edges[2], side);
+  worst = side < worst ? side : worst;
+  load_quad(record.bounds, bound);
+  verdict.open = there & ~sign_mask(worst < -bound);
+  verdict.hit = 0;
+  if (verdict.open == 0) return;
+  verdict.hit = verdict.open & sign_mask(worst > bound);
+  FloatQuad v, v_bound, low, high;
+  side_of(direction, record.normal, v);
+  load_quad(record.normal_bound, v_bound);
+  load_quad(record.low, low);
+  load_quad(record.high, high);
+  bound_distance(low, high, v - v_bound, v + v_bound);
+  verdict.low = low;
+  verdict.high = high;
 }
 
 }  // namespace raygate

@@ -62,13 +62,86 @@ RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
   walk.stack[walk.depth++] = {{0, 0}, 0.0f, walk.going};
 }
 
+/// Tests a leaf's triangles that are there against the rays, a triangle and a group at a time. Sets
+/// the bits of the groups whose nearest hits change.
+RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& record,
+                                            const WideBvh::Child& leaf, LaneMask there,
+                                            std::uint64_t rays, LaneMask& changed) {
+  const bool ignoring = !wishes_.ignored.empty();
+  for (; there != 0; there &= there - 1) {
+    const int i = std::countr_zero(there);
+    const auto slot = static_cast<std::int32_t>(leaf.first) + i;
+    LaneMask left = groups_near(walk, record, i, groups_of(rays));
+    for (; left != 0; left &= left - 1) {
+      const int g = std::countr_zero(left);
+      const LaneMask tested = rays_of(rays, g);
+      GroupVerdict verdict;
+      test_group(walk, record, i, g, tested, verdict);
+      counters_.tests += static_cast<std::uint64_t>(std::popcount(tested));
+      if (verdict.open == 0) continue;
+      counters_.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+      counters_.edge_doubts +=
+          static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
+      if (ignoring) verdict.open &= ~sign_mask(walk.ignored[g] == slot);
+      const LaneMask sure = verdict.open & verdict.hit;
+      const LaneMask nearer = sure & sign_mask(verdict.high < walk.low[g]);
+      if (nearer != 0) {
+        IntLanes take;
+        lanes_of(nearer, take);
+        walk.low[g] = take ? verdict.low : walk.low[g];
+        walk.high[g] = take ? verdict.high : walk.high[g];
+        walk.slot[g] = take ? IntLanes{} + slot : walk.slot[g];
+        changed |= 1u << g;
+      }
+      LaneMask open = verdict.open & ~nearer & ~(sure & sign_mask(verdict.low > walk.high[g]));
+      for (; open != 0; open &= open - 1) {
+        const int lane = std::countr_zero(open);
+        const Interval t = {float_of(verdict.low[lane]), float_of(verdict.high[lane])};
+        if (settle(walk, g, lane, slot, (sure >> lane & 1) != 0 ? &t : nullptr)) {
+          changed |= 1u << g;
+        }
+      }
+    }
+  }
+}
+
+/// The same, a ray at a time.
+RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& record,
+                                          const WideBvh::Child& leaf, LaneMask there,
+                                          std::uint64_t rays, LaneMask& changed) {
+  const bool ignoring = !wishes_.ignored.empty();
+  counters_.tests += static_cast<std::uint64_t>(std::popcount(rays) * std::popcount(there));
+  for (; rays != 0; rays &= rays - 1) {
+    const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
+    RayVerdict verdict;
+    test_ray(walk, record, g, lane, there, verdict);
+    if (verdict.open == 0) continue;
+    counters_.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+    counters_.edge_doubts += static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
+    for (LaneMask open = verdict.open; open != 0; open &= open - 1) {
+      const int i = std::countr_zero(open);
+      const auto slot = static_cast<std::int32_t>(leaf.first) + i;
+      if (ignoring && walk.ignored[g][lane] == slot) continue;
+      const bool sure = (verdict.hit >> i & 1) != 0;
+      const Interval t = {verdict.low[i], verdict.high[i]};
+      if (sure && t.low > float_of(walk.high[g][lane])) continue;
+      if (sure && t.high < float_of(walk.low[g][lane])) {
+        walk.low[g][lane] = bits_of(verdict.low[i]);
+        walk.high[g][lane] = bits_of(verdict.high[i]);
+        walk.slot[g][lane] = slot;
+      } else if (!settle(walk, g, lane, slot, sure ? &t : nullptr)) {
+        continue;
+      }
+      changed |= 1u << g;
+    }
+  }
+}
+
 /// Walks the tree, near before far, and tests what is there.
 RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
   const WideBvh& tree = search.bvh_.wide();
-  const bool ignoring = !search.wishes_.ignored.empty();
   const bool ending = !search.wishes_.enough_before.empty();
   Cones& cones = walk.cones;
-  std::uint64_t tests = 0, hits = 0, doubts = 0;
   while (walk.depth > 0 && walk.going != 0) {
     const ConeWalk::Waiting item = walk.stack[--walk.depth];
     if (item.entry > walk.cutoff) continue;
@@ -85,38 +158,10 @@ RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
     LaneMask there = (1u << item.child.count) - 1;
     if (record.unsure != 0) search.settle_sides(item.child, record, there);
     LaneMask changed = 0;
-    for (; there != 0; there &= there - 1) {
-      const int i = std::countr_zero(there);
-      const auto slot = static_cast<std::int32_t>(item.child.first) + i;
-      for (LaneMask left = groups_near(walk, record, i, groups); left != 0; left &= left - 1) {
-        const int g = std::countr_zero(left);
-        const LaneMask tested = rays_of(rays, g) & cones.active[g];
-        GroupVerdict verdict;
-        test_group(walk, record, i, g, tested, verdict);
-        tests += std::popcount(tested);
-        if (verdict.open == 0) continue;
-        hits += std::popcount(verdict.hit);
-        doubts += std::popcount(verdict.open & ~verdict.hit);
-        if (ignoring) verdict.open &= ~sign_mask(walk.ignored[g] == slot);
-        const LaneMask sure = verdict.open & verdict.hit;
-        const LaneMask nearer = sure & sign_mask(verdict.high < walk.low[g]);
-        if (nearer != 0) {
-          IntLanes take;
-          lanes_of(nearer, take);
-          walk.low[g] = take ? verdict.low : walk.low[g];
-          walk.high[g] = take ? verdict.high : walk.high[g];
-          walk.slot[g] = take ? IntLanes{} + slot : walk.slot[g];
-          changed |= 1u << g;
-        }
-        LaneMask open = verdict.open & ~nearer & ~(sure & sign_mask(verdict.low > walk.high[g]));
-        for (; open != 0; open &= open - 1) {
-          const int lane = std::countr_zero(open);
-          const Interval t = {float_of(verdict.low[lane]), float_of(verdict.high[lane])};
-          if (search.settle(walk, g, lane, slot, (sure >> lane & 1) != 0 ? &t : nullptr)) {
-            changed |= 1u << g;
-          }
-        }
-      }
+    if (is_sparse(rays, groups, item.child.count)) {
+      search.test_rays(walk, record, item.child, there, rays, changed);
+    } else {
+      search.test_groups(walk, record, item.child, there, rays, changed);
     }
     if (changed == 0) continue;
     for (; changed != 0; changed &= changed - 1) {
@@ -131,16 +176,12 @@ RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
     }
     walk.cutoff = largest_of(cones.beams.cutoff);
   }
-  search.counters_.tests += tests;
-  search.counters_.unit_tests += tests;
-  search.counters_.hits += hits;
-  search.counters_.edge_doubts += doubts;
-  search.counters_.misses += tests - hits - doubts;
 }
 
 void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
   rays_ = rays;
   wishes_ = wishes;
+  const HitCounters before = counters_;
   RayBlock block;
   ConeWalk walk;
   walk.block = &block;
@@ -159,6 +200,10 @@ void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
       finish(walk, walk.cones.groups);
     }
   }
+  const std::uint64_t tests = counters_.tests - before.tests;
+  counters_.unit_tests += tests;
+  counters_.misses +=
+      tests - (counters_.hits - before.hits) - (counters_.edge_doubts - before.edge_doubts);
 }
 
 /// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it

@@ -43,6 +43,10 @@ class ConeSearch {
   friend void walk_tree(ConeSearch& search, ConeWalk& walk);
   friend void put_points(ConeSearch& search, const ConeWalk& walk);
 
+  void test_groups(ConeWalk& walk, const QuadRecord& record, const WideBvh::Child& leaf,
+                   LaneMask there, std::uint64_t rays, LaneMask& changed);
+  void test_rays(ConeWalk& walk, const QuadRecord& record, const WideBvh::Child& leaf,
+                 LaneMask there, std::uint64_t rays, LaneMask& changed);
   void settle_sides(const WideBvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
   bool settle(ConeWalk& walk, int group, int lane, std::int32_t slot, const Interval* sure);
   void finish(const ConeWalk& walk, LaneMask groups);

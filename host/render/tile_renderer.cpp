@@ -9,11 +9,24 @@
 namespace raygate {
 namespace {
 
-// Pixels of a packet: rays close together, for the boxes to agree about.
+// Pixels of a packet, and of the cones around eight of them: rays close together, for the boxes to
+// agree about.
 constexpr int kBlockWidth = 4, kBlockHeight = kLanes / kBlockWidth;
+constexpr int kSquare = 8;
 constexpr std::uint32_t kFilterStream = 0;
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 constexpr double kBrightest = std::numeric_limits<float>::max();
+
+/// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
+/// smaller.
+template <class Visit>
+void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit) {
+  for (int y = rect.y0; y < rect.y1; y += height) {
+    for (int x = rect.x0; x < rect.x1; x += width) {
+      visit(PixelRect{x, y, std::min(x + width, rect.x1), std::min(y + height, rect.y1)});
+    }
+  }
+}
 
 }  // namespace
 
@@ -38,20 +51,19 @@ TileRenderer::TileRenderer(const RenderJob& job, HitTester& tester, Film& film, 
                                    integrator_->shadows_through_refraction());
 }
 
-/// Block by block, so that the wavefront's packets are blocks.
+/// Square by square, and in them block by block: the wavefront's packets are blocks, its cones
+/// squares.
 void TileRenderer::list_pixels(const PixelRect& tile) {
   pixels_.clear();
-  for (int block_y = tile.y0; block_y < tile.y1; block_y += kBlockHeight) {
-    for (int block_x = tile.x0; block_x < tile.x1; block_x += kBlockWidth) {
-      for (int y = block_y; y < std::min(block_y + kBlockHeight, tile.y1); ++y) {
-        for (int x = block_x; x < std::min(block_x + kBlockWidth, tile.x1); ++x) {
-          pixels_.push_back({x, y,
-                             std::size_t(y - film_.window.y0) * film_.window.width() +
-                                 std::size_t(x - film_.window.x0)});
-        }
-      }
-    }
-  }
+  for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
+    for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
+      for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
+        pixels_.push_back({pixel.x0, pixel.y0,
+                           std::size_t(pixel.y0 - film_.window.y0) * film_.window.width() +
+                               std::size_t(pixel.x0 - film_.window.x0)});
+      });
+    });
+  });
 }
 
 /// With one sample a pixel its ray goes through the pixel's middle.

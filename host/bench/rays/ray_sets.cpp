@@ -30,10 +30,12 @@ RaySet primary_rays(const Scene& scene, int size) {
   const Camera camera = Camera::frame(scene, 1.0);
   RaySet set{"primary", {}, true, {}, false};
   for_blocks({0, 0, size, size}, 128, 128, [&](const PixelRect& tile) {
-    for_blocks(tile, 4, 2, [&](const PixelRect& block) {
-      for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
-        set.rays.push_back(
-            {camera.eye(), camera.direction((pixel.x0 + 0.5) / size, (pixel.y0 + 0.5) / size)});
+    for_blocks(tile, 8, 8, [&](const PixelRect& square) {
+      for_blocks(square, 4, 2, [&](const PixelRect& block) {
+        for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
+          set.rays.push_back(
+              {camera.eye(), camera.direction((pixel.x0 + 0.5) / size, (pixel.y0 + 0.5) / size)});
+        });
       });
     });
   });

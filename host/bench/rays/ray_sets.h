@@ -6,7 +6,7 @@
 namespace raygate::rays {
 
 /// The camera's rays through the centres of size x size pixels, the whole scene in view: tiles of
-/// 128 x 128 pixels, in them blocks of 4 x 2, as the renderer has them.
+/// 128 x 128 pixels, in them squares of 8 x 8, in them blocks of 4 x 2, as the renderer has them.
 [[nodiscard]] RaySet primary_rays(const Scene& scene, int size);
 
 /// From a point light, above the eye and to its right, towards each of the points that `primary`
