@@ -37,11 +37,11 @@ RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const WideBvh::Node& node
   return meet_children(one_of(beams, lane, cones.whole), node, beams.cutoff[lane], entry);
 }
 
-/// Puts what the rays meet of a node onto the stack. Where a beam meets more than a few children,
+/// Puts what the rays meet of a node onto the stack. Where a beam meets several children,
 /// those within it are asked one by one: first the groups, then their rays.
 RAYGATE_INLINE void step_through(ConeWalk& walk, const WideBvh& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
-  constexpr int kFew = 2;
+  constexpr int kFew = 1;  // children
   const WideBvh::Node& node = tree.nodes()[index];
   const Cones& cones = walk.cones;
   const Beam& whole = cones.whole;

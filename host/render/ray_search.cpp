@@ -69,29 +69,50 @@ struct RaySearch::Walk {
 
 namespace {
 
+/// A child's number in the place of the last bits of its entry: in the order of entries.
+using Key = std::int32_t;
+constexpr Key kNumber = WideBvh::kWidth - 1;
+
+RAYGATE_INLINE void push(RaySearch::Walk& walk, const WideBvh& tree, const WideBvh::Node& node,
+                         Key key) {
+  const WideBvh::Child& child = node.child[key & kNumber];
+  tree.prefetch(child);
+  walk.waiting[walk.count++] = {child, std::bit_cast<float>(key & ~kNumber)};
+}
+
 /// Goes down from an inner node to the leaf that is met first: `child` is either. False where
 /// there is none.
 RAYGATE_INLINE bool go_down(const WideBvh& tree, RaySearch::Walk& walk, WideBvh::Child& child) {
   while (child.count == 0) {
     const WideBvh::Node& node = tree.nodes()[child.first];
     FloatLanes entry;
+
     LaneMask met = meet_children(walk.beam, node, walk.cutoff, entry);
     if (met == 0) return false;
-    const int first = std::countr_zero(met);
-    Waiting nearest = {node.child[first], entry[first]};
-    const int bottom = walk.count;
-    while ((met &= met - 1) != 0) {
-      const int i = std::countr_zero(met);
-      Waiting next = {node.child[i], entry[i]};
-      if (next.entry < nearest.entry) std::swap(next, nearest);
-      int place = walk.count++;
-      for (; place > bottom && walk.waiting[place - 1].entry < next.entry; --place) {
-        walk.waiting[place] = walk.waiting[place - 1];
+    constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
+    const IntLanes keys = (reinterpret_cast<IntLanes>(entry) & ~kNumber) | kNumbers;
+    Key nearest = keys[std::countr_zero(met)];
+    met &= met - 1;
+    if (met != 0) {
+      Key next = keys[std::countr_zero(met)];
+      met &= met - 1;
+      if (met == 0) {
+        push(walk, tree, node, std::max(nearest, next));
+        nearest = std::min(nearest, next);
+      } else {
+        Key sorted[WideBvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
+        int count = 2;
+        for (; met != 0; met &= met - 1) {
+          next = keys[std::countr_zero(met)];
+          int place = count++;
+          for (; place > 0 && sorted[place - 1] < next; --place) sorted[place] = sorted[place - 1];
+          sorted[place] = next;
+        }
+        nearest = sorted[--count];
+        for (int i = 0; i < count; ++i) push(walk, tree, node, sorted[i]);
       }
-      walk.waiting[place] = next;
-      tree.prefetch(next.child);
     }
-    child = nearest.child;
+    child = node.child[nearest & kNumber];
   }
   return true;
 }
