@@ -4,7 +4,7 @@ SCENE ?= scenes/cornell.obj
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
 
-.PHONY: help verilate render gallery frames test soak lint analyze format clean
+.PHONY: help verilate render gallery frames test soak fuzz lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -29,6 +29,15 @@ test: everything ## build and run all tests, lint among them
 
 soak: everything ## ten million tests of the pipelined unit with each number of lanes
 	@RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
+
+FUZZ_SECONDS ?= 60
+fuzz: ## libFuzzer on the scene loader and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]
+	@$(SETUP) fuzz
+	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DBUILD_TESTING=OFF -DRAYGATE_FUZZ=ON
+	@cmake --build build/fuzz -j $(JOBS) --target obj_fuzz exact_fuzz
+	@mkdir -p build/fuzz/scenes && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/scenes
+	@build/fuzz/obj_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/ build/fuzz/scenes
+	@build/fuzz/exact_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/
 
 lint: everything ## check style and pitfalls of all sources
 	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
