@@ -29,7 +29,8 @@ target_include_directories(verilated SYSTEM PUBLIC
   ${VERILATOR_INCLUDE} ${VERILATOR_INCLUDE}/vltstd)
 target_link_libraries(verilated PUBLIC Threads::Threads)
 # The code is Verilator's: no warnings, no sanitizers, and optimised in every kind of build.
-set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-sanitize=all)
+# (gcc's vectorising of neighbouring statements packs and unpacks more than it gains: sim/README.md.)
+set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-tree-slp-vectorize -fno-sanitize=all)
 target_compile_options(verilated PRIVATE ${RAYGATE_VERILATED_OPTIONS})
 
 # Packages come first, a package after those it uses.

@@ -5,7 +5,8 @@
 // themselves, brings the quotient's 2 x / d in (1, 4) to its place; Rows digits follow.
 //
 // dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs mean
-// nothing). quotient_o: two integer bits and 2 * Rows fraction bits, exact and cut off.
+// nothing). quotient_o: two integer bits and 2 * Rows fraction bits, exact and cut off. beside_i goes
+// along and comes out with its quotient.
 //
 // Pipelined = 0: combinational, all rows in one go. Pipelined = 1: registers behind the first digit,
 // every row, the remainder and the quotient, a division a clock, latency Rows + 3; clocks without
@@ -16,6 +17,7 @@
 module srt_divider_stages #(
   parameter int unsigned Width = 24,  // of both operands
   parameter int unsigned Rows  = 12,
+  parameter int unsigned BesideWidth = 1,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit          Pipelined = 1'b0
 ) (
@@ -24,8 +26,10 @@ module srt_divider_stages #(
   input  logic                valid_i,
   input  logic [Width-1:0]    dividend_i,
   input  logic [Width-1:0]    divisor_i,
+  input  logic [BesideWidth-1:0] beside_i,
   output logic [2*Rows+1:0]   quotient_o,
   output logic                remainder_o,
+  output logic [BesideWidth-1:0] beside_o,
   output logic                valid_o
 );
 
@@ -84,6 +88,7 @@ module srt_divider_stages #(
     localparam int unsigned DigitsWidth = 2 * (r + 1);
     logic [ResWidth-1:0] sum, carry, divisor;
     logic [DigitsWidth-1:0] positives, negatives;
+    logic [BesideWidth-1:0] beside;
 
     if (r == 0) begin : gen_first
       assign negatives = 2'b00;
@@ -97,16 +102,19 @@ module srt_divider_stages #(
             carry <= first_carry;
             divisor <= padded_divisor;
             positives <= digit;
+            beside <= beside_i;
           end
         end
       end else begin : gen_wires
         always_comb divide_first(dividend_doubled, padded_divisor, sum, carry, positives);
         assign divisor = padded_divisor;
+        assign beside = beside_i;
       end
     end else begin : gen_next
       srt_row #(
         .Width(ResWidth),
         .DigitsWidth(DigitsWidth - 2),
+        .BesideWidth(BesideWidth),
         .Adder(Adder),
         .Pipelined(Pipelined)
       ) u_row (
@@ -117,11 +125,13 @@ module srt_divider_stages #(
         .divisor_i(gen_row[r-1].divisor),
         .positives_i(gen_row[r-1].positives),
         .negatives_i(gen_row[r-1].negatives),
+        .beside_i(gen_row[r-1].beside),
         .sum_o(sum),
         .carry_o(carry),
         .divisor_o(divisor),
         .positives_o(positives),
-        .negatives_o(negatives)
+        .negatives_o(negatives),
+        .beside_o(beside)
       );
     end
   end
@@ -130,6 +140,7 @@ module srt_divider_stages #(
 
   logic [ResWidth-1:0] remainder;
   logic [QuotientWidth-1:0] positives, negatives;
+  logic [BesideWidth-1:0] beside;
   logic remainder_negative, remainder_left, unused_remainder_carry;
   logic [ResWidth-1:0] unused_divisor;
 
@@ -168,14 +179,16 @@ module srt_divider_stages #(
         {remainder_negative, remainder_left} <= {remainder[ResWidth-1], |remainder};
         positives <= gen_row[Rows].positives;
         negatives <= gen_row[Rows].negatives;
+        beside <= gen_row[Rows].beside;
       end
-      if (load[Rows+2]) {quotient_o, remainder_o} <= {quotient, remainder_left};
+      if (load[Rows+2]) {quotient_o, remainder_o, beside_o} <= {quotient, remainder_left, beside};
     end
   end else begin : gen_end_wires
     assign {remainder_negative, remainder_left} = {remainder[ResWidth-1], |remainder};
     assign positives = gen_row[Rows].positives;
     assign negatives = gen_row[Rows].negatives;
-    assign {quotient_o, remainder_o} = {quotient, remainder_left};
+    assign beside = gen_row[Rows].beside;
+    assign {quotient_o, remainder_o, beside_o} = {quotient, remainder_left, beside};
   end
 
   // ---- What is where

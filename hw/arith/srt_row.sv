@@ -5,11 +5,14 @@
 // and comes out. The digit joins those so far from below, in two words of which one is subtracted
 // from the other in the end: positives_o those of positive sign, negatives_o those of negative.
 //
+// beside_i goes along and comes out as beside_o.
+//
 // Pipelined = 0: combinational. Pipelined = 1: the outputs are registers, loaded with enable_i. The row
 // is written as what they load: it costs a simulation nothing while they don't.
 module srt_row #(
   parameter int unsigned Width = 25,
   parameter int unsigned DigitsWidth = 2,  // of the digits so far
+  parameter int unsigned BesideWidth = 1,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit          Pipelined = 1'b0
 ) (
@@ -20,11 +23,13 @@ module srt_row #(
   input  logic [Width-1:0]       divisor_i,
   input  logic [DigitsWidth-1:0] positives_i,
   input  logic [DigitsWidth-1:0] negatives_i,
+  input  logic [BesideWidth-1:0] beside_i,
   output logic [Width-1:0]       sum_o,
   output logic [Width-1:0]       carry_o,
   output logic [Width-1:0]       divisor_o,
   output logic [DigitsWidth+1:0] positives_o,
-  output logic [DigitsWidth+1:0] negatives_o
+  output logic [DigitsWidth+1:0] negatives_o,
+  output logic [BesideWidth-1:0] beside_o
 );
 
   localparam int unsigned EstimateWidth = 7;  // of 4 w: 4 integer bits with the sign, 3 more
@@ -91,6 +96,7 @@ module srt_row #(
         divisor_o <= divisor_i;
         positives_o <= {positives_i, positive};
         negatives_o <= {negatives_i, negative};
+        beside_o <= beside_i;
       end
     end
   end else begin : gen_wires
@@ -104,6 +110,7 @@ module srt_row #(
     assign divisor_o = divisor_i;
     assign positives_o = {positives_i, positive};
     assign negatives_o = {negatives_i, negative};
+    assign beside_o = beside_i;
   end
 
 endmodule

@@ -159,9 +159,8 @@ module fp_divider_stages #(
     end
   end
 
-  // ---- First cut, and what waits beside the division
+  // ---- First cut, and what goes beside the division
 
-  localparam int unsigned DivideLatency = Pipelined ? Rows + 3 : 0;
   logic [SigWidth-1:0] a_norm_1, b_norm_1;
   logic [RoundExpWidth-1:0] exp_difference_1, count_difference_1, exponent, exponent_2;
   logic [5:0] specials_1;
@@ -199,16 +198,6 @@ module fp_divider_stages #(
     .carry_o(unused_carry[3])
   );
 
-  delay_line #(
-    .Width(RoundExpWidth + 6),
-    .Depth(DivideLatency)
-  ) u_beside (
-    .clk_i,
-    .enable_i,
-    .data_i({exponent, specials_1}),
-    .data_o({exponent_2, sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2})
-  );
-
   // ---- Divide: the doubled quotient, in (1, 4)
 
   logic [QuotientWidth-1:0] quotient;
@@ -217,6 +206,7 @@ module fp_divider_stages #(
   srt_divider_stages #(
     .Width(SigWidth),
     .Rows(Rows),
+    .BesideWidth(RoundExpWidth + 6),
     .Adder(Adder),
     .Pipelined(Pipelined)
   ) u_divide (
@@ -225,8 +215,10 @@ module fp_divider_stages #(
     .valid_i(valid_1),
     .dividend_i(a_norm_1),
     .divisor_i(b_norm_1),
+    .beside_i({exponent, specials_1}),
     .quotient_o(quotient),
     .remainder_o(remainder),
+    .beside_o({exponent_2, sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2}),
     .valid_o(divided)
   );
 

@@ -90,34 +90,45 @@ module fp_round #(
   logic [FracWidth-1:0] fraction;
   logic guard, sticky;
 
-  assign normal = placed[SigWidth-1] ? {placed[SigWidth-1:2], |placed[1:0]}
-                                     : placed[SigWidth-2:0];
+  if (Adder == arith_pkg::AdderTool) begin : gen_tool_normal
+    // The same by a shift: a simulation has no branch to guess.
+    logic [SigWidth-1:0] upper;
+    assign upper = SigWidth'(placed[SigWidth-1]);
+    assign normal = (SigWidth - 1)'((placed >> upper[0]) | (placed & upper));
+  end else begin : gen_normal
+    assign normal = placed[SigWidth-1] ? {placed[SigWidth-1:2], |placed[1:0]}
+                                       : placed[SigWidth-2:0];
+  end
   assign fraction = normal[SigWidth-3-:FracWidth];
   assign guard = normal[2];
   assign sticky = |normal[1:0];
 
   // ---- Round: a carry out of the fraction makes the next exponent by itself
 
-  logic increment, inexact, overflow;
+  logic inexact, overflow;
   logic [WordWidth-1:0] rounded;  // right unless there is overflow
 
-  assign increment = (nearest & guard & (sticky | fraction[0] | ~nearest_even))
-                   | (away & (guard | sticky));
   assign inexact = guard | sticky;
 
   if (Adder == arith_pkg::AdderTool) begin : gen_tool
     logic [FieldWidth-1:0] above;  // of the integer bit that `normal` has
+    logic [2:0] nudge;  // added to guard, round and sticky, carries exactly where to round up
+    logic [SigWidth-4:0] up;  // `normal`, rounded
+    logic [2:0] unused_places;
     logic [WordWidth:0] word;
 
     assign above = base + FieldWidth'(placed[SigWidth-1]);
-    assign word = {above, {FracWidth{1'b0}}} + (WordWidth + 1)'(normal[SigWidth-2:3])
-                + (WordWidth + 1)'(increment);
+    assign nudge = nearest_even ? 3'd3 + 3'(fraction[0]) : nearest ? 3'd4 : {3{away}};
+    assign {up, unused_places} = SigWidth'(normal) + SigWidth'(nudge);
+    assign word = {above, {FracWidth{1'b0}}} + (WordWidth + 1)'(up);
     assign rounded = word[WordWidth-1:0];
     assign overflow = word >= {InfField, {FracWidth{1'b0}}};
   end else begin : gen_incrementers
     logic [FieldWidth-1:0] base_plus_1, base_plus_2, field;
-    logic unused_integer_bit;
+    logic increment, unused_integer_bit;
 
+    assign increment = (nearest & guard & (sticky | fraction[0] | ~nearest_even))
+                     | (away & (guard | sticky));
     assign unused_integer_bit = normal[SigWidth-2];
     incrementer #(
       .Width(FieldWidth),

@@ -13,6 +13,7 @@ module hit_test_array #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter bit          ArrayMultiplier = 1'b0,  // see fp_multiplier_stages
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
   parameter int unsigned CounterWidth = 48,
@@ -57,6 +58,7 @@ module hit_test_array #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Adder(Adder),
+      .ArrayMultiplier(ArrayMultiplier),
       .RoundingMode(RoundingMode),
       .TagWidth(TagWidth)
     ) u_pipeline (

@@ -31,6 +31,7 @@ module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter bit          ArrayMultiplier = 1'b0,  // see fp_multiplier_stages
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
@@ -103,6 +104,7 @@ module hit_test_pipeline #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Adder(Adder),
+      .ArrayMultiplier(ArrayMultiplier),
       .RoundingMode(RoundingMode),
       .Words(ScaledWords)
     ) u_scaler (

@@ -7,6 +7,7 @@ module scaler #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter bit          ArrayMultiplier = 1'b0,  // see fp_multiplier_stages
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned Words     = 5,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
@@ -26,6 +27,7 @@ module scaler #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Adder(Adder),
+      .ArrayMultiplier(ArrayMultiplier),
       .Cuts(hit_test_pkg::MultiplierCuts)
     ) u_multiplier (
       .clk_i,

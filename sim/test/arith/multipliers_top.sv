@@ -1,11 +1,12 @@
-// Booth multipliers of many widths on the same operands, with the constants in the partial products
-// and in a row of their own, and a 24-bit one with each kind of adder.
+// Booth multipliers of many widths on the same operands: trees with the constants in the partial products
+// and in a row of their own, and arrays; and a 24-bit tree with each kind of adder.
 module multipliers_top (
   input  logic               clk_i,
   input  logic [31:0]        a_i,
   input  logic [31:0]        b_i,
-  output logic [64*24-1:0]   product_o,     // 64 bits for each width of Widths, ConstantRow 0 and 1
-  output logic [64*5-1:0]    product_24_o   // 64 bits for each kind of adder
+  output logic [64*24-1:0]   product_o,        // 64 bits for each width of Widths, ConstantRow 0 and 1
+  output logic [64*12-1:0]   product_array_o,  // 64 bits for each width of Widths
+  output logic [64*5-1:0]    product_24_o      // 64 bits for each kind of adder
 );
 
   localparam int unsigned NumWidths = 12;
@@ -37,6 +38,18 @@ module multipliers_top (
 
       assign product_o[64*(2*w+c)+:64] = 64'(product);
     end
+
+    logic [2*Width-1:0] product_array;
+
+    booth_array_multiplier #(
+      .Width(Width)
+    ) u_array (
+      .a_i      (a[Width-1:0]),
+      .b_i      (b[Width-1:0]),
+      .product_o(product_array)
+    );
+
+    assign product_array_o[64*w+:64] = 64'(product_array);
   end
 
   for (genvar k = 0; k < 5; k++) begin : gen_kind
