@@ -50,7 +50,7 @@ class WideBvh {
   void prefetch(const Child& child) const {
     const auto* const begin = child.count == 0 ? reinterpret_cast<const char*>(&nodes_[child.first])
                                                : reinterpret_cast<const char*>(corners_of(child));
-    for (int line = 0; line < 4; ++line) __builtin_prefetch(begin + 64 * line);
+    for (std::ptrdiff_t line = 0; line < 4; ++line) __builtin_prefetch(begin + 64 * line);
   }
 
  private:

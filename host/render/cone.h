@@ -17,7 +17,7 @@ struct RayBlock {
   FloatLanes direction[3][kGroups];
   LaneMask negative[3][kGroups];  ///< whose component is below 0
   LaneMask usable[kGroups];       ///< see is_usable; no bits beyond the end of the rays
-  std::uint32_t octants;          ///< bit i: some usable ray goes into octant i
+  std::uint32_t octants;          ///< bit i: usable rays may go into octant i; else none does
 
   [[nodiscard]] LaneMask into_octant(int octant, int group) const {
     LaneMask lanes = usable[group];

@@ -195,9 +195,10 @@ void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
         walk.cones.active[g] = block.into_octant(octant, g);
       }
       make_cones(block, origin_, octant, walk.cones);
+      if (walk.cones.groups == 0) continue;
       set_out(*this, walk);
       walk_tree(*this, walk);
-      finish(walk, walk.cones.groups);
+      finish(*this, walk);
     }
   }
   const std::uint64_t tests = counters_.tests - before.tests;
@@ -245,61 +246,78 @@ bool ConeSearch::settle(ConeWalk& walk, int group, int lane, std::int32_t slot,
   return true;
 }
 
-/// Hands the nearest hits over, with their P where that is asked for.
-void ConeSearch::finish(const ConeWalk& walk, LaneMask groups) {
-  const bool with_points = wishes_.ignored.empty() && wishes_.enough_before.empty();
-  for (; groups != 0; groups &= groups - 1) {
+/// Hands the nearest hits over, with their P where that is asked for: triangle by triangle, as rays
+/// that hit one share its plane.
+RAYGATE_LANES void finish(ConeSearch& search, const ConeWalk& walk) {
+  const SearchWishes& wishes = search.wishes_;
+  const bool with_points = wishes.ignored.empty() && wishes.enough_before.empty();
+  std::uint64_t left = 0;
+  for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
     const int g = std::countr_zero(groups);
-    for (LaneMask lanes = 0xFF & ~sign_mask(walk.slot[g]); lanes != 0;) {
-      const std::int32_t slot = walk.slot[g][std::countr_zero(lanes)];
-      const LaneMask same = lanes & sign_mask(walk.slot[g] == slot);
-      for (LaneMask left = same; left != 0; left &= left - 1) {
-        const int lane = std::countr_zero(left);
-        nearest_.put(walk.number(g, lane),
-                     {static_cast<std::uint32_t>(slot), glm::vec3(0.0f), bounds(walk, g, lane)});
-      }
-      lanes &= ~same;
-      if (!with_points) continue;
-      seen_[seen_count_++] = {static_cast<std::uint32_t>(slot), g, same};
-      if (seen_count_ == kPlanes) put_points(*this, walk);
-    }
+    left |= std::uint64_t{0xFF & ~sign_mask(walk.slot[g])} << (8 * g);
   }
-  if (seen_count_ != 0) put_points(*this, walk);
+  ConeSearch::Seen seen[kPlanes];
+  int count = 0;
+  while (left != 0) {
+    const int first = std::countr_zero(left);
+    const std::int32_t slot = walk.slot[first / kLanes][first % kLanes];
+    std::uint64_t same = 0;
+    for (LaneMask groups = groups_of(left); groups != 0; groups &= groups - 1) {
+      const int g = std::countr_zero(groups);
+      same |= std::uint64_t{sign_mask(walk.slot[g] == slot)} << (8 * g);
+    }
+    same &= left;
+    left &= ~same;
+    seen[count++] = {static_cast<std::uint32_t>(slot), same};
+    if (count < kPlanes && left != 0) continue;
+    if (with_points) {
+      search.put_with_points(walk, std::span(seen, static_cast<std::size_t>(count)));
+    } else {
+      for (int i = 0; i < count; ++i) search.put(walk, seen[i]);
+    }
+    count = 0;
+  }
 }
 
-/// P of the hits of the triangles seen, with the bits of plane_point.
-RAYGATE_LANES void put_points(ConeSearch& search, const ConeWalk& walk) {
+RAYGATE_INLINE void ConeSearch::put(const ConeWalk& walk, const Seen& seen) {
+  for (std::uint64_t rays = seen.rays; rays != 0; rays &= rays - 1) {
+    const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
+    nearest_.put(walk.number(g, lane), {seen.slot, glm::vec3(0.0f), bounds(walk, g, lane)});
+  }
+}
+
+/// P has the bits of plane_point.
+RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<const Seen> seen) {
   std::array<PlaneView, kPlanes> views;
-  for (int i = 0; i < kPlanes; ++i) {
-    const ConeSearch::Seen& seen = search.seen_[std::min(i, search.seen_count_ - 1)];
-    views[i] = {&search.origin_, &search.bvh_.corners_of(seen.slot)};
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    views[i] = {&origin_, &bvh_.corners_of(seen[std::min(i, seen.size() - 1)].slot)};
   }
   std::array<PolygonRecord, kPlanes> planes;
   make_planes(views, planes);
-  for (int i = 0; i < search.seen_count_; ++i) {
-    const ConeSearch::Seen& seen = search.seen_[i];
+  for (std::size_t i = 0; i < seen.size(); ++i) {
     const glm::vec3& n = planes[i].normal;
-    const FloatLanes &x = walk.block->direction[0][seen.group],
-                     &y = walk.block->direction[1][seen.group],
-                     &z = walk.block->direction[2][seen.group];
-    const FloatLanes v = 0.0f + ((n.x * x + n.y * y) + n.z * z);
-    FloatLanes point[3] = {planes[i].d * x / v, planes[i].d * y / v, planes[i].d * z / v};
-    for (FloatLanes& p : point) {
-      const IntLanes nan = IntLanes{} + 0x7FC00000;
-      p = p == p ? p : reinterpret_cast<FloatLanes>(nan);
+    const float d = planes[i].d;
+    for (LaneMask groups = groups_of(seen[i].rays); groups != 0; groups &= groups - 1) {
+      const int g = std::countr_zero(groups);
+      const FloatLanes &x = walk.block->direction[0][g], &y = walk.block->direction[1][g],
+                       &z = walk.block->direction[2][g];
+      const FloatLanes v = 0.0f + ((n.x * x + n.y * y) + n.z * z);
+      FloatLanes point[3] = {d * x / v, d * y / v, d * z / v};
+      for (FloatLanes& p : point) {
+        const IntLanes nan = IntLanes{} + 0x7FC00000;
+        p = p == p ? p : reinterpret_cast<FloatLanes>(nan);
+      }
+      for (LaneMask lanes = rays_of(seen[i].rays, g); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        nearest_.put(walk.number(g, lane),
+                     {seen[i].slot, glm::vec3(point[0][lane], point[1][lane], point[2][lane]),
+                      bounds(walk, g, lane)});
+      }
     }
-    for (LaneMask lanes = seen.lanes; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      const std::uint32_t number = walk.number(seen.group, lane);
-      NearestHit hit = search.nearest_[number];
-      hit.point = {point[0][lane], point[1][lane], point[2][lane]};
-      search.nearest_.put(number, hit);
-    }
-    const auto count = static_cast<std::uint64_t>(std::popcount(seen.lanes));
-    search.counters_.plane_tests += count;
-    search.counters_.quotients += 3 * count;
+    const auto count = static_cast<std::uint64_t>(std::popcount(seen[i].rays));
+    counters_.plane_tests += count;
+    counters_.quotients += 3 * count;
   }
-  search.seen_count_ = 0;
 }
 
 }  // namespace raygate

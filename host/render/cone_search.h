@@ -32,16 +32,15 @@ class ConeSearch {
   [[nodiscard]] std::uint64_t ended_early() const { return ended_early_; }
 
  private:
-  /// A triangle that rays of a group hit first.
+  /// A triangle that is the nearest hit of some rays.
   struct Seen {
     std::uint32_t slot;
-    int group;
-    LaneMask lanes;
+    std::uint64_t rays;
   };
 
   friend void set_out(const ConeSearch& search, ConeWalk& walk);
   friend void walk_tree(ConeSearch& search, ConeWalk& walk);
-  friend void put_points(ConeSearch& search, const ConeWalk& walk);
+  friend void finish(ConeSearch& search, const ConeWalk& walk);
 
   void test_groups(ConeWalk& walk, const QuadRecord& record, const WideBvh::Child& leaf,
                    LaneMask there, std::uint64_t rays, LaneMask& changed);
@@ -49,7 +48,8 @@ class ConeSearch {
                  LaneMask there, std::uint64_t rays, LaneMask& changed);
   void settle_sides(const WideBvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
   bool settle(ConeWalk& walk, int group, int lane, std::int32_t slot, const Interval* sure);
-  void finish(const ConeWalk& walk, LaneMask groups);
+  void put(const ConeWalk& walk, const Seen& seen);
+  void put_with_points(const ConeWalk& walk, std::span<const Seen> seen);
 
   const Bvh& bvh_;
   glm::vec3 origin_;
@@ -58,8 +58,6 @@ class ConeSearch {
   SearchWishes wishes_;
   std::span<const Ray> rays_;
   std::uint64_t ended_early_ = 0;
-  std::array<Seen, kPlanes> seen_;  // whose P is still to be found
-  int seen_count_ = 0;
 };
 
 }  // namespace raygate
