@@ -91,6 +91,7 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                                .height = options.height,
                                .window = options.window,
                                .threads = static_cast<int>(options.threads),
+                               .lanes = options.lanes,
                                .samples = options.light.samples,
                                .filter = options.light.filter,
                                .seed = options.seed,

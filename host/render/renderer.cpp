@@ -132,7 +132,7 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
   Stopwatch wall;
   stats = {};
   Film film = empty_film(options);
-  const Tiles tiles(film.window, options.samples);
+  const Tiles tiles(film.window, options.samples, options.lanes, options.threads);
   FilmSums sums;
   if (tiles.passes() > 1) {
     sums.color.assign(film.color.size(), glm::dvec4(0.0));

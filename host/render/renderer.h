@@ -23,6 +23,7 @@ struct RenderOptions {
   int width = 0, height = 0;  ///< of the whole frame, at least 1
   PixelRect window;           ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;            ///< at least 1; the film does not depend on it
+  int lanes = 1;              ///< of each tester's unit, at least 1; the film does not depend on it
   int samples = 1;            ///< of each pixel, at least 1; a single one is its middle
   PixelFilter filter = PixelFilter::kBlackmanHarris;  ///< with more than one sample
   std::uint64_t seed = 0;                             ///< of everything random

@@ -42,6 +42,11 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
     more.threads = threads;
     EXPECT_TRUE(same(one, film(more))) << threads;
   }
+  for (const int lanes : {4, 8}) {  // larger tiles
+    RenderOptions more = options(150, 100);
+    more.lanes = lanes;
+    EXPECT_TRUE(same(one, film(more))) << lanes;
+  }
   RenderStats stats;
   const HitTesterFactory serial = [] {
     return std::make_unique<SerialHitTester>(std::make_unique<CpuPlaneUnit>());
