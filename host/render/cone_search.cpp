@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "host/accel/wide_bvh.h"
@@ -26,6 +27,17 @@ float float_above(double x) {
 float float_of(std::int32_t bits) { return std::bit_cast<float>(bits); }
 std::int32_t bits_of(float x) { return std::bit_cast<std::int32_t>(x); }
 
+/// What is wished for a group's rays; what is beyond the last one means nothing.
+template <class Wish>
+RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first, IntLanes& lanes) {
+  static_assert(sizeof(Wish) == sizeof(std::int32_t));
+  if (first + kLanes <= wishes.size()) {
+    std::memcpy(&lanes, &wishes[first], sizeof lanes);
+  } else {
+    std::memcpy(&lanes, &wishes[first], (wishes.size() - first) * sizeof(Wish));
+  }
+}
+
 Interval bounds(const ConeWalk& walk, int group, int lane) {
   return {float_of(walk.low[group][lane]), float_of(walk.high[group][lane])};
 }
@@ -42,18 +54,15 @@ RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
   for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
     const int g = std::countr_zero(left);
     walk.slot[g] = IntLanes{} - 1;
-    walk.low[g] = walk.high[g] = IntLanes{} + kFarthest;
-    if (!limits.empty() || !ignored.empty() || !enough.empty()) {
-      for (LaneMask lanes = walk.cones.active[g]; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        const std::uint32_t ray = walk.number(g, lane);
-        if (!limits.empty()) {
-          walk.low[g][lane] = walk.high[g][lane] = std::min(bits_of(limits[ray]), kFarthest);
-        }
-        if (!enough.empty()) walk.enough[g][lane] = bits_of(enough[ray]);
-        if (!ignored.empty()) walk.ignored[g][lane] = static_cast<std::int32_t>(ignored[ray]);
-      }
+    IntLanes end = IntLanes{} + kFarthest;
+    const std::uint32_t first = walk.number(g, 0);
+    if (!limits.empty()) {
+      load_group(limits, first, end);
+      end = end < kFarthest ? end : IntLanes{} + kFarthest;
     }
+    walk.low[g] = walk.high[g] = end;
+    if (!enough.empty()) load_group(enough, first, walk.enough[g]);
+    if (!ignored.empty()) load_group(ignored, first, walk.ignored[g]);
     walk.going |= std::uint64_t{walk.cones.active[g]} << (8 * g);
     shorten(walk, g);
   }
@@ -164,6 +173,7 @@ RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
       search.test_groups(walk, record, item.child, there, rays, changed);
     }
     if (changed == 0) continue;
+    search.bvh_.prefetch(item.child.first);  // for finish
     for (; changed != 0; changed &= changed - 1) {
       const int g = std::countr_zero(changed);
       if (ending) {

@@ -149,6 +149,7 @@ RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
       } else if (high < walk.low) {
         walk.slot = slot;
         walk.end_at(std::max(low, 0.0f), high);
+        search.bvh_.prefetch(slot);  // for add_points
       } else if (!search.settle(walk, slot, true)) {
         continue;
       }
