@@ -20,20 +20,21 @@
 
 namespace raygate {
 
-/// I . E for eight directions.
+/// I . E, or I . N, for eight directions.
 RAYGATE_INLINE void side_of(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
-                            const float (&words)[3][kQuad], int triangle, FloatLanes& side) {
-  side = (x * words[0][triangle] + y * words[1][triangle]) + z * words[2][triangle];
+                            const QuadRecord& record, int plane, int triangle, FloatLanes& side) {
+  side = (x * record.word(plane, 0, triangle) + y * record.word(plane, 1, triangle)) +
+         z * record.word(plane, 2, triangle);
 }
 
-/// The least of the three.
+/// The least of the edges' three.
 RAYGATE_INLINE void worst_side_of(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
                                   const QuadRecord& record, int triangle, FloatLanes& worst) {
   FloatLanes side;
-  side_of(x, y, z, record.edges[0], triangle, worst);
-  side_of(x, y, z, record.edges[1], triangle, side);
+  side_of(x, y, z, record, 0, triangle, worst);
+  side_of(x, y, z, record, 1, triangle, side);
   worst = side < worst ? side : worst;
-  side_of(x, y, z, record.edges[2], triangle, side);
+  side_of(x, y, z, record, 2, triangle, side);
   worst = side < worst ? side : worst;
 }
 
@@ -91,7 +92,7 @@ RAYGATE_INLINE void test_group(const ConeWalk& walk, const QuadRecord& record, i
   verdict.hit = verdict.open & sign_mask(worst > bound);
   FloatLanes v, low = FloatLanes{} + record.low[triangle],
                 high = FloatLanes{} + record.high[triangle];
-  side_of(x, y, z, record.normal, triangle, v);
+  side_of(x, y, z, record, QuadRecord::kNormal, triangle, v);
   const float v_bound = record.normal_bound[triangle];
   bound_distance(low, high, v - v_bound, v + v_bound);
   verdict.low = reinterpret_cast<IntLanes>(low);
@@ -110,30 +111,34 @@ struct RayVerdict {
   FloatQuad low, high;
 };
 
-RAYGATE_INLINE void side_of(const float (&direction)[3], const float (&words)[3][kQuad],
-                            FloatQuad& side) {
-  FloatQuad w[3];
-  for (int k = 0; k < 3; ++k) load_quad(words[k], w[k]);
-  side = (direction[0] * w[0] + direction[1] * w[1]) + direction[2] * w[2];
+/// One direction and two planes of four triangles each.
+RAYGATE_INLINE void sides_of(const float (&direction)[3], const float (&planes)[3][2][kQuad],
+                             FloatQuad (&sides)[2]) {
+  FloatLanes x, y, z;
+  load_lanes(planes[0][0], x);
+  load_lanes(planes[1][0], y);
+  load_lanes(planes[2][0], z);
+  const FloatLanes both = (direction[0] * x + direction[1] * y) + direction[2] * z;
+  sides[0] = __builtin_shufflevector(both, both, 0, 1, 2, 3);
+  sides[1] = __builtin_shufflevector(both, both, 4, 5, 6, 7);
 }
 
 RAYGATE_INLINE void test_ray(const ConeWalk& walk, const QuadRecord& record, int group, int lane,
                              LaneMask there, RayVerdict& verdict) {
   const auto& from = walk.block->direction;
   const float direction[3] = {from[0][group][lane], from[1][group][lane], from[2][group][lane]};
-  FloatQuad worst, side, bound;
-  side_of(direction, record.edges[0], worst);
-  side_of(direction, record.edges[1], side);
-  worst = side < worst ? side : worst;
-  side_of(direction, record.edges[2], side);
-  worst = side < worst ? side : worst;
+  FloatQuad first[2], second[2], bound;
+  sides_of(direction, record.planes[0], first);
+  sides_of(direction, record.planes[1], second);
+  FloatQuad worst = first[0] < first[1] ? first[0] : first[1];
+  worst = second[0] < worst ? second[0] : worst;
   load_quad(record.bounds, bound);
   verdict.open = there & ~sign_mask(worst < -bound);
   verdict.hit = 0;
   if (verdict.open == 0) return;
   verdict.hit = verdict.open & sign_mask(worst > bound);
-  FloatQuad v, v_bound, low, high;
-  side_of(direction, record.normal, v);
+  const FloatQuad& v = second[1];
+  FloatQuad v_bound, low, high;
   load_quad(record.normal_bound, v_bound);
   load_quad(record.low, low);
   load_quad(record.high, high);

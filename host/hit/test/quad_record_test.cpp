@@ -71,11 +71,12 @@ class QuadRecordTest : public testing::Test {
                     const QuadRecord& record, std::uint32_t i) {
     const Ray ray = {origin, direction_to(origin, triangle)};
     const glm::vec3& d = ray.direction;
-    const auto dot = [&](const float(&words)[3][kQuad]) {
-      return (d.x * words[0][i] + d.y * words[1][i]) + d.z * words[2][i];
+    const auto dot = [&](int plane) {
+      const auto word = [&](int axis) { return record.word(plane, axis, static_cast<int>(i)); };
+      return (d.x * word(0) + d.y * word(1)) + d.z * word(2);
     };
     for (int e = 0; e < 3; ++e) {
-      const float u = dot(record.edges[e]);
+      const float u = dot(e);
       const int exact = side * edge_side(ray, triangle[e], triangle[(e + 1) % 3]);
       if (std::abs(u) > record.bounds[i]) {
         ++sure_;
@@ -85,7 +86,7 @@ class QuadRecordTest : public testing::Test {
         naive_ += (u > 0.0f ? 1 : -1) != exact;
       }
     }
-    const float v = dot(record.normal);
+    const float v = dot(QuadRecord::kNormal);
     if (std::isfinite(record.bounds[i]) && std::abs(v) > record.normal_bound[i]) {
       ASSERT_EQ(v > 0.0f ? 1 : -1, side * direction_side(d, triangle));
     }
