@@ -40,7 +40,8 @@ def section_tables(records: list[dict], section: str) -> str:
 def _table(records: list[dict], title: str, columns: list[tuple[str, str]]) -> str:
     at = {(record["design"], record["target"], record["flow"]): record for record in records}
     columns = [column for column in columns if any(key[1:] == column for key in at)]
-    designs = dict.fromkeys(record["design"] for record in records)
+    designs = dict.fromkeys(record["design"] for record in records
+                            if (record["target"], record["flow"]) in columns)
     heads = [flow if flow != "placed" else TITLES[target] for target, flow in columns]
     return tables.markdown([title, *heads], [
         [design, *(cost(at.get((design, *column))) for column in columns)] for design in designs])
