@@ -68,7 +68,7 @@ class ConeSearchTest : public testing::Test {
       hits += a.slot != NearestHit::kNone;
     }
     const HitCounters counters = in_place.counters();
-    EXPECT_GT(counters.tests, 0u);
+    tests_ += counters.tests;
     EXPECT_EQ(counters.tests, counters.misses + counters.hits + counters.edge_doubts);
     return hits;
   }
@@ -95,9 +95,11 @@ class ConeSearchTest : public testing::Test {
       hits += compare(mesh, rays, {.limits = limits, .ignored = ignored, .enough_before = limits});
     }
     EXPECT_GT(hits, rounds);
+    EXPECT_GT(tests_, static_cast<std::uint64_t>(hits));
   }
 
   Random random_;
+  std::uint64_t tests_ = 0;  // of all that was compared
 };
 
 TEST_F(ConeSearchTest, FindsWhatBatchesFind) {
