@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "host/accel/wide_bvh.h"
+#include "host/hit/exact.h"
 #include "host/render/cone.h"
 #include "host/render/lane_math.h"
 #include "host/render/ray_set.h"
@@ -39,6 +40,10 @@ struct ConeWalk {
 
   [[nodiscard]] std::uint32_t number(int group, int lane) const {
     return first + static_cast<std::uint32_t>(group * kLanes + lane);
+  }
+  /// Bounds of the nearest hit's t.
+  [[nodiscard]] Interval t(int group, int lane) const {
+    return {std::bit_cast<float>(low[group][lane]), std::bit_cast<float>(high[group][lane])};
   }
 };
 
