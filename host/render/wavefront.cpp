@@ -10,8 +10,8 @@
 
 namespace raygate {
 
-Wavefront::Wavefront(const Bvh& bvh, HitTester& tester)
-    : bvh_(bvh), tester_(tester), nearest_(bvh) {}
+Wavefront::Wavefront(const Bvh& bvh, HitTester& tester, std::size_t enough_tests)
+    : bvh_(bvh), tester_(tester), enough_tests_(enough_tests), nearest_(bvh) {}
 
 void Wavefront::trace(std::span<const Ray> rays, const Search& search) {
   Stopwatch watch;
@@ -96,17 +96,27 @@ std::optional<LeafVisit> Wavefront::next_visit(Packet& packet, const Search& sea
   return LeafVisit{first, count, packet.lanes};
 }
 
-/// Sends every packet to its next leaf and writes the tests found there into the batch. Packets
-/// that are through leave the active ones.
+/// Fills the batch: every packet goes to its next leaf or, while there are too few tests, to the
+/// one after that.
 void Wavefront::collect(std::span<const Ray> rays, const Search& search) {
   batch_.clear();
   owner_.clear();
-  std::size_t kept = 0;
+  for (std::size_t tests = 0; !active_.empty();) {
+    tests += visit_leaves(rays, search);
+    if (tests >= enough_tests_) break;
+  }
+}
+
+/// Sends every packet to its next leaf and writes the tests found there into the batch; their
+/// number. Packets that are through leave the active ones.
+std::size_t Wavefront::visit_leaves(std::span<const Ray> rays, const Search& search) {
+  std::size_t kept = 0, tests = 0;
   for (const std::uint32_t index : active_) {
     Packet& packet = packets_[index];
     const auto visit = next_visit(packet, search);
     if (!visit) continue;
     active_[kept++] = index;
+    tests += visit->count * static_cast<std::size_t>(std::popcount(visit->lanes));
     if (search.common != nullptr) {
       assert(rays[packet.rays[0]].origin == search.common->origin());
       add_bundle(rays, packet, *visit, visit->lanes);
@@ -117,6 +127,7 @@ void Wavefront::collect(std::span<const Ray> rays, const Search& search) {
     owner_.resize(batch_.size(), index);
   }
   active_.resize(kept);
+  return tests;
 }
 
 /// A bundle for each origin among the visiting rays.
@@ -167,10 +178,12 @@ template <class Report>
 void Wavefront::offer(std::span<const Ray> rays, const Search& search, const Report& report) {
   Packet& packet = packets_[owner_[report.bundle]];
   const std::uint32_t number = packet.rays[report.lane];
-  if (!nearest_.offer(number, rays[number], report)) return;
+  const LaneMask lane = 1u << report.lane;
+  if ((packet.ended & lane) != 0 || !nearest_.offer(number, rays[number], report)) return;
   const bool ends = !search.enough_before.empty() &&
                     nearest_.is_before(number, rays[number], search.enough_before[number]);
   ended_early_ += ends;
+  if (ends) packet.ended |= lane;
   packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : nearest_[number].t.high);
 }
 

@@ -47,7 +47,9 @@ class Wavefront {
     double doubt = 0.0;     ///< exact arithmetic about what they leave open
   };
 
-  Wavefront(const Bvh& bvh, HitTester& tester);
+  /// Batches of fewer than `enough_tests` are lengthened by leaves that may turn out to lie behind
+  /// a hit: worth it where a batch has a price of its own, as of a pipeline that runs empty.
+  Wavefront(const Bvh& bvh, HitTester& tester, std::size_t enough_tests = 0);
 
   /// Finds the nearest hit of each ray. Directions scaled (see scaled_direction); rays near each
   /// other in `rays` should go about the same way. Directions that are zero or not finite hit
@@ -82,6 +84,7 @@ class Wavefront {
     PacketTraversal traversal;
     std::array<std::uint32_t, kLanes> rays;  // numbers; lanes without a ray repeat lane 0
     LaneMask lanes = 0;
+    LaneMask ended = 0;           // early
     std::uint32_t next_slot = 0;  // without culling
   };
 
@@ -89,6 +92,7 @@ class Wavefront {
   void make_packets(std::span<const Ray> rays, const Search& search);
   std::optional<LeafVisit> next_visit(Packet& packet, const Search& search);
   void collect(std::span<const Ray> rays, const Search& search);
+  std::size_t visit_leaves(std::span<const Ray> rays, const Search& search);
   void add_own_bundles(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit);
   void add_bundle(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit,
                   LaneMask lanes);
@@ -101,6 +105,7 @@ class Wavefront {
 
   const Bvh& bvh_;
   HitTester& tester_;
+  std::size_t enough_tests_;
   NearestHits nearest_;
   Seconds seconds_;
   std::uint64_t own_records_ = 0, ended_early_ = 0;
