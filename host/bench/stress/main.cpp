@@ -1,4 +1,6 @@
 // The stress test: engines and cheaper variants against exact integers, on cases made to be hard.
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -46,7 +48,15 @@ void print_failures(const Report& report, bool all) {
   }
 }
 
+/// Exact arithmetic about depths asks for 2 MB, all the time in some suites: the heap keeps them,
+/// or the system would take and give every page of them again and again.
+void keep_memory() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 24);
+  mallopt(M_TRIM_THRESHOLD, 1 << 25);
+}
+
 int run_stress(int argc, char** argv) {
+  keep_memory();
   const auto suite_names = names_of(all_suites(), [](const Suite& s) { return s.name; });
   const auto variant_names = names_of(all_variants(), [](const VariantKind& v) { return v.name; });
   Report report;

@@ -123,9 +123,10 @@ def angles_table(run: dict) -> str:
         rows.append([f"1e-{decade + 1} to 1e-{decade}",
                      number(least["t_ulp"], ".3g"),
                      *(cells(v["total"]["t_ulp_by_angle"][decade], ".3g") for v in exact)])
-    for what, key in (("t", "t_of_bound"), ("P", "point_of_bound")):
+    for what, key, errors in (("t", "t_of_bound", "t_ulp"), ("P", "point_of_bound", "point_ulp")):
         rows.append([f"largest part of its bound that {what} came to", "1",
-                     *(number(v["total"][key], ".3f") for v in exact)])
+                     *(number(v["total"][key], ".3f") if v["total"][errors]["count"] else "-"
+                       for v in exact)])
     return table(["sine of the angle", "proven bound at the lower end",
                   *(v["name"] for v in exact)], rows)
 

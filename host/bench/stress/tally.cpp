@@ -17,6 +17,12 @@ double ulp(double x) { return std::ldexp(1.0, std::max(std::ilogb(x), -126) - 23
 /// Whether a float can hold x with all its digits.
 bool ordinary(double x) { return std::abs(x) >= 0x1p-126 && std::abs(x) < 0x1p127; }
 
+/// Whether t is in the interval, as far as the oracle's t tells.
+bool holds(const Interval& interval, double t) {
+  constexpr double kError = 0x1p-49;  // of t, and of this
+  return interval.low <= t * (1.0 + kError) && t * (1.0 - kError) <= interval.high;
+}
+
 /// The error of `value` in ulp of `exact`, and relative to it; none where a float does not hold it.
 struct Off {
   double ulps, relative;
@@ -122,7 +128,7 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
         tally.doubts += answer.doubt;
         hits += answer.hit;
         true_hits += exact.hit;
-        if (answer.hit != exact.hit) {
+        if (answer.hit != exact.hit || (exact.hit && !holds(answer.bounds, exact.t))) {
           ++(exact.tie ? tally.wrong_ties : tally.wrong);
           if (exact_variant || !exact.tie) fails(shot, direction, {&triangle, 1});
         } else if (exact.hit) {

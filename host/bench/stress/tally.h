@@ -15,7 +15,8 @@ namespace raygate::stress {
 /// What one variant did in one suite.
 struct Tally {
   std::uint64_t tests = 0, rays = 0;
-  std::uint64_t wrong = 0;          ///< tests decided otherwise than the truth, ties aside
+  /// Tests decided otherwise than the truth, or hit at another t than they say, ties aside.
+  std::uint64_t wrong = 0;
   std::uint64_t ties = 0;           ///< tests that only the tie-break decides
   std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact variants only
   std::uint64_t leaks = 0;          ///< rays from inside a closed mesh with an even number of hits

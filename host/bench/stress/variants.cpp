@@ -6,7 +6,8 @@ namespace raygate::stress {
 
 std::vector<VariantKind> all_variants() {
   std::vector<VariantKind> all;
-  for (auto part : {engine_variants(), unit_variants(), float_variants(), embree_variants()}) {
+  for (auto part : {engine_variants(), in_place_variants(), unit_variants(), float_variants(),
+                    embree_variants()}) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
   }
   return all;

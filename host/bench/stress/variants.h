@@ -22,6 +22,7 @@ struct Answer {
   bool doubt = false;                                 ///< exact arithmetic on the host was asked
   float t = std::numeric_limits<float>::quiet_NaN();  ///< of a hit; NaN: the variant has none
   glm::vec3 point{std::numeric_limits<float>::quiet_NaN()};  ///< P, seen from the origin; likewise
+  Interval bounds{0.0, std::numeric_limits<double>::infinity()};  ///< of a hit's exact t
   /// What the renderer goes on with, where that is another.
   PreciseHit delivered{std::numeric_limits<float>::quiet_NaN(),
                        glm::vec3(std::numeric_limits<float>::quiet_NaN())};
@@ -55,6 +56,7 @@ struct VariantKind {
 
 /// The parts of that list.
 [[nodiscard]] std::vector<VariantKind> engine_variants();
+[[nodiscard]] std::vector<VariantKind> in_place_variants();
 [[nodiscard]] std::vector<VariantKind> unit_variants();
 [[nodiscard]] std::vector<VariantKind> float_variants();
 [[nodiscard]] std::vector<VariantKind> embree_variants();  ///< none without Embree
