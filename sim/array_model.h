@@ -18,7 +18,8 @@ namespace raygate {
 class BurstModel {
  public:
   virtual ~BurstModel() = default;
-  virtual void run(std::span<const RayBundle> batch, BurstResults& results) = 0;
+  virtual void start(std::span<const RayBundle> batch) = 0;
+  virtual void finish(BurstResults& results) = 0;
   virtual BurstCounters counters() = 0;
 };
 
@@ -44,7 +45,7 @@ class BurstCursor {
     std::uint32_t bundle = 0, lane = 0;
   };
 
-  explicit BurstCursor(std::span<const RayBundle> batch) : batch_(batch) { settle(); }
+  explicit BurstCursor(std::span<const RayBundle> batch = {}) : batch_(batch) { settle(); }
 
   [[nodiscard]] bool done() const { return bundle_ == batch_.size(); }
 
@@ -70,24 +71,27 @@ class BurstCursor {
   std::uint32_t lanes_ = 0;
 };
 
-/// One lane of the hardware: the burst that goes in, those that are inside, those that came out.
-struct HardwareLane {
+/// What a lane of the hardware has of a batch: the bursts that went in, and what came out of them.
+struct LaneShare {
   std::vector<BurstCursor::Burst> bursts;  // all that went in, and the one that does
   std::size_t closed = 0;                  // so many of them are over
   std::size_t pointed = 0;                 // so many of `hits` have their point
   BurstResults results;
-  const PolygonRecord* record = nullptr;  // the next test; null between bursts
-  const PolygonRecord* end = nullptr;
-  std::uint32_t tag = 0;
 
   void clear() {
     bursts.clear();
     results.clear();
     closed = pointed = 0;
   }
-  [[nodiscard]] bool drained() const {
-    return record == nullptr && closed == bursts.size() && pointed == results.hits.size();
-  }
+  [[nodiscard]] bool all_closed() const { return closed == bursts.size(); }
+  [[nodiscard]] bool all_pointed() const { return pointed == results.hits.size(); }
+};
+
+/// The burst that goes into a lane.
+struct LaneInput {
+  const PolygonRecord* record = nullptr;  // the next test; null between bursts
+  const PolygonRecord* end = nullptr;
+  std::uint32_t tag = 0;
 };
 
 /// hit_test_pkg::count_e
@@ -117,39 +121,26 @@ class ArrayModel : public BurstModel {
     model_.reset();
   }
 
-  void run(std::span<const RayBundle> batch, BurstResults& results) override {
-    BurstCursor cursor(batch);
-    for (HardwareLane& lane : lanes_) lane.clear();
-    unsigned offered = 0;  // lanes whose slot holds a test that was not taken yet
-    bool busy = true;
-    while (busy) {
-      busy = false;
-      unsigned valid = 0, ready = kAllLanes;
-      for (int n = 0; n < kHardwareLanes; ++n) {
-        HardwareLane& lane = lanes_[n];
-        if (!(offered >> n & 1)) {
-          if (lane.record == nullptr && !cursor.done()) start_burst(batch, cursor.take(), n);
-          if (lane.record != nullptr && !(throttled_ && chance(stalls_.no_test)))
-            offer_test(n), valid |= 1u << n;
-        } else {
-          valid |= 1u << n;
-        }
-        if (throttled_ && chance(stalls_.not_taken)) ready &= ~(1u << n);
-        if (ready & model_->valid_o & (1u << n)) take_result(n);
-        busy = busy || !lane.drained();
-      }
-      model_->valid_i = valid;
-      model_->ready_i = ready;
-      const unsigned taken = valid & model_->ready_o;
-      model_.clock();
-      offered = valid & ~taken;
-      for (unsigned left = taken; left != 0; left &= left - 1) next_test(std::countr_zero(left));
-    }
+  void start(std::span<const RayBundle> batch) override {
+    assert(in_flight_ < kMostBatches);
+    Work& work = work_at(in_flight_++);
+    work.batch = batch;
+    work.cursor = BurstCursor(batch);
+    for (LaneShare& share : work.shares) share.clear();
+  }
+
+  void finish(BurstResults& results) override {
+    assert(in_flight_ > 0);
+    const Work& work = work_at(0);
+    while (!drained(work)) step();
     model_->valid_i = 0;
-    merge(results);
+    merge(work, results);
+    oldest_ = (oldest_ + 1) % kMostBatches;
+    --in_flight_;
   }
 
   BurstCounters counters() override {
+    assert(in_flight_ == 0);
     for (int i = 0; i < 3; ++i) model_.clock();  // the counters are three clocks late
     return {read(kTests),      read(kMisses),      read(kHits),       read(kDoubts),
             read(kNearTies),   read(kDistances),   3 * read(kPoints), model_.clocks(),
@@ -158,6 +149,47 @@ class ArrayModel : public BurstModel {
 
  private:
   static constexpr unsigned kAllLanes = (1u << kHardwareLanes) - 1;
+  static constexpr int kMostBatches = 2;
+
+  /// A batch on its way.
+  struct Work {
+    std::span<const RayBundle> batch;
+    BurstCursor cursor;
+    LaneShare shares[kHardwareLanes];
+  };
+
+  /// The batches in flight in the order of their start.
+  Work& work_at(int age) { return works_[(oldest_ + age) % kMostBatches]; }
+
+  static bool drained(const Work& work) {
+    return work.cursor.done() && std::ranges::all_of(work.shares, [](const LaneShare& share) {
+             return share.all_closed() && share.all_pointed();
+           });
+  }
+
+  /// A clock: every lane is offered a test, and its result is taken.
+  void step() {
+    unsigned valid = 0, ready = kAllLanes;
+    for (int n = 0; n < kHardwareLanes; ++n) {
+      if (!(offered_ >> n & 1)) {
+        if (inputs_[n].record == nullptr) start_burst(n);
+        if (inputs_[n].record != nullptr && !(throttled_ && chance(stalls_.no_test))) {
+          offer_test(n);
+          valid |= 1u << n;
+        }
+      } else {
+        valid |= 1u << n;
+      }
+      if (throttled_ && chance(stalls_.not_taken)) ready &= ~(1u << n);
+      if (ready & model_->valid_o & (1u << n)) take_result(n);
+    }
+    model_->valid_i = valid;
+    model_->ready_i = ready;
+    const unsigned taken = valid & model_->ready_o;
+    model_.clock();
+    offered_ = valid & ~taken;
+    for (unsigned left = taken; left != 0; left &= left - 1) next_test(std::countr_zero(left));
+  }
 
   bool chance(int of_256) { return static_cast<int>(random_() & 0xFF) < of_256; }
 
@@ -167,21 +199,24 @@ class ArrayModel : public BurstModel {
     return model_->counter_o;
   }
 
-  void start_burst(std::span<const RayBundle> batch, BurstCursor::Burst burst, int n) {
-    const RayBundle& bundle = batch[burst.bundle];
-    HardwareLane& lane = lanes_[n];
-    lane.bursts.push_back(burst);
-    lane.record = bundle.records;
-    lane.end = bundle.records + bundle.record_count;
-    lane.tag = 0;
-    const glm::vec3 direction = bundle.lane_direction(static_cast<int>(burst.lane));
-    std::memcpy(slot(model_->direction_i, n, sizeof direction), &direction, sizeof direction);
-    set_bit(model_->first_i, n, true);
+  /// The next burst of the batches goes into lane n, if there is one.
+  void start_burst(int n) {
+    for (int age = 0; age < in_flight_; ++age) {
+      Work& work = work_at(age);
+      if (work.cursor.done()) continue;
+      const BurstCursor::Burst burst = work.cursor.take();
+      work.shares[n].bursts.push_back(burst);
+      const RayBundle& bundle = work.batch[burst.bundle];
+      inputs_[n] = {bundle.records, bundle.records + bundle.record_count, 0};
+      const glm::vec3 direction = bundle.lane_direction(static_cast<int>(burst.lane));
+      std::memcpy(slot(model_->direction_i, n, sizeof direction), &direction, sizeof direction);
+      return;
+    }
   }
 
   /// Puts the lane's next test into its slot.
   void offer_test(int n) {
-    const HardwareLane& lane = lanes_[n];
+    const LaneInput& lane = inputs_[n];
     std::memcpy(slot(model_->record_i, n, sizeof(PolygonRecord)), lane.record,
                 sizeof(PolygonRecord));
     std::memcpy(slot(model_->tag_i, n, sizeof lane.tag), &lane.tag, sizeof lane.tag);
@@ -190,7 +225,7 @@ class ArrayModel : public BurstModel {
   }
 
   void next_test(int n) {
-    HardwareLane& lane = lanes_[n];
+    LaneInput& lane = inputs_[n];
     ++lane.tag;
     if (++lane.record == lane.end) lane.record = nullptr;
   }
@@ -200,40 +235,52 @@ class ArrayModel : public BurstModel {
     port = static_cast<Port>((port & ~(1u << n)) | static_cast<unsigned>(value) << n);
   }
 
-  void take_result(int n) {
-    HardwareLane& lane = lanes_[n];
-    const unsigned kind = model_->report_o >> (2 * n) & 3;
-    const auto& [bundle, bundle_lane] = lane.bursts[std::min(lane.closed, lane.bursts.size() - 1)];
-    if (kind != 0) {
-      lane.results.reports.push_back({bundle, bundle_lane,
-                                      read_slot<std::uint32_t>(model_->report_tag_o, n),
-                                      static_cast<TestReport::Kind>(kind)});
+  /// The oldest batch of which lane n still has something to say, by `all` of LaneShare.
+  LaneShare* awaited(int n, bool (LaneShare::*all)() const) {
+    for (int age = 0; age < in_flight_; ++age) {
+      LaneShare& share = work_at(age).shares[n];
+      if (!(share.*all)()) return &share;
     }
-    if (model_->closed_o >> n & 1) {
-      if (model_->found_o >> n & 1) {
-        lane.results.hits.push_back({bundle,
-                                     bundle_lane,
-                                     read_slot<std::uint32_t>(model_->tag_o, n),
-                                     read_slot<float>(model_->t_o, n),
-                                     static_cast<std::uint32_t>(model_->t_error_o >> (4 * n) & 15),
-                                     {}});
+    return nullptr;
+  }
+
+  void take_result(int n) {
+    if (LaneShare* const share = awaited(n, &LaneShare::all_closed)) {
+      const auto& [bundle, bundle_lane] = share->bursts[share->closed];
+      const unsigned kind = model_->report_o >> (2 * n) & 3;
+      if (kind != 0) {
+        share->results.reports.push_back({bundle, bundle_lane,
+                                          read_slot<std::uint32_t>(model_->report_tag_o, n),
+                                          static_cast<TestReport::Kind>(kind)});
       }
-      ++lane.closed;
+      if (model_->closed_o >> n & 1) {
+        if (model_->found_o >> n & 1) {
+          share->results.hits.push_back(
+              {bundle,
+               bundle_lane,
+               read_slot<std::uint32_t>(model_->tag_o, n),
+               read_slot<float>(model_->t_o, n),
+               static_cast<std::uint32_t>(model_->t_error_o >> (4 * n) & 15),
+               {}});
+        }
+        ++share->closed;
+      }
     }
     if (model_->point_valid_o >> n & 1) {
-      lane.results.hits[lane.pointed++].point = read_slot<glm::vec3>(model_->point_o, n);
+      LaneShare& share = *awaited(n, &LaneShare::all_pointed);
+      share.results.hits[share.pointed++].point = read_slot<glm::vec3>(model_->point_o, n);
     }
   }
 
   /// The lanes' results, each in order, into one list in the order of the batch.
-  void merge(BurstResults& results) {
+  void merge(const Work& work, BurstResults& results) {
     const auto before = [](const auto& a, const auto& b) {
       return a.bundle != b.bundle ? a.bundle < b.bundle : a.lane < b.lane;
     };
     const auto append = [&](auto& to, auto part) {
       const auto old = static_cast<std::ptrdiff_t>(to.size());
-      for (const HardwareLane& lane : lanes_) {
-        to.insert(to.end(), (lane.results.*part).begin(), (lane.results.*part).end());
+      for (const LaneShare& share : work.shares) {
+        to.insert(to.end(), (share.results.*part).begin(), (share.results.*part).end());
       }
       if (kHardwareLanes > 1) std::stable_sort(to.begin() + old, to.end(), before);
     };
@@ -242,7 +289,10 @@ class ArrayModel : public BurstModel {
   }
 
   Model<Top> model_;
-  HardwareLane lanes_[kHardwareLanes];
+  LaneInput inputs_[kHardwareLanes];
+  unsigned offered_ = 0;  // lanes whose slot holds a test that was not taken yet
+  Work works_[kMostBatches];
+  int oldest_ = 0, in_flight_ = 0;
   BurstStalls stalls_;
   std::mt19937_64 random_;
   bool throttled_;

@@ -38,8 +38,12 @@ RtlBurstUnit::RtlBurstUnit(int lanes, const BurstStalls& stalls)
 RtlBurstUnit::~RtlBurstUnit() = default;
 
 void RtlBurstUnit::run(std::span<const RayBundle> batch, BurstResults& results) {
-  model_->run(batch, results);
+  start(batch);
+  finish(results);
 }
+
+void RtlBurstUnit::start(std::span<const RayBundle> batch) { model_->start(batch); }
+void RtlBurstUnit::finish(BurstResults& results) { model_->finish(results); }
 
 BurstCounters RtlBurstUnit::counters() const { return model_->counters(); }
 

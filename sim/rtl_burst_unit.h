@@ -24,6 +24,9 @@ class RtlBurstUnit : public BurstUnit {
   ~RtlBurstUnit() override;
 
   void run(std::span<const RayBundle> batch, BurstResults& results) override;
+  /// The tests of the second batch follow those of the first without a gap.
+  void start(std::span<const RayBundle> batch) override;
+  void finish(BurstResults& results) override;
   [[nodiscard]] BurstCounters counters() const override;
 
  private:

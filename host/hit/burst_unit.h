@@ -79,10 +79,20 @@ class BurstUnit {
  public:
   virtual ~BurstUnit() = default;
 
-  /// Adds what `batch` gives to `results`.
+  /// Adds what `batch` gives to `results`. Not between a start and its finish.
   virtual void run(std::span<const RayBundle> batch, BurstResults& results) = 0;
 
+  /// The same in two steps, so that a unit need not run empty while its user thinks: at most two
+  /// batches may be started and not finished. Each finish is that of the oldest one, which must
+  /// have lived until then. Where nothing is gained by it, all is done in finish.
+  virtual void start(std::span<const RayBundle> batch) { started_.push(batch); }
+  virtual void finish(BurstResults& results) { run(started_.pop(), results); }
+
+  /// Not between a start and its finish.
   [[nodiscard]] virtual BurstCounters counters() const = 0;
+
+ protected:
+  StartedBatches started_;
 };
 
 }  // namespace raygate

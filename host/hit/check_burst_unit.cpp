@@ -69,9 +69,20 @@ CheckBurstUnit::CheckBurstUnit(std::unique_ptr<BurstUnit> unit,
     : unit_(std::move(unit)), reference_(std::move(reference)) {}
 
 void CheckBurstUnit::run(std::span<const RayBundle> batch, BurstResults& results) {
+  start(batch);
+  finish(results);
+}
+
+void CheckBurstUnit::start(std::span<const RayBundle> batch) {
+  started_.push(batch);
+  unit_->start(batch);
+}
+
+void CheckBurstUnit::finish(BurstResults& results) {
+  const std::span<const RayBundle> batch = started_.pop();
   actual_.clear();
   expected_.clear();
-  unit_->run(batch, actual_);
+  unit_->finish(actual_);
   reference_->run(batch, expected_);
   require_same(batch, actual_, expected_);
   results.hits.insert(results.hits.end(), actual_.hits.begin(), actual_.hits.end());

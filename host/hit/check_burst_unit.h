@@ -22,6 +22,8 @@ class CheckBurstUnit : public BurstUnit {
   CheckBurstUnit(std::unique_ptr<BurstUnit> unit, std::unique_ptr<BurstUnit> reference);
 
   void run(std::span<const RayBundle> batch, BurstResults& results) override;
+  void start(std::span<const RayBundle> batch) override;
+  void finish(BurstResults& results) override;
   [[nodiscard]] BurstCounters counters() const override;  ///< the first unit's
 
  private:

@@ -1,6 +1,7 @@
 // What finds hits: batches of rays against polygon records, whichever engine does the work.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -74,6 +75,26 @@ struct HitCounters {
   HitCounters& operator+=(const HitCounters& other);
 };
 
+/// One or two batches that wait to be finished, in the order of their start.
+class StartedBatches {
+ public:
+  void push(std::span<const RayBundle> batch) {
+    assert(count_ < 2);
+    batches_[count_++] = batch;
+  }
+  std::span<const RayBundle> pop() {
+    assert(count_ > 0);
+    const std::span<const RayBundle> oldest = batches_[0];
+    batches_[0] = batches_[1];
+    --count_;
+    return oldest;
+  }
+
+ private:
+  std::span<const RayBundle> batches_[2];
+  int count_ = 0;
+};
+
 /// One engine. Not for use by two threads at once: each thread makes its own.
 ///
 /// What it promises: a sure hit is a hit and an unreported pair a miss (or farther than a sure hit
@@ -86,11 +107,19 @@ class HitTester {
   /// Tests all bursts of `batch` and adds what it found to `results`, in the order of the batch.
   virtual void test(std::span<const RayBundle> batch, HitResults& results) = 0;
 
+  /// The same in two steps, as of a BurstUnit: two batches at most on their way, the oldest one
+  /// finished first.
+  virtual void start(std::span<const RayBundle> batch) { started_.push(batch); }
+  virtual void finish(HitResults& results) { test(started_.pop(), results); }
+
   /// Where the caller may do this engine's tests itself, one by one as it comes to them, with the
   /// same promise: the counts to add them to. Else nullptr.
   [[nodiscard]] virtual HitCounters* in_place() { return nullptr; }
 
   [[nodiscard]] virtual HitCounters counters() const = 0;
+
+ protected:
+  StartedBatches started_;
 };
 
 }  // namespace raygate

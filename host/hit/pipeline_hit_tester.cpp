@@ -23,8 +23,19 @@ Interval around(const HitDistance& distance) {
 PipelineHitTester::PipelineHitTester(std::unique_ptr<BurstUnit> unit) : unit_(std::move(unit)) {}
 
 void PipelineHitTester::test(std::span<const RayBundle> batch, HitResults& results) {
+  start(batch);
+  finish(results);
+}
+
+void PipelineHitTester::start(std::span<const RayBundle> batch) {
+  started_.push(batch);
+  unit_->start(batch);
+}
+
+void PipelineHitTester::finish(HitResults& results) {
+  const std::span<const RayBundle> batch = started_.pop();
   found_.clear();
-  unit_->run(batch, found_);
+  unit_->finish(found_);
   auto report = found_.reports.begin();
   // A burst's near ties come before the hit that was kept, so that its sure hits are together.
   const auto take_reports = [&](auto belongs_here) {

@@ -15,6 +15,8 @@ class PipelineHitTester : public HitTester {
   explicit PipelineHitTester(std::unique_ptr<BurstUnit> unit);
 
   void test(std::span<const RayBundle> batch, HitResults& results) override;
+  void start(std::span<const RayBundle> batch) override;
+  void finish(HitResults& results) override;
   [[nodiscard]] HitCounters counters() const override;
 
   /// The unit's own counts, its stalls among them.

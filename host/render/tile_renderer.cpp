@@ -15,9 +15,9 @@ constexpr int kBlockWidth = 4, kBlockHeight = kLanes / kBlockWidth;
 constexpr int kSquare = 8;
 constexpr std::uint32_t kFilterStream = 0;
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
-// A unit runs empty for 46 clocks after each batch. Of 32 to 1,024 tests a lane this took the
-// fewest clocks on most scenes, for one lane and for eight.
-constexpr std::size_t kEnoughTestsALane = 256;
+// The unit runs empty for 46 clocks after a batch if no other one follows. Of 0 to 256 tests a lane
+// this took the fewest clocks on most scenes, for one lane and for eight.
+constexpr std::size_t kEnoughTestsALane = 64;
 constexpr double kBrightest = std::numeric_limits<float>::max();
 
 /// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be

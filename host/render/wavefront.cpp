@@ -24,21 +24,33 @@ void Wavefront::trace(std::span<const Ray> rays, const Search& search) {
     return;
   }
   make_packets(rays, search);
-  for (;;) {
-    collect(rays, search);
-    seconds_.traverse += watch.lap();
-    if (batch_.empty()) return;
-    if (search.common == nullptr) make_own_records(rays);
-    seconds_.record += watch.lap();
-    results_.clear();
-    tester_.test(batch_, results_);
-    seconds_.hit += watch.lap();
-    merge(rays, search);
-    if (counting_) count_batch();
-    const double before = seconds_.doubt;
-    seconds_.doubt = nearest_.counters().seconds;
-    seconds_.hit += watch.lap() - (seconds_.doubt - before);
+  for (bool busy = true; busy;) {
+    busy = false;
+    for (Half& half : halves_) {
+      if (half.started) finish(rays, search, half);
+      watch.lap();
+      collect(rays, search, half);
+      seconds_.traverse += watch.lap();
+      if (half.batch.empty()) continue;
+      if (search.common == nullptr) make_own_records(rays, half);
+      seconds_.record += watch.lap();
+      tester_.start(half.batch);
+      half.started = busy = true;
+    }
   }
+}
+
+/// Takes the answers to a half's batch.
+void Wavefront::finish(std::span<const Ray> rays, const Search& search, Half& half) {
+  Stopwatch watch;
+  results_.clear();
+  tester_.finish(results_);
+  half.started = false;
+  merge(rays, search, half);
+  if (counting_) count_batch(half);
+  const double before = seconds_.doubt;
+  seconds_.doubt = nearest_.counters().seconds;
+  seconds_.hit += watch.lap() - (seconds_.doubt - before);
 }
 
 /// What the host can do without batches; false where batches are needed.
@@ -58,11 +70,11 @@ bool Wavefront::trace_in_place(std::span<const Ray> rays, const Search& search) 
   return true;
 }
 
-/// Packets are filled octant by octant, each in the order of the rays.
+/// Packets are filled octant by octant, each in the order of the rays; the second half of them is
+/// the second half.
 void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   packets_.clear();
-  active_.clear();
   std::array<std::uint32_t, 8> open;  // the packet of each octant that has room
   std::array<int, 8> filled{};
   open.fill(kNone);
@@ -73,7 +85,6 @@ void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
     if (open[octant] == kNone) {
       open[octant] = static_cast<std::uint32_t>(packets_.size());
       filled[octant] = 0;
-      active_.push_back(open[octant]);
       packets_.push_back({PacketTraversal(bvh_, octant), {}});
       packets_.back().rays.fill(number);
     }
@@ -84,6 +95,10 @@ void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
     packet.lanes |= 1u << lane;
     if (!search.limits.empty()) packet.traversal.set_cutoff(lane, search.limits[number]);
     if (filled[octant] == kLanes) open[octant] = kNone;
+  }
+  for (Half& half : halves_) half.active.clear();
+  for (std::uint32_t index = 0; index < packets_.size(); ++index) {
+    halves_[2 * index < packets_.size() ? 0 : 1].active.push_back(index);
   }
 }
 
@@ -98,74 +113,79 @@ std::optional<LeafVisit> Wavefront::next_visit(Packet& packet, const Search& sea
 
 /// Fills the batch: every packet goes to its next leaf or, while there are too few tests, to the
 /// one after that.
-void Wavefront::collect(std::span<const Ray> rays, const Search& search) {
-  batch_.clear();
-  owner_.clear();
-  for (std::size_t tests = 0; !active_.empty();) {
-    tests += visit_leaves(rays, search);
+void Wavefront::collect(std::span<const Ray> rays, const Search& search, Half& half) {
+  half.batch.clear();
+  half.owner.clear();
+  for (std::size_t tests = 0; !half.active.empty();) {
+    tests += visit_leaves(rays, search, half);
     if (tests >= enough_tests_) break;
   }
 }
 
-/// Sends every packet to its next leaf and writes the tests found there into the batch; their
-/// number. Packets that are through leave the active ones.
-std::size_t Wavefront::visit_leaves(std::span<const Ray> rays, const Search& search) {
-  std::size_t kept = 0, tests = 0;
-  for (const std::uint32_t index : active_) {
-    Packet& packet = packets_[index];
-    const auto visit = next_visit(packet, search);
-    if (!visit) continue;
-    active_[kept++] = index;
-    tests += visit->count * static_cast<std::size_t>(std::popcount(visit->lanes));
-    if (search.common != nullptr) {
-      assert(rays[packet.rays[0]].origin == search.common->origin());
-      add_bundle(rays, packet, *visit, visit->lanes);
-      batch_.back().records = search.common->leaf(visit->first, visit->count);
-    } else {
-      add_own_bundles(rays, packet, *visit);
-    }
-    owner_.resize(batch_.size(), index);
-  }
-  active_.resize(kept);
-  return tests;
-}
+namespace {
 
-/// A bundle for each origin among the visiting rays.
-void Wavefront::add_own_bundles(std::span<const Ray> rays, const Packet& packet,
-                                const LeafVisit& visit) {
-  for (LaneMask left = visit.lanes; left != 0;) {
-    const glm::vec3& origin = rays[packet.rays[std::countr_zero(left)]].origin;
-    LaneMask lanes = 0;
-    for (LaneMask others = left; others != 0; others &= others - 1) {
-      const int lane = std::countr_zero(others);
-      if (rays[packet.rays[lane]].origin == origin) lanes |= 1u << lane;
-    }
-    add_bundle(rays, packet, visit, lanes);
-    left &= ~lanes;
-  }
-}
-
-void Wavefront::add_bundle(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit,
-                           LaneMask lanes) {
-  RayBundle& bundle = batch_.emplace_back();
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const glm::vec3& direction = rays[packet.rays[lane]].direction;
+RayBundle make_bundle(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
+                      const LeafVisit& visit, LaneMask lanes) {
+  RayBundle bundle;
+  for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+    const glm::vec3& direction = rays[numbers[lane]].direction;
     for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = direction[k];
   }
   bundle.record_count = visit.count;
   bundle.first_tag = visit.first;
   bundle.lanes = lanes;
+  return bundle;
+}
+
+/// A bundle for each origin among the visiting rays.
+void add_own_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
+                     const LeafVisit& visit, std::vector<RayBundle>& batch) {
+  for (LaneMask left = visit.lanes; left != 0;) {
+    const glm::vec3& origin = rays[numbers[std::countr_zero(left)]].origin;
+    LaneMask lanes = 0;
+    for (LaneMask others = left; others != 0; others &= others - 1) {
+      const int lane = std::countr_zero(others);
+      if (rays[numbers[lane]].origin == origin) lanes |= 1u << lane;
+    }
+    batch.push_back(make_bundle(rays, numbers, visit, lanes));
+    left &= ~lanes;
+  }
+}
+
+}  // namespace
+
+/// Sends every packet to its next leaf and writes the tests found there into the batch; their
+/// number. Packets that are through leave the active ones.
+std::size_t Wavefront::visit_leaves(std::span<const Ray> rays, const Search& search, Half& half) {
+  std::size_t kept = 0, tests = 0;
+  for (const std::uint32_t index : half.active) {
+    Packet& packet = packets_[index];
+    const auto visit = next_visit(packet, search);
+    if (!visit) continue;
+    half.active[kept++] = index;
+    tests += visit->count * static_cast<std::size_t>(std::popcount(visit->lanes));
+    if (search.common != nullptr) {
+      assert(rays[packet.rays[0]].origin == search.common->origin());
+      half.batch.push_back(make_bundle(rays, packet.rays, *visit, visit->lanes));
+      half.batch.back().records = search.common->leaf(visit->first, visit->count);
+    } else {
+      add_own_bundles(rays, packet.rays, *visit, half.batch);
+    }
+    half.owner.resize(half.batch.size(), index);
+  }
+  half.active.resize(kept);
+  return tests;
 }
 
 /// All at once, when it is known how many: bundles point at their records.
-void Wavefront::make_own_records(std::span<const Ray> rays) {
+void Wavefront::make_own_records(std::span<const Ray> rays, Half& half) {
   std::size_t count = 0;
-  for (const RayBundle& bundle : batch_) count += bundle.record_count;
-  if (records_.size() < count) records_.resize(count);
-  PolygonRecord* next = records_.data();
-  for (std::size_t i = 0; i < batch_.size(); ++i) {
-    RayBundle& bundle = batch_[i];
-    const Ray& ray = rays[packets_[owner_[i]].rays[std::countr_zero(bundle.lanes)]];
+  for (const RayBundle& bundle : half.batch) count += bundle.record_count;
+  if (half.records.size() < count) half.records.resize(count);
+  PolygonRecord* next = half.records.data();
+  for (std::size_t i = 0; i < half.batch.size(); ++i) {
+    RayBundle& bundle = half.batch[i];
+    const Ray& ray = rays[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
     bundle.records = next;
     for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
       *next++ = make_record(ray.origin, bvh_.corners_of(bundle.first_tag + k));
@@ -175,8 +195,9 @@ void Wavefront::make_own_records(std::span<const Ray> rays) {
 }
 
 template <class Report>
-void Wavefront::offer(std::span<const Ray> rays, const Search& search, const Report& report) {
-  Packet& packet = packets_[owner_[report.bundle]];
+void Wavefront::offer(std::span<const Ray> rays, const Search& search, const Half& half,
+                      const Report& report) {
+  Packet& packet = packets_[half.owner[report.bundle]];
   const std::uint32_t number = packet.rays[report.lane];
   const LaneMask lane = 1u << report.lane;
   if ((packet.ended & lane) != 0 || !nearest_.offer(number, rays[number], report)) return;
@@ -189,43 +210,43 @@ void Wavefront::offer(std::span<const Ray> rays, const Search& search, const Rep
 
 /// A burst reports no hit that is surely farther than another one: where that one is ignored, exact
 /// arithmetic tries them all.
-void Wavefront::offer_hidden(std::span<const Ray> rays, const Search& search,
+void Wavefront::offer_hidden(std::span<const Ray> rays, const Search& search, const Half& half,
                              const SureHit& ignored) {
-  const RayBundle& bundle = batch_[ignored.bundle];
-  const std::uint32_t number = packets_[owner_[ignored.bundle]].rays[ignored.lane];
+  const RayBundle& bundle = half.batch[ignored.bundle];
+  const std::uint32_t number = packets_[half.owner[ignored.bundle]].rays[ignored.lane];
   if (!search.limits.empty() && ignored.t.low >= search.limits[number]) return;
   for (std::uint32_t tag = bundle.first_tag; tag < bundle.first_tag + bundle.record_count; ++tag) {
     if (tag == ignored.tag) continue;
-    offer(rays, search, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
+    offer(rays, search, half, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
   }
 }
 
-void Wavefront::merge(std::span<const Ray> rays, const Search& search) {
+void Wavefront::merge(std::span<const Ray> rays, const Search& search, const Half& half) {
   const auto is_ignored = [&](const auto& report) {
     return !search.ignored.empty() &&
-           search.ignored[packets_[owner_[report.bundle]].rays[report.lane]] == report.tag;
+           search.ignored[packets_[half.owner[report.bundle]].rays[report.lane]] == report.tag;
   };
   for (const SureHit& hit : results_.hits) {
     if (is_ignored(hit)) {
-      offer_hidden(rays, search, hit);
+      offer_hidden(rays, search, half, hit);
     } else {
-      offer(rays, search, hit);
+      offer(rays, search, half, hit);
     }
   }
   for (const Doubt& doubt : results_.doubts) {
-    if (!is_ignored(doubt)) offer(rays, search, doubt);
+    if (!is_ignored(doubt)) offer(rays, search, half, doubt);
   }
 }
 
-void Wavefront::count_batch() {
-  for (std::size_t i = 0; i < batch_.size(); ++i) {
-    for (LaneMask lanes = batch_[i].lanes; lanes != 0; lanes &= lanes - 1) {
-      const std::uint32_t ray = packets_[owner_[i]].rays[std::countr_zero(lanes)];
-      work_[ray].tests += batch_[i].record_count;
+void Wavefront::count_batch(const Half& half) {
+  for (std::size_t i = 0; i < half.batch.size(); ++i) {
+    for (LaneMask lanes = half.batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t ray = packets_[half.owner[i]].rays[std::countr_zero(lanes)];
+      work_[ray].tests += half.batch[i].record_count;
     }
   }
   for (const Doubt& doubt : results_.doubts) {
-    ++work_[packets_[owner_[doubt.bundle]].rays[doubt.lane]].doubts;
+    ++work_[packets_[half.owner[doubt.bundle]].rays[doubt.lane]].doubts;
   }
 }
 

@@ -36,7 +36,8 @@ struct Search {
 
 /// Traces many rays at once; some ten thousand are best. In each round every packet of eight goes
 /// on to its next leaf; the leaves' tests together are one batch for the tester; its answers
-/// shorten the rays. The unit sees few large batches, the host's memory a few packets.
+/// shorten the rays. The packets are two halves: while the tester works on the one, the other goes
+/// on. The unit sees few large batches, the host's memory a few packets.
 class Wavefront {
  public:
   /// Where the time went.
@@ -88,20 +89,29 @@ class Wavefront {
     std::uint32_t next_slot = 0;  // without culling
   };
 
+  /// Half of the packets, and their batch.
+  struct Half {
+    std::vector<std::uint32_t> active;  // packets still on their way
+    std::vector<RayBundle> batch;
+    std::vector<std::uint32_t> owner;    // the packet of each bundle
+    std::vector<PolygonRecord> records;  // of rays of their own origins, in the batch's order
+    bool started = false;                // the batch is with the tester
+  };
+
   bool trace_in_place(std::span<const Ray> rays, const Search& search);
   void make_packets(std::span<const Ray> rays, const Search& search);
   std::optional<LeafVisit> next_visit(Packet& packet, const Search& search);
-  void collect(std::span<const Ray> rays, const Search& search);
-  std::size_t visit_leaves(std::span<const Ray> rays, const Search& search);
-  void add_own_bundles(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit);
-  void add_bundle(std::span<const Ray> rays, const Packet& packet, const LeafVisit& visit,
-                  LaneMask lanes);
-  void make_own_records(std::span<const Ray> rays);
+  void collect(std::span<const Ray> rays, const Search& search, Half& half);
+  std::size_t visit_leaves(std::span<const Ray> rays, const Search& search, Half& half);
+  void make_own_records(std::span<const Ray> rays, Half& half);
   template <class Report>
-  void offer(std::span<const Ray> rays, const Search& search, const Report& report);
-  void offer_hidden(std::span<const Ray> rays, const Search& search, const SureHit& ignored);
-  void merge(std::span<const Ray> rays, const Search& search);
-  void count_batch();
+  void offer(std::span<const Ray> rays, const Search& search, const Half& half,
+             const Report& report);
+  void offer_hidden(std::span<const Ray> rays, const Search& search, const Half& half,
+                    const SureHit& ignored);
+  void finish(std::span<const Ray> rays, const Search& search, Half& half);
+  void merge(std::span<const Ray> rays, const Search& search, const Half& half);
+  void count_batch(const Half& half);
 
   const Bvh& bvh_;
   HitTester& tester_;
@@ -113,10 +123,7 @@ class Wavefront {
   std::vector<Work> work_;
   // Room to work in, kept from trace to trace.
   std::vector<Packet> packets_;
-  std::vector<std::uint32_t> active_;  // packets still on their way
-  std::vector<RayBundle> batch_;
-  std::vector<std::uint32_t> owner_;    // the packet of each bundle
-  std::vector<PolygonRecord> records_;  // of rays of their own origins, in the batch's order
+  std::array<Half, 2> halves_;
   HitResults results_;
 };
 

@@ -22,11 +22,11 @@ def frames(rows: list[dict], variants: list[dict], records: list[dict]) -> list[
     area, period_ns, cost_origin, frame_ms, area_time    where synthesis knows the unit
     """
     rate = {row["variant"]: row["clocks"] / row["unit_tests"] for row in rows
-            if row["section"] == "variants" and row["engine"] == "rtl" and row["unit_tests"]}
+            if row["section"] == "variants" and row["engine"] == "unit" and row["unit_tests"]}
     by_name = {variant["name"]: variant for variant in variants}
     found = []
     for row in rows:
-        if row["section"] != "variants" or row["engine"] == "rtl":
+        if row["section"] != "variants" or row["engine"] == "unit":
             continue
         variant = by_name[row["variant"]]
         usual = rate.get("serial" if variant["unit"] == "serial" else "binary32")

@@ -46,7 +46,7 @@ def variants(table: list[dict], quick: bool) -> list[dict]:
             if variant["hardware"] and name == "cornell":
                 rows.append({"scene": _path(scene), "width": 64 if quick else 160,
                              "height": 48 if quick else 120, "variant": variant["name"],
-                             "engine": "rtl"})
+                             "engine": "unit"})
     return rows
 
 

@@ -97,7 +97,7 @@ bool is_plain(const Variant& variant) { return variant.math == Arithmetic{} && v
 
 HitTesterFactory factory_of(const BenchRun& run, const Variant& variant) {
   if (run.engine == "twin") return [&variant] { return make_variant_tester(variant); };
-  if (!is_plain(variant)) return [&variant] { return make_rtl_variant_tester(variant); };
+  if (run.engine == "unit") return [&variant] { return make_rtl_variant_tester(variant); };
   Options options;
   options.engine = run.engine == "rtl" ? Engine::kRtl : Engine::kCpu;
   options.unit = variant.unit == Variant::Unit::kSerial ? "serial" : "pipeline";
@@ -164,6 +164,7 @@ class Performance {
                                 .height = run_.height,
                                 .window = {},
                                 .threads = run_.threads,
+                                .lanes = run_.lanes,
                                 .samples = run_.samples,
                                 .seed = run_.seed,
                                 .integrator = kind_of(run_.integrator),
@@ -277,22 +278,22 @@ BenchRun parse_run(const json& object) {
   fields.end({"scene", "width", "height", "variant", "engine", "lanes", "threads", "integrator",
               "samples", "depth", "seed", "repeats", "audit", "picture"});
   const Variant& variant = variant_named(run.variant);
-  if (run.engine != "cpu" && run.engine != "twin" && run.engine != "rtl") {
-    fields.fail("engine", "cpu, twin or rtl");
+  const bool of_the_renderer = run.engine == "cpu" || run.engine == "rtl";
+  if (!of_the_renderer && run.engine != "twin" && run.engine != "unit") {
+    fields.fail("engine", "cpu, rtl, twin or unit");
   }
-  if (run.engine == "cpu" && !is_plain(variant)) {
-    fields.fail("engine", "twin or rtl for " + run.variant);
+  if (of_the_renderer && !is_plain(variant)) {
+    fields.fail("engine", "twin or unit for " + run.variant);
   }
-  if (run.engine == "rtl" && !variant.has_hardware()) {
+  if (run.engine == "unit" && !variant.has_hardware()) {
     fields.fail("engine", "twin: no hardware takes the parameters of " + run.variant);
   }
   if (run.integrator != "primary" && run.integrator != "whitted" && run.integrator != "path") {
     fields.fail("integrator", "primary, whitted or path");
   }
-  const bool several_lanes =
-      run.engine == "rtl" && is_plain(variant) && variant.unit == Variant::Unit::kPipeline;
+  const bool several_lanes = run.engine == "rtl" && variant.unit == Variant::Unit::kPipeline;
   if ((run.lanes & (run.lanes - 1)) != 0) fields.fail("lanes", "1, 2, 4 or 8");
-  if (run.lanes != 1 && !several_lanes) fields.fail("lanes", "1, but for rtl in binary32");
+  if (run.lanes != 1 && !several_lanes) fields.fail("lanes", "1, but for the pipelined rtl");
   return run;
 }
 

@@ -16,8 +16,10 @@ struct BenchRun {
   std::filesystem::path scene;  ///< an OBJ file
   int width = 320, height = 240;
   std::string variant = "binary32";  ///< a name of variants.txt
-  std::string engine = "cpu";        ///< "cpu" (fast, binary32), "twin" (bit-true) or "rtl"
-  int lanes = 1;                     ///< of rtl in binary32: 1, 2, 4 or 8
+  /// The renderer's own, of binary32: "cpu" or "rtl". The variant's: "twin" (in C++, bit-true) or
+  /// "unit" (Verilated, one lane, which runs empty after each batch).
+  std::string engine = "cpu";
+  int lanes = 1;  ///< of the pipelined rtl: 1, 2, 4 or 8
   int threads = 1;
   std::string integrator = "primary";  ///< or "whitted", "path"
   int samples = 1;                     ///< of each pixel

@@ -20,7 +20,9 @@ TEST(BrokenUnitTest, IsNoticed) {
   const BurstBatch batch = RandomBursts(1).make(kTests);
   BurstResults expected, got;
   CpuBurstUnit().run(batch.bundles, expected);
-  ArrayModel<Vhit_test_array_broken, 1>(BurstStalls{}).run(batch.bundles, got);
+  ArrayModel<Vhit_test_array_broken, 1> broken(BurstStalls{});
+  broken.start(batch.bundles);
+  broken.finish(got);
   EXPECT_THROW(require_same(batch.bundles, got, expected), std::exception);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <deque>
 #include <random>
 #include <tuple>
 
@@ -31,7 +32,8 @@ void expect_same_events(const BurstCounters& rtl, const BurstCounters& cpu) {
 
 class RtlBurstUnitTest : public testing::TestWithParam<int> {};
 
-/// Every field of every result, under random stalls, in many small and large batches.
+/// Every field of every result, under random stalls, in many small and large batches, a batch close
+/// behind the other or alone.
 TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   const auto seed = static_cast<std::uint64_t>(GetParam());
   RecordProperty("seed", static_cast<int>(seed));
@@ -50,15 +52,24 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
                                                   {0, 230, 16},
                                                   {100, 200, 8}}) {
     RtlBurstUnit rtl(GetParam(), {no_test, not_taken, seed});
-    for (std::uint64_t part = 0; part < wanted / static_cast<std::uint64_t>(share);) {
-      const BurstBatch batch = random.make(1 + size() % 5'000);
-      part += batch.tests;
-      done += batch.tests;
+    std::deque<BurstBatch> started;
+    const auto finish = [&] {
       BurstResults expected, got;
-      cpu.run(batch.bundles, expected);
-      rtl.run(batch.bundles, got);
-      ASSERT_NO_THROW(require_same(batch.bundles, got, expected));
+      cpu.run(started.front().bundles, expected);
+      rtl.finish(got);
+      require_same(started.front().bundles, got, expected);
+      started.pop_front();
+    };
+    for (std::uint64_t part = 0; part < wanted / static_cast<std::uint64_t>(share);) {
+      started.push_back(random.make(1 + size() % (size() % 2 == 0 ? 50 : 5'000)));
+      rtl.start(started.back().bundles);
+      part += started.back().tests;
+      done += started.back().tests;
+      if (started.size() == 2 || size() % 4 == 0) {
+        ASSERT_NO_THROW(finish());
+      }
     }
+    while (!started.empty()) ASSERT_NO_THROW(finish());
     const BurstCounters counters = rtl.counters();
     rtl_total.tests += counters.tests;
     rtl_total.misses += counters.misses;

@@ -59,7 +59,7 @@ class Derive(unittest.TestCase):
         row = {"section": "variants", "scene": "scenes/a.obj", "variant": "binary32",
                "engine": "cpu", "unit_tests": 1000, "clocks": 0, "exact_inside": 1,
                "exact_depth": 2, "decisions": {"wrong_hits": 1, "wrong_misses": 1, "tests": 500}}
-        simulated = {**row, "engine": "rtl", "unit_tests": 100, "clocks": 700}
+        simulated = {**row, "engine": "unit", "unit_tests": 100, "clocks": 700}
         (frame,) = derive.frames([row, simulated], [VARIANT], [core("hit_test_unit", 50, 20.0)])
         self.assertEqual(frame["clocks"], 7000)
         self.assertFalse(frame["clocks_modelled"])
