@@ -98,7 +98,7 @@ void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
   }
   for (Half& half : halves_) half.active.clear();
   for (std::uint32_t index = 0; index < packets_.size(); ++index) {
-    halves_[2 * index < packets_.size() ? 0 : 1].active.push_back(index);
+    (index < packets_.size() / 2 ? halves_[0] : halves_[1]).active.push_back(index);
   }
 }
 
