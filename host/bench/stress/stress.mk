@@ -1,5 +1,5 @@
 # `make stress`: engines and cheaper variants against exact integers. QUICK=1: under a minute, one
-# line. TESTS: of the cpu engines for each suite, a tenth of it by the simulated ones.
+# line. TESTS: of the cpu engine for each suite, half of it in place, a tenth by the simulated ones.
 TESTS ?= 10000000
 STRESS_RESULTS := build/stress_report
 

@@ -7,6 +7,7 @@
 #include "host/bench/stress/suites.h"
 #include "host/bench/stress/tally.h"
 #include "host/bench/stress/variants.h"
+#include "host/scene/camera.h"
 
 namespace raygate::stress {
 namespace {
@@ -43,6 +44,47 @@ TEST_F(InPlace, SearchesAreSpotless) {
     EXPECT_TRUE(tally.spotless()) << kind.name;
     EXPECT_GT(tally.doubts, 0u) << kind.name;
     EXPECT_GT(tally.point_of_bound, 0.0) << kind.name;
+  }
+}
+
+// Triangles that fill their boxes, in planes across an axis, equal or a few floats apart: a search
+// that leaves boxes out a little too soon does not find the nearest.
+TEST(InPlaceStacks, TheNearestIsNotCulled) {
+  Random random(5);
+  std::vector<Shot> shots;
+  std::vector<Truth> truths;
+  for (int i = 0; i < 200; ++i) {
+    const int axis = random.below(3);
+    const auto at = [&](double x, double y, float depth) {
+      glm::vec3 point;
+      point[axis] = depth;
+      point[(axis + 1) % 3] = static_cast<float>(x);
+      point[(axis + 2) % 3] = static_cast<float>(y);
+      return point;
+    };
+    auto mesh = std::make_shared<Mesh>();
+    for (int k = 0; k < 24; ++k) {
+      float depth = 1.0f;
+      for (int steps = random.below(3); steps > 0; --steps) depth = std::nextafter(depth, 2.0f);
+      const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+      mesh->triangles.push_back(
+          {at(x - 2.0, y - 2.0, depth), at(x + 2.0, y - 2.0, depth), at(x, y + 2.0, depth)});
+    }
+    Shot& shot = shots.emplace_back();
+    shot.mesh = mesh;
+    for (int ray = 0; ray < 8; ++ray) {
+      shot.directions.push_back(
+          scaled_direction(glm::dvec3(at(random.uniform(-1, 1), random.uniform(-1, 1), 1.0f))));
+    }
+    truths.push_back(find_truth(shot));
+  }
+  for (const VariantKind& kind : in_place_variants()) {
+    Answers answers;
+    kind.make()->run(shots, answers);
+    Tally tally;
+    count(shots, truths, answers, true, tally);
+    EXPECT_GT(tally.hits, tally.rays) << kind.name;
+    EXPECT_TRUE(tally.spotless()) << kind.name;
   }
 }
 
