@@ -149,7 +149,7 @@ class ArrayModel : public BurstModel {
 
  private:
   static constexpr unsigned kAllLanes = (1u << kHardwareLanes) - 1;
-  static constexpr int kMostBatches = 2;
+  static constexpr unsigned kMostBatches = 2;
 
   /// A batch on its way.
   struct Work {
@@ -159,7 +159,7 @@ class ArrayModel : public BurstModel {
   };
 
   /// The batches in flight in the order of their start.
-  Work& work_at(int age) { return works_[(oldest_ + age) % kMostBatches]; }
+  Work& work_at(unsigned age) { return works_[(oldest_ + age) % kMostBatches]; }
 
   static bool drained(const Work& work) {
     return work.cursor.done() && std::ranges::all_of(work.shares, [](const LaneShare& share) {
@@ -201,7 +201,7 @@ class ArrayModel : public BurstModel {
 
   /// The next burst of the batches goes into lane n, if there is one.
   void start_burst(int n) {
-    for (int age = 0; age < in_flight_; ++age) {
+    for (unsigned age = 0; age < in_flight_; ++age) {
       Work& work = work_at(age);
       if (work.cursor.done()) continue;
       const BurstCursor::Burst burst = work.cursor.take();
@@ -237,7 +237,7 @@ class ArrayModel : public BurstModel {
 
   /// The oldest batch of which lane n still has something to say, by `all` of LaneShare.
   LaneShare* awaited(int n, bool (LaneShare::*all)() const) {
-    for (int age = 0; age < in_flight_; ++age) {
+    for (unsigned age = 0; age < in_flight_; ++age) {
       LaneShare& share = work_at(age).shares[n];
       if (!(share.*all)()) return &share;
     }
@@ -292,7 +292,7 @@ class ArrayModel : public BurstModel {
   LaneInput inputs_[kHardwareLanes];
   unsigned offered_ = 0;  // lanes whose slot holds a test that was not taken yet
   Work works_[kMostBatches];
-  int oldest_ = 0, in_flight_ = 0;
+  unsigned oldest_ = 0, in_flight_ = 0;
   BurstStalls stalls_;
   std::mt19937_64 random_;
   bool throttled_;
