@@ -4,6 +4,7 @@ import dataclasses
 import os
 import pathlib
 import re
+import threading
 
 from synth import store, tools
 
@@ -72,7 +73,8 @@ class Library:
         kept = store.OUT / f"{self.name}.lib"
         if not kept.exists() or kept.read_text() != text:
             kept.parent.mkdir(parents=True, exist_ok=True)
-            written = kept.with_suffix(f".{os.getpid()}")  # readers see the whole file or none
+            # Readers see the whole file or none, and jobs that run at once don't share theirs.
+            written = kept.with_suffix(f".{os.getpid()}-{threading.get_ident()}")
             written.write_text(text)
             written.replace(kept)
         return kept

@@ -1,8 +1,13 @@
 """What is read from the tools' reports."""
 
+import concurrent.futures
+import os
+import pathlib
+import tempfile
 import unittest
+from unittest import mock
 
-from synth import catalogue, fpga, mapping, netlists, tools
+from synth import catalogue, fpga, mapping, netlists, store, tools
 from synth.catalogue import Design
 
 OPENSTA = """\
@@ -31,6 +36,24 @@ class Pads(unittest.TestCase):
         gate = "cell (INVX1) {\n  area : 64;\n}\n"
         self.assertEqual(catalogue.without_pads(f"library (x) {{\n{gate}{pads}{gate}}}\n"),
                          f"library (x) {{\n{gate}{gate}}}\n")
+
+
+class Libraries(unittest.TestCase):
+    """catalogue.Library.liberty."""
+
+    def test_by_many_at_once(self):
+        """Jobs that run at once all read the whole file, and nothing else is left."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "tiny").mkdir()
+            (folder / "tiny" / "tiny_stdcells.lib").write_text("cell (INVX1) {\n}\n" * 20000)
+            library = catalogue.Library("tiny", "Tiny", "")
+            with (mock.patch.dict(os.environ, QFLOW_TECH=name),
+                  mock.patch.object(store, "OUT", folder / "out"),
+                  concurrent.futures.ThreadPoolExecutor(8) as pool):
+                sizes = list(pool.map(lambda _: len(library.liberty.read_text()), range(40)))
+                self.assertEqual(set(sizes), {17 * 20000})
+                self.assertEqual(list((folder / "out").iterdir()), [folder / "out" / "tiny.lib"])
 
 
 class Parsing(unittest.TestCase):
