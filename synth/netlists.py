@@ -31,6 +31,8 @@ def _agree(design: Design, library: Library, flow: str, vectors: int,
     ports = json.loads((folder / "netlist.json").read_text())["modules"]["netlist"]["ports"]
     (folder / "twins.sv").write_text(twins(design, ports))
     sources = [*design.sources(), folder / "cells.v", folder / "netlist.v", folder / "twins.sv"]
+    # No lint: it is for what people write, and bits of one vector that depend on each other, as in any
+    # netlist, look to Verilator like loops (UNOPTFLAT).
     # Without -fno-const-bit-op-tree, Verilator 5.006 gives wrong bits for the divider's netlist, which
     # Yosys's own evaluation of the same file confirms to be right.
     tools.run(["verilator", "--cc", "--exe", "--build", "-O3", "-fno-const-bit-op-tree", "-Wno-fatal",

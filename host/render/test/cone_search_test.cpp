@@ -3,14 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <memory>
-
-#include "host/hit/cpu_burst_unit.h"
-#include "host/hit/cpu_hit_tester.h"
-#include "host/hit/pipeline_hit_tester.h"
 #include "host/hit/test/meshes.h"
-#include "host/render/wavefront.h"
+#include "host/render/test/compare_in_place.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -44,33 +38,13 @@ class ConeSearchTest : public testing::Test {
   /// Traces in place and in batches; returns the number of hits.
   int compare(const std::vector<Corners>& mesh, const std::vector<Ray>& rays, Search search) {
     const Bvh bvh(test::scene_of(mesh));
-    CpuHitTester in_place;
-    PipelineHitTester batches(std::make_unique<CpuBurstUnit>());
-    Wavefront tested(bvh, in_place), reference(bvh, batches);
     RecordCache records(bvh, rays[0].origin), same_records(bvh, rays[0].origin);
+    Search reference = search;
     search.common = &records;
-    tested.trace(rays, search);
-    search.common = &same_records;
-    reference.trace(rays, search);
-    int hits = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const NearestHit &a = tested.nearest(i), &b = reference.nearest(i);
-      if (search.enough_before.empty()) {
-        EXPECT_EQ(a.slot, b.slot) << i;
-        if (search.ignored.empty()) {
-          EXPECT_EQ(std::memcmp(&a.point, &b.point, sizeof a.point), 0) << i;
-        }
-        EXPECT_LE(a.t.low, b.t.high);
-        EXPECT_GE(a.t.high, b.t.low);
-      } else {
-        EXPECT_EQ(a.slot == NearestHit::kNone, b.slot == NearestHit::kNone) << i;
-      }
-      hits += a.slot != NearestHit::kNone;
-    }
-    const HitCounters counters = in_place.counters();
-    tests_ += counters.tests;
-    EXPECT_EQ(counters.tests, counters.misses + counters.hits + counters.edge_doubts);
-    return hits;
+    reference.common = &same_records;
+    const test::InPlace done = test::compare_in_place(bvh, rays, search, reference);
+    tests_ += done.counters.tests;
+    return done.hits;
   }
 
   void try_mesh(const std::vector<Corners>& mesh, float size, int rounds) {

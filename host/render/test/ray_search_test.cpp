@@ -3,14 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <memory>
 
-#include "host/hit/cpu_burst_unit.h"
-#include "host/hit/cpu_hit_tester.h"
-#include "host/hit/pipeline_hit_tester.h"
 #include "host/hit/test/meshes.h"
-#include "host/render/wavefront.h"
+#include "host/render/test/compare_in_place.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -51,31 +46,9 @@ class RaySearchTest : public testing::Test {
 
   /// Traces one by one and in batches; returns the number of hits.
   int compare(const Bvh& bvh, const std::vector<Ray>& rays, const Search& search) {
-    CpuHitTester in_place;
-    PipelineHitTester batches(std::make_unique<CpuBurstUnit>());
-    Wavefront tested(bvh, in_place), reference(bvh, batches);
-    tested.trace(rays, search);
-    reference.trace(rays, search);
-    int hits = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const NearestHit &a = tested.nearest(i), &b = reference.nearest(i);
-      if (search.enough_before.empty()) {
-        EXPECT_EQ(a.slot, b.slot) << i;
-        if (search.ignored.empty()) {
-          EXPECT_EQ(std::memcmp(&a.point, &b.point, sizeof a.point), 0) << i;
-        }
-        EXPECT_LE(a.t.low, b.t.high);
-        EXPECT_GE(a.t.high, b.t.low);
-      } else {
-        EXPECT_EQ(a.slot == NearestHit::kNone, b.slot == NearestHit::kNone) << i;
-      }
-      hits += a.slot != NearestHit::kNone;
-    }
-    EXPECT_EQ(tested.own_records(), 0u);
-    const HitCounters counters = in_place.counters();
-    EXPECT_GT(counters.tests, 0u);
-    EXPECT_EQ(counters.tests, counters.misses + counters.hits + counters.edge_doubts);
-    return hits;
+    const test::InPlace done = test::compare_in_place(bvh, rays, search, search);
+    EXPECT_GT(done.counters.tests, 0u);
+    return done.hits;
   }
 
   void try_mesh(const std::vector<Corners>& mesh, float size) {
