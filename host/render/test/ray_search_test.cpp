@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "host/hit/test/meshes.h"
 #include "host/render/test/compare_in_place.h"
 #include "host/scene/camera.h"
