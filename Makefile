@@ -59,7 +59,7 @@ everything:
 	@cmake --build build -j $(JOBS)
 
 include synth/synth.mk
-include host/bench/rays/rays.mk
-include host/bench/bench.mk
-include host/bench/skips/skips.mk
-include host/bench/stress/stress.mk
+include host/lab/rays/rays.mk
+include host/lab/bench.mk
+include host/lab/skips/skips.mk
+include host/lab/stress/stress.mk

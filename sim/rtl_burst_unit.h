@@ -1,9 +1,9 @@
-// The pipelined hit-test units in simulation, behind the interface of host/hit.
+// The pipelined hit-test units in simulation, behind the interface of host/find/unit.
 #pragma once
 
 #include <memory>
 
-#include "host/hit/burst_unit.h"
+#include "host/find/unit/burst_unit.h"
 
 namespace raygate {
 

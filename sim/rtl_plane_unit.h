@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "host/hit/plane_unit.h"
+#include "host/find/unit/plane_unit.h"
 
 namespace raygate {
 

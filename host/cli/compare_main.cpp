@@ -10,11 +10,11 @@
 
 #include "host/cli/option_text.h"
 #include "host/cli/version.h"
-#include "host/image/compare.h"
-#include "host/image/false_color.h"
-#include "host/image/pending_file.h"
-#include "host/image/png.h"
-#include "host/scene/input_error.h"
+#include "host/film/compare.h"
+#include "host/film/false_color.h"
+#include "host/film/pending_file.h"
+#include "host/film/png.h"
+#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

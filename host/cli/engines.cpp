@@ -2,13 +2,13 @@
 
 #include <memory>
 
-#include "host/hit/check_burst_unit.h"
-#include "host/hit/check_plane_unit.h"
-#include "host/hit/cpu_burst_unit.h"
-#include "host/hit/cpu_hit_tester.h"
-#include "host/hit/cpu_plane_unit.h"
-#include "host/hit/pipeline_hit_tester.h"
-#include "host/hit/serial_hit_tester.h"
+#include "host/find/unit/check_burst_unit.h"
+#include "host/find/unit/check_plane_unit.h"
+#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/cpu_hit_tester.h"
+#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/pipeline_hit_tester.h"
+#include "host/find/unit/serial_hit_tester.h"
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_plane_unit.h"
 

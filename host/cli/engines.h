@@ -2,7 +2,7 @@
 #pragma once
 
 #include "host/cli/options.h"
-#include "host/render/renderer.h"
+#include "host/picture/renderer.h"
 
 namespace raygate {
 

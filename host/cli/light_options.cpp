@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "host/cli/values.h"
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "host/render/integrator_kind.h"
-#include "host/render/pixel_filter.h"
-#include "host/render/skips.h"
+#include "host/film/pixel_filter.h"
+#include "host/light/integrator_kind.h"
+#include "host/light/skips.h"
 
 namespace CLI {
 class App;

@@ -7,7 +7,7 @@
 #include "host/cli/interrupt.h"
 #include "host/cli/options.h"
 #include "host/cli/run.h"
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 
 namespace {
 

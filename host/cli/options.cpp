@@ -6,7 +6,7 @@
 
 #include "host/cli/values.h"
 #include "host/cli/version.h"
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "host/cli/light_options.h"
 #include "host/cli/output_options.h"
-#include "host/render/film.h"
+#include "host/film/film.h"
 #include "host/scene/camera.h"
-#include "host/scene/scene_file.h"
+#include "host/scene/io/scene_file.h"
 
 namespace raygate {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "host/cli/option_text.h"
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "host/image/display.h"
-#include "host/image/false_color.h"
-#include "host/render/film.h"
+#include "host/film/display.h"
+#include "host/film/false_color.h"
+#include "host/film/film.h"
 
 namespace CLI {
 class App;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cassert>
 
-#include "host/image/channels.h"
-#include "host/image/display.h"
-#include "host/image/false_color.h"
-#include "host/image/png.h"
+#include "host/film/channels.h"
+#include "host/film/display.h"
+#include "host/film/false_color.h"
+#include "host/film/png.h"
 
 namespace raygate {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "host/cli/output_options.h"
-#include "host/image/exr.h"
-#include "host/image/pending_file.h"
-#include "host/render/film.h"
+#include "host/film/exr.h"
+#include "host/film/film.h"
+#include "host/film/pending_file.h"
 
 namespace raygate {
 

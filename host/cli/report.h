@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/cli/options.h"
-#include "host/render/renderer.h"
+#include "host/picture/renderer.h"
 
 namespace raygate {
 

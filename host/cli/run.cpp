@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "host/accel/bvh.h"
 #include "host/cli/engines.h"
 #include "host/cli/format.h"
 #include "host/cli/interrupt.h"
@@ -16,12 +15,13 @@
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
 #include "host/cli/version.h"
-#include "host/render/lights.h"
-#include "host/render/renderer.h"
+#include "host/light/lights.h"
+#include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/camera_path.h"
-#include "host/scene/obj_loader.h"
-#include "host/scene/scene_file.h"
+#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_file.h"
+#include "host/tree/bvh.h"
 
 namespace raygate {
 namespace {

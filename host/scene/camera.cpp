@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

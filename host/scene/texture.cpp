@@ -13,7 +13,7 @@
 #include <memory>
 #include <string>
 
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 #include "host/scene/scene.h"
 #include "host/scene/srgb.h"
 

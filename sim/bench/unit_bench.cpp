@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "host/hit/cpu_burst_unit.h"
+#include "host/find/unit/cpu_burst_unit.h"
 #include "sim/bench/test_stream.h"
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_plane_unit.h"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "host/cli/test/program.h"
-#include "host/image/exr.h"
-#include "host/image/test/sample_film.h"
+#include "host/film/exr.h"
+#include "host/film/test/sample_film.h"
 
 namespace raygate {
 namespace {

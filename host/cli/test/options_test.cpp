@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 #include "host/scene/test/temp_folder.h"
 
 namespace raygate {

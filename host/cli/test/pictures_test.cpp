@@ -6,7 +6,7 @@
 #include <set>
 
 #include "host/cli/test/render_run.h"
-#include "host/image/test/exr_reader.h"
+#include "host/film/test/exr_reader.h"
 
 namespace raygate {
 namespace {

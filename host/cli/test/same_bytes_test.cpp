@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "host/cli/test/render_run.h"
-#include "host/image/test/exr_reader.h"
+#include "host/film/test/exr_reader.h"
 
 namespace raygate {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "host/scene/input_error.h"
-#include "host/scene/obj_loader.h"
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/obj_loader.h"
 #include "host/scene/scene.h"
 #include "host/scene/srgb.h"
 #include "host/scene/test/temp_folder.h"

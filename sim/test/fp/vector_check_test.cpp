@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "host/scene/input_error.h"
+#include "host/scene/io/input_error.h"
 #include "sim/test/fp/oracle.h"
 #include "sim/test/fp/vectors.h"
 

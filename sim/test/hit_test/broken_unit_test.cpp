@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "Vhit_test_array_broken.h"
-#include "host/hit/check_burst_unit.h"
-#include "host/hit/cpu_burst_unit.h"
+#include "host/find/unit/check_burst_unit.h"
+#include "host/find/unit/cpu_burst_unit.h"
 #include "sim/array_model.h"
 #include "sim/test/hit_test/random_bursts.h"
 

@@ -7,8 +7,8 @@
 #include <random>
 #include <tuple>
 
-#include "host/hit/check_burst_unit.h"
-#include "host/hit/cpu_burst_unit.h"
+#include "host/find/unit/check_burst_unit.h"
+#include "host/find/unit/cpu_burst_unit.h"
 #include "sim/test/hit_test/random_bursts.h"
 
 namespace raygate {

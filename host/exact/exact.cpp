@@ -1,0 +1,227 @@
+#include "host/exact/exact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "host/exact/exact_vector.h"
+
+namespace raygate {
+namespace {
+
+constexpr double kU = 0x1p-53;  // half an ulp of 1 in double
+
+/// A value computed in double and a bound of its error.
+struct Estimate {
+  double value, error;
+  [[nodiscard]] bool sure() const { return std::abs(value) > error; }
+  [[nodiscard]] int sign() const { return value > 0.0 ? 1 : -1; }
+};
+
+glm::dvec3 difference(const glm::vec3& a, const glm::vec3& b) {
+  return glm::dvec3(a) - glm::dvec3(b);
+}
+
+/// A cross product whose factors are rounded differences, and for each component the sum of the
+/// magnitudes of its two products. Every term of a component went through four roundings
+/// (two differences, a product, a subtraction): it is off by less than 5u times its magnitude.
+struct Cross {
+  glm::dvec3 value, magnitude;
+
+  Cross(const glm::dvec3& u, const glm::dvec3& v) {
+    const glm::dvec3 plus(u.y * v.z, u.z * v.x, u.x * v.y);
+    const glm::dvec3 minus(u.z * v.y, u.x * v.z, u.y * v.x);
+    value = plus - minus;
+    magnitude = glm::abs(plus) + glm::abs(minus);
+  }
+
+  /// Whether each component's error is surely at most 2^-34 of |value|_1. The bound is 8u, not
+  /// 5u, for the roundings of this very comparison.
+  [[nodiscard]] bool accurate() const {
+    const double largest = std::max({magnitude.x, magnitude.y, magnitude.z});
+    const double size = std::abs(value.x) + std::abs(value.y) + std::abs(value.z);
+    return 8.0 * kU * largest <= 0x1p-34 * size;
+  }
+};
+
+/// u . cross: each term takes at most four more roundings (u itself, a product, two sums), eight
+/// in all; 10u leaves room for the roundings of the bound.
+Estimate dot(const glm::dvec3& u, const Cross& cross) {
+  const double value = u.x * cross.value.x + u.y * cross.value.y + u.z * cross.value.z;
+  const double magnitude = std::abs(u.x) * cross.magnitude.x + std::abs(u.y) * cross.magnitude.y +
+                           std::abs(u.z) * cross.magnitude.z;
+  return {value, 10.0 * kU * magnitude};
+}
+
+glm::dvec3 rounded(const ExactVector<16>& v) {
+  return {v[0].approximate(), v[1].approximate(), v[2].approximate()};
+}
+
+ExactVector<16> exact_normal(const Corners& t) {
+  return exact_cross(exact_difference(t[1], t[0]), exact_difference(t[2], t[0]));
+}
+
+Expansion<192> exact_plane(const glm::vec3& origin, const Corners& t) {
+  return exact_dot(exact_difference(t[0], origin), exact_normal(t));
+}
+
+Cross estimated_normal(const Corners& t) {
+  return {difference(t[1], t[0]), difference(t[2], t[0])};
+}
+
+int exact_edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
+  const auto normal = exact_cross(exact_difference(a, ray.origin), exact_difference(b, a));
+  if (const int side = exact_dot(ray.direction, normal).sign(); side != 0) return side;
+  for (const auto& component : normal) {
+    if (component.sign() != 0) return component.sign();
+  }
+  return 0;
+}
+
+Expansion<96> exact_slope(const glm::vec3& direction, const Corners& t) {
+  return exact_dot(direction, exact_normal(t));
+}
+
+/// t = D / (I . N) of where a ray meets a triangle's plane, both parts estimated.
+struct Fraction {
+  Estimate numerator, denominator;
+
+  Fraction(const Ray& ray, const Corners& t) {
+    const Cross normal = estimated_normal(t);
+    numerator = dot(difference(t[0], ray.origin), normal);
+    denominator = dot(glm::dvec3(ray.direction), normal);
+  }
+};
+
+/// a * b with the errors of both and of the product (twice u, for the roundings of the bound).
+Estimate product(const Estimate& a, const Estimate& b) {
+  const double value = a.value * b.value;
+  return {value, 1.000001 * (a.error * std::abs(b.value) + std::abs(a.value) * b.error +
+                             a.error * b.error) +
+                     2.0 * kU * std::abs(value)};
+}
+
+/// As order_of_planes. Products of this size do not belong on the stack.
+int exact_order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
+  using Product = Expansion<2 * 192 * 96>;
+  const auto left = std::make_unique_for_overwrite<Product>();
+  const auto right = std::make_unique_for_overwrite<Product>();
+  const auto scratch = std::make_unique_for_overwrite<Product>();
+  multiply(exact_plane(ray.origin, first), exact_slope(ray.direction, second), *left, *scratch);
+  multiply(exact_plane(ray.origin, second), exact_slope(ray.direction, first), *right, *scratch);
+  const auto result = std::make_unique_for_overwrite<Expansion<4 * 192 * 96>>();
+  for (int i = 0; i < right->size; ++i) right->parts[i] = -right->parts[i];
+  add(*left, *right, *result);
+  return result->sign();
+}
+
+/// The sign of D1 (I . N2) - D2 (I . N1): that of t1 - t2, times the signs of both I . N.
+int order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
+  const Fraction t1(ray, first), t2(ray, second);
+  const Estimate left = product(t1.numerator, t2.denominator);
+  const Estimate right = product(t2.numerator, t1.denominator);
+  const Estimate gap = {left.value - right.value, 1.000001 * (left.error + right.error)};
+  return gap.sure() ? gap.sign() : exact_order_of_planes(ray, first, second);
+}
+
+}  // namespace
+
+bool is_usable(const glm::vec3& direction) {
+  return std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z) &&
+         direction != glm::vec3(0.0f);
+}
+
+int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
+  const Estimate side =
+      dot(glm::dvec3(ray.direction), {difference(a, ray.origin), difference(b, a)});
+  return side.sure() ? side.sign() : exact_edge_side(ray, a, b);
+}
+
+int plane_side(const glm::vec3& origin, const Corners& t) {
+  const Estimate side = dot(difference(t[0], origin), estimated_normal(t));
+  return side.sure() ? side.sign() : exact_plane(origin, t).sign();
+}
+
+// With A, B, C independent, the tilted I is a combination of them with three non-zero weights, of
+// the signs of I . (B x C) and so on over det(A, B, C); it points into the triangle if all three
+// are positive. So all edges must have the sign of the plane, and then t = det / (I . N) > 0, as I
+// . N is the sum of the three.
+bool hits_triangle(const Ray& ray, const Corners& t) {
+  if (!is_usable(ray.direction)) return false;
+  const int side = plane_side(ray.origin, t);
+  return side != 0 && edge_side(ray, t[0], t[1]) == side && edge_side(ray, t[1], t[2]) == side &&
+         edge_side(ray, t[2], t[0]) == side;
+}
+
+int direction_side(const glm::vec3& direction, const Corners& t) {
+  const Estimate side = dot(glm::dvec3(direction), estimated_normal(t));
+  return side.sure() ? side.sign() : exact_slope(direction, t).sign();
+}
+
+bool is_ahead(const Ray& ray, const Corners& t) {
+  const auto& [n, d] = Fraction(ray, t);
+  if (n.sure() && d.sure()) return n.sign() == d.sign();
+  return plane_side(ray.origin, t) * direction_side(ray.direction, t) > 0;
+}
+
+// Where doubles cancel too much, D and I . N are exact but for their last rounding to double (off
+// by an ulp at most), and then the quotient's.
+Interval hit_distance(const Ray& ray, const Corners& triangle) {
+  const auto& [n, d] = Fraction(ray, triangle);
+  if (n.error <= 0x1p-37 * std::abs(n.value) && d.error <= 0x1p-37 * std::abs(d.value)) {
+    const double above = std::abs(n.value), below = std::abs(d.value);
+    constexpr double kGrow = 1.0 + 4.0 * kU, kShrink = 1.0 - 4.0 * kU;
+    return {(above - n.error) / (below + d.error) * kShrink,
+            (above + n.error) / (below - d.error) * kGrow};
+  }
+  const double t = exact_plane(ray.origin, triangle).approximate() /
+                   exact_slope(ray.direction, triangle).approximate();
+  return {t * (1.0 - 16.0 * kU), t * (1.0 + 16.0 * kU)};
+}
+
+PreciseHit precise_hit(const Ray& ray, const Corners& triangle) {
+  const Interval interval = hit_distance(ray, triangle);
+  const double t = 0.5 * (interval.low + interval.high);
+  return {static_cast<float>(t), glm::vec3(t * glm::dvec3(ray.direction))};
+}
+
+// The signs of D and of I . N agree for a hit, as t > 0.
+int compare_hits(const Ray& ray, const Corners& first, const Corners& second) {
+  return plane_side(ray.origin, first) * plane_side(ray.origin, second) *
+         order_of_planes(ray, first, second);
+}
+
+int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit) {
+  const Interval t = hit_distance(ray, triangle);
+  if (t.high < limit) return -1;
+  if (t.low > limit) return 1;
+  const auto excess = exact_plane(ray.origin, triangle) -
+                      exact_slope(ray.direction, triangle) * static_cast<double>(limit);
+  return plane_side(ray.origin, triangle) * excess.sign();
+}
+
+// At O + t I, t = D1 / (I . N1), the other plane's D2 has become D2 - t (I . N2).
+int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other) {
+  return plane_side(ray.origin, hit) * order_of_planes(ray, other, hit);
+}
+
+double plane_distance(const glm::vec3& origin, const Corners& t) {
+  const Estimate d = dot(difference(t[0], origin), estimated_normal(t));
+  return d.error <= 0x1p-32 * std::abs(d.value) && d.sure() ? d.value
+                                                            : exact_plane(origin, t).approximate();
+}
+
+glm::dvec3 edge_normal(const glm::vec3& origin, const glm::vec3& p, const glm::vec3& q) {
+  const Cross cross(difference(p, origin), difference(q, p));
+  return cross.accurate()
+             ? cross.value
+             : rounded(exact_cross(exact_difference(p, origin), exact_difference(q, p)));
+}
+
+glm::dvec3 triangle_normal(const Corners& t) {
+  const Cross normal = estimated_normal(t);
+  return normal.accurate() ? normal.value : rounded(exact_normal(t));
+}
+
+}  // namespace raygate

@@ -1,0 +1,86 @@
+// Decisions that are never wrong: does a ray hit a triangle, and which of two hits is nearer.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+namespace raygate {
+
+/// The vertices of a triangle, in its order.
+using Corners = std::array<glm::vec3, 3>;
+
+/// Whether a ray can go this way: all components finite, not all of them 0. In all others it hits
+/// nothing.
+[[nodiscard]] bool is_usable(const glm::vec3& direction);
+
+/// A ray: origin + t direction for t > 0, an open beginning: what the origin lies on, and what is
+/// behind it, is not hit. Where a ray has a limit, its end is open too: hits have t < limit (see
+/// NearestHits in host/find). All components finite; coordinates, the triangles' too,
+/// of magnitude at most 2^126; the direction scaled (see scaled_direction in host/scene/camera.h).
+struct Ray {
+  glm::vec3 origin{0.0f};
+  glm::vec3 direction{0.0f};
+};
+
+/// The exact t of a hit is in [low, high].
+struct Interval {
+  double low, high;
+};
+
+/// Where a ray meets a triangle, as exactly as floats can say it.
+struct PreciseHit {
+  float t = 0.0f;
+  glm::vec3 point{0.0f};  ///< P = t I, seen from the ray's origin
+};
+
+/// The sign (-1, 0, 1) of I . (A x B), for A = a - O and B = b - O: on which side of the edge from
+/// `a` to `b` the ray passes. Where it is exactly 0, the sign for a direction tilted by an
+/// infinitesimal towards +x, by a still smaller one towards +y, and one towards +z. Only for an
+/// edge in line with the origin does the tilt not help, and the answer is 0.
+[[nodiscard]] int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b);
+
+/// The sign of the determinant of A, B, C: on which side of the triangle's plane the origin is; 0
+/// for an origin in the plane and for a triangle without area.
+[[nodiscard]] int plane_side(const glm::vec3& origin, const Corners& triangle);
+
+/// Whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree about
+/// the edge they share because they ask one question about one tilted ray: exactly one triangle
+/// of a fan is hit. A triangle whose plane holds the origin is never hit, nor one behind it.
+[[nodiscard]] bool hits_triangle(const Ray& ray, const Corners& triangle);
+
+/// Whether the ray's line meets the triangle's plane ahead of the origin, at t > 0.
+[[nodiscard]] bool is_ahead(const Ray& ray, const Corners& triangle);
+
+/// The t of a hit: for triangles that hits_triangle says are hit. high <= low (1 + 2^-34).
+[[nodiscard]] Interval hit_distance(const Ray& ray, const Corners& triangle);
+
+/// t and P of a hit, from the corners, whatever the angle: each word is off by at most half the
+/// distance of floats around it and 2^-10 of that.
+[[nodiscard]] PreciseHit precise_hit(const Ray& ray, const Corners& triangle);
+
+/// The sign of t(first) - t(second), exactly. Both must be hits.
+[[nodiscard]] int compare_hits(const Ray& ray, const Corners& first, const Corners& second);
+
+/// The sign of t - limit, exactly. The triangle must be hit, `limit` positive and finite.
+[[nodiscard]] int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit);
+
+/// As plane_side of `other`, exactly, for the very point in which the ray hits `hit`.
+[[nodiscard]] int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other);
+
+/// The sign of I . N, exactly: a direction with the sign of plane_side(origin, triangle) goes
+/// towards the plane, one with the other sign away from it.
+[[nodiscard]] int direction_side(const glm::vec3& direction, const Corners& triangle);
+
+/// The double nearest to D = A . ((b-a) x (c-a)), off by 2^-32 of itself at most, with its exact
+/// sign.
+[[nodiscard]] double plane_distance(const glm::vec3& origin, const Corners& triangle);
+
+/// (p - origin) x (q - p) in double; each component is off by at most 2^-34 of the sum of the
+/// components' magnitudes.
+[[nodiscard]] glm::dvec3 edge_normal(const glm::vec3& origin, const glm::vec3& p,
+                                     const glm::vec3& q);
+
+/// (b-a) x (c-a), as accurate as edge_normal.
+[[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
+
+}  // namespace raygate

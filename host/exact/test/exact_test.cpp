@@ -1,0 +1,221 @@
+// The exact predicates against rational arithmetic, and what they promise about closed meshes.
+#include "host/exact/exact.h"
+
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include "host/exact/test/meshes.h"
+#include "host/exact/test/rational_oracle.h"
+#include "host/scene/camera.h"
+
+namespace raygate {
+namespace {
+
+using test::cross;
+using test::dot;
+using test::minus;
+using test::Random;
+using test::rational;
+using test::Rational3;
+using Oracle = test::RationalOracle;
+
+struct Case {
+  Ray ray;
+  Corners triangle;
+};
+
+/// Rays and triangles of every size, most of them made to be hard: aimed at vertices and edges,
+/// slivers, far away, on few bits so that exact ties are common.
+Case hard_case(Random& random) {
+  const float size = std::ldexp(1.0f, random.below(201) - 100);
+  const float far = random.below(3) == 0 ? size * std::ldexp(1.0f, random.below(24)) : 0.0f;
+  const bool grid = random.below(3) == 0;
+  const auto point = [&] {
+    glm::vec3 p = random.point(size);
+    if (grid) p = glm::round(p / size * 3.0f) * size;
+    return p + glm::vec3(far, -far, far);
+  };
+  Corners t = {point(), point(), point()};
+  if (random.below(5) == 0) t[2] = glm::mix(t[0], t[1], random.uniform(0, 1));  // a sliver
+  const glm::vec3 origin = point();
+  glm::dvec3 aim;
+  switch (random.below(4)) {
+    case 0:
+      aim = glm::dvec3(t[random.below(3)]);
+      break;
+    case 1:
+      aim = glm::mix(glm::dvec3(t[0]), glm::dvec3(t[1]), random.uniform(0, 1));
+      break;
+    case 2:
+      aim = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
+      break;
+    default:
+      aim = glm::dvec3(point());
+      break;
+  }
+  glm::dvec3 direction = aim - glm::dvec3(origin);
+  if (direction == glm::dvec3(0.0)) direction.x = 1.0;
+  return {{origin, scaled_direction(direction)}, t};
+}
+
+/// `rounded` is off by half the distance of floats around `exact` and 2^-10 of that at most.
+void expect_near_half_an_ulp(float rounded, const mpq_class& exact) {
+  if (!std::isfinite(rounded)) {
+    EXPECT_GT(abs(exact), 0x1.fffffep127);
+    return;
+  }
+  const int exponent = rounded == 0.0f ? -126 : std::max(std::ilogb(rounded), -126);
+  EXPECT_LE(abs(rounded - exact), std::ldexp(0.5 + 0x1p-11, exponent - 23)) << rounded;
+}
+
+TEST(Exact, AgreesWithRationals) {
+  Random random;
+  int hits = 0, ties = 0;
+  for (int i = 0; i < 30000; ++i) {
+    const auto [ray, t] = hard_case(random);
+    const Oracle oracle(ray, t);
+    ASSERT_EQ(plane_side(ray.origin, t), sgn(oracle.plane())) << "case " << i;
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_EQ(edge_side(ray, t[k], t[(k + 1) % 3]), oracle.side(k)) << "case " << i;
+      ties += dot(oracle.direction, cross(oracle.v[k], oracle.v[(k + 1) % 3])) == 0 ? 1 : 0;
+    }
+    ASSERT_EQ(hits_triangle(ray, t), oracle.hit()) << "case " << i;
+    if (!oracle.hit()) continue;
+    ++hits;
+    const Interval interval = hit_distance(ray, t);
+    const mpq_class exact = oracle.t();
+    ASSERT_GT(exact, 0);
+    ASSERT_LE(mpq_class(interval.low), exact);
+    ASSERT_GE(mpq_class(interval.high), exact);
+    ASSERT_LE(interval.high, interval.low * (1.0 + 0x1p-34));
+    const PreciseHit precise = precise_hit(ray, t);
+    expect_near_half_an_ulp(precise.t, exact);
+    for (int k = 0; k < 3; ++k) {
+      expect_near_half_an_ulp(precise.point[k], exact * oracle.direction[k]);
+    }
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(ties, 1000);
+}
+
+TEST(Exact, RoundedWordsKeepTheirPromise) {
+  Random random;
+  for (int i = 0; i < 20000; ++i) {
+    const auto [ray, t] = hard_case(random);
+    const Oracle oracle(ray, t);
+    const mpq_class d = oracle.plane(), off = plane_distance(ray.origin, t) - d;
+    ASSERT_LE(abs(off) * 0x1p32, abs(d)) << "case " << i;
+    const Rational3 exact = cross(oracle.v[0], oracle.v[1]);
+    const glm::dvec3 edge = edge_normal(ray.origin, t[0], t[1]);
+    const double size = std::abs(edge.x) + std::abs(edge.y) + std::abs(edge.z);
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_LE(abs(edge[k] - exact[k]), mpq_class(size) / 0x1p34) << "case " << i;
+    }
+  }
+}
+
+// Which of two triangles is nearer, among them copies of one in another order of its vertices, and
+// others that share a vertex the ray is aimed at or differ from it by an ulp.
+TEST(Exact, OrdersHitsAsRationalsDo) {
+  Random random;
+  int compared = 0, equal = 0;
+  for (int i = 0; i < 60000; ++i) {
+    const auto [ray, t] = hard_case(random);
+    if (!hits_triangle(ray, t)) continue;
+    Corners other = {t[1], t[2], t[0]};
+    const int kind = random.below(3);
+    const int k = random.below(3);
+    if (kind == 1) other[k].x = std::nextafter(other[k].x, 1e38f);
+    if (kind == 2) other[k] = hard_case(random).triangle[0];
+    if (!hits_triangle(ray, other)) continue;
+    const int expected = cmp(Oracle(ray, t).t(), Oracle(ray, other).t());
+    ASSERT_EQ(compare_hits(ray, t, other), expected < 0 ? -1 : (expected > 0 ? 1 : 0));
+    ASSERT_EQ(compare_hits(ray, other, t), expected < 0 ? 1 : (expected > 0 ? -1 : 0));
+    ++compared;
+    equal += expected == 0 ? 1 : 0;
+  }
+  EXPECT_GT(compared, 1000);
+  EXPECT_GT(equal, 100);
+}
+
+// Where the hit lies with respect to another triangle's plane and to a limit, by rationals.
+TEST(Exact, SidesAndLimitsAtAHitAgreeWithRationals) {
+  Random random;
+  int hits = 0, on_plane = 0;
+  for (int i = 0; i < 60000; ++i) {
+    const auto [ray, t] = hard_case(random);
+    Corners other = hard_case(random).triangle;
+    for (int k = 0; k < random.below(4); ++k) other[k] = t[(k + 1) % 3];
+    ASSERT_EQ(
+        direction_side(ray.direction, other),
+        sgn(dot(rational(ray.direction), cross(minus(rational(other[1]), rational(other[0])),
+                                               minus(rational(other[2]), rational(other[0]))))));
+    if (!hits_triangle(ray, t)) continue;
+    ++hits;
+    const Oracle oracle(ray, t);
+    const mpq_class distance = oracle.t();
+    Rational3 v[3];  // the other triangle, seen from the hit
+    for (int k = 0; k < 3; ++k) {
+      v[k] = minus(rational(other[k]), rational(ray.origin));
+      for (int axis = 0; axis < 3; ++axis) v[k][axis] -= distance * oracle.direction[axis];
+    }
+    const int side = sgn(dot(v[0], cross(v[1], v[2])));
+    ASSERT_EQ(plane_side_at_hit(ray, t, other), side);
+    on_plane += side == 0 ? 1 : 0;
+    const auto near = static_cast<float>(distance.get_d());
+    if (!(near > 0.0f) || !std::isfinite(near)) continue;
+    for (const float limit : {near, std::nextafter(near, 0.0f), std::nextafter(near, 3e38f)}) {
+      if (limit == 0.0f) continue;
+      const int order = cmp(distance, mpq_class(limit));
+      ASSERT_EQ(compare_hit_to_limit(ray, t, limit), order < 0 ? -1 : (order > 0 ? 1 : 0));
+    }
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(on_plane, 100);
+}
+
+/// From a point inside a closed convex mesh, every ray hits exactly one triangle.
+void expect_one_hit_each(const std::vector<Corners>& mesh, const glm::vec3& inside, Random& random,
+                         int rays) {
+  int aimed_exactly = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Corners& target = mesh[random.below(static_cast<int>(mesh.size()))];
+    const double along =
+        random.below(2) == 0 ? 0.0 : (random.below(2) == 0 ? 0.5 : random.uniform(0, 1));
+    const glm::dvec3 aim = glm::mix(glm::dvec3(target[0]), glm::dvec3(target[1]), along);
+    const Ray ray = {inside, scaled_direction(aim - glm::dvec3(inside))};
+    int hits = 0;
+    for (const Corners& t : mesh) hits += hits_triangle(ray, t) ? 1 : 0;
+    ASSERT_EQ(hits, 1) << "ray " << i;
+    Corners pair = target;
+    pair[2] = target[0];
+    const Oracle oracle(ray, pair);
+    aimed_exactly += dot(oracle.direction, cross(oracle.v[0], oracle.v[1])) == 0 ? 1 : 0;
+  }
+  EXPECT_GT(aimed_exactly, 0);
+}
+
+TEST(Exact, NoLeakNoDoubleHitInAClosedMesh) {
+  Random random;
+  expect_one_hit_each(test::sphere(2), glm::vec3(0.0f), random, 3000);
+  expect_one_hit_each(test::sphere(2), glm::vec3(0.25f, -0.125f, 0.5f), random, 3000);
+  expect_one_hit_each(test::sphere(2, 1.0f, glm::vec3(1e4f)), glm::vec3(1e4f), random, 1000);
+  expect_one_hit_each(test::sphere(2, 1e-3f), glm::vec3(0.0f), random, 1000);
+  expect_one_hit_each(test::box(glm::vec3(-1), glm::vec3(1)), glm::vec3(0.0f), random, 5000);
+  expect_one_hit_each(test::box(glm::vec3(-1), glm::vec3(1)), glm::vec3(0.5f, 0, 0), random, 5000);
+  expect_one_hit_each(test::box(glm::vec3(1e30f), glm::vec3(3e30f)), glm::vec3(2e30f), random,
+                      1000);
+}
+
+TEST(Exact, OriginInThePlaneOrBehindIsNoHit) {
+  const Corners t = {glm::vec3(-1, -1, 1), glm::vec3(1, -1, 1), glm::vec3(0, 1, 1)};
+  EXPECT_TRUE(hits_triangle({glm::vec3(0, 0, 0), glm::vec3(0, 0, 1)}, t));
+  EXPECT_FALSE(hits_triangle({glm::vec3(0, 0, 0), glm::vec3(0, 0, -1)}, t));
+  EXPECT_FALSE(hits_triangle({glm::vec3(0, 0, 2), glm::vec3(0, 0, 1)}, t));
+  EXPECT_FALSE(hits_triangle({glm::vec3(0, 0, 1), glm::vec3(0, 0, 1)}, t));
+  EXPECT_FALSE(hits_triangle({glm::vec3(-5, 0, 1), glm::vec3(1, 0, 0)}, t));
+  EXPECT_FALSE(hits_triangle({glm::vec3(0), glm::vec3(0, 0, 1)}, {t[0], t[0], t[1]}));
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,55 @@
+#include "host/film/channels.h"
+
+#include <cstring>
+
+namespace raygate {
+namespace {
+
+void add_vector(std::vector<Channel>& channels, const std::string& layer, const char* parts,
+                const std::vector<glm::vec3>& values) {
+  if (values.empty()) return;
+  for (int k = 0; k < 3; ++k) {
+    channels.push_back(
+        {layer + "." + parts[k], Channel::Type::kFloat, &values.front()[k], sizeof(glm::vec3)});
+  }
+}
+
+void add_numbers(std::vector<Channel>& channels, const char* name,
+                 const std::vector<std::uint32_t>& values) {
+  if (values.empty()) return;
+  channels.push_back({name, Channel::Type::kUint, values.data(), sizeof(std::uint32_t)});
+}
+
+}  // namespace
+
+std::vector<Channel> channels_of(const Film& film) {
+  std::vector<Channel> channels;
+  channels.reserve(18);
+  for (int k = 0; k < 4; ++k) {
+    channels.push_back({std::string(1, "RGBA"[k]), Channel::Type::kFloat, &film.color.front()[k],
+                        sizeof(glm::vec4)});
+  }
+  channels.push_back({"Z", Channel::Type::kFloat, film.depth.data(), sizeof(float)});
+  add_vector(channels, "N", "XYZ", film.normal);
+  add_numbers(channels, "id", film.primitive);
+  add_vector(channels, "P", "XYZ", film.position);
+  add_vector(channels, "Albedo", "RGB", film.albedo);
+  add_numbers(channels, "objectId", film.object);
+  add_numbers(channels, "tests", film.tests);
+  add_numbers(channels, "doubts", film.doubts);
+  return channels;
+}
+
+double value_at(const Channel& channel, std::size_t index) {
+  const char* const at = static_cast<const char*>(channel.first) + index * channel.stride;
+  if (channel.type == Channel::Type::kUint) {
+    std::uint32_t number = 0;
+    std::memcpy(&number, at, sizeof number);
+    return number;
+  }
+  float number = 0.0f;
+  std::memcpy(&number, at, sizeof number);
+  return number;
+}
+
+}  // namespace raygate

@@ -1,0 +1,30 @@
+#include "host/film/display.h"
+
+#include <cmath>
+
+#include "host/scene/srgb.h"
+
+namespace raygate {
+
+float toned(float light, Tone tone) {
+  if (tone == Tone::kClip) return light;
+  // The quotient of two squares would be NaN for infinite light.
+  const double x = std::min(std::max(light, 0.0f), 1e6f);
+  if (std::isnan(light)) return light;
+  return static_cast<float>(std::min(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0));
+}
+
+Picture8 to_display(const Film& film, const DisplayOptions& options) {
+  Picture8 picture{film.width, film.height, film.window, {}, {}};
+  picture.pixels.reserve(film.color.size());
+  const auto gain = static_cast<float>(std::exp2(options.exposure));
+  for (const glm::vec4& color : film.color) {
+    Rgb8& codes = picture.pixels.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      codes[static_cast<std::size_t>(k)] = linear_to_srgb(toned(gain * color[k], options.tone));
+    }
+  }
+  return picture;
+}
+
+}  // namespace raygate

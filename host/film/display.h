@@ -1,0 +1,27 @@
+// From the light of a film to the codes of a display.
+#pragma once
+
+#include "host/film/picture8.h"
+
+namespace raygate {
+
+/// How light of more than a display can show becomes a code.
+enum class Tone {
+  kClip,    ///< everything above 1 is white; below, the display shows the light as it is
+  kFilmic,  ///< dark and bright ends are compressed smoothly, as film does it
+};
+
+/// How a film is shown.
+struct DisplayOptions {
+  double exposure = 0.0;  ///< in stops: the light is multiplied by 2^exposure first
+  Tone tone = Tone::kClip;
+};
+
+/// Light of one channel, after exposure, as the light that the display gives off: in [0, 1] for
+/// kFilmic; NaN stays. Source of the curve: K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
+[[nodiscard]] float toned(float light, Tone tone);
+
+/// The film over black, channel by channel. Each code is the one nearest to the exact value.
+[[nodiscard]] Picture8 to_display(const Film& film, const DisplayOptions& options = {});
+
+}  // namespace raygate

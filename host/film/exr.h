@@ -1,0 +1,45 @@
+// The picture to measure: OpenEXR with every value the renderer left behind.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+
+#include "host/film/film.h"
+
+namespace raygate {
+
+/// What an EXR file says of itself. Only facts of the scene and the camera belong here: what
+/// changes from run to run or from engine to engine (times, engine, threads) would make equal
+/// pictures different files, and is for `render --stats`.
+struct ExrMetadata {
+  std::string software;    ///< attribute "software": name and version
+  std::string scene;       ///< attribute "scene": file name without folders
+  std::uint64_t seed = 0;  ///< attribute "seed", in decimal
+  /// Attribute "worldToCamera", as OpenEXR defines it: +x to the right of the picture, +y up,
+  /// +z along the view. Here for column vectors; the file has it for row vectors.
+  glm::mat4 world_to_camera{1.0f};
+  /// Attribute "screenWindowWidth": width of the frame in the plane at distance 1.
+  float screen_window_width = 1.0f;
+  /// The render was not finished: pixels without a sample are like misses, others may have fewer
+  /// samples than asked for. Attribute "partial", with the words of kPartial; else it is not there.
+  bool partial = false;
+};
+
+inline constexpr const char* kPartial = "not finished when it was saved";
+
+/// The bytes of an OpenEXR scan-line file of `film`, ZIP compressed (without loss):
+///   R G B A        float   scene-linear, premultiplied
+///   Z              float   distance along the camera's axis, +infinity for a miss
+///   N.X N.Y N.Z    float   unit normal in world axes, 0 for a miss
+///   id             uint    triangle index, 4294967295 for a miss
+/// and, where the film has them,
+///   P.X P.Y P.Z    float   the point that is seen, in world axes, 0 for a miss
+///   Albedo.R .G .B float   diffuse colour, 0 for a miss
+///   objectId       uint    object index, 4294967295 for a miss
+///   tests doubts   uint    counts
+/// The display window is the frame, the data window the film's window within it. Equal arguments
+/// give equal bytes. Throws std::runtime_error if the library fails.
+[[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata);
+
+}  // namespace raygate

@@ -1,0 +1,26 @@
+// OpenEXR files of any program, for comparing.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/film/film.h"
+
+namespace raygate {
+
+/// Some channels of a picture file, as numbers; exact, as float and uint fit into double.
+struct ChannelPicture {
+  int width = 0, height = 0;  ///< of the frame (the display window)
+  PixelRect window;           ///< what the file holds (the data window), in the frame's coordinates
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> channels;  ///< names[i]'s numbers, row by row from the top
+};
+
+/// Reads the channels `names` of a scan-line or tiled file's first part. Throws InputError: what
+/// cannot be read or is not OpenEXR, is damaged, lacks a channel, or is larger than 2^26 pixels.
+[[nodiscard]] ChannelPicture read_exr(const std::filesystem::path& file,
+                                      std::span<const std::string> names);
+
+}  // namespace raygate

@@ -1,0 +1,125 @@
+#include "host/film/pending_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, int error) {
+  throw InputError(path.string() + ": cannot write: " + std::generic_category().message(error));
+}
+
+/// What the bytes will replace.
+struct Target {
+  fs::path path;                      ///< symbolic links resolved
+  bool is_stream = false;             ///< a device, pipe or socket
+  std::optional<mode_t> permissions;  ///< of the file that is there
+};
+
+Target inspect(const fs::path& name) {
+  std::error_code error;
+  Target target;
+  target.path = fs::weakly_canonical(name, error);
+  if (error) fail(name, error.value());
+  struct stat status {};
+  if (::stat(name.c_str(), &status) != 0) {
+    if (errno != ENOENT) fail(name, errno);
+    return target;
+  }
+  if (S_ISDIR(status.st_mode)) fail(name, EISDIR);
+  if (::access(name.c_str(), W_OK) != 0) fail(name, errno);
+  target.is_stream = !S_ISREG(status.st_mode);
+  if (!target.is_stream) target.permissions = status.st_mode & 07777;
+  return target;
+}
+
+/// A new file beside `target`: its path and its descriptor.
+std::pair<fs::path, int> create_beside(const fs::path& target, const fs::path& name) {
+  // open and not mkstemp, so that the user's umask decides the permissions; a short name of its
+  // own, as the target's may leave no room for more.
+  for (int attempt = 0;; ++attempt) {
+    fs::path path = target.parent_path() /
+                    (".raygate-" + std::to_string(::getpid()) + "-" + std::to_string(attempt));
+    const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0) return {std::move(path), fd};
+    if (errno != EEXIST) fail(name, errno);
+  }
+}
+
+/// 0, or the error that stopped the writing.
+int write_all(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written >= 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno != EINTR) {
+      return errno;
+    }
+  }
+  return 0;
+}
+
+/// Writes, brings to disk and closes; some file systems tell of a full disk only then.
+int write_and_close(int fd, std::string_view bytes, const Target& target) {
+  int error = write_all(fd, bytes);
+  if (error == 0 && target.permissions && ::fchmod(fd, *target.permissions) != 0) error = errno;
+  if (error == 0 && !target.is_stream && ::fsync(fd) != 0) error = errno;
+  if (::close(fd) != 0 && error == 0) error = errno;
+  return error;
+}
+
+}  // namespace
+
+PendingFile::PendingFile(const fs::path& path, std::string_view bytes) : name_(path) {
+  Target target = inspect(path);
+  target_ = std::move(target.path);
+  int fd = -1;
+  if (target.is_stream) {
+    fd = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (fd < 0) fail(name_, errno);
+  } else {
+    std::tie(temporary_, fd) = create_beside(target_, name_);
+  }
+  if (const int error = write_and_close(fd, bytes, target)) {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    fail(name_, error);
+  }
+}
+
+PendingFile::PendingFile(PendingFile&& other) noexcept
+    : name_(std::move(other.name_)),
+      target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})) {}
+
+PendingFile::~PendingFile() {
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void PendingFile::commit() {
+  if (temporary_.empty()) return;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(name_, errno);
+  temporary_.clear();
+}
+
+void require_writable(const fs::path& path) {
+  const Target target = inspect(path);
+  if (target.is_stream) return;
+  const auto [probe, fd] = create_beside(target.path, path);
+  ::close(fd);
+  ::unlink(probe.c_str());
+}
+
+}  // namespace raygate

@@ -1,0 +1,88 @@
+#include "host/film/pixel_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace raygate {
+namespace {
+
+constexpr double kRadius = 1.5;  // of Gauss and Blackman-Harris
+
+double gauss(double x) { return std::exp(-2.0 * x * x); }
+
+/// The minimum 4-term window (Harris 1978, "On the use of windows for harmonic analysis").
+double blackman_harris(double x) {
+  const double turn = std::numbers::pi * (x / kRadius + 1.0);
+  return 0.35875 - 0.48829 * std::cos(turn) + 0.14128 * std::cos(2.0 * turn) -
+         0.01168 * std::cos(3.0 * turn);
+}
+
+/// The inverse of a filter's cumulative weight, by table.
+class Inverse {
+ public:
+  template <class Weight>
+  explicit Inverse(Weight weight) {
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      cumulative_[i] = sum;
+      sum += weight(place(i + 0.5));
+    }
+    cumulative_[kSteps] = sum;
+    for (double& value : cumulative_) value /= sum;
+    for (int i = 0, step = 0; i < kSteps; ++i) {
+      while (cumulative_[step + 1] <= static_cast<double>(i) / kSteps) ++step;
+      first_[i] = step;
+    }
+  }
+
+  [[nodiscard]] double operator()(double u) const {
+    int step = first_[static_cast<int>(u * kSteps)];
+    while (step < kSteps - 1 && cumulative_[step + 1] <= u) ++step;
+    const double within = (u - cumulative_[step]) / (cumulative_[step + 1] - cumulative_[step]);
+    return place(step + std::clamp(within, 0.0, 1.0));
+  }
+
+ private:
+  static constexpr int kSteps = 1024;
+  static double place(double step) { return (2.0 * step / kSteps - 1.0) * kRadius; }
+  std::array<double, kSteps + 1> cumulative_;
+  std::array<int, kSteps> first_;  // the step in which u = i / kSteps falls
+};
+
+double tent(double u) {
+  return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u));
+}
+
+}  // namespace
+
+glm::dvec2 filter_offset(PixelFilter filter, const glm::dvec2& u) {
+  static const Inverse kGaussInverse(gauss), kBlackmanHarrisInverse(blackman_harris);
+  switch (filter) {
+    case PixelFilter::kBox:
+      return u - 0.5;
+    case PixelFilter::kTent:
+      return {tent(u.x), tent(u.y)};
+    case PixelFilter::kGauss:
+      return {kGaussInverse(u.x), kGaussInverse(u.y)};
+    case PixelFilter::kBlackmanHarris:
+      break;
+  }
+  return {kBlackmanHarrisInverse(u.x), kBlackmanHarrisInverse(u.y)};
+}
+
+double filter_radius(PixelFilter filter) {
+  switch (filter) {
+    case PixelFilter::kBox:
+      return 0.5;
+    case PixelFilter::kTent:
+      return 1.0;
+    case PixelFilter::kGauss:
+    case PixelFilter::kBlackmanHarris:
+      break;
+  }
+  return kRadius;
+}
+
+}  // namespace raygate

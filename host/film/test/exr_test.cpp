@@ -1,0 +1,124 @@
+// What encode_exr writes, read back with the library.
+#include "host/film/exr.h"
+
+#include <ImfStandardAttributes.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <glm/gtc/matrix_transform.hpp>
+#include <set>
+
+#include "host/film/test/exr_reader.h"
+#include "host/film/test/sample_film.h"
+
+namespace raygate {
+namespace {
+
+/// Equal bits in every pixel: NaN, infinities and subnormals included.
+template <typename Get>
+void expect_same_bits(const std::vector<float>& actual, std::size_t count, Get expected) {
+  ASSERT_EQ(actual.size(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(actual[i]), std::bit_cast<std::uint32_t>(expected(i)))
+        << "pixel " << i;
+  }
+}
+
+void expect_all_channels_kept(const Film& film) {
+  ExrReader reader(encode_exr(film, {}));
+  const std::size_t count = film.color.size();
+  const auto color = [&](const char* name, int k) {
+    SCOPED_TRACE(name);
+    expect_same_bits(reader.read<float>(name, Imf::FLOAT), count,
+                     [&](std::size_t i) { return film.color[i][k]; });
+  };
+  const auto normal = [&](const char* name, int k) {
+    SCOPED_TRACE(name);
+    expect_same_bits(reader.read<float>(name, Imf::FLOAT), count,
+                     [&](std::size_t i) { return film.normal[i][k]; });
+  };
+  color("R", 0), color("G", 1), color("B", 2), color("A", 3);
+  normal("N.X", 0), normal("N.Y", 1), normal("N.Z", 2);
+  expect_same_bits(reader.read<float>("Z", Imf::FLOAT), count,
+                   [&](std::size_t i) { return film.depth[i]; });
+  EXPECT_EQ(reader.read<std::uint32_t>("id", Imf::UINT), film.primitive);
+}
+
+TEST(Exr, KeepsEveryBitOfEveryChannel) {
+  expect_all_channels_kept(make_sample_film(67, 41, {0, 0, 67, 41}));
+  expect_all_channels_kept(make_sample_film(1, 1, {0, 0, 1, 1}));
+}
+
+std::set<std::string> channel_names(const Film& film) {
+  const ExrReader reader(encode_exr(film, {}));
+  std::set<std::string> names;
+  const Imf::ChannelList& channels = reader.header().channels();
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    names.insert(channel.name());
+  }
+  return names;
+}
+
+TEST(Exr, ChannelsOnDemandAreThereWhereTheFilmHasThem) {
+  std::set<std::string> names{"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "id"};
+  EXPECT_EQ(channel_names(make_sample_film(5, 4, {0, 0, 5, 4})), names);
+  const Film film = make_sample_film(40, 30, {3, 7, 40, 30}, true);
+  names.insert(
+      {"P.X", "P.Y", "P.Z", "Albedo.R", "Albedo.G", "Albedo.B", "objectId", "tests", "doubts"});
+  EXPECT_EQ(channel_names(film), names);
+  expect_all_channels_kept(film);
+  ExrReader reader(encode_exr(film, {}));
+  for (int k = 0; k < 3; ++k) {
+    const std::string position = std::string("P.") + "XYZ"[k];
+    const std::string albedo = std::string("Albedo.") + "RGB"[k];
+    SCOPED_TRACE(k);
+    expect_same_bits(reader.read<float>(position.c_str(), Imf::FLOAT), film.position.size(),
+                     [&](std::size_t i) { return film.position[i][k]; });
+    expect_same_bits(reader.read<float>(albedo.c_str(), Imf::FLOAT), film.albedo.size(),
+                     [&](std::size_t i) { return film.albedo[i][k]; });
+  }
+  EXPECT_EQ(reader.read<std::uint32_t>("objectId", Imf::UINT), film.object);
+  EXPECT_EQ(reader.read<std::uint32_t>("tests", Imf::UINT), film.tests);
+  EXPECT_EQ(reader.read<std::uint32_t>("doubts", Imf::UINT), film.doubts);
+}
+
+TEST(Exr, CropIsTheDataWindow) {
+  const Film film = make_sample_film(640, 480, {600, 17, 633, 57});
+  expect_all_channels_kept(film);
+  ExrReader reader(encode_exr(film, {}));
+  EXPECT_EQ(reader.header().displayWindow(), Imath::Box2i({0, 0}, {639, 479}));
+  EXPECT_EQ(reader.header().dataWindow(), Imath::Box2i({600, 17}, {632, 56}));
+}
+
+TEST(Exr, CarriesSceneAndCamera) {
+  const glm::mat4 world_to_camera =
+      glm::lookAt(glm::vec3(1, 2, 3), glm::vec3(-4, 0, 2), glm::vec3(0, 1, 0));
+  ExrReader reader(
+      encode_exr(make_sample_film(2, 2, {0, 0, 2, 2}), {.software = "raygate 1.2",
+                                                        .scene = "cornell.obj",
+                                                        .seed = 18446744073709551615u,
+                                                        .world_to_camera = world_to_camera,
+                                                        .screen_window_width = 0.75f}));
+  EXPECT_EQ(reader.text("software"), "raygate 1.2");
+  EXPECT_EQ(reader.text("scene"), "cornell.obj");
+  EXPECT_EQ(reader.text("seed"), "18446744073709551615");
+  ASSERT_TRUE(Imf::hasWorldToCamera(reader.header()));
+  EXPECT_EQ(reader.header().screenWindowWidth(), 0.75f);
+  // A point through Imath's row-vector product lands where glm's column-vector product puts it.
+  const glm::vec3 expected = glm::vec3(world_to_camera * glm::vec4(5, 6, 7, 1));
+  const Imath::V3f actual = Imath::V3f(5, 6, 7) * Imf::worldToCamera(reader.header());
+  EXPECT_NEAR(actual.x, expected.x, 1e-5f);
+  EXPECT_NEAR(actual.y, expected.y, 1e-5f);
+  EXPECT_NEAR(actual.z, expected.z, 1e-5f);
+}
+
+TEST(Exr, EqualFilmsGiveEqualBytes) {
+  Film film = make_sample_film(50, 40, {0, 0, 50, 40});
+  const std::string first = encode_exr(film, {});
+  EXPECT_EQ(first, encode_exr(Film(film), {}));
+  film.normal[7].z = -film.normal[7].z;
+  EXPECT_NE(first, encode_exr(film, {}));
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,202 @@
+// Whatever goes wrong, the file that was there stays as it was.
+#include "host/film/pending_file.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void replace_file(const fs::path& path, std::string_view bytes) {
+  PendingFile(path, bytes).commit();
+}
+
+std::string message_of(const fs::path& path, std::string_view bytes) {
+  try {
+    replace_file(path, bytes);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "(written)";
+}
+
+class PendingFileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "raygate-test-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    ::chmod(folder_.c_str(), 0755);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Temporary files left behind would be counted here.
+  [[nodiscard]] std::ptrdiff_t file_count() const {
+    return std::distance(fs::directory_iterator(folder_), {});
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(PendingFileTest, WritesANewFile) {
+  const std::string bytes("a\0b\r\n", 5);
+  replace_file(folder_ / "new", bytes);
+  EXPECT_EQ(read(folder_ / "new"), bytes);
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(PendingFileTest, NewFileHasTheUsualPermissions) {
+  const mode_t old = ::umask(027);
+  replace_file(folder_ / "new", "x");
+  ::umask(old);
+  struct stat status;
+  ASSERT_EQ(::stat((folder_ / "new").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
+}
+
+TEST_F(PendingFileTest, ChangesNothingBeforeCommit) {
+  replace_file(folder_ / "file", "old");
+  {
+    PendingFile abandoned(folder_ / "file", "new");
+    EXPECT_EQ(read(folder_ / "file"), "old");
+  }
+  EXPECT_EQ(read(folder_ / "file"), "old");
+  EXPECT_EQ(file_count(), 1);
+  PendingFile first(folder_ / "file", "new");
+  PendingFile second(std::move(first));
+  second.commit();
+  EXPECT_EQ(read(folder_ / "file"), "new");
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(PendingFileTest, ReplacesAnOldFileAndKeepsItsPermissions) {
+  replace_file(folder_ / "file", std::string(100000, 'x'));
+  ::chmod((folder_ / "file").c_str(), 0604);
+  replace_file(folder_ / "file", "short");
+  EXPECT_EQ(read(folder_ / "file"), "short");
+  struct stat status;
+  ASSERT_EQ(::stat((folder_ / "file").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0604u);
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(PendingFileTest, FollowsSymbolicLinks) {
+  replace_file(folder_ / "file", "old");
+  fs::create_symlink("file", folder_ / "link");
+  replace_file(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(read(folder_ / "file"), "new");
+}
+
+TEST_F(PendingFileTest, BareNameGoesToTheCurrentFolder) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  require_writable("bare");
+  replace_file("bare", "x");
+  fs::current_path(before);
+  EXPECT_EQ(read(folder_ / "bare"), "x");
+}
+
+TEST_F(PendingFileTest, RequireWritableLeavesNothing) {
+  require_writable(folder_ / "new");
+  EXPECT_EQ(file_count(), 0);
+  replace_file(folder_ / "old", "old");
+  require_writable(folder_ / "old");
+  EXPECT_EQ(read(folder_ / "old"), "old");
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(PendingFileTest, RefusesAMissingFolder) {
+  const fs::path path = folder_ / "missing" / "file";
+  EXPECT_EQ(message_of(path, "x"), path.string() + ": cannot write: No such file or directory");
+  EXPECT_THROW(require_writable(path), InputError);
+}
+
+TEST_F(PendingFileTest, RefusesAFileAsFolder) {
+  replace_file(folder_ / "file", "old");
+  EXPECT_THROW(require_writable(folder_ / "file" / "x"), InputError);
+  EXPECT_THROW(replace_file(folder_ / "file" / "x", "new"), InputError);
+  EXPECT_EQ(read(folder_ / "file"), "old");
+}
+
+TEST_F(PendingFileTest, RefusesAFolder) {
+  EXPECT_EQ(message_of(folder_, "x"), folder_.string() + ": cannot write: Is a directory");
+  EXPECT_THROW(require_writable(folder_), InputError);
+}
+
+TEST_F(PendingFileTest, RefusesANameThatIsTooLong) {
+  EXPECT_THROW(require_writable(folder_ / std::string(300, 'n')), InputError);
+  // As long as a name can be: the temporary file must not need more.
+  replace_file(folder_ / std::string(255, 'n'), "x");
+  EXPECT_EQ(read(folder_ / std::string(255, 'n')), "x");
+}
+
+TEST_F(PendingFileTest, RefusesWithoutPermission) {
+  replace_file(folder_ / "file", "old");
+  const bool is_root = ::geteuid() == 0;  // root may write anywhere: be somebody else
+  ::chmod((folder_ / "file").c_str(), 0444);
+  ::chmod(folder_.c_str(), 0555);
+  if (is_root) {
+    ASSERT_EQ(::setresuid(65534, 65534, 0), 0);
+  }
+  const std::string old_file = message_of(folder_ / "file", "new");
+  const std::string new_file = message_of(folder_ / "new", "new");
+  bool refused_beforehand = false;
+  try {
+    require_writable(folder_ / "file");
+  } catch (const InputError&) {
+    refused_beforehand = true;
+  }
+  if (is_root) {
+    ASSERT_EQ(::setresuid(0, 0, 0), 0);
+  }
+  ::chmod(folder_.c_str(), 0755);
+  EXPECT_TRUE(refused_beforehand);
+  EXPECT_EQ(old_file, (folder_ / "file").string() + ": cannot write: Permission denied");
+  EXPECT_EQ(new_file, (folder_ / "new").string() + ": cannot write: Permission denied");
+  EXPECT_EQ(read(folder_ / "file"), "old");
+  EXPECT_EQ(file_count(), 1);
+}
+
+/// The limit on file sizes stands in for a full disk: the write stops half way.
+TEST_F(PendingFileTest, FullDiskLeavesTheOldFile) {
+  replace_file(folder_ / "file", "old");
+  const auto old_handler = ::signal(SIGXFSZ, SIG_IGN);
+  rlimit old_limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
+  const rlimit limit{4096, old_limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  const std::string message = message_of(folder_ / "file", std::string(10000, 'x'));
+  ::setrlimit(RLIMIT_FSIZE, &old_limit);
+  ::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(message, (folder_ / "file").string() + ": cannot write: File too large");
+  EXPECT_EQ(read(folder_ / "file"), "old");
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(PendingFileTest, DevicesAreWrittenToAsTheyAre) {
+  require_writable("/dev/full");
+  EXPECT_EQ(message_of("/dev/full", "x"), "/dev/full: cannot write: No space left on device");
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+  EXPECT_EQ(message_of("/dev/null", "x"), "(written)");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+}  // namespace
+}  // namespace raygate

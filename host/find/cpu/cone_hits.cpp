@@ -1,0 +1,83 @@
+// What a cone walk found, handed over.
+#include <algorithm>
+#include <bit>
+
+#include "host/find/cpu/cone_search.h"
+
+namespace raygate {
+
+/// Hands the nearest hits over, with their P where that is asked for: triangle by triangle, as rays
+/// that hit one share its plane.
+RAYGATE_LANES void finish(ConeSearch& search, const ConeWalk& walk) {
+  const SearchWishes& wishes = search.wishes_;
+  const bool with_points = wishes.ignored.empty() && wishes.enough_before.empty();
+  std::uint64_t left = 0;
+  for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
+    const int g = std::countr_zero(groups);
+    left |= std::uint64_t{0xFF & ~sign_mask(walk.slot[g])} << (8 * g);
+  }
+  ConeSearch::Seen seen[kPlanes];
+  int count = 0;
+  while (left != 0) {
+    const int first = std::countr_zero(left);
+    const std::int32_t slot = walk.slot[first / kLanes][first % kLanes];
+    std::uint64_t same = 0;
+    for (LaneMask groups = groups_of(left); groups != 0; groups &= groups - 1) {
+      const int g = std::countr_zero(groups);
+      same |= std::uint64_t{sign_mask(walk.slot[g] == slot)} << (8 * g);
+    }
+    same &= left;
+    left &= ~same;
+    seen[count++] = {static_cast<std::uint32_t>(slot), same};
+    if (count < kPlanes && left != 0) continue;
+    if (with_points) {
+      search.put_with_points(walk, std::span(seen, static_cast<std::size_t>(count)));
+    } else {
+      for (int i = 0; i < count; ++i) search.put(walk, seen[i]);
+    }
+    count = 0;
+  }
+}
+
+RAYGATE_INLINE void ConeSearch::put(const ConeWalk& walk, const Seen& seen) {
+  for (std::uint64_t rays = seen.rays; rays != 0; rays &= rays - 1) {
+    const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
+    nearest_.put(walk.number(g, lane), {seen.slot, glm::vec3(0.0f), walk.t(g, lane)});
+  }
+}
+
+/// P has the bits of plane_point.
+RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<const Seen> seen) {
+  std::array<PlaneView, kPlanes> views;
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    views[i] = {&origin_, &bvh_.corners_of(seen[std::min(i, seen.size() - 1)].slot)};
+  }
+  std::array<PolygonRecord, kPlanes> planes;
+  make_planes(views, planes);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const glm::vec3& n = planes[i].normal;
+    const float d = planes[i].d;
+    for (LaneMask groups = groups_of(seen[i].rays); groups != 0; groups &= groups - 1) {
+      const int g = std::countr_zero(groups);
+      const FloatLanes &x = walk.block->direction[0][g], &y = walk.block->direction[1][g],
+                       &z = walk.block->direction[2][g];
+      const FloatLanes v = 0.0f + ((n.x * x + n.y * y) + n.z * z);
+      FloatLanes point[3] = {d * x / v, d * y / v, d * z / v};
+      for (FloatLanes& p : point) {
+        const IntLanes nan = IntLanes{} + 0x7FC00000;
+        p = p == p ? p : reinterpret_cast<FloatLanes>(nan);
+      }
+      for (LaneMask lanes = rays_of(seen[i].rays, g); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        nearest_.put(walk.number(g, lane),
+                     {seen[i].slot, glm::vec3(point[0][lane], point[1][lane], point[2][lane]),
+                      walk.t(g, lane)});
+      }
+    }
+    const auto count = static_cast<std::uint64_t>(std::popcount(seen[i].rays));
+    counters_.plane_tests += count;
+    counters_.quotients += 3 * count;
+  }
+}
+
+}  // namespace raygate

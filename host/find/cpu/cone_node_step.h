@@ -1,0 +1,91 @@
+// A cone walk's step through an inner node: which rays go on to which children.
+#pragma once
+
+#include <bit>
+
+#include "host/find/cpu/cone_walk.h"
+#include "host/tree/beam.h"
+
+namespace raygate {
+
+/// Beams around each ray of a group, as tight as can be.
+RAYGATE_INLINE void split_group(ConeWalk& walk, int group) {
+  Beams& beams = walk.ray_beams[group];
+  constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
+  const FloatLanes inverse = 1.0f / walk.cones.pace[group];
+  for (int k = 0; k < 3; ++k) {
+    FloatLanes size;
+    magnitude(walk.block->direction[k][group] * inverse, size);
+    beams.set(k, walk.cones.whole.octant, size * kDown, size * kUp);
+  }
+  cutoffs_beyond(walk.high[group], walk.cones.pace[group], walk.cones.active[group], beams.cutoff);
+  walk.split |= 1u << group;
+}
+
+/// The children that any of the rays, which are of these groups, may meet; entry[i] is where.
+RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const WideBvh::Node& node,
+                                 std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
+  const Cones& cones = walk.cones;
+  if (several(groups)) return meet_children(cones.whole, node, walk.cutoff, entry);
+  const int only = std::countr_zero(groups);
+  if (several(rays) || (walk.split >> only & 1) == 0) {
+    const Beam beam = one_of(cones.beams, only, cones.whole);
+    return meet_children(beam, node, cones.beams.cutoff[only], entry);
+  }
+  const int lane = std::countr_zero(rays_of(rays, only));
+  const Beams& beams = walk.ray_beams[only];
+  return meet_children(one_of(beams, lane, cones.whole), node, beams.cutoff[lane], entry);
+}
+
+/// Puts what the rays meet of a node onto the stack. Where a beam meets several children,
+/// those within it are asked one by one: first the groups, then their rays.
+RAYGATE_INLINE void step_through(ConeWalk& walk, const WideBvh& tree, std::uint32_t index,
+                                 std::uint64_t rays, LaneMask groups) {
+  constexpr int kFew = 1;  // children
+  const WideBvh::Node& node = tree.nodes()[index];
+  const Cones& cones = walk.cones;
+  const Beam& whole = cones.whole;
+  const glm::vec3 origin(whole.origin[0], whole.origin[1], whole.origin[2]);
+  FloatLanes entry;
+  LaneMask met = meet_any(walk, node, rays, groups, entry);
+  LaneMask in[WideBvh::kWidth];
+  const bool ask = several(groups) && std::popcount(met) > kFew;
+  std::uint64_t counts = 0;  // byte g: how many children group g meets
+  for (LaneMask left = met; left != 0; left &= left - 1) {
+    const int i = std::countr_zero(left);
+    in[i] = groups;
+    if (ask || (several(groups) && node.child[i].count != 0)) {
+      in[i] &= meet_beams(cones.beams, origin, whole.octant, node, i);
+    }
+    counts += ones_of(in[i]);
+  }
+  LaneMask divided = groups_of((counts + (0x7F - kFew) * ones_of(0xFF)) & 0x80 * ones_of(0xFF));
+  for (LaneMask left = divided; left != 0; left &= left - 1) {
+    const int g = std::countr_zero(left);
+    if (!several(rays_of(rays, g))) {
+      divided &= ~(1u << g);
+    } else if ((walk.split >> g & 1) == 0) {
+      split_group(walk, g);
+    }
+  }
+  const int bottom = walk.depth;
+  for (; met != 0; met &= met - 1) {
+    const int i = std::countr_zero(met);
+    ConeWalk::Waiting next = {node.child[i], entry[i], rays & 0xFF * ones_of(in[i])};
+    for (LaneMask left = divided & in[i]; left != 0; left &= left - 1) {
+      const int g = std::countr_zero(left);
+      const std::uint64_t missed =
+          0xFF & ~meet_beams(walk.ray_beams[g], origin, whole.octant, node, i);
+      next.rays &= ~(missed << (8 * g));
+    }
+    if (next.rays == 0) continue;
+    tree.prefetch(next.child);
+    int place = walk.depth++;
+    for (; place > bottom && walk.stack[place - 1].entry < next.entry; --place) {
+      walk.stack[place] = walk.stack[place - 1];
+    }
+    walk.stack[place] = next;
+  }
+}
+
+}  // namespace raygate

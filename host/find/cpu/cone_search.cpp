@@ -1,0 +1,254 @@
+#include "host/find/cpu/cone_search.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "host/find/cpu/cone_leaf_test.h"
+#include "host/find/cpu/cone_node_step.h"
+#include "host/tree/wide_bvh.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
+
+float float_below(double x) {
+  const auto nearest = static_cast<float>(x);
+  return nearest > x ? std::nextafter(nearest, -1.0f) : nearest;
+}
+float float_above(double x) {
+  const auto nearest = static_cast<float>(x);
+  return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
+float float_of(std::int32_t bits) { return std::bit_cast<float>(bits); }
+std::int32_t bits_of(float x) { return std::bit_cast<std::int32_t>(x); }
+
+/// What is wished for a group's rays; what is beyond the last one means nothing.
+template <class Wish>
+RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first, IntLanes& lanes) {
+  static_assert(sizeof(Wish) == sizeof(std::int32_t));
+  if (first + kLanes <= wishes.size()) {
+    std::memcpy(&lanes, &wishes[first], sizeof lanes);
+  } else {
+    std::memcpy(&lanes, &wishes[first], (wishes.size() - first) * sizeof(Wish));
+  }
+}
+
+}  // namespace
+
+/// Everything of a walk but its cones and where it begins.
+RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
+  const auto& [limits, ignored, enough] = search.wishes_;
+  slack_of(walk.cones.radius, walk.slack);
+  walk.split = 0;
+  walk.going = 0;
+  walk.cones.beams.cutoff = FloatLanes{} - 1.0f;
+  for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
+    const int g = std::countr_zero(left);
+    walk.slot[g] = IntLanes{} - 1;
+    IntLanes end = IntLanes{} + kFarthest;
+    const std::uint32_t first = walk.number(g, 0);
+    if (!limits.empty()) {
+      load_group(limits, first, end);
+      end = end < kFarthest ? end : IntLanes{} + kFarthest;
+    }
+    walk.low[g] = walk.high[g] = end;
+    if (!enough.empty()) load_group(enough, first, walk.enough[g]);
+    if (!ignored.empty()) load_group(ignored, first, walk.ignored[g]);
+    walk.going |= std::uint64_t{walk.cones.active[g]} << (8 * g);
+    shorten(walk, g);
+  }
+  walk.cutoff = largest_of(walk.cones.beams.cutoff);
+  walk.depth = 0;
+  walk.stack[walk.depth++] = {{0, 0}, 0.0f, walk.going};
+}
+
+/// Tests a leaf's triangles that are there against the rays, a triangle and a group at a time. Sets
+/// the bits of the groups whose nearest hits change.
+RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& record,
+                                            const WideBvh::Child& leaf, LaneMask there,
+                                            std::uint64_t rays, LaneMask& changed) {
+  const bool ignoring = !wishes_.ignored.empty();
+  for (; there != 0; there &= there - 1) {
+    const int i = std::countr_zero(there);
+    const auto slot = static_cast<std::int32_t>(leaf.first) + i;
+    LaneMask left = groups_near(walk, record, i, groups_of(rays));
+    for (; left != 0; left &= left - 1) {
+      const int g = std::countr_zero(left);
+      const LaneMask tested = rays_of(rays, g);
+      GroupVerdict verdict;
+      test_group(walk, record, i, g, tested, verdict);
+      counters_.tests += static_cast<std::uint64_t>(std::popcount(tested));
+      if (verdict.open == 0) continue;
+      counters_.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+      counters_.edge_doubts +=
+          static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
+      if (ignoring) verdict.open &= ~sign_mask(walk.ignored[g] == slot);
+      const LaneMask sure = verdict.open & verdict.hit;
+      const LaneMask nearer = sure & sign_mask(verdict.high < walk.low[g]);
+      if (nearer != 0) {
+        IntLanes take;
+        lanes_of(nearer, take);
+        walk.low[g] = take ? verdict.low : walk.low[g];
+        walk.high[g] = take ? verdict.high : walk.high[g];
+        walk.slot[g] = take ? IntLanes{} + slot : walk.slot[g];
+        changed |= 1u << g;
+      }
+      LaneMask open = verdict.open & ~nearer & ~(sure & sign_mask(verdict.low > walk.high[g]));
+      for (; open != 0; open &= open - 1) {
+        const int lane = std::countr_zero(open);
+        const Interval t = {float_of(verdict.low[lane]), float_of(verdict.high[lane])};
+        if (settle(walk, g, lane, slot, (sure >> lane & 1) != 0 ? &t : nullptr)) {
+          changed |= 1u << g;
+        }
+      }
+    }
+  }
+}
+
+/// The same, a ray at a time.
+RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& record,
+                                          const WideBvh::Child& leaf, LaneMask there,
+                                          std::uint64_t rays, LaneMask& changed) {
+  const bool ignoring = !wishes_.ignored.empty();
+  counters_.tests += static_cast<std::uint64_t>(std::popcount(rays) * std::popcount(there));
+  for (; rays != 0; rays &= rays - 1) {
+    const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
+    RayVerdict verdict;
+    test_ray(walk, record, g, lane, there, verdict);
+    if (verdict.open == 0) continue;
+    counters_.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+    counters_.edge_doubts += static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
+    for (LaneMask open = verdict.open; open != 0; open &= open - 1) {
+      const int i = std::countr_zero(open);
+      const auto slot = static_cast<std::int32_t>(leaf.first) + i;
+      if (ignoring && walk.ignored[g][lane] == slot) continue;
+      const bool sure = (verdict.hit >> i & 1) != 0;
+      const Interval t = {verdict.low[i], verdict.high[i]};
+      if (sure && t.low > float_of(walk.high[g][lane])) continue;
+      if (sure && t.high < float_of(walk.low[g][lane])) {
+        walk.low[g][lane] = bits_of(verdict.low[i]);
+        walk.high[g][lane] = bits_of(verdict.high[i]);
+        walk.slot[g][lane] = slot;
+      } else if (!settle(walk, g, lane, slot, sure ? &t : nullptr)) {
+        continue;
+      }
+      changed |= 1u << g;
+    }
+  }
+}
+
+/// Walks the tree, near before far, and tests what is there.
+RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
+  const WideBvh& tree = search.bvh_.wide();
+  const bool ending = !search.wishes_.enough_before.empty();
+  Cones& cones = walk.cones;
+  while (walk.depth > 0 && walk.going != 0) {
+    const ConeWalk::Waiting item = walk.stack[--walk.depth];
+    if (item.entry > walk.cutoff) continue;
+    const std::uint64_t rays =
+        item.rays & walk.going & 0xFF * ones_of(sign_mask(cones.beams.cutoff >= item.entry));
+    if (rays == 0) continue;
+    const LaneMask groups = groups_of(rays);
+    if (item.child.count == 0) {
+      step_through(walk, tree, item.child.first, rays, groups);
+      continue;
+    }
+    QuadRecord record;
+    make_quad_record(cones.whole.origin, tree.corners_of(item.child), item.child.count, record);
+    LaneMask there = (1u << item.child.count) - 1;
+    if (record.unsure != 0) search.settle_sides(item.child, record, there);
+    LaneMask changed = 0;
+    if (is_sparse(rays, groups, item.child.count)) {
+      search.test_rays(walk, record, item.child, there, rays, changed);
+    } else {
+      search.test_groups(walk, record, item.child, there, rays, changed);
+    }
+    if (changed == 0) continue;
+    search.bvh_.prefetch(item.child.first);  // for finish
+    for (; changed != 0; changed &= changed - 1) {
+      const int g = std::countr_zero(changed);
+      if (ending) {
+        const LaneMask ended =
+            cones.active[g] & ~sign_mask(walk.slot[g]) & sign_mask(walk.high[g] < walk.enough[g]);
+        cones.active[g] &= ~ended;
+        search.ended_early_ += static_cast<std::uint64_t>(std::popcount(ended));
+      }
+      shorten(walk, g);
+    }
+    walk.cutoff = largest_of(cones.beams.cutoff);
+  }
+}
+
+void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
+  rays_ = rays;
+  wishes_ = wishes;
+  const HitCounters before = counters_;
+  RayBlock block;
+  ConeWalk walk;
+  walk.block = &block;
+  for (std::size_t first = 0; first < rays.size(); first += RayBlock::kRays) {
+    const std::size_t count = std::min<std::size_t>(RayBlock::kRays, rays.size() - first);
+    load_block(rays.subspan(first, count), block);
+    walk.first = static_cast<std::uint32_t>(first);
+    for (std::uint32_t octants = block.octants; octants != 0; octants &= octants - 1) {
+      const int octant = std::countr_zero(octants);
+      for (int g = 0; g < ConeWalk::kGroups; ++g) {
+        walk.cones.active[g] = block.into_octant(octant, g);
+      }
+      make_cones(block, origin_, octant, walk.cones);
+      if (walk.cones.groups == 0) continue;
+      set_out(*this, walk);
+      walk_tree(*this, walk);
+      finish(*this, walk);
+    }
+  }
+  const std::uint64_t tests = counters_.tests - before.tests;
+  counters_.unit_tests += tests;
+  counters_.misses +=
+      tests - (counters_.hits - before.hits) - (counters_.edge_doubts - before.edge_doubts);
+}
+
+/// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it
+/// is are hit by no ray: they leave those that are there.
+void ConeSearch::settle_sides(const WideBvh::Child& leaf, QuadRecord& record,
+                              LaneMask& there) const {
+  for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
+    const int i = std::countr_zero(unsure);
+    const int side =
+        plane_side(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
+    if (side == 0) {
+      there &= ~(1u << i);
+    } else {
+      set_side(record, i, side);
+    }
+  }
+}
+
+/// The last word on what float32 leaves open about a ray and a slot. `sure`: bounds of its t, or
+/// nullptr where it is not even sure that it is hit. True where it is the nearest hit now.
+bool ConeSearch::settle(ConeWalk& walk, int group, int lane, std::int32_t slot,
+                        const Interval* sure) {
+  const std::uint32_t ray = walk.number(group, lane);
+  const auto tag = static_cast<std::uint32_t>(slot);
+  const std::int32_t best = walk.slot[group][lane];
+  if (best >= 0) {
+    nearest_.put(ray, {static_cast<std::uint32_t>(best), glm::vec3(0.0f), walk.t(group, lane)});
+    counters_.depth_doubts += sure != nullptr;
+  }
+  const bool nearer = sure != nullptr
+                          ? nearest_.offer(ray, rays_[ray], SureHit{0, 0, tag, {}, *sure})
+                          : nearest_.offer(ray, rays_[ray], Doubt{0, 0, tag, {}});
+  if (!nearer) return false;
+  const Interval t = nearest_[ray].t;
+  walk.low[group][lane] = bits_of(float_below(t.low));
+  walk.high[group][lane] = bits_of(float_above(t.high));
+  walk.slot[group][lane] = slot;
+  return true;
+}
+
+}  // namespace raygate

@@ -1,0 +1,69 @@
+// Up to 64 rays of one origin on their way through the tree.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "host/exact/exact.h"
+#include "host/find/cpu/cone.h"
+#include "host/find/cpu/lane_math.h"
+#include "host/find/ray_set.h"
+#include "host/tree/wide_bvh.h"
+
+namespace raygate {
+
+/// Distances (t) are the bits of floats: positive floats are in the order of their bits.
+struct ConeWalk {
+  static constexpr int kGroups = RayBlock::kGroups;
+
+  /// What of the tree waits to be visited: the nearest last, as far as one node knows.
+  struct Waiting {
+    WideBvh::Child child;
+    float entry;
+    std::uint64_t rays;  ///< those that may meet it
+  };
+
+  const RayBlock* block;
+  std::uint32_t first;  ///< the number of the block's first ray
+  Cones cones;
+  Beams ray_beams[kGroups];              ///< around each ray, where a group has been split
+  LaneMask split;                        ///< the groups that have been
+  IntLanes low[kGroups], high[kGroups];  ///< of each ray: bounds of the nearest hit's t
+  IntLanes slot[kGroups];                ///< of the nearest hit; -1: none
+  IntLanes ignored[kGroups];             ///< a slot; -1: none
+  IntLanes enough[kGroups];              ///< a hit that is surely before is enough
+  FloatLanes slack;     ///< lane g: how many times an edge's bound all of group g may be off it
+  std::uint64_t going;  ///< the rays that still look for something
+  float cutoff;         ///< boxes beyond matter to none
+  int depth;            ///< of the stack
+  Waiting stack[WideBvh::kStackSize];
+
+  [[nodiscard]] std::uint32_t number(int group, int lane) const {
+    return first + static_cast<std::uint32_t>(group * kLanes + lane);
+  }
+  /// Bounds of the nearest hit's t.
+  [[nodiscard]] Interval t(int group, int lane) const {
+    return {std::bit_cast<float>(low[group][lane]), std::bit_cast<float>(high[group][lane])};
+  }
+};
+
+/// Where boxes end to matter for rays of these paces that end at `high` (see cutoff_beyond).
+RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, const FloatLanes& pace, LaneMask active,
+                                   FloatLanes& cutoffs) {
+  constexpr float kGrow = 1.0f + 0x1p-20f;
+  IntLanes going;
+  lanes_of(active, going);
+  cutoffs = going ? reinterpret_cast<FloatLanes>(high) * pace * kGrow : FloatLanes{} - 1.0f;
+}
+
+/// Looks no farther than `high` and `cones.active` say, for the rays of a group.
+RAYGATE_INLINE void shorten(ConeWalk& walk, int group) {
+  Cones& cones = walk.cones;
+  FloatLanes cutoffs;
+  cutoffs_beyond(walk.high[group], cones.pace[group], cones.active[group], cutoffs);
+  cones.beams.cutoff[group] = largest_of(cutoffs);
+  if ((walk.split >> group & 1) != 0) walk.ray_beams[group].cutoff = cutoffs;
+  walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
+}
+
+}  // namespace raygate

@@ -1,0 +1,150 @@
+// Up to four triangles seen from one origin, in float32: made in passing, for a few rays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "host/exact/exact.h"
+#include "host/find/cpu/float_quad.h"
+
+// Why a sure answer is right
+//
+// As in polygon_record.cpp, but all of it in float32. Let u = 2^-24, A, B, C the corners minus O, E
+// = A x (B-A) an edge plane, L the sum of the magnitudes of the six products that it is made of,
+// and I a direction with |I_i| < 2. Coordinates of A, B and C are at most 2^40.
+//
+// 1. Factors are differences, off by u of themselves, so a product is off by 3 u of itself, or
+//    2^-150 if it underflows, and their difference by u more: the words of E are off by (4 u L)_1
+//    in all, and 2^-147, and their magnitudes sum to L (1 + 4 u) at most.
+// 2. I . E in float32, in any order, rounds a word three times at most: it is off by 3.0001 u
+//    |I|.|E|, and 2^-148. So |float32(I . E) - I . (A x B)| < 2 (4 + 3.001) u L + 2^-145 < 14.1 u L
+//    + 2^-145. The bound computed, 14.5 u L + 2^-100 for the largest of three L, has room for its
+//    own roundings, 7 u of it.
+// 3. Likewise N = (B-A) x (C-B), with its own L: I . N is off by less than 14.5 u L + 2^-100. A . N
+//    has three more factors that are u off themselves, of size m at most: it is off by less than m
+//    (4 + 3.001 + 1.001) u L + 2^-105 < 8.5 u m L + 2^-100.
+//
+// A hit has all three I . E of the sign of d = A . N (exact.cpp says why), and t = d / (I . N). All
+// words are stored with the sign of d, where float32 is sure of it.
+
+namespace raygate {
+
+/// Four planes of four triangles: three edges', and N.
+struct alignas(sizeof(FloatLanes)) QuadRecord {
+  static constexpr int kNormal = 3;
+
+  /// Of d's sign: plane p is [p / 2][axis][p % 2], word i triangle i's.
+  float planes[2][3][2][kQuad];
+  float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each of the edges
+  float normal_bound[kQuad];      ///< likewise for I . N
+  float low[kQuad], high[kQuad];  ///< |d| is between them; low = 0 where the sign was unsure
+  std::int32_t flip[kQuad];       ///< the sign bit of d as computed
+  LaneMask unsure;                ///< whose d may have another sign
+
+  [[nodiscard]] RAYGATE_INLINE float word(int plane, int axis, int triangle) const {
+    return planes[plane / 2][axis][plane % 2][triangle];
+  }
+};
+
+/// A bound is kQuadBound u L, see above.
+inline constexpr float kQuadBound = 14.5f;
+
+RAYGATE_INLINE void join(const FloatQuad& low, const FloatQuad& high, FloatLanes& both) {
+  both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+/// u x v, and the sum of the magnitudes of the products that it is made of.
+RAYGATE_INLINE void cross(const FloatLanes (&u)[3], const FloatLanes (&v)[3],
+                          FloatLanes (&result)[3], FloatLanes& size) {
+  size = FloatLanes{};
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const FloatLanes plus = u[i] * v[j], minus = u[j] * v[i];
+    result[k] = plus - minus;
+    size += reinterpret_cast<FloatLanes>(reinterpret_cast<IntLanes>(plus) & 0x7FFFFFFF) +
+            reinterpret_cast<FloatLanes>(reinterpret_cast<IntLanes>(minus) & 0x7FFFFFFF);
+  }
+}
+
+/// The record of 1 to 4 triangles, their corners as test_quad takes them.
+RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corners,
+                                     std::uint32_t count, QuadRecord& record) {
+  constexpr float kU = 0x1p-24f, kTiny = 0x1p-100f, kLargest = 0x1p40f;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::ptrdiff_t stride = count;
+  FloatQuad p[3][3], sides[3][3], farthest = {};
+  for (int v = 0; v < 3; ++v) {
+    for (int k = 0; k < 3; ++k) load_quad(corners + stride * (3 * v + k), p[v][k]);
+  }
+  for (int v = 0; v < 3; ++v) {
+    for (int k = 0; k < 3; ++k) sides[v][k] = p[(v + 1) % 3][k] - p[v][k];
+  }
+  for (int v = 0; v < 3; ++v) {
+    for (int k = 0; k < 3; ++k) {
+      p[v][k] = p[v][k] - origin[k];
+      FloatQuad size;
+      magnitude(p[v][k], size);
+      farthest = size > farthest ? size : farthest;
+    }
+  }
+  // A x (B-A) and B x (C-B) side by side; C x (A-C) and (B-A) x (C-B), which is N.
+  FloatLanes u[3], v[3], planes[2][3], sizes[2];
+  for (int k = 0; k < 3; ++k) {
+    join(p[0][k], p[1][k], u[k]);
+    join(sides[0][k], sides[1][k], v[k]);
+  }
+  cross(u, v, planes[0], sizes[0]);
+  for (int k = 0; k < 3; ++k) {
+    join(p[2][k], sides[0][k], u[k]);
+    join(sides[2][k], sides[1][k], v[k]);
+  }
+  cross(u, v, planes[1], sizes[1]);
+  const auto low_of = [](const FloatLanes& x) __attribute__((always_inline)) {
+    return __builtin_shufflevector(x, x, 0, 1, 2, 3);
+  };
+  const auto high_of = [](const FloatLanes& x) __attribute__((always_inline)) {
+    return __builtin_shufflevector(x, x, 4, 5, 6, 7);
+  };
+  FloatQuad largest = low_of(sizes[0]);
+  largest = high_of(sizes[0]) > largest ? high_of(sizes[0]) : largest;
+  largest = low_of(sizes[1]) > largest ? low_of(sizes[1]) : largest;
+  const FloatQuad size = high_of(sizes[1]);
+  const IntQuad small = farthest <= kLargest;
+  const FloatQuad d = (p[0][0] * high_of(planes[1][0]) + p[0][1] * high_of(planes[1][1])) +
+                      p[0][2] * high_of(planes[1][2]);
+  const FloatQuad d_bound = small ? (8.5f * kU) * farthest * size + kTiny : FloatQuad{} + kInfinity;
+  FloatQuad distance;
+  magnitude(d, distance);
+  const IntQuad sure = distance > d_bound;
+  const IntQuad flip = reinterpret_cast<IntQuad>(d) & std::numeric_limits<std::int32_t>::min();
+  const IntLanes flips = __builtin_shufflevector(flip, flip, 0, 1, 2, 3, 0, 1, 2, 3);
+  for (int pair = 0; pair < 2; ++pair) {
+    for (int k = 0; k < 3; ++k) {
+      const IntLanes flipped = reinterpret_cast<IntLanes>(planes[pair][k]) ^ flips;
+      std::memcpy(record.planes[pair][k], &flipped, sizeof flipped);
+    }
+  }
+  const auto put = [&](const FloatQuad& words, float(&to)[kQuad]) __attribute__((always_inline)) {
+    std::memcpy(to, &words, sizeof words);
+  };
+  put(small ? (kQuadBound * kU) * largest + kTiny : FloatQuad{} + kInfinity, record.bounds);
+  put((kQuadBound * kU) * size + kTiny, record.normal_bound);
+  put(sure ? distance - d_bound : FloatQuad{}, record.low);
+  put(small ? distance + d_bound : FloatQuad{} + kInfinity, record.high);
+  std::memcpy(record.flip, &flip, sizeof flip);
+  record.unsure = ~sign_mask(sure) & ((1u << count) - 1);
+}
+
+/// Says which sign d has, -1 or 1, where float32 is not sure.
+RAYGATE_INLINE void set_side(QuadRecord& record, int triangle, int side) {
+  if ((record.flip[triangle] != 0) == (side < 0)) return;
+  for (auto& pair : record.planes) {
+    for (auto& axis : pair) {
+      for (auto& plane : axis) plane[triangle] = -plane[triangle];
+    }
+  }
+}
+
+}  // namespace raygate

@@ -1,0 +1,157 @@
+// One ray against up to four triangles in float32: what it is sure of, straight from the corners.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "host/exact/exact.h"
+#include "host/find/cpu/float_quad.h"
+
+// Why a sure answer is right
+//
+// Let z be the axis along which the ray goes farthest, so that |s_x|, |s_y| <= 1 for s_x = I_x /
+// I_z and s_y. Woop, Benthin and Wald ("Watertight ray/triangle intersection", 2013) shear a corner
+// p to the point (x, y) = ((p-O)_x - s_x (p-O)_z, (p-O)_y - s_y (p-O)_z): the ray is the origin of
+// that plane, and on which side of the edge from corner i to corner j it passes is the sign of
+// x_i y_j - y_i x_j, which is I . (A x B) times a number that is the same for all three edges. Two
+// edges of opposite signs are a miss. If all have one sign, the line of the ray goes through the
+// triangle's inside: a hit where that is ahead of O, a miss where it is behind. Nothing of this
+// needs the tilt of edge_side, which matters only where a sign is 0.
+//
+// Let u = 2^-24, capitals be what float32 makes of all this, m >= |p-O| on each axis, for all three
+// corners, as computed, and S the sum of the six |X_i|, |Y_i|.
+//
+// 1. A difference is off by u of itself, the quotient by u of itself or 2^-150, its product with
+//    Z by u of itself or 2^-150, and the difference by u |X_i|. All these are at most m, but
+//    |X_i| <= 2.0001 m:  |X_i - x_i| < (1 + 3 + 2.001) u m + 2^-149 (1 + m) < 6.01 u m = e.
+// 2. X_i Y_j - x_i y_j = X_i (Y_j - y_j) + y_j (X_i - x_i), so the exact difference of products is
+//    off by less than e (|X_i| + |Y_j| + |Y_i| + |X_j|) + 2 e^2 <= 6.01 u m S + 72.3 u^2 m^2.
+// 3. The two products are off by u of themselves or 2^-150, their difference by u of itself: less
+//    than 2.001 u (|X_i Y_j| + |Y_i X_j|) + 2^-149 in all, and |X_i Y_j| <= 1.001 m (|X_i| +
+//    |Y_j|) as neither is above 2.0001 m: less than 2.01 u m S + 2^-149.
+// 4. Where 2^-20 <= m <= 2^40, nothing overflows, the 2^-149 (1 + m) of step 1 is less than 2^-60 u
+//    m, and the 2^-149 of step 3 less than 2^-60 u^2 m^2. Elsewhere nothing is sure.
+//
+// Sum: less than 8.02 u m S + 72.4 u^2 m^2. The bound computed is b = m (8.5 u S + 2^-41 m), where
+// 2^-41 = 128 u^2: its own roundings take less than 12 u of it. The m computed there is the largest
+// |Z_i| plus S: on the other axes |p-O|_x = |x + s_x (p-O)_z| as computed is at most |X_i| + |Z_i|
+// but for (1 + 3) u m and the like, which the same room pays for.
+//
+// Where on the z axis
+//
+// Let U_i be the three differences, all surely of one sign, say > b; they belong to the corners
+// across from their edges. z* = (sum u_i z_i) / (sum u_i), from the exact u_i = U_i +- b; let D be
+// the sum of the U_i as computed, D* that of the u_i, and R the z of the farthest corner less that
+// of the nearest one.
+//
+// 5. Weights U_i / D' for D' = sum U_i (exact) instead of u_i / D*: each is off by |U_i (D* - D') +
+//    D' (U_i - u_i)| / (D' D*) <= (3 b U_i / D' + b) / D*, three of them by 6 b / D*, and D* > D'
+//    - 3 b. As both sum to 1, z* is off by less than 6 b R / (D' - 3 b). |U_i| is at most a product
+//    of two of the three |X_j| + |Y_j|, so D' <= S^2 / 3 <= m S / 3, and D, 2 u of itself off, is
+//    less than 0.1 b off: D' - 3 b > D - 3.2 b. R is 2 u max |Z_i| off, which matters only where
+//    the quotient is below 1, as z* is between the corners' z anyway: 2 u max |Z_i|.
+// 6. Three products, two sums of them, two sums in D, a quotient, the difference that gave Z_i and
+//    the one with the bound: less than 9 u of the largest |Z_i|, as weights are positive and sum to
+//    1. A product that underflows is off by 2^-150, that is 2^-150 / D' of z, where D' > 3 b >
+//    2^-80: less than 2^-68 in all, and m 2^-45 >= 2^-65.
+//
+// So z* is within 6.5 b R / (D - 3.2 b) + 16 u max |Z_i| + 2^-45 m of the quotient, roundings of
+// this included, and within 16 u max |Z_i| of what is between the corners' z.
+
+namespace raygate {
+
+/// A ray, made ready to be tested against triangles one quad after the other.
+struct ShearedRay {
+  int axes[3];        ///< x, y, z of the shear: the ray goes farthest along the last one
+  float origin[3];    ///< along these axes
+  float shear[2];     ///< s_x, s_y
+  std::int32_t back;  ///< the sign bit of I_z
+
+  ShearedRay() = default;
+  /// The direction usable (see is_usable).
+  RAYGATE_INLINE explicit ShearedRay(const Ray& ray) {
+    const glm::vec3& d = ray.direction;
+    const float x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
+    const int farthest = z >= x && z >= y ? 2 : (y >= x ? 1 : 0);
+    for (int k = 0; k < 3; ++k) {
+      axes[k] = (farthest + 1 + k) % 3;
+      origin[k] = ray.origin[axes[k]];
+    }
+    for (int k = 0; k < 2; ++k) shear[k] = d[axes[k]] / d[farthest];
+    back = d[farthest] < 0.0f ? static_cast<std::int32_t>(0x80000000u) : 0;
+  }
+};
+
+/// Bit i of the masks, and lane i, stand for triangle i.
+struct QuadVerdict {
+  LaneMask hit;    ///< surely hit, ahead of the origin
+  LaneMask level;  ///< the line surely goes through, but perhaps behind the origin: see is_ahead
+  LaneMask doubt;  ///< neither these nor surely a miss
+  /// Of all these, if hit: between which bounds the hit is along the ray's longest axis.
+  FloatQuad low, high;
+};
+
+/// Tests 1 to 4 triangles. Coordinate k of corner v of triangle i is corners[(3 v + k) count + i];
+/// whatever comes after the last one must be readable up to corners[8 count + 3].
+RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
+                              QuadVerdict& verdict) {
+  constexpr float kBoundOfSum = 8.5f * 0x1p-24f, kBoundOfSize = 0x1p-41f;
+  constexpr float kSmallest = 0x1p-20f, kLargest = 0x1p40f;
+  const std::ptrdiff_t stride = count;
+  FloatQuad x[3], y[3], z[3];
+  FloatQuad sum = {}, farthest = {};
+  for (int v = 0; v < 3; ++v) {
+    load_quad(corners + stride * (3 * v + ray.axes[0]), x[v]);
+    load_quad(corners + stride * (3 * v + ray.axes[1]), y[v]);
+    load_quad(corners + stride * (3 * v + ray.axes[2]), z[v]);
+    z[v] = z[v] - ray.origin[2];
+    x[v] = (x[v] - ray.origin[0]) - ray.shear[0] * z[v];
+    y[v] = (y[v] - ray.origin[1]) - ray.shear[1] * z[v];
+    FloatQuad size[3];
+    magnitude(x[v], size[0]);
+    magnitude(y[v], size[1]);
+    magnitude(z[v], size[2]);
+    sum += size[0] + size[1];
+    farthest = size[2] > farthest ? size[2] : farthest;
+  }
+  const FloatQuad m = farthest + sum;
+  const IntQuad bounded = (m >= kSmallest) & (m <= kLargest);
+  const FloatQuad bound = m * (kBoundOfSum * sum + kBoundOfSize * m);
+  const FloatQuad across[3] = {x[1] * y[2] - y[1] * x[2], x[2] * y[0] - y[2] * x[0],
+                               x[0] * y[1] - y[0] * x[1]};
+  FloatQuad lowest = across[0] < across[1] ? across[0] : across[1];
+  FloatQuad highest = across[0] > across[1] ? across[0] : across[1];
+  lowest = lowest < across[2] ? lowest : across[2];
+  highest = highest > across[2] ? highest : across[2];
+  const IntQuad miss = bounded & (lowest < -bound) & (highest > bound);
+  const LaneMask open = ~sign_mask(miss) & ((1u << count) - 1);
+  verdict.hit = verdict.level = verdict.doubt = 0;
+  if (open == 0) return;
+
+  for (FloatQuad& ahead : z) {
+    ahead = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(ahead) ^ ray.back);
+  }
+  FloatQuad near = z[0] < z[1] ? z[0] : z[1], far = z[0] > z[1] ? z[0] : z[1];
+  near = near < z[2] ? near : z[2];
+  far = far > z[2] ? far : z[2];
+  const FloatQuad whole = (across[0] + across[1]) + across[2];
+  const FloatQuad middle = ((across[0] * z[0] + across[1] * z[1]) + across[2] * z[2]) / whole;
+  FloatQuad sure_whole;
+  magnitude(whole, sure_whole);
+  sure_whole -= 3.2f * bound;
+  const IntQuad through = bounded & ((lowest > bound) | (highest < -bound)) & (sure_whole > 0.0f);
+  const FloatQuad rounding = (16.0f * 0x1p-24f) * farthest, room = rounding + 0x1p-45f * m;
+  const FloatQuad width = (6.5f * bound / sure_whole) * (far - near) + room;
+  near -= rounding;
+  far += rounding;
+  const FloatQuad low = middle - width, high = middle + width;
+  verdict.low = (through & (low > near)) ? low : near;
+  verdict.high = (through & (high < far)) ? high : far;
+  const LaneMask inside = open & sign_mask(through);
+  verdict.hit = inside & sign_mask(verdict.low > 0.0f);
+  verdict.level = inside & ~verdict.hit & ~sign_mask(verdict.high < 0.0f);
+  verdict.doubt = open & ~inside;
+}
+
+}  // namespace raygate

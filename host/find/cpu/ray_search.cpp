@@ -1,0 +1,233 @@
+#include "host/find/cpu/ray_search.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "host/find/cpu/quad_test.h"
+#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/record_batch.h"
+#include "host/tree/beam.h"
+#include "host/tree/wide_bvh.h"
+
+namespace raygate {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float float_below(double x) {
+  const auto nearest = static_cast<float>(x);
+  return nearest > x ? std::nextafter(nearest, -kInfinity) : nearest;
+}
+float float_above(double x) {
+  const auto nearest = static_cast<float>(x);
+  return nearest < x ? std::nextafter(nearest, kInfinity) : nearest;
+}
+
+/// What of the tree waits to be visited: the nearest last, as far as one node knows.
+struct Waiting {
+  WideBvh::Child child;
+  float entry;
+};
+
+}  // namespace
+
+/// One ray on its way. Depths are distances along its longest axis.
+struct RaySearch::Walk {
+  const Ray& ray;
+  std::uint32_t number;
+  Beam beam;
+  ShearedRay sheared;
+  double pace;                                ///< depth is t times that, exactly
+  std::uint32_t ignored = NearestHit::kNone;  ///< a slot
+  float enough = -1.0f;                       ///< a hit whose depth is surely less is enough
+  std::uint32_t slot = NearestHit::kNone;     ///< of the nearest hit
+  float low, high;                            ///< its depth's bounds; without one, the limit's
+  float cutoff;                               ///< boxes that are entered beyond do not matter
+  int count = 0;                              ///< of what is waiting
+  Waiting waiting[WideBvh::kStackSize];
+
+  Walk(const Ray& its_ray, std::uint32_t its_number)
+      : ray(its_ray),
+        number(its_number),
+        beam(its_ray.origin, its_ray.direction),
+        sheared(its_ray),
+        pace(std::abs(its_ray.direction[sheared.axes[2]])) {}
+
+  /// The nearest hit, or the limit, is at a t within these bounds.
+  void end_at(const Interval& t) { end_at(float_below(t.low * pace), float_above(t.high * pace)); }
+  void end_at(float lowest, float highest) {
+    low = lowest;
+    high = highest;
+    cutoff = cutoff_beyond(high / pace);
+  }
+  [[nodiscard]] Interval t() const { return {low / pace, high / pace}; }
+};
+
+namespace {
+
+/// A child's number in the place of the last bits of its entry: in the order of entries.
+using Key = std::int32_t;
+constexpr Key kNumber = WideBvh::kWidth - 1;
+
+RAYGATE_INLINE void push(RaySearch::Walk& walk, const WideBvh& tree, const WideBvh::Node& node,
+                         Key key) {
+  const WideBvh::Child& child = node.child[key & kNumber];
+  tree.prefetch(child);
+  walk.waiting[walk.count++] = {child, std::bit_cast<float>(key & ~kNumber)};
+}
+
+/// Goes down from an inner node to the leaf that is met first: `child` is either. False where
+/// there is none.
+RAYGATE_INLINE bool go_down(const WideBvh& tree, RaySearch::Walk& walk, WideBvh::Child& child) {
+  while (child.count == 0) {
+    const WideBvh::Node& node = tree.nodes()[child.first];
+    FloatLanes entry;
+
+    LaneMask met = meet_children(walk.beam, node, walk.cutoff, entry);
+    if (met == 0) return false;
+    constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
+    const IntLanes keys = (reinterpret_cast<IntLanes>(entry) & ~kNumber) | kNumbers;
+    Key nearest = keys[std::countr_zero(met)];
+    met &= met - 1;
+    if (met != 0) {
+      Key next = keys[std::countr_zero(met)];
+      met &= met - 1;
+      if (met == 0) {
+        push(walk, tree, node, std::max(nearest, next));
+        nearest = std::min(nearest, next);
+      } else {
+        Key sorted[WideBvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
+        int count = 2;
+        for (; met != 0; met &= met - 1) {
+          next = keys[std::countr_zero(met)];
+          int place = count++;
+          for (; place > 0 && sorted[place - 1] < next; --place) sorted[place] = sorted[place - 1];
+          sorted[place] = next;
+        }
+        nearest = sorted[--count];
+        for (int i = 0; i < count; ++i) push(walk, tree, node, sorted[i]);
+      }
+    }
+    child = node.child[nearest & kNumber];
+  }
+  return true;
+}
+
+}  // namespace
+
+/// Walks the tree, near before far, and tests what is there.
+RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
+  const WideBvh& tree = search.bvh_.wide();
+  std::uint64_t tests = 0, hits = 0, doubts = 0;
+  walk.waiting[walk.count++] = {{0, 0}, 0.0f};
+  while (walk.count > 0) {
+    const Waiting item = walk.waiting[--walk.count];
+    WideBvh::Child leaf = item.child;
+    if (item.entry > walk.cutoff || !go_down(tree, walk, leaf)) continue;
+    QuadVerdict verdict;
+    test_quad(walk.sheared, tree.corners_of(leaf), leaf.count, verdict);
+    tests += leaf.count;
+    LaneMask open = verdict.hit | verdict.level | verdict.doubt;
+    if (open == 0) continue;
+    hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+    doubts += static_cast<std::uint64_t>(std::popcount(verdict.doubt));
+    for (; open != 0; open &= open - 1) {
+      const int i = std::countr_zero(open);
+      const std::uint32_t slot = leaf.first + static_cast<std::uint32_t>(i);
+      const float low = verdict.low[i], high = verdict.high[i];
+      if (low > walk.high || slot == walk.ignored) continue;
+      if ((verdict.level >> i & 1) != 0) {
+        if (!is_ahead(walk.ray, search.bvh_.corners_of(slot))) continue;
+        ++hits;
+      }
+      if ((verdict.doubt >> i & 1) != 0) {
+        if (!search.settle(walk, slot, false)) continue;
+      } else if (high < walk.low) {
+        walk.slot = slot;
+        walk.end_at(std::max(low, 0.0f), high);
+        search.bvh_.prefetch(slot);  // for add_points
+      } else if (!search.settle(walk, slot, true)) {
+        continue;
+      }
+      if (walk.high < walk.enough) {
+        ++search.ended_early_;
+        walk.count = 0;
+        break;
+      }
+    }
+  }
+  search.counters_.tests += tests;
+  search.counters_.unit_tests += tests;
+  search.counters_.hits += hits;
+  search.counters_.edge_doubts += doubts;
+  search.counters_.misses += tests - hits - doubts;
+}
+
+/// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,
+/// does hit. True where that is the nearest hit now.
+bool RaySearch::settle(Walk& walk, std::uint32_t slot, bool sure) {
+  const Ray& ray = walk.ray;
+  if (walk.slot != NearestHit::kNone) {
+    nearest_.put(walk.number, {walk.slot, glm::vec3(0.0f), walk.t()});
+    counters_.depth_doubts += sure;
+  }
+  const bool nearer =
+      sure ? nearest_.offer(walk.number, ray,
+                            SureHit{0, 0, slot, {}, hit_distance(ray, bvh_.corners_of(slot))})
+           : nearest_.offer(walk.number, ray, Doubt{0, 0, slot, {}});
+  if (!nearer) return false;
+  walk.slot = slot;
+  walk.end_at(nearest_[walk.number].t);
+  return true;
+}
+
+void RaySearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
+  wishes_ = wishes;
+  for (std::uint32_t number = 0; number < rays.size(); ++number) {
+    const Ray& ray = rays[number];
+    if (!is_usable(ray.direction)) continue;
+    Walk walk(ray, number);
+    const double limit = wishes.limits.empty() ? kInfinity : wishes.limits[number];
+    walk.end_at({limit, limit});
+    if (!wishes.ignored.empty()) walk.ignored = wishes.ignored[number];
+    if (!wishes.enough_before.empty()) {
+      walk.enough = float_below(wishes.enough_before[number] * walk.pace);
+    }
+    walk_ray(*this, walk);
+    if (walk.slot == NearestHit::kNone) continue;
+    nearest_.put(number, {walk.slot, glm::vec3(0.0f), walk.t()});
+    if (wishes.enough_before.empty()) add_point(number, rays);
+  }
+  add_points(rays);
+}
+
+/// P, which the search did without: four at a time.
+void RaySearch::add_point(std::uint32_t number, std::span<const Ray> rays) {
+  pointless_[pointless_count_++] = number;
+  if (pointless_count_ == kPlanes) add_points(rays);
+}
+
+void RaySearch::add_points(std::span<const Ray> rays) {
+  if (pointless_count_ == 0) return;
+  std::array<PlaneView, kPlanes> views;
+  for (int i = 0; i < kPlanes; ++i) {
+    const std::uint32_t number = pointless_[std::min(i, pointless_count_ - 1)];
+    views[i] = {&rays[number].origin, &bvh_.corners_of(nearest_[number].slot)};
+  }
+  std::array<PolygonRecord, kPlanes> planes;
+  make_planes(views, planes);
+  for (int i = 0; i < pointless_count_; ++i) {
+    NearestHit hit = nearest_[pointless_[i]];
+    hit.point = plane_point(planes[i], rays[pointless_[i]].direction);
+    nearest_.put(pointless_[i], hit);
+    ++counters_.plane_tests;
+    counters_.quotients += 3;
+  }
+  pointless_count_ = 0;
+}
+
+}  // namespace raygate

@@ -1,0 +1,94 @@
+#include "host/find/unit/check_burst_unit.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+namespace raygate {
+namespace {
+
+std::string hex(std::span<const float> words) {
+  std::string text;
+  for (const float word : words) {
+    char buffer[16];
+    std::snprintf(buffer, sizeof buffer, " %08X", std::bit_cast<std::uint32_t>(word));
+    text += buffer;
+  }
+  return text;
+}
+
+std::string describe(const BurstHit& hit) {
+  const float words[] = {hit.t, hit.point.x, hit.point.y, hit.point.z};
+  return "nearest is record " + std::to_string(hit.record) + ", t and P" + hex(words) +
+         ", error of t " + std::to_string(hit.t_error);
+}
+
+std::string describe(const TestReport& report) {
+  return (report.kind == TestReport::Kind::kDoubt ? "doubt of record " : "near tie of record ") +
+         std::to_string(report.record);
+}
+
+template <class Result>
+bool earlier(const Result& a, const Result& b) {
+  return a.bundle != b.bundle ? a.bundle < b.bundle : a.lane < b.lane;
+}
+
+template <class Result>
+void require_same_list(std::span<const RayBundle> batch, std::span<const Result> actual,
+                       std::span<const Result> expected) {
+  const auto [a, e] = std::mismatch(actual.begin(), actual.end(), expected.begin(), expected.end());
+  const bool a_left = a != actual.end(), e_left = e != expected.end();
+  if (!a_left && !e_left) return;
+  // The earlier of the two is about the burst that differs.
+  const Result& culprit = !e_left || (a_left && earlier(*a, *e)) ? *a : *e;
+  const auto part = [&](bool left, auto result) {
+    return left && !earlier(culprit, *result) ? describe(*result) : std::string("nothing more");
+  };
+  const RayBundle& bundle = batch[culprit.bundle];
+  const glm::vec3 direction = bundle.lane_direction(static_cast<int>(culprit.lane));
+  std::string text = "the pipelined units differ: unit: " + part(a_left, a) +
+                     "; reference: " + part(e_left, e) + "; direction" + hex({&direction.x, 3});
+  for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
+    text += "; record " + std::to_string(i) + hex({&bundle.records[i].normal.x, 16});
+  }
+  throw BurstUnitMismatch(text);
+}
+
+}  // namespace
+
+void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
+                  const BurstResults& expected) {
+  require_same_list<BurstHit>(batch, actual.hits, expected.hits);
+  require_same_list<TestReport>(batch, actual.reports, expected.reports);
+}
+
+CheckBurstUnit::CheckBurstUnit(std::unique_ptr<BurstUnit> unit,
+                               std::unique_ptr<BurstUnit> reference)
+    : unit_(std::move(unit)), reference_(std::move(reference)) {}
+
+void CheckBurstUnit::run(std::span<const RayBundle> batch, BurstResults& results) {
+  start(batch);
+  finish(results);
+}
+
+void CheckBurstUnit::start(std::span<const RayBundle> batch) {
+  started_.push(batch);
+  unit_->start(batch);
+}
+
+void CheckBurstUnit::finish(BurstResults& results) {
+  const std::span<const RayBundle> batch = started_.pop();
+  actual_.clear();
+  expected_.clear();
+  unit_->finish(actual_);
+  reference_->run(batch, expected_);
+  require_same(batch, actual_, expected_);
+  results.hits.insert(results.hits.end(), actual_.hits.begin(), actual_.hits.end());
+  results.reports.insert(results.reports.end(), actual_.reports.begin(), actual_.reports.end());
+}
+
+BurstCounters CheckBurstUnit::counters() const { return unit_->counters(); }
+
+}  // namespace raygate

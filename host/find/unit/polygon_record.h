@@ -1,0 +1,38 @@
+// One triangle seen from one origin: the 64 bytes that a hit test reads.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+#include "host/exact/exact.h"
+
+namespace raygate {
+
+/// The 16 words of a triangle A, B, C seen from an origin O (A, B, C stand for the vertices minus
+/// O). Rays from O share it, whatever their direction.
+///
+/// Words are the correctly ordered results of double or exact arithmetic, rounded once to float;
+/// (N, d), and each edge with its bound, may be multiplied by a power of two of their own where
+/// their exponents leave [-60, 60], which changes neither P nor any sign. All words are finite,
+/// but a bound may be +infinity: that edge is then always in doubt.
+struct alignas(64) PolygonRecord {
+  glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
+  float d = 0.0f;                    ///< word 3: N . A; its sign is exact, and 0 is exactly 0
+  std::array<glm::vec3, 3> edges{};  ///< words 4-12: A x B, B x C, C x A; for a shared edge the
+                                     ///< two triangles hold exactly opposite numbers
+  std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound, for every
+                                     ///< I with components of magnitude under 2
+};
+static_assert(sizeof(PolygonRecord) == 64);
+
+/// The bound of an edge E, rounded to float, is kEdgeBound 2^-24 |E|_1: see polygon_record.cpp.
+inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
+
+/// The record of a triangle for rays from `origin`. All coordinates finite, of magnitude at most
+/// 2^126. A triangle whose plane holds the origin, or without area, gets d = 0: no ray hits it.
+[[nodiscard]] PolygonRecord make_record(const glm::vec3& origin, const Corners& triangle);
+
+/// The plane alone: words 0-3 of that record, the others being 0.
+[[nodiscard]] PolygonRecord make_plane(const glm::vec3& origin, const Corners& triangle);
+
+}  // namespace raygate

@@ -1,0 +1,232 @@
+#include "host/find/unit/record_batch.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <cstring>
+
+#include "host/lanes.h"
+
+// The operations are those of exact.cpp and polygon_record.cpp, in their order, so the bits are
+// theirs, as long as double is accurate enough and all exponents are ordinary. Where that is not
+// so for a triangle, make_record has it.
+
+namespace raygate {
+namespace {
+
+constexpr int kBatch = kPlanes;
+
+using Doubles = double __attribute__((vector_size(8 * kBatch), aligned(8 * kBatch)));
+using Longs = std::int64_t __attribute__((vector_size(8 * kBatch), aligned(8 * kBatch)));
+using Floats = float __attribute__((vector_size(4 * kBatch), aligned(4 * kBatch)));
+using Ints = std::int32_t __attribute__((vector_size(4 * kBatch), aligned(4 * kBatch)));
+
+constexpr double kU = 0x1p-53;  // as in exact.cpp
+
+struct Points {
+  Doubles x, y, z;
+};
+
+RAYGATE_INLINE void subtract(const Points& a, const Points& b, Points& result) {
+  result = {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+RAYGATE_INLINE void magnitude(const Doubles& x, Doubles& result) {
+  result = reinterpret_cast<Doubles>(reinterpret_cast<Longs>(x) & 0x7FFFFFFFFFFFFFFF);
+}
+
+RAYGATE_INLINE void larger(const Doubles& a, const Doubles& b, Doubles& result) {
+  result = a > b ? a : b;
+}
+
+/// The exponent of each is in [-60, 60], or it is 0.
+RAYGATE_INLINE void require_ordinary(const Doubles& size, Longs& good) {
+  good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
+}
+
+/// u x v; leaves those lanes good in which it is accurate enough and of an ordinary size.
+RAYGATE_INLINE void cross(const Points& u, const Points& v, Points& value, Points& size,
+                          Longs& good) {
+  const Points plus = {u.y * v.z, u.z * v.x, u.x * v.y};
+  const Points minus = {u.z * v.y, u.x * v.z, u.y * v.x};
+  subtract(plus, minus, value);
+  Points p, m, s;
+  magnitude(plus.x, p.x), magnitude(plus.y, p.y), magnitude(plus.z, p.z);
+  magnitude(minus.x, m.x), magnitude(minus.y, m.y), magnitude(minus.z, m.z);
+  size = {p.x + m.x, p.y + m.y, p.z + m.z};
+  magnitude(value.x, s.x), magnitude(value.y, s.y), magnitude(value.z, s.z);
+  Doubles largest, largest_value;
+  larger(size.x, size.y, largest), larger(largest, size.z, largest);
+  good &= 8.0 * kU * largest <= 0x1p-34 * (s.x + s.y + s.z);
+  larger(s.x, s.y, largest_value), larger(largest_value, s.z, largest_value);
+  require_ordinary(largest_value, good);
+}
+
+/// Four words of four records each, from four vectors of one word each; words[i] begins record i.
+template <std::size_t kWords>
+RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& c, const Floats& d,
+                                float (&words)[kBatch][kWords], std::size_t first = 0) {
+  const Floats ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const Floats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Floats cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Floats cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  const Floats record[kBatch] = {__builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5),
+                                 __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
+                                 __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5),
+                                 __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
+  for (int i = 0; i < kBatch; ++i) std::memcpy(&words[i][first], &record[i], 16);
+}
+
+RAYGATE_INLINE void to_floats(const Points& p, Floats (&words)[3]) {
+  words[0] = __builtin_convertvector(p.x, Floats);
+  words[1] = __builtin_convertvector(p.y, Floats);
+  words[2] = __builtin_convertvector(p.z, Floats);
+}
+
+/// The bound of an edge: its sum of magnitudes times a constant, rounded up.
+RAYGATE_INLINE void edge_bound(const Floats (&words)[3], Floats& bound) {
+  Doubles e[3];
+  for (int k = 0; k < 3; ++k) magnitude(__builtin_convertvector(words[k], Doubles), e[k]);
+  const Doubles exact = kEdgeBound * 0x1p-24 * (e[0] + e[1] + e[2]);
+  const Floats nearest = __builtin_convertvector(exact, Floats);
+  const Longs below = __builtin_convertvector(nearest, Doubles) < exact;
+  bound = reinterpret_cast<Floats>(reinterpret_cast<Ints>(nearest) -
+                                   __builtin_convertvector(below, Ints));
+}
+
+/// The corners of four triangles, in double.
+RAYGATE_INLINE void load_corners(const Corners* const (&triangles)[kBatch], Points (&t)[3]) {
+  alignas(16) float corners[3][3][kBatch];
+  for (int i = 0; i < kBatch; ++i) {
+    for (int v = 0; v < 3; ++v) {
+      for (int k = 0; k < 3; ++k) corners[v][k][i] = (*triangles[i])[v][k];
+    }
+  }
+  for (int v = 0; v < 3; ++v) {
+    Floats f[3];
+    std::memcpy(f, corners[v], sizeof f);
+    t[v] = {__builtin_convertvector(f[0], Doubles), __builtin_convertvector(f[1], Doubles),
+            __builtin_convertvector(f[2], Doubles)};
+  }
+}
+
+/// N and d, from the corners and the first one seen from the origin; leaves those lanes good in
+/// which they are right.
+RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal, Doubles& d,
+                                Longs& good) {
+  Points to_b, to_c, size, far;
+  subtract(t[1], t[0], to_b);
+  subtract(t[2], t[0], to_c);
+  cross(to_b, to_c, normal, size, good);
+  d = a.x * normal.x + a.y * normal.y + a.z * normal.z;
+  magnitude(a.x, far.x), magnitude(a.y, far.y), magnitude(a.z, far.z);
+  const Doubles error = 10.0 * kU * (far.x * size.x + far.y * size.y + far.z * size.z);
+  Doubles distance;
+  magnitude(d, distance);
+  good &= (error <= 0x1p-32 * distance) & (distance > error);
+  require_ordinary(distance, good);
+}
+
+RAYGATE_INLINE LaneMask mask_of(const Longs& lanes) {
+  LaneMask mask = 0;
+  for (int i = 0; i < kBatch; ++i) mask |= static_cast<LaneMask>(lanes[i] & 1) << i;
+  return mask;
+}
+
+}  // namespace
+
+/// Four words of 16 each, and bit i of the result where record i is right.
+RAYGATE_LANES LaneMask make_four(const glm::vec3& origin, const Corners* const (&triangles)[kBatch],
+                                 float (&words)[kBatch][16]) {
+  Points t[3], from_o[3];
+  load_corners(triangles, t);
+  const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
+  for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
+  Longs good = Longs{} - 1;
+  Points normal, size;
+  Doubles d;
+  find_planes(t, from_o[0], normal, d, good);
+  Floats n[3], edges[3][3], bounds[3];
+  to_floats(normal, n);
+
+  for (int k = 0; k < 3; ++k) {
+    const Points &p = t[k], &q = t[(k + 1) % 3];
+    const Longs lower = (p.x < q.x) | ((p.x == q.x) & ((p.y < q.y) | ((p.y == q.y) & (p.z < q.z))));
+    const Points &pf = from_o[k], &qf = from_o[(k + 1) % 3];
+    const Points start = {lower ? pf.x : qf.x, lower ? pf.y : qf.y, lower ? pf.z : qf.z};
+    const Points begin = {lower ? p.x : q.x, lower ? p.y : q.y, lower ? p.z : q.z};
+    const Points end = {lower ? q.x : p.x, lower ? q.y : p.y, lower ? q.z : p.z};
+    Points way, edge;
+    subtract(end, begin, way);
+    cross(start, way, edge, size, good);
+    edge = {lower ? edge.x : -edge.x, lower ? edge.y : -edge.y, lower ? edge.z : -edge.z};
+    to_floats(edge, edges[k]);
+    edge_bound(edges[k], bounds[k]);
+  }
+  store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+  store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], words, 4);
+  store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], words, 8);
+  store_words(edges[2][2], bounds[0], bounds[1], bounds[2], words, 12);
+  return mask_of(good);
+}
+
+/// Four words of four planes, and bit i of the result where plane i is right.
+RAYGATE_LANES LaneMask make_four_planes(const std::array<PlaneView, kBatch>& views,
+                                        float (&words)[kBatch][4]) {
+  const Corners* triangles[kBatch];
+  alignas(16) float origins[3][kBatch];
+  for (int i = 0; i < kBatch; ++i) {
+    triangles[i] = views[i].triangle;
+    for (int k = 0; k < 3; ++k) origins[k][i] = (*views[i].origin)[k];
+  }
+  Floats o[3], n[3];
+  std::memcpy(o, origins, sizeof o);
+  Points t[3], a, normal;
+  load_corners(triangles, t);
+  subtract(t[0],
+           {__builtin_convertvector(o[0], Doubles), __builtin_convertvector(o[1], Doubles),
+            __builtin_convertvector(o[2], Doubles)},
+           a);
+  Longs good = Longs{} - 1;
+  Doubles d;
+  find_planes(t, a, normal, d, good);
+  to_floats(normal, n);
+  store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+  return mask_of(good);
+}
+
+void make_planes(const std::array<PlaneView, kPlanes>& views,
+                 std::array<PolygonRecord, kPlanes>& planes) {
+  float words[kBatch][4];
+  const LaneMask good = make_four_planes(views, words);
+  for (int i = 0; i < kPlanes; ++i) {
+    if ((good >> i & 1) != 0) {
+      std::memcpy(static_cast<void*>(&planes[i]), words[i], sizeof words[i]);
+    } else {
+      planes[i] = make_plane(*views[i].origin, *views[i].triangle);
+    }
+  }
+}
+
+void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
+                  std::span<PolygonRecord> records) {
+  assert(triangles.size() == records.size());
+  for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
+    const std::size_t count = std::min<std::size_t>(kBatch, triangles.size() - first);
+    const Corners* batch[kBatch];
+    for (std::size_t i = 0; i < kBatch; ++i) batch[i] = &triangles[first + std::min(i, count - 1)];
+    float words[kBatch][16];
+    const LaneMask good = make_four(origin, batch, words);
+    for (std::size_t i = 0; i < count; ++i) {
+      PolygonRecord& record = records[first + i];
+      if ((good >> i & 1) != 0) {
+        static_assert(sizeof record == sizeof words[i]);
+        std::memcpy(static_cast<void*>(&record), words[i], sizeof record);
+      } else {
+        record = make_record(origin, triangles[first + i]);
+      }
+    }
+  }
+}
+
+}  // namespace raygate

@@ -1,0 +1,52 @@
+#include "host/find/unit/record_cache.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <span>
+#include <thread>
+
+#include "host/find/unit/record_batch.h"
+
+namespace raygate {
+
+void RecordCache::Free::operator()(void* memory) const { std::free(memory); }
+
+RecordCache::RecordCache(const Bvh& bvh, const glm::vec3& origin) : bvh_(bvh), origin_(origin) {
+  const std::size_t slots = std::max<std::size_t>(bvh.slot_count(), 1);
+  // Not initialised on purpose: a page is the system's until a record is written to it.
+  records_.reset(static_cast<PolygonRecord*>(
+      std::aligned_alloc(alignof(PolygonRecord), slots * sizeof(PolygonRecord))));
+  if (records_ == nullptr) throw std::bad_alloc();
+  states_ = std::make_unique<std::atomic<State>[]>(slots);
+}
+
+void RecordCache::make_all() {
+  if (bvh_.slot_count() > 0) make(0, bvh_.slot_count());
+}
+
+void RecordCache::make(std::uint32_t first, std::uint32_t count) {
+  const std::uint32_t end = first + count;
+  for (std::uint32_t slot = first; slot < end;) {
+    const std::uint32_t begin = slot;
+    while (slot < end && claim(slot)) ++slot;
+    if (const std::uint32_t claimed = slot - begin; claimed != 0) {
+      make_records(origin_, bvh_.corners_of(begin, claimed), std::span(&records_[begin], claimed));
+      made_.fetch_add(claimed, std::memory_order_relaxed);
+      for (std::uint32_t i = begin; i < slot; ++i) {
+        states_[i].store(State::kMade, std::memory_order_release);
+      }
+    }
+    if (slot < end) ++slot;  // somebody else's
+  }
+  for (std::uint32_t slot = first; slot < end; ++slot) {
+    while (states_[slot].load(std::memory_order_acquire) != State::kMade) std::this_thread::yield();
+  }
+}
+
+bool RecordCache::claim(std::uint32_t slot) {
+  State expected = State::kNone;
+  return states_[slot].compare_exchange_strong(expected, State::kBusy);
+}
+
+}  // namespace raygate

@@ -1,0 +1,196 @@
+// Rays of any origins find what trying every triangle in exact arithmetic finds.
+#include "host/find/unit/wavefront.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "host/exact/test/meshes.h"
+#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/pipeline_hit_tester.h"
+#include "host/scene/camera.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+
+std::uint32_t exact_nearest(const Bvh& bvh, const Ray& ray, float limit,
+                            std::uint32_t ignored = NearestHit::kNone) {
+  std::uint32_t best = NearestHit::kNone;
+  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+    const Corners& t = bvh.corners_of(slot);
+    if (slot == ignored || !hits_triangle(ray, t)) continue;
+    if (std::isfinite(limit) && compare_hit_to_limit(ray, t, limit) >= 0) continue;
+    const int order = best == NearestHit::kNone ? -1 : compare_hits(ray, t, bvh.corners_of(best));
+    if (order < 0 || (order == 0 && bvh.triangle_of(slot) < bvh.triangle_of(best))) best = slot;
+  }
+  return best;
+}
+
+std::vector<Corners> sphere_in_box() {
+  std::vector<Corners> mesh = test::sphere(2);
+  const auto walls = test::box(glm::vec3(-3), glm::vec3(3));
+  mesh.insert(mesh.end(), walls.begin(), walls.end());
+  return mesh;
+}
+
+/// Some from one origin, some from origins of their own; some aimed at vertices.
+std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int count) {
+  std::vector<Ray> rays;
+  const glm::vec3 shared = random.point(2.5f);
+  while (static_cast<int>(rays.size()) < count) {
+    const glm::vec3 origin = random.below(3) == 0 ? shared : random.point(2.5f);
+    const glm::dvec3 aim =
+        random.below(2) == 0
+            ? glm::dvec3(mesh[random.below(static_cast<int>(mesh.size()))][random.below(3)])
+            : glm::dvec3(random.point(3.0f));
+    if (aim != glm::dvec3(origin))
+      rays.push_back({origin, scaled_direction(aim - glm::dvec3(origin))});
+  }
+  return rays;
+}
+
+class WavefrontTest : public testing::Test {
+ protected:
+  std::vector<Corners> mesh_ = sphere_in_box();
+  Bvh bvh_{test::scene_of(mesh_)};
+  PipelineHitTester tester_{std::make_unique<CpuBurstUnit>()};
+  Wavefront wavefront_{bvh_, tester_};
+  Random random_;
+};
+
+TEST_F(WavefrontTest, OwnOriginsFindTheExactNearest) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 3000);
+  std::vector<float> limits;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    limits.push_back(i % 2 == 0 ? std::numeric_limits<float>::infinity()
+                                : random_.uniform(0.01f, 3.0f));
+  }
+  wavefront_.trace(rays, {.limits = limits});
+  int hits = 0, misses = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t expected = exact_nearest(bvh_, rays[i], limits[i]);
+    ASSERT_EQ(wavefront_.nearest(i).slot, expected) << i;
+    ++(expected == NearestHit::kNone ? misses : hits);
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(misses, 100);
+  EXPECT_GT(wavefront_.counters().exact_inside, 0u);
+  EXPECT_GT(wavefront_.own_records(), 0u);
+}
+
+TEST_F(WavefrontTest, CachedRecordsChangeNothing) {
+  std::vector<Ray> rays = some_rays(mesh_, random_, 2000);
+  for (Ray& ray : rays) ray.origin = rays[0].origin;
+  RecordCache cache(bvh_, rays[0].origin);
+  wavefront_.trace(rays, {.common = &cache});
+  std::vector<NearestHit> cached;
+  for (std::size_t i = 0; i < rays.size(); ++i) cached.push_back(wavefront_.nearest(i));
+  EXPECT_EQ(wavefront_.own_records(), 0u);
+  EXPECT_GT(cache.made(), 0u);
+  wavefront_.trace(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(wavefront_.nearest(i).slot, cached[i].slot);
+    ASSERT_EQ(wavefront_.nearest(i).point, cached[i].point);
+  }
+  EXPECT_GT(wavefront_.own_records(), cache.made()) << "made once for each packet and leaf";
+}
+
+TEST_F(WavefrontTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 300);
+  wavefront_.count_work(true);
+  wavefront_.trace(rays);
+  std::vector<std::uint32_t> slots;
+  std::uint64_t tests = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    slots.push_back(wavefront_.nearest(i).slot);
+    EXPECT_LT(wavefront_.work()[i].tests, mesh_.size() / 2);
+    tests += wavefront_.work()[i].tests;
+  }
+  EXPECT_EQ(tests, tester_.counters().tests);
+  wavefront_.trace(rays, {.culling = false});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(wavefront_.nearest(i).slot, slots[i]);
+    ASSERT_EQ(wavefront_.work()[i].tests, mesh_.size());
+  }
+}
+
+// Rays that may end at any hit before some t end there whenever there is one; the others find their
+// nearest.
+TEST_F(WavefrontTest, RaysEndAtAnyHitThatWillDo) {
+  std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
+  std::vector<float> enough;
+  for (Ray& ray : rays) {
+    ray.origin *= 10.0f;  // outside, so that there are several hits
+    ray.direction = scaled_direction(glm::dvec3(random_.point(2.0f) - ray.origin));
+    enough.push_back(random_.below(4) == 0 ? INFINITY : random_.uniform(2.0f, 20.0f));
+  }
+  wavefront_.trace(rays, {.enough_before = enough});
+  int ended = 0, farther = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t exact = exact_nearest(bvh_, rays[i], INFINITY);
+    const std::uint32_t found = wavefront_.nearest(i).slot;
+    ASSERT_EQ(exact == NearestHit::kNone, found == NearestHit::kNone);
+    if (found == NearestHit::kNone) continue;
+    const bool is_before = wavefront_.nearest_is_before(i, rays[i], enough[i]);
+    ASSERT_EQ(is_before, exact_nearest(bvh_, rays[i], enough[i]) != NearestHit::kNone);
+    ASSERT_TRUE(is_before || found == exact);
+    ++(is_before ? ended : farther);
+  }
+  EXPECT_GT(ended, 100);
+  EXPECT_GT(farther, 100);
+  EXPECT_EQ(wavefront_.ended_early(), static_cast<std::uint64_t>(ended));
+}
+
+// Also where an ignored hit hides a farther one of its leaf from the reports.
+TEST_F(WavefrontTest, IgnoredSlotsDoNotCount) {
+  std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
+  for (Ray& ray : rays) {
+    ray.origin *= 10.0f;  // outside: the sphere's two sides, and the box's
+    ray.direction = scaled_direction(glm::dvec3(random_.point(1.5f) - ray.origin));
+  }
+  wavefront_.trace(rays);
+  std::vector<std::uint32_t> ignored;
+  for (std::size_t i = 0; i < rays.size(); ++i) ignored.push_back(wavefront_.nearest(i).slot);
+  wavefront_.trace(rays, {.ignored = ignored});
+  int hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t found = wavefront_.nearest(i).slot;
+    ASSERT_EQ(found, exact_nearest(bvh_, rays[i], INFINITY, ignored[i]));
+    hits += found != NearestHit::kNone;
+  }
+  EXPECT_GT(hits, 500);
+}
+
+// Three sheets in one leaf, behind each other: a burst reports the nearest alone.
+TEST(Wavefront, IgnoredHitsHideNothing) {
+  std::vector<Corners> sheets;
+  for (const float z : {1.0f, 1.01f, 1.02f}) {
+    sheets.push_back({glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)});
+  }
+  const Bvh bvh(test::scene_of(sheets));
+  PipelineHitTester tester(std::make_unique<CpuBurstUnit>());
+  Wavefront wavefront(bvh, tester);
+  const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
+  wavefront.trace(rays);
+  const std::uint32_t first = wavefront.nearest(0).slot;
+  ASSERT_EQ(bvh.triangle_of(first), 0u);
+  wavefront.trace(rays, {.ignored = std::span(&first, 1)});
+  ASSERT_NE(wavefront.nearest(0).slot, NearestHit::kNone);
+  EXPECT_EQ(bvh.triangle_of(wavefront.nearest(0).slot), 1u);
+}
+
+TEST_F(WavefrontTest, DirectionsThatLeadNowhereHitNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0)},
+                                 {glm::vec3(0), glm::vec3(nan, 1, 0)},
+                                 {glm::vec3(0), glm::vec3(0, 0, 1)}};
+  wavefront_.trace(rays);
+  EXPECT_EQ(wavefront_.nearest(0).slot, NearestHit::kNone);
+  EXPECT_EQ(wavefront_.nearest(1).slot, NearestHit::kNone);
+  EXPECT_NE(wavefront_.nearest(2).slot, NearestHit::kNone);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,318 @@
+#include "host/lab/stress/suites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/lab/stress/bounces.h"
+#include "host/lab/stress/meshes.h"
+#include "host/scene/camera.h"
+
+namespace raygate::stress {
+namespace {
+
+constexpr int kRays = 8;
+
+glm::vec3 direction_to(const glm::dvec3& aim, const glm::dvec3& origin) {
+  glm::dvec3 way = aim - origin;
+  if (way == glm::dvec3(0.0)) way.x = 1.0;
+  return scaled_direction(way);
+}
+
+Shot shot_at(std::vector<Corners> triangles, const glm::dvec3& origin) {
+  Shot shot;
+  auto mesh = std::make_shared<Mesh>();
+  mesh->triangles = std::move(triangles);
+  shot.mesh = std::move(mesh);
+  shot.origin = glm::vec3(origin);
+  return shot;
+}
+
+glm::dvec3 inside_of(const Corners& t, Random& random) {
+  double u = random.uniform(0, 1), v = random.uniform(0, 1);
+  if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+  const glm::dvec3 a(t[0]), b(t[1]), c(t[2]);
+  return a + u * (b - a) + v * (c - a);
+}
+
+/// A point of an edge, or a vertex one time in four.
+glm::dvec3 on_edge(const Corners& t, Random& random) {
+  const int k = random.below(3);
+  const double along = random.one_in(4) ? 0.0 : random.uniform(0, 1);
+  return glm::mix(glm::dvec3(t[k]), glm::dvec3(t[(k + 1) % 3]), along);
+}
+
+/// The interior, edges, vertices, and close by, of any of the triangles.
+void aim_everywhere(Shot& shot, Random& random) {
+  const auto& triangles = shot.mesh->triangles;
+  for (int i = 0; i < kRays; ++i) {
+    const Corners& t = triangles[random.below(static_cast<int>(triangles.size()))];
+    glm::dvec3 aim = random.one_in(2) ? on_edge(t, random) : inside_of(t, random);
+    if (random.one_in(8)) aim += glm::dvec3(t[1] - t[0]) * random.uniform(-1, 1);
+    shot.directions.push_back(direction_to(aim, glm::dvec3(shot.origin)));
+  }
+}
+
+Corners random_triangle(Random& random, const glm::dvec3& scale = glm::dvec3(1),
+                        const glm::dvec3& shift = glm::dvec3(0)) {
+  Corners t;
+  for (glm::vec3& vertex : t) vertex = glm::vec3(random.point() * scale + shift);
+  return t;
+}
+
+Shot random_shot(Random& random) {
+  Shot shot = shot_at({random_triangle(random)}, random.point());
+  for (int i = 0; i < kRays; ++i) {
+    const bool at_it = random.one_in(2);
+    const glm::dvec3 aim = at_it ? inside_of(shot.mesh->triangles[0], random) : random.point();
+    shot.directions.push_back(direction_to(aim, glm::dvec3(shot.origin)));
+  }
+  return shot;
+}
+
+/// Down to 1e-7 rad between the ray and the plane.
+Shot grazing_shot(Random& random) {
+  const Corners t = random_triangle(random);
+  const glm::dvec3 normal = glm::normalize(
+      glm::cross(glm::dvec3(t[1]) - glm::dvec3(t[0]), glm::dvec3(t[2]) - glm::dvec3(t[0])));
+  const glm::dvec3 aim = inside_of(t, random);
+  const glm::dvec3 along = glm::normalize(glm::cross(normal, random.unit()));
+  const double distance = random.uniform(0.5, 4), angle = random.log_uniform(1e-7, 1e-1);
+  Shot shot = shot_at({t}, aim + distance * (along + angle * random.sign() * normal));
+  aim_everywhere(shot, random);
+  return shot;
+}
+
+Corners needle(Random& random) {
+  const glm::dvec3 a = random.point(), way = random.unit(), b = a + way;
+  const double aspect = random.log_uniform(1e3, 1e6);
+  const glm::dvec3 c = glm::mix(a, b, random.one_in(2) ? 0.0 : random.uniform(0, 1)) +
+                       glm::cross(way, random.unit()) / aspect;
+  return {glm::vec3(a), glm::vec3(b), glm::vec3(c)};
+}
+
+Shot needle_shot(Random& random) {
+  Shot shot = shot_at({needle(random)}, 2.0 * random.point());
+  aim_everywhere(shot, random);
+  return shot;
+}
+
+/// All of one size, whichever that is.
+Shot scaled_shot(Random& random, double least, double most) {
+  const glm::dvec3 scale(random.log_uniform(least, most));
+  Shot shot = shot_at({random_triangle(random, scale)}, random.point() * scale);
+  aim_everywhere(shot, random);
+  return shot;
+}
+
+/// 1e3 to 1e7 sizes away from the world's origin.
+Shot far_shot(Random& random) {
+  const glm::dvec3 shift = random.unit() * random.log_uniform(1e3, 1e7);
+  Shot shot = shot_at({random_triangle(random, glm::dvec3(1), shift)}, random.point() + shift);
+  aim_everywhere(shot, random);
+  return shot;
+}
+
+/// Parts of one plane, or of planes that hardly differ, over one another.
+Shot coplanar_shot(Random& random) {
+  const Corners base = random_triangle(random);
+  const glm::dvec3 a(base[0]), u = glm::dvec3(base[1]) - a, v = glm::dvec3(base[2]) - a;
+  const double tilt = random.one_in(2) ? 0.0 : random.log_uniform(1e-8, 1e-4);
+  std::vector<Corners> triangles = {base};
+  for (int i = 0; i < 3; ++i) {
+    Corners t;
+    for (glm::vec3& vertex : t) {
+      vertex = glm::vec3(a + random.uniform(0, 1) * u + random.uniform(0, 1) * v +
+                         tilt * random.point());
+    }
+    if (random.one_in(3)) t = {base[1], base[2], base[0]};
+    triangles.push_back(t);
+  }
+  Shot shot = shot_at(std::move(triangles), 2.0 * random.point());
+  aim_everywhere(shot, random);
+  return shot;
+}
+
+/// Copies of a triangle moved by a few floats, in any order.
+Shot near_tie_shot(Random& random) {
+  const Corners base = random_triangle(random);
+  std::vector<Corners> triangles;
+  for (int i = 0; i < 5; ++i) {
+    Corners t = base;
+    std::rotate(t.begin(), t.begin() + random.below(3), t.end());
+    glm::vec3& vertex = t[random.below(3)];
+    for (int steps = random.below(4); steps > 0; --steps) {
+      const int axis = random.below(3);
+      vertex[axis] = std::nextafter(vertex[axis], static_cast<float>(2.0 * random.sign()));
+    }
+    triangles.push_back(t);
+  }
+  Shot shot = shot_at(std::move(triangles), 2.0 * random.point());
+  aim_everywhere(shot, random);
+  return shot;
+}
+
+/// Along axes and nearly so, from points in the planes of faces: boxes must not cull.
+Shot axis_shot(Random& random, const MeshPointer& mesh) {
+  Shot shot;
+  shot.mesh = mesh;
+  const auto& triangles = mesh->triangles;
+  const int axis = random.below(3);
+  const Corners& t = triangles[random.below(static_cast<int>(triangles.size()))];
+  // In the planes of a vertex's coordinates, or of none.
+  for (int k = 0; k < 3; ++k) {
+    shot.origin[k] = random.one_in(2) ? t[0][k] : static_cast<float>(random.uniform(-0.9, 0.9));
+  }
+  shot.origin[axis] = static_cast<float>(random.uniform(-3, 3));
+  constexpr float kTiny[] = {0.0f, -0.0f, 0x1p-149f, -0x1p-149f, 0x1p-130f, 0x1p-99f, -0x1p-101f};
+  for (int i = 0; i < kRays; ++i) {
+    glm::vec3 direction(0.0f);
+    for (int k = 0; k < 3; ++k) direction[k] = kTiny[random.below(7)];
+    direction[axis] = static_cast<float>(random.sign());
+    if (random.one_in(4)) direction[(axis + 1) % 3] = static_cast<float>(random.sign());
+    shot.directions.push_back(direction);
+  }
+  return shot;
+}
+
+Shot useless_shot(Random& random) {
+  Shot shot = shot_at({random_triangle(random)}, random.point());
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kParts[] = {kNaN, kInfinity, -kInfinity, 0.0f, -0.0f, 1.0f};
+  for (int i = 0; i < kRays; ++i) {
+    if (random.one_in(4)) {
+      shot.directions.push_back(
+          direction_to(inside_of(shot.mesh->triangles[0], random), glm::dvec3(shot.origin)));
+      continue;
+    }
+    glm::vec3 direction;
+    for (int k = 0; k < 3; ++k) direction[k] = kParts[random.below(6)];
+    shot.directions.push_back(direction);
+  }
+  return shot;
+}
+
+/// No area, no thickness, or the origin in the plane or at a vertex.
+Shot degenerate_shot(Random& random) {
+  Corners t = random_triangle(random);
+  glm::dvec3 origin = random.point();
+  switch (random.below(5)) {
+    case 0:
+      t[1] = t[0];
+      break;
+    case 1:
+      t[2] = t[1] = t[0];
+      break;
+    case 2:  // on a line, exactly
+      t[0] = glm::round(t[0] * 256.0f) / 256.0f;
+      t[1] = glm::round(t[1] * 256.0f) / 256.0f;
+      t[2] = 2.0f * t[1] - t[0];
+      break;
+    case 3:
+      origin = glm::dvec3(t[random.below(3)]);
+      break;
+    default:  // in its plane, exactly
+      t[0].z = t[1].z = t[2].z;
+      origin.z = t[0].z;
+      break;
+  }
+  Shot shot = shot_at({t}, origin);
+  aim_everywhere(shot, random);
+  return shot;
+}
+
+enum class Aim { kEdges, kVertices };
+
+/// From inside a closed mesh at the places where its triangles meet. A mesh serves for a while.
+Generator closed_mesh(const std::function<MeshPointer(Random&)>& make_mesh, Aim aim) {
+  return [make_mesh, aim, mesh = MeshPointer(), left = 0](Random& random) mutable {
+    if (left-- == 0) {
+      mesh = make_mesh(random);
+      left = 200;
+    }
+    const auto& triangles = mesh->triangles;
+    const auto any_triangle = [&]() -> const Corners& {
+      return triangles[random.below(static_cast<int>(triangles.size()))];
+    };
+    glm::dvec3 center(0.0);
+    for (const Corners& t : triangles) center += glm::dvec3(t[0] + t[1] + t[2]) / 3.0;
+    center /= static_cast<double>(triangles.size());
+    Shot shot;
+    shot.mesh = mesh;
+    shot.inside = true;
+    shot.origin =
+        glm::vec3(glm::mix(center, glm::dvec3(any_triangle()[0]), random.uniform(0, 0.5)));
+    const Corners& target = any_triangle();
+    for (int i = 0; i < kRays; ++i) {
+      const int k = random.below(3);
+      const double along = aim == Aim::kVertices ? 0.0 : random.uniform(0, 1);
+      shot.directions.push_back(
+          direction_to(glm::mix(glm::dvec3(target[k]), glm::dvec3(target[(k + 1) % 3]), along),
+                       glm::dvec3(shot.origin)));
+    }
+    return shot;
+  };
+}
+
+Placement somewhere(Random& random) {
+  Placement placement;
+  if (random.one_in(2)) placement.shift = random.unit() * random.log_uniform(1, 1e4);
+  return placement;
+}
+
+MeshPointer flattened_sphere(Random& random) {
+  return sphere(1, {glm::dvec3(1, random.log_uniform(1e-3, 1), random.log_uniform(1e-5, 1e-2)),
+                    glm::dvec3(0)});
+}
+
+std::function<Generator()> plain(Shot (*make)(Random&)) {
+  return [make] { return Generator(make); };
+}
+
+std::vector<Suite> make_suites() {
+  std::vector<Suite> suites = {{"random",
+                                "random triangles and rays, half of them aimed at the triangle",
+                                plain(random_shot)}};
+  const std::pair<const char*, std::function<MeshPointer(Random&)>> meshes[] = {
+      {"sphere", [](Random& random) { return sphere(1, somewhere(random)); }},
+      {"box", [](Random& random) { return box(somewhere(random)); }},
+      {"slivers", flattened_sphere},
+      {"delaunay", [](Random& random) { return random_sphere(42, random, somewhere(random)); }}};
+  for (const auto& [name, mesh] : meshes) {
+    for (const Aim aim : {Aim::kEdges, Aim::kVertices}) {
+      const std::string target = aim == Aim::kEdges ? "edges" : "vertices";
+      suites.push_back({std::string(name) + " " + target,
+                        "from inside a closed mesh at its " + target,
+                        [mesh = mesh, aim] { return closed_mesh(mesh, aim); }});
+    }
+  }
+  const std::vector<Suite> rest = {
+      {"grazing", "1e-1 to 1e-7 rad between ray and plane", plain(grazing_shot)},
+      {"needles", "triangles 1e3 to 1e6 times as long as wide", plain(needle_shot)},
+      {"sizes", "triangles from 1e-18 to 1e18",
+       plain([](Random& random) { return scaled_shot(random, 1e-18, 1e18); })},
+      {"far away", "1e3 to 1e7 sizes from the world's origin", plain(far_shot)},
+      {"coplanar", "parts of one plane, or of nearly parallel ones, over one another",
+       plain(coplanar_shot)},
+      {"near ties", "copies of a triangle, moved by up to three floats", plain(near_tie_shot)},
+      {"extremes", "sizes from 2^-149 to 2^125: subnormal and overflowing intermediates",
+       plain([](Random& random) { return scaled_shot(random, 0x1p-149, 0x1p125); })},
+      {"axes", "along axes, with zero and subnormal components, from the planes of faces",
+       [] { return [mesh = box()](Random& random) { return axis_shot(random, mesh); }; }},
+      {"useless", "directions of NaN, infinity and zero, among good ones", plain(useless_shot)},
+      {"degenerate", "polygons without area; origins in their plane", plain(degenerate_shot)},
+      {"corners", "rays mirrored into concave corners of 1 to 1e-6 rad",
+       [] { return Generator(Bounces()); }}};
+  suites.insert(suites.end(), rest.begin(), rest.end());
+  return suites;
+}
+
+}  // namespace
+
+const std::vector<Suite>& all_suites() {
+  static const std::vector<Suite> suites = make_suites();
+  return suites;
+}
+
+}  // namespace raygate::stress

@@ -1,0 +1,152 @@
+#include "host/lab/stress/tally.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "host/lab/stress/error_bounds.h"
+
+namespace raygate::stress {
+namespace {
+
+constexpr std::size_t kFailures = 5;
+
+/// The distance of floats near x, in double.
+double ulp(double x) { return std::ldexp(1.0, std::max(std::ilogb(x), -126) - 23); }
+
+/// Whether a float can hold x with all its digits.
+bool ordinary(double x) { return std::abs(x) >= 0x1p-126 && std::abs(x) < 0x1p127; }
+
+/// Whether t is in the interval, as far as the oracle's t tells.
+bool holds(const Interval& interval, double t) {
+  constexpr double kError = 0x1p-49;  // of t, and of this
+  return interval.low <= t * (1.0 + kError) && t * (1.0 - kError) <= interval.high;
+}
+
+/// The error of `value` in ulp of `exact`, and relative to it; none where a float does not hold it.
+struct Off {
+  double ulps, relative;
+};
+
+std::optional<Off> off(float value, double exact) {
+  if (std::isnan(value) || !ordinary(exact)) return std::nullopt;
+  const double difference = std::abs(value - exact);
+  return Off{difference / ulp(exact), difference / std::abs(exact)};
+}
+
+/// The worst of the three coordinates.
+std::optional<Off> off(const glm::vec3& point, const glm::vec3& direction, double t) {
+  std::optional<Off> worst;
+  for (int k = 0; k < 3; ++k) {
+    const auto error = off(point[k], t * direction[k]);
+    if (!error) continue;
+    if (!worst) worst = Off{0.0, 0.0};
+    worst = Off{std::max(worst->ulps, error->ulps), std::max(worst->relative, error->relative)};
+  }
+  return worst;
+}
+
+void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& direction,
+                Tally& tally) {
+  if (!ordinary(truth.t)) return;
+  if (const auto error = off(answer.t, truth.t)) {
+    tally.t_ulp.add(error->ulps);
+    tally.t_relative.add(error->relative);
+    if (!answer.doubt) {
+      const int decade =
+          std::clamp(static_cast<int>(-std::log10(truth.sine)), 0, Tally::kDecades - 1);
+      tally.t_ulp_by_angle[decade].add(error->ulps);
+      tally.t_of_bound = std::max(tally.t_of_bound, error->relative / bound_of_t(truth.sine));
+    }
+  }
+  if (const auto error = off(answer.point, direction, truth.t)) {
+    tally.point_ulp.add(error->ulps);
+    if (!answer.doubt) {
+      tally.point_of_bound =
+          std::max(tally.point_of_bound, error->relative / bound_of_point(truth.sine));
+    }
+  }
+  if (const auto error = off(answer.delivered.t, truth.t)) tally.delivered_t_ulp.add(error->ulps);
+  if (const auto error = off(answer.delivered.point, direction, truth.t)) {
+    tally.delivered_point_ulp.add(error->ulps);
+  }
+}
+
+}  // namespace
+
+void Tally::add(const Tally& other) {
+  tests += other.tests;
+  rays += other.rays;
+  wrong += other.wrong;
+  ties += other.ties;
+  wrong_ties += other.wrong_ties;
+  leaks += other.leaks;
+  escapes += other.escapes;
+  double_hits += other.double_hits;
+  wrong_nearest += other.wrong_nearest;
+  wrong_tied_nearest += other.wrong_tied_nearest;
+  hits += other.hits;
+  doubts += other.doubts;
+  t_ulp.add(other.t_ulp);
+  point_ulp.add(other.point_ulp);
+  t_relative.add(other.t_relative);
+  delivered_t_ulp.add(other.delivered_t_ulp);
+  delivered_point_ulp.add(other.delivered_point_ulp);
+  for (int k = 0; k < kDecades; ++k) t_ulp_by_angle[k].add(other.t_ulp_by_angle[k]);
+  t_of_bound = std::max(t_of_bound, other.t_of_bound);
+  point_of_bound = std::max(point_of_bound, other.point_of_bound);
+  failures.insert(failures.end(), other.failures.begin(), other.failures.end());
+}
+
+bool Tally::spotless() const {
+  return wrong_decisions(true) + leaks + double_hits == 0 && t_of_bound <= 1.0 &&
+         point_of_bound <= 1.0 && delivered_t_ulp.max() <= kDeliveredUlp &&
+         delivered_point_ulp.max() <= kDeliveredUlp;
+}
+
+void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
+           bool exact_variant, Tally& tally) {
+  const auto fails = [&](const Shot& shot, const glm::vec3& direction,
+                         std::span<const Corners> triangles) {
+    if (tally.failures.size() == kFailures) return;
+    tally.failures.push_back({shot.origin, direction, {triangles.begin(), triangles.end()}});
+  };
+  std::size_t test = 0, ray_number = 0;
+  for (std::size_t s = 0; s < shots.size(); ++s) {
+    const Shot& shot = shots[s];
+    const auto& triangles = shot.mesh->triangles;
+    const Truth& truth = truths[s];
+    auto verdict = truth.verdicts.begin();
+    for (std::size_t ray = 0; ray < shot.directions.size(); ++ray, ++ray_number) {
+      const glm::vec3& direction = shot.directions[ray];
+      std::uint64_t hits = 0, true_hits = 0;
+      for (const Corners& triangle : triangles) {
+        const Answer& answer = answers.tests[test++];
+        const Verdict& exact = *verdict++;
+        ++tally.tests;
+        tally.ties += exact.tie;
+        tally.doubts += answer.doubt;
+        hits += answer.hit;
+        true_hits += exact.hit;
+        if (answer.hit != exact.hit || (exact.hit && !holds(answer.bounds, exact.t))) {
+          ++(exact.tie ? tally.wrong_ties : tally.wrong);
+          if (exact_variant || !exact.tie) fails(shot, direction, {&triangle, 1});
+        } else if (exact.hit) {
+          add_errors(answer, exact, direction, tally);
+        }
+      }
+      ++tally.rays;
+      tally.hits += hits;
+      tally.leaks += shot.inside && hits % 2 == 0;
+      tally.escapes += shot.inside && hits == 0;
+      tally.double_hits += shot.inside && hits > true_hits;
+      if (answers.nearest[ray_number] != truth.nearest[ray]) {
+        const bool tied = truth.nearest_tied[ray];
+        ++(tied ? tally.wrong_tied_nearest : tally.wrong_nearest);
+        if (exact_variant || !tied) fails(shot, direction, triangles);
+      }
+    }
+  }
+}
+
+}  // namespace raygate::stress

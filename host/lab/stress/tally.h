@@ -1,0 +1,54 @@
+// How wrong a variant is: counts, and errors in units of the last place.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "host/lab/stress/case_text.h"
+#include "host/lab/stress/errors.h"
+#include "host/lab/stress/oracle.h"
+#include "host/lab/stress/variants.h"
+
+namespace raygate::stress {
+
+/// What one variant did in one suite.
+struct Tally {
+  std::uint64_t tests = 0, rays = 0;
+  /// Tests decided otherwise than the truth, or hit at another t than they say, ties aside.
+  std::uint64_t wrong = 0;
+  std::uint64_t ties = 0;           ///< tests that only the tie-break decides
+  std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact variants only
+  std::uint64_t leaks = 0;          ///< rays from inside a closed mesh with an even number of hits
+  std::uint64_t escapes = 0;        ///< of these, rays with none
+  std::uint64_t double_hits = 0;    ///< rays from inside with more hits than there are
+  std::uint64_t wrong_nearest = 0;  ///< rays whose first triangle is another, ties aside
+  std::uint64_t wrong_tied_nearest = 0;  ///< the same among ties
+  std::uint64_t hits = 0, doubts = 0;
+  /// Of hits that are hits, in ulp of the exact value: t, and the worst coordinate of P; and t's
+  /// relative error.
+  Errors t_ulp, point_ulp, t_relative;
+  /// What the host makes of them in the end.
+  Errors delivered_t_ulp, delivered_point_ulp;
+  /// t_ulp of sure hits by the angle between ray and plane: decade k holds sines from 10^-k-1 to
+  /// 10^-k.
+  static constexpr int kDecades = 8;
+  std::array<Errors, kDecades> t_ulp_by_angle;
+  /// The largest errors of sure hits over what error_bounds.h allows them.
+  double t_of_bound = 0.0, point_of_bound = 0.0;
+  std::vector<Case> failures;  ///< the first few, ties only of exact variants
+
+  void add(const Tally& other);
+  /// Hit or miss and nearest, those on ties for exact variants alone.
+  [[nodiscard]] std::uint64_t wrong_decisions(bool exact) const {
+    return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest : 0);
+  }
+  /// What an exact variant must be: never wrong, and no farther off than is proven.
+  [[nodiscard]] bool spotless() const;
+};
+
+/// Compares the answers of a variant, exact or not, for some shots with the truth about them.
+void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
+           bool exact_variant, Tally& tally);
+
+}  // namespace raygate::stress

@@ -1,0 +1,123 @@
+// The searches in place: what the stress test would see of wrong ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/lab/stress/suites.h"
+#include "host/lab/stress/tally.h"
+#include "host/lab/stress/variants.h"
+#include "host/scene/camera.h"
+
+namespace raygate::stress {
+namespace {
+
+class InPlace : public testing::Test {
+ protected:
+  InPlace() {
+    Random random(3);
+    for (const char* name : {"random", "box edges", "near ties"}) {
+      const Generator generate = std::ranges::find(all_suites(), name, &Suite::name)->make();
+      for (int i = 0; i < 100; ++i) {
+        shots_.push_back(generate(random));
+        truths_.push_back(find_truth(shots_.back()));
+      }
+    }
+  }
+
+  Tally judge(const Answers& answers) const {
+    Tally tally;
+    count(shots_, truths_, answers, true, tally);
+    return tally;
+  }
+
+  std::vector<Shot> shots_;
+  std::vector<Truth> truths_;
+};
+
+TEST_F(InPlace, SearchesAreSpotless) {
+  for (const VariantKind& kind : in_place_variants()) {
+    EXPECT_TRUE(kind.exact);
+    Answers answers;
+    kind.make()->run(shots_, answers);
+    const Tally tally = judge(answers);
+    EXPECT_TRUE(tally.spotless()) << kind.name;
+    EXPECT_GT(tally.doubts, 0u) << kind.name;
+    EXPECT_GT(tally.point_of_bound, 0.0) << kind.name;
+  }
+}
+
+// Triangles that fill their boxes, in planes across an axis, equal or a few floats apart: a search
+// that leaves boxes out a little too soon does not find the nearest.
+TEST(InPlaceStacks, TheNearestIsNotCulled) {
+  Random random(5);
+  std::vector<Shot> shots;
+  std::vector<Truth> truths;
+  for (int i = 0; i < 200; ++i) {
+    const int axis = random.below(3);
+    const auto at = [&](double x, double y, float depth) {
+      glm::vec3 point;
+      point[axis] = depth;
+      point[(axis + 1) % 3] = static_cast<float>(x);
+      point[(axis + 2) % 3] = static_cast<float>(y);
+      return point;
+    };
+    auto mesh = std::make_shared<Mesh>();
+    for (int k = 0; k < 24; ++k) {
+      float depth = 1.0f;
+      for (int steps = random.below(3); steps > 0; --steps) depth = std::nextafter(depth, 2.0f);
+      const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+      mesh->triangles.push_back(
+          {at(x - 2.0, y - 2.0, depth), at(x + 2.0, y - 2.0, depth), at(x, y + 2.0, depth)});
+    }
+    Shot& shot = shots.emplace_back();
+    shot.mesh = mesh;
+    for (int ray = 0; ray < 8; ++ray) {
+      shot.directions.push_back(
+          scaled_direction(glm::dvec3(at(random.uniform(-1, 1), random.uniform(-1, 1), 1.0f))));
+    }
+    truths.push_back(find_truth(shot));
+  }
+  for (const VariantKind& kind : in_place_variants()) {
+    Answers answers;
+    kind.make()->run(shots, answers);
+    Tally tally;
+    count(shots, truths, answers, true, tally);
+    EXPECT_GT(tally.hits, tally.rays) << kind.name;
+    EXPECT_TRUE(tally.spotless()) << kind.name;
+  }
+}
+
+// As by a search that takes one component of a direction for the next float.
+TEST_F(InPlace, ASearchThatIsOneFloatOffIsSeen) {
+  auto moved = shots_;
+  for (Shot& shot : moved) {
+    for (glm::vec3& direction : shot.directions) direction.x = std::nextafter(direction.x, 2.0f);
+  }
+  for (const VariantKind& kind : in_place_variants()) {
+    Answers answers;
+    kind.make()->run(moved, answers);
+    const Tally tally = judge(answers);
+    EXPECT_FALSE(tally.spotless()) << kind.name;
+    EXPECT_GT(tally.wrong, 0u) << kind.name;
+    EXPECT_GT(tally.wrong_nearest, 0u) << kind.name;
+  }
+}
+
+TEST_F(InPlace, BoundsThatDoNotHoldTAreSeen) {
+  for (const VariantKind& kind : in_place_variants()) {
+    Answers answers;
+    kind.make()->run(shots_, answers);
+    std::uint64_t hits = 0;
+    for (Answer& answer : answers.tests) {
+      hits += answer.hit;
+      answer.bounds.low = std::nextafter(static_cast<float>(answer.bounds.high), 2e38f);
+    }
+    const Tally tally = judge(answers);
+    EXPECT_GT(hits, 0u);
+    EXPECT_EQ(tally.wrong + tally.wrong_ties, hits) << kind.name;
+  }
+}
+
+}  // namespace
+}  // namespace raygate::stress

@@ -1,0 +1,86 @@
+// The oracle's integers against rationals, and what it says about cases anyone can decide.
+#include "host/lab/stress/oracle.h"
+
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include "host/lab/stress/suites.h"
+
+namespace raygate::stress {
+namespace {
+
+using Rational3 = std::array<mpq_class, 3>;
+
+Rational3 minus(const glm::vec3& a, const glm::vec3& b) {
+  Rational3 result;
+  for (int k = 0; k < 3; ++k) result[k] = mpq_class(a[k]) - mpq_class(b[k]);
+  return result;
+}
+Rational3 cross(const Rational3& a, const Rational3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+mpq_class dot(const Rational3& a, const Rational3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Whether the ray, its direction tilted by (e, e^2, e^3) for a very small e, meets the triangle.
+bool hits(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  const Rational3 a = minus(t[0], origin), b = minus(t[1], origin), c = minus(t[2], origin);
+  Rational3 tilted = minus(direction, glm::vec3(0.0f));
+  mpq_class e(1);
+  e >>= 2000;
+  mpq_class power = e;
+  for (mpq_class& component : tilted) {
+    component += power;
+    power *= e;
+  }
+  const int side = sgn(dot(a, cross(b, c)));
+  return side != 0 && sgn(dot(tilted, cross(a, b))) == side &&
+         sgn(dot(tilted, cross(b, c))) == side && sgn(dot(tilted, cross(c, a))) == side;
+}
+
+TEST(Oracle, AgreesWithRationalsInEverySuite) {
+  for (const Suite& suite : all_suites()) {
+    if (suite.name == "useless") continue;  // has no rationals
+    Random random(7);
+    const Generator generate = suite.make();
+    int decided = 0, met = 0;
+    while (decided < 400) {
+      const Shot shot = generate(random);
+      const Truth truth = find_truth(shot);
+      auto verdict = truth.verdicts.begin();
+      for (const glm::vec3& direction : shot.directions) {
+        for (const Corners& t : shot.mesh->triangles) {
+          ASSERT_EQ(verdict->hit, hits(shot.origin, direction, t)) << suite.name;
+          met += (verdict++)->hit;
+          ++decided;
+        }
+      }
+    }
+    if (suite.name != "degenerate") {
+      EXPECT_GT(met, 0) << suite.name;
+    }
+  }
+}
+
+TEST(Oracle, TellsTheNearestAndItsTies) {
+  const auto at_depth = [](float z) {
+    return Corners{glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)};
+  };
+  auto mesh = std::make_shared<Mesh>();
+  mesh->triangles = {at_depth(2), at_depth(1), at_depth(1), at_depth(-1)};
+  Shot shot;
+  shot.mesh = mesh;
+  shot.directions = {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::vec3(1, 0, 0), glm::vec3(0)};
+  const Truth truth = find_truth(shot);
+  EXPECT_EQ(truth.nearest[0], 1u);
+  EXPECT_TRUE(truth.nearest_tied[0]);
+  EXPECT_EQ(truth.nearest[1], 3u);
+  EXPECT_FALSE(truth.nearest_tied[1]);
+  EXPECT_FALSE(truth.nearest[2]);
+  EXPECT_FALSE(truth.nearest[3]);
+  EXPECT_EQ(truth.verdicts[0].t, 2.0);
+}
+
+}  // namespace
+}  // namespace raygate::stress

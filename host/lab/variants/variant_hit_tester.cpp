@@ -1,0 +1,220 @@
+#include "host/lab/variants/variant_hit_tester.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "host/find/unit/pipeline_hit_tester.h"
+#include "host/find/unit/serial_hit_tester.h"
+#include "host/lab/variants/variant_units.h"
+
+// The bound of an edge test in a format of u = 2^-digits
+//
+// Let E be the exact edge plane, F the record's words in the format, I the float32 direction with
+// |I_i| < 2, J its rounding to the format, so |J_i| <= 2. |.|_1 is the sum of magnitudes.
+//
+// 1. Record. |J . F - J . E| <= 2 u |F|_1 for its rounding; edge_normal's own error adds less than
+//    2^-7 u |F|_1 (see polygon_record.cpp).
+// 2. Direction. |(J - I) . E| <= 2 u (1 + u) |F|_1; nothing in float32, where J = I.
+// 3. Dot product. Three roundings for each product at most: 3 u / (1 - 3 u) |J|.|F| <= 6 u / (1 - 3
+// u)
+//    |F|_1. Rounded once: u |J . F| <= 2 u |F|_1.
+// 4. Where the format is narrower the record's words have been rounded to float32 before:
+//    2 * 2^-24 (1 + u) |F|_1.
+// 5. Subnormals. With max |F_i| >= 1 (formats of few exponents) or far away from them (float32's):
+//    six words and five operations are off by half a quantum q each, times 2 at most: 11 q.
+//
+// The error of t: hit_test_pkg has 48.5 u 2^g for V with J = I. In V's sum the first two products
+// have three roundings and the third has two: with N's rounding and J's own that is
+// (2 * 5 + 4) / 3 roundings on average, at most 2 * 2 * (5 + 5 + 4) = 56 u 2^g; with d and the
+// division 59.2 numbers, over (1 - r), r = 56 u below 2^-5 for 11 digits: under 64 = 2^TErrorUnit.
+
+namespace raygate {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// The format with the host's rounding.
+Arithmetic to_nearest(Arithmetic math) {
+  math.rounding = Rounding::kNearestEven;
+  return math;
+}
+
+float largest(const glm::vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+glm::vec3 scaled(const glm::vec3& v, int exponent) {
+  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+}
+
+/// By how many powers of two the largest component has to grow to be in [1, 2).
+int to_unit(const glm::vec3& v) { return largest(v) == 0.0f ? 0 : -std::ilogb(largest(v)); }
+
+float rounded_up(const Arithmetic& math, double x) {
+  const float wide = static_cast<float>(x);
+  const float nearest = to_nearest(math).read(wide);
+  return nearest > x ? nearest : math.from_word(math.to_word(nearest) + 1);
+}
+
+/// The numbers around a positive t that are as far off as its error allows.
+Interval around(const Arithmetic& math, float t, std::uint32_t error) {
+  const std::uint32_t word = math.to_word(t), margin = 64u << error;
+  return {math.from_word(word - std::min(word, margin)),
+          math.from_word(std::min(word + margin, math.to_word(kInfinity)))};
+}
+
+}  // namespace
+
+double variant_edge_bound(const Arithmetic& math) {
+  const double u = math.unit_roundoff();
+  const bool narrow = math.digits < 24;
+  const double record = 2.0 + 0x1p-6, direction = narrow ? 2.0 * (1.0 + u) : 0.0;
+  const double dot = math.fused ? 2.0 : 6.0 / (1.0 - 3.0 * u);
+  const double twice_rounded = narrow ? 2.0 * 0x1p-24 * (1.0 + u) / u : 0.0;
+  const double quantum = std::ldexp(1.0, math.min_exponent() - math.fraction_bits());
+  return record + direction + dot + twice_rounded + 11.0 * quantum / u;
+}
+
+PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) {
+  const Arithmetic math = to_nearest(variant.math);
+  PolygonRecord record = wide;
+  const bool few_exponents = math.exponent_bits < 8;
+  const int shift = few_exponents ? to_unit(wide.normal) : 0;
+  record.normal = math.read(scaled(wide.normal, shift));
+  record.d = math.read(std::ldexp(wide.d, shift));
+  bool too_far = false;
+  if (wide.d != 0.0f && !math.is_normal(record.d)) {
+    // Its sign must stay; what else is lost is for exact arithmetic to find.
+    too_far = true;
+    const double low = std::ldexp(1.0, math.min_exponent());
+    const double high = std::ldexp(2.0 - std::ldexp(1.0, 1 - math.digits), math.max_exponent());
+    record.d = static_cast<float>(
+        std::copysign(std::clamp(std::abs(static_cast<double>(record.d)), low, high), wide.d));
+  }
+  for (int k = 0; k < 3; ++k) {
+    const int edge_shift = few_exponents ? to_unit(wide.edges[k]) : 0;
+    record.edges[k] = math.read(scaled(wide.edges[k], edge_shift));
+    if (!variant.doubts) {
+      record.bounds[k] = 0.0f;
+    } else if (too_far || std::isinf(wide.bounds[k])) {
+      record.bounds[k] = kInfinity;
+    } else if (math != Arithmetic{}) {
+      const glm::dvec3 e = glm::abs(glm::dvec3(record.edges[k]));
+      record.bounds[k] =
+          rounded_up(math, variant_edge_bound(math) * math.unit_roundoff() * (e.x + e.y + e.z));
+    }
+  }
+  return record;
+}
+
+VariantHitTester::VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
+    : variant_(variant), unit_(std::move(unit)), twin_(variant.math) {}
+
+/// The batch in the variant's format.
+void VariantHitTester::narrow(std::span<const RayBundle> batch) {
+  const Arithmetic math = to_nearest(variant_.math);
+  std::size_t count = 0;
+  for (const RayBundle& bundle : batch) count += bundle.record_count;
+  records_.clear();
+  records_.reserve(count);  // bundles point into it
+  batch_.assign(batch.begin(), batch.end());
+  for (RayBundle& bundle : batch_) {
+    const PolygonRecord* wide = bundle.records;
+    bundle.records = records_.data() + records_.size();
+    for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
+      records_.push_back(variant_record(variant_, wide[i]));
+    }
+    for (auto& component : bundle.direction) {
+      for (float& x : component) x = math.read(x);
+    }
+  }
+}
+
+void VariantHitTester::test(std::span<const RayBundle> batch, HitResults& results) {
+  narrow(batch);
+  found_.clear();
+  unit_->run(batch_, found_);
+  if (!variant_.doubts) return resolve_nothing(batch, results);
+  auto next = found_.reports.begin();
+  const auto take_reports = [&](auto belongs_here) {
+    for (; next != found_.reports.end() && belongs_here(*next); ++next) {
+      report(batch[next->bundle], results, *next);
+    }
+  };
+  for (const BurstHit& hit : found_.hits) {
+    take_reports([&](const TestReport& r) {
+      return r.bundle != hit.bundle ? r.bundle < hit.bundle : r.lane <= hit.lane;
+    });
+    results.hits.push_back({hit.bundle, hit.lane, batch[hit.bundle].first_tag + hit.record,
+                            hit.point, around(variant_.math, hit.t, hit.t_error)});
+  }
+  take_reports([](const TestReport&) { return true; });
+}
+
+/// What the unit only reports gets its P and t here, by the same formulas.
+void VariantHitTester::report(const RayBundle& wide, HitResults& results,
+                              const TestReport& report) {
+  const RayBundle& bundle = batch_[report.bundle];
+  const PolygonRecord& record = bundle.records[report.record];
+  const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report.lane));
+  const std::uint32_t tag = wide.first_tag + report.record;
+  const glm::vec3 point = twin_.point(record, direction);
+  if (report.kind == TestReport::Kind::kDoubt) {
+    results.doubts.push_back({report.bundle, report.lane, tag, point});
+  } else {
+    const HitDistance distance = twin_.distance(record, direction);
+    results.hits.push_back({report.bundle, report.lane, tag, point,
+                            around(variant_.math, distance.t, distance.error)});
+  }
+}
+
+/// One hit a burst: the kept one or, where it is nearer, one that the unit left open.
+void VariantHitTester::resolve_nothing(std::span<const RayBundle> batch, HitResults& results) {
+  const auto offer = [&](std::uint32_t index, std::uint32_t lane, std::uint32_t record, float t,
+                         const glm::vec3& point) {
+    const std::uint32_t tag = batch[index].first_tag + record;
+    // Equal distances become different ones, far below float32's digits, in the order of the tags.
+    const double told_apart = t * (1.0 + std::ldexp(static_cast<double>(tag), -52));
+    const SureHit hit{index, lane, tag, point, {told_apart, told_apart}};
+    const bool same_burst = !results.hits.empty() && results.hits.back().bundle == index &&
+                            results.hits.back().lane == lane;
+    if (!same_burst) {
+      results.hits.push_back(hit);
+    } else if (told_apart < results.hits.back().t.low) {
+      results.hits.back() = hit;
+    }
+  };
+  auto hit = found_.hits.begin();
+  const auto offer_hits = [&](auto belongs_here) {
+    for (; hit != found_.hits.end() && belongs_here(*hit); ++hit) {
+      offer(hit->bundle, hit->lane, hit->record, hit->t, hit->point);
+    }
+  };
+  for (const TestReport& report : found_.reports) {
+    if (report.kind != TestReport::Kind::kDoubt) continue;
+    offer_hits([&](const BurstHit& h) {
+      return h.bundle != report.bundle ? h.bundle < report.bundle : h.lane <= report.lane;
+    });
+    const RayBundle& bundle = batch_[report.bundle];
+    const PolygonRecord& record = bundle.records[report.record];
+    const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report.lane));
+    const float t = twin_.distance(record, direction).t;
+    if (!(t > 0.0f) || std::isinf(t)) continue;
+    offer(report.bundle, report.lane, report.record, t, twin_.point(record, direction));
+  }
+  offer_hits([](const BurstHit&) { return true; });
+}
+
+HitCounters VariantHitTester::counters() const { return hit_counters(unit_->counters()); }
+
+std::unique_ptr<HitTester> make_variant_tester(const Variant& variant) {
+  if (variant.unit == Variant::Unit::kSerial) {
+    return std::make_unique<SerialHitTester>(std::make_unique<VariantPlaneUnit>(variant.math));
+  }
+  return std::make_unique<VariantHitTester>(variant,
+                                            std::make_unique<VariantBurstUnit>(variant.math));
+}
+
+}  // namespace raygate

@@ -1,0 +1,85 @@
+// How much light comes from a lamp to a surface.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "host/find/unit/wavefront.h"
+#include "host/light/departure.h"
+#include "host/light/lights.h"
+#include "host/light/skips.h"
+
+namespace raygate {
+
+/// A question: what of `light` arrives?
+struct ShadowRay {
+  static constexpr std::uint32_t kNoPoint = NearestHit::kNone;
+
+  std::uint32_t sample = 0;  ///< whose light it is: for the caller
+  glm::dvec3 light{0.0};     ///< what arrives if nothing is between; what does arrive
+  glm::vec3 surface{0.0f};   ///< a DeparturePoint of the surface
+  std::uint32_t surface_slot = 0;
+  std::uint32_t point_light = kNoPoint;  ///< index; or else the lamp is an area's:
+  glm::vec3 lamp{0.0f};                  ///< its point
+  std::uint32_t lamp_slot = 0;           ///< and what that is on
+};
+
+/// Traces shadow rays in waves.
+///
+/// Rays of a point light begin at the light, where they share its records, and end at the surface.
+/// Rounding their direction moves that end by about a float; so a hit in the last 2^-10 of the way
+/// does not count by itself: such a ray is traced again, from the surface. Hits of the surface's
+/// own triangle do not count, for the departure point is on the lamp's side of it. Rays of area
+/// lights begin at the surface and end 2^-16 of the way before the lamp, whose own triangle does
+/// not count. Surfaces that let light through straight weaken it.
+class ShadowRays {
+ public:
+  /// `through_refraction`: glass that bends light casts the shadow of one that does not.
+  ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights, Wavefront& wavefront,
+             const Skips& skips, bool through_refraction);
+
+  /// Called for each ray of a wave that was traced, by its shadow ray's index.
+  using TracedFunction = std::function<void(std::size_t ray_of_wave, std::size_t shadow_ray)>;
+
+  /// Multiplies each ray's `light` by what is not held up on its way: all, nothing, or what clear
+  /// surfaces leave. `traced` may be empty.
+  void resolve(std::span<ShadowRay> rays, const TracedFunction& traced = {});
+
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }  ///< traced so far
+
+ private:
+  /// A ray of the next wave.
+  struct Segment {
+    std::uint32_t index;  // of the shadow ray that it is a part of
+    glm::vec3 from, to;
+    std::uint32_t ignored;  // slot
+    double share;           // of the way in which hits count
+  };
+
+  void trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light);
+  void trace_from_surface(std::span<ShadowRay> rays);
+  void trace(RecordCache* common, double enough);
+  [[nodiscard]] static Segment from_surface(const Lights& lights, const ShadowRay& ray,
+                                            std::uint32_t index);
+  /// What is left after the surface that ray `number` of the wave has hit.
+  [[nodiscard]] glm::dvec3 transmittance(std::size_t number) const;
+
+  const Scene& scene_;
+  const Bvh& bvh_;
+  const Lights& lights_;
+  Wavefront& wavefront_;
+  DeparturePoint departure_;
+  bool first_occluder_, culling_, through_refraction_, any_clear_;
+  std::uint64_t rays_ = 0;
+  // Room to work in.
+  std::vector<Segment> segments_, next_;
+  std::vector<Ray> wave_;
+  std::vector<float> limits_, enough_;
+  std::vector<std::uint32_t> ignored_;
+  const TracedFunction* traced_ = nullptr;
+};
+
+}  // namespace raygate

@@ -1,0 +1,166 @@
+// Fresnel, Snell and the lobes of materials against their formulas.
+#include "host/light/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/exact/test/meshes.h"
+#include "host/light/fresnel.h"
+#include "host/light/sampler.h"
+
+namespace raygate {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// The formulas in angles (Born and Wolf 1.5.2): sines and tangents, not the cosines of the code.
+TEST(Fresnel, IsTheFormulaInAngles) {
+  for (const double eta : {1.5, 1.0 / 1.5, 1.33, 2.4, 1.0 / 2.4}) {
+    for (double angle = 0.01; angle < kPi / 2; angle += 0.01) {
+      const double sine = std::sin(angle) / eta;
+      const double reflectance = fresnel_reflectance(std::cos(angle), eta);
+      if (sine >= 1.0) {
+        ASSERT_EQ(reflectance, 1.0);
+        continue;
+      }
+      const double beyond = std::asin(sine);
+      const double across = std::sin(angle - beyond) / std::sin(angle + beyond);
+      const double parallel = std::tan(angle - beyond) / std::tan(angle + beyond);
+      ASSERT_NEAR(reflectance, 0.5 * (across * across + parallel * parallel), 1e-12)
+          << eta << " " << angle;
+    }
+    EXPECT_NEAR(fresnel_reflectance(1.0, eta), std::pow((eta - 1) / (eta + 1), 2), 1e-15);
+    EXPECT_NEAR(fresnel_reflectance(0.0, eta), 1.0, 1e-15);
+  }
+  // At Brewster's angle nothing of one polarisation is reflected.
+  const double brewster = std::atan(1.5), beyond = std::asin(std::sin(brewster) / 1.5);
+  EXPECT_NEAR(fresnel_reflectance(std::cos(brewster), 1.5),
+              0.5 * std::pow(std::sin(brewster - beyond) / std::sin(brewster + beyond), 2), 1e-14);
+}
+
+TEST(Fresnel, RefractionIsSnellsLaw) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, -0.5));
+  const glm::dvec3 tangent = glm::normalize(glm::cross(normal, glm::dvec3(0, 0, 1)));
+  for (const double eta : {1.5, 1.0 / 1.5, 1.0}) {
+    for (double angle = 0.0; angle < kPi / 2; angle += 0.05) {
+      const glm::dvec3 in = std::sin(angle) * tangent - std::cos(angle) * normal;
+      const auto out = refracted(in, normal, eta);
+      ASSERT_EQ(out.has_value(), std::sin(angle) < eta) << eta << " " << angle;
+      if (!out) continue;
+      EXPECT_NEAR(glm::length(*out), 1.0, 1e-14);
+      EXPECT_NEAR(glm::length(glm::cross(*out, normal)), std::sin(angle) / eta, 1e-14);
+      EXPECT_LT(glm::dot(*out, normal), 0.0);
+      EXPECT_GE(glm::dot(*out, tangent), 0.0) << "on in the same direction";
+      EXPECT_NEAR(glm::dot(*out, glm::cross(normal, tangent)), 0.0, 1e-14) << "out of the plane";
+    }
+  }
+}
+
+/// A triangle of this material seen at an angle to its normal, +z.
+class Seen {
+ public:
+  Seen(const Material& material, double angle)
+      : scene_(test::scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}})),
+        bvh_(scene_) {
+    scene_.materials[0] = material;
+    const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
+    surface_.emplace(scene_, bvh_, Ray{eye, -eye}, 0);
+  }
+  [[nodiscard]] const Surface& surface() const { return *surface_; }
+
+ private:
+  Scene scene_;
+  Bvh bvh_;
+  std::optional<Surface> surface_;
+};
+
+Material material(int model, float diffuse, float specular, float opacity) {
+  Material m;
+  m.illumination_model = model;
+  m.diffuse = glm::vec3(diffuse, 0.5f * diffuse, 0.0f);
+  m.specular = glm::vec3(specular);
+  m.shininess = 20.0f;
+  m.refraction_index = 1.5f;
+  m.opacity = opacity;
+  m.transmittance = glm::vec3(0.9f, 1.0f, 0.8f);
+  return m;
+}
+
+// Sampled by its own density, a lobe's mean is what it reflects; and densities integrate to what
+// lies above the surface.
+TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
+  for (const float specular : {0.0f, 0.3f}) {
+    for (const double angle : {0.0, 0.7, 1.3}) {
+      const Seen seen(material(2, 0.5f, specular, 1.0f), angle);
+      const Bsdf bsdf(seen.surface());
+      const Sampler sampler(1, 2, 3);
+      // The mean of f cos / p over samples against a plain integral of f cos over the hemisphere.
+      constexpr int kCount = 1 << 16;
+      double sampled = 0.0, integral = 0.0, density = 0.0, above = 0.0;
+      for (int i = 0; i < kCount; ++i) {
+        const glm::dvec3 way = bsdf.sample(sampler(i, 0));
+        EXPECT_NEAR(glm::length(way), 1.0, 1e-12);
+        above += way.z > 0.0;
+        if (way.z > 0.0) sampled += bsdf.scattered(way).x * way.z / bsdf.density(way);
+        const glm::dvec2 u = sampler(i, 1);
+        const double sine = std::sqrt(1.0 - u.x * u.x);
+        const glm::dvec3 uniform(sine * std::cos(2 * kPi * u.y), sine * std::sin(2 * kPi * u.y),
+                                 u.x);
+        integral += bsdf.scattered(uniform).x * uniform.z * 2 * kPi;
+        density += bsdf.density(uniform) * 2 * kPi;
+      }
+      EXPECT_NEAR(sampled / kCount, integral / kCount, 2e-3);
+      EXPECT_NEAR(density / kCount, above / kCount, 5e-3);
+      EXPECT_TRUE(specular > 0.0f || std::abs(sampled / kCount - 0.5) < 1e-6);
+    }
+  }
+}
+
+// Whatever the material says, all shares together are at most what arrives.
+TEST(Bsdf, NoMaterialMakesEnergy) {
+  for (int model = 1; model <= 10; ++model) {
+    for (const float colour : {0.0f, 0.4f, 1.0f, 3.0f}) {
+      for (const float opacity : {0.0f, 0.5f, 1.0f}) {
+        for (const double angle : {0.0, 0.8, 1.5}) {
+          const Seen seen(material(model, colour, colour, opacity), angle);
+          const Bsdf bsdf(seen.surface());
+          const glm::dvec3 sum = bsdf.diffuse() + bsdf.glossy() + bsdf.mirror() + bsdf.through();
+          EXPECT_LE(std::max({sum.x, sum.y, sum.z}), 1.0 + 1e-12) << model << " " << colour;
+          EXPECT_GE(std::min({bsdf.through().x, bsdf.diffuse().x, bsdf.mirror().x}), 0.0);
+        }
+      }
+    }
+  }
+}
+
+TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
+  const auto of = [](int model, float opacity) {
+    return Bsdf(Seen(material(model, 0.4f, 0.2f, opacity), 0.6).surface());
+  };
+  const double fresnel = fresnel_reflectance(std::cos(0.6), 1.5);
+  EXPECT_EQ(of(0, 1).diffuse(), glm::dvec3(0.0));
+  EXPECT_NEAR(of(0, 1).unlit().x, 0.4, 1e-7);
+  EXPECT_NEAR(of(1, 1).diffuse().x, 0.4, 1e-7);
+  EXPECT_EQ(of(1, 1).glossy(), glm::dvec3(0.0));
+  EXPECT_NEAR(of(1, 0.25f).diffuse().x, 0.1, 1e-7);
+  EXPECT_NEAR(of(1, 0.25f).through().z, 0.75, 1e-7) << "straight, and not tinted";
+  EXPECT_NEAR(of(2, 1).glossy().x, 0.2, 1e-7);
+  EXPECT_NEAR(of(3, 1).mirror().x, 0.2, 1e-7);
+  EXPECT_NEAR(of(4, 0.5f).through().x, 0.5 * 0.9 * 0.8, 1e-7);
+  EXPECT_FALSE(of(4, 0.5f).is_refracting());
+  EXPECT_NEAR(of(5, 1).mirror().x, 0.2 + 0.8 * std::pow(1 - std::cos(0.6), 5), 1e-7);
+  EXPECT_TRUE(of(6, 0).is_refracting());
+  EXPECT_NEAR(of(6, 0).through().x, 0.9 * 0.8, 1e-7);
+  EXPECT_NEAR(of(7, 0).mirror().x, fresnel, 1e-7);
+  EXPECT_NEAR(of(7, 0).through().x, (1 - fresnel) * 0.9, 1e-7);
+  EXPECT_EQ(of(7, 1).through(), of(7, 0).through()) << "d 1 of a glass is left there by exporters";
+  EXPECT_FALSE(of(8, 1).mirror_is_traced());
+  EXPECT_FALSE(of(9, 1).mirror_is_traced());
+  EXPECT_NEAR(of(10, 1).diffuse().x, 0.4, 1e-7);
+}
+
+}  // namespace
+}  // namespace raygate

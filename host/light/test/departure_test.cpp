@@ -1,0 +1,199 @@
+// Rays bounced about in closed meshes: they stay inside, in the sharpest corners.
+#include "host/light/departure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "host/exact/test/meshes.h"
+#include "host/scene/camera.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+
+/// A prism along z whose section is a triangle with an angle of about `angle` rad at the z axis.
+std::vector<Corners> wedge(float angle, const glm::vec3& at) {
+  const auto point = [&](float x, float y, float z) { return at + glm::vec3(x, y, z); };
+  const glm::vec3 a[2] = {point(0, 0, -1), point(0, 0, 1)};
+  const glm::vec3 b[2] = {point(1, 0, -1), point(1, 0, 1)};
+  const glm::vec3 c[2] = {point(1, angle, -1), point(1, angle, 1)};
+  return {{a[0], b[0], b[1]}, {a[0], b[1], a[1]}, {a[0], c[1], c[0]}, {a[0], a[1], c[1]},
+          {b[0], c[0], c[1]}, {b[0], c[1], b[1]}, {a[0], c[0], b[0]}, {a[1], b[1], c[1]}};
+}
+
+std::optional<std::uint32_t> nearest(const Bvh& bvh, const Ray& ray) {
+  std::optional<std::uint32_t> best;
+  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+    const Corners& t = bvh.corners_of(slot);
+    if (!hits_triangle(ray, t)) continue;
+    if (!best || compare_hits(ray, t, bvh.corners_of(*best)) < 0) best = slot;
+  }
+  return best;
+}
+
+/// By the parity of what a ray in some direction hits.
+bool inside(const Bvh& bvh, const glm::vec3& point) {
+  int hits = 0;
+  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+    hits += hits_triangle({point, glm::vec3(0.371f, 1.02f, -0.593f)}, bvh.corners_of(slot));
+  }
+  return hits % 2 == 1;
+}
+
+glm::vec3 mirrored(const glm::vec3& direction, const Corners& t) {
+  const glm::dvec3 n = glm::normalize(triangle_normal(t)), d(direction);
+  return scaled_direction(d - 2.0 * glm::dot(d, n) * n);
+}
+
+struct Bounces {
+  int rays = 0, bounces = 0, ended = 0;
+  double farthest = 0.0;  // |O' - X| on an axis, in floats of X's largest coordinate
+};
+
+double steps_between(const glm::vec3& point, const Ray& ray, const Corners& t) {
+  const Interval range = hit_distance(ray, t);
+  const glm::dvec3 x =
+      glm::dvec3(ray.origin) + 0.5 * (range.low + range.high) * glm::dvec3(ray.direction);
+  const glm::dvec3 off = glm::abs(glm::dvec3(point) - x), size = glm::abs(x);
+  const auto largest = static_cast<float>(std::max({size.x, size.y, size.z}));
+  return std::max({off.x, off.y, off.z}) / (std::nextafter(largest, 3e38f) - largest);
+}
+
+/// From `start`, aimed near edges and vertices, mirrored at each hit: every ray must hit something
+/// and every origin be inside.
+Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random& random, int rays) {
+  const Bvh bvh(test::scene_of(mesh));
+  DeparturePoint departure(bvh);
+  EXPECT_TRUE(inside(bvh, start));
+  Bounces result;
+  for (; result.rays < rays; ++result.rays) {
+    const Corners& target = mesh[random.below(static_cast<int>(mesh.size()))];
+    const float along = random.below(2) == 0 ? 0.0f : random.uniform(0, 1);
+    const float off = std::exp(random.uniform(-20, -1));
+    const glm::dvec3 aim = glm::mix(glm::dvec3(target[0]), glm::dvec3(target[1]), along) +
+                           glm::dvec3(random.point(off)) - glm::dvec3(start);
+    Ray ray = {start, scaled_direction(aim)};
+    for (int i = 0; i < 20; ++i) {
+      const auto slot = nearest(bvh, ray);
+      if (!slot) {
+        ADD_FAILURE() << "a ray escaped";
+        return result;
+      }
+      const Corners& t = bvh.corners_of(*slot);
+      const auto origin = departure.find(ray, *slot, Departure::kBefore);
+      if (!origin) {
+        ++result.ended;
+        break;
+      }
+      result.farthest = std::max(result.farthest, steps_between(*origin, ray, t));
+      EXPECT_TRUE(inside(bvh, *origin));
+      const glm::vec3 direction = mirrored(ray.direction, t);
+      if (!departure.leaves(ray, *slot, Departure::kBefore, direction)) break;
+      ray = {*origin, direction};
+      EXPECT_FALSE(hits_triangle(ray, t));
+      ++result.bounces;
+    }
+  }
+  return result;
+}
+
+TEST(Departure, NoBounceLeavesAClosedMesh) {
+  Random random;
+  const auto expect = [&](const std::vector<Corners>& mesh, const glm::vec3& start) {
+    const Bounces result = bounce(mesh, start, random, 100);
+    EXPECT_GT(result.bounces, 500);
+    EXPECT_EQ(result.ended, 0);
+    std::cout << result.bounces << " bounces, farthest " << result.farthest << " floats\n";
+  };
+  expect(test::box(glm::vec3(-1), glm::vec3(1)), glm::vec3(0.25f, 0, 0.5f));
+  expect(test::box(glm::vec3(1e6f), glm::vec3(1e6f + 1)), glm::vec3(1e6f + 0.5f));
+  expect(test::box(glm::vec3(1e-18f), glm::vec3(3e-18f)), glm::vec3(2e-18f));
+  expect(test::box(glm::vec3(-3e30f), glm::vec3(1e30f)), glm::vec3(1e29f));
+  expect(test::sphere(1), glm::vec3(0.1f, 0.2f, 0.3f));
+}
+
+// Into the edge where two planes meet at 1 to 1e-6 rad: the rule backs away, or ends the ray.
+TEST(Departure, NoBounceLeavesASharpCorner) {
+  Random random;
+  for (const float angle : {1.0f, 0.1f, 1e-2f, 1e-4f, 1e-6f}) {
+    for (const float at : {0.0f, 3.0f}) {
+      if (at * 1e-7f > angle) continue;
+      const auto mesh = wedge(angle, glm::vec3(at));
+      const glm::vec3 start = glm::vec3(at) + glm::vec3(0.7f, 0.3f * angle, 0.1f);
+      if (!inside(Bvh(test::scene_of(mesh)), start)) continue;
+      const Bounces result = bounce(mesh, start, random, 50);
+      EXPECT_GT(result.bounces, 500);
+      EXPECT_EQ(result.ended, 0);  // the wedge is convex
+      std::cout << "angle " << angle << " at " << at << ": " << result.bounces << " bounces, "
+                << result.ended << " rays ended, farthest " << result.farthest << " floats\n";
+    }
+  }
+}
+
+// Onto the edges of a ball from outside, so flat that one neighbour's plane is no float away from
+// the other: no ray ends there, and both points are on their sides of the surface.
+TEST(Departure, NoRayEndsOnARidge) {
+  Random random;
+  const std::vector<Corners> mesh = test::sphere(4);
+  const Bvh bvh(test::scene_of(mesh));
+  DeparturePoint departure(bvh);
+  int hits = 0;
+  for (int i = 0; i < 600; ++i) {
+    const glm::vec3 eye = 3.0f * glm::normalize(random.point() + 1e-3f);
+    const Corners& target = mesh[random.below(static_cast<int>(mesh.size()))];
+    const glm::dvec3 aim =
+        glm::mix(glm::dvec3(target[0]), glm::dvec3(target[1]), random.uniform(0, 1)) +
+        glm::dvec3(random.point(std::exp(random.uniform(-18, -13)))) - glm::dvec3(eye);
+    const Ray ray = {eye, scaled_direction(aim)};
+    const auto slot = nearest(bvh, ray);
+    if (!slot) continue;
+    ++hits;
+    const auto before = departure.find(ray, *slot, Departure::kBefore);
+    const auto after = departure.find(ray, *slot, Departure::kAfter);
+    ASSERT_TRUE(before && after) << i;
+    ASSERT_FALSE(inside(bvh, *before)) << i;
+    ASSERT_TRUE(inside(bvh, *after)) << i;
+  }
+  EXPECT_GT(hits, 500);
+}
+
+// Away from other triangles the distance is what departure.h says, whatever the angle.
+TEST(Departure, StaysWithinTheBoundOnBothSides) {
+  Random random;
+  double farthest = 0.0;
+  int hits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const glm::vec3 far = random.below(2) == 0 ? glm::vec3(0) : random.point(1000.0f);
+    const Corners t = {random.point() + far, random.point() + far, random.point() + far};
+    const glm::vec3 origin = random.point() + far;
+    const glm::vec3 w(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+    const glm::dvec3 aim = (glm::dvec3(t[0]) * double(w.x) + glm::dvec3(t[1]) * double(w.y) +
+                            glm::dvec3(t[2]) * double(w.z)) /
+                           (double(w.x) + double(w.y) + double(w.z));
+    const Ray ray = {origin, scaled_direction(aim - glm::dvec3(origin))};
+    if (!hits_triangle(ray, t)) continue;
+    ++hits;
+    const Bvh bvh(test::scene_of({t}));
+    DeparturePoint departure(bvh);
+    for (const Departure way : {Departure::kBefore, Departure::kAfter}) {
+      const auto point = departure.find(ray, 0, way);
+      ASSERT_TRUE(point);
+      const int side = plane_side(origin, t);
+      ASSERT_EQ(plane_side(*point, t), way == Departure::kBefore ? side : -side);
+      farthest = std::max(farthest, steps_between(*point, ray, t));
+      // The rest of the ray, from beyond: it never hits again.
+      ASSERT_TRUE(departure.leaves(ray, 0, Departure::kAfter, ray.direction));
+      ASSERT_FALSE(departure.leaves(ray, 0, Departure::kBefore, ray.direction));
+      ASSERT_EQ(hits_triangle({*point, ray.direction}, t) && way == Departure::kAfter, false);
+    }
+  }
+  EXPECT_GT(hits, 10000);
+  EXPECT_LE(farthest, 3.0);
+  std::cout << "farthest " << farthest << " floats\n";
+}
+
+}  // namespace
+}  // namespace raygate

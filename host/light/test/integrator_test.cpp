@@ -1,0 +1,221 @@
+// Pictures with shadows, mirrors and glass are the same bytes whatever is used to make them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/serial_hit_tester.h"
+#include "host/light/test/light_scenes.h"
+
+namespace raygate {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+class EveryIntegrator : public testing::TestWithParam<IntegratorKind> {
+ protected:
+  RenderOptions options(int width = 40, int height = 30) const {
+    return light(GetParam(), width, height, 5);  // two passes
+  }
+  Film film(const RenderOptions& options, RenderStats& stats) const {
+    return render(scene_, bvh_, camera_, options, pipeline_twin(), stats);
+  }
+  Film film(const RenderOptions& options) const {
+    RenderStats stats;
+    return film(options, stats);
+  }
+
+  Scene scene_ = everything();
+  Bvh bvh_{scene_};
+  Camera camera_ = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
+};
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryIntegrator,
+                         testing::Values(IntegratorKind::kPrimary, IntegratorKind::kWhitted,
+                                         IntegratorKind::kPath));
+
+TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
+  const Film one = film(options(150, 100));
+  for (const int threads : {2, 8}) {
+    RenderOptions more = options(150, 100);
+    more.threads = threads;
+    EXPECT_TRUE(same(one, film(more))) << threads;
+  }
+  for (const int lanes : {4, 8}) {  // larger tiles
+    RenderOptions more = options(150, 100);
+    more.lanes = lanes;
+    EXPECT_TRUE(same(one, film(more))) << lanes;
+  }
+  RenderStats stats;
+  const HitTesterFactory serial = [] {
+    return std::make_unique<SerialHitTester>(std::make_unique<CpuPlaneUnit>());
+  };
+  EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), serial, stats)));
+}
+
+TEST_P(EveryIntegrator, WindowsArePartsOfTheWhole) {
+  const Film whole = film(options());
+  RenderOptions cropped = options();
+  cropped.window = {7, 5, 29, 26};
+  const Film part = film(cropped);
+  for (int y = 5; y < 26; ++y) {
+    for (int x = 7; x < 29; ++x) {
+      ASSERT_EQ(part.color[std::size_t(y - 5) * 22 + (x - 7)], whole.color[y * 40u + x]);
+    }
+  }
+}
+
+// More shadow rays than are traced at once.
+TEST(ManyLights, WindowsArePartsOfTheWhole) {
+  Scene scene = everything();
+  for (int i = 0; i < 40; ++i) {
+    scene.lights.push_back({{-1.8f + 0.09f * float(i), 1.7f, 0.3f}, glm::vec3(0.1f)});
+  }
+  const Bvh bvh(scene);
+  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
+  RenderOptions options = light(IntegratorKind::kWhitted, 96, 96, 1);
+  options.max_depth = 1;
+  RenderStats stats;
+  const Film whole = render(scene, bvh, camera, options, pipeline_twin(), stats);
+  EXPECT_GT(stats.shadow_rays, 1u << 17);
+  options.window = {50, 20, 77, 63};
+  const Film part = render(scene, bvh, camera, options, pipeline_twin(), stats);
+  for (int y = 20; y < 63; ++y) {
+    for (int x = 50; x < 77; ++x) {
+      ASSERT_EQ(part.color[std::size_t(y - 20) * 27 + (x - 50)], whole.color[y * 96u + x]);
+    }
+  }
+}
+
+constexpr bool Skips::*kSkips[] = {&Skips::culling,    &Skips::records,     &Skips::light_behind,
+                                   &Skips::weightless, &Skips::empty_tiles, &Skips::first_occluder};
+
+// All on, each off alone, all off; with clear surfaces in the scene and without.
+TEST_P(EveryIntegrator, SkipsChangeNoByteAndSaveWork) {
+  for (const bool clear : {true, false}) {
+    if (!clear) {
+      scene_.materials[4] = scene_.materials[6] = matte(glm::vec3(0.4f));  // glass and window
+    }
+    RenderStats all_on;
+    const Film expected = film(options(20, 15), all_on);
+    RenderOptions none = options(20, 15);
+    for (const auto skip : kSkips) {
+      RenderOptions one = options(20, 15);
+      one.skips.*skip = false;
+      none.skips.*skip = false;
+      RenderStats stats;
+      EXPECT_TRUE(same(expected, film(one, stats)));
+      EXPECT_GE(stats.hit.tests, all_on.hit.tests);
+    }
+    none.max_depth = 1;  // weightless rays are many
+    RenderOptions some = options(20, 15);
+    some.max_depth = 1;
+    RenderStats stats;
+    EXPECT_TRUE(same(film(some), film(none, stats)));
+    EXPECT_EQ(stats.hit.tests, stats.rays * scene_.triangles.size());
+    EXPECT_EQ(stats.skipped.lights_behind + stats.skipped.weightless, 0u);
+  }
+}
+
+TEST_P(EveryIntegrator, SeedsChangeTheNoiseAlone) {
+  RenderOptions other = options();
+  other.seed = 1;
+  const Film a = film(options()), b = film(other);
+  EXPECT_TRUE(same_bytes(a.color, film(options()).color));
+  EXPECT_FALSE(same_bytes(a.color, b.color));
+  double sum_a = 0.0, sum_b = 0.0;
+  for (std::size_t i = 0; i < a.color.size(); ++i) {
+    sum_a += a.color[i].r;
+    sum_b += b.color[i].r;
+  }
+  EXPECT_NEAR(sum_a, sum_b, 0.05 * sum_a);
+}
+
+// Whatever a file may say, and lamps in the oddest places: no infinity, nothing that is no number.
+TEST_P(EveryIntegrator, EveryPixelIsFinite) {
+  for (const float extreme : {0.0f, 1e-30f, 0.001f, 1e30f}) {
+    for (int model = 0; model <= 10; ++model) {
+      Scene scene = everything();
+      for (Material& material : scene.materials) {
+        material.illumination_model = model;
+        material.shininess = extreme;
+        material.refraction_index = std::max(extreme, 0.001f);
+        material.emission *= extreme;
+        material.specular = glm::vec3(extreme);
+      }
+      scene.materials[5].emission = glm::vec3(extreme);
+      scene.lights.push_back({{-2, -2, -2}, glm::vec3(extreme)});     // in a corner
+      scene.lights.push_back({scene.positions[0], glm::vec3(1.0f)});  // on a vertex
+      scene.lights.push_back({glm::vec3(camera_.eye()), glm::vec3(0.0f)});
+      RenderOptions small = light(GetParam(), 10, 8, 2);
+      small.max_depth = 3;
+      for (const glm::vec4& colour : film_of(scene, camera_, small).color) {
+        for (int k = 0; k < 4; ++k)
+          ASSERT_TRUE(std::isfinite(colour[k])) << model << " " << extreme;
+      }
+    }
+  }
+}
+
+// Each counter counts, and a scene in a corner of the picture leaves tiles empty.
+TEST(Skips, AreCounted) {
+  Scene scene = everything();
+  scene.materials[4] = scene.materials[6] = matte(glm::vec3(0.4f));  // nothing clear
+  const Bvh bvh(scene);
+  const Camera camera = camera_at({0.6, 0.4, 60}, {12, 12, 0}, 40.0);
+  RenderOptions options = light(IntegratorKind::kWhitted, 400, 400, 1);
+  RenderStats stats;
+  const Film film = render(scene, bvh, camera, options, pipeline_twin(), stats);
+  EXPECT_GT(stats.skipped.culled_tests, 100 * stats.hit.tests);
+  EXPECT_GT(stats.skipped.records, 0u);
+  EXPECT_GT(stats.skipped.lights_behind, 0u);
+  EXPECT_GT(stats.skipped.weightless, 0u);
+  EXPECT_GT(stats.skipped.empty_tile_rays, 0u);
+  EXPECT_GT(stats.skipped.first_occluders, 0u);
+  EXPECT_EQ(stats.skipped.empty_tile_rays + stats.camera_rays, 400u * 400u);
+  options.skips.empty_tiles = false;
+  EXPECT_TRUE(same(film, render(scene, bvh, camera, options, pipeline_twin(), stats)));
+  EXPECT_EQ(stats.camera_rays, 400u * 400u);
+}
+
+// The threshold saves rays, and changes the picture by no more than it says a ray may count for.
+TEST(Threshold, SavesRaysThatHardlyCount) {
+  Scene scene = everything();
+  const Bvh bvh(scene);
+  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
+  RenderOptions options = light(IntegratorKind::kWhitted, 64, 64, 1);
+  RenderStats all, some;
+  options.threshold = 0.0;
+  const Film exact = render(scene, bvh, camera, options, pipeline_twin(), all);
+  EXPECT_EQ(all.skipped.dim, 0u);
+  options.threshold = 0.05;
+  const Film film = render(scene, bvh, camera, options, pipeline_twin(), some);
+  EXPECT_GT(some.skipped.dim, 100u);
+  EXPECT_LT(some.rays, all.rays);
+  for (std::size_t i = 0; i < film.color.size(); ++i) {
+    // At most 2^4 rays of a pixel are cut off, each showing at most the lamp's radiance of 6.
+    ASSERT_LE(std::abs(film.color[i].r - exact.color[i].r), 0.05f * 16 * 6);
+    ASSERT_LE(film.color[i].r, exact.color[i].r + 1e-6f);
+  }
+}
+
+// Snapshots show what is there; the last one is part of the way to the film.
+TEST(Snapshots, AreTakenOnTheWay) {
+  const Scene scene = everything();
+  RenderOptions options = light(IntegratorKind::kPath, 40, 30, 12);
+  int snapshots = 0;
+  options.snapshot = [&](const Film& film) {
+    ++snapshots;
+    EXPECT_EQ(film.color.size(), 1200u);
+    EXPECT_GT(film.color[600].r, 0.0f);
+  };
+  options.snapshot_seconds = 0.0;
+  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
+  RenderStats stats;
+  (void)render(scene, Bvh(scene), camera, options, pipeline_twin(), stats);
+  EXPECT_EQ(snapshots, 2) << "of three passes of one tile, the last is the film";
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,124 @@
+// Small scenes with materials and lights, and films of them.
+#pragma once
+
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "host/exact/test/meshes.h"
+#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/pipeline_hit_tester.h"
+#include "host/picture/renderer.h"
+#include "host/scene/camera.h"
+
+namespace raygate::test {
+
+inline Material matte(const glm::vec3& diffuse) {
+  Material material;
+  material.diffuse = diffuse;
+  material.illumination_model = 1;
+  return material;
+}
+
+inline Material mirror(float specular) {
+  Material material = matte(glm::vec3(0.0f));
+  material.specular = glm::vec3(specular);
+  material.illumination_model = 3;
+  return material;
+}
+
+inline Material glass(float index) {
+  Material material = matte(glm::vec3(0.0f));
+  material.refraction_index = index;
+  material.opacity = 0.0f;
+  material.illumination_model = 7;
+  return material;
+}
+
+inline Material lamp(const glm::vec3& emission) {
+  Material material = matte(glm::vec3(0.0f));
+  material.emission = emission;
+  return material;
+}
+
+/// Two triangles: the corner `a`, and those at `u` and `v` from it.
+inline std::vector<Corners> rectangle(const glm::vec3& a, const glm::vec3& u, const glm::vec3& v) {
+  return {{a, a + u, a + u + v}, {a, a + u + v, a + v}};
+}
+
+/// Adds triangles of one material, as an object of their own.
+inline void add(Scene& scene, const std::vector<Corners>& triangles, const Material& material) {
+  const auto index = static_cast<std::uint32_t>(scene.materials.size());
+  scene.materials.push_back(material);
+  scene.objects.push_back("object " + std::to_string(index));
+  Scene more = scene_of(triangles);
+  for (Triangle triangle : more.triangles) {
+    for (auto& vertex : triangle.vertices) {
+      vertex += static_cast<std::uint32_t>(scene.positions.size());
+    }
+    triangle.material = triangle.object = index;
+    scene.triangles.push_back(triangle);
+  }
+  scene.positions.insert(scene.positions.end(), more.positions.begin(), more.positions.end());
+}
+
+inline HitTesterFactory pipeline_twin() {
+  return [] { return std::make_unique<PipelineHitTester>(std::make_unique<CpuBurstUnit>()); };
+}
+
+inline RenderOptions light(IntegratorKind integrator, int width, int height, int samples) {
+  RenderOptions options;
+  options.width = width;
+  options.height = height;
+  options.samples = samples;
+  options.integrator = integrator;
+  options.max_depth = integrator == IntegratorKind::kPath ? 64 : 4;
+  return options;
+}
+
+inline Film film_of(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+  RenderStats stats;
+  return render(scene, Bvh(scene), camera, options, pipeline_twin(), stats);
+}
+
+template <typename T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+inline bool same(const Film& a, const Film& b) {
+  return same_bytes(a.color, b.color) && same_bytes(a.depth, b.depth) &&
+         same_bytes(a.normal, b.normal) && same_bytes(a.primitive, b.primitive);
+}
+
+/// A room with everything in it: a lamp, a point light, mirror, glass, a window that is half clear,
+/// a glossy sphere; the sky through a door.
+inline Scene everything() {
+  Scene scene;
+  add(scene, rectangle({-2, -2, -2}, {4, 0, 0}, {0, 0, 4}), matte({0.7f, 0.6f, 0.5f}));
+  add(scene, rectangle({-2, -2, -2}, {0, 4, 0}, {4, 0, 0}), matte({0.3f, 0.5f, 0.7f}));
+  add(scene, rectangle({-1.9f, -1.5f, -1}, {0.1f, 3, 0}, {0, 0, 2}), mirror(0.9f));
+  add(scene, rectangle({-0.5f, 1.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}), lamp({6, 5, 4}));
+  add(scene, sphere(2, 0.7f, {-0.8f, -1.2f, 0.3f}), glass(1.5f));
+  Material glossy = matte({0.5f, 0.1f, 0.1f});
+  glossy.specular = glm::vec3(0.4f);
+  glossy.shininess = 30.0f;
+  glossy.illumination_model = 2;
+  add(scene, sphere(2, 0.6f, {0.9f, -1.3f, -0.7f}), glossy);
+  Material window = matte({0.1f, 0.6f, 0.2f});
+  window.opacity = 0.4f;
+  add(scene, rectangle({0.4f, -1.5f, 0.6f}, {1, 0, 0}, {0, 1.5f, 0.1f}), window);
+  scene.lights.push_back({{1.5f, 1.0f, 1.5f}, {3, 3, 4}});
+  scene.background = glm::vec3(0.2f, 0.3f, 0.4f);
+  return scene;
+}
+
+inline Camera camera_at(const glm::dvec3& eye, const glm::dvec3& target, double fov,
+                        double aspect = 1.0) {
+  const glm::dvec3 view = target - eye;
+  const bool vertical = view.x == 0.0 && view.z == 0.0;
+  return Camera::look_at(eye, target, vertical ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0), fov,
+                         aspect);
+}
+
+}  // namespace raygate::test

@@ -1,0 +1,218 @@
+// The film: right in every pixel, and the same whatever the threads, the window and the engine.
+#include "host/picture/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "host/exact/test/meshes.h"
+#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/serial_hit_tester.h"
+#include "host/scene/camera.h"
+
+namespace raygate {
+namespace {
+
+using Order = SerialHitTester::Order;
+
+HitTesterFactory cpu(Order order = Order::kEdgesFirst) {
+  return [order] {
+    return std::make_unique<SerialHitTester>(std::make_unique<CpuPlaneUnit>(), order);
+  };
+}
+
+RenderOptions size(int width, int height, int threads = 1) {
+  RenderOptions options;
+  options.width = width;
+  options.height = height;
+  options.threads = threads;
+  return options;
+}
+
+template <typename T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+bool same(const Film& a, const Film& b) {
+  return same_bytes(a.color, b.color) && same_bytes(a.depth, b.depth) &&
+         same_bytes(a.normal, b.normal) && same_bytes(a.primitive, b.primitive);
+}
+
+/// A sphere in a box, with the camera inside the box: edges everywhere.
+Scene sphere_in_box() {
+  std::vector<Corners> mesh = test::sphere(3);
+  const auto walls = test::box(glm::vec3(-3), glm::vec3(3));
+  mesh.insert(mesh.end(), walls.begin(), walls.end());
+  Scene scene = test::scene_of(mesh);
+  scene.materials[0].emission = glm::vec3(0.25f, 0, 0);
+  return scene;
+}
+
+// The eye on a diagonal, the picture square: rays run exactly through edges and vertices.
+const Camera kCamera =
+    Camera::look_at(glm::dvec3(2, 2, 2), glm::dvec3(0), glm::dvec3(0, 0, 1), 60.0, 1.0);
+
+TEST(Renderer, EveryPixelIsTheExactNearestPolygon) {
+  const Scene scene = sphere_in_box();
+  const Bvh bvh(scene);
+  RenderStats stats;
+  const Film film = render(scene, bvh, kCamera, size(65, 65), cpu(), stats);
+  for (int y = 0; y < 65; ++y) {
+    for (int x = 0; x < 65; ++x) {
+      const Ray ray = {kCamera.eye(), kCamera.direction((x + 0.5) / 65, (y + 0.5) / 65)};
+      std::uint32_t nearest = kNoPrimitive;
+      const auto corners = [&](std::uint32_t i) {
+        const auto& v = scene.triangles[i].vertices;
+        return Corners{scene.positions[v[0]], scene.positions[v[1]], scene.positions[v[2]]};
+      };
+      for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+        if (!hits_triangle(ray, corners(i))) continue;
+        if (nearest == kNoPrimitive || compare_hits(ray, corners(i), corners(nearest)) < 0) {
+          nearest = i;
+        }
+      }
+      ASSERT_NE(nearest, kNoPrimitive);
+      const std::size_t pixel = std::size_t(y) * 65 + x;
+      ASSERT_EQ(film.primitive[pixel], nearest) << x << ", " << y;
+      EXPECT_NEAR(glm::length(film.normal[pixel]), 1.0f, 1e-6f);
+      EXPECT_LE(glm::dot(film.normal[pixel], ray.direction), 0.0f);
+      EXPECT_EQ(film.color[pixel].a, 1.0f);
+      EXPECT_GE(film.color[pixel].r, 0.25f);
+      EXPECT_TRUE(std::isfinite(film.depth[pixel]));
+    }
+  }
+  EXPECT_EQ(stats.rays, 65u * 65u);
+  EXPECT_GT(stats.exact_inside, 0u);
+  EXPECT_GT(stats.records, 0u);
+  EXPECT_LE(stats.records, scene.triangles.size());
+  EXPECT_FALSE(stats.cancelled);
+}
+
+TEST(Renderer, FilmDoesNotDependOnThreadsOrOrder) {
+  const Scene scene = sphere_in_box();
+  const Bvh bvh(scene);
+  RenderStats one, other;
+  const Film film = render(scene, bvh, kCamera, size(200, 150), cpu(), one);
+  for (const int threads : {2, 3, 8}) {
+    EXPECT_TRUE(same(film, render(scene, bvh, kCamera, size(200, 150, threads), cpu(), other)));
+    EXPECT_EQ(one.hit.tests, other.hit.tests);
+    EXPECT_EQ(one.records, other.records);
+  }
+  EXPECT_TRUE(
+      same(film, render(scene, bvh, kCamera, size(200, 150), cpu(Order::kPlanesFirst), other)));
+}
+
+TEST(Renderer, WindowIsAPartOfTheWhole) {
+  const Scene scene = sphere_in_box();
+  const Bvh bvh(scene);
+  RenderStats stats;
+  const Film whole = render(scene, bvh, kCamera, size(100, 80), cpu(), stats);
+  RenderOptions options = size(100, 80);
+  options.window = {13, 7, 60, 71};
+  const Film part = render(scene, bvh, kCamera, options, cpu(), stats);
+  ASSERT_EQ(part.color.size(), 47u * 64u);
+  for (int y = 7; y < 71; ++y) {
+    for (int x = 13; x < 60; ++x) {
+      const std::size_t in_part = std::size_t(y - 7) * 47 + (x - 13), in_whole = y * 100u + x;
+      ASSERT_EQ(part.primitive[in_part], whole.primitive[in_whole]);
+      ASSERT_EQ(part.color[in_part], whole.color[in_whole]);
+    }
+  }
+}
+
+TEST(Renderer, MissesLeaveNothing) {
+  const Scene scene = test::scene_of({});
+  RenderStats stats;
+  const Film film = render(scene, Bvh(scene), kCamera, size(9, 5, 4), cpu(), stats);
+  EXPECT_EQ(film.primitive, std::vector<std::uint32_t>(45, kNoPrimitive));
+  EXPECT_EQ(film.depth[0], std::numeric_limits<float>::infinity());
+  EXPECT_EQ(film.color[44], glm::vec4(0.0f));
+  EXPECT_EQ(stats.hit.tests, 0u);
+}
+
+// Straight at a wall two units away: the colour is the material's, the depth two.
+TEST(Renderer, LambertLitFromTheCamera) {
+  Scene scene =
+      test::scene_of({{glm::vec3(-9, -9, -2), glm::vec3(9, -9, -2), glm::vec3(0, 9, -2)}});
+  scene.materials[0].diffuse = glm::vec3(0.5f, 0.25f, 1.0f);
+  const Camera camera =
+      Camera::look_at(glm::dvec3(0), glm::dvec3(0, 0, -1), glm::dvec3(0, 1, 0), 60.0, 1.0);
+  RenderStats stats;
+  Film film = render(scene, Bvh(scene), camera, size(1, 1), cpu(), stats);
+  EXPECT_EQ(film.color[0], glm::vec4(0.5f, 0.25f, 1.0f, 1.0f));
+  EXPECT_EQ(film.normal[0], glm::vec3(0, 0, 1));
+  EXPECT_EQ(film.depth[0], 2.0f);
+  // Normals of the file, seen at 60 degrees, from either side.
+  const float c = 0.5f, s = std::sqrt(0.75f);
+  scene.normals = {glm::vec3(s, 0, -c)};
+  scene.triangles[0].normals = {0, 0, 0};
+  film = render(scene, Bvh(scene), camera, size(1, 1), cpu(), stats);
+  EXPECT_NEAR(film.color[0].b, 0.5f, 1e-6f);
+  EXPECT_NEAR(film.normal[0].z, 0.5f, 1e-6f);
+}
+
+// Each extra channel on its own: what it says, and that nothing else is made or changed.
+TEST(Renderer, ExtraChannelsOnDemand) {
+  Scene scene = sphere_in_box();
+  scene.origin = glm::dvec3(100.0, 0.0, 0.0);
+  scene.objects = {"sphere", "box"};
+  const std::size_t sphere_size = test::sphere(3).size();
+  for (std::size_t i = sphere_size; i < scene.triangles.size(); ++i) scene.triangles[i].object = 1;
+  const Bvh bvh(scene);
+  RenderStats stats;
+  const Film plain = render(scene, bvh, kCamera, size(64, 64), cpu(), stats);
+  for (const auto wanted :
+       {&ExtraChannels::position, &ExtraChannels::albedo, &ExtraChannels::object,
+        &ExtraChannels::tests, &ExtraChannels::doubts}) {
+    RenderOptions options = size(64, 64);
+    options.channels.*wanted = true;
+    const Film film = render(scene, bvh, kCamera, options, cpu(), stats);
+    EXPECT_TRUE(same(film, plain));
+    const auto expected = [&](auto channel) { return channel == wanted ? 64u * 64u : 0u; };
+    EXPECT_EQ(film.position.size(), expected(&ExtraChannels::position));
+    EXPECT_EQ(film.albedo.size(), expected(&ExtraChannels::albedo));
+    EXPECT_EQ(film.object.size(), expected(&ExtraChannels::object));
+    EXPECT_EQ(film.tests.size(), expected(&ExtraChannels::tests));
+    EXPECT_EQ(film.doubts.size(), expected(&ExtraChannels::doubts));
+    for (std::size_t i = 0; i < film.object.size(); ++i) {
+      ASSERT_EQ(film.object[i], film.primitive[i] < sphere_size ? 0u : 1u);
+    }
+    for (std::size_t i = 0; i < film.position.size(); ++i) {
+      // Along the axis of the camera, the point is as far as the depth says.
+      const glm::dvec3 from_eye =
+          glm::dvec3(film.position[i]) - scene.origin - glm::dvec3(kCamera.eye());
+      ASSERT_NEAR(glm::dot(from_eye, kCamera.forward()), film.depth[i], 2e-5);
+    }
+    for (const glm::vec3& albedo : film.albedo) ASSERT_EQ(albedo, scene.materials[0].diffuse);
+  }
+}
+
+TEST(Renderer, ProgressReachesOneAndCanCancel) {
+  const Scene scene = sphere_in_box();
+  const Bvh bvh(scene);
+  RenderStats stats;
+  double last = 0.0;
+  (void)render(scene, bvh, kCamera, size(300, 300, 2), cpu(), stats, [&](double done) {
+    EXPECT_GE(done, last);
+    last = done;
+    return true;
+  });
+  EXPECT_EQ(last, 1.0);
+  (void)render(scene, bvh, kCamera, size(300, 300), cpu(), stats, [](double) { return false; });
+  EXPECT_TRUE(stats.cancelled);
+  EXPECT_LT(stats.rays, 300u * 300u);
+}
+
+TEST(Renderer, ATestersExceptionReachesTheCaller) {
+  const Scene scene = sphere_in_box();
+  RenderStats stats;
+  const HitTesterFactory broken = []() -> std::unique_ptr<HitTester> {
+    throw std::runtime_error("no unit");
+  };
+  EXPECT_THROW((void)render(scene, Bvh(scene), kCamera, size(64, 64, 3), broken, stats),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,257 @@
+#include "host/picture/tile_renderer.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "host/picture/view_pyramid.h"
+#include "host/stopwatch.h"
+
+namespace raygate {
+namespace {
+
+// Pixels of a packet, and of the cones around eight of them: rays close together, for the boxes to
+// agree about.
+constexpr int kBlockWidth = 4, kBlockHeight = kLanes / kBlockWidth;
+constexpr int kSquare = 8;
+constexpr std::uint32_t kFilterStream = 0;
+constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
+// The unit runs empty for 46 clocks after a batch if no other one follows. Of 0 to 256 tests a lane
+// this took the fewest clocks on most scenes, for one lane and for eight.
+constexpr std::size_t kEnoughTestsALane = 64;
+constexpr double kBrightest = std::numeric_limits<float>::max();
+
+/// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
+/// smaller.
+template <class Visit>
+void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit) {
+  for (int y = rect.y0; y < rect.y1; y += height) {
+    for (int x = rect.x0; x < rect.x1; x += width) {
+      visit(PixelRect{x, y, std::min(x + width, rect.x1), std::min(y + height, rect.y1)});
+    }
+  }
+}
+
+}  // namespace
+
+TileRenderer::TileRenderer(const RenderJob& job, HitTester& tester, Film& film, FilmSums& sums)
+    : job_(job),
+      tester_(tester),
+      film_(film),
+      sums_(sums),
+      wavefront_(job.bvh, tester, kEnoughTestsALane * static_cast<std::size_t>(job.options.lanes)),
+      is_counting_(!film.tests.empty() || !film.doubts.empty()) {
+  wavefront_.count_work(is_counting_);
+  const RenderOptions& options = job.options;
+  if (options.integrator == IntegratorKind::kPrimary) return;
+  integrator_ = make_integrator(
+      options.integrator, job.bvh, job.lights, options.skips,
+      {.max_depth = options.max_depth,
+       .threshold = options.threshold,
+       .ambient = options.ambient ? glm::dvec3(*options.ambient) : job.lights.ambient(),
+       .single_sample = options.samples == 1});
+  shadow_rays_ =
+      std::make_unique<ShadowRays>(job.scene, job.bvh, job.lights, wavefront_, options.skips,
+                                   integrator_->shadows_through_refraction());
+}
+
+/// Square by square, and in them block by block: the wavefront's packets are blocks, its cones
+/// squares.
+void TileRenderer::list_pixels(const PixelRect& tile) {
+  pixels_.clear();
+  for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
+    for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
+      for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
+        pixels_.push_back({pixel.x0, pixel.y0,
+                           std::size_t(pixel.y0 - film_.window.y0) * film_.window.width() +
+                               std::size_t(pixel.x0 - film_.window.x0)});
+      });
+    });
+  });
+}
+
+/// With one sample a pixel its ray goes through the pixel's middle.
+void TileRenderer::make_camera_rays() {
+  const RenderOptions& options = job_.options;
+  wave_.clear();
+  samplers_.clear();
+  for (const Pixel& pixel : pixels_) {
+    samplers_.emplace_back(options.seed, pixel.x, pixel.y);
+    for (int i = 0; i < count_; ++i) {
+      glm::dvec2 offset(0.0);
+      if (options.samples > 1) {
+        offset = filter_offset(options.filter, samplers_.back()(first_sample_ + i, kFilterStream));
+      }
+      LightRay ray;
+      ray.ray = {job_.camera.eye(),
+                 job_.camera.direction((pixel.x + 0.5 + offset.x) / film_.width,
+                                       (pixel.y + 0.5 + offset.y) / film_.height)};
+      ray.sample = static_cast<std::uint32_t>(wave_.size());
+      wave_.push_back(ray);
+    }
+  }
+}
+
+bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
+                         const std::function<bool()>& keep_going) {
+  Stopwatch watch;
+  first_sample_ = first_sample;
+  count_ = count;
+  list_pixels(tile);
+  const std::size_t samples = pixels_.size() * static_cast<std::size_t>(count);
+  seen_.assign(samples, {});
+  output_.radiance.assign(samples, glm::dvec3(0.0));
+  output_.shadows.clear();
+  from_lamps_.assign(samples, glm::dvec3(0.0));
+  const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
+  if (job_.options.skips.empty_tiles &&
+      !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
+    if (integrator_) output_.radiance.assign(samples, job_.lights.background());
+    stats_.skipped.empty_tile_rays += samples;
+    stats_.shade_seconds += watch.lap();
+    return true;
+  }
+  make_camera_rays();
+  stats_.camera_rays += samples;
+  stats_.shade_seconds += watch.lap();
+  while (!wave_.empty()) {
+    if (!keep_going()) return false;
+    trace_wave();
+  }
+  return true;
+}
+
+/// The rays of one depth, and the shadow rays from where they end: these in several waves where
+/// there are many lamps. Light from lamps is added up apart from other light, so that the order of
+/// a sample's sums does not depend on the waves.
+void TileRenderer::trace_wave() {
+  Stopwatch watch;
+  const bool is_first = wave_[0].depth == 0;
+  rays_.clear();
+  for (const LightRay& ray : wave_) rays_.push_back(ray.ray);
+  stats_.rays += rays_.size();
+  stats_.shade_seconds += watch.lap();
+  wavefront_.trace(rays_, {.common = is_first ? &job_.camera_records : nullptr,
+                           .culling = job_.options.skips.culling});
+  watch.lap();
+  output_.next.clear();
+  hits_.clear();
+  for (std::size_t i = 0; i < wave_.size(); ++i) {
+    hits_.push_back(wavefront_.nearest(i));
+    if (is_counting_) count_work(i, wave_[i].sample);
+  }
+  for (std::size_t i = 0; i < wave_.size(); ++i) {
+    shade(wave_[i], hits_[i]);
+    if (output_.shadows.size() < kManyShadowRays && i + 1 < wave_.size()) continue;
+    stats_.shade_seconds += watch.lap();
+    trace_shadows();
+    watch.lap();
+  }
+  wave_.swap(output_.next);
+  stats_.shade_seconds += watch.lap();
+}
+
+void TileRenderer::trace_shadows() {
+  if (!shadow_rays_) return;
+  const auto traced = [this](std::size_t ray_of_wave, std::size_t shadow) {
+    count_work(ray_of_wave, output_.shadows[shadow].sample);
+  };
+  shadow_rays_->resolve(output_.shadows,
+                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
+  for (const ShadowRay& shadow : output_.shadows) from_lamps_[shadow.sample] += shadow.light;
+  output_.shadows.clear();
+}
+
+void TileRenderer::shade(const LightRay& ray, const NearestHit& hit) {
+  if (hit.slot == NearestHit::kNone) {
+    if (integrator_) output_.radiance[ray.sample] += ray.weight * job_.lights.background();
+    return;
+  }
+  const Surface surface(job_.scene, job_.bvh, ray.ray, hit.slot);
+  if (ray.depth == 0) {
+    Seen& seen = seen_[ray.sample];
+    seen.slot = hit.slot;
+    seen.normal = surface.normal;
+    seen.albedo = surface.diffuse;
+    // The engine's P is as good as float32 makes it; what is written is better.
+    if (first_sample_ == 0) {
+      seen.point = precise_hit(ray.ray, job_.bvh.corners_of(hit.slot)).point;
+    }
+  }
+  if (!integrator_) {
+    output_.radiance[ray.sample] =
+        surface.diffuse * std::max(0.0, glm::dot(surface.normal, surface.view)) +
+        glm::dvec3(surface.material->emission);
+    return;
+  }
+  const auto count = static_cast<std::uint32_t>(count_);
+  const RandomNumbers random(samplers_[ray.sample / count],
+                             static_cast<std::uint32_t>(first_sample_) + ray.sample % count,
+                             ray.stream);
+  integrator_->shade(ray, surface, random, output_);
+}
+
+void TileRenderer::count_work(std::size_t ray_of_wave, std::uint32_t sample) {
+  seen_[sample].work.tests += wavefront_.work()[ray_of_wave].tests;
+  seen_[sample].work.doubts += wavefront_.work()[ray_of_wave].doubts;
+}
+
+void TileRenderer::write() {
+  Stopwatch watch;
+  const double samples_so_far = first_sample_ + count_;
+  for (std::size_t p = 0; p < pixels_.size(); ++p) {
+    const std::size_t pixel = pixels_[p].index;
+    glm::dvec4 color = sums_.color.empty() ? glm::dvec4(0.0) : sums_.color[pixel];
+    glm::dvec3 albedo = sums_.albedo.empty() ? glm::dvec3(0.0) : sums_.albedo[pixel];
+    for (std::size_t i = p * count_; i < (p + 1) * count_; ++i) {
+      const Seen& seen = seen_[i];
+      color += glm::dvec4(output_.radiance[i] + from_lamps_[i],
+                          seen.slot == NearestHit::kNone ? 0.0 : 1.0);
+      albedo += seen.albedo;
+      if (!film_.tests.empty()) film_.tests[pixel] += seen.work.tests;
+      if (!film_.doubts.empty()) film_.doubts[pixel] += seen.work.doubts;
+    }
+    film_.color[pixel] = glm::vec4(glm::min(color / samples_so_far, kBrightest));
+    if (!film_.albedo.empty()) film_.albedo[pixel] = glm::vec3(albedo / samples_so_far);
+    if (!sums_.color.empty()) sums_.color[pixel] = color;
+    if (!sums_.albedo.empty()) sums_.albedo[pixel] = albedo;
+    if (first_sample_ == 0) write_channels(pixel, seen_[p * count_]);
+  }
+  stats_.shade_seconds += watch.lap();
+}
+
+/// Those that are the first sample's.
+void TileRenderer::write_channels(std::size_t pixel, const Seen& seen) {
+  if (seen.slot == NearestHit::kNone) return;
+  const std::uint32_t triangle = job_.bvh.triangle_of(seen.slot);
+  const glm::dvec3 point(seen.point);
+  film_.depth[pixel] = static_cast<float>(glm::dot(point, job_.camera.forward()));
+  film_.normal[pixel] = glm::vec3(seen.normal);
+  film_.primitive[pixel] = triangle;
+  if (!film_.position.empty()) {
+    film_.position[pixel] = glm::vec3(job_.scene.origin + glm::dvec3(job_.camera.eye()) + point);
+  }
+  if (!film_.object.empty()) film_.object[pixel] = job_.scene.triangles[triangle].object;
+}
+
+void TileRenderer::add_to(RenderStats& stats) const {
+  const std::uint64_t shadow_rays = shadow_rays_ ? shadow_rays_->rays() : 0;
+  stats.rays += stats_.rays + shadow_rays;
+  stats.camera_rays += stats_.camera_rays;
+  stats.shadow_rays += shadow_rays;
+  stats.records += wavefront_.own_records();
+  stats.hit += tester_.counters();
+  stats.exact_inside += wavefront_.counters().exact_inside;
+  stats.exact_depth += wavefront_.counters().exact_depth;
+  stats.skipped += stats_.skipped;
+  if (integrator_) stats.skipped += integrator_->skipped();
+  stats.skipped.first_occluders += wavefront_.ended_early();
+  stats.traverse_seconds += wavefront_.seconds().traverse;
+  stats.record_seconds += wavefront_.seconds().record;
+  stats.hit_seconds += wavefront_.seconds().hit;
+  stats.doubt_seconds += wavefront_.seconds().doubt;
+  const double departure_seconds = integrator_ ? integrator_->departure_seconds() : 0.0;
+  stats.shade_seconds += stats_.shade_seconds - departure_seconds;
+  stats.departure_seconds += departure_seconds;
+}
+
+}  // namespace raygate

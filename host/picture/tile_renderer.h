@@ -1,0 +1,95 @@
+// One thread's share of a render: the samples of a tile, wave by wave.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "host/film/film.h"
+#include "host/find/unit/record_cache.h"
+#include "host/find/unit/wavefront.h"
+#include "host/light/integrator.h"
+#include "host/light/shadow_rays.h"
+#include "host/picture/renderer.h"
+#include "host/scene/camera.h"
+
+namespace raygate {
+
+/// What all threads read.
+struct RenderJob {
+  const Scene& scene;
+  const Bvh& bvh;
+  const Camera& camera;
+  const RenderOptions& options;
+  const Lights& lights;
+  RecordCache& camera_records;
+};
+
+/// What the samples of a pixel add up to, where they come in several passes.
+struct FilmSums {
+  std::vector<glm::dvec4> color;
+  std::vector<glm::dvec3> albedo;  ///< if the film has it
+};
+
+/// Renders tiles into a film. All rays of one depth are one wave, and all shadow rays of a depth
+/// another: large batches, which keep the unit's lanes busy. What a pixel gets does not depend on
+/// the tile: each sample's light is added up by itself, depth by depth.
+class TileRenderer {
+ public:
+  TileRenderer(const RenderJob& job, HitTester& tester, Film& film, FilmSums& sums);
+
+  /// Traces samples first_sample .. first_sample + count of each pixel. `keep_going` is asked
+  /// between waves; when it says no, what was traced is not worth writing, and false is returned.
+  [[nodiscard]] bool trace(const PixelRect& tile, int first_sample, int count,
+                           const std::function<bool()>& keep_going);
+
+  /// Adds the samples that were traced last to the film.
+  void write();
+
+  void add_to(RenderStats& stats) const;
+
+ private:
+  /// What a camera ray saw.
+  struct Seen {
+    std::uint32_t slot = NearestHit::kNone;
+    glm::dvec3 normal{0.0}, albedo{0.0};
+    glm::vec3 point{0.0f};  // relative to the eye
+    Wavefront::Work work;   // of all rays of the sample
+  };
+
+  void list_pixels(const PixelRect& tile);
+  void make_camera_rays();
+  void trace_wave();
+  void trace_shadows();
+  void shade(const LightRay& ray, const NearestHit& hit);
+  void count_work(std::size_t ray_of_wave, std::uint32_t sample);
+  void write_channels(std::size_t pixel, const Seen& seen);
+
+  RenderJob job_;
+  HitTester& tester_;
+  Film& film_;
+  FilmSums& sums_;
+  Wavefront wavefront_;
+  std::unique_ptr<Integrator> integrator_;  // none for kPrimary
+  std::unique_ptr<ShadowRays> shadow_rays_;
+  RenderStats stats_;
+  // Of the samples that were traced last, pixel by pixel.
+  struct Pixel {
+    int x, y;
+    std::size_t index;  // in the film
+  };
+  std::vector<Pixel> pixels_;
+  std::vector<Sampler> samplers_;  // by pixel
+  std::vector<Seen> seen_;         // by sample
+  int first_sample_ = 0, count_ = 0;
+  bool is_counting_;
+  WaveOutput output_;
+  std::vector<glm::dvec3> from_lamps_;  // by sample: what shadow rays have brought
+  std::vector<LightRay> wave_;
+  std::vector<Ray> rays_;
+  std::vector<NearestHit> hits_;  // of the wave
+};
+
+}  // namespace raygate

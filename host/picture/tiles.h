@@ -1,0 +1,50 @@
+// How a picture is cut up: tiles of pixels, passes of samples.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "host/film/film.h"
+
+namespace raygate {
+
+/// The window cut into tiles, numbered row by row, and each pixel's samples into passes, so that a
+/// tile's samples of a pass are about 16,384 for each lane: a batch of their tests is long for each
+/// lane against the 46 clocks that it takes to run empty in the end. Fewer where some of the
+/// threads would have no tile.
+struct Tiles {
+  PixelRect window;
+  int samples, samples_per_pass;
+  int width, height;  ///< of a tile
+  int columns, count;
+
+  /// `lanes`: how many share a batch, at least 1.
+  Tiles(const PixelRect& rect, int samples_per_pixel, int lanes, int threads)
+      : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {
+    const int edge = samples_per_pass == 1 ? 128 : samples_per_pass < 4 ? 80 : 64;
+    const std::int64_t share = std::int64_t{window.width()} * window.height() / threads;
+    const int square = edge * edge;
+    const int pixels =
+        static_cast<int>(std::clamp<std::int64_t>(share, square, std::int64_t{square} * lanes));
+    width = pixels / edge;
+    if (2 * width > window.width()) width = window.width();
+    height =
+        (pixels / width + 7) / 8 * 8;  // whole squares of 8 x 8 pixels, which are traced together
+    columns = (window.width() + width - 1) / width;
+    count = columns * ((window.height() + height - 1) / height);
+  }
+
+  [[nodiscard]] int passes() const { return (samples + samples_per_pass - 1) / samples_per_pass; }
+  [[nodiscard]] int first_sample(int pass) const { return pass * samples_per_pass; }
+  [[nodiscard]] int samples_of(int pass) const {
+    return std::min(samples_per_pass, samples - first_sample(pass));
+  }
+
+  [[nodiscard]] PixelRect operator[](int index) const {
+    const int x = window.x0 + index % columns * width;
+    const int y = window.y0 + index / columns * height;
+    return {x, y, std::min(x + width, window.x1), std::min(y + height, window.y1)};
+  }
+};
+
+}  // namespace raygate

@@ -1,0 +1,37 @@
+// libFuzzer target: any bytes as an OBJ file, and what follows a byte 0x1E as its s.mtl.
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/obj_loader.h"
+
+namespace {
+
+void write(const std::filesystem::path& file, std::string_view bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::filesystem::path folder = [] {
+    const auto path =
+        std::filesystem::temp_directory_path() / ("raygate_fuzz_" + std::to_string(getpid()));
+    std::filesystem::create_directories(path);
+    return path;
+  }();
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const std::size_t split = std::min(bytes.find('\x1E'), size);
+  write(folder / "s.obj", bytes.substr(0, split));
+  write(folder / "s.mtl", split < size ? bytes.substr(split + 1) : std::string_view());
+  try {
+    (void)raygate::load_obj(folder / "s.obj", {.skip_degenerate = true});
+  } catch (const raygate::InputError&) {
+    // What a bad file deserves.
+  }
+  return 0;
+}

@@ -1,0 +1,186 @@
+#include "host/scene/io/mesh_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/exact/exact_sign.h"
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/polygon_cutter.h"
+
+namespace raygate {
+
+// Counts what happens often, and says so once, with the first line where it did.
+class MeshBuilder::Warner {
+ public:
+  void note(std::size_t line) {
+    if (count_++ == 0) first_line_ = line;
+  }
+  void report(const std::string& file, const std::string& what, Scene& scene) const {
+    if (count_ == 0) return;
+    scene.warnings.push_back(file + ":" + std::to_string(first_line_) + ": " + what +
+                             (count_ > 1 ? ", here and in " + std::to_string(count_ - 1) +
+                                               " later face" + (count_ > 2 ? "s" : "")
+                                         : ""));
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::size_t first_line_ = 0;
+};
+
+glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
+  const glm::dvec3 half = 0.5 * high - 0.5 * low;
+  const double radius = std::max({half.x, half.y, half.z});
+  if (radius == 0.0) return low;
+  const double step = std::exp2(std::ceil(std::log2(4.0 * radius)));
+  const glm::dvec3 centre = 0.5 * high + 0.5 * low;
+  glm::dvec3 origin;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double steps = std::nearbyint(centre[axis] / step);
+    // + 0.0: no negative zero. Beyond 2^53 steps the centre is on the grid already, and the
+    // quotient may overflow.
+    origin[axis] = std::abs(steps) < 0x1p53 ? steps * step + 0.0 : centre[axis];
+  }
+  return origin;
+}
+
+void MeshBuilder::add_normal(const glm::dvec3& normal) {
+  // Scaled first, so that neither tiny nor huge components are lost in the squares.
+  const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
+  normals_.push_back(largest == 0.0 ? glm::vec3(0.0f)
+                                    : glm::vec3(glm::normalize(normal / largest)));
+}
+
+std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count, const char* what,
+                                   std::size_t line) const {
+  if (index == 0) return kNoIndex;
+  if (index > 0) return static_cast<std::uint32_t>(index - 1);
+  const auto back = static_cast<std::size_t>(-static_cast<std::int64_t>(index));
+  if (back > count) {
+    throw InputError(file_name_, line,
+                     std::string(what) + " index " + std::to_string(index) +
+                         " in a face, but the file has " + std::to_string(count) + " so far");
+  }
+  return static_cast<std::uint32_t>(count - back);
+}
+
+void MeshBuilder::add_face(std::span<const FileCorner> corners, std::uint32_t material,
+                           std::uint32_t object, std::size_t line) {
+  for (const FileCorner& corner : corners) {
+    corners_.push_back({resolve(corner.position, positions_.size(), "vertex", line),
+                        resolve(corner.texcoord, texcoords_.size(), "texture coordinate", line),
+                        resolve(corner.normal, normals_.size(), "normal", line)});
+  }
+  faces_.push_back({corners_.size(), line, material, object});
+}
+
+void MeshBuilder::check_indices() const {
+  const auto check = [&](std::uint32_t index, std::size_t count, const char* what,
+                         const Face& face) {
+    if (index == kNoIndex || index < count) return;
+    throw InputError(file_name_, face.line,
+                     std::string(what) + " index " + std::to_string(index + std::uint64_t{1}) +
+                         " in a face, but the file has " + std::to_string(count));
+  };
+  std::size_t i = 0;
+  for (const Face& face : faces_) {
+    for (; i < face.end; ++i) {
+      check(corners_[i].position, positions_.size(), "vertex", face);
+      check(corners_[i].texcoord, texcoords_.size(), "texture coordinate", face);
+      check(corners_[i].normal, normals_.size(), "normal", face);
+    }
+  }
+}
+
+// Keeps the positions that some face uses, relative to the origin, and renumbers the corners.
+void MeshBuilder::place_positions(Scene& scene) {
+  std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
+  for (const Corner& corner : corners_) new_index[corner.position] = 0;
+  glm::dvec3 low = positions_[corners_[0].position];
+  glm::dvec3 high = low;
+  std::uint32_t used = 0;
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    if (new_index[i] == kNoIndex) continue;
+    new_index[i] = used++;
+    low = glm::min(low, positions_[i]);
+    high = glm::max(high, positions_[i]);
+  }
+  scene.origin = origin_for_box(low, high);
+  scene.positions.resize(used);
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    if (new_index[i] != kNoIndex) {
+      scene.positions[new_index[i]] = glm::vec3(positions_[i] - scene.origin);
+    }
+  }
+  for (Corner& corner : corners_) corner.position = new_index[corner.position];
+}
+
+void MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
+  PolygonCutter cutter;
+  std::vector<glm::vec3> polygon;
+  Warner dropped, touching, no_direction;
+  scene.triangles.reserve(corners_.size() - 2 * faces_.size());
+  std::size_t begin = 0;
+  for (const Face& face : faces_) {
+    const std::span<const Corner> corners(corners_.data() + begin, face.end - begin);
+    begin = face.end;
+    polygon.clear();
+    for (const Corner& corner : corners) polygon.push_back(scene.positions[corner.position]);
+
+    static constexpr std::array<std::uint32_t, 3> kWhole{0, 1, 2};
+    std::span<const std::array<std::uint32_t, 3>> pieces(&kWhole, 1);
+    PolygonKind kind = PolygonKind::kSimple;
+    if (polygon.size() > 3) {
+      kind = cutter.cut(polygon);
+      pieces = cutter.triangles();
+    } else if (collinear(polygon[0], polygon[1], polygon[2])) {
+      kind = PolygonKind::kZeroArea;
+    }
+    if (kind == PolygonKind::kZeroArea) {
+      if (!options.skip_degenerate) {
+        throw InputError(file_name_, face.line,
+                         "face of zero area (its corners are on one line, or cancel out), "
+                         "expected one with an area, or --skip-degenerate");
+      }
+      dropped.note(face.line);
+      continue;
+    }
+    if (kind == PolygonKind::kSelfTouching) touching.note(face.line);
+
+    bool has_normals = corners[0].normal != kNoIndex;
+    if (has_normals && std::any_of(corners.begin(), corners.end(), [&](const Corner& corner) {
+          return normals_[corner.normal] == glm::vec3(0.0f);
+        })) {
+      no_direction.note(face.line);
+      has_normals = false;
+    }
+    for (const auto& piece : pieces) {
+      Triangle& triangle = scene.triangles.emplace_back();
+      triangle.material = face.material;
+      triangle.object = face.object;
+      for (int i = 0; i < 3; ++i) {
+        const Corner& corner = corners[piece[i]];
+        triangle.vertices[i] = corner.position;
+        triangle.texcoords[i] = corner.texcoord;
+        if (has_normals) triangle.normals[i] = corner.normal;
+      }
+    }
+  }
+  dropped.report(file_name_, "face of zero area, dropped", scene);
+  touching.report(file_name_, "polygon crosses or touches itself, cut as well as can be", scene);
+  no_direction.report(file_name_, "normal of length 0, the face is taken as flat", scene);
+}
+
+void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
+  if (faces_.empty()) {
+    throw InputError(file_name_ + ": no faces, expected at least one f statement");
+  }
+  check_indices();
+  place_positions(scene);
+  cut_faces(options, scene);
+  if (scene.triangles.empty()) throw InputError(file_name_ + ": no face has an area");
+  scene.normals = std::move(normals_);
+  scene.texcoords = std::move(texcoords_);
+}
+
+}  // namespace raygate

@@ -1,0 +1,70 @@
+// From the vertices and polygons of a file to the triangles of a scene.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/scene/io/obj_loader.h"
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// One corner of a polygon: indices as the file has them, from 1, or below 0 counted from the last
+/// one so far; 0: none.
+struct FileCorner {
+  std::int32_t position = 0, texcoord = 0, normal = 0;
+};
+
+/// Collects what a file holds, in its order, and builds the scene at its end: only then are the
+/// extent (to recentre) and the number of vertices (faces may come before theirs) known.
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(std::string file_name) : file_name_(std::move(file_name)) {}
+
+  void add_position(const glm::dvec3& position) { positions_.push_back(position); }
+  void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
+  void add_normal(const glm::dvec3& normal);
+
+  /// At least three corners. `line` is for messages.
+  void add_face(std::span<const FileCorner> corners, std::uint32_t material, std::uint32_t object,
+                std::size_t line);
+
+  /// Fills positions, normals, texcoords, triangles and origin, and appends to the warnings.
+  /// Throws InputError: an index of nothing, a face without area, no face at all.
+  void build(const LoadOptions& options, Scene& scene);
+
+ private:
+  struct Corner {
+    std::uint32_t position, texcoord, normal;  // from 0, or kNoIndex
+  };
+  struct Face {
+    std::size_t end;  // of its corners; they begin where the last face's end
+    std::size_t line;
+    std::uint32_t material, object;
+  };
+  class Warner;
+
+  [[nodiscard]] std::uint32_t resolve(std::int32_t index, std::size_t count, const char* what,
+                                      std::size_t line) const;
+  void check_indices() const;
+  void place_positions(Scene& scene);
+  void cut_faces(const LoadOptions& options, Scene& scene) const;
+
+  std::string file_name_;
+  std::vector<glm::dvec3> positions_;
+  std::vector<glm::vec3> normals_;
+  std::vector<glm::vec2> texcoords_;
+  std::vector<Corner> corners_;
+  std::vector<Face> faces_;
+};
+
+/// A point to subtract from all others, on a power-of-two grid about as coarse as the box is
+/// large: zero for a box near the world's origin; and for a coordinate farther from it than three
+/// times the box's extent the subtraction is exact. No result exceeds three times the extent.
+[[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
+
+}  // namespace raygate

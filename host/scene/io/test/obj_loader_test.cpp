@@ -1,0 +1,256 @@
+// Every valid file loads right: each odd kind of OBJ, to the last bit.
+#include "host/scene/io/obj_loader.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+
+#include "host/scene/io/input_error.h"
+#include "host/scene/test/temp_folder.h"
+
+namespace raygate {
+namespace {
+
+using Indices = std::array<std::uint32_t, 3>;
+using Positions = std::vector<glm::vec3>;
+
+constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+Scene load(std::string_view text, const LoadOptions& options = {}) {
+  const TempFolder folder;
+  return load_obj(folder.write("scene.obj", text), options);
+}
+
+Scene load_square(std::string_view more) { return load(std::string(kSquare) + std::string(more)); }
+
+std::vector<Indices> vertices_of(const Scene& scene) {
+  std::vector<Indices> vertices;
+  for (const Triangle& triangle : scene.triangles) vertices.push_back(triangle.vertices);
+  return vertices;
+}
+
+// "scene.obj:LINE: what", without the folder.
+std::string only_warning(const Scene& scene) {
+  if (scene.warnings.size() != 1) return std::to_string(scene.warnings.size()) + " warnings";
+  return scene.warnings[0].substr(scene.warnings[0].rfind('/', scene.warnings[0].find(':')) + 1);
+}
+
+const std::vector<Indices> kOneTriangle{{0, 1, 2}};
+const std::vector<Indices> kTwoTriangles{{0, 1, 2}, {0, 2, 3}};
+
+TEST(LoadObj, Triangle) {
+  const Scene scene = load("v 0 0 0\nv 1 0 0\nv 0 1 0.1\nf 1 2 3\n");
+  EXPECT_EQ(scene.positions, (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.1f}}));
+  EXPECT_EQ(vertices_of(scene), kOneTriangle);
+  EXPECT_EQ(scene.triangles[0].normals, (Indices{kNoIndex, kNoIndex, kNoIndex}));
+  EXPECT_EQ(scene.triangles[0].texcoords, (Indices{kNoIndex, kNoIndex, kNoIndex}));
+  EXPECT_EQ(scene.objects, std::vector<std::string>{"default"});
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].name, "default");
+  EXPECT_EQ(scene.origin, glm::dvec3(0));
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(LoadObj, Quad) { EXPECT_EQ(vertices_of(load_square("f 1 2 3 4\n")), kTwoTriangles); }
+
+TEST(LoadObj, ConcaveQuad) {
+  // A fan from the first corner would cover what is outside.
+  const Scene scene = load("v 2 1 0\nv 0 0 0\nv 2 -1 0\nv 0.5 0 0\nf 1 2 3 4\n");
+  EXPECT_EQ(vertices_of(scene), (std::vector<Indices>{{1, 2, 3}, {0, 1, 3}}));
+}
+
+TEST(LoadObj, NegativeIndices) {
+  EXPECT_EQ(vertices_of(load_square("f -4 -3 -2 -1\n")), kTwoTriangles);
+  // Counted from where the face is, not from the end of the file.
+  EXPECT_EQ(vertices_of(load("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -4 -2 -1\n")),
+            kTwoTriangles);
+}
+
+TEST(LoadObj, ForwardReferences) {
+  EXPECT_EQ(vertices_of(load("f 1 2 3 4\n" + std::string(kSquare))), kTwoTriangles);
+}
+
+TEST(LoadObj, ByteOrderMark) {
+  EXPECT_EQ(vertices_of(load("\xEF\xBB\xBF" + std::string(kSquare) + "f 1 2 3 4\n")),
+            kTwoTriangles);
+}
+
+TEST(LoadObj, LineEnds) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text;
+    for (const char c : std::string(kSquare) + "g a\nusemtl b\nf 1 2 3 4") {
+      text += c == '\n' ? end : std::string(1, c);
+    }
+    const Scene scene = load(text);
+    EXPECT_EQ(vertices_of(scene), kTwoTriangles);
+    EXPECT_EQ(scene.objects, std::vector<std::string>{"a"});
+    EXPECT_EQ(only_warning(scene),
+              "scene.obj:6: material 'b' is defined nowhere, the default instead");
+  }
+}
+
+TEST(LoadObj, LineContinuation) {
+  EXPECT_EQ(vertices_of(load("v 0 \\\n0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2\\\n 3 \\\r\n4\n")),
+            kTwoTriangles);
+}
+
+TEST(LoadObj, SpacesTabsAndComments) {
+  const Scene scene = load(
+      "  # comment\n\tv\t0  0\t0 # origin\n v 1 0 0  \nv 1 1 0\nv 0 1 0 #\nf  1\t2 3  4 # 5 6\n");
+  EXPECT_EQ(vertices_of(scene), kTwoTriangles);
+}
+
+TEST(LoadObj, NoNewlineAtTheEnd) {
+  EXPECT_EQ(vertices_of(load_square("f 1 2 3 4")), kTwoTriangles);
+}
+
+TEST(LoadObj, AllCornerForms) {
+  const std::string attributes = "vt 0 0\nvt 1 0.5\nvt 1\nvn 0 0 2\nvn 0 3 4\n";
+  const Scene both = load_square(attributes + "f 1/1/2 2/2/2 3/3/1\n");
+  EXPECT_EQ(both.triangles[0].texcoords, (Indices{0, 1, 2}));
+  EXPECT_EQ(both.triangles[0].normals, (Indices{1, 1, 0}));
+  EXPECT_EQ(both.texcoords, (std::vector<glm::vec2>{{0, 0}, {1, 0.5f}, {1, 0}}));
+  EXPECT_EQ(both.normals, (Positions{{0, 0, 1}, {0, 0.6f, 0.8f}})) << "unit length";
+
+  const Scene texcoords = load_square(attributes + "f 1/-3 2/-2 3/-1\n");
+  EXPECT_EQ(texcoords.triangles[0].texcoords, (Indices{0, 1, 2}));
+  EXPECT_EQ(texcoords.triangles[0].normals, (Indices{kNoIndex, kNoIndex, kNoIndex}));
+
+  const Scene normals = load_square(attributes + "f 1//1 2//1 3//-1\n");
+  EXPECT_EQ(normals.triangles[0].texcoords, (Indices{kNoIndex, kNoIndex, kNoIndex}));
+  EXPECT_EQ(normals.triangles[0].normals, (Indices{0, 0, 1}));
+}
+
+TEST(LoadObj, TrailingSlashesMeanNothing) {
+  for (const char* face : {"f 1/ 2/ 3/ 4/\n", "f 1// 2// 3// 4//\n"}) {
+    const Scene scene = load_square(std::string("vt 0 0\nvn 0 0 1\n") + face);
+    EXPECT_EQ(vertices_of(scene), kTwoTriangles);
+    EXPECT_EQ(scene.triangles[0].texcoords[0], kNoIndex);
+    EXPECT_EQ(scene.triangles[0].normals[0], kNoIndex);
+  }
+  const Scene scene = load_square("vt 0 0\nf 1/1/ 2/1/ 3/1/\n");
+  EXPECT_EQ(scene.triangles[0].texcoords, (Indices{0, 0, 0}));
+}
+
+TEST(LoadObj, NumbersOfAllKinds) {
+  const Scene scene = load("v +1 .5 -2.\nv 1e-3 1E+2 -0\nv 1e-400 3.4028234e38 0\nf 1 2 3\n");
+  EXPECT_EQ(scene.positions, (Positions{{1, 0.5f, -2}, {0.001f, 100, 0}, {0, 3.4028234e38f, 0}}));
+}
+
+// Numbers just above the middle of two floats: off by one unit of double, and the float is wrong.
+TEST(LoadObj, NumbersAreReadToTheNearestDouble) {
+  const Scene scene = load(
+      "v 861.04226684570324 462.39033508300787 0\nv 657.46560668945324 0 0\n"
+      "v 210.64176177978518 0 1\nf 1 2 3\n");
+  EXPECT_EQ(scene.positions[0].x, static_cast<float>(861.04226684570324));
+  EXPECT_EQ(scene.positions[0].y, static_cast<float>(462.39033508300787));
+  EXPECT_EQ(scene.positions[1].x, static_cast<float>(657.46560668945324));
+  EXPECT_EQ(scene.positions[2].x, static_cast<float>(210.64176177978518));
+}
+
+TEST(LoadObj, WeightsAndColoursOfVertices) {
+  const Scene coloured = load("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0 1\nf 1 2 3\n");
+  EXPECT_EQ(coloured.positions, (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_TRUE(coloured.warnings.empty());
+  const Scene weighted = load("v 0 0 0 1\nv 1 0 0 0.5\nv 0 1 0 0.5\nf 1 2 3\n");
+  EXPECT_EQ(weighted.positions, (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(only_warning(weighted),
+            "scene.obj:2: vertex weights are ignored: they concern curves alone");
+}
+
+TEST(LoadObj, FarFromTheOriginKeepsItsDigits) {
+  const Scene scene = load(
+      "v 4500000.125 1000000.0625 0\nv 4500001.125 1000000.0625 0\nv 4500000.125 1000001.1875 "
+      "0.001\nf 1 2 3\n");
+  const auto world = [&](int i) { return scene.origin + glm::dvec3(scene.positions[i]); };
+  EXPECT_NE(scene.origin, glm::dvec3(0));
+  EXPECT_EQ(world(0), glm::dvec3(4500000.125, 1000000.0625, 0));
+  EXPECT_EQ(world(1), glm::dvec3(4500001.125, 1000000.0625, 0));
+  EXPECT_EQ(world(2), glm::dvec3(4500000.125, 1000001.1875, 0.001f));
+}
+
+TEST(LoadObj, UnusedVerticesDoNotMatter) {
+  const Scene scene =
+      load("v 1e30 0 0\nv 1000000.25 0 0\nv 1000001.25 0 0\nv 1000000.25 1 0\nf 2 3 4\n");
+  EXPECT_EQ(scene.positions.size(), 3u);
+  EXPECT_EQ(scene.origin.x + scene.positions[0].x, 1000000.25);
+  EXPECT_EQ(vertices_of(scene), kOneTriangle);
+}
+
+TEST(LoadObj, ObjectsAndGroups) {
+  const Scene scene = load_square(
+      "f 1 2 3\no room\nf 1 2 3\ng  a  b \nf 1 2 3\nf 2 3 4\no\nf 1 2 3\ng\nf 1 2 3\no room\ng a "
+      "b\n"
+      "f 1 2 3\ng unused\n");
+  EXPECT_EQ(scene.objects, (std::vector<std::string>{"default", "room", "room/a b", "a b"}));
+  std::vector<std::uint32_t> objects;
+  for (const Triangle& triangle : scene.triangles) objects.push_back(triangle.object);
+  EXPECT_EQ(objects, (std::vector<std::uint32_t>{0, 1, 2, 2, 3, 0, 2}));
+}
+
+TEST(LoadObj, WhatIsNoPolygonIsIgnoredWithOneWarningEach) {
+  const Scene scene = load_square("l 1 2\nl 2 3\np 1\nf 1 2 3\ns 1\ns off\nlod 3\nfo 1 3 4\n");
+  EXPECT_EQ(vertices_of(scene), kTwoTriangles);
+  ASSERT_EQ(scene.warnings.size(), 2u);
+  EXPECT_TRUE(scene.warnings[0].ends_with(
+      "scene.obj:5: l statements are ignored: only polygons are rendered"));
+  EXPECT_TRUE(scene.warnings[1].ends_with(
+      "scene.obj:7: p statements are ignored: only polygons are rendered"));
+}
+
+TEST(LoadObj, DegenerateFacesCanBeSkipped) {
+  const std::string text = std::string(kSquare) + "f 1 1 2\nf 1 2 3 4\nf 1 2 1 2\n";
+  EXPECT_THROW((void)load(text), InputError);
+  const Scene scene = load(text, {.skip_degenerate = true});
+  EXPECT_EQ(vertices_of(scene), kTwoTriangles);
+  EXPECT_EQ(only_warning(scene),
+            "scene.obj:5: face of zero area, dropped, here and in 1 later face");
+  EXPECT_THROW((void)load(std::string(kSquare) + "f 1 1 2\n", {.skip_degenerate = true}),
+               InputError);
+}
+
+TEST(LoadObj, ARepeatedCornerOfAPolygonIsLeftOut) {
+  EXPECT_EQ(vertices_of(load("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 2 3\n")), kOneTriangle);
+}
+
+TEST(LoadObj, CrossingPolygonsAndZeroNormalsAreWarnedOf) {
+  const Scene crossing = load("v 0 0 0\nv 3 3 0\nv 3 0 0\nv 0 2 0\nf 1 2 3 4\n");
+  EXPECT_EQ(only_warning(crossing),
+            "scene.obj:5: polygon crosses or touches itself, cut as well as can be");
+  const Scene flat = load_square("vn 0 0 0\nvn 0 0 1\nf 1//2 2//2 3//1\nf 1//2 3//2 4//2\n");
+  EXPECT_EQ(only_warning(flat), "scene.obj:7: normal of length 0, the face is taken as flat");
+  EXPECT_EQ(flat.triangles[0].normals, (Indices{kNoIndex, kNoIndex, kNoIndex}));
+  EXPECT_EQ(flat.triangles[1].normals, (Indices{1, 1, 1}));
+}
+
+TEST(LoadObj, NormalsOfAnyLength) {
+  const Scene scene = load_square("vn 1e-38 0 0\nvn 0 3e38 3e38\nf 1//1 2//1 3//2\n");
+  EXPECT_EQ(scene.normals[0], glm::vec3(1, 0, 0));
+  EXPECT_FLOAT_EQ(scene.normals[1].y, 0.70710678f);
+}
+
+TEST(LoadObj, AVeryLongLine) {
+  std::string text;
+  const int corners = 100000;
+  for (int i = 0; i < corners; ++i) {  // a flight of stairs, closed from below
+    text += "v " + std::to_string((i + 1) / 2) + " " + std::to_string(i / 2) + " 0\n";
+  }
+  text += "v " + std::to_string(corners) + " -1 0\nf";
+  for (int i = corners + 1; i > 0; --i) text.append(" ").append(std::to_string(i));
+  const Scene scene = load(text + " # " + std::string(1000000, 'x') + "\n");
+  EXPECT_EQ(scene.triangles.size(), corners - 1u);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(LoadObj, NumbersDoNotDependOnTheLocale) {
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"}) {
+    if (std::setlocale(LC_ALL, name)) break;
+  }
+  const Scene scene = load("v 0.5 0 0\nv 1.5 0 0\nv 0 1.5 0\nf 1 2 3\n");
+  std::setlocale(LC_ALL, before.c_str());
+  EXPECT_EQ(scene.positions[0].x, 0.5f);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,231 @@
+// scene.json: every key, and one clear line with its place for everything else.
+#include "host/scene/io/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/obj_loader.h"
+#include "host/scene/test/temp_folder.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::string_view kWhole = R"({
+  "obj": "room.obj",
+  "camera": {
+    "eye": [0, 1, 5], "target": [0, 1, 0], "up": [0, 1, 0.5], "fov": 39.5,
+    "path": [
+      {"eye": [0, 1, 5], "target": [0, 1, 0]},
+      {"eye": [2, 1, 5], "target": [0, 1, 0], "fov": 50}
+    ]
+  },
+  "point_lights": [{"position": [1, 2, 3], "intensity": [10, 20, 30]}],
+  "area_lights": [
+    {"corner": [0, 3, 0], "edges": [[1, 0, 0], [0, 0, 2]], "radiance": 5}
+  ],
+  "background": [0.1, 0.2, 0.3],
+  "render": {"size": "320x200", "spp": 16, "exposure": -0.5, "integrator": "path"}
+}
+)";
+
+class ReadSceneFile : public testing::Test {
+ protected:
+  [[nodiscard]] SceneFile read(std::string_view text) const {
+    return read_scene_file(folder_.write("s.json", text));
+  }
+  /// What follows "FOLDER/" in the error.
+  [[nodiscard]] std::string error(std::string_view text) const {
+    try {
+      (void)read(text);
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(folder_.path().string().size() + 1);
+    }
+    return "(read)";
+  }
+
+  const TempFolder folder_;
+};
+
+TEST_F(ReadSceneFile, EveryKey) {
+  const SceneFile scene = read(kWhole);
+  EXPECT_EQ(scene.obj, folder_.path() / "room.obj");
+  ASSERT_TRUE(scene.camera);
+  EXPECT_EQ(scene.camera->eye, glm::dvec3(0, 1, 5));
+  EXPECT_EQ(scene.camera->target, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(scene.camera->up, glm::dvec3(0, 1, 0.5));
+  EXPECT_EQ(scene.camera->fov, 39.5);
+  ASSERT_EQ(scene.path.size(), 2u);
+  EXPECT_EQ(scene.path[1].eye, glm::dvec3(2, 1, 5));
+  EXPECT_EQ(scene.path[1].fov, 50.0);
+  EXPECT_FALSE(scene.path[0].fov);
+  ASSERT_EQ(scene.point_lights.size(), 1u);
+  EXPECT_EQ(scene.point_lights[0].position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(scene.point_lights[0].intensity, glm::vec3(10, 20, 30));
+  ASSERT_EQ(scene.area_lights.size(), 1u);
+  EXPECT_EQ(scene.area_lights[0].corner, glm::dvec3(0, 3, 0));
+  EXPECT_EQ(scene.area_lights[0].edges[1], glm::dvec3(0, 0, 2));
+  EXPECT_EQ(scene.area_lights[0].radiance, glm::vec3(5)) << "one number is grey";
+  EXPECT_EQ(scene.background, glm::vec3(0.1f, 0.2f, 0.3f));
+  ASSERT_EQ(scene.options.size(), 4u);
+  EXPECT_EQ(scene.options[0].name, "size");
+  EXPECT_EQ(scene.options[0].value, "320x200");
+  EXPECT_EQ(scene.options[1].value, "16");
+  EXPECT_EQ(scene.options[2].value, "-0.5");
+  EXPECT_EQ(scene.options[3].line, 15u);
+}
+
+TEST_F(ReadSceneFile, NothingIsNeeded) {
+  const SceneFile scene = read("{}");
+  EXPECT_EQ(scene.obj, folder_.path() / "s.obj") << "the same name";
+  EXPECT_FALSE(scene.camera);
+  EXPECT_TRUE(scene.path.empty() && scene.point_lights.empty() && scene.area_lights.empty());
+  EXPECT_FALSE(scene.background);
+}
+
+TEST_F(ReadSceneFile, APathAloneBeginsWithItsFirstPlace) {
+  const SceneFile scene = read(
+      R"({"camera": {"path": [{"eye": [0,0,1], "target": [0,0,0]},
+                              {"eye": [0,0,2], "target": [0,0,0]}]}})");
+  ASSERT_TRUE(scene.camera);
+  EXPECT_EQ(scene.camera->eye, glm::dvec3(0, 0, 1));
+}
+
+TEST_F(ReadSceneFile, WhatIsNoJson) {
+  EXPECT_EQ(error(""), "s.json: the file is empty");
+  EXPECT_TRUE(error("{\n  \"obj\" \"a\"\n}").starts_with("s.json:2: not JSON: "))
+      << error("{\n  \"obj\" \"a\"\n}");
+  EXPECT_TRUE(error("{\n").starts_with("s.json:1: not JSON: "));
+  EXPECT_TRUE(error("v 0 0 0\n").starts_with("s.json:1: not JSON: "));
+  EXPECT_TRUE(error("{} {}").starts_with("s.json:1: not JSON: "));
+  EXPECT_TRUE(error("{\"obj\": \"\xFF\"}").starts_with("s.json:1: not JSON: "));
+  EXPECT_TRUE(error(std::string(100, '[')).starts_with("s.json:1: more than 64 levels"));
+  EXPECT_EQ(error("{\n\"obj\": \"a\",\n\"obj\": \"b\"}"), "s.json:3: key 'obj' is there twice");
+}
+
+TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
+  EXPECT_EQ(error("[]"),
+            "s.json:1: scene: an array of 0, expected an object with obj, camera, "
+            "point_lights, area_lights, background, render");
+  EXPECT_EQ(error("{\n  \"colour\": 1\n}"),
+            "s.json:2: scene: unknown key 'colour', expected some of obj, camera, point_lights, "
+            "area_lights, background, render");
+  EXPECT_EQ(error(R"({"obj": 5})"), "s.json:1: obj: 5, expected the name of an OBJ file");
+  EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1]}})"), "s.json:1: camera: 'target' is missing");
+  EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0, 0],\n\"target\": [0, 0, 0]}}"),
+            "s.json:2: camera.eye: an array of 2, expected [x, y, z]");
+  EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0,\n0,\n\"up\"],\n\"target\": [0, 0, 0]}}"),
+            "s.json:4: camera.eye: 'up', expected a number within the range of float");
+  EXPECT_EQ(
+      error(R"({"background": "blue"})"),
+      "s.json:1: background: 'blue', expected [red, green, blue] or one number for all three");
+  EXPECT_EQ(error(R"({"point_lights": {}})"),
+            "s.json:1: point_lights: an object, expected an array");
+  EXPECT_EQ(error(R"({"render": {"spp": [1]}})"),
+            "s.json:1: render.spp: an array of 1, expected a number or a string, as on the command "
+            "line");
+  EXPECT_TRUE(error(R"({"render": {"threads": 1}})")
+                  .starts_with("s.json:1: render: unknown key 'threads', expected some of size, "));
+}
+
+TEST_F(ReadSceneFile, ValuesOutOfRange) {
+  const auto camera = [&](const std::string& rest) {
+    return error("{\"camera\": {\"eye\": [0, 0, 1], \"target\": [0, 0, 0],\n" + rest + "\n}}");
+  };
+  EXPECT_EQ(camera("\"fov\": 180"),
+            "s.json:2: camera.fov: 180, expected degrees above 0 and below 180");
+  EXPECT_EQ(camera("\"up\": [0, 0, 2]"),
+            "s.json:2: camera.up: an array of 3, expected a direction across the view");
+  EXPECT_EQ(camera("\"up\": [0, 0, 0]"),
+            "s.json:2: camera.up: an array of 3, expected a direction across the view");
+  EXPECT_EQ(camera("\"path\": []"),
+            "s.json:2: camera.path: an array of 0, expected at least two places");
+  EXPECT_EQ(error(R"({"camera": {"eye": [1, 2, 3], "target": [1, 2, 3]}})"),
+            "s.json:1: camera.target: an array of 3, expected another point than the eye");
+  EXPECT_TRUE(error(R"({"camera": {"eye": [1e999, 2, 3], "target": [1, 2, 3]}})")
+                  .starts_with("s.json:1: "));
+  EXPECT_EQ(error(R"({"background": -1})"),
+            "s.json:1: background: -1, expected no negative number");
+  EXPECT_EQ(error(R"({"background": [0, 1e39, 0]})"),
+            "s.json:1: background: 1e39, expected a number within the range of float");
+  EXPECT_EQ(error(R"({"area_lights": [{"corner": [0, 0, 0], "edges": [[1, 0, 0], [2, 0, 0]],
+                      "radiance": 1}]})"),
+            "s.json:1: area_lights[0].edges: an array of 2, expected two that are not parallel");
+}
+
+TEST_F(ReadSceneFile, LightsJoinTheScene) {
+  folder_.write("room.obj", "v 99999 0 0\nv 100001 0 0\nv 100000 1 0\nf 1 2 3\n");
+  const SceneFile file = read(R"({"obj": "room.obj", "background": 0.5,
+      "point_lights": [{"position": [100000, 5, 1], "intensity": [1, 2, 3]}],
+      "area_lights": [{"corner": [100000, 3, 0], "edges": [[1, 0, 0], [0, 0, 2]], "radiance": 7}]})");
+  Scene scene = load_obj(file.obj);
+  add_lights(file, scene);
+  EXPECT_EQ(scene.background, glm::vec3(0.5f));
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.origin + glm::dvec3(scene.lights[0].position), glm::dvec3(100000, 5, 1));
+  ASSERT_EQ(scene.triangles.size(), 3u);
+  ASSERT_EQ(scene.objects.size(), 2u);
+  double area = 0.0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    const Triangle& triangle = scene.triangles[i];
+    EXPECT_EQ(scene.materials[triangle.material].emission, glm::vec3(7));
+    EXPECT_EQ(scene.materials[triangle.material].diffuse, glm::vec3(0));
+    EXPECT_EQ(scene.objects[triangle.object], "light 1");
+    const auto corner = [&](std::size_t k) { return scene.positions[triangle.vertices[k]]; };
+    area += 0.5 * glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+  }
+  EXPECT_DOUBLE_EQ(area, 2.0);
+}
+
+TEST_F(ReadSceneFile, LightsBeyondFloatAreRefused) {
+  folder_.write("room.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const SceneFile tiny = read(R"({"obj": "room.obj", "area_lights": [
+      {"corner": [1e6, 3, 0], "edges": [[1e-6, 0, 0], [0, 0, 1e-6]], "radiance": 7}]})");
+  Scene scene = load_obj(tiny.obj);
+  EXPECT_THROW(add_lights(tiny, scene), InputError);
+}
+
+/// Damaged files: read, or refused in one line that names the file.
+TEST_F(ReadSceneFile, DamagedFilesAreReadOrRefused) {
+  const std::uint64_t seed = 20240607;
+  RecordProperty("seed", std::to_string(seed));
+  std::mt19937_64 random(seed);
+  constexpr const char* kSplinters[] = {"null", "-1",       "1e999", "{}",     "[]",   "\"",
+                                        "[",    "}",        ",",     ":",      "true", "\n",
+                                        "180",  "\"path\"", "\x01",  "1e-400", "\\u00"};
+  int refused = 0, read_well = 0;
+  for (int round = 0; round < 5000; ++round) {
+    std::string text(kWhole);
+    for (std::size_t times = 1 + random() % 3; times > 0; --times) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 4) {
+        case 0:
+          text[at] = static_cast<char>(random());
+          break;
+        case 1:
+          text.erase(at, 1 + random() % 6);
+          break;
+        case 2:
+          text.insert(at, kSplinters[random() % std::size(kSplinters)]);
+          break;
+        case 3: {
+          const std::size_t number = text.find_first_of("0123456789", at);
+          if (number == std::string::npos) break;
+          text.replace(number, 1, kSplinters[random() % std::size(kSplinters)]);
+        }
+      }
+    }
+    const std::string result = error(text);
+    (result == "(read)" ? read_well : refused) += 1;
+    if (result != "(read)") {
+      ASSERT_TRUE(result.starts_with("s.json:")) << result;
+      ASSERT_EQ(result.find('\n'), std::string::npos) << result;
+    }
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_GT(read_well, 100);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,112 @@
+#include "host/scene/io/text_lines.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+namespace {
+
+std::string read_all(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_directory(status)) {
+    throw InputError(name + ": is a folder, expected a file");
+  }
+  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status)) {
+    throw InputError(name + ": is a device, expected a file");  // it might never end
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(name + ": cannot be opened: " + std::strerror(errno));
+  std::string text;
+  const std::uintmax_t size = std::filesystem::file_size(file, ignored);
+  if (!ignored) text.reserve(size);
+  char block[1 << 16];
+  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) throw InputError(name + ": cannot be read: " + std::strerror(errno));
+  return text;
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+bool has_comment(std::string_view line) {
+  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
+    if (at == 0 || is_blank(line[at - 1])) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TextLines::TextLines(const std::filesystem::path& file)
+    : name_(file.string()), text_(read_all(file)) {
+  if (text_.empty()) throw InputError(name_ + ": the file is empty");
+  if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
+    throw InputError(name_, 1, "UTF-16 text, expected ASCII or UTF-8");
+  }
+  if (text_.starts_with("\xEF\xBB\xBF")) position_ = 3;
+  if (const std::size_t nul = text_.find('\0'); nul != std::string::npos) {
+    while (position_ <= nul) take_line();
+    throw InputError(name_, lines_taken_, "a byte of value 0: not a text file");
+  }
+}
+
+// One line without its end; text_ must not be exhausted.
+std::string_view TextLines::take_line() {
+  // Looked for only once each, lest a file whose lines end in CR alone be searched again and again.
+  if (newline_ < position_ || lines_taken_ == 0) {
+    newline_ = std::min(text_.find('\n', position_), text_.size());
+  }
+  const std::string_view to_newline(text_.data() + position_, newline_ - position_);
+  const std::size_t length = std::min(to_newline.find('\r'), to_newline.size());
+  position_ += length + 1;
+  if (position_ == newline_ && length < to_newline.size()) ++position_;  // CR LF
+  position_ = std::min(position_, text_.size());
+  ++lines_taken_;
+  return to_newline.substr(0, length);
+}
+
+std::optional<std::string_view> TextLines::next() {
+  while (position_ < text_.size()) {
+    std::string_view line = take_line();
+    statement_line_ = lines_taken_;
+    std::string_view statement = trimmed(line);
+    if (statement.empty() || statement[0] == '#') continue;
+    if (line.back() == '\\' && !has_comment(line)) {
+      joined_.clear();
+      while (!line.empty() && line.back() == '\\' && !has_comment(line)) {
+        joined_ += line.substr(0, line.size() - 1);
+        joined_ += ' ';
+        line = position_ < text_.size() ? take_line() : std::string_view();
+      }
+      joined_ += line;
+      statement = trimmed(joined_);
+      if (statement.empty()) continue;
+    }
+    return statement;
+  }
+  return std::nullopt;
+}
+
+std::string TextLines::place() const {
+  return name_ + ":" + std::to_string(statement_line_) + ": ";
+}
+
+void TextLines::fail(const std::string& what) const {
+  throw InputError(name_, statement_line_, what);
+}
+
+}  // namespace raygate

@@ -1,0 +1,16 @@
+// What is near: the triangles whose boxes touch a given box.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "host/tree/bvh.h"
+
+namespace raygate {
+
+/// Replaces `slots` by the slots of all triangles whose axis-aligned boxes touch the closed box
+/// from `low` to `high`, in no particular order.
+void slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                std::vector<std::uint32_t>& slots);
+
+}  // namespace raygate

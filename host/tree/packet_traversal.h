@@ -1,0 +1,57 @@
+// The way of eight rays through the tree, one leaf at a time.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "host/lanes.h"
+#include "host/tree/beam.h"
+#include "host/tree/bvh.h"
+
+namespace raygate {
+
+/// The leaf that a packet came to, and which of its rays.
+struct LeafVisit {
+  std::uint32_t first = 0;  ///< the slots first .. first + count
+  std::uint32_t count = 0;
+  LaneMask lanes = 0;
+};
+
+/// A traversal that can be left at every leaf and resumed, front to back along the octant of its
+/// rays. Many packets in flight keep a hit-test unit busy while each waits for its own results.
+///
+/// No ray misses a leaf with a triangle that it hits in exact arithmetic (at t no farther than its
+/// cutoff): packet_traversal.cpp has the proof. Triangles in the plane of the origin, which no ray
+/// hits, may be missed.
+class PacketTraversal {
+ public:
+  /// All rays point into one octant. Directions as scaled_direction gives them (the largest
+  /// component in [1, 2)); coordinates of magnitude at most 2^126.
+  PacketTraversal(const Bvh& bvh, int octant);
+
+  /// Adds a ray to a lane that has none, before the first call of next_leaf.
+  void set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction);
+
+  /// From now on the ray in `lane` looks for nothing beyond `t`.
+  void set_cutoff(int lane, double t);
+
+  /// The next leaf for any ray; nothing when all have seen everything.
+  [[nodiscard]] std::optional<LeafVisit> next_leaf();
+
+ private:
+  friend bool advance(PacketTraversal& packet, LeafVisit& visit);
+
+  FloatLanes origin_[3] = {};
+  FloatLanes inverse_near_[3] = {}, inverse_far_[3] = {};
+  FloatLanes cutoff_;
+  // What is left to visit, and where each ray enters its box (+infinity: not at all). No deeper
+  // than the tree, as one child at most waits on each level.
+  FloatLanes waiting_near_[Bvh::kMaxDepth + 1];
+  Bvh::Ref waiting_[Bvh::kMaxDepth + 1];
+  const Bvh::Node* nodes_;
+  int octant_;
+  int depth_ = 1;  // of the stack of what is waiting
+};
+
+}  // namespace raygate
