@@ -17,8 +17,8 @@ verilate: ## build ./render, with the simulated hardware in it, and ./compare
 render: verilate ## render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
 	./render $(SCENE) $(ARGS)
 
-gallery: verilate ## render the pictures of the README's gallery again, each by its command
-	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' README.md | \
+gallery: verilate ## render the pictures of the gallery again, each by the command beside it
+	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
 	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
 
 frames: verilate ## the paper's frame: clocks, and frames a second at 10 MHz, for 1 to 10 lanes

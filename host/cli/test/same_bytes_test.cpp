@@ -64,9 +64,9 @@ std::string read_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The README's gallery: commands that write a picture of scenes/gallery.
+/// The gallery in scenes/README.md: commands that write a picture of scenes/gallery.
 std::vector<std::string> gallery_commands() {
-  std::ifstream readme(RAYGATE_SCENES "/../README.md");
+  std::ifstream readme(RAYGATE_SCENES "/README.md");
   const std::string text{std::istreambuf_iterator<char>(readme), {}};
   const std::regex command("`\\./render ([^`]*-o scenes/gallery/[^`]*)`");
   std::vector<std::string> commands;
