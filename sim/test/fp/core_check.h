@@ -5,8 +5,8 @@
 #include <string>
 
 #include "sim/fp/float_cores.h"
+#include "sim/fp/vectors.h"
 #include "sim/test/fp/oracle.h"
-#include "sim/test/fp/vectors.h"
 
 namespace raygate {
 

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "host/scene/io/input_error.h"
+#include "sim/fp/vectors.h"
 #include "sim/test/fp/oracle.h"
-#include "sim/test/fp/vectors.h"
 
 namespace raygate {
 namespace {

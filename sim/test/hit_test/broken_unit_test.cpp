@@ -9,7 +9,7 @@
 #include "host/find/unit/check_burst_unit.h"
 #include "host/find/unit/cpu_burst_unit.h"
 #include "sim/array_model.h"
-#include "sim/test/hit_test/random_bursts.h"
+#include "sim/random_bursts.h"
 
 namespace raygate {
 namespace {

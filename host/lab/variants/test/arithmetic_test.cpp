@@ -9,7 +9,7 @@
 
 #include "host/lab/stress/random.h"
 #include "sim/fp/float_cores.h"
-#include "sim/test/fp/vectors.h"
+#include "sim/fp/vectors.h"
 
 namespace raygate {
 namespace {

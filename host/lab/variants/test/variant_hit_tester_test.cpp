@@ -11,7 +11,7 @@
 #include "host/lab/stress/random.h"
 #include "host/lab/variants/variant_units.h"
 #include "host/scene/camera.h"
-#include "sim/test/hit_test/random_bursts.h"
+#include "sim/random_bursts.h"
 
 namespace raygate {
 namespace {

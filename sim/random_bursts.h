@@ -1,4 +1,4 @@
-// Bursts of hit tests for the tests of the pipelined units: likely ones, and ones meant to hurt.
+// Bursts of hit tests to compare pipelined units by: likely ones, and ones meant to hurt.
 #pragma once
 
 #include <random>

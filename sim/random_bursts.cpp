@@ -1,4 +1,4 @@
-#include "sim/test/hit_test/random_bursts.h"
+#include "sim/random_bursts.h"
 
 #include <bit>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/test/fp/vectors.h"
+#include "sim/fp/vectors.h"
 
 #include <algorithm>
 #include <cmath>
