@@ -2,14 +2,20 @@
 // ray's origin, with one multiplier, one adder, one divider, eight registers and two multiplexers.
 //
 // I = (Ix, Iy, Iz) is the ray's direction, N = (a, b, c) the plane's normal (the paper's H) and
-// d = N . V for a vertex V of the polygon. Seven words come in, three go out:
+// d = N . V for a vertex V of the polygon. Seven words come in, three go out. As figure 4 draws it,
+// the bus leads to N and d alone, and N to I-3 or to the multiplier:
 //
 //   edge   bus in       what happens at this clock edge
-//   1-3    Ix Iy Iz     shift into I-3, I-2, I-1
+//   1-3    Ix Iy Iz     each into N
+//   2-4                 N into I-3, whence I-2 and I-1: after edge 4 they hold Iz, Iy, Ix
 //   4-6    a b c        each into N; the accumulator is cleared at edge 4
-//   5-7                 N * I-1 into the accumulator, at edge 7 into the divisor; I rotates
+//   5-7                 N * I-1 into the accumulator, at edge 7 into the divisor; I-1 into I-3
 //   7      d            into d
-//   8-10   the next I   (d * I-1) / divisor into Output: Px Py Pz; I shifts
+//   8-10   the next I   (d * I-1) / divisor into Output: Px Py Pz; the next I follows through N
+//
+// I-3, I-2 and I-1 shift at every edge. The way through N costs no clock: when Iz reaches I-3, at
+// edge 4, the first factor a reaches N. So the paper's drawing, its 7 clocks a test and its 10 from
+// first word to last component hold together; the 8 of its section 4.2 are those until Px.
 //
 // valid_i with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 8, 9 and 10.
@@ -42,7 +48,7 @@ module hit_test_unit #(
 
   logic [2:0] word;
   logic [1:0] step;
-  logic load_direction, load_normal, load_d, clear, accumulate, divide;
+  logic load_d, clear, accumulate, divide;
 
   hit_test_control #(
     .NumWords(7),
@@ -56,8 +62,6 @@ module hit_test_unit #(
     .step_o(step)
   );
 
-  assign load_direction = word <= 3'd2;
-  assign load_normal = word >= 3'd3 && word <= 3'd5;
   assign clear = word == 3'd3;
   assign accumulate = word >= 3'd4;
   assign load_d = word == 3'd6;
@@ -72,7 +76,7 @@ module hit_test_unit #(
 
   logic [Width-1:0] direction_in, factor, product, sum, quotient;
 
-  assign direction_in = load_direction ? bus_i : direction_1_q;
+  assign direction_in = accumulate ? direction_1_q : normal_q;
   assign factor = accumulate ? normal_q : d_q;
 
   fp_pkg::flags_t multiplier_flags, adder_flags, divider_flags;
@@ -122,15 +126,14 @@ module hit_test_unit #(
   );
 
   always_ff @(posedge clk_i) begin
-    if (load_direction || accumulate) begin
-      direction_3_q <= direction_in;
-      direction_2_q <= direction_3_q;
-      direction_1_q <= direction_2_q;
-    end
-    if (load_normal) normal_q <= bus_i;
+    direction_3_q <= direction_in;
+    direction_2_q <= direction_3_q;
+    direction_1_q <= direction_2_q;
     if (load_d) begin
       d_q <= bus_i;
       divisor_q <= sum;
+    end else begin
+      normal_q <= bus_i;
     end
     if (clear) begin
       accumulator_q <= '0;

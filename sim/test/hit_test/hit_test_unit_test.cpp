@@ -45,6 +45,43 @@ TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
   EXPECT_EQ(results.at(0).point, (Point{0x3DC873FD, 0x3E31C2A2, 0x3DB0D093}));
 }
 
+// Which word of the stream I-1, I-2, I-3, N and d hold after each edge, two tests one after the
+// other: 0 to 6 are the first one's Ix to d, 7 to 13 the second's, a dot is anything.
+TEST(HitTestUnit, RegistersAsFigure4DrawsThem) {
+  constexpr int kAny = -1;
+  constexpr int kHeld[14][5] = {
+      {kAny, kAny, kAny, 0, kAny}, {kAny, kAny, 0, 1, kAny},  // Ix, Iy, Iz through N
+      {kAny, 0, 1, 2, kAny},       {0, 1, 2, 3, kAny},        // a in N: I in its place
+      {1, 2, 0, 4, kAny},          {2, 0, 1, 5, kAny},        // I goes round
+      {0, 1, 2, kAny, 6},                                     // d in d
+      {1, 2, kAny, 7, 6},          {2, kAny, 7, 8, 6},        // the next I follows
+      {kAny, 7, 8, 9, 6},          {7, 8, 9, 10, 6},         {8, 9, 7, 11, 6}, {9, 7, 8, 12, 6},
+      {7, 8, 9, kAny, 13}};
+  Model<Vhit_test_unit_open> unit;
+  unit.reset();
+  std::vector<BusTest<7>> tests(2);
+  for (std::uint32_t word = 0; word < 14; ++word) {
+    tests[word / 7].words[word % 7] = bits(1.0f + static_cast<float>(word));
+  }
+  std::size_t edge = 0;
+  const auto* inside = unit->rootp;
+  stream_tests(unit, tests, [&] {
+    if (edge == 14) return;
+    const std::uint32_t held[5] = {
+        inside->hit_test_unit__DOT__direction_1_q, inside->hit_test_unit__DOT__direction_2_q,
+        inside->hit_test_unit__DOT__direction_3_q, inside->hit_test_unit__DOT__normal_q,
+        inside->hit_test_unit__DOT__d_q};
+    for (int k = 0; k < 5; ++k) {
+      const int word = kHeld[edge][k];
+      if (word == kAny) continue;
+      EXPECT_EQ(held[k], tests[word / 7].words[word % 7])
+          << "edge " << edge + 1 << ", register " << k;
+    }
+    ++edge;
+  });
+  EXPECT_EQ(edge, 14u);
+}
+
 TEST(HitTestUnit, WorkedExampleWithThePapersDivider) {
   Model<Vhit_test_unit_paper> unit;
   unit.reset();
