@@ -33,18 +33,25 @@ target_link_libraries(verilated PUBLIC Threads::Threads)
 set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-tree-slp-vectorize -fno-sanitize=all)
 target_compile_options(verilated PRIVATE ${RAYGATE_VERILATED_OPTIONS})
 
-# Packages come first, a package after those it uses.
-file(GLOB arith_packages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/arith/*_pkg.sv)
-file(GLOB fp_packages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/fp/*_pkg.sv)
-file(GLOB hit_test_packages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/hit_test/*_pkg.sv)
-set(RAYGATE_HW_PACKAGES ${arith_packages} ${fp_packages} ${hit_test_packages})
+# hw/*/*.core list the files, in the order to compile them.
+execute_process(COMMAND python3 -m synth.cores WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+  OUTPUT_VARIABLE RAYGATE_HW OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE "\n" ";" RAYGATE_HW "${RAYGATE_HW}")
+list(TRANSFORM RAYGATE_HW PREPEND ${CMAKE_SOURCE_DIR}/)
+file(GLOB cores CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/*/*.core)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${cores})
+set(RAYGATE_HW_PACKAGES ${RAYGATE_HW})
+list(FILTER RAYGATE_HW_PACKAGES INCLUDE REGEX "_pkg\\.sv$")
+# Verilator finds a module by its name in these folders, so that it reads only what a top needs.
+set(RAYGATE_HW_FOLDERS ${RAYGATE_HW})
+list(TRANSFORM RAYGATE_HW_FOLDERS REPLACE "/[^/]*$" "")
+list(REMOVE_DUPLICATES RAYGATE_HW_FOLDERS)
+list(TRANSFORM RAYGATE_HW_FOLDERS PREPEND -I)
 
 # Every warning stops the build, UNOPTFLAT (a loop in the logic, simulated by repetition) too.
 # Verilator 5.006 folds trees of single-bit operations wrongly: a netlist of fp_divider in bfloat16,
 # which Yosys evaluates rightly, gave wrong quotients. Without that pass the speed is the same.
 set(RAYGATE_VERILATOR_FLAGS -Wall -fno-const-bit-op-tree)
-set(RAYGATE_HW_FOLDERS
-  -y ${CMAKE_SOURCE_DIR}/hw/arith -y ${CMAKE_SOURCE_DIR}/hw/fp -y ${CMAKE_SOURCE_DIR}/hw/hit_test)
 
 function(raygate_model NAME)
   cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES" "PARAMETERS")
@@ -52,10 +59,13 @@ function(raygate_model NAME)
     message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN] [SHARED], "
       "got ${ARGN}")
   endif()
-  file(GLOB top_file ${CMAKE_SOURCE_DIR}/hw/*/${MODEL_TOP}.sv
-    ${CMAKE_CURRENT_SOURCE_DIR}/${MODEL_TOP}.sv)
+  set(top_file ${RAYGATE_HW})
+  list(FILTER top_file INCLUDE REGEX "/${MODEL_TOP}\\.sv$")
   if(NOT top_file)
-    message(FATAL_ERROR "raygate_model(${NAME}): no ${MODEL_TOP}.sv in hw/* or this folder")
+    set(top_file ${CMAKE_CURRENT_SOURCE_DIR}/${MODEL_TOP}.sv)
+  endif()
+  if(NOT EXISTS ${top_file})
+    message(FATAL_ERROR "raygate_model(${NAME}): no ${MODEL_TOP}.sv in hw/*/*.core or this folder")
   endif()
 
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.verilated)

@@ -6,13 +6,10 @@ import pathlib
 import re
 import threading
 
-from synth import store, tools
+from synth import cores, store, tools
 
-HW = tools.ROOT / "hw"
+HW = cores.HW
 YARDSTICKS = tools.ROOT / "synth" / "yardsticks"
-
-# A folder of hw/ may use itself and the folders before it.
-FOLDERS = ["arith", "fp", "hit_test"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,15 +36,12 @@ class Design:
         """
         if self.folder == "yardsticks":
             return [YARDSTICKS / f"{self.top}.v"]
-        used = FOLDERS[: FOLDERS.index(self.folder) + 1]
-        files = sorted(file for folder in used for file in (HW / folder).glob("*.sv"))
-        packages = [file for file in files if file.stem.endswith("_pkg")]
-        modules = [file for file in files if file not in packages]
+        files = cores.files(self.folder)
         if structural:
             replaced = ("full_adder", "multiplexer", "carry_save_adder")
-            modules = [file for file in modules if file.stem not in replaced]
-            modules.append(tools.FLOWS / "structure.v")
-        return packages + modules
+            files = [file for file in files if file.stem not in replaced]
+            files.append(tools.FLOWS / "structure.v")
+        return files
 
 
 def without_pads(liberty: str) -> str:
@@ -164,9 +158,9 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
     if (YARDSTICKS / f"{top}.v").exists():
         folder = "yardsticks"
     else:
-        found = [place for place in FOLDERS if (HW / place / f"{top}.sv").exists()]
+        found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists()]
         if not found:
-            raise FileNotFoundError(f"no module {top} in hw/{{{','.join(FOLDERS)}}}")
+            raise FileNotFoundError(f"no module {top} in hw/{{{','.join(cores.names())}}}")
         folder = found[0]
     text = {key: str(value) for key, value in parameters.items()}
     if adder:

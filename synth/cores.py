@@ -1,0 +1,63 @@
+"""Reads what hardware there is from hw/*/*.core: FuseSoC's format (CAPI2), and the only list of files.
+
+`python3 -m synth.cores [CORE ...]`: the files of these cores (hit_test, ...; all if none) and of those
+that they depend on, one a line, in the order to compile them: a core after those that it uses, its
+packages first. Exit status 2 where a list and its folder disagree.
+"""
+
+import pathlib
+import re
+import sys
+
+HW = pathlib.Path(__file__).resolve().parent.parent / "hw"
+
+
+def names(hw: pathlib.Path = HW) -> list[str]:
+    """All cores, each after those that it depends on."""
+    return _ordered(sorted(file.stem for file in hw.glob("*/*.core")), hw)
+
+
+def files(core: str, hw: pathlib.Path = HW) -> list[pathlib.Path]:
+    """The files of `core` and of all that it depends on, in the order to compile them.
+
+    Raises ValueError where a list names a file that is not there, or leaves one out that is.
+    """
+    return [file for name in _ordered([core], hw) for file in _own(name, hw)]
+
+
+def _entries(core: str, pattern: str, hw: pathlib.Path) -> list[str]:
+    file = hw / core / f"{core}.core"
+    if not file.exists():
+        raise ValueError(f"{file}: not found, expected the list of the files in {file.parent}")
+    return re.findall(rf"^ +- {pattern}$", file.read_text(), re.M)
+
+
+def _own(core: str, hw: pathlib.Path) -> list[pathlib.Path]:
+    listed = [hw / core / name for name in _entries(core, r"(\w+\.sv)", hw)]
+    there = set((hw / core).glob("*.sv"))
+    for file in sorted(there ^ set(listed)):
+        found, expected = ("unlisted", "a line") if file in there else ("listed", "the file")
+        raise ValueError(f"{hw / core / core}.core: {file.name} is {found}, expected {expected}")
+    return sorted(listed, key=lambda file: not file.stem.endswith("_pkg"))
+
+
+def _ordered(cores: list[str], hw: pathlib.Path) -> list[str]:
+    order: dict[str, None] = {}
+    for core in cores:
+        order |= dict.fromkeys(_ordered(_entries(core, r"raygate:hw:(\w+)", hw), hw)) | {core: None}
+    return list(order)
+
+
+def main() -> int:
+    """Prints the files, relative to the repository's root."""
+    try:
+        found = dict.fromkeys(file for core in sys.argv[1:] or names() for file in files(core))
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 2
+    print("\n".join(str(file.relative_to(HW.parent)) for file in found))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

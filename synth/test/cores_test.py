@@ -1,0 +1,51 @@
+"""The lists of files in hw/*/*.core, as synth.cores reads them."""
+
+import pathlib
+import tempfile
+import unittest
+
+from synth import cores
+
+
+class Cores(unittest.TestCase):
+    """Two cores in a folder of their own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.hw = pathlib.Path(folder.name)
+        self.write("fp", ["fp_adder.sv", "fp_pkg.sv"], ["arith"])
+        self.write("arith", ["adder.sv"], [])
+
+    def write(self, core, files, depends):
+        """A core, and its files."""
+        (self.hw / core).mkdir()
+        lines = ["CAPI=2:", *(f"      - {name}" for name in files),
+                 *(f"      - raygate:hw:{name}" for name in depends)]
+        (self.hw / core / f"{core}.core").write_text("\n".join(lines) + "\n")
+        for name in files:
+            (self.hw / core / name).touch()
+
+    def test_order(self):
+        """What is used comes first, in a core its packages."""
+        self.assertEqual([file.name for file in cores.files("fp", self.hw)],
+                         ["adder.sv", "fp_pkg.sv", "fp_adder.sv"])
+        self.assertEqual(cores.names(self.hw), ["arith", "fp"])
+
+    def test_list_and_folder_disagree(self):
+        """A file too many, a file too few, no list at all: each is said."""
+        for change, said in [(lambda: (self.hw / "arith" / "new.sv").touch(),
+                              r"arith\.core: new\.sv is unlisted, expected a line"),
+                             (lambda: (self.hw / "fp" / "fp_pkg.sv").unlink(),
+                              r"fp\.core: fp_pkg\.sv is listed, expected the file"),
+                             (lambda: (self.hw / "arith" / "arith.core").unlink(),
+                              r"arith\.core: not found")]:
+            change()
+            with self.assertRaisesRegex(ValueError, said):
+                cores.files("fp", self.hw)
+            if (self.hw / "arith" / "new.sv").exists():
+                (self.hw / "arith" / "new.sv").unlink()
+
+
+if __name__ == "__main__":
+    unittest.main()
