@@ -4,15 +4,20 @@ SCENE ?= scenes/cornell.obj
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
 
-.PHONY: help verilate render gallery frames test soak fuzz lint analyze format clean
+.PHONY: help verilate example render gallery frames test soak fuzz lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
-verilate: ## build ./render, with the simulated hardware in it, and ./compare
-	@$(SETUP) build
-	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
+verilate: configured ## build ./render, with the simulated hardware in it, and ./compare
 	@cmake --build build -j $(JOBS) --target render compare scenes
+
+example: configured ## the paper's worked example, its words and its waveform for GTKWave
+	@cmake --build build -j $(JOBS) --target worked_example
+	@build/sim/worked_example --trace build/worked_example.vcd
+	@echo "With the paper's divider, whose quotients have 21 bits:"
+	@build/sim/worked_example --paper-divider | tail -n 1
+	@echo 'Waveform: gtkwave build/worked_example.vcd sim/worked_example.gtkw'
 
 render: verilate ## render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
 	./render $(SCENE) $(ARGS)
@@ -52,7 +57,11 @@ format: ## lay all sources out as lint wants them
 clean: ## remove what was built (scenes and pictures stay)
 	rm -rf build render compare
 
-.PHONY: everything
+.PHONY: configured everything
+configured:
+	@$(SETUP) build
+	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
+
 everything:
 	@$(SETUP) test
 	@cmake -S . -B build -G Ninja -DBUILD_TESTING=ON

@@ -26,8 +26,12 @@ class WaveModel : public Model<Top> {
     if (!wave_->isOpen()) throw InputError(path + ": can't be written");
   }
 
-  /// As Model's.
+  /// As Model's. In the waveform inputs change 2 ns before the edge that takes them.
   void clock() {
+    if (wave_) {
+      this->eval();
+      wave_->dump(10 * this->clocks() + 8);
+    }
     this->edge(1);
     if (wave_) wave_->dump(10 * this->clocks());
     this->edge(0);

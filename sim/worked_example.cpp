@@ -63,7 +63,8 @@ void run(const Options& options) {
     std::printf("\n");
   });
   const auto& result = results.front();
-  std::printf("P = (%.9g, %.9g, %.9g), %d clocks after the first word\n",
+  std::printf("P = %08X %08X %08X = (%.9g, %.9g, %.9g), %d clocks after the first word\n",
+              result.point[0], result.point[1], result.point[2],
               std::bit_cast<float>(result.point[0]), std::bit_cast<float>(result.point[1]),
               std::bit_cast<float>(result.point[2]),
               static_cast<int>(result.last_component - result.first_word + 1));

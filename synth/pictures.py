@@ -25,5 +25,5 @@ def draw(records: list[dict]) -> str:
         lines.append("The worked example, from a simulation trace; a column is the clock after an "
                      "edge:\n\n![timing](worked_example.svg)\n")
     else:
-        lines.append("No timing diagram: `make test` builds build/sim/worked_example first.\n")
+        lines.append("No timing diagram: `make example` builds build/sim/worked_example first.\n")
     return "\n".join(lines)

@@ -38,7 +38,10 @@ def at(changes: list[tuple[int, str]], time: int) -> str:
 
 
 def draw(trace: pathlib.Path, out: pathlib.Path, signals: list[str], clock: str = "clk_i") -> None:
-    """One column a clock, between rising edges; raises KeyError for a signal that is not there."""
+    """One column a rising edge: the inputs that it took, and all else as it is after it.
+
+    Raises KeyError for a signal that is not there.
+    """
     changes = read(trace.read_text())
     edges = [when for when, bits in changes[clock] if bits == "1"]
     if not edges:
@@ -48,8 +51,7 @@ def draw(trace: pathlib.Path, out: pathlib.Path, signals: list[str], clock: str 
     for row, signal in enumerate(signals):
         axes.text(-0.1, -row, signal, ha="right", va="center", fontsize=9, family="monospace")
         for column, edge in enumerate(edges):
-            end = edges[column + 1] if column + 1 < len(edges) else edge + 1
-            bits = at(changes[signal], end - 1)
+            bits = at(changes[signal], edge)
             single = len(bits) == 1 and all(len(b) == 1 for _, b in changes[signal])
             if single:
                 level = -row + (0.3 if bits == "1" else -0.3)

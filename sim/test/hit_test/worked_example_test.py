@@ -1,0 +1,50 @@
+"""What `make example` shows: the worked example's words, and a waveform that GTKWave's save file fits.
+
+usage: worked_example_test.py WORKED_EXAMPLE SAVE_FILE
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, SAVE_FILE = sys.argv[1:]
+
+
+def last_line(*options):
+    """What the program prints last."""
+    return subprocess.run([PROGRAM, *options], check=True, capture_output=True,
+                          text=True).stdout.splitlines()[-1]
+
+
+class WorkedExample(unittest.TestCase):
+    """The program, run with and without the paper's divider."""
+
+    def test_words(self):
+        """The paper's words, and those that are rounded correctly."""
+        self.assertRegex(last_line(), "^P = 3DC873FD 3E31C2A2 3DB0D093 .* 10 clocks ")
+        self.assertRegex(last_line("--paper-divider"), "^P = 3DC873F8 3E31C2A0 3DB0D090 .* 10 clocks ")
+
+    def test_waveform(self):
+        """Every signal of the save file is in the waveform, with its width."""
+        with tempfile.TemporaryDirectory() as folder:
+            trace = pathlib.Path(folder) / "trace.vcd"
+            last_line("--trace", trace)
+            text = trace.read_text()
+        scopes, there = [], set()
+        for word, rest in re.findall(r"\$(scope|upscope|var)\s([^$]*)\$end", text):
+            if word == "scope":
+                scopes.append(rest.split()[1])
+            elif word == "upscope":
+                scopes.pop()
+            else:
+                there.add(".".join([*scopes, "".join(rest.split()[3:])]))
+        shown = re.findall(r"^\+\{[^}]+\} (\S+)$", pathlib.Path(SAVE_FILE).read_text(), re.M)
+        self.assertGreater(len(shown), 20)
+        self.assertEqual(sorted(set(shown) - there), [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
