@@ -1,9 +1,9 @@
-# `make synth` and `make prove`: see synth/README.md.
+# `make synth`, `make prove` and `make verilog`: see synth/README.md.
 SYNTH_PYTHON := build/synth/venv/bin/python3
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth prove
+.PHONY: synth prove verilog
 
 synth: build/synth/venv/ready ## area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
 	@$(SYNTH_PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
@@ -20,3 +20,6 @@ build/synth/venv/ready: synth/requirements.txt
 
 prove: ## prove adders, multiplier and timetable: make prove [PROOFS='adder. booth.tree']
 	@python3 -m synth.prove --jobs '$(SYNTH_JOBS)' $(PROOFS)
+
+verilog: ## a module as one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5 FracWidth=10']
+	@python3 -m synth.verilog "$(TOP)" "$(PARAMS)"

@@ -1,0 +1,52 @@
+"""Writes a module of hw/, with its parameters and all that it instantiates, as one file of plain Verilog.
+
+`python3 -m synth.verilog TOP [Name=value ...]`: build/verilog/TOP.v, for tools that read no SystemVerilog,
+such as Icarus Verilog. Exit status 2 for a module or a parameter that there isn't.
+"""
+
+import pathlib
+import re
+import sys
+
+from synth import catalogue, mapping, tools
+
+OUT = tools.ROOT / "build" / "verilog"
+
+
+def write(design: catalogue.Design, out: pathlib.Path) -> None:
+    """Elaborates `design` and writes `out`; raises ToolFailed where Yosys refuses it."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    tools.run(["yosys", "-c", tools.FLOWS / "verilog.tcl"], out.with_suffix(".log"),
+              {**mapping.elaboration(design), "OUT": str(out)})
+
+
+def parameters(words: list[str], source: str) -> dict[str, str]:
+    """Name=value words as a dictionary; raises ValueError for what is none of `source`'s parameters."""
+    known = re.findall(r"^ +parameter .*?(\w+) *=", source, re.M)
+    given = dict(word.split("=", 1) if "=" in word else (word, "") for word in words)
+    for name, value in given.items():
+        if name not in known or not value:
+            raise ValueError(f"{name}={value}: expected Name=value, with one of {', '.join(known)}")
+    return given
+
+
+def main() -> int:
+    """Runs the command line."""
+    try:
+        if len(sys.argv) < 2 or not sys.argv[1]:
+            raise ValueError("expected TOP, a module of hw/: make verilog TOP=fp_adder_stages "
+                             "[PARAMS='ExpWidth=5 FracWidth=10']")
+        design = catalogue.design(sys.argv[1])
+        (source,) = [file for file in design.sources() if file.stem == design.top]
+        given = parameters(" ".join(sys.argv[2:]).split(), source.read_text())
+        out = OUT / f"{design.top}.v"
+        write(catalogue.design(design.top, **given), out)
+    except (tools.MissingTool, tools.ToolFailed, FileNotFoundError, ValueError) as error:
+        print(f"verilog: {error}", file=sys.stderr)
+        return 2
+    print(f"{out.relative_to(tools.ROOT)}: {out.read_text().count(chr(10) + 'module ')} modules")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
