@@ -1,19 +1,31 @@
-# A thin front: CMake does the work, in build/. `make` alone lists the targets.
+# A thin front: CMake does the work, in build/. `make` alone lists the targets. Every target installs
+# what it needs (.ci/setup) and works on its own, in any order.
 JOBS ?= $(shell nproc)
 SCENE ?= scenes/cornell.obj
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
+# With the packages that $(SETUP) puts beside it.
+PYTHON := build/venv/bin/python3
 
-.PHONY: help verilate example render gallery frames test soak fuzz lint analyze format clean
+# Configured each time, in a third of a second: a library that was missing then may be here now.
+configure = cmake -S . -B build -G Ninja --log-level=WARNING
+# $(call build,KIND,TARGETS): sets up and builds these programs.
+define build
+@$(SETUP) $(1)
+@$(configure) >/dev/null
+@cmake --build build -j $(JOBS) --target $(2)
+endef
+
+.PHONY: help verilate example render gallery frames test check soak fuzz lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
-verilate: configured ## build ./render, with the simulated hardware in it, and ./compare
-	@cmake --build build -j $(JOBS) --target render compare scenes
+verilate: ## build ./render, with the simulated hardware in it, and ./compare
+	$(call build,build,render compare scenes)
 
-example: configured ## the paper's worked example, its words and its waveform for GTKWave
-	@cmake --build build -j $(JOBS) --target worked_example
+example: ## the paper's worked example, its words and its waveform for GTKWave
+	$(call build,build,worked_example)
 	@build/sim/worked_example --trace build/worked_example.vcd
 	@echo "With the paper's divider, whose quotients have 21 bits:"
 	@build/sim/worked_example --paper-divider | tail -n 1
@@ -29,25 +41,32 @@ gallery: verilate ## render the pictures of the gallery again, each by the comma
 frames: verilate ## the paper's frame: clocks, and frames a second at 10 MHz, for 1 to 10 lanes
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj
 
-test: everything ## build and run all tests, lint among them
+test: everything ## build and run all tests
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
+
+check: everything ## clang-tidy, and the host's tests under the sanitizers
+	@$(SETUP) check
+	@.ci/lint tidy
+	@.ci/sanitize address,undefined
+	@.ci/sanitize thread
 
 soak: everything ## ten million tests of the pipelined unit with each number of lanes
 	@RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 
 FUZZ_SECONDS ?= 60
-fuzz: ## libFuzzer on the scene loader and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]
+fuzz: ## run libFuzzer on the scene loader and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]
 	@$(SETUP) fuzz
-	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DBUILD_TESTING=OFF -DRAYGATE_FUZZ=ON
+	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYGATE_FUZZ=ON
 	@cmake --build build/fuzz -j $(JOBS) --target obj_fuzz exact_fuzz
 	@mkdir -p build/fuzz/scenes && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/scenes
 	@build/fuzz/obj_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/ build/fuzz/scenes
 	@build/fuzz/exact_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/
 
-lint: everything ## check style and pitfalls of all sources
+lint: everything ## check layout and pitfalls of all sources, but for clang-tidy's (make check)
 	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
 
 analyze: everything ## clang's static analyser over all sources: minutes
+	@$(SETUP) check
 	@.ci/lint analyze
 
 format: ## lay all sources out as lint wants them
@@ -57,15 +76,10 @@ format: ## lay all sources out as lint wants them
 clean: ## remove what was built (scenes and pictures stay)
 	rm -rf build render compare
 
-.PHONY: configured everything
-configured:
-	@$(SETUP) build
-	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
-
+.PHONY: everything
+everything: configure += -DBUILD_TESTING=ON
 everything:
-	@$(SETUP) test
-	@cmake -S . -B build -G Ninja -DBUILD_TESTING=ON
-	@cmake --build build -j $(JOBS)
+	$(call build,test,all)
 
 include synth/synth.mk
 include host/lab/rays/rays.mk

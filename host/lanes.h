@@ -22,10 +22,10 @@ using FloatLanes = float __attribute__((vector_size(4 * kLanes), aligned(4 * kLa
 using IntLanes = std::int32_t __attribute__((vector_size(4 * kLanes), aligned(4 * kLanes)));
 
 // Functions marked so are compiled twice on x86-64 and the fitting one is picked at start-up.
-// Neither form fuses multiply and add, so both give the same bits. (The sanitizers run before the
-// picking.)
+// Neither form fuses multiply and add, so both give the same bits. (The picking
+// runs before the sanitizers are ready for it.)
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define RAYGATE_LANES __attribute__((target_clones("avx2", "default")))
 #else
 #define RAYGATE_LANES

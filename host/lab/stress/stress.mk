@@ -7,16 +7,14 @@ STRESS_RESULTS := build/stress_report
 
 # An interrupted run goes on where it was: the suites that are done are in $(STRESS_RESULTS).
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1]
-	@$(SETUP) build
-	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
-	@cmake --build build -j $(JOBS) --target stress $(if $(QUICK),>/dev/null)
+	@$(SETUP) $(if $(QUICK),build,synth)
+	$(call build,build,stress $(if $(QUICK),>/dev/null))
 ifdef QUICK
 	@build/stress --quiet --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
 else
-	@test -x build/synth/venv/bin/python3 || $(MAKE) build/synth/venv/ready
 	@build/stress --tests $(TESTS) --threads $(JOBS) --seed $(or $(SEED),1) \
 	  --results $(STRESS_RESULTS); status=$$?; \
-	build/synth/venv/bin/python3 host/lab/stress/report.py $(STRESS_RESULTS) \
+	$(PYTHON) host/lab/stress/report.py $(STRESS_RESULTS) \
 	  --synth build/synth/results.json --readme host/lab/stress/README.md && \
 	echo 'Report: $(STRESS_RESULTS)/report.md'; exit $$status
 endif
@@ -24,9 +22,7 @@ endif
 .PHONY: predicates doubts
 
 predicates: ## what an exact decision costs, beside rationals and __float128
-	@$(SETUP) build
-	@test -f build/build.ninja || cmake -S . -B build -G Ninja -DBUILD_TESTING=OFF
-	@cmake --build build -j $(JOBS) --target predicate_bench
+	$(call build,build,predicate_bench)
 	@build/predicate_bench
 
 doubts: verilate ## doubts and their share of the time, scene by scene
