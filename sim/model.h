@@ -2,11 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 
 #include "verilated.h"
 
 namespace raygate {
+
+/// A context whose models start with zeros in all registers; with RAYGATE_RANDOM_RESET=<seed> in
+/// the environment with random bits, as hardware does. No result may depend on them.
+inline std::unique_ptr<VerilatedContext> make_context() {
+  auto context = std::make_unique<VerilatedContext>();
+  if (const char* seed = std::getenv("RAYGATE_RANDOM_RESET")) {
+    context->randReset(2);
+    context->randSeed(static_cast<int>(std::strtol(seed, nullptr, 10)));
+  }
+  return context;
+}
 
 /// One Verilated model `Top` (a class that Verilator made) in a context of its own, so that each
 /// thread may have one. Ports are reached by `model->port`. Neither copied nor moved: waves and
@@ -73,7 +85,7 @@ class Model {
   [[nodiscard]] std::uint64_t clocks() const { return clocks_; }
 
  private:
-  std::unique_ptr<VerilatedContext> context_ = std::make_unique<VerilatedContext>();
+  std::unique_ptr<VerilatedContext> context_ = make_context();
   std::unique_ptr<Top> top_ = std::make_unique<Top>(context_.get(), "");
   std::uint64_t clocks_ = 0;
 };

@@ -9,8 +9,9 @@
 #
 #     PATCHES <folder>: modules found there are taken instead of those of hw/, to break them on purpose.
 #
-#   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...])
-#     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest.
+#   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...] [RANDOM_RESETS <filter>])
+#     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest. RANDOM_RESETS: those
+#     cases (of GoogleTest's filter) once more, from each of three sets of random register contents.
 #
 # Debian's verilate() isn't used: it runs Verilator while CMake configures, one model after the
 # other, and compiles the run-time library again for each. Here a model is one build step and one
@@ -51,7 +52,12 @@ list(TRANSFORM RAYGATE_HW_FOLDERS PREPEND -I)
 # Every warning stops the build, UNOPTFLAT (a loop in the logic, simulated by repetition) too.
 # Verilator 5.006 folds trees of single-bit operations wrongly: a netlist of fp_divider in bfloat16,
 # which Yosys evaluates rightly, gave wrong quotients. Without that pass the speed is the same.
-set(RAYGATE_VERILATOR_FLAGS -Wall -fno-const-bit-op-tree)
+# Assertions stop a simulation that breaks them; they read the asynchronous reset in step with the clock
+# (SYNCASYNCNET). What the RTL leaves open (registers before their first load, x in an assignment) is 0 in
+# a model, or random in one whose context asks for it (sim/model.h): its bits must not depend on that.
+set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-SYNCASYNCNET -fno-const-bit-op-tree --assert
+  --x-assign unique --x-initial unique)
+set(RAYGATE_CHECKS ${CMAKE_SOURCE_DIR}/sim/checks)  # bindings.sv binds them to the modules of hw/
 
 function(raygate_model NAME)
   cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES" "PARAMETERS")
@@ -84,11 +90,14 @@ function(raygate_model NAME)
   endif()
   add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${NAME}.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
-    COMMAND ${VERILATOR_BIN} --cc -O3 --x-assign fast --x-initial fast --no-timing
-      ${RAYGATE_VERILATOR_FLAGS} ${patches} ${RAYGATE_HW_FOLDERS} ${open} --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
-      --top-module ${MODEL_TOP} ${MODEL_PARAMETERS} ${RAYGATE_HW_PACKAGES} ${top_file}
+    COMMAND ${VERILATOR_BIN} --cc -O3 --no-timing
+      ${RAYGATE_VERILATOR_FLAGS} ${patches} ${RAYGATE_HW_FOLDERS} -y ${RAYGATE_CHECKS} ${open}
+      --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
+      --top-module ${MODEL_TOP} ${MODEL_PARAMETERS} ${RAYGATE_HW_PACKAGES}
+      ${top_file} ${RAYGATE_CHECKS}/bindings.sv
     COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${NAME} -P ${CMAKE_SOURCE_DIR}/sim/gather.cmake
-    DEPENDS ${top_file} ${RAYGATE_HW_PACKAGES} ${CMAKE_SOURCE_DIR}/sim/gather.cmake
+    DEPENDS ${top_file} ${RAYGATE_HW_PACKAGES} ${RAYGATE_CHECKS}/bindings.sv
+      ${CMAKE_SOURCE_DIR}/sim/gather.cmake
     DEPFILE ${dir}/all.d
     COMMENT "Verilating ${NAME}" VERBATIM COMMAND_EXPAND_LISTS)
 
@@ -100,8 +109,16 @@ function(raygate_model NAME)
 endfunction()
 
 function(raygate_sim_test NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 TEST "" "" "MODELS;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 TEST "" "RANDOM_RESETS" "MODELS;LIBRARIES")
   add_executable(${NAME} ${NAME}.cpp)
   target_link_libraries(${NAME} PRIVATE ${TEST_MODELS} ${TEST_LIBRARIES} GTest::gtest_main)
   gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60)
+  if(TEST_RANDOM_RESETS)
+    foreach(seed 1 2 3)
+      add_test(NAME ${NAME}.random_reset_${seed}
+        COMMAND ${NAME} --gtest_filter=${TEST_RANDOM_RESETS} --gtest_brief=1)
+      set_tests_properties(${NAME}.random_reset_${seed} PROPERTIES
+        ENVIRONMENT RAYGATE_RANDOM_RESET=${seed} PASS_REGULAR_EXPRESSION "PASSED  . [1-9]")
+    endforeach()
+  endif()
 endfunction()

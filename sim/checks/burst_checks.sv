@@ -1,0 +1,51 @@
+// The framing of bursts at a hit-test pipeline. Its user sends whole bursts: first_i after last_i and
+// nowhere else, one direction a burst. The unit closes as many bursts as went in and no more, and gives
+// a point for each one that it closed with a nearest hit.
+module burst_checks #(
+  parameter int unsigned DirectionWidth = 96
+) (
+  input logic                      clk_i,
+  input logic                      rst_ni,
+  input logic                      taken,        // a test, at this clock edge
+  input logic                      first_i,
+  input logic                      last_i,
+  input logic [DirectionWidth-1:0] direction_i,
+  input logic                      given,        // a result, at this clock edge
+  input logic [1:0]                report,
+  input logic                      closed_o,
+  input logic                      found_o,
+  input logic                      point_valid_o
+);
+
+  logic in_burst_q;
+  logic [DirectionWidth-1:0] direction_q;
+  logic [15:0] open_q, pointless_q;  // bursts not closed; nearest hits whose point is to come
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      in_burst_q  <= 1'b0;
+      open_q      <= '0;
+      pointless_q <= '0;
+    end else begin
+      if (taken) in_burst_q <= !last_i;
+      open_q <= open_q + 16'(taken && last_i) - 16'(given && closed_o);
+      pointless_q <= pointless_q + 16'(given && closed_o && found_o)
+                   - 16'(given && point_valid_o);
+    end
+  end
+  always_ff @(posedge clk_i) if (taken && first_i) direction_q <= direction_i;
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni && taken) begin
+      a_first : assert (first_i != in_burst_q);
+      a_one_direction : assert (first_i || direction_i == direction_q);
+    end
+    if (rst_ni && given) begin
+      a_closed : assert (!closed_o || open_q != '0);
+      a_point : assert (!point_valid_o || pointless_q != '0);
+      a_says_something : assert (report != 2'd0 || closed_o || point_valid_o);
+      a_report : assert (report != 2'd3);
+    end
+  end
+
+endmodule

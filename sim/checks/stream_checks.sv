@@ -1,0 +1,31 @@
+// What every valid/ready port promises: valid is low in reset; once high it holds, with its data, until
+// ready.
+//
+// Assertions stand in clocked processes: a driver that changes inputs together with the clock edge is
+// then seen rightly (Verilator samples for concurrent ones before inputs have spread).
+module stream_checks #(
+  parameter int unsigned Width = 1
+) (
+  input logic             clk_i,
+  input logic             rst_ni,
+  input logic             valid,
+  input logic             ready,
+  input logic [Width-1:0] data
+);
+
+  logic waiting_q;  // it was valid and not ready
+  logic [Width-1:0] data_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) waiting_q <= 1'b0;
+    else waiting_q <= valid && !ready;
+  end
+  always_ff @(posedge clk_i) if (valid && !ready) data_q <= data;
+
+  always_ff @(posedge clk_i) begin
+    a_quiet_in_reset : assert (rst_ni || !valid);
+    a_valid_holds : assert (!rst_ni || !waiting_q || valid);
+    if (waiting_q) a_data_holds : assert (!rst_ni || data == data_q);
+  end
+
+endmodule
