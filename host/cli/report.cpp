@@ -205,6 +205,7 @@ std::string to_json(const Report& report) {
       {"plane_tests", hit.plane_tests},
       {"unit_tests", hit.unit_tests},
       {"quotients", hit.quotients},
+      {"input_bytes", hit.input_bytes},
       {"clocks", hit.clocks},
       {"idle_clocks", hit.idle_clocks},
       {"output_stalls", hit.output_stalls},

@@ -1,14 +1,17 @@
-"""Prints what the paper's frame takes: clocks, and frames a second at 10 MHz, for 1 to 10 lanes.
+"""Prints what the paper's frame takes at 10 MHz: clocks, frames a second, and bytes read for its tests.
 
-The paper's frame is scenes/paper.obj at 320 x 200, 4 bounces. 1, 2, 4 and 8 lanes are simulated by
-`render`; the lanes between are calculated from them (marked ~): the tests, evenly shared, and for each
-lane as many idle clocks as the nearest simulated number had. Beside them the paper's own figures: 5,120,000
-clocks on one chip at 10 MHz, 18 frames a second on nine.
+The paper's frame is scenes/paper.obj at 320 x 200, 4 bounces. The paper tests every ray on every polygon;
+so do the first rows, those that follow leave out what culling does. Clocks and bytes are those that `render`
+counts in simulation; ~9 lanes are calculated: the tests, evenly shared, with as many idle clocks for each
+lane as 8 lanes have. The paper's own figures stand beside them: 5,120,000 clocks on one chip, 18 frames a
+second on nine.
 
 usage: frame_rates.py RENDER SCENE
 """
 
+import concurrent.futures
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -16,34 +19,62 @@ import tempfile
 
 CLOCK_HZ = 10e6
 PAPER_CLOCKS = 5_120_000
-PAPER_CHIPS = {1: CLOCK_HZ / PAPER_CLOCKS, 9: 18.0}  # frames a second
 SIMULATED = (1, 2, 4, 8)
+PAPER_CHIPS = 9
+WHOLE = ["--no-skip", "culling,empty-tiles,divisions"]
 
 
-def simulate(render, scene, lanes, folder):
-    """The statistics of the frame, rendered with so many lanes and nothing else beside."""
-    stats = pathlib.Path(folder) / "stats.json"
-    subprocess.run([render, scene, "--size", "320x200", "--threads", "1", "--lanes", str(lanes), "--quiet",
-                    "--stats", stats, "--output", pathlib.Path(folder) / "frame"], check=True)
-    return json.loads(stats.read_text())
+def simulate(render, scene, options):
+    """The statistics of the frame, rendered by one thread."""
+    with tempfile.TemporaryDirectory() as folder:
+        stats = pathlib.Path(folder) / "stats.json"
+        subprocess.run([render, scene, "--size", "320x200", "--threads", "1", "--quiet", "--stats", stats,
+                        "--output", pathlib.Path(folder) / "frame", *options], check=True)
+        return json.loads(stats.read_text())
+
+
+def row(name, clocks, tests=None, size=None):
+    """One line of the table; what is not known stays empty."""
+    traffic = ["", "", ""] if size is None else [
+        f"{size / tests:.0f}", f"{size / 1e6:,.1f}", f"{size / clocks * CLOCK_HZ / 1e6:,.0f}"]
+    return [name, "" if tests is None else f"{tests:,.0f}", f"{clocks:,.0f}", f"{CLOCK_HZ / clocks:,.1f}",
+            *traffic]
+
+
+def pipelined(runs):
+    """The rows of the pipelined unit: so many lanes as were simulated, and as many as the paper has chips."""
+    rows = [row(f"  pipelined, {lanes} lane{'s' * (lanes > 1)}", run["clocks"], run["unit_tests"],
+                run["input_bytes"]) for lanes, run in runs.items()]
+    most = max(runs)
+    tests, size = runs[most]["unit_tests"], runs[most]["input_bytes"]
+    clocks = tests / PAPER_CHIPS + runs[most]["clocks"] - tests / most
+    return [*rows, row(f"  pipelined, ~{PAPER_CHIPS} lanes", clocks, tests, size)]
 
 
 def main():
     if len(sys.argv) != 3:
-        sys.exit(__doc__.strip().splitlines()[-1])
-    with tempfile.TemporaryDirectory() as folder:
-        runs = {lanes: simulate(sys.argv[1], sys.argv[2], lanes, folder) for lanes in SIMULATED}
-    tests = runs[1]["tests"]
-    idle = {lanes: run["clocks"] - run["tests"] / lanes for lanes, run in runs.items()}
-    print(f"{tests:,} tests, {runs[1]['rays']:,} rays")
-    print(f"{'lanes':>5} {'clocks':>10} {'a test':>7} {'x lanes':>8} {'frames/s':>9} {'the paper':>10}")
-    for lanes in range(1, 11):
-        near = min(SIMULATED, key=lambda known: abs(known - lanes))
-        clocks = runs[lanes]["clocks"] if lanes in runs else tests / lanes + idle[near]
-        mark = " " if lanes in runs else "~"
-        paper = f"{PAPER_CHIPS[lanes]:10.1f}" if lanes in PAPER_CHIPS else ""
-        print(f"{lanes:5} {mark}{clocks:9,.0f} {clocks / tests:7.4f} {clocks / tests * lanes:8.3f}"
-              f" {CLOCK_HZ / clocks:9.1f} {paper}")
+        print(__doc__.strip().splitlines()[-1], file=sys.stderr)
+        sys.exit(2)
+    render, scene = sys.argv[1:]
+    plans = {(skips, lanes): ["--lanes", str(lanes), *(WHOLE if skips == "whole" else [])]
+             for skips in ("whole", "culled") for lanes in SIMULATED}
+    plans["serial"] = ["--unit", "serial", *WHOLE]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = dict(zip(plans, pool.map(lambda plan: simulate(render, scene, plan), plans.values())))
+    whole, culled = ({lanes: runs[skips, lanes] for lanes in SIMULATED} for skips in ("whole", "culled"))
+    serial = runs["serial"]
+    head = ["at 10 MHz", "tests", "clocks", "frames/s", "bytes/test", "MB/frame", "MB/s"]
+    table = [row("the paper, one chip", PAPER_CLOCKS),
+             row(f"the paper, {PAPER_CHIPS} chips", CLOCK_HZ / 18),
+             [f"every ray on each of {serial['triangles']} polygons:"],
+             row("  the paper's unit", serial["clocks"], serial["unit_tests"], serial["input_bytes"]),
+             *pipelined(whole), ["with culling:"], *pipelined(culled)]
+    widths = [max(len(line[k]) for line in [head, *table] if len(line) == len(head)) for k in range(len(head))]
+    for line in [head, *table]:
+        print(line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:])),
+              sep="  " if len(line) > 1 else "")
+    print(f"{whole[1]['rays']:,} rays: {whole[1]['camera_rays']:,} from the camera,"
+          f" {whole[1]['shadow_rays']:,} to lights, the others reflected or refracted")
 
 
 if __name__ == "__main__":

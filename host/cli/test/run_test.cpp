@@ -72,7 +72,7 @@ TEST_F(Render, StatisticsAreWholeAndAgree) {
       "lanes",         "unit_tests",     "quotients",       "idle_clocks",
       "output_stalls", "thread_seconds", "integrator",      "spp",
       "depth",         "camera_rays",    "shadow_rays",     "common_records",
-      "skipped"};
+      "skipped",       "input_bytes"};
   std::set<std::string> actual;
   for (const auto& [key, value] : stats_.items()) actual.insert(key);
   EXPECT_EQ(actual, expected);
@@ -87,6 +87,7 @@ TEST_F(Render, StatisticsAreWholeAndAgree) {
   EXPECT_EQ(count("misses") + count("hits") + count("edge_doubts"), count("tests"));
   EXPECT_GT(count("hits"), 0u);
   EXPECT_EQ(count("unit_tests"), count("tests"));
+  EXPECT_EQ(count("input_bytes"), 64 * count("tests"));
   EXPECT_GE(count("clocks"), count("tests"));
   EXPECT_DOUBLE_EQ(stats_.at("clocks_per_test").get<double>(),
                    static_cast<double>(count("clocks")) / static_cast<double>(count("unit_tests")));

@@ -11,6 +11,7 @@ HitCounters& HitCounters::operator+=(const HitCounters& other) {
   plane_tests += other.plane_tests;
   unit_tests += other.unit_tests;
   quotients += other.quotients;
+  input_bytes += other.input_bytes;
   clocks += other.clocks;
   idle_clocks += other.idle_clocks;
   output_stalls += other.output_stalls;

@@ -66,6 +66,7 @@ struct HitCounters {
   std::uint64_t plane_tests = 0;   ///< divisions d I / (I . N) asked of the unit
   std::uint64_t unit_tests = 0;    ///< tests that went through the unit
   std::uint64_t quotients = 0;     ///< divisions that the unit did
+  std::uint64_t input_bytes = 0;   ///< of the words that the unit took: records, or rays and planes
   std::uint64_t clocks = 0;        ///< simulated clock cycles; 0 where nothing is simulated
 
   // Clocks of the unit's lanes without a new test, by cause; only the pipelined unit has any.

@@ -75,6 +75,7 @@ HitCounters hit_counters(const BurstCounters& unit) {
   counters.plane_tests = unit.coordinates / 3;
   counters.unit_tests = unit.tests;
   counters.quotients = unit.distances + unit.coordinates;
+  counters.input_bytes = unit.tests * sizeof(PolygonRecord);
   counters.clocks = unit.clocks;
   counters.idle_clocks = unit.idle_clocks;
   counters.output_stalls = unit.output_stalls;

@@ -32,6 +32,7 @@ HitCounters SerialHitTester::counters() const {
   HitCounters counters = counters_;
   counters.unit_tests = counters.plane_tests;
   counters.quotients = 3 * counters.plane_tests;
+  counters.input_bytes = counters.plane_tests * sizeof(PlaneTest);
   counters.clocks = unit_->clocks();
   return counters;
 }
