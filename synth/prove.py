@@ -8,7 +8,7 @@ import pathlib
 import sys
 from collections.abc import Callable
 
-from synth import catalogue, mapping, netlists, runner, store, tables, tools
+from synth import catalogue, float_proofs, mapping, netlists, runner, store, tables, tools
 from synth.catalogue import LIBRARIES, Design
 
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
@@ -16,13 +16,15 @@ PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
 
 @dataclasses.dataclass(frozen=True)
 class Proof:
-    """Something that is shown; `quick`: in well under half a minute, so `make test` shows it too."""
+    """Something that is shown; `quick`: in well under half a minute, so `make test` shows it too;
+    `long`: only where it is asked for."""
 
     name: str
     claim: str
     how: str
     work: Callable[[], tuple[dict, bool]]
     quick: bool = True
+    long: bool = False
 
 
 def _files(folder: str) -> list[pathlib.Path]:
@@ -128,6 +130,9 @@ def all_proofs() -> list[Proof]:
         Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "z3",
               lambda: holds("timetable", "z3", unit, steps=30)),
     ]
+    proofs += [Proof(f"float.{one.name}", one.says, "Bitwuzla",
+                     functools.partial(float_proofs.proven, one), False, one.long)
+               for one in float_proofs.PROOFS]
     # The pipelined unit in binary16: Verilator would take an hour for binary32's hundred thousand
     # cells.
     narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)
@@ -151,11 +156,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
     parser.add_argument("names", nargs="*", help="beginnings of proofs' names; all if none")
     parser.add_argument("--quick", action="store_true", help="those alone that `make test` runs")
+    parser.add_argument("--long", action="store_true", help="those too that take an hour")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     given = parser.parse_args()
     try:
         chosen = [proof for proof in all_proofs()
-                  if (proof.quick or not given.quick)
+                  if (proof.quick or not given.quick) and (given.long or not proof.long)
                   and (not given.names or proof.name.startswith(tuple(given.names)))]
         if not chosen:
             raise ValueError(f"no proof's name begins with {' or '.join(given.names)}")
@@ -164,8 +170,9 @@ def main() -> int:
     except (tools.MissingTool, ValueError) as error:
         print(f"synth: {error}", file=sys.stderr)
         return 2
-    print(tables.markdown(["proof", "what", "by", "holds"], [
-        [proof.name, proof.claim, proof.how, "no" if result is None else "yes"]
+    print(tables.markdown(["proof", "what", "by", "holds", "s", "MB"], [
+        [proof.name, proof.claim, proof.how, "no" if result is None else "yes",
+         (result or {}).get("seconds", ""), (result or {}).get("megabytes", "")]
         for proof, result in zip(chosen, results, strict=True)]))
     for failure in failures:
         print("failed:", failure, file=sys.stderr)

@@ -13,9 +13,9 @@ synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=grad
 	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
 	  --jobs '$(SYNTH_JOBS)'
 
-prove: ## prove adders, multiplier and timetable: make prove [PROOFS='adder. booth.tree']
+prove: ## prove adders, multiplier, float cores, timetable: make prove [PROOFS='adder. float.add'] [LONG=1]
 	@$(SETUP) prove
-	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(PROOFS)
+	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(PROOFS)
 
 verilog: ## a module as one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5 FracWidth=10']
 	@$(SETUP) synth

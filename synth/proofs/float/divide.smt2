@@ -1,0 +1,56 @@
+; a / b, given the quotient of the significands, cut off, and whether anything is left of it. IEEE
+; 754-2019, clauses 5.4.1 and 7. To be read behind multiply.smt2.
+;
+; wide-a and wide-b are the words of a and b as Wides, in which every number but zero is normal:
+; the fields of these words are exponents and fractions of the normalised numbers.
+
+(define-sort WideWord () (_ BitVec $WW))
+(define-sort Quotient () (_ BitVec $Q))  ; two integer bits, the rest fraction
+
+(define-fun is-word-of ((w WideWord) (x Word)) Bool (= ((_ to_fp $WE $WS) w) (wide x)))
+(define-fun wide-field ((w WideWord)) (_ BitVec $WE) ((_ extract $WFIELD_HIGH $WF) w))
+(define-fun normalized ((w WideWord)) (_ BitVec $S)
+  (concat #b1 ((_ extract $WF_TOP $WF_S) w)))
+
+; What the divider of significands promises: quotient is 2 a / b, cut off, left says whether it was.
+; 2 a / b is in (1, 4).
+(define-fun possible-quotient ((quotient Quotient)) Bool
+  (bvuge quotient (_ bv$QUOTIENT_ONE $Q)))
+
+; (1 + word / 2^k) * 2^e - 2^e is word * 2^(e - k). What is left counts as half a place, far
+; below every place where rounding could notice how much it is.
+(define-fun quotient-magnitude ((wide-a WideWord) (wide-b WideWord)
+                                (quotient Quotient) (left Bool))
+                               Wide
+  (let ((e (bvadd (bvsub (wide-field wide-a) (wide-field wide-b)) (_ bv$QUOTIENT_FIELD $WE))))
+    (fp.sub RNE (fp #b0 e (concat (_ bv0 $QPAD) quotient (bit left))) (fp #b0 e (_ bv0 $WF)))))
+
+(define-fun divide-invalid ((a Word) (b Word)) Bool
+  (or (is-signaling a) (is-signaling b)
+      (and (fp.isInfinite (number a)) (fp.isInfinite (number b)))
+      (and (fp.isZero (number a)) (fp.isZero (number b)))))
+(define-fun by-zero ((a Word) (b Word)) Bool
+  (and (fp.isZero (number b)) (is-finite a) (not (fp.isZero (number a)))))
+(define-fun is-quotient ((a Word) (b Word)) Bool
+  (and (is-finite a) (is-finite b) (not (fp.isZero (number a))) (not (fp.isZero (number b)))))
+
+; `magnitude` is quotient-magnitude.
+(define-fun divide-result ((m RoundingMode) (a Word) (b Word) (magnitude Wide)) Float
+  (let ((same (= (is-negative a) (is-negative b))))
+    (ite (or (fp.isNaN (number a)) (fp.isNaN (number b)) (divide-invalid a b)) (_ NaN $E $S)
+    (ite (or (fp.isInfinite (number a)) (fp.isZero (number b)))
+         (ite same (_ +oo $E $S) (_ -oo $E $S))
+    (ite (or (fp.isZero (number a)) (fp.isInfinite (number b)))
+         (ite same (_ +zero $E $S) (_ -zero $E $S))
+         ((_ to_fp $E $S) m (ite same magnitude (fp.neg magnitude))))))))
+
+(define-fun divide-flags ((m RoundingMode) (after Bool) (a Word) (b Word) (magnitude Wide))
+                         (_ BitVec 5)
+  (let ((x (ite (= (is-negative a) (is-negative b)) magnitude (fp.neg magnitude))))
+    (flags
+      (divide-invalid a b)
+      (by-zero a b)
+      (is-quotient a b)
+      m after
+      ((_ to_fp $E $S) RTN x) ((_ to_fp $E $S) RTP x)
+      x x)))

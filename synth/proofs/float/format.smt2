@@ -1,0 +1,57 @@
+; What the specifications share: words, numbers, the five flags. IEEE 754-2019, clauses 3.4, 4.3, 7.
+;
+; Every operation is SMT-LIB's own, of its theory FloatingPoint. $$E and $$S stand for the widths of
+; the exponent and of the significand with its integer bit (binary16: 5, 11).
+
+(define-sort Word () (_ BitVec $W))
+(define-sort Float () (_ FloatingPoint $E $S))
+; The next wider of IEEE's formats: thresholds between Floats, and products of two, are Wides.
+(define-sort Wide () (_ FloatingPoint $WE $WS))
+
+(define-fun number ((w Word)) Float ((_ to_fp $E $S) w))
+(define-fun wide ((w Word)) Wide ((_ to_fp $WE $WS) RNE (number w)))
+(define-fun is-negative ((w Word)) Bool (= ((_ extract $SIGN $SIGN) w) #b1))
+(define-fun is-finite ((w Word)) Bool
+  (not (or (fp.isNaN (number w)) (fp.isInfinite (number w)))))
+
+; A NaN is signalling if the first bit of its fraction is 0. All NaN results are the canonical one.
+(define-fun is-signaling ((w Word)) Bool
+  (and (fp.isNaN (number w)) (= ((_ extract $QUIET $QUIET) w) #b0)))
+(define-fun canonical-nan () Word $NAN)
+
+; Whether `w` is the word of `x`.
+(define-fun represents ((w Word) (x Float)) Bool
+  (ite (fp.isNaN x) (= w canonical-nan) (= (number w) x)))
+
+; RISC-V's encoding of the modes; its three unused values round towards zero.
+(define-fun mode ((m (_ BitVec 3))) RoundingMode
+  (ite (= m #b000) RNE (ite (= m #b010) RTN (ite (= m #b011) RTP (ite (= m #b100) RNA RTZ)))))
+
+; Whether a magnitude, rounded as if exponents had no bounds, reaches a power of two. It lies between
+; `least` and `most`, which are equal or neighbours. `last` is the number before the power,
+; `middle` halfway between the two (a tie goes to the power, whose fraction is even).
+(define-fun reaches ((m RoundingMode) (negative Bool) (least Wide) (most Wide)
+                     (last Wide) (middle Wide) (power Wide)) Bool
+  (ite (or (= m RNE) (= m RNA)) (fp.geq least middle)
+  (ite (= m (ite negative RTN RTP)) (fp.gt most last)
+       (fp.geq least power))))
+
+; The flags, invalid leftmost and inexact rightmost, of a result that
+;   rounds         is the rounding of an exact finite value, which
+;   down, up       are the Floats below and above, equal if it is one: else it is inexact (7.6)
+;   below, above   are the Wides below and above
+; Overflow (7.4): it reaches the power of two beyond the largest Float. Underflow (7.5): inexact, and
+; it does not reach the smallest normal Float, rounded in mode m or (before rounding) cut off.
+(define-fun bit ((p Bool)) (_ BitVec 1) (ite p #b1 #b0))
+(define-fun flags ((invalid Bool) (by-zero Bool) (rounds Bool) (m RoundingMode) (after Bool)
+                   (down Float) (up Float) (below Wide) (above Wide)) (_ BitVec 5)
+  (let ((inexact (and rounds (not (fp.eq down up))))
+        (negative (fp.isNegative above))
+        (least (fp.abs (ite (fp.isNegative above) above below)))
+        (most (fp.abs (ite (fp.isNegative above) below above))))
+    (concat
+      (bit invalid)
+      (bit by-zero)
+      (bit (and rounds (reaches m negative least most $OVERFLOW)))
+      (bit (and inexact (not (reaches (ite after m RTZ) negative least most $UNDERFLOW))))
+      (bit inexact))))
