@@ -184,7 +184,7 @@ void run(const Options& options) {
   print_warnings(scene);
 
   const Clock::time_point tree_start = Clock::now();
-  const Bvh bvh(scene);
+  const Bvh bvh(scene, static_cast<int>(options.threads));
   report.tree_seconds = seconds_since(tree_start);
 
   const InterruptGuard guard;

@@ -18,6 +18,19 @@ bool emits(const Material& material) {
 
 double mean(const glm::dvec3& colour) { return (colour.x + colour.y + colour.z) / 3.0; }
 
+/// In the order of the scene's triangles: lamps, and what is sampled of them, do not depend on how
+/// the tree is built.
+std::vector<std::uint32_t> emitting_slots(const Scene& scene, const Bvh& bvh) {
+  std::vector<std::uint32_t> slots;
+  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+    if (emits(scene.materials[scene.triangles[bvh.triangle_of(slot)].material])) {
+      slots.push_back(slot);
+    }
+  }
+  std::ranges::sort(slots, {}, [&](std::uint32_t slot) { return bvh.triangle_of(slot); });
+  return slots;
+}
+
 /// All faces in one plane, with one side in common: their middle is then among them or near.
 void find_middle(const Bvh& bvh, AreaLight& light) {
   const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(light.slots[0])));
@@ -44,15 +57,16 @@ void find_middle(const Bvh& bvh, AreaLight& light) {
 
 /// The reflected part of what one side of the lamps sends out, F r / (1 - r), over pi times all
 /// area; r is the mean reflectance.
-glm::dvec3 guessed_ambient(const Scene& scene, const Bvh& bvh,
-                           const std::vector<AreaLight>& lamps) {
+glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lamps) {
   glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
   for (const AreaLight& lamp : lamps) flux += std::numbers::pi * lamp.area() * lamp.radiance;
   if (flux == glm::dvec3(0.0)) return flux;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    const double own = 0.5 * glm::length(triangle_normal(bvh.corners_of(slot)));
-    const Triangle& face = scene.triangles[bvh.triangle_of(slot)];
+  for (const Triangle& face : scene.triangles) {
+    const auto& [a, b, c] = face.vertices;
+    const double own =
+        0.5 *
+        glm::length(triangle_normal({scene.positions[a], scene.positions[b], scene.positions[c]}));
     area += own;
     reflecting += own * glm::dvec3(scene.materials[face.material].diffuse);
   }
@@ -91,10 +105,9 @@ void light_if_dark(Scene& scene, const Camera& camera) {
 Lights::Lights(const Scene& scene, const Bvh& bvh, bool records_on_first_touch)
     : scene_(scene), bvh_(bvh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+  for (const std::uint32_t slot : emitting_slots(scene, bvh)) {
     const Triangle& face = scene.triangles[bvh.triangle_of(slot)];
     const Material& material = scene.materials[face.material];
-    if (!emits(material)) continue;
     if (area_of_slot_.empty()) area_of_slot_.assign(bvh.slot_count(), kNoIndex);
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
@@ -119,7 +132,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, bool records_on_first_touch)
     power += 2.0 * std::numbers::pi * light.area() * mean(light.radiance);
     power_up_to_.push_back(power);
   }
-  ambient_ = background() != glm::dvec3(0.0) ? background() : guessed_ambient(scene, bvh, areas_);
+  ambient_ = background() != glm::dvec3(0.0) ? background() : guessed_ambient(scene, areas_);
 }
 
 std::uint64_t Lights::records_made() const {

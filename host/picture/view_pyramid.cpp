@@ -1,7 +1,8 @@
 #include "host/picture/view_pyramid.h"
 
 #include <array>
-#include <vector>
+
+#include "host/tree/walk.h"
 
 namespace raygate {
 namespace {
@@ -36,6 +37,23 @@ class ViewPyramid {
   std::array<glm::dvec3, 4> inwards_;
 };
 
+/// Meets the boxes that are not surely beside the pyramid.
+struct PyramidVisitor {
+  const ViewPyramid& pyramid;
+
+  [[nodiscard]] static bool goes_on(float, Whole) { return true; }
+  [[nodiscard]] static Whole rays_at(int) { return {}; }
+  [[nodiscard]] LaneMask meet(const Bvh::Node& node, Whole, FloatLanes& entry) const {
+    entry = FloatLanes{};
+    LaneMask met = 0;
+    for (int i = 0; i < Bvh::kWidth; ++i) {
+      const auto [low, high] = node.box(i);
+      if (low.x <= high.x && !pyramid.is_beside(low, high)) met |= 1u << i;
+    }
+    return met;
+  }
+};
+
 }  // namespace
 
 bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, const PixelRect& tile,
@@ -43,19 +61,10 @@ bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, co
   const ViewPyramid pyramid(camera, (tile.x0 - margin) / film.width,
                             (tile.y0 - margin) / film.height, (tile.x1 + margin) / film.width,
                             (tile.y1 + margin) / film.height);
-  std::vector<Bvh::Ref> waiting{bvh.root()};
-  while (!waiting.empty()) {
-    const Bvh::Ref ref = waiting.back();
-    waiting.pop_back();
-    if (ref.count > 0) return true;
-    const Bvh::Node& node = bvh.nodes()[ref.first];
-    for (int side = 0; side < 2; ++side) {
-      const bool is_absent = node.bounds[0][side].x > node.bounds[1][side].x;
-      if (is_absent || pyramid.is_beside(node.bounds[0][side], node.bounds[1][side])) continue;
-      waiting.push_back(node.child[side]);
-    }
-  }
-  return false;
+  PyramidVisitor visitor{pyramid};
+  WalkStack<Whole> stack({});
+  Waiting<Whole> leaf;
+  return next_leaf(bvh, visitor, stack, leaf);
 }
 
 }  // namespace raygate

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "host/lanes.h"
-#include "host/tree/wide_bvh.h"
+#include "host/tree/bvh.h"
 
 // Why no true hit is culled
 //
@@ -66,7 +66,7 @@ struct Beam {
 
 /// Sets bit i of the result where the beam meets the box of child i before `cutoff` (see
 /// PacketTraversal::set_cutoff), and entry[i] to where it enters it.
-RAYGATE_INLINE LaneMask meet_children(const Beam& beam, const WideBvh::Node& node, float cutoff,
+RAYGATE_INLINE LaneMask meet_children(const Beam& beam, const Bvh::Node& node, float cutoff,
                                       FloatLanes& entry) {
   FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
   for (int k = 0; k < 3; ++k) {
@@ -112,7 +112,7 @@ RAYGATE_INLINE Beam one_of(const Beams& beams, int which, const Beam& like) {
 
 /// The beams that meet the box of a node's child.
 RAYGATE_INLINE LaneMask meet_beams(const Beams& beams, const glm::vec3& origin, int octant,
-                                   const WideBvh::Node& node, int child) {
+                                   const Bvh::Node& node, int child) {
   FloatLanes enter = {}, leave = beams.cutoff;
   for (int k = 0; k < 3; ++k) {
     const int negative = octant >> k & 1;

@@ -1,39 +1,45 @@
 #include "host/tree/box_query.h"
 
+#include "host/tree/walk.h"
+
 namespace raygate {
 namespace {
 
-bool overlap(const glm::vec3& low, const glm::vec3& high, const glm::vec3& other_low,
-             const glm::vec3& other_high) {
-  return glm::all(glm::lessThanEqual(low, other_high)) &&
-         glm::all(glm::lessThanEqual(other_low, high));
-}
+/// A box on its way through the tree.
+struct BoxVisitor {
+  glm::vec3 low, high;
+
+  [[nodiscard]] static bool goes_on(float, Whole) { return true; }
+  [[nodiscard]] static Whole rays_at(int) { return {}; }
+  [[nodiscard]] LaneMask meet(const Bvh::Node& node, Whole, FloatLanes& entry) const {
+    IntLanes touches = IntLanes{} - 1;
+    for (int k = 0; k < 3; ++k) {
+      FloatLanes lows, highs;
+      load_lanes(node.bounds[0][k], lows);
+      load_lanes(node.bounds[1][k], highs);
+      touches &= (lows <= high[k]) & (highs >= low[k]);
+    }
+    entry = FloatLanes{};
+    return sign_mask(touches);
+  }
+  [[nodiscard]] bool touches(const Bvh::Corners& t) const {
+    return glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
+           glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2])));
+  }
+};
 
 }  // namespace
 
-void slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
-                std::vector<std::uint32_t>& slots) {
+RAYGATE_LANES void slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                              std::vector<std::uint32_t>& slots) {
   slots.clear();
-  Bvh::Ref waiting[Bvh::kMaxDepth + 2];
-  int depth = 0;
-  waiting[depth++] = bvh.root();
-  while (depth > 0) {
-    const Bvh::Ref ref = waiting[--depth];
-    if (ref.count == 0) {
-      const Bvh::Node& node = bvh.nodes()[ref.first];
-      for (int side = 0; side < 2; ++side) {
-        if (overlap(low, high, node.bounds[0][side], node.bounds[1][side])) {
-          waiting[depth++] = node.child[side];
-        }
-      }
-      continue;
-    }
-    for (std::uint32_t slot = ref.first; slot < ref.first + ref.count; ++slot) {
-      const Bvh::Corners& t = bvh.corners_of(slot);
-      if (overlap(low, high, glm::min(glm::min(t[0], t[1]), t[2]),
-                  glm::max(glm::max(t[0], t[1]), t[2]))) {
-        slots.push_back(slot);
-      }
+  BoxVisitor visitor{low, high};
+  WalkStack<Whole> stack({});
+  Waiting<Whole> leaf;
+  while (next_leaf(bvh, visitor, stack, leaf)) {
+    for (std::uint32_t i = 0; i < leaf.child.count; ++i) {
+      const std::uint32_t slot = leaf.child.first + i;
+      if (visitor.touches(bvh.corners_of(slot))) slots.push_back(slot);
     }
   }
 }

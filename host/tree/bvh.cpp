@@ -1,225 +1,255 @@
 #include "host/tree/bvh.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <limits>
+#include <utility>
 
-#include "host/tree/wide_bvh.h"
+#include "host/threads.h"
+#include "host/tree/binary_tree.h"
+
+// Which nodes of the binary tree are nodes of the wide one
+//
+// A wide node's children are a cut through the binary tree below it, and the best of all trees is
+// found from the leaves up (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs
+// through compressed wide BVHs", 2017). Let C(n, i) be what it costs to make binary node n, with
+// all below it, into at most i children:
+//   C(n, 1) = A kNodeCost + C(n, 8) as an inner node; A kLeafCost (up to kMaxLeafSize) as a leaf;
+//   C(n, i) = C(n, i - 1), or C(left, k) + C(right, i - k) for the best k.
+// A is the chance that a ray which meets the root's box meets n's: the ratio of their surfaces.
 
 namespace raygate {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+using Ref = BinaryTree::Ref;
 
-struct Box {
-  glm::vec3 low{kInfinity}, high{-kInfinity};
+constexpr std::uint32_t kTaskSize = 4096;  // slots below a node that is one thread's work
+constexpr float kNodeCost = 1.0f;
+/// Of a leaf of 1 to 4 triangles: four are tested as fast as one, but where they are sent to a
+/// unit.
+constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.6f, 0.8f, 1.0f, 1.2f};
 
-  void grow(const Box& other) {
-    low = glm::min(low, other.low);
-    high = glm::max(high, other.high);
-  }
-  /// Half the surface, in double: a float would overflow at 1e19.
-  [[nodiscard]] double half_area() const {
-    const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-  }
-};
-
-/// The triangle's box, one float wider on every side: packet_traversal.h says what for.
-Box box_of(const Bvh::Corners& t) {
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    const auto [low, high] = std::minmax({t[0][k], t[1][k], t[2][k]});
-    box.low[k] = std::nextafter(low, -kInfinity);
-    box.high[k] = std::nextafter(high, kInfinity);
-  }
-  return box;
-}
-
-struct Primitive {
-  Box box;
-  std::uint32_t triangle;
-
-  /// Twice the centre.
-  [[nodiscard]] double center(int axis) const {
-    return static_cast<double>(box.low[axis]) + box.high[axis];
-  }
+/// The cheapest ways of a binary node.
+struct Plan {
+  float cost[Bvh::kWidth];  ///< [i]: C(n, i + 1); of [0]: as a child
+  std::uint8_t
+      left[Bvh::kWidth];  ///< [i]: how many of i + 1 children are the left side's; 0: do with i
+  bool is_leaf;
 };
 
 }  // namespace
 
-/// Top-down, with the splits between a few equal bins tried on each axis (Wald, "On fast
-/// construction of SAH-based bounding volume hierarchies", 2007).
-class BvhBuilder {
+/// Makes a binary tree wide.
+class BvhWriter {
  public:
-  BvhBuilder(Bvh& bvh, std::vector<Primitive> primitives)
-      : bvh_(bvh), primitives_(std::move(primitives)) {
-    bvh_.nodes_.reserve(primitives_.size());
+  BvhWriter(Bvh& bvh, const Scene& scene, const BinaryTree& tree, int threads)
+      : bvh_(bvh), scene_(scene), tree_(tree), threads_(threads), plans_(tree.size()) {}
+
+  void write() {
     bvh_.nodes_.emplace_back();
-    const auto count = static_cast<std::uint32_t>(primitives_.size());
-    if (count <= Bvh::kMaxLeafSize) {
-      Box box;
-      for (const Primitive& p : primitives_) box.grow(p.box);
-      set_child(0, 0, box, {0, static_cast<std::uint16_t>(count), 0});
-      set_child(0, 1, Box{}, {});
+    clear(bvh_.nodes_[0]);
+    const std::uint32_t size = tree_.size();
+    bvh_.triangles_.resize(size);
+    bvh_.places_.resize(size);
+    bvh_.corners_.resize(9 * std::size_t{size} + Bvh::kMaxLeafSize);
+    if (size == 0) return;
+    const double area = half_area(tree_.box(tree_.root()));
+    inverse_area_ = 1.0 / area;
+    plan_all();
+    if (tree_.is_leaf(tree_.root()) || plans_[tree_.root()].is_leaf) {
+      put_child(bvh_.nodes_[0], 0, tree_.root());
     } else {
-      bvh_.root_.axis = fill(0, 0, count, 0);
+      write_all();
     }
   }
-
-  [[nodiscard]] const std::vector<Primitive>& order() const { return primitives_; }
 
  private:
-  static constexpr int kBins = 16;
-  // A node visit tests two boxes; a hit test costs about as much as both.
-  static constexpr double kVisitCost = 1.0, kTestCost = 1.0;
-
-  struct Split {
-    double cost = std::numeric_limits<double>::infinity();
-    int axis = 0;
-    int bin = 0;  // bins below it go left
+  /// A task: a binary node with as many leaves as one thread is to see to.
+  struct Task {
+    Ref ref;
+    std::uint32_t parent;  ///< whose child it is, in the tree
+    int child;
+    std::vector<Bvh::Node> nodes;
+    std::uint32_t offset;
   };
 
-  struct Centers {
-    glm::dvec3 low{std::numeric_limits<double>::infinity()};
-    glm::dvec3 scale{0.0};  // bins per unit; 0 where all centres are one
-
-    [[nodiscard]] int bin_of(const Primitive& p, int axis) const {
-      const auto bin = static_cast<int>((p.center(axis) - low[axis]) * scale[axis]);
-      return std::min(bin, kBins - 1);
-    }
-  };
-
-  [[nodiscard]] Centers centers_of(std::uint32_t begin, std::uint32_t end) const {
-    Centers centers;
-    glm::dvec3 high(-std::numeric_limits<double>::infinity());
-    for (std::uint32_t i = begin; i < end; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const double center = primitives_[i].center(axis);
-        centers.low[axis] = std::min(centers.low[axis], center);
-        high[axis] = std::max(high[axis], center);
+  static void clear(Bvh::Node& node) {
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < Bvh::kWidth; ++i) {
+        node.bounds[0][k][i] = std::numeric_limits<float>::infinity();
+        node.bounds[1][k][i] = -std::numeric_limits<float>::infinity();
       }
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      const double extent = high[axis] - centers.low[axis];
-      centers.scale[axis] = extent > 0.0 ? kBins / extent : 0.0;
-    }
-    return centers;
+    for (Bvh::Child& child : node.child) child = {};
   }
 
-  /// The cheapest split, its cost as a sum of area times count.
-  [[nodiscard]] Split best_split(std::uint32_t begin, std::uint32_t end,
-                                 const Centers& centers) const {
-    Box boxes[3][kBins];
-    std::uint32_t counts[3][kBins] = {};
-    for (std::uint32_t i = begin; i < end; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const int bin = centers.bin_of(primitives_[i], axis);
-        boxes[axis][bin].grow(primitives_[i].box);
-        ++counts[axis][bin];
+  [[nodiscard]] float area(Ref ref) const {
+    return static_cast<float>(half_area(tree_.box(ref)) * inverse_area_);
+  }
+  [[nodiscard]] float cost(Ref ref, int children) const {
+    return tree_.is_leaf(ref) ? kLeafCost[1] * area(ref) : plans_[ref].cost[children - 1];
+  }
+
+  /// Plans a node whose children have been planned.
+  void plan(Ref ref) {
+    const auto [left, right] = tree_.nodes[ref].child;
+    Plan& plan = plans_[ref];
+    float left_cost[Bvh::kWidth], right_cost[Bvh::kWidth];
+    for (int i = 1; i < Bvh::kWidth; ++i) {
+      left_cost[i] = cost(left, i);
+      right_cost[i] = cost(right, i);
+    }
+    for (int i = Bvh::kWidth; i > 1; --i) {
+      float best = std::numeric_limits<float>::infinity();
+      for (int k = 1; k < i; ++k) {
+        const float both = left_cost[k] + right_cost[i - k];
+        if (both >= best) continue;
+        best = both;
+        plan.left[i - 1] = static_cast<std::uint8_t>(k);
+      }
+      plan.cost[i - 1] = best;
+    }
+    const std::uint32_t count = tree_.count(ref);
+    const float own_area = area(ref);
+    plan.cost[0] = plan.cost[Bvh::kWidth - 1] + kNodeCost * own_area;
+    plan.is_leaf = count <= Bvh::kMaxLeafSize && kLeafCost[count] * own_area <= plan.cost[0];
+    if (plan.is_leaf) plan.cost[0] = kLeafCost[count] * own_area;
+    for (int i = 2; i < Bvh::kWidth; ++i) {
+      if (plan.cost[i - 1] < plan.cost[i - 2]) continue;
+      plan.cost[i - 1] = plan.cost[i - 2];
+      plan.left[i - 1] = 0;
+    }
+  }
+
+  void plan_below(Ref ref) {
+    if (tree_.is_leaf(ref)) return;
+    plan_below(tree_.nodes[ref].child[0]);
+    plan_below(tree_.nodes[ref].child[1]);
+    plan(ref);
+  }
+
+  void plan_all() {
+    std::vector<Ref> large, tasks;  // parents before children
+    collect_tasks(tree_.root(), large, tasks);
+    for_each_on_threads(threads_, tasks.size(), [&](std::size_t i) { plan_below(tasks[i]); });
+    for (auto ref = large.rbegin(); ref != large.rend(); ++ref) plan(*ref);
+  }
+
+  void collect_tasks(Ref ref, std::vector<Ref>& large, std::vector<Ref>& tasks) const {
+    if (tree_.count(ref) <= kTaskSize) {
+      tasks.push_back(ref);
+      return;
+    }
+    large.push_back(ref);
+    for (const Ref child : tree_.nodes[ref].child) collect_tasks(child, large, tasks);
+  }
+
+  /// Finds what becomes the children of a wide node when `ref` becomes `most` of them.
+  void collect_children(Ref ref, int most, Ref (&children)[Bvh::kWidth], int& count) const {
+    if (most > 1 && !tree_.is_leaf(ref)) {
+      const Plan& plan = plans_[ref];
+      int i = most;
+      while (i > 1 && plan.left[i - 1] == 0) --i;
+      if (i > 1) {
+        const int left = plan.left[i - 1];
+        collect_children(tree_.nodes[ref].child[0], left, children, count);
+        collect_children(tree_.nodes[ref].child[1], i - left, children, count);
+        return;
       }
     }
-    Split best;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (centers.scale[axis] == 0.0) continue;
-      double right_cost[kBins];
-      Box box;
-      std::uint32_t count = 0;
-      for (int bin = kBins - 1; bin > 0; --bin) {
-        box.grow(boxes[axis][bin]);
-        count += counts[axis][bin];
-        right_cost[bin] = count == 0 ? 0.0 : box.half_area() * count;
+    children[count++] = ref;
+  }
+
+  /// Puts a leaf or, its number being for the caller to say, an inner node into a node.
+  void put_child(Bvh::Node& node, int i, Ref ref) {
+    const Box& box = tree_.box(ref);
+    for (int k = 0; k < 3; ++k) {
+      node.bounds[0][k][i] = box[k];
+      node.bounds[1][k][i] = -box[k + 4];
+    }
+    if (!is_leaf(ref)) return;
+    node.child[i] = {tree_.first(ref), tree_.count(ref)};
+    write_slots(node.child[i]);
+  }
+
+  [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || plans_[ref].is_leaf; }
+
+  void write_slots(const Bvh::Child& leaf) {
+    float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t slot = leaf.first + i, triangle = tree_.primitives[slot].triangle();
+      bvh_.triangles_[slot] = triangle;
+      bvh_.places_[slot] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(leaf.count)};
+      for (std::uint32_t v = 0; v < 3; ++v) {
+        const glm::vec3& corner = scene_.positions[scene_.triangles[triangle].vertices[v]];
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          to[(3 * v + k) * leaf.count + i] = corner[static_cast<int>(k)];
+        }
       }
-      box = {};
-      count = 0;
-      for (int bin = 1; bin < kBins; ++bin) {
-        box.grow(boxes[axis][bin - 1]);
-        count += counts[axis][bin - 1];
-        if (count == 0 || count == end - begin) continue;
-        const double cost = box.half_area() * count + right_cost[bin];
-        if (cost < best.cost) best = {cost, axis, bin};
+    }
+  }
+
+  /// Writes the node `ref` to nodes[index], and what is below it behind; large ones become tasks,
+  /// where there are any.
+  void write_below(std::vector<Bvh::Node>& nodes, std::uint32_t index, Ref ref,
+                   std::vector<Task>* tasks) {
+    Ref children[Bvh::kWidth];
+    int count = 0;
+    collect_children(tree_.nodes[ref].child[0], plans_[ref].left[Bvh::kWidth - 1], children, count);
+    collect_children(tree_.nodes[ref].child[1], Bvh::kWidth - plans_[ref].left[Bvh::kWidth - 1],
+                     children, count);
+    clear(nodes[index]);
+    for (int i = 0; i < count; ++i) {
+      put_child(nodes[index], i, children[i]);
+      if (is_leaf(children[i])) continue;
+      if (tasks != nullptr && tree_.count(children[i]) <= kTaskSize) {
+        tasks->push_back({children[i], index, i, {}, 0});
+        continue;
       }
+      const auto next = static_cast<std::uint32_t>(nodes.size());
+      nodes[index].child[i] = {next, 0};
+      nodes.emplace_back();
+      write_below(nodes, next, children[i], tasks);
     }
-    return best;
   }
 
-  /// Makes node `index` out of primitives [begin, end), more than fit a leaf or worth a split;
-  /// returns its axis. A path never gets longer than kMaxDepth: close to it, halves are split.
-  std::uint16_t fill(std::uint32_t index, std::uint32_t begin, std::uint32_t end, int depth) {
-    const Centers centers = centers_of(begin, end);
-    return split_at(index, begin, end, depth, centers, best_split(begin, end, centers));
-  }
-
-  std::uint16_t split_at(std::uint32_t index, std::uint32_t begin, std::uint32_t end, int depth,
-                         const Centers& centers, const Split& split) {
-    std::uint32_t middle = begin + (end - begin) / 2;
-    const int levels_left = Bvh::kMaxDepth - depth;
-    if (std::isfinite(split.cost) && static_cast<int>(std::bit_width(end - begin)) < levels_left) {
-      const auto left = std::partition(
-          primitives_.begin() + begin, primitives_.begin() + end,
-          [&](const Primitive& p) { return centers.bin_of(p, split.axis) < split.bin; });
-      middle = static_cast<std::uint32_t>(left - primitives_.begin());
-    } else {
-      std::nth_element(primitives_.begin() + begin, primitives_.begin() + middle,
-                       primitives_.begin() + end, [&](const Primitive& p, const Primitive& q) {
-                         return p.center(split.axis) < q.center(split.axis);
-                       });
+  void write_all() {
+    std::vector<Bvh::Node>& nodes = bvh_.nodes_;
+    std::vector<Task> tasks;
+    write_below(nodes, 0, tree_.root(), &tasks);
+    for_each_on_threads(threads_, tasks.size(), [&](std::size_t i) {
+      tasks[i].nodes.reserve(tree_.count(tasks[i].ref) / 4 + 1);
+      tasks[i].nodes.emplace_back();
+      write_below(tasks[i].nodes, 0, tasks[i].ref, nullptr);
+    });
+    std::size_t size = nodes.size();
+    for (Task& task : tasks) {
+      task.offset = static_cast<std::uint32_t>(size);
+      nodes[task.parent].child[task.child] = {task.offset, 0};
+      size += task.nodes.size();
     }
-    make_child(index, 0, begin, middle, depth + 1);
-    make_child(index, 1, middle, end, depth + 1);
-    return static_cast<std::uint16_t>(split.axis);
-  }
-
-  void make_child(std::uint32_t parent, int side, std::uint32_t begin, std::uint32_t end,
-                  int depth) {
-    Box box;
-    for (std::uint32_t i = begin; i < end; ++i) box.grow(primitives_[i].box);
-    const std::uint32_t count = end - begin;
-    const Bvh::Ref leaf = {begin, static_cast<std::uint16_t>(count), 0};
-    if (count == 1) return set_child(parent, side, box, leaf);
-    const Centers centers = centers_of(begin, end);
-    const Split split = best_split(begin, end, centers);
-    const double area = box.half_area();
-    if (count <= Bvh::kMaxLeafSize &&
-        !(kVisitCost * area + kTestCost * split.cost < kTestCost * area * count)) {
-      return set_child(parent, side, box, leaf);
-    }
-    const auto index = static_cast<std::uint32_t>(bvh_.nodes_.size());
-    bvh_.nodes_.emplace_back();
-    const std::uint16_t axis = split_at(index, begin, end, depth, centers, split);
-    set_child(parent, side, box, {index, 0, axis});
-  }
-
-  void set_child(std::uint32_t parent, int side, const Box& box, Bvh::Ref ref) {
-    Bvh::Node& node = bvh_.nodes_[parent];
-    node.bounds[0][side] = box.low;
-    node.bounds[1][side] = box.high;
-    node.child[side] = ref;
+    nodes.resize(size);
+    for_each_on_threads(threads_, tasks.size(), [&](std::size_t i) {
+      Bvh::Node* to = &nodes[tasks[i].offset];
+      for (Bvh::Node& node : tasks[i].nodes) {
+        for (Bvh::Child& child : node.child) {
+          if (child.count == 0) child.first += tasks[i].offset;
+        }
+        *to++ = node;
+      }
+    });
   }
 
   Bvh& bvh_;
-  std::vector<Primitive> primitives_;
+  const Scene& scene_;
+  const BinaryTree& tree_;
+  int threads_;
+  double inverse_area_ = 0.0;
+  std::vector<Plan> plans_;
 };
 
-Bvh::Bvh(const Scene& scene) {
-  std::vector<Primitive> primitives;
-  primitives.reserve(scene.triangles.size());
-  std::vector<Corners> corners;
-  corners.reserve(scene.triangles.size());
-  for (const Triangle& triangle : scene.triangles) {
-    corners.push_back({scene.positions[triangle.vertices[0]], scene.positions[triangle.vertices[1]],
-                       scene.positions[triangle.vertices[2]]});
-    primitives.push_back({box_of(corners.back()), static_cast<std::uint32_t>(primitives.size())});
-  }
-  const BvhBuilder builder(*this, std::move(primitives));
-  triangles_.reserve(corners.size());
-  corners_.reserve(corners.size());
-  for (const Primitive& primitive : builder.order()) {
-    triangles_.push_back(primitive.triangle);
-    corners_.push_back(corners[primitive.triangle]);
-  }
-  wide_ = std::make_shared<const WideBvh>(*this);
+Bvh::Bvh(const Scene& scene, int threads) {
+  const BinaryTree tree(scene, threads);
+  BvhWriter(*this, scene, tree, threads).write();
 }
 
 }  // namespace raygate

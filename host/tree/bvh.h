@@ -5,76 +5,95 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "host/scene/scene.h"
 
 namespace raygate {
 
-class WideBvh;
-
-/// A binary tree of axis-aligned boxes, split by the surface area heuristic. A leaf holds a run of
-/// slots; slot s stands for triangle `triangle_of(s)` of the scene. The tree does not refer to the
-/// scene after it is built. Memory: 64 bytes an inner node, 40 bytes a slot, and about 80 bytes an
-/// inner node for the same tree with eight children to a node.
+/// A tree of axis-aligned boxes, eight to a node. A leaf holds a run of slots; slot s stands for
+/// triangle `triangle_of(s)` of the scene. The tree does not refer to the scene after it is built,
+/// and is the same, byte for byte, whatever the number of threads that build it. Memory: 256 bytes
+/// a node, a node for about five slots, and 41 bytes a slot.
 class Bvh {
  public:
-  /// The larger a leaf, the fewer boxes and the more hit tests.
+  static constexpr int kWidth = 8;
   static constexpr std::uint32_t kMaxLeafSize = 4;
-  /// No path from the root is longer: what a traversal's stack must hold.
-  static constexpr int kMaxDepth = 60;
+  /// No way from the root to a leaf is longer.
+  static constexpr int kMaxDepth = 48;
+  /// What a walk's stack must hold: each level leaves at most seven children waiting.
+  static constexpr int kStackSize = (kWidth - 1) * kMaxDepth + 1;
 
-  /// A child: an inner node (count = 0) or a leaf.
-  struct Ref {
+  /// An inner node or a leaf.
+  struct Child {
     std::uint32_t first;  ///< inner: index of the node; leaf: the slots first .. first + count
-    std::uint16_t count;
-    std::uint16_t axis;  ///< inner: its child 0 is the lower one along this axis (a hint)
+    std::uint32_t count;  ///< 0: an inner node
   };
 
-  /// Both children with their boxes, one cache line. Boxes are one float wider than what they
-  /// hold on every side. An absent child (a scene of one leaf or none) has an empty box,
-  /// low = +infinity and high = -infinity.
+  /// Eight boxes against which one ray is tested at once. Boxes are one float wider than what they
+  /// hold on every side; absent children, which come last, have empty ones, low = +infinity and
+  /// high = -infinity.
   struct alignas(64) Node {
-    glm::vec3 bounds[2][2];  ///< [low = 0, high = 1][child]
-    Ref child[2];
+    float bounds[2][3][kWidth];  ///< [low = 0, high = 1][axis][child]
+    Child child[kWidth];
+
+    /// The low and the high corner of a child's box.
+    [[nodiscard]] std::pair<glm::vec3, glm::vec3> box(int i) const {
+      return {{bounds[0][0][i], bounds[0][1][i], bounds[0][2][i]},
+              {bounds[1][0][i], bounds[1][1][i], bounds[1][2][i]}};
+    }
   };
 
   /// The vertices of a slot's triangle, in the triangle's order.
   using Corners = std::array<glm::vec3, 3>;
 
-  /// Builds the tree; all positions finite, of magnitude at most 2^126. A scene without triangles
-  /// gives a tree that no ray enters.
-  explicit Bvh(const Scene& scene);
+  /// Builds the tree; all positions finite, of magnitude at most 2^126; fewer than 2^31 triangles.
+  /// A scene without triangles gives a tree that no ray enters.
+  explicit Bvh(const Scene& scene, int threads = 1);
 
-  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
-  [[nodiscard]] Ref root() const { return root_; }              ///< an inner node, always
-  [[nodiscard]] const WideBvh& wide() const { return *wide_; }  ///< the same leaves
+  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }  ///< nodes()[0]: the root
   [[nodiscard]] std::uint32_t slot_count() const {
     return static_cast<std::uint32_t>(triangles_.size());
   }
   [[nodiscard]] std::uint32_t triangle_of(std::uint32_t slot) const { return triangles_[slot]; }
-  [[nodiscard]] const Corners& corners_of(std::uint32_t slot) const { return corners_[slot]; }
-  /// Of the slots first .. first + count.
-  [[nodiscard]] std::span<const Corners> corners_of(std::uint32_t first,
-                                                    std::uint32_t count) const {
-    return std::span(corners_).subspan(first, count);
+
+  [[nodiscard]] Corners corners_of(std::uint32_t slot) const {
+    const Place place = places_[slot];
+    const float* const from = &corners_[9 * std::size_t{slot - place.number} + place.number];
+    Corners corners;
+    for (int v = 0; v < 3; ++v) {
+      for (int k = 0; k < 3; ++k) corners[v][k] = from[(3 * v + k) * place.count];
+    }
+    return corners;
   }
-  /// Says that the corners of a few slots from there on will soon be asked for.
-  void prefetch(std::uint32_t first) const {
-    const auto* const begin = reinterpret_cast<const char*>(&corners_[first]);
-    for (std::ptrdiff_t line = 0; line < 3; ++line) __builtin_prefetch(begin + 64 * line);
+  /// The corners of a leaf's triangles, one coordinate of all of them after the other: coordinate k
+  /// of corner v of triangle i is [(3 v + k) count + i]. What comes after the last one may be read,
+  /// and means nothing, as far as for four triangles.
+  [[nodiscard]] const float* corners_of(const Child& leaf) const {
+    return corners_.data() + 9 * std::size_t{leaf.first};
+  }
+
+  /// Says that a child will soon be visited.
+  void prefetch(const Child& child) const {
+    const auto* const begin = child.count == 0 ? reinterpret_cast<const char*>(&nodes_[child.first])
+                                               : reinterpret_cast<const char*>(corners_of(child));
+    for (std::ptrdiff_t line = 0; line < 4; ++line) __builtin_prefetch(begin + 64 * line);
   }
 
  private:
-  friend class BvhBuilder;
+  friend class BvhWriter;
+
+  /// Which of its leaf's triangles a slot is.
+  struct Place {
+    std::uint8_t number, count;
+  };
 
   std::vector<Node> nodes_;
-  Ref root_{};
-  std::vector<std::uint32_t> triangles_;
-  std::vector<Corners> corners_;
-  std::shared_ptr<const WideBvh> wide_;
+  std::vector<float> corners_;            // all geometry: leaf by leaf
+  std::vector<std::uint32_t> triangles_;  // of the slots, as the places
+  std::vector<Place> places_;
 };
 
 }  // namespace raygate

@@ -37,19 +37,15 @@
 namespace raygate {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFarthest = std::numeric_limits<float>::max();  // no t is, nor any entry
 
 }  // namespace
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
-    : nodes_(bvh.nodes().data()), octant_(octant) {
-  for (int lane = 0; lane < kLanes; ++lane) {
-    cutoff_[lane] = -1.0f;  // below any entry: no ray
-    waiting_near_[0][lane] = 0.0f;
-  }
-  waiting_[0] = bvh.root();
-}
+    : cutoff_(FloatLanes{} - 1.0f),  // below any entry: no ray
+      bvh_(&bvh),
+      octant_(octant),
+      stack_({0, 0, 0}) {}
 
 void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction) {
   assert(octant_of(direction) == octant_);
@@ -64,65 +60,63 @@ void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3
 
 void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_beyond(t); }
 
+/// A packet on its way, at hand in registers.
+struct PacketTraversal::Visitor {
+  const PacketTraversal& packet;
+  const Bvh& bvh;
+  const Bvh::Node* node;            // of the last meeting
+  std::uint8_t lanes[Bvh::kWidth];  // the rays that meet its children
+
+  /// The rays that meet a child's box, and where they enter it.
+  RAYGATE_INLINE LaneMask lanes_at(const Bvh::Node& of, int child, FloatLanes& enter) const {
+    FloatLanes leave = packet.cutoff_;
+    enter = FloatLanes{};
+    for (int k = 0; k < 3; ++k) {
+      const int negative = packet.octant_ >> k & 1;
+      const float near = of.bounds[negative][k][child], far = of.bounds[negative ^ 1][k][child];
+      const FloatLanes t_near = (near - packet.origin_[k]) * packet.inverse_near_[k];
+      const FloatLanes t_far = (far - packet.origin_[k]) * packet.inverse_far_[k];
+      enter = t_near > enter ? t_near : enter;
+      leave = t_far < leave ? t_far : leave;
+    }
+    return sign_mask(enter <= leave);
+  }
+
+  RAYGATE_INLINE bool goes_on(float, Rays& rays) const {
+    if (rays.lanes == 0) return true;  // the root
+    FloatLanes enter;
+    rays.lanes &= lanes_at(bvh.nodes()[rays.node], rays.child, enter);
+    return rays.lanes != 0;
+  }
+
+  RAYGATE_INLINE LaneMask meet(const Bvh::Node& of, const Rays&, FloatLanes& entry) {
+    node = &of;
+    LaneMask met = 0;
+    entry = FloatLanes{};
+    for (int i = 0; i < Bvh::kWidth && of.bounds[0][0][i] <= of.bounds[1][0][i]; ++i) {
+      FloatLanes enter;
+      const LaneMask in = lanes_at(of, i, enter);
+      lanes[i] = static_cast<std::uint8_t>(in);
+      if (in == 0) continue;
+      met |= 1u << i;
+      entry[i] = enter[std::countr_zero(in)];
+    }
+    return met;
+  }
+
+  RAYGATE_INLINE Rays rays_at(int i) const {
+    return {static_cast<std::uint32_t>(node - bvh.nodes().data()), static_cast<std::uint8_t>(i),
+            lanes[i]};
+  }
+};
+
 /// Goes on to the next leaf: false when there is none.
 RAYGATE_LANES bool advance(PacketTraversal& packet, LeafVisit& visit) {
-  const FloatLanes origin[3] = {packet.origin_[0], packet.origin_[1], packet.origin_[2]};
-  const FloatLanes inverse_near[3] = {packet.inverse_near_[0], packet.inverse_near_[1],
-                                      packet.inverse_near_[2]};
-  const FloatLanes inverse_far[3] = {packet.inverse_far_[0], packet.inverse_far_[1],
-                                     packet.inverse_far_[2]};
-  const FloatLanes cutoff = packet.cutoff_;
-  const FloatLanes never = FloatLanes{} + kInfinity;
-  const int octant = packet.octant_;
-  int depth = packet.depth_;
-
-  while (depth > 0) {
-    --depth;
-    FloatLanes near = packet.waiting_near_[depth];
-    Bvh::Ref ref = packet.waiting_[depth];
-    LaneMask lanes = mask_of(near <= cutoff, IntLanes{});
-    if (lanes == 0) continue;
-    while (ref.count == 0) {
-      const Bvh::Node& node = packet.nodes_[ref.first];
-      FloatLanes entry[2];
-      IntLanes enters[2];
-      for (int side = 0; side < 2; ++side) {
-        FloatLanes enter = near, leave = cutoff;
-        for (int k = 0; k < 3; ++k) {
-          const int negative = octant >> k & 1;
-          const float near_plane = node.bounds[negative][side][k];
-          const float far_plane = node.bounds[negative ^ 1][side][k];
-          const FloatLanes t_near = (near_plane - origin[k]) * inverse_near[k];
-          const FloatLanes t_far = (far_plane - origin[k]) * inverse_far[k];
-          enter = t_near > enter ? t_near : enter;
-          leave = t_far < leave ? t_far : leave;
-        }
-        enters[side] = enter <= leave;
-        entry[side] = enters[side] ? enter : never;
-      }
-      const std::uint32_t masks = mask_of(enters[0], enters[1]);
-      if (masks == 0) {
-        lanes = 0;
-        break;
-      }
-      const LaneMask mask[2] = {masks & 0xFF, masks >> 8};
-      int first = octant >> ref.axis & 1;
-      if (mask[first] == 0) first ^= 1;
-      if (mask[first ^ 1] != 0) {
-        packet.waiting_near_[depth] = entry[first ^ 1];
-        packet.waiting_[depth++] = node.child[first ^ 1];
-      }
-      near = entry[first];
-      ref = node.child[first];
-      lanes = mask[first];
-    }
-    if (lanes == 0) continue;
-    visit = {ref.first, ref.count, lanes};
-    packet.depth_ = depth;
-    return true;
-  }
-  packet.depth_ = 0;
-  return false;
+  PacketTraversal::Visitor visitor{packet, *packet.bvh_, nullptr, {}};
+  Waiting<PacketTraversal::Rays> leaf;
+  if (!next_leaf(*packet.bvh_, visitor, packet.stack_, leaf)) return false;
+  visit = {leaf.child.first, leaf.child.count, leaf.rays.lanes};
+  return true;
 }
 
 std::optional<LeafVisit> PacketTraversal::next_leaf() {

@@ -8,6 +8,7 @@
 #include "host/lanes.h"
 #include "host/tree/beam.h"
 #include "host/tree/bvh.h"
+#include "host/tree/walk.h"
 
 namespace raygate {
 
@@ -42,16 +43,20 @@ class PacketTraversal {
  private:
   friend bool advance(PacketTraversal& packet, LeafVisit& visit);
 
+  /// The rays that may meet what waits, and where its box is.
+  struct Rays {
+    std::uint32_t node;
+    std::uint8_t child;
+    std::uint8_t lanes;
+  };
+  struct Visitor;
+
   FloatLanes origin_[3] = {};
   FloatLanes inverse_near_[3] = {}, inverse_far_[3] = {};
   FloatLanes cutoff_;
-  // What is left to visit, and where each ray enters its box (+infinity: not at all). No deeper
-  // than the tree, as one child at most waits on each level.
-  FloatLanes waiting_near_[Bvh::kMaxDepth + 1];
-  Bvh::Ref waiting_[Bvh::kMaxDepth + 1];
-  const Bvh::Node* nodes_;
+  const Bvh* bvh_;
   int octant_;
-  int depth_ = 1;  // of the stack of what is waiting
+  WalkStack<Rays> stack_;
 };
 
 }  // namespace raygate

@@ -48,9 +48,11 @@ RAYGATE_INLINE void ConeSearch::put(const ConeWalk& walk, const Seen& seen) {
 
 /// P has the bits of plane_point.
 RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<const Seen> seen) {
+  std::array<Corners, kPlanes> corners;
   std::array<PlaneView, kPlanes> views;
   for (std::size_t i = 0; i < kPlanes; ++i) {
-    views[i] = {&origin_, &bvh_.corners_of(seen[std::min(i, seen.size() - 1)].slot)};
+    corners[i] = bvh_.corners_of(seen[std::min(i, seen.size() - 1)].slot);
+    views[i] = {&origin_, &corners[i]};
   }
   std::array<PolygonRecord, kPlanes> planes;
   make_planes(views, planes);

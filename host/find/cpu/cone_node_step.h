@@ -23,7 +23,7 @@ RAYGATE_INLINE void split_group(ConeWalk& walk, int group) {
 }
 
 /// The children that any of the rays, which are of these groups, may meet; entry[i] is where.
-RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const WideBvh::Node& node,
+RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
   const Cones& cones = walk.cones;
   if (several(groups)) return meet_children(cones.whole, node, walk.cutoff, entry);
@@ -39,16 +39,16 @@ RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const WideBvh::Node& node
 
 /// Puts what the rays meet of a node onto the stack. Where a beam meets several children,
 /// those within it are asked one by one: first the groups, then their rays.
-RAYGATE_INLINE void step_through(ConeWalk& walk, const WideBvh& tree, std::uint32_t index,
+RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
   constexpr int kFew = 1;  // children
-  const WideBvh::Node& node = tree.nodes()[index];
+  const Bvh::Node& node = tree.nodes()[index];
   const Cones& cones = walk.cones;
   const Beam& whole = cones.whole;
   const glm::vec3 origin(whole.origin[0], whole.origin[1], whole.origin[2]);
   FloatLanes entry;
   LaneMask met = meet_any(walk, node, rays, groups, entry);
-  LaneMask in[WideBvh::kWidth];
+  LaneMask in[Bvh::kWidth];
   const bool ask = several(groups) && std::popcount(met) > kFew;
   std::uint64_t counts = 0;  // byte g: how many children group g meets
   for (LaneMask left = met; left != 0; left &= left - 1) {

@@ -8,7 +8,7 @@
 
 #include "host/find/cpu/cone_leaf_test.h"
 #include "host/find/cpu/cone_node_step.h"
-#include "host/tree/wide_bvh.h"
+#include "host/tree/bvh.h"
 
 namespace raygate {
 namespace {
@@ -70,7 +70,7 @@ RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
 /// Tests a leaf's triangles that are there against the rays, a triangle and a group at a time. Sets
 /// the bits of the groups whose nearest hits change.
 RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& record,
-                                            const WideBvh::Child& leaf, LaneMask there,
+                                            const Bvh::Child& leaf, LaneMask there,
                                             std::uint64_t rays, LaneMask& changed) {
   const bool ignoring = !wishes_.ignored.empty();
   for (; there != 0; there &= there - 1) {
@@ -112,7 +112,7 @@ RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& re
 
 /// The same, a ray at a time.
 RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& record,
-                                          const WideBvh::Child& leaf, LaneMask there,
+                                          const Bvh::Child& leaf, LaneMask there,
                                           std::uint64_t rays, LaneMask& changed) {
   const bool ignoring = !wishes_.ignored.empty();
   counters_.tests += static_cast<std::uint64_t>(std::popcount(rays) * std::popcount(there));
@@ -144,7 +144,7 @@ RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& reco
 
 /// Walks the tree, near before far, and tests what is there.
 RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
-  const WideBvh& tree = search.bvh_.wide();
+  const Bvh& tree = search.bvh_;
   const bool ending = !search.wishes_.enough_before.empty();
   Cones& cones = walk.cones;
   while (walk.depth > 0 && walk.going != 0) {
@@ -169,7 +169,6 @@ RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
       search.test_groups(walk, record, item.child, there, rays, changed);
     }
     if (changed == 0) continue;
-    search.bvh_.prefetch(item.child.first);  // for finish
     for (; changed != 0; changed &= changed - 1) {
       const int g = std::countr_zero(changed);
       if (ending) {
@@ -215,7 +214,7 @@ void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
 
 /// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it
 /// is are hit by no ray: they leave those that are there.
-void ConeSearch::settle_sides(const WideBvh::Child& leaf, QuadRecord& record,
+void ConeSearch::settle_sides(const Bvh::Child& leaf, QuadRecord& record,
                               LaneMask& there) const {
   for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
     const int i = std::countr_zero(unsure);

@@ -42,11 +42,11 @@ class ConeSearch {
   friend void walk_tree(ConeSearch& search, ConeWalk& walk);
   friend void finish(ConeSearch& search, const ConeWalk& walk);
 
-  void test_groups(ConeWalk& walk, const QuadRecord& record, const WideBvh::Child& leaf,
+  void test_groups(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf,
                    LaneMask there, std::uint64_t rays, LaneMask& changed);
-  void test_rays(ConeWalk& walk, const QuadRecord& record, const WideBvh::Child& leaf,
+  void test_rays(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf,
                  LaneMask there, std::uint64_t rays, LaneMask& changed);
-  void settle_sides(const WideBvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
+  void settle_sides(const Bvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
   bool settle(ConeWalk& walk, int group, int lane, std::int32_t slot, const Interval* sure);
   void put(const ConeWalk& walk, const Seen& seen);
   void put_with_points(const ConeWalk& walk, std::span<const Seen> seen);

@@ -8,7 +8,7 @@
 #include "host/find/cpu/cone.h"
 #include "host/find/cpu/lane_math.h"
 #include "host/find/ray_set.h"
-#include "host/tree/wide_bvh.h"
+#include "host/tree/bvh.h"
 
 namespace raygate {
 
@@ -18,7 +18,7 @@ struct ConeWalk {
 
   /// What of the tree waits to be visited: the nearest last, as far as one node knows.
   struct Waiting {
-    WideBvh::Child child;
+    Bvh::Child child;
     float entry;
     std::uint64_t rays;  ///< those that may meet it
   };
@@ -36,7 +36,7 @@ struct ConeWalk {
   std::uint64_t going;  ///< the rays that still look for something
   float cutoff;         ///< boxes beyond matter to none
   int depth;            ///< of the stack
-  Waiting stack[WideBvh::kStackSize];
+  Waiting stack[Bvh::kStackSize];
 
   [[nodiscard]] std::uint32_t number(int group, int lane) const {
     return first + static_cast<std::uint32_t>(group * kLanes + lane);

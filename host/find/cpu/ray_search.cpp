@@ -11,7 +11,7 @@
 #include "host/find/unit/cpu_burst_unit.h"
 #include "host/find/unit/record_batch.h"
 #include "host/tree/beam.h"
-#include "host/tree/wide_bvh.h"
+#include "host/tree/bvh.h"
 
 namespace raygate {
 namespace {
@@ -29,7 +29,7 @@ float float_above(double x) {
 
 /// What of the tree waits to be visited: the nearest last, as far as one node knows.
 struct Waiting {
-  WideBvh::Child child;
+  Bvh::Child child;
   float entry;
 };
 
@@ -48,7 +48,7 @@ struct RaySearch::Walk {
   float low, high;                            ///< its depth's bounds; without one, the limit's
   float cutoff;                               ///< boxes that are entered beyond do not matter
   int count = 0;                              ///< of what is waiting
-  Waiting waiting[WideBvh::kStackSize];
+  Waiting waiting[Bvh::kStackSize];
 
   Walk(const Ray& its_ray, std::uint32_t its_number)
       : ray(its_ray),
@@ -71,20 +71,20 @@ namespace {
 
 /// A child's number in the place of the last bits of its entry: in the order of entries.
 using Key = std::int32_t;
-constexpr Key kNumber = WideBvh::kWidth - 1;
+constexpr Key kNumber = Bvh::kWidth - 1;
 
-RAYGATE_INLINE void push(RaySearch::Walk& walk, const WideBvh& tree, const WideBvh::Node& node,
+RAYGATE_INLINE void push(RaySearch::Walk& walk, const Bvh& tree, const Bvh::Node& node,
                          Key key) {
-  const WideBvh::Child& child = node.child[key & kNumber];
+  const Bvh::Child& child = node.child[key & kNumber];
   tree.prefetch(child);
   walk.waiting[walk.count++] = {child, std::bit_cast<float>(key & ~kNumber)};
 }
 
 /// Goes down from an inner node to the leaf that is met first: `child` is either. False where
 /// there is none.
-RAYGATE_INLINE bool go_down(const WideBvh& tree, RaySearch::Walk& walk, WideBvh::Child& child) {
+RAYGATE_INLINE bool go_down(const Bvh& tree, RaySearch::Walk& walk, Bvh::Child& child) {
   while (child.count == 0) {
-    const WideBvh::Node& node = tree.nodes()[child.first];
+    const Bvh::Node& node = tree.nodes()[child.first];
     FloatLanes entry;
 
     LaneMask met = meet_children(walk.beam, node, walk.cutoff, entry);
@@ -100,7 +100,7 @@ RAYGATE_INLINE bool go_down(const WideBvh& tree, RaySearch::Walk& walk, WideBvh:
         push(walk, tree, node, std::max(nearest, next));
         nearest = std::min(nearest, next);
       } else {
-        Key sorted[WideBvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
+        Key sorted[Bvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
         int count = 2;
         for (; met != 0; met &= met - 1) {
           next = keys[std::countr_zero(met)];
@@ -121,12 +121,12 @@ RAYGATE_INLINE bool go_down(const WideBvh& tree, RaySearch::Walk& walk, WideBvh:
 
 /// Walks the tree, near before far, and tests what is there.
 RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
-  const WideBvh& tree = search.bvh_.wide();
+  const Bvh& tree = search.bvh_;
   std::uint64_t tests = 0, hits = 0, doubts = 0;
   walk.waiting[walk.count++] = {{0, 0}, 0.0f};
   while (walk.count > 0) {
     const Waiting item = walk.waiting[--walk.count];
-    WideBvh::Child leaf = item.child;
+    Bvh::Child leaf = item.child;
     if (item.entry > walk.cutoff || !go_down(tree, walk, leaf)) continue;
     QuadVerdict verdict;
     test_quad(walk.sheared, tree.corners_of(leaf), leaf.count, verdict);
@@ -149,7 +149,6 @@ RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
       } else if (high < walk.low) {
         walk.slot = slot;
         walk.end_at(std::max(low, 0.0f), high);
-        search.bvh_.prefetch(slot);  // for add_points
       } else if (!search.settle(walk, slot, true)) {
         continue;
       }
@@ -213,10 +212,12 @@ void RaySearch::add_point(std::uint32_t number, std::span<const Ray> rays) {
 
 void RaySearch::add_points(std::span<const Ray> rays) {
   if (pointless_count_ == 0) return;
+  std::array<Corners, kPlanes> corners;
   std::array<PlaneView, kPlanes> views;
   for (int i = 0; i < kPlanes; ++i) {
     const std::uint32_t number = pointless_[std::min(i, pointless_count_ - 1)];
-    views[i] = {&rays[number].origin, &bvh_.corners_of(nearest_[number].slot)};
+    corners[i] = bvh_.corners_of(nearest_[number].slot);
+    views[i] = {&rays[number].origin, &corners[i]};
   }
   std::array<PolygonRecord, kPlanes> planes;
   make_planes(views, planes);

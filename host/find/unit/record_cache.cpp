@@ -1,6 +1,7 @@
 #include "host/find/unit/record_cache.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <new>
 #include <span>
@@ -9,6 +10,11 @@
 #include "host/find/unit/record_batch.h"
 
 namespace raygate {
+namespace {
+
+constexpr std::uint32_t kBatch = 4 * Bvh::kMaxLeafSize;  // as many as are made at once
+
+}  // namespace
 
 void RecordCache::Free::operator()(void* memory) const { std::free(memory); }
 
@@ -29,15 +35,19 @@ void RecordCache::make(std::uint32_t first, std::uint32_t count) {
   const std::uint32_t end = first + count;
   for (std::uint32_t slot = first; slot < end;) {
     const std::uint32_t begin = slot;
-    while (slot < end && claim(slot)) ++slot;
+    std::array<Corners, kBatch> corners;
+    for (; slot < end && slot - begin < kBatch && claim(slot); ++slot) {
+      corners[slot - begin] = bvh_.corners_of(slot);
+    }
     if (const std::uint32_t claimed = slot - begin; claimed != 0) {
-      make_records(origin_, bvh_.corners_of(begin, claimed), std::span(&records_[begin], claimed));
+      make_records(origin_, std::span(corners).first(claimed),
+                   std::span(&records_[begin], claimed));
       made_.fetch_add(claimed, std::memory_order_relaxed);
       for (std::uint32_t i = begin; i < slot; ++i) {
         states_[i].store(State::kMade, std::memory_order_release);
       }
     }
-    if (slot < end) ++slot;  // somebody else's
+    if (slot < end && slot - begin < kBatch) ++slot;  // somebody else's
   }
   for (std::uint32_t slot = first; slot < end; ++slot) {
     while (states_[slot].load(std::memory_order_acquire) != State::kMade) std::this_thread::yield();

@@ -85,7 +85,7 @@ void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
     if (open[octant] == kNone) {
       open[octant] = static_cast<std::uint32_t>(packets_.size());
       filled[octant] = 0;
-      packets_.push_back({PacketTraversal(bvh_, octant), {}});
+      packets_.emplace_back(bvh_, octant);
       packets_.back().rays.fill(number);
     }
     Packet& packet = packets_[open[octant]];

@@ -82,6 +82,8 @@ class Wavefront {
  private:
   /// Up to eight rays of one octant.
   struct Packet {
+    Packet(const Bvh& bvh, int octant) : traversal(bvh, octant) {}
+
     PacketTraversal traversal;
     std::array<std::uint32_t, kLanes> rays;  // numbers; lanes without a ray repeat lane 0
     LaneMask lanes = 0;

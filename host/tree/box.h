@@ -1,0 +1,47 @@
+// Axis-aligned boxes in one register each: what a tree is built with.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "host/lanes.h"
+
+namespace raygate {
+
+/// The low corner in lanes 0 to 2, the high one with its signs turned in lanes 4 to 6: the box
+/// around two boxes is the smaller of each lane. Lanes 3 and 7 mean nothing.
+using Box = FloatLanes;
+
+/// What holds nothing.
+RAYGATE_INLINE void clear(Box& box) { box = FloatLanes{} + std::numeric_limits<float>::infinity(); }
+
+RAYGATE_INLINE void grow(Box& box, const Box& other) { box = other < box ? other : box; }
+
+/// Half the surface of a box that is not empty, in double: a float would overflow at 1e19.
+RAYGATE_INLINE double half_area(const Box& box) {
+  const double x = static_cast<double>(box[0]) + box[4], y = static_cast<double>(box[1]) + box[5],
+               z = static_cast<double>(box[2]) + box[6];
+  return x * y + y * z + z * x;  // of negative sizes: the signs fall out
+}
+
+/// The box around three corners, one float wider than they are on every side. Finite for
+/// coordinates that are below the largest float.
+RAYGATE_INLINE void box_around(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+                               Box& box) {
+  const Box corners[3] = {{a.x, a.y, a.z, 0.0f, -a.x, -a.y, -a.z, 0.0f},
+                          {b.x, b.y, b.z, 0.0f, -b.x, -b.y, -b.z, 0.0f},
+                          {c.x, c.y, c.z, 0.0f, -c.x, -c.y, -c.z, 0.0f}};
+  box = corners[0];
+  grow(box, corners[1]);
+  grow(box, corners[2]);
+  // The next float below: of a positive one the next smaller bits, of a negative one the next
+  // larger; of both zeros the smallest negative number.
+  const IntLanes bits = reinterpret_cast<IntLanes>(box);
+  const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
+  const IntLanes below = bits > 0 ? bits - 1 : bits + 1;
+  box = reinterpret_cast<FloatLanes>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u)
+                                          : below);
+}
+
+}  // namespace raygate
