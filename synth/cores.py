@@ -25,6 +25,18 @@ def files(core: str, hw: pathlib.Path = HW) -> list[pathlib.Path]:
     return [file for name in _ordered([core], hw) for file in _own(name, hw)]
 
 
+def used(top: str, among: list[pathlib.Path]) -> list[pathlib.Path]:
+    """Those of `among` that module `top` needs: its own file and, again and again, those named in it."""
+    at = {file.stem: file for file in among}
+    needed, open_ends = set(), {top} & at.keys()
+    while open_ends:
+        needed |= open_ends
+        words = {word for name in open_ends
+                 for word in re.findall(r"\w+", re.sub(r"//[^\n]*", "", at[name].read_text()))}
+        open_ends = words & at.keys() - needed
+    return [file for file in among if file.stem in needed]
+
+
 def _entries(core: str, pattern: str, hw: pathlib.Path) -> list[str]:
     file = hw / core / f"{core}.core"
     if not file.exists():

@@ -1,14 +1,17 @@
 """Places and routes one design on an FPGA, between registers, and reads its clock rate.
 
 A design without a clock, or with more ports than a package has pins, is put between registers first.
+`python3 -m synth.fpga [NAME ...]` does so with the units (`make fpga`), or with those whose names begin so:
+the table is printed and kept in build/synth/fpga.md, fpga.json.
 """
 
 import inspect
 import json
 import pathlib
 import re
+import sys
 
-from synth import mapping, store, tools
+from synth import catalogue, mapping, runner, store, tables, tools
 from synth.catalogue import Design, Fpga
 
 
@@ -16,15 +19,20 @@ MOST_PINS = 150  # what every package here has
 
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
-    """LUTs, carry cells, registers, DSPs, fmax in MHz (slowest path between registers)."""
+    """LUTs, registers, multipliers, and the slowest path between registers as MHz: the median of the seeds."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     files = [*design.sources(), tools.FLOWS / "fpga.tcl", tools.FLOWS / "elaborate.tcl"]
-    wanted = store.key(files, tools.version("yosys"), tools.version(fpga.tool), design.facts,
-                       fpga, inspect.getsource(registered))
-    return store.cached(folder, wanted, lambda: _place(design, fpga, folder))
+    wanted = store.key(files, tools.version("yosys"), design.facts, fpga.name,
+                       inspect.getsource(registered))
+    _, mapped = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
+    placed = [store.cached(folder / f"seed-{seed}", store.key([], wanted, tools.version(fpga.tool), fpga.tool,
+                                                              fpga.arguments, fpga.wanted_mhz),
+                           lambda s=seed: _place(fpga, folder, s)) for seed in fpga.seeds]
+    median = sorted(placed, key=lambda run: run[0]["mhz"])[len(placed) // 2][0]
+    return median, mapped and all(kept for _, kept in placed)
 
 
-def _place(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
+def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
     environment = {**mapping.elaboration(design), "FAMILY": fpga.name,
                    "OUT": str(folder / "netlist.json"), "WRAPPER": "", "PORTS": ""}
     ports = folder / "ports.json"
@@ -36,20 +44,20 @@ def _place(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
         wrapper.write_text(registered(design, sides))
         environment["WRAPPER"] = str(wrapper)
     tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "yosys.log", environment)
-    rates = []
+    return {}
+
+
+def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
     # Relative names, for the ECP5's nextpnr runs in a sandbox with a /tmp of its own.
-    netlist = (folder / "netlist.json").relative_to(tools.ROOT)
-    for seed in fpga.seeds:
-        report = folder / f"placed.{seed}.json"
-        tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed,
-                   "--freq", fpga.wanted_mhz, "--timing-allow-fail", "--report",
-                   report.relative_to(tools.ROOT), "--quiet"],
-                  folder / f"nextpnr.{seed}.log")
-        placed = json.loads(report.read_text())
-        rates.append(max(clock["achieved"] for clock in placed["fmax"].values()))
+    netlist, report = ((folder / name).relative_to(tools.ROOT) for name in
+                       ("netlist.json", f"seed-{seed}/placed.json"))
+    tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz,
+               "--timing-allow-fail", "--report", report, "--quiet"], folder / f"seed-{seed}" / "nextpnr.log")
+    placed = json.loads((tools.ROOT / report).read_text())
     used = {name: count["used"] for name, count in placed["utilization"].items() if count["used"]}
-    return {"mhz": round(sorted(rates)[len(rates) // 2], 1), "luts": used[fpga.lut_cell],
-            "used": used}
+    luts, registers, multipliers = (used.get(cell, 0) for cell in fpga.cells)
+    return {"mhz": round(max(clock["achieved"] for clock in placed["fmax"].values()), 1), "luts": luts,
+            "registers": registers, "multipliers": multipliers, "used": used}
 
 
 def port_widths(top: str, netlist: dict) -> list[tuple[str, str, int]]:
@@ -83,3 +91,37 @@ def registered(design: Design, ports: list[tuple[str, str, int]]) -> str:
              "    shifted <= load_i ? out : {1'b0, shifted} >> 1;",
              "  end", "  assign bit_o = shifted[0];", "endmodule"]
     return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    """Places the units, prints and keeps their table; 1 where one fails, 2 where a tool is missing."""
+    units = [unit for unit in catalogue.fpga_units() if unit[0].name.startswith(tuple(sys.argv[1:] or [""]))]
+    try:
+        if not units:
+            raise ValueError(f"no unit {' or '.join(sys.argv[1:])}; there are "
+                             + ", ".join(unit[0].name for unit in catalogue.fpga_units()))
+        for _, _, _, fpga in units:
+            tools.find(fpga.tool)
+        results, failures = runner.run_all(
+            [runner.Job(f"{design.name} {fpga.name}", lambda d=design, f=fpga: place(d, f),
+                        lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz")
+             for design, _, _, fpga in units], 1)
+    except (tools.MissingTool, ValueError) as error:
+        print(f"fpga: {error}", file=sys.stderr)
+        return 2
+    rows = [{"unit": design.top + (", 21-bit quotients" if "QuotientBits21" in design.name else ""),
+             "format": form, "arithmetic": kind, "device": fpga.title, "seeds": len(fpga.seeds), **got}
+            for (design, form, kind, fpga), got in zip(units, results, strict=True) if got]
+    heads = ["unit", "format", "arithmetic", "device", "luts", "registers", "multipliers", "mhz", "seeds"]
+    table = tables.markdown([head.replace("luts", "LUTs").replace("mhz", "MHz") for head in heads],
+                            [[row[head] for head in heads] for row in rows])
+    (store.OUT / "fpga.md").write_text(table)
+    (store.OUT / "fpga.json").write_text(json.dumps(rows, indent=1) + "\n")
+    print(table)
+    for failure in failures:
+        print("failed:", failure, file=sys.stderr)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -4,9 +4,7 @@ import subprocess
 
 from synth import diagram, plots, store, tools, waveform
 
-# The paper's figure 10, by its signals' names in hw/hit_test/hit_test_unit.sv.
-SIGNALS = ["valid_i", "ready_o", "word", "step", "bus_i", "direction_1_q", "direction_2_q",
-           "direction_3_q", "normal_q", "d_q", "accumulator_q", "divisor_q", "output_q", "valid_o"]
+SAVE_FILE = tools.ROOT / "sim" / "worked_example.gtkw"
 
 
 def draw(records: list[dict]) -> str:
@@ -21,9 +19,8 @@ def draw(records: list[dict]) -> str:
     if program.exists():
         trace = store.OUT / "worked_example.vcd"
         subprocess.run([program, "--trace", trace], check=True, stdout=subprocess.DEVNULL)
-        waveform.draw(trace, store.OUT / "worked_example", SIGNALS)
-        lines.append("The worked example, from a simulation trace; a column is the clock after an "
-                     "edge:\n\n![timing](worked_example.svg)\n")
+        waveform.draw(trace, SAVE_FILE, store.OUT / "worked_example")
+        lines.append("The worked example, from a simulation trace:\n\n![timing](worked_example.svg)\n")
     else:
         lines.append("No timing diagram: `make example` builds build/sim/worked_example first.\n")
     return "\n".join(lines)

@@ -1,8 +1,8 @@
-# `make synth`, `make prove` and `make verilog`: see synth/README.md.
+# Area, time, proofs: see synth/README.md.
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth prove verilog
+.PHONY: synth prove verilog fpga datasheet
 
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
@@ -20,3 +20,12 @@ prove: ## prove adders, multiplier, float cores, timetable: make prove [PROOFS='
 verilog: ## a module as one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5 FracWidth=10']
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
+
+fpga: ## place and route the units on FPGAs, hours: make fpga [UNITS=hit_test_unit-binary32]
+	@$(SETUP) synth
+	@$(PYTHON) -m synth.fpga $(UNITS)
+
+datasheet: ## fill hw/README.md from the sources and from what synth and fpga measured, draw its diagrams
+	$(call build,build,worked_example)
+	@$(SETUP) synth
+	@$(PYTHON) -m synth.datasheet

@@ -1,35 +1,33 @@
-"""Draws a simulation trace (VCD) as a timing diagram: `python3 -m synth.waveform TRACE OUT SIGNAL ...`.
+"""Draws a simulation trace (VCD) as a timing diagram, by WaveDrom.
 
-Each signal is drawn clock by clock, a word as a box with its value (binary32 as a decimal too).
+`python3 -m synth.waveform TRACE SAVE_FILE OUT`: OUT.json, WaveDrom's source, and OUT.svg. SAVE_FILE is
+GTKWave's: it says which signals are drawn, how they are called and grouped.
 """
 
+import json
 import pathlib
 import re
-import struct
 import sys
-
-from synth import drawing
-from synth.drawing import plt
 
 
 def read(text: str) -> dict[str, list[tuple[int, str]]]:
-    """Signal -> its changes, (time, bits). Of several of one name, that of the outermost scope."""
-    depth, codes = 0, {}
-    for word, rest in re.findall(r"\$(scope|upscope|var)\s([^$]*)\$end", text):
-        depth += {"scope": 1, "upscope": -1, "var": 0}[word]
-        if word == "var":
-            code, name = rest.split()[2:4]
-            codes[name] = min(codes.get(name, (depth, code)), (depth, code))
-    changes: dict[str, list[tuple[int, str]]] = {code: [] for _, code in codes.values()}
+    """Signal, by its full name -> its changes, (time, bits)."""
+    scopes, codes = [], {}
+    for word, rest in re.findall(r"\$(scope|upscope|var) (.*?) ?\$end", text):
+        if word == "scope":
+            scopes.append(rest.split()[1])
+        elif word == "upscope":
+            scopes.pop()
+        else:
+            codes[".".join([*scopes, "".join(rest.split()[3:])])] = rest.split()[2]
+    changes: dict[str, list[tuple[int, str]]] = {code: [] for code in codes.values()}
     now = 0
     for line in text[text.index("$enddefinitions"):].splitlines()[1:]:
         if line.startswith("#"):
             now = int(line[1:])
         elif match := re.fullmatch(r"b([01xz]+) (\S+)|([01xz])(\S+)", line):
-            bits, code = match[1] or match[3], match[2] or match[4]
-            if code in changes:
-                changes[code].append((now, bits))
-    return {name: changes[code] for name, (_, code) in codes.items()}
+            changes[match[2] or match[4]].append((now, match[1] or match[3]))
+    return {name: changes[code] for name, code in codes.items()}
 
 
 def at(changes: list[tuple[int, str]], time: int) -> str:
@@ -37,38 +35,68 @@ def at(changes: list[tuple[int, str]], time: int) -> str:
     return next((bits for when, bits in reversed(changes) if when <= time), "x")
 
 
-def draw(trace: pathlib.Path, out: pathlib.Path, signals: list[str], clock: str = "clk_i") -> None:
-    """One column a rising edge: the inputs that it took, and all else as it is after it.
+def groups(save_file: str) -> list[tuple[str, list[tuple[str, str]]]]:
+    """The groups of a save file: their names, and (name, signal) of what is in them."""
+    found: list[tuple[str, list[tuple[str, str]]]] = []
+    for flags, group, name, signal in re.findall(
+            r"^@(\w+)\n(?:-(.*)|\+\{(.*)\} (\S+))$", save_file, re.M):
+        if signal:
+            found[-1][1].append((name, signal))
+        elif int(flags, 16) & 0x800000:  # where a group begins
+            found.append((group, []))
+    return found
 
-    Raises KeyError for a signal that is not there.
+
+def lane(name: str, changes: list[tuple[int, str]], edges: list[int]) -> dict:
+    """A signal as WaveDrom wants it, a column for each of `edges`: as it is right after that edge."""
+    wave, data, last = "", [], None
+    for edge in edges:
+        bits = at(changes, edge)
+        if bits == last:
+            wave += "."
+        elif all(len(value) == 1 for _, value in changes):
+            wave += bits
+        else:
+            wave += "="
+            value = int(bits, 2)
+            data.append(f"{value:08X}" if len(bits) == 32 else str(value))
+        last = bits
+    return {"name": name, "wave": wave, **({"data": data} if data else {})}
+
+
+def diagram(trace: str, save_file: str) -> dict:
+    """WaveDrom's source; raises KeyError for a signal that is not in the trace.
+
+    The save file's first signal is the clock; a column is one of its rising edges, with the inputs that
+    the edge took and all else as it is after it.
     """
-    changes = read(trace.read_text())
+    changes, chosen = read(trace), groups(save_file)
+    (_, clock), *_ = chosen[0][1]
     edges = [when for when, bits in changes[clock] if bits == "1"]
     if not edges:
-        raise ValueError(f"{trace}: {clock} never rises")
-    figure, axes = plt.subplots(figsize=(1.15 * len(edges) + 2.5, 0.5 * len(signals) + 1),
-                                layout="constrained")
-    for row, signal in enumerate(signals):
-        axes.text(-0.1, -row, signal, ha="right", va="center", fontsize=9, family="monospace")
-        for column, edge in enumerate(edges):
-            bits = at(changes[signal], edge)
-            single = len(bits) == 1 and all(len(b) == 1 for _, b in changes[signal])
-            if single:
-                level = -row + (0.3 if bits == "1" else -0.3)
-                axes.plot([column, column + 1], [level, level], color="black", lw=1.2)
-            else:
-                axes.add_patch(plt.Rectangle((column + 0.03, -row - 0.33), 0.94, 0.66, fill=False))
-                value = int(bits.replace("x", "0").replace("z", "0"), 2)
-                text = str(value) if value < 64 else (
-                    f"{value:08X}\n{struct.unpack('>f', value.to_bytes(4, 'big'))[0]:.6g}")
-                axes.text(column + 0.5, -row, text, ha="center", va="center", fontsize=6)
-    for column in range(len(edges)):
-        axes.text(column, 0.65, str(column + 1), ha="center", fontsize=8)
-        axes.axvline(column, color="grey", lw=0.4, ls=":")
-    axes.set(xlim=(-2.2, len(edges)), ylim=(-len(signals), 1))
-    axes.axis("off")
-    drawing.save(figure, out)
+        raise ValueError(f"{clock} never rises")
+    signal = [[group, *(lane(name, changes[signal], edges) for name, signal in signals)]
+              for group, signals in chosen]
+    signal[0][1] = {"name": "clock", "wave": "p" + "." * (len(edges) - 1)}
+    return {"signal": signal, "config": {"hscale": 2},
+            "head": {"tock": 1, "text": "the worked example, clock edge by clock edge"}}
+
+
+def render(source: pathlib.Path) -> str:
+    """The SVG of WaveDrom's source in a file."""
+    import wavedrom  # installed for tests and for synthesis alone
+
+    return wavedrom.render(source.read_text()).tostring() + "\n"
+
+
+def draw(trace: pathlib.Path, save_file: pathlib.Path, out: pathlib.Path) -> None:
+    """Writes OUT.json and OUT.svg."""
+    source = out.with_suffix(".json")
+    text = json.dumps(diagram(trace.read_text(), save_file.read_text()), indent=1)
+    source.write_text(re.sub(r"\{\s*(\"name\"[^{}]*?)\s*\}",  # a signal a line
+                             lambda found: "{" + re.sub(r"\s*\n\s*", " ", found[1]) + "}", text) + "\n")
+    out.with_suffix(".svg").write_text(render(source))
 
 
 if __name__ == "__main__":
-    draw(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:])
+    draw(*map(pathlib.Path, sys.argv[1:]))

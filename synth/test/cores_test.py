@@ -32,6 +32,14 @@ class Cores(unittest.TestCase):
                          ["adder.sv", "fp_pkg.sv", "fp_adder.sv"])
         self.assertEqual(cores.names(self.hw), ["arith", "fp"])
 
+    def test_used(self):
+        """What a module names, outside comments, and what that names in turn."""
+        (self.hw / "fp" / "fp_adder.sv").write_text("module fp_adder; fp_pkg::x; // adder\n")
+        among = cores.files("fp", self.hw)
+        self.assertEqual([file.stem for file in cores.used("fp_adder", among)], ["fp_pkg", "fp_adder"])
+        (self.hw / "fp" / "fp_pkg.sv").write_text("adder u_adder ();\n")
+        self.assertEqual(cores.used("fp_adder", among), among)
+
     def test_list_and_folder_disagree(self):
         """A file too many, a file too few, no list at all: each is said."""
         for change, said in [(lambda: (self.hw / "arith" / "new.sv").touch(),

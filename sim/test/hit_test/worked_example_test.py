@@ -34,7 +34,7 @@ class WorkedExample(unittest.TestCase):
             last_line("--trace", trace)
             text = trace.read_text()
         scopes, there = [], set()
-        for word, rest in re.findall(r"\$(scope|upscope|var)\s([^$]*)\$end", text):
+        for word, rest in re.findall(r"\$(scope|upscope|var) (.*?) ?\$end", text):
             if word == "scope":
                 scopes.append(rest.split()[1])
             elif word == "upscope":

@@ -1,0 +1,194 @@
+"""Fills what hw/README.md holds between its marks, from the sources and from what was measured.
+
+`python3 -m synth.datasheet` writes the text and draws the diagrams; with `--check` it changes nothing, and
+its exit status is 1 where a declaration, a table of modules, a quotation or a timing diagram is out of
+date, or where the example does not pass Verilator. A mark is `<!-- KIND ARGUMENTS -->`, its text ends at
+`<!-- end -->`:
+
+  modules CORE               a table of the modules of a core
+  declaration MODULE         its header and its declaration, word for word
+  section FILE | TITLE       what stands in FILE under the comment `// ---- TITLE`
+  lines FILE | EXPRESSION    the lines of FILE that match
+  figures                    of `make synth`, build/synth/results.json; kept where there are none
+  fpga                       of `make fpga`, build/synth/fpga.md; likewise
+"""
+
+import difflib
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+from synth import cores, store, tables, tools, waveform
+
+README = cores.HW / "README.md"
+DIAGRAMS = cores.HW / "diagrams"
+MARK = re.compile(r"<!-- (\w+) ?(.*?) -->\n(.*?)<!-- end -->", re.S)
+
+
+def source(module: str) -> pathlib.Path:
+    """The file of a module or package; raises ValueError where there is none."""
+    for core in cores.names():
+        file = cores.HW / core / f"{module}.sv"
+        if file.exists():
+            return file
+    raise ValueError(f"{README}: no module {module} in hw/")
+
+
+def header(text: str) -> str:
+    """The comment that a file begins with, as one text with a newline between paragraphs."""
+    lines = [line[2:].strip() for line in re.match(r"(?://.*\n)*", text)[0].splitlines()]
+    return re.sub(r"\s*\n\s*\n\s*|(?<=\S)\n(?=\S)",
+                  lambda gap: " " if gap[0] == "\n" else "\n", "\n".join(lines)).strip()
+
+
+def sentences(text: str) -> list[str]:
+    """Its sentences, without the full stop; the one in `I . N` ends none."""
+    return [part.strip() for part in re.split(r"(?<=[^\s.])\.(?=\s|$)|\n", text) if part.strip()]
+
+
+def modules(core: str) -> str:
+    """What each module of a core is, and what its header says of its latency."""
+    rows = []
+    for file in cores.files(core):
+        if file.parent.name != core or file.stem.endswith("_pkg"):
+            continue
+        said = sentences(header(file.read_text()))
+        latency = next((part for word in ("latency", "^combinational", "throughput") for part in said[1:]
+                        if re.search(rf"{word}\b", part, re.I)), "")
+        rows.append([f"[{file.stem}]({core}/{file.name})", *(re.sub(r"([|*])", r"\\\1", text)
+                                                           for text in (said[0], latency))])
+    return "\n".join(f"| {' | '.join(row)} |" for row in [
+        ["module", "what it is", "latency"], ["---"] * 3, *rows]) + "\n"
+
+
+def declaration(module: str) -> str:
+    """The header and the declaration, as code."""
+    text = source(module).read_text()
+    found = re.match(rf".*?^module {module}\b.*?^\);$", text, re.M | re.S)
+    if not found:
+        raise ValueError(f"{source(module)}: expected the declaration of {module}")
+    return (f"<details><summary><code>{module}</code></summary>\n\n```systemverilog\n{found[0]}\n```\n\n"
+            "</details>\n")
+
+
+def quoted(argument: str, pattern: str) -> str:
+    """What matches in a file, as code; `argument` is FILE | WHAT, WHAT takes the place of %s."""
+    file, what = (part.strip() for part in argument.split("|"))
+    found = re.findall(pattern % what, (tools.ROOT / file).read_text(), re.M | re.S)
+    if not found:
+        raise ValueError(f"{README}: {file} holds no {what}")
+    language = {".sv": "systemverilog", ".h": "cpp", ".cpp": "cpp"}[pathlib.Path(file).suffix]
+    lines = "\n".join(found).strip("\n").splitlines()
+    margin = min(len(line) - len(line.lstrip()) for line in lines if line)
+    return f"```{language}\n" + "\n".join(line[margin:] for line in lines) + "\n```\n"
+
+
+def figures() -> str | None:
+    """The fastest netlist of each design in each library; None where nothing was measured."""
+    file = store.OUT / "results.json"
+    if not file.exists():
+        return None
+    measured = json.loads(file.read_text())
+    fastest: dict[tuple[str, str], dict] = {}
+    for record in measured["results"]:
+        if "area" in record and record["section"] != "reduced cores":
+            key = record["target"], record["design"]
+            fastest[key] = min(fastest.get(key, record), record, key=lambda row: row["delay_ns"])
+    rows = [[record["section"], record["design"], record["target"], record["flow"],
+             f"{record['area'] / 1e6:.3f}", f"{record['delay_ns']:.2f}",
+             f"{1000 / record['delay_ns']:.1f}" if "from" in record else ""]
+            for record in fastest.values()]
+    return f"Made by `make synth` with {measured['tools']}.\n\n" + tables.markdown(
+        ["section", "design", "library", "flow", "area, mm2", "slowest path, ns", "MHz"], rows)
+
+
+def fpga() -> str | None:
+    """The table of `make fpga`, if it was made."""
+    file = store.OUT / "fpga.md"
+    return file.read_text() if file.exists() else None
+
+
+KINDS = {"modules": modules, "declaration": declaration,
+         "section": lambda argument: quoted(argument, r"^ *// ---- %s\n(?: *//\n|\n)*(.*?)(?=^ *// ----|^endpackage)"),
+         "lines": lambda argument: quoted(argument, r"^[^\n]*%s[^\n]*$")}
+MEASURED = {"figures": figures, "fpga": fpga}
+
+
+def filled(text: str, measured: bool = True) -> str:
+    """The text with what its marks stand for; raises ValueError for what isn't there."""
+    def fill(mark: re.Match) -> str:
+        kind, argument, old = mark.groups()
+        if kind in MEASURED:
+            new = MEASURED[kind]() if measured else None
+        elif kind in KINDS:
+            new = KINDS[kind](argument)
+        else:
+            raise ValueError(f"{README}: found the mark {kind}, expected one of {', '.join(KINDS)}")
+        head = f"<!-- {kind} {argument}".rstrip() + " -->"
+        return f"{head}\n{old if new is None else new}<!-- end -->"
+
+    return MARK.sub(fill, text)
+
+
+def example(text: str) -> str:
+    """The module of the text's first block of SystemVerilog."""
+    return re.search(r"```systemverilog\n(module .*?)```", text, re.S)[1]
+
+
+def lint(text: str) -> None:
+    """The example passes Verilator; raises ToolFailed where it doesn't."""
+    file = tools.ROOT / "build" / "datasheet" / "example.sv"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(example(text))
+    top = re.search(r"module (\w+)", example(text))[1]
+    tools.run(["verilator", "--lint-only", "-Wall", "-Wno-DECLFILENAME", "--top-module", top,
+               *cores.files("hit_test"), file], file.with_suffix(".log"))
+
+
+def write() -> None:
+    """Fills the text and draws the diagrams."""
+    from synth import diagram  # by graphviz
+
+    README.write_text(filled(README.read_text()))
+    program = tools.ROOT / "build" / "sim" / "worked_example"
+    trace = program.with_suffix(".vcd")
+    subprocess.run([program, "--trace", trace], check=True, stdout=subprocess.DEVNULL)
+    waveform.draw(trace, tools.ROOT / "sim" / "worked_example.gtkw", DIAGRAMS / "worked_example")
+    for file in DIAGRAMS.glob("*.json"):
+        file.with_suffix(".svg").write_text(waveform.render(file))
+    drawn = store.OUT / "hit_test_unit"
+    diagram.draw("hit_test_unit", drawn)
+    (DIAGRAMS / "hit_test_unit.svg").write_text(drawn.with_suffix(".svg").read_text())
+
+
+def check() -> list[str]:
+    """What is out of date."""
+    text = README.read_text()
+    wanted = filled(text, measured=False)
+    lines = list(difflib.unified_diff(text.splitlines(), wanted.splitlines(), "hw/README.md", "the sources",
+                                      n=0, lineterm=""))
+    for file in DIAGRAMS.glob("*.json"):
+        if file.with_suffix(".svg").read_text() != waveform.render(file):
+            lines.append(f"{file.with_suffix('.svg')}: is not what WaveDrom makes of {file.name}")
+    lint(text)
+    return lines
+
+
+def main() -> int:
+    """Runs the command line."""
+    try:
+        if sys.argv[1:] not in ([], ["--check"]):
+            raise ValueError(f"found {' '.join(sys.argv[1:])}, expected --check or nothing")
+        wrong = check() if sys.argv[1:] else write() or []
+    except (tools.MissingTool, tools.ToolFailed, OSError, ValueError) as error:
+        print(f"datasheet: {error}", file=sys.stderr)
+        return 2
+    if wrong:
+        print(*wrong, "Out of date: make datasheet", sep="\n")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
