@@ -16,6 +16,10 @@ namespace raygate {
 
 namespace {
 
+// The unit runs empty for 46 clocks after a batch if no other one follows. Of 0 to 256 tests a lane
+// this took the fewest clocks on most scenes, for one lane and for eight.
+constexpr std::size_t kEnoughTestsALane = 64;
+
 std::unique_ptr<BurstModel> make_model(int lanes, const BurstStalls& stalls) {
   switch (lanes) {
     case 1:
@@ -33,7 +37,8 @@ std::unique_ptr<BurstModel> make_model(int lanes, const BurstStalls& stalls) {
 }  // namespace
 
 RtlBurstUnit::RtlBurstUnit(int lanes, const BurstStalls& stalls)
-    : model_(make_model(lanes, stalls)) {}
+    : model_(make_model(lanes, stalls)),
+      enough_tests_(kEnoughTestsALane * static_cast<std::size_t>(lanes)) {}
 
 RtlBurstUnit::~RtlBurstUnit() = default;
 

@@ -27,10 +27,12 @@ class RtlBurstUnit : public BurstUnit {
   /// The tests of the second batch follow those of the first without a gap.
   void start(std::span<const RayBundle> batch) override;
   void finish(BurstResults& results) override;
+  [[nodiscard]] std::size_t enough_tests() const override { return enough_tests_; }
   [[nodiscard]] BurstCounters counters() const override;
 
  private:
   std::unique_ptr<BurstModel> model_;
+  std::size_t enough_tests_;
 };
 
 }  // namespace raygate

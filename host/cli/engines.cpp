@@ -2,52 +2,42 @@
 
 #include <memory>
 
-#include "host/find/unit/check_burst_unit.h"
-#include "host/find/unit/check_plane_unit.h"
-#include "host/find/unit/cpu_burst_unit.h"
-#include "host/find/unit/cpu_hit_tester.h"
-#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/check_finder.h"
+#include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
+#include "host/find/unit/record_cache.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/reference_plane_unit.h"
 #include "host/find/unit/serial_hit_tester.h"
+#include "host/find/unit/unit_finder.h"
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_plane_unit.h"
 
 namespace raygate {
-namespace {
 
-std::unique_ptr<PlaneUnit> make_plane_unit(Engine engine) {
-  switch (engine) {
-    case Engine::kRtl:
-      return std::make_unique<RtlPlaneUnit>();
-    case Engine::kCpu:
-      return std::make_unique<CpuPlaneUnit>();
-    case Engine::kCheck:
-      break;
-  }
-  return std::make_unique<CheckPlaneUnit>(std::make_unique<RtlPlaneUnit>(),
-                                          std::make_unique<CpuPlaneUnit>());
-}
-
-std::unique_ptr<BurstUnit> make_burst_unit(Engine engine, int lanes) {
-  if (engine == Engine::kRtl) return std::make_unique<RtlBurstUnit>(lanes);
-  return std::make_unique<CheckBurstUnit>(std::make_unique<RtlBurstUnit>(lanes),
-                                          std::make_unique<CpuBurstUnit>());
-}
-
-}  // namespace
-
-HitTesterFactory make_tester_factory(const Options& options) {
-  const Engine engine = options.engine;
+std::unique_ptr<HitTester> make_tester(const Options& options) {
+  const bool simulated = options.engine != Engine::kModel;
   if (options.unit == "serial") {
-    const auto order = options.light.skips.divisions ? SerialHitTester::Order::kEdgesFirst
-                                                     : SerialHitTester::Order::kPlanesFirst;
-    return [engine, order] {
-      return std::make_unique<SerialHitTester>(make_plane_unit(engine), order);
-    };
+    std::unique_ptr<PlaneUnit> unit = std::make_unique<ReferencePlaneUnit>();
+    if (simulated) unit = std::make_unique<RtlPlaneUnit>();
+    return std::make_unique<SerialHitTester>(
+        std::move(unit), options.light.skips.divisions ? SerialHitTester::Order::kEdgesFirst
+                                                       : SerialHitTester::Order::kPlanesFirst);
   }
-  if (engine == Engine::kCpu) return [] { return std::make_unique<CpuHitTester>(); };
-  return [engine, lanes = options.lanes] {
-    return std::make_unique<PipelineHitTester>(make_burst_unit(engine, lanes));
+  std::unique_ptr<BurstUnit> unit = std::make_unique<ReferenceBurstUnit>();
+  if (simulated) unit = std::make_unique<RtlBurstUnit>(options.lanes);
+  return std::make_unique<PipelineHitTester>(std::move(unit));
+}
+
+FinderFactory make_finder_factory(const Options& options, const Bvh& bvh) {
+  if (options.engine == Engine::kCpu) {
+    return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
+  }
+  const auto caches = std::make_shared<RecordCaches>(bvh, options.light.skips.records);
+  return [options, &bvh, caches]() -> std::unique_ptr<Finder> {
+    auto unit = std::make_unique<UnitFinder>(bvh, make_tester(options), caches);
+    if (options.engine != Engine::kCheck) return unit;
+    return std::make_unique<CheckFinder>(bvh, std::move(unit), std::make_unique<CpuFinder>(bvh));
   };
 }
 

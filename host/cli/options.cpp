@@ -71,9 +71,10 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
         "without it, the whole scene is framed");
   declare_output_options(app, raw.output);
   declare_light_options(app, raw.light);
-  value("--engine", raw.engine, "rtl|cpu|check",
-        "rtl: the simulated hardware; cpu: its twin in\n"
-        "C++; check: both, and the first difference\nstops the run (rtl)");
+  value("--engine", raw.engine, "rtl|model|cpu|check",
+        "rtl: the simulated hardware; model: its reference\n"
+        "model in C++; cpu: fast tests without a unit; check:\n"
+        "rtl and cpu, and the first difference stops the run\n(rtl)");
   value("--unit", raw.unit, "pipeline|serial",
         "which hit-test unit the hardware is: a test\n"
         "every clock, or the paper's (pipeline)");
@@ -204,6 +205,8 @@ std::string to_string(Engine engine) {
   switch (engine) {
     case Engine::kRtl:
       return "rtl";
+    case Engine::kModel:
+      return "model";
     case Engine::kCpu:
       return "cpu";
     case Engine::kCheck:

@@ -18,8 +18,9 @@ namespace raygate {
 /// Who tests rays against polygons.
 enum class Engine {
   kRtl,    ///< the simulated hardware
-  kCpu,    ///< its twin in C++
-  kCheck,  ///< both, compared bit for bit
+  kModel,  ///< its reference model in C++, in the hardware's place
+  kCpu,    ///< no unit: tests in place
+  kCheck,  ///< rtl and cpu, compared ray by ray
 };
 
 /// Checked options: every value is possible. Whether files can be read or written is not checked.
@@ -53,7 +54,7 @@ struct Options {
 /// and the line), what was given and what is allowed.
 [[nodiscard]] Options parse_options(int argc, const char* const* argv);
 
-/// "rtl", "cpu" or "check".
+/// "rtl", "model", "cpu" or "check".
 [[nodiscard]] std::string to_string(Engine engine);
 
 }  // namespace raygate

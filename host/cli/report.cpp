@@ -44,6 +44,7 @@ std::string headline(const Report& report) {
             std::to_string(options.window.height());
   }
   line += ", engine " + to_string(options.engine);
+  if (options.engine == Engine::kCpu) return line + ", " + plural(options.threads, "thread");
   line += ", unit " + options.unit;
   if (options.unit == "pipeline" && options.lanes > 1) {
     line += " of " + std::to_string(options.lanes) + " lanes";
@@ -54,9 +55,10 @@ std::string headline(const Report& report) {
 /// "hit tests 80 %, boxes 15 %, ...": of the time of all threads.
 std::string shares(const RenderStats& render) {
   const std::pair<const char*, double> parts[] = {
-      {"hit tests", render.hit_seconds},        {"boxes", render.traverse_seconds},
-      {"records", render.record_seconds},       {"doubts", render.doubt_seconds},
-      {"departures", render.departure_seconds}, {"shading", render.shade_seconds}};
+      {"hit tests", render.find.hit_tests},
+      {"boxes", render.find.traverse},
+      {"records", render.find.record},
+      {"shading", render.shade_seconds}};
   double sum = 0.0;
   for (const auto& [name, seconds] : parts) sum += seconds;
   std::string text;
@@ -69,7 +71,7 @@ std::string shares(const RenderStats& render) {
 
 /// "a test 98.2 %, idle 1.8 %, ...": what the lanes of the pipelined unit did with their clocks.
 std::string lane_clocks(const Report& report) {
-  const HitCounters& hit = report.render.hit;
+  const HitCounters& hit = report.render.find.hit;
   const double all = static_cast<double>(hit.clocks) * report.options.lanes;
   const std::pair<const char*, std::uint64_t> parts[] = {{"a test", hit.unit_tests},
                                                          {"idle", hit.idle_clocks},
@@ -86,11 +88,10 @@ std::string lane_clocks(const Report& report) {
 std::string skips(const Report& report) {
   const RenderStats& render = report.render;
   const SkipCounters& skipped = render.skipped;
-  const auto rays = static_cast<double>(render.rays), tests = static_cast<double>(render.hit.tests);
-  const double ray_seconds = ratio(render.traverse_seconds + render.record_seconds +
-                                       render.departure_seconds + render.shade_seconds,
-                                   rays);
-  const double test_seconds = ratio(render.hit_seconds + render.doubt_seconds, tests);
+  const auto rays = static_cast<double>(render.rays), tests = static_cast<double>(render.find.hit.tests);
+  const double ray_seconds =
+      ratio(render.find.traverse + render.find.record + render.shade_seconds, rays);
+  const double test_seconds = ratio(render.find.hit_tests, tests);
   std::string text =
       "not done, for the picture does not need it (see --no-skip; costs as of what was):\n";
   const auto add = [&](std::uint64_t count, const char* what, double saved_tests, double seconds) {
@@ -117,9 +118,10 @@ std::string skips(const Report& report) {
   rays_left_out(skipped.dim, "reflected and refracted rays below --threshold");
   rays_left_out(skipped.empty_tile_rays, "camera rays where there is nothing");
   add(skipped.first_occluders, "shadow rays' ways beyond the first occluder found", 0.0, 0.0);
-  if (report.options.unit == "pipeline" || report.options.light.skips.divisions) {
-    const std::uint64_t all = 3 * render.hit.tests;
-    add(all - std::min(all, render.hit.quotients), "divisions of the paper's three for each test",
+  if (render.find.hit.unit_tests != 0 &&
+      (report.options.unit == "pipeline" || report.options.light.skips.divisions)) {
+    const std::uint64_t all = 3 * render.find.hit.tests;
+    add(all - std::min(all, render.find.hit.quotients), "divisions of the paper's three for each test",
         0.0, 0.0);
   }
   return text;
@@ -133,7 +135,7 @@ double clocks_per_test(const HitCounters& counters) {
 
 std::string to_text(const Report& report) {
   const RenderStats& render = report.render;
-  const HitCounters& hit = render.hit;
+  const HitCounters& hit = render.find.hit;
   Table table;
   table.add("rays", render.rays,
             format_count(render.camera_rays) + " from the camera, " +
@@ -145,7 +147,7 @@ std::string to_text(const Report& report) {
           " for each ray");
   table.add("hits", hit.hits);
   table.add("doubts", hit.edge_doubts + hit.depth_doubts, "settled by exact arithmetic");
-  table.add("unit", hit.unit_tests, "tests that went through the unit");
+  if (hit.unit_tests > 0) table.add("unit", hit.unit_tests, "tests that went through the unit");
   if (hit.clocks > 0) {
     table.add("clocks", hit.clocks,
               format_fixed(clocks_per_test(hit), 2) + " for each test of the unit");
@@ -170,7 +172,7 @@ std::string to_json(const Report& report) {
   using nlohmann::ordered_json;
   const Options& options = report.options;
   const RenderStats& render = report.render;
-  const HitCounters& hit = render.hit;
+  const HitCounters& hit = render.find.hit;
   const PixelRect& window = options.window;
   ordered_json pictures = ordered_json::array();
   for (const auto& path : report.pictures) pictures.push_back(path.string());
@@ -193,15 +195,15 @@ std::string to_json(const Report& report) {
       {"rays", render.rays},
       {"camera_rays", render.camera_rays},
       {"shadow_rays", render.shadow_rays},
-      {"records", render.records},
-      {"common_records", render.common_records},
+      {"records", render.find.own_records + render.find.common_records},
+      {"common_records", render.find.common_records},
       {"tests", hit.tests},
       {"misses", hit.misses},
       {"hits", hit.hits},
       {"edge_doubts", hit.edge_doubts},
       {"depth_doubts", hit.depth_doubts},
-      {"exact_inside", render.exact_inside},
-      {"exact_depth", render.exact_depth},
+      {"exact_inside", render.find.exact_inside},
+      {"exact_depth", render.find.exact_depth},
       {"plane_tests", hit.plane_tests},
       {"unit_tests", hit.unit_tests},
       {"quotients", hit.quotients},
@@ -225,11 +227,9 @@ std::string to_json(const Report& report) {
         {"write", report.write_seconds},
         {"total", report.total_seconds}}},
       {"thread_seconds",
-       {{"boxes", render.traverse_seconds},
-        {"records", render.record_seconds},
-        {"hit_tests", render.hit_seconds},
-        {"doubts", render.doubt_seconds},
-        {"departures", render.departure_seconds},
+       {{"boxes", render.find.traverse},
+        {"records", render.find.record},
+        {"hit_tests", render.find.hit_tests},
         {"shading", render.shade_seconds}}},
   };
   // File names need not be UTF-8, JSON must be.

@@ -91,7 +91,6 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                                .height = options.height,
                                .window = options.window,
                                .threads = static_cast<int>(options.threads),
-                               .lanes = options.lanes,
                                .samples = options.light.samples,
                                .filter = options.light.filter,
                                .seed = options.seed,
@@ -106,7 +105,7 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
     render_options.snapshot_seconds = outputs.save_seconds;
   }
   ProgressBar bar(!options.quiet);
-  return render(scene, bvh, camera, render_options, make_tester_factory(options), stats,
+  return render(scene, bvh, camera, render_options, make_finder_factory(options, bvh), stats,
                 [&](double fraction) {
                   bar.update(fraction);
                   return InterruptGuard::signal() == 0;

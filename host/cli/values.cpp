@@ -35,10 +35,10 @@ Size parse_size(const std::string& text) {
 }
 
 Engine parse_engine(const std::string& text) {
-  for (const Engine engine : {Engine::kRtl, Engine::kCpu, Engine::kCheck}) {
+  for (const Engine engine : {Engine::kRtl, Engine::kModel, Engine::kCpu, Engine::kCheck}) {
     if (text == to_string(engine)) return engine;
   }
-  fail_value("--engine", text, "rtl, cpu or check");
+  fail_value("--engine", text, "rtl, model, cpu or check");
 }
 
 std::string parse_unit(const std::string& text) {

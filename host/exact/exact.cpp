@@ -39,9 +39,8 @@ struct Cross {
   /// Whether each component's error is surely at most 2^-34 of |value|_1. The bound is 8u, not
   /// 5u, for the roundings of this very comparison.
   [[nodiscard]] bool accurate() const {
-    const double largest = std::max({magnitude.x, magnitude.y, magnitude.z});
     const double size = std::abs(value.x) + std::abs(value.y) + std::abs(value.z);
-    return 8.0 * kU * largest <= 0x1p-34 * size;
+    return 8.0 * kU * largest(magnitude) <= 0x1p-34 * size;
   }
 };
 
@@ -130,6 +129,20 @@ int order_of_planes(const Ray& ray, const Corners& first, const Corners& second)
 bool is_usable(const glm::vec3& direction) {
   return std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z) &&
          direction != glm::vec3(0.0f);
+}
+
+bool is_scaled(const glm::vec3& direction) {
+  const float size = largest(direction);
+  return size >= 1.0f && size < 2.0f;
+}
+
+glm::vec3 scaled_direction(const glm::dvec3& direction) {
+  const int exponent = std::ilogb(largest(direction));
+  glm::vec3 scaled(std::scalbn(direction.x, -exponent), std::scalbn(direction.y, -exponent),
+                   std::scalbn(direction.z, -exponent));
+  // Rounding to float may have carried 1.99999999 to 2.
+  if (largest(scaled) >= 2.0f) scaled *= 0.5f;
+  return scaled;
 }
 
 int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {

@@ -1,22 +1,48 @@
 // Decisions that are never wrong: does a ray hit a triangle, and which of two hits is nearer.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/glm.hpp>
+#include <limits>
 
 namespace raygate {
 
 /// The vertices of a triangle, in its order.
 using Corners = std::array<glm::vec3, 3>;
 
+/// The largest of the components' magnitudes.
+template <class T>
+[[nodiscard]] T largest(const glm::vec<3, T>& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// The float nearest to x that is not above it, or not below it.
+[[nodiscard]] inline float float_below(double x) {
+  const auto nearest = static_cast<float>(x);
+  return nearest > x ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
+}
+[[nodiscard]] inline float float_above(double x) {
+  const auto nearest = static_cast<float>(x);
+  return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
 /// Whether a ray can go this way: all components finite, not all of them 0. In all others it hits
 /// nothing.
 [[nodiscard]] bool is_usable(const glm::vec3& direction);
 
+/// Whether the largest component's magnitude is in [1, 2): how finders, trees and units want
+/// directions. Multiplying one by a power of two changes no rounding and no hit.
+[[nodiscard]] bool is_scaled(const glm::vec3& direction);
+
+/// `direction`, not 0 and finite, scaled and rounded to float.
+[[nodiscard]] glm::vec3 scaled_direction(const glm::dvec3& direction);
+
 /// A ray: origin + t direction for t > 0, an open beginning: what the origin lies on, and what is
 /// behind it, is not hit. Where a ray has a limit, its end is open too: hits have t < limit (see
-/// NearestHits in host/find). All components finite; coordinates, the triangles' too,
-/// of magnitude at most 2^126; the direction scaled (see scaled_direction in host/scene/camera.h).
+/// Search in host/find). All components finite; coordinates, the triangles' too,
+/// of magnitude at most 2^126. Finders want the direction scaled (see is_scaled).
 struct Ray {
   glm::vec3 origin{0.0f};
   glm::vec3 direction{0.0f};

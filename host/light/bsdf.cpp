@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
-
 bool is_glass(int model) { return model == 4 || model == 6 || model == 7 || model == 9; }
 bool refracts(int model) { return model == 6 || model == 7; }
 

@@ -21,10 +21,6 @@ namespace {
 
 constexpr int kLastStep = 24;  // 2^24 steps: as far away as X's coordinate is large
 
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 /// X in double, and the size of a step.
 struct HitPoint {
   glm::dvec3 point;

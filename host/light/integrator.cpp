@@ -6,18 +6,12 @@
 #include "host/light/fresnel.h"
 #include "host/light/path.h"
 #include "host/light/whitted.h"
-#include "host/scene/camera.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 
 const std::optional<glm::vec3>& Integrator::departure(Hit& hit, Departure way) {
   auto& point = way == Departure::kBefore ? hit.before : hit.after;
-  if (!point) {
-    Stopwatch watch;
-    point = departure_.find(hit.ray.ray, hit.surface.slot, way);
-    departure_seconds_ += watch.lap();
-  }
+  if (!point) point = departure_.find(hit.ray.ray, hit.surface.slot, way);
   return *point;
 }
 

@@ -75,8 +75,6 @@ class Integrator {
   [[nodiscard]] virtual bool shadows_through_refraction() const = 0;
 
   [[nodiscard]] const SkipCounters& skipped() const { return skipped_; }
-  /// Spent on finding departure points, in exact arithmetic: a part of the time of shading.
-  [[nodiscard]] double departure_seconds() const { return departure_seconds_; }
 
  protected:
   /// A hit, and the points beside it from which rays go on, found when needed.
@@ -114,8 +112,6 @@ class Integrator {
   SkipCounters skipped_;
 
  private:
-  double departure_seconds_ = 0.0;
-
   void ask(Hit& hit, ShadowRay shadow, WaveOutput& output);
 };
 

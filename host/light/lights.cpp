@@ -102,8 +102,7 @@ void light_if_dark(Scene& scene, const Camera& camera) {
   scene.background = glm::vec3(0.18f, 0.2f, 0.24f);
 }
 
-Lights::Lights(const Scene& scene, const Bvh& bvh, bool records_on_first_touch)
-    : scene_(scene), bvh_(bvh) {
+Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t slot : emitting_slots(scene, bvh)) {
     const Triangle& face = scene.triangles[bvh.triangle_of(slot)];
@@ -124,8 +123,6 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, bool records_on_first_touch)
   for (const PointLight& light : scene.lights) {
     power += 4.0 * std::numbers::pi * mean(light.intensity);
     power_up_to_.push_back(power);
-    records_.push_back(std::make_unique<RecordCache>(bvh, light.position));
-    if (!records_on_first_touch) records_.back()->make_all();
   }
   for (AreaLight& light : areas_) {
     find_middle(bvh, light);
@@ -133,12 +130,6 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, bool records_on_first_touch)
     power_up_to_.push_back(power);
   }
   ambient_ = background() != glm::dvec3(0.0) ? background() : guessed_ambient(scene, areas_);
-}
-
-std::uint64_t Lights::records_made() const {
-  std::uint64_t made = 0;
-  for (const auto& records : records_) made += records->made();
-  return made;
 }
 
 LightPoint Lights::sample(const AreaLight& light, const glm::dvec2& u) const {

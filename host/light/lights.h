@@ -3,11 +3,9 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "host/find/unit/record_cache.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -41,9 +39,8 @@ struct LightPoint {
 /// All lights of a scene, ready for use.
 class Lights {
  public:
-  /// Without `records_on_first_touch` all records of the point lights are made now. The references
-  /// must outlive this.
-  Lights(const Scene& scene, const Bvh& bvh, bool records_on_first_touch);
+  /// The references must outlive this.
+  Lights(const Scene& scene, const Bvh& bvh);
 
   [[nodiscard]] std::span<const PointLight> points() const { return scene_.lights; }
   [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
@@ -55,11 +52,6 @@ class Lights {
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
   /// Points first, then areas.
   [[nodiscard]] std::size_t count() const { return points().size() + areas_.size(); }
-
-  /// The records of shadow rays traced from a point light. May be used by several threads.
-  [[nodiscard]] RecordCache& records(std::size_t point) const { return *records_[point]; }
-  /// Made for all point lights, once no thread is asking.
-  [[nodiscard]] std::uint64_t records_made() const;
 
   /// A point of an area light, uniform in area, for a point of the unit square.
   [[nodiscard]] LightPoint sample(const AreaLight& light, const glm::dvec2& u) const;
@@ -83,7 +75,6 @@ class Lights {
  private:
   const Scene& scene_;
   const Bvh& bvh_;
-  std::vector<std::unique_ptr<RecordCache>> records_;
   std::vector<AreaLight> areas_;
   std::vector<std::uint32_t> area_of_slot_;  // index into areas_, or kNoIndex; empty: none at all
   std::vector<double> power_up_to_;          // each light included

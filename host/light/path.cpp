@@ -11,8 +11,6 @@ constexpr std::uint32_t kGoOn = 1, kChooseLight = 2, kLightPoint = 3, kChooseLob
                         kDirection = 5;
 constexpr int kSureSurfaces = 3;  // before chance decides whether a ray lives on
 
-double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
-
 /// A lamp's density per area, seen from `point`, per steradian; 0 where the lamp is seen edge-on.
 double per_steradian(double per_area, const glm::dvec3& point, const glm::dvec3& lamp,
                      const glm::dvec3& lamp_normal) {

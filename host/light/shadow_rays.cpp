@@ -5,7 +5,6 @@
 
 #include "host/light/bsdf.h"
 #include "host/light/surface.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
@@ -16,21 +15,21 @@ constexpr double kBeforeAreaLight = 1.0 - 0x1p-16;
 
 /// The t at which a ray in the scaled direction of `way` has gone all of it, times `share`.
 float scaled_way(const glm::dvec3& way, double share) {
-  const double largest = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
-  const int exponent = std::ilogb(largest);
+  const double size = largest(way);
+  const int exponent = std::ilogb(size);
   // As in scaled_direction: 1.99999999 becomes 2 as a float, and then 1.
-  const bool carries = static_cast<float>(std::scalbn(largest, -exponent)) >= 2.0f;
+  const bool carries = static_cast<float>(std::scalbn(size, -exponent)) >= 2.0f;
   return static_cast<float>(std::ldexp(share, exponent + (carries ? 1 : 0)));
 }
 
 }  // namespace
 
 ShadowRays::ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights,
-                       Wavefront& wavefront, const Skips& skips, bool through_refraction)
+                       Finder& finder, const Skips& skips, bool through_refraction)
     : scene_(scene),
       bvh_(bvh),
       lights_(lights),
-      wavefront_(wavefront),
+      finder_(finder),
       departure_(bvh),
       culling_(skips.culling),
       through_refraction_(through_refraction),
@@ -70,12 +69,12 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
     segments_.push_back({i, position, rays[i].surface, rays[i].surface_slot, kWholeWay});
   }
   if (segments_.empty()) return;
-  trace(&lights_.records(point_light), kSureOfLight);
+  trace(true, kSureOfLight);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
-    const NearestHit& hit = wavefront_.nearest(i);
+    const NearestHit& hit = hits_[i];
     if (hit.slot == NearestHit::kNone) continue;
     ShadowRay& ray = rays[segments_[i].index];
-    const bool is_sure = wavefront_.nearest_is_before(i, wave_[i], enough_[i]);
+    const bool is_sure = is_before(bvh_, wave_[i], hit, enough_[i]);
     if (is_sure && (!any_clear_ || transmittance(i) == glm::dvec3(0.0))) {
       ray.light = glm::dvec3(0.0);
     } else {
@@ -87,9 +86,9 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
 void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   segments_.swap(next_);
   next_.clear();
-  trace(nullptr, kWholeWay);
+  trace(false, kWholeWay);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
-    const NearestHit& hit = wavefront_.nearest(i);
+    const NearestHit& hit = hits_[i];
     if (hit.slot == NearestHit::kNone) continue;
     Segment segment = segments_[i];
     ShadowRay& ray = rays[segment.index];
@@ -106,7 +105,7 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
 }
 
 /// Of all segments. Searches may end at hits before the share `enough` of the way.
-void ShadowRays::trace(RecordCache* common, double enough) {
+void ShadowRays::trace(bool from_light, double enough) {
   wave_.clear();
   limits_.clear();
   enough_.clear();
@@ -124,16 +123,21 @@ void ShadowRays::trace(RecordCache* common, double enough) {
     }
     ignored_.push_back(segment.ignored);
   }
-  Search search{.common = common, .limits = limits_, .ignored = ignored_, .culling = culling_};
+  Search search{.common_origin = from_light,
+                .limits = limits_,
+                .ignored = ignored_,
+                .culling = culling_};
   if (first_occluder_) search.enough_before = enough_;
-  wavefront_.trace(wave_, search);
+  work_.resize(traced_ != nullptr ? wave_.size() : 0);
+  search.work = work_;
+  hits_.resize(wave_.size());
+  finder_.find(wave_, search, hits_);
   rays_ += wave_.size();
-  if (traced_ == nullptr) return;
-  for (std::size_t i = 0; i < segments_.size(); ++i) (*traced_)(i, segments_[i].index);
+  for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }
 
 glm::dvec3 ShadowRays::transmittance(std::size_t number) const {
-  const std::uint32_t slot = wavefront_.nearest(number).slot;
+  const std::uint32_t slot = hits_[number].slot;
   const Material& material = scene_.materials[scene_.triangles[bvh_.triangle_of(slot)].material];
   if (!is_clear(material)) return glm::dvec3(0.0);
   return shadow_transmittance(Surface(scene_, bvh_, wave_[number], slot), through_refraction_);

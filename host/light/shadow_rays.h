@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/find/unit/wavefront.h"
+#include "host/find/finder.h"
 #include "host/light/departure.h"
 #include "host/light/lights.h"
 #include "host/light/skips.h"
@@ -38,11 +38,11 @@ struct ShadowRay {
 class ShadowRays {
  public:
   /// `through_refraction`: glass that bends light casts the shadow of one that does not.
-  ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights, Wavefront& wavefront,
+  ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights, Finder& finder,
              const Skips& skips, bool through_refraction);
 
-  /// Called for each ray of a wave that was traced, by its shadow ray's index.
-  using TracedFunction = std::function<void(std::size_t ray_of_wave, std::size_t shadow_ray)>;
+  /// Called for each ray that was traced with what its search took, by its shadow ray's index.
+  using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
 
   /// Multiplies each ray's `light` by what is not held up on its way: all, nothing, or what clear
   /// surfaces leave. `traced` may be empty.
@@ -61,7 +61,7 @@ class ShadowRays {
 
   void trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light);
   void trace_from_surface(std::span<ShadowRay> rays);
-  void trace(RecordCache* common, double enough);
+  void trace(bool from_light, double enough);
   [[nodiscard]] static Segment from_surface(const Lights& lights, const ShadowRay& ray,
                                             std::uint32_t index);
   /// What is left after the surface that ray `number` of the wave has hit.
@@ -70,13 +70,15 @@ class ShadowRays {
   const Scene& scene_;
   const Bvh& bvh_;
   const Lights& lights_;
-  Wavefront& wavefront_;
+  Finder& finder_;
   DeparturePoint departure_;
   bool first_occluder_, culling_, through_refraction_, any_clear_;
   std::uint64_t rays_ = 0;
   // Room to work in.
   std::vector<Segment> segments_, next_;
   std::vector<Ray> wave_;
+  std::vector<NearestHit> hits_;
+  std::vector<RayWork> work_;
   std::vector<float> limits_, enough_;
   std::vector<std::uint32_t> ignored_;
   const TracedFunction* traced_ = nullptr;

@@ -1,7 +1,5 @@
 #include "host/light/whitted.h"
 
-#include <algorithm>
-
 namespace raygate {
 namespace {
 
@@ -11,11 +9,11 @@ constexpr std::uint32_t kMirror = 1, kThrough = 2, kFirstAreaLight = 16;
 }  // namespace
 
 bool Whitted::is_worthwhile(const glm::dvec3& weight) {
-  const double largest = std::max({weight.x, weight.y, weight.z});
-  if (largest == 0.0 && skips_.weightless) ++skipped_.weightless;
-  if (largest == 0.0) return !skips_.weightless;
-  if (largest < options_.threshold) ++skipped_.dim;
-  return largest >= options_.threshold;
+  const double size = largest(weight);
+  if (size == 0.0 && skips_.weightless) ++skipped_.weightless;
+  if (size == 0.0) return !skips_.weightless;
+  if (size < options_.threshold) ++skipped_.dim;
+  return size >= options_.threshold;
 }
 
 void Whitted::shade(const LightRay& ray, const Surface& surface, const RandomNumbers& random,

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "host/find/unit/record_cache.h"
 #include "host/light/lights.h"
 #include "host/picture/tile_renderer.h"
 #include "host/picture/tiles.h"
@@ -126,28 +125,28 @@ class Progress {
 }  // namespace
 
 Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const RenderOptions& options,
-            const HitTesterFactory& make_tester, RenderStats& stats,
+            const FinderFactory& make_finder, RenderStats& stats,
             const ProgressFunction& progress_function) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
   stats = {};
   Film film = empty_film(options);
-  const Tiles tiles(film.window, options.samples, options.lanes, options.threads);
+  auto first_finder = make_finder();
+  const Tiles tiles(film.window, options.samples, first_finder->preferred_batch(),
+                    options.threads);
   FilmSums sums;
   if (tiles.passes() > 1) {
     sums.color.assign(film.color.size(), glm::dvec4(0.0));
     sums.albedo.assign(film.albedo.size(), glm::dvec3(0.0));
   }
-  const Lights lights(scene, bvh, options.skips.records);
-  RecordCache records(bvh, camera.eye());
-  if (!options.skips.records) records.make_all();
-  const RenderJob job{scene, bvh, camera, options, lights, records};
+  const Lights lights(scene, bvh);
+  const RenderJob job{scene, bvh, camera, options, lights};
   Progress progress(tiles, options, progress_function);
 
-  const auto work = [&] {
+  const auto work = [&](std::unique_ptr<Finder> finder) {
     try {
-      const auto tester = make_tester();
-      TileRenderer renderer(job, *tester, film, sums);
+      if (!finder) finder = make_finder();
+      TileRenderer renderer(job, *finder, film, sums);
       const auto keep_going = [&] { return progress.keep_going(); };
       for (int tile = 0, pass = 0; progress.next(tile, pass);) {
         if (!renderer.trace(tiles[tile], tiles.first_sample(pass), tiles.samples_of(pass),
@@ -163,15 +162,16 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
   };
   {
     std::vector<std::jthread> threads;
-    for (int i = 1; i < std::min(options.threads, tiles.count); ++i) threads.emplace_back(work);
-    work();
+    for (int i = 1; i < std::min(options.threads, tiles.count); ++i) threads.emplace_back(work, nullptr);
+    work(std::move(first_finder));
   }
   progress.rethrow();
-  stats.common_records = records.made() + lights.records_made();
-  stats.records += stats.common_records;
-  stats.skipped.records = bvh.slot_count() * (1 + lights.points().size()) - stats.common_records;
+  if (stats.find.common_records != 0) {
+    stats.skipped.records =
+        bvh.slot_count() * (1 + lights.points().size()) - stats.find.common_records;
+  }
   const std::uint64_t every_test = stats.rays * bvh.slot_count();
-  stats.skipped.culled_tests = every_test - std::min(every_test, stats.hit.tests);
+  stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);
   stats.cancelled = !progress.is_complete();
   stats.wall_seconds = wall.lap();
   return film;

@@ -3,12 +3,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 
 #include "host/film/film.h"
 #include "host/film/pixel_filter.h"
-#include "host/find/unit/hit_tester.h"
+#include "host/find/finder.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/skips.h"
 #include "host/scene/scene.h"
@@ -23,7 +22,6 @@ struct RenderOptions {
   int width = 0, height = 0;  ///< of the whole frame, at least 1
   PixelRect window;           ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;            ///< at least 1; the film does not depend on it
-  int lanes = 1;              ///< of each tester's unit, at least 1; the film does not depend on it
   int samples = 1;            ///< of each pixel, at least 1; a single one is its middle
   PixelFilter filter = PixelFilter::kBlackmanHarris;  ///< with more than one sample
   std::uint64_t seed = 0;                             ///< of everything random
@@ -45,34 +43,22 @@ struct RenderStats {
   std::uint64_t rays = 0;            ///< of all kinds; the others are reflected or refracted
   std::uint64_t camera_rays = 0;     ///< of these, from the camera
   std::uint64_t shadow_rays = 0;     ///< of these, between surfaces and lights
-  std::uint64_t records = 0;         ///< polygon records made
-  std::uint64_t common_records = 0;  ///< of these, for origins that many rays share
   SkipCounters skipped;
-  HitCounters hit;                 ///< summed over the threads' testers
-  std::uint64_t exact_inside = 0;  ///< doubts about edges settled, where they were not too far away
-  std::uint64_t exact_depth = 0;   ///< pairs of hits that exact arithmetic put in order
-  double traverse_seconds = 0.0;   ///< boxes, and records of common origins made on first touch
-  double record_seconds = 0.0;     ///< records made for rays of their own origins
-  double hit_seconds = 0.0;        ///< in HitTester::test, and merging its reports
-  double doubt_seconds = 0.0;      ///< exact arithmetic about what they leave open
-  double shade_seconds = 0.0;      ///< making the rays and shading them
-  double departure_seconds = 0.0;  ///< where rays leave surfaces, exactly; not in shade_seconds
+  FindCounters find;           ///< summed over the threads' finders
+  double shade_seconds = 0.0;  ///< making the rays and shading them
   double wall_seconds = 0.0;
   bool cancelled = false;  ///< the progress function said stop: the film has what there was
 };
-
-/// Makes the tester of one thread; called on that thread.
-using HitTesterFactory = std::function<std::unique_ptr<HitTester>()>;
 
 /// Called with the fraction done, in [0, 1], now and then and from one thread at a time; false
 /// stops the render. May be empty.
 using ProgressFunction = std::function<bool(double)>;
 
-/// The film is the same, bit for bit, for every engine, number of threads and skip, and a window's
-/// is that part of the whole one's. An exception of a tester ends the render and is thrown on.
+/// The film is the same, bit for bit, for every finder, number of threads and skip, and a window's
+/// is that part of the whole one's. An exception of a finder ends the render and is thrown on.
 /// Scenes without any light are black, but for kPrimary: see light_if_dark.
 [[nodiscard]] Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
-                          const RenderOptions& options, const HitTesterFactory& make_tester,
+                          const RenderOptions& options, const FinderFactory& make_finder,
                           RenderStats& stats, const ProgressFunction& progress = {});
 
 }  // namespace raygate

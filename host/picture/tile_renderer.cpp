@@ -11,13 +11,10 @@ namespace {
 
 // Pixels of a packet, and of the cones around eight of them: rays close together, for the boxes to
 // agree about.
-constexpr int kBlockWidth = 4, kBlockHeight = kLanes / kBlockWidth;
+constexpr int kBlockWidth = 4, kBlockHeight = 2;
 constexpr int kSquare = 8;
 constexpr std::uint32_t kFilterStream = 0;
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
-// The unit runs empty for 46 clocks after a batch if no other one follows. Of 0 to 256 tests a lane
-// this took the fewest clocks on most scenes, for one lane and for eight.
-constexpr std::size_t kEnoughTestsALane = 64;
 constexpr double kBrightest = std::numeric_limits<float>::max();
 
 /// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
@@ -33,14 +30,12 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
 
 }  // namespace
 
-TileRenderer::TileRenderer(const RenderJob& job, HitTester& tester, Film& film, FilmSums& sums)
+TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film, FilmSums& sums)
     : job_(job),
-      tester_(tester),
+      finder_(finder),
       film_(film),
       sums_(sums),
-      wavefront_(job.bvh, tester, kEnoughTestsALane * static_cast<std::size_t>(job.options.lanes)),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
-  wavefront_.count_work(is_counting_);
   const RenderOptions& options = job.options;
   if (options.integrator == IntegratorKind::kPrimary) return;
   integrator_ = make_integrator(
@@ -50,12 +45,11 @@ TileRenderer::TileRenderer(const RenderJob& job, HitTester& tester, Film& film, 
        .ambient = options.ambient ? glm::dvec3(*options.ambient) : job.lights.ambient(),
        .single_sample = options.samples == 1});
   shadow_rays_ =
-      std::make_unique<ShadowRays>(job.scene, job.bvh, job.lights, wavefront_, options.skips,
+      std::make_unique<ShadowRays>(job.scene, job.bvh, job.lights, finder_, options.skips,
                                    integrator_->shadows_through_refraction());
 }
 
-/// Square by square, and in them block by block: the wavefront's packets are blocks, its cones
-/// squares.
+/// Square by square, and in them block by block: finders' packets are blocks, their cones squares.
 void TileRenderer::list_pixels(const PixelRect& tile) {
   pixels_.clear();
   for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
@@ -130,15 +124,14 @@ void TileRenderer::trace_wave() {
   for (const LightRay& ray : wave_) rays_.push_back(ray.ray);
   stats_.rays += rays_.size();
   stats_.shade_seconds += watch.lap();
-  wavefront_.trace(rays_, {.common = is_first ? &job_.camera_records : nullptr,
-                           .culling = job_.options.skips.culling});
+  hits_.resize(rays_.size());
+  work_.resize(is_counting_ ? rays_.size() : 0);
+  finder_.find(
+      rays_, {.common_origin = is_first, .culling = job_.options.skips.culling, .work = work_},
+      hits_);
   watch.lap();
   output_.next.clear();
-  hits_.clear();
-  for (std::size_t i = 0; i < wave_.size(); ++i) {
-    hits_.push_back(wavefront_.nearest(i));
-    if (is_counting_) count_work(i, wave_[i].sample);
-  }
+  for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], wave_[i].sample);
   for (std::size_t i = 0; i < wave_.size(); ++i) {
     shade(wave_[i], hits_[i]);
     if (output_.shadows.size() < kManyShadowRays && i + 1 < wave_.size()) continue;
@@ -152,8 +145,8 @@ void TileRenderer::trace_wave() {
 
 void TileRenderer::trace_shadows() {
   if (!shadow_rays_) return;
-  const auto traced = [this](std::size_t ray_of_wave, std::size_t shadow) {
-    count_work(ray_of_wave, output_.shadows[shadow].sample);
+  const auto traced = [this](const RayWork& work, std::size_t shadow) {
+    count_work(work, output_.shadows[shadow].sample);
   };
   shadow_rays_->resolve(output_.shadows,
                         is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
@@ -190,9 +183,9 @@ void TileRenderer::shade(const LightRay& ray, const NearestHit& hit) {
   integrator_->shade(ray, surface, random, output_);
 }
 
-void TileRenderer::count_work(std::size_t ray_of_wave, std::uint32_t sample) {
-  seen_[sample].work.tests += wavefront_.work()[ray_of_wave].tests;
-  seen_[sample].work.doubts += wavefront_.work()[ray_of_wave].doubts;
+void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
+  seen_[sample].work.tests += work.tests;
+  seen_[sample].work.doubts += work.doubts;
 }
 
 void TileRenderer::write() {
@@ -238,20 +231,11 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.rays += stats_.rays + shadow_rays;
   stats.camera_rays += stats_.camera_rays;
   stats.shadow_rays += shadow_rays;
-  stats.records += wavefront_.own_records();
-  stats.hit += tester_.counters();
-  stats.exact_inside += wavefront_.counters().exact_inside;
-  stats.exact_depth += wavefront_.counters().exact_depth;
+  stats.find += finder_.counters();
   stats.skipped += stats_.skipped;
   if (integrator_) stats.skipped += integrator_->skipped();
-  stats.skipped.first_occluders += wavefront_.ended_early();
-  stats.traverse_seconds += wavefront_.seconds().traverse;
-  stats.record_seconds += wavefront_.seconds().record;
-  stats.hit_seconds += wavefront_.seconds().hit;
-  stats.doubt_seconds += wavefront_.seconds().doubt;
-  const double departure_seconds = integrator_ ? integrator_->departure_seconds() : 0.0;
-  stats.shade_seconds += stats_.shade_seconds - departure_seconds;
-  stats.departure_seconds += departure_seconds;
+  stats.skipped.first_occluders += finder_.counters().ended_early;
+  stats.shade_seconds += stats_.shade_seconds;
 }
 
 }  // namespace raygate

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "host/film/film.h"
-#include "host/find/unit/record_cache.h"
-#include "host/find/unit/wavefront.h"
+#include "host/find/finder.h"
 #include "host/light/integrator.h"
 #include "host/light/shadow_rays.h"
 #include "host/picture/renderer.h"
@@ -24,7 +23,6 @@ struct RenderJob {
   const Camera& camera;
   const RenderOptions& options;
   const Lights& lights;
-  RecordCache& camera_records;
 };
 
 /// What the samples of a pixel add up to, where they come in several passes.
@@ -34,11 +32,11 @@ struct FilmSums {
 };
 
 /// Renders tiles into a film. All rays of one depth are one wave, and all shadow rays of a depth
-/// another: large batches, which keep the unit's lanes busy. What a pixel gets does not depend on
+/// another: finders like many at once. What a pixel gets does not depend on
 /// the tile: each sample's light is added up by itself, depth by depth.
 class TileRenderer {
  public:
-  TileRenderer(const RenderJob& job, HitTester& tester, Film& film, FilmSums& sums);
+  TileRenderer(const RenderJob& job, Finder& finder, Film& film, FilmSums& sums);
 
   /// Traces samples first_sample .. first_sample + count of each pixel. `keep_going` is asked
   /// between waves; when it says no, what was traced is not worth writing, and false is returned.
@@ -56,7 +54,7 @@ class TileRenderer {
     std::uint32_t slot = NearestHit::kNone;
     glm::dvec3 normal{0.0}, albedo{0.0};
     glm::vec3 point{0.0f};  // relative to the eye
-    Wavefront::Work work;   // of all rays of the sample
+    RayWork work;           // of all rays of the sample
   };
 
   void list_pixels(const PixelRect& tile);
@@ -64,14 +62,13 @@ class TileRenderer {
   void trace_wave();
   void trace_shadows();
   void shade(const LightRay& ray, const NearestHit& hit);
-  void count_work(std::size_t ray_of_wave, std::uint32_t sample);
+  void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, const Seen& seen);
 
   RenderJob job_;
-  HitTester& tester_;
+  Finder& finder_;
   Film& film_;
   FilmSums& sums_;
-  Wavefront wavefront_;
   std::unique_ptr<Integrator> integrator_;  // none for kPrimary
   std::unique_ptr<ShadowRays> shadow_rays_;
   RenderStats stats_;
@@ -90,6 +87,7 @@ class TileRenderer {
   std::vector<LightRay> wave_;
   std::vector<Ray> rays_;
   std::vector<NearestHit> hits_;  // of the wave
+  std::vector<RayWork> work_;     // of the wave, if it is counted
 };
 
 }  // namespace raygate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "host/film/film.h"
@@ -9,8 +10,7 @@
 namespace raygate {
 
 /// The window cut into tiles, numbered row by row, and each pixel's samples into passes, so that a
-/// tile's samples of a pass are about 16,384 for each lane: a batch of their tests is long for each
-/// lane against the 46 clocks that it takes to run empty in the end. Fewer where some of the
+/// tile's samples of a pass are about as many as a finder likes at once. Fewer where some of the
 /// threads would have no tile.
 struct Tiles {
   PixelRect window;
@@ -18,14 +18,15 @@ struct Tiles {
   int width, height;  ///< of a tile
   int columns, count;
 
-  /// `lanes`: how many share a batch, at least 1.
-  Tiles(const PixelRect& rect, int samples_per_pixel, int lanes, int threads)
+  /// `batch`: Finder::preferred_batch.
+  Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads)
       : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {
     const int edge = samples_per_pass == 1 ? 128 : samples_per_pass < 4 ? 80 : 64;
     const std::int64_t share = std::int64_t{window.width()} * window.height() / threads;
     const int square = edge * edge;
+    const auto many = static_cast<std::int64_t>(batch) / samples_per_pass;
     const int pixels =
-        static_cast<int>(std::clamp<std::int64_t>(share, square, std::int64_t{square} * lanes));
+        static_cast<int>(std::clamp(share, std::int64_t{square}, std::max<std::int64_t>(square, many)));
     width = pixels / edge;
     if (2 * width > window.width()) width = window.width();
     height =

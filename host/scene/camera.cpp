@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "host/exact/exact.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
@@ -16,12 +17,8 @@ bool is_finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-double largest_magnitude(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 // Length 1, also where the square of a component would overflow or underflow.
-glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest_magnitude(v)); }
+glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
 
 std::string text(const glm::dvec3& v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
@@ -47,15 +44,6 @@ Box bounding_box(const Scene& scene) {
 
 }  // namespace
 
-glm::vec3 scaled_direction(const glm::dvec3& direction) {
-  const int exponent = std::ilogb(largest_magnitude(direction));
-  glm::vec3 scaled(std::scalbn(direction.x, -exponent), std::scalbn(direction.y, -exponent),
-                   std::scalbn(direction.z, -exponent));
-  // Rounding to float may have carried 1.99999999 to 2.
-  if (largest_magnitude(glm::dvec3(scaled)) >= 2.0) scaled *= 0.5f;
-  return scaled;
-}
-
 Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up,
                        double vertical_fov_degrees, double aspect) {
   if (!is_finite(eye) || !is_finite(target) || !is_finite(up)) {
@@ -72,13 +60,13 @@ Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const gl
   }
   const glm::dvec3 view = target - eye;
   if (!is_finite(view)) throw InputError("camera: eye and target are too far apart");
-  if (largest_magnitude(view) == 0.0) {
+  if (largest(view) == 0.0) {
     throw InputError("camera: eye and target are one point, " + text(eye));
   }
   Camera camera;
   camera.forward_ = unit(view);
   const glm::dvec3 sideways =
-      largest_magnitude(up) == 0.0 ? up : glm::cross(camera.forward_, unit(up));
+      largest(up) == 0.0 ? up : glm::cross(camera.forward_, unit(up));
   if (glm::length(sideways) < 1e-9) {
     throw InputError("camera: up " + text(up) +
                      " is zero or along the view: expected a direction across it");
@@ -118,7 +106,7 @@ CameraSetting framing(const Scene& scene, double aspect, double fov) {
   const glm::dvec3 towards_eye(0.0, std::sin(raised), std::cos(raised));
   const glm::dvec3 y_axis(0.0, 1.0, 0.0);
   const Camera at_centre =
-      Camera::look_at(centre + towards_eye * largest_magnitude(half), centre, y_axis, fov, aspect);
+      Camera::look_at(centre + towards_eye * largest(half), centre, y_axis, fov, aspect);
 
   // The least distance at which the eight corners are within the four sides of the view.
   constexpr double kFilled = 0.96;

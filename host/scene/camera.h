@@ -8,11 +8,6 @@
 
 namespace raygate {
 
-/// Scales by a power of two, so that the largest component's magnitude is in [1, 2), and rounds to
-/// float. Scaling so changes no rounding of a hit test, and lets its error bounds be constants.
-/// `direction` must be finite and not zero.
-[[nodiscard]] glm::vec3 scaled_direction(const glm::dvec3& direction);
-
 /// Where a camera stands and looks. What is left out has a default.
 struct CameraSetting {
   glm::dvec3 eye{0.0}, target{0.0};  ///< not the same point

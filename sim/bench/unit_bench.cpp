@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/reference_burst_unit.h"
 #include "sim/bench/test_stream.h"
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_plane_unit.h"
@@ -73,7 +73,7 @@ void run_rounds(int lanes, double aimed, int rounds) {
 }
 
 double share_of_hits(const TestStream& stream) {
-  CpuBurstUnit unit;
+  ReferenceBurstUnit unit;
   BurstResults results;
   unit.run(stream.bundles, results);
   return 100.0 * static_cast<double>(unit.counters().hits) /
@@ -105,7 +105,7 @@ void bench(const char* program) {
       print_row("pipeline", std::to_string(lanes), hits, rate,
                 valgrind ? instructions_per_test(program, lanes, aimed) : 0.0);
     }
-    CpuBurstUnit twin;
+    ReferenceBurstUnit twin;
     BurstResults results;
     print_row("its twin", "-", hits, tests_per_second([&] {
                 results.clear();

@@ -301,7 +301,7 @@ TEST_F(OptionsOfASceneFile, MayNotBeOverwrittenBeforeItIsThere) {
 }
 
 TEST(Options, OtherValuesThatAreImpossible) {
-  expect_error({"a.obj", "--engine", "gpu"}, "--engine: expected rtl, cpu or check");
+  expect_error({"a.obj", "--engine", "gpu"}, "--engine: expected rtl, model, cpu or check");
   expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline or serial");
   for (const char* lanes : {"0", "3", "16", "-1", "x"}) {
     expect_error({"a.obj", "--lanes", lanes}, "--lanes: expected 1, 2, 4 or 8");
@@ -333,7 +333,7 @@ TEST(Options, HelpNamesEveryOptionAndStatus) {
   for (const char* word : {"--output",          "--size",  "--crop",  "--camera",  "--channels",
                            "--engine",          "--unit",  "--lanes", "--threads", "--seed",
                            "--skip-degenerate", "--stats", "--quiet", "--help",    "--version",
-                           "rtl|cpu|check",     "  0  ",   "  1  ",   "  2  ",     "  130  "}) {
+                           "rtl|model|cpu|check", "  0  ",   "  1  ",   "  2  ",     "  130  "}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(parse({"-h"}).information, help);

@@ -42,7 +42,7 @@ TEST_P(EveryScene, EnginesGiveTheSameBytes) {
   expect_same_pictures("cpu", "rtl");
   render({scene, "--size", "64x48", "--lanes", "4", "-o", "lanes"});
   expect_same_pictures("cpu", "lanes");
-  render({scene, "--size", "64x48", "--unit", "serial", "--engine", "cpu", "-o", "serial"});
+  render({scene, "--size", "64x48", "--unit", "serial", "--engine", "model", "-o", "serial"});
   expect_same_pictures("cpu", "serial");
 }
 
@@ -131,7 +131,7 @@ TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
     render(with({"-o", "rtl", "--engine", "rtl"}));
     EXPECT_GT(stats_.at("clocks"), 0);
     expect_same_pictures("cpu", "rtl");
-    render(with({"-o", "serial", "--engine", "cpu", "--unit", "serial", "--no-skip", "divisions"}));
+    render(with({"-o", "serial", "--engine", "model", "--unit", "serial", "--no-skip", "divisions"}));
     expect_same_pictures("cpu", "serial");
   }
 }

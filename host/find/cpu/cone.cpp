@@ -80,8 +80,9 @@ RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (
 
 }  // namespace
 
-RAYGATE_LANES void load_block(std::span<const Ray> rays, RayBlock& block) {
+RAYGATE_LANES std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block) {
   LaneMask positive[3] = {}, negative[3] = {};  // whether any
+  std::uint64_t unscaled = 0;
   for (int group = 0; group < kGroups; ++group) {
     const std::size_t begin = std::size_t(group) * kLanes;
     const std::size_t count =
@@ -93,17 +94,19 @@ RAYGATE_LANES void load_block(std::span<const Ray> rays, RayBlock& block) {
     FloatQuad half[2][3];
     load_directions(of[0], half[0]);
     load_directions(of[1], half[1]);
-    IntLanes unusable = {}, zero = IntLanes{} - 1;
+    IntLanes largest = {};  // of each ray's magnitudes: as bits, in the order of floats
     for (int k = 0; k < 3; ++k) {
       const FloatLanes d = __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
       block.direction[k][group] = d;
       block.negative[k][group] = sign_mask(d < 0.0f);
       const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;
-      unusable |= size >= 0x7F800000;
-      zero &= size == 0;
+      largest = size > largest ? size : largest;
     }
-    const LaneMask usable = ((1u << count) - 1) & ~sign_mask(unusable | zero);
+    const LaneMask usable =
+        ((1u << count) - 1) & ~sign_mask((largest >= 0x7F800000) | (largest == 0));
+    const IntLanes scaled = (largest >= 0x3F800000) & (largest < 0x40000000);
     block.usable[group] = usable;
+    unscaled |= std::uint64_t{usable & ~sign_mask(scaled)} << (8 * group);
     for (int k = 0; k < 3; ++k) {
       positive[k] |= usable & ~block.negative[k][group];
       negative[k] |= usable & block.negative[k][group];
@@ -117,6 +120,7 @@ RAYGATE_LANES void load_block(std::span<const Ray> rays, RayBlock& block) {
     }
     if (possible) block.octants |= 1u << octant;
   }
+  return unscaled;
 }
 
 RAYGATE_LANES void make_cones(const RayBlock& block, const glm::vec3& origin, int octant,

@@ -28,8 +28,8 @@ struct RayBlock {
   }
 };
 
-/// Loads up to 64 rays.
-void load_block(std::span<const Ray> rays, RayBlock& block);
+/// Loads up to 64 rays. Bit k of the result is set where ray k is usable but not scaled.
+[[nodiscard]] std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block);
 
 /// Cones around rays of one octant, whatever the lengths of their directions. Lane g of a member
 /// stands for group g; absent groups have a radius of 0. A ray I stands here as I / pace, where its

@@ -3,14 +3,16 @@
 #include <bit>
 
 #include "host/find/cpu/cone_search.h"
+#include "host/find/unit/record_batch.h"
 
 namespace raygate {
 
 /// Hands the nearest hits over, with their P where that is asked for: triangle by triangle, as rays
 /// that hit one share its plane.
 RAYGATE_LANES void finish(ConeSearch& search, const ConeWalk& walk) {
-  const SearchWishes& wishes = search.wishes_;
-  const bool with_points = wishes.ignored.empty() && wishes.enough_before.empty();
+  const bool with_points =
+      search.search_.ignored.empty() && search.search_.enough_before.empty();
+  if (!search.search_.work.empty()) search.put_work(walk);
   std::uint64_t left = 0;
   for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
     const int g = std::countr_zero(groups);
@@ -39,10 +41,19 @@ RAYGATE_LANES void finish(ConeSearch& search, const ConeWalk& walk) {
   }
 }
 
+void ConeSearch::put_work(const ConeWalk& walk) {
+  for (int g = 0; g < ConeWalk::kGroups; ++g) {
+    for (LaneMask lanes = walk.started[g]; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      search_.work[walk.number(g, lane)] = walk.work[g][lane];
+    }
+  }
+}
+
 RAYGATE_INLINE void ConeSearch::put(const ConeWalk& walk, const Seen& seen) {
   for (std::uint64_t rays = seen.rays; rays != 0; rays &= rays - 1) {
     const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
-    nearest_.put(walk.number(g, lane), {seen.slot, glm::vec3(0.0f), walk.t(g, lane)});
+    hits_[walk.number(g, lane)] = {seen.slot, glm::vec3(0.0f), walk.t(g, lane)};
   }
 }
 
@@ -71,14 +82,12 @@ RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<
       }
       for (LaneMask lanes = rays_of(seen[i].rays, g); lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
-        nearest_.put(walk.number(g, lane),
-                     {seen[i].slot, glm::vec3(point[0][lane], point[1][lane], point[2][lane]),
-                      walk.t(g, lane)});
+        hits_[walk.number(g, lane)] = {seen[i].slot,
+                                       glm::vec3(point[0][lane], point[1][lane], point[2][lane]),
+                                       walk.t(g, lane)};
       }
     }
-    const auto count = static_cast<std::uint64_t>(std::popcount(seen[i].rays));
-    counters_.plane_tests += count;
-    counters_.quotients += 3 * count;
+    counters_.hit.plane_tests += static_cast<std::uint64_t>(std::popcount(seen[i].rays));
   }
 }
 

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <cassert>
 #include <cstring>
-#include <limits>
 
 #include "host/find/cpu/cone_leaf_test.h"
 #include "host/find/cpu/cone_node_step.h"
@@ -14,15 +13,6 @@ namespace raygate {
 namespace {
 
 constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
-
-float float_below(double x) {
-  const auto nearest = static_cast<float>(x);
-  return nearest > x ? std::nextafter(nearest, -1.0f) : nearest;
-}
-float float_above(double x) {
-  const auto nearest = static_cast<float>(x);
-  return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
-}
 
 float float_of(std::int32_t bits) { return std::bit_cast<float>(bits); }
 std::int32_t bits_of(float x) { return std::bit_cast<std::int32_t>(x); }
@@ -38,11 +28,20 @@ RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first
   }
 }
 
+/// A test of each of these rays, some of which it leaves in doubt.
+void count_work(RayWork (&work)[kLanes], LaneMask tested, LaneMask doubts) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    work[lane].tests += tested >> lane & 1;
+    work[lane].doubts += doubts >> lane & 1;
+  }
+}
+
 }  // namespace
 
 /// Everything of a walk but its cones and where it begins.
 RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
-  const auto& [limits, ignored, enough] = search.wishes_;
+  const std::span limits = search.search_.limits, enough = search.search_.enough_before;
+  const std::span ignored = search.search_.ignored;
   slack_of(walk.cones.radius, walk.slack);
   walk.split = 0;
   walk.going = 0;
@@ -63,6 +62,10 @@ RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
     shorten(walk, g);
   }
   walk.cutoff = largest_of(walk.cones.beams.cutoff);
+  if (!search.search_.work.empty()) {
+    std::memset(walk.work, 0, sizeof walk.work);
+    std::memcpy(walk.started, walk.cones.active, sizeof walk.started);
+  }
   walk.depth = 0;
   walk.stack[walk.depth++] = {{0, 0}, 0.0f, walk.going};
 }
@@ -72,7 +75,8 @@ RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
 RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& record,
                                             const Bvh::Child& leaf, LaneMask there,
                                             std::uint64_t rays, LaneMask& changed) {
-  const bool ignoring = !wishes_.ignored.empty();
+  const bool ignoring = !search_.ignored.empty(), counting = !search_.work.empty();
+  HitCounters& counters = counters_.hit;
   for (; there != 0; there &= there - 1) {
     const int i = std::countr_zero(there);
     const auto slot = static_cast<std::int32_t>(leaf.first) + i;
@@ -82,10 +86,11 @@ RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& re
       const LaneMask tested = rays_of(rays, g);
       GroupVerdict verdict;
       test_group(walk, record, i, g, tested, verdict);
-      counters_.tests += static_cast<std::uint64_t>(std::popcount(tested));
+      counters.tests += static_cast<std::uint64_t>(std::popcount(tested));
+      if (counting) count_work(walk.work[g], tested, verdict.open & ~verdict.hit);
       if (verdict.open == 0) continue;
-      counters_.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
-      counters_.edge_doubts +=
+      counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+      counters.edge_doubts +=
           static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
       if (ignoring) verdict.open &= ~sign_mask(walk.ignored[g] == slot);
       const LaneMask sure = verdict.open & verdict.hit;
@@ -114,15 +119,21 @@ RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& re
 RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& record,
                                           const Bvh::Child& leaf, LaneMask there,
                                           std::uint64_t rays, LaneMask& changed) {
-  const bool ignoring = !wishes_.ignored.empty();
-  counters_.tests += static_cast<std::uint64_t>(std::popcount(rays) * std::popcount(there));
+  const bool ignoring = !search_.ignored.empty(), counting = !search_.work.empty();
+  HitCounters& counters = counters_.hit;
+  counters.tests += static_cast<std::uint64_t>(std::popcount(rays) * std::popcount(there));
   for (; rays != 0; rays &= rays - 1) {
     const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
     RayVerdict verdict;
     test_ray(walk, record, g, lane, there, verdict);
+    if (counting) {
+      walk.work[g][lane].tests += static_cast<std::uint32_t>(std::popcount(there));
+      walk.work[g][lane].doubts +=
+          static_cast<std::uint32_t>(std::popcount(verdict.open & ~verdict.hit));
+    }
     if (verdict.open == 0) continue;
-    counters_.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
-    counters_.edge_doubts += static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
+    counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+    counters.edge_doubts += static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
     for (LaneMask open = verdict.open; open != 0; open &= open - 1) {
       const int i = std::countr_zero(open);
       const auto slot = static_cast<std::int32_t>(leaf.first) + i;
@@ -145,7 +156,7 @@ RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& reco
 /// Walks the tree, near before far, and tests what is there.
 RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
   const Bvh& tree = search.bvh_;
-  const bool ending = !search.wishes_.enough_before.empty();
+  const bool ending = !search.search_.enough_before.empty();
   Cones& cones = walk.cones;
   while (walk.depth > 0 && walk.going != 0) {
     const ConeWalk::Waiting item = walk.stack[--walk.depth];
@@ -175,7 +186,7 @@ RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
         const LaneMask ended =
             cones.active[g] & ~sign_mask(walk.slot[g]) & sign_mask(walk.high[g] < walk.enough[g]);
         cones.active[g] &= ~ended;
-        search.ended_early_ += static_cast<std::uint64_t>(std::popcount(ended));
+        search.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
       }
       shorten(walk, g);
     }
@@ -183,16 +194,22 @@ RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
   }
 }
 
-void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
+void ConeSearch::trace(std::span<const Ray> rays, const Search& search,
+                       std::span<NearestHit> hits) {
   rays_ = rays;
-  wishes_ = wishes;
-  const HitCounters before = counters_;
+  search_ = search;
+  hits_ = hits;
+  origin_ = rays[0].origin;
+  assert(std::ranges::all_of(rays, [&](const Ray& ray) { return ray.origin == origin_; }));
+  HitCounters& counters = counters_.hit;
+  const HitCounters before = counters;
   RayBlock block;
   ConeWalk walk;
   walk.block = &block;
   for (std::size_t first = 0; first < rays.size(); first += RayBlock::kRays) {
     const std::size_t count = std::min<std::size_t>(RayBlock::kRays, rays.size() - first);
-    load_block(rays.subspan(first, count), block);
+    const std::uint64_t unscaled = load_block(rays.subspan(first, count), block);
+    if (unscaled != 0) refuse_unscaled(rays[first + std::countr_zero(unscaled)]);
     walk.first = static_cast<std::uint32_t>(first);
     for (std::uint32_t octants = block.octants; octants != 0; octants &= octants - 1) {
       const int octant = std::countr_zero(octants);
@@ -206,10 +223,8 @@ void ConeSearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
       finish(*this, walk);
     }
   }
-  const std::uint64_t tests = counters_.tests - before.tests;
-  counters_.unit_tests += tests;
-  counters_.misses +=
-      tests - (counters_.hits - before.hits) - (counters_.edge_doubts - before.edge_doubts);
+  counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
+                     (counters.edge_doubts - before.edge_doubts);
 }
 
 /// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it
@@ -232,20 +247,22 @@ void ConeSearch::settle_sides(const Bvh::Child& leaf, QuadRecord& record,
 /// nullptr where it is not even sure that it is hit. True where it is the nearest hit now.
 bool ConeSearch::settle(ConeWalk& walk, int group, int lane, std::int32_t slot,
                         const Interval* sure) {
-  const std::uint32_t ray = walk.number(group, lane);
-  const auto tag = static_cast<std::uint32_t>(slot);
-  const std::int32_t best = walk.slot[group][lane];
-  if (best >= 0) {
-    nearest_.put(ray, {static_cast<std::uint32_t>(best), glm::vec3(0.0f), walk.t(group, lane)});
-    counters_.depth_doubts += sure != nullptr;
+  const std::uint32_t number = walk.number(group, lane);
+  const Ray& ray = rays_[number];
+  NearestHit best, hit = {static_cast<std::uint32_t>(slot), glm::vec3(0.0f), {}};
+  if (walk.slot[group][lane] >= 0) {
+    best = {static_cast<std::uint32_t>(walk.slot[group][lane]), glm::vec3(0.0f),
+            walk.t(group, lane)};
+    counters_.hit.depth_doubts += sure != nullptr;
   }
-  const bool nearer = sure != nullptr
-                          ? nearest_.offer(ray, rays_[ray], SureHit{0, 0, tag, {}, *sure})
-                          : nearest_.offer(ray, rays_[ray], Doubt{0, 0, tag, {}});
-  if (!nearer) return false;
-  const Interval t = nearest_[ray].t;
-  walk.low[group][lane] = bits_of(float_below(t.low));
-  walk.high[group][lane] = bits_of(float_above(t.high));
+  const float limit = search_.limit(number);
+  if (sure != nullptr) hit.t = *sure;
+  if (!(sure != nullptr ? take_if_nearer(bvh_, ray, limit, hit, best, counters_)
+                        : settle_doubt(bvh_, ray, limit, hit, best, counters_))) {
+    return false;
+  }
+  walk.low[group][lane] = bits_of(float_below(best.t.low));
+  walk.high[group][lane] = bits_of(float_above(best.t.high));
   walk.slot[group][lane] = slot;
   return true;
 }

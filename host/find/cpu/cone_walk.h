@@ -7,6 +7,7 @@
 #include "host/exact/exact.h"
 #include "host/find/cpu/cone.h"
 #include "host/find/cpu/lane_math.h"
+#include "host/find/finder.h"
 #include "host/find/ray_set.h"
 #include "host/tree/bvh.h"
 
@@ -33,6 +34,9 @@ struct ConeWalk {
   IntLanes ignored[kGroups];             ///< a slot; -1: none
   IntLanes enough[kGroups];              ///< a hit that is surely before is enough
   FloatLanes slack;     ///< lane g: how many times an edge's bound all of group g may be off it
+  // If that is asked for: what each ray's search took, and which rays there are.
+  RayWork work[kGroups][kLanes];
+  LaneMask started[kGroups];
   std::uint64_t going;  ///< the rays that still look for something
   float cutoff;         ///< boxes beyond matter to none
   int depth;            ///< of the stack

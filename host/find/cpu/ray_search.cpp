@@ -6,10 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "host/find/cpu/quad_test.h"
-#include "host/find/unit/cpu_burst_unit.h"
 #include "host/find/unit/record_batch.h"
+#include "host/find/unit/reference_burst_unit.h"
 #include "host/tree/beam.h"
 #include "host/tree/bvh.h"
 
@@ -17,15 +18,6 @@ namespace raygate {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float float_below(double x) {
-  const auto nearest = static_cast<float>(x);
-  return nearest > x ? std::nextafter(nearest, -kInfinity) : nearest;
-}
-float float_above(double x) {
-  const auto nearest = static_cast<float>(x);
-  return nearest < x ? std::nextafter(nearest, kInfinity) : nearest;
-}
 
 /// What of the tree waits to be visited: the nearest last, as far as one node knows.
 struct Waiting {
@@ -47,6 +39,7 @@ struct RaySearch::Walk {
   std::uint32_t slot = NearestHit::kNone;     ///< of the nearest hit
   float low, high;                            ///< its depth's bounds; without one, the limit's
   float cutoff;                               ///< boxes that are entered beyond do not matter
+  RayWork work;
   int count = 0;                              ///< of what is waiting
   Waiting waiting[Bvh::kStackSize];
 
@@ -119,114 +112,153 @@ RAYGATE_INLINE bool go_down(const Bvh& tree, RaySearch::Walk& walk, Bvh::Child& 
 
 }  // namespace
 
+/// Tests a leaf's triangles. False where the ray need not go on.
+RAYGATE_INLINE bool RaySearch::test_leaf(Walk& walk, const Bvh::Child& leaf) {
+  QuadVerdict verdict;
+  test_quad(walk.sheared, bvh_.corners_of(leaf), leaf.count, verdict);
+  walk.work.tests += leaf.count;
+  LaneMask open = verdict.hit | verdict.level | verdict.doubt;
+  if (open == 0) return true;
+  HitCounters& counters = counters_.hit;
+  counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+  walk.work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
+  for (; open != 0; open &= open - 1) {
+    const int i = std::countr_zero(open);
+    const std::uint32_t slot = leaf.first + static_cast<std::uint32_t>(i);
+    const float low = verdict.low[i], high = verdict.high[i];
+    if (low > walk.high || slot == walk.ignored) continue;
+    if ((verdict.level >> i & 1) != 0) {
+      if (!is_ahead(walk.ray, bvh_.corners_of(slot))) continue;
+      ++counters.hits;
+    }
+    if ((verdict.doubt >> i & 1) != 0) {
+      if (!settle(walk, slot, false)) continue;
+    } else if (high < walk.low) {
+      walk.slot = slot;
+      walk.end_at(std::max(low, 0.0f), high);
+    } else if (!settle(walk, slot, true)) {
+      continue;
+    }
+    if (walk.high < walk.enough) {
+      ++counters_.ended_early;
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Walks the tree, near before far, and tests what is there.
 RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
   const Bvh& tree = search.bvh_;
-  std::uint64_t tests = 0, hits = 0, doubts = 0;
   walk.waiting[walk.count++] = {{0, 0}, 0.0f};
   while (walk.count > 0) {
     const Waiting item = walk.waiting[--walk.count];
     Bvh::Child leaf = item.child;
     if (item.entry > walk.cutoff || !go_down(tree, walk, leaf)) continue;
-    QuadVerdict verdict;
-    test_quad(walk.sheared, tree.corners_of(leaf), leaf.count, verdict);
-    tests += leaf.count;
-    LaneMask open = verdict.hit | verdict.level | verdict.doubt;
-    if (open == 0) continue;
-    hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
-    doubts += static_cast<std::uint64_t>(std::popcount(verdict.doubt));
-    for (; open != 0; open &= open - 1) {
-      const int i = std::countr_zero(open);
-      const std::uint32_t slot = leaf.first + static_cast<std::uint32_t>(i);
-      const float low = verdict.low[i], high = verdict.high[i];
-      if (low > walk.high || slot == walk.ignored) continue;
-      if ((verdict.level >> i & 1) != 0) {
-        if (!is_ahead(walk.ray, search.bvh_.corners_of(slot))) continue;
-        ++hits;
-      }
-      if ((verdict.doubt >> i & 1) != 0) {
-        if (!search.settle(walk, slot, false)) continue;
-      } else if (high < walk.low) {
-        walk.slot = slot;
-        walk.end_at(std::max(low, 0.0f), high);
-      } else if (!search.settle(walk, slot, true)) {
-        continue;
-      }
-      if (walk.high < walk.enough) {
-        ++search.ended_early_;
-        walk.count = 0;
-        break;
-      }
-    }
+    if (!search.test_leaf(walk, leaf)) return;
   }
-  search.counters_.tests += tests;
-  search.counters_.unit_tests += tests;
-  search.counters_.hits += hits;
-  search.counters_.edge_doubts += doubts;
-  search.counters_.misses += tests - hits - doubts;
+}
+
+/// Tests everything.
+RAYGATE_LANES void visit_all(RaySearch& search, RaySearch::Walk& walk,
+                             std::span<const Bvh::Child> leaves) {
+  for (const Bvh::Child& leaf : leaves) {
+    if (!search.test_leaf(walk, leaf)) return;
+  }
 }
 
 /// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,
 /// does hit. True where that is the nearest hit now.
 bool RaySearch::settle(Walk& walk, std::uint32_t slot, bool sure) {
   const Ray& ray = walk.ray;
+  NearestHit best;
   if (walk.slot != NearestHit::kNone) {
-    nearest_.put(walk.number, {walk.slot, glm::vec3(0.0f), walk.t()});
-    counters_.depth_doubts += sure;
+    best = {walk.slot, glm::vec3(0.0f), walk.t()};
+    counters_.hit.depth_doubts += sure;
   }
-  const bool nearer =
-      sure ? nearest_.offer(walk.number, ray,
-                            SureHit{0, 0, slot, {}, hit_distance(ray, bvh_.corners_of(slot))})
-           : nearest_.offer(walk.number, ray, Doubt{0, 0, slot, {}});
-  if (!nearer) return false;
+  NearestHit hit = {slot, glm::vec3(0.0f), {}};
+  const float limit = search_.limit(walk.number);
+  if (sure) hit.t = hit_distance(ray, bvh_.corners_of(slot));
+  if (!(sure ? take_if_nearer(bvh_, ray, limit, hit, best, counters_)
+             : settle_doubt(bvh_, ray, limit, hit, best, counters_))) {
+    return false;
+  }
   walk.slot = slot;
-  walk.end_at(nearest_[walk.number].t);
+  walk.end_at(best.t);
   return true;
 }
 
-void RaySearch::trace(std::span<const Ray> rays, const SearchWishes& wishes) {
-  wishes_ = wishes;
+namespace {
+
+std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
+  std::vector<Bvh::Child> leaves;
+  for (const Bvh::Node& node : tree.nodes()) {
+    for (const Bvh::Child& child : node.child) {
+      if (child.count != 0) leaves.push_back(child);
+    }
+  }
+  return leaves;
+}
+
+}  // namespace
+
+void RaySearch::trace(std::span<const Ray> rays, const Search& search,
+                      std::span<NearestHit> hits) {
+  rays_ = rays;
+  search_ = search;
+  hits_ = hits;
+  const std::vector<Bvh::Child> leaves =
+      search.culling ? std::vector<Bvh::Child>{} : all_leaves(bvh_);
+  HitCounters& counters = counters_.hit;
+  const HitCounters before = counters;
   for (std::uint32_t number = 0; number < rays.size(); ++number) {
     const Ray& ray = rays[number];
     if (!is_usable(ray.direction)) continue;
     Walk walk(ray, number);
-    const double limit = wishes.limits.empty() ? kInfinity : wishes.limits[number];
+    if (!(walk.pace >= 1.0 && walk.pace < 2.0)) refuse_unscaled(ray);
+    const double limit = search.limit(number);
     walk.end_at({limit, limit});
-    if (!wishes.ignored.empty()) walk.ignored = wishes.ignored[number];
-    if (!wishes.enough_before.empty()) {
-      walk.enough = float_below(wishes.enough_before[number] * walk.pace);
+    if (!search.ignored.empty()) walk.ignored = search.ignored[number];
+    if (!search.enough_before.empty()) {
+      walk.enough = float_below(search.enough_before[number] * walk.pace);
     }
-    walk_ray(*this, walk);
+    if (search.culling) {
+      walk_ray(*this, walk);
+    } else {
+      visit_all(*this, walk, leaves);
+    }
+    counters.tests += walk.work.tests;
+    counters.edge_doubts += walk.work.doubts;
+    if (!search.work.empty()) search.work[number] = walk.work;
     if (walk.slot == NearestHit::kNone) continue;
-    nearest_.put(number, {walk.slot, glm::vec3(0.0f), walk.t()});
-    if (wishes.enough_before.empty()) add_point(number, rays);
+    hits[number] = {walk.slot, glm::vec3(0.0f), walk.t()};
+    if (search.enough_before.empty()) add_point(number);
   }
-  add_points(rays);
+  add_points();
+  counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
+                     (counters.edge_doubts - before.edge_doubts);
 }
 
 /// P, which the search did without: four at a time.
-void RaySearch::add_point(std::uint32_t number, std::span<const Ray> rays) {
+void RaySearch::add_point(std::uint32_t number) {
   pointless_[pointless_count_++] = number;
-  if (pointless_count_ == kPlanes) add_points(rays);
+  if (pointless_count_ == kPlanes) add_points();
 }
 
-void RaySearch::add_points(std::span<const Ray> rays) {
+void RaySearch::add_points() {
   if (pointless_count_ == 0) return;
   std::array<Corners, kPlanes> corners;
   std::array<PlaneView, kPlanes> views;
   for (int i = 0; i < kPlanes; ++i) {
     const std::uint32_t number = pointless_[std::min(i, pointless_count_ - 1)];
-    corners[i] = bvh_.corners_of(nearest_[number].slot);
-    views[i] = {&rays[number].origin, &corners[i]};
+    corners[i] = bvh_.corners_of(hits_[number].slot);
+    views[i] = {&rays_[number].origin, &corners[i]};
   }
   std::array<PolygonRecord, kPlanes> planes;
   make_planes(views, planes);
   for (int i = 0; i < pointless_count_; ++i) {
-    NearestHit hit = nearest_[pointless_[i]];
-    hit.point = plane_point(planes[i], rays[pointless_[i]].direction);
-    nearest_.put(pointless_[i], hit);
-    ++counters_.plane_tests;
-    counters_.quotients += 3;
+    hits_[pointless_[i]].point = plane_point(planes[i], rays_[pointless_[i]].direction);
+    ++counters_.hit.plane_tests;
   }
   pointless_count_ = 0;
 }

@@ -5,43 +5,38 @@
 #include <cstdint>
 #include <span>
 
-#include "host/find/nearest_hits.h"
-#include "host/find/search_wishes.h"
-#include "host/find/unit/hit_tester.h"
+#include "host/find/finder.h"
 #include "host/find/unit/record_batch.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
 
-/// Finds what a Wavefront finds through a tester, for rays that share nothing. A leaf's triangles
-/// are tested straight from their corners by test_quad; what float32 leaves open, and which hit is
-/// nearest, is settled by NearestHits: decisions are the same, whatever decides first.
+/// A part of CpuFinder, for rays that share nothing. A leaf's triangles are tested straight from
+/// their corners by test_quad; what float32 leaves open, and which hit is nearest, exact arithmetic
+/// settles: decisions are the same, whatever decides first.
 class RaySearch {
  public:
-  /// Reports go to `nearest`, counts to `counters`.
-  RaySearch(const Bvh& bvh, NearestHits& nearest, HitCounters& counters)
-      : bvh_(bvh), nearest_(nearest), counters_(counters) {}
+  RaySearch(const Bvh& bvh, FindCounters& counters) : bvh_(bvh), counters_(counters) {}
 
-  /// Directions scaled. `nearest` has been reset for these rays.
-  void trace(std::span<const Ray> rays, const SearchWishes& wishes);
-
-  /// Rays that SearchWishes::enough_before has ended before their time.
-  [[nodiscard]] std::uint64_t ended_early() const { return ended_early_; }
+  /// As Finder::find. `hits` are empty.
+  void trace(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits);
 
   struct Walk;  ///< a ray on its way
 
  private:
   friend void walk_ray(RaySearch& search, Walk& walk);
+  friend void visit_all(RaySearch& search, Walk& walk, std::span<const Bvh::Child> leaves);
 
+  bool test_leaf(Walk& walk, const Bvh::Child& leaf);
   bool settle(Walk& walk, std::uint32_t slot, bool sure);
-  void add_point(std::uint32_t number, std::span<const Ray> rays);
-  void add_points(std::span<const Ray> rays);
+  void add_point(std::uint32_t number);
+  void add_points();
 
   const Bvh& bvh_;
-  NearestHits& nearest_;
-  HitCounters& counters_;
-  SearchWishes wishes_;
-  std::uint64_t ended_early_ = 0;
+  FindCounters& counters_;
+  std::span<const Ray> rays_;
+  Search search_;
+  std::span<NearestHit> hits_;
   std::array<std::uint32_t, kPlanes> pointless_;  // rays whose P is still to be found
   int pointless_count_ = 0;
 };

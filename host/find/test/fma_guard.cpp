@@ -4,9 +4,8 @@
 #include <cstdio>
 #include <span>
 
-#include "host/find/cpu/edge_test.h"
-#include "host/find/unit/cpu_burst_unit.h"
-#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/reference_plane_unit.h"
 
 namespace raygate {
 namespace {
@@ -43,20 +42,16 @@ void check_edges() {
   record.normal = glm::vec3(1.0f);
   record.edges = {kVector, kVector, kVector};
   const RayBundle bundle = bundle_of(record);
-  EdgeVerdict verdict;
-  test_edges(bundle, std::span(&verdict, 1));
-  expect(verdict.hit == 0 && verdict.miss == 0, "test_edges");
-
   BurstResults results;
-  CpuBurstUnit().run(std::span(&bundle, 1), results);
-  expect(results.hits.empty() && results.reports.size() == kLanes, "CpuBurstUnit");
+  ReferenceBurstUnit().run(std::span(&bundle, 1), results);
+  expect(results.hits.empty() && results.reports.size() == kLanes, "ReferenceBurstUnit");
 }
 
 void check_plane() {
   const PlaneTest test = {kDirection, kVector, 1.0f};
   glm::vec3 point;
-  CpuPlaneUnit().intersect(std::span(&test, 1), std::span(&point, 1));
-  expect(std::isinf(point.x), "CpuPlaneUnit");  // 1 / +0
+  ReferencePlaneUnit().intersect(std::span(&test, 1), std::span(&point, 1));
+  expect(std::isinf(point.x), "ReferencePlaneUnit");  // 1 / +0
 }
 
 void check_exact() {

@@ -1,6 +1,7 @@
 // Bursts of hit tests and their nearest hits: the pipelined unit, as software sees it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -87,6 +88,9 @@ class BurstUnit {
   /// have lived until then. Where nothing is gained by it, all is done in finish.
   virtual void start(std::span<const RayBundle> batch) { started_.push(batch); }
   virtual void finish(BurstResults& results) { run(started_.pop(), results); }
+
+  /// As HitTester::enough_tests.
+  [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
 
   /// Not between a start and its finish.
   [[nodiscard]] virtual BurstCounters counters() const = 0;

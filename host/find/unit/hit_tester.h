@@ -1,4 +1,4 @@
-// What finds hits: batches of rays against polygon records, whichever engine does the work.
+// Batches of rays against polygon records: a hit-test unit and what its host does around it.
 #pragma once
 
 #include <cassert>
@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "host/find/find_counters.h"
 #include "host/find/unit/polygon_record.h"
 #include "host/lanes.h"
 
@@ -15,8 +16,7 @@ namespace raygate {
 /// Up to eight rays that meet the same run of records: eight bursts of tests, stored as one.
 /// The burst of lane k is direction k against records[0 .. record_count), in this order.
 struct alignas(32) RayBundle {
-  float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see scaled_direction,
-                                           ///< host/scene/camera.h)
+  float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see is_scaled)
   const PolygonRecord* records = nullptr;  ///< made for the origin of these rays
   std::uint32_t record_count = 0;
   std::uint32_t first_tag = 0;  ///< the caller's name of records[0]; records[i] is first_tag + i
@@ -56,26 +56,6 @@ struct HitResults {
   }
 };
 
-/// What a tester has done since it was made.
-struct HitCounters {
-  std::uint64_t tests = 0;         ///< (ray, record) pairs; misses + hits + edge_doubts
-  std::uint64_t misses = 0;        ///< surely missed
-  std::uint64_t hits = 0;          ///< surely hit
-  std::uint64_t edge_doubts = 0;   ///< neither
-  std::uint64_t depth_doubts = 0;  ///< sure hits reported because float32 cannot order them
-  std::uint64_t plane_tests = 0;   ///< divisions d I / (I . N) asked of the unit
-  std::uint64_t unit_tests = 0;    ///< tests that went through the unit
-  std::uint64_t quotients = 0;     ///< divisions that the unit did
-  std::uint64_t input_bytes = 0;   ///< of the words that the unit took: records, or rays and planes
-  std::uint64_t clocks = 0;        ///< simulated clock cycles; 0 where nothing is simulated
-
-  // Clocks of the unit's lanes without a new test, by cause; only the pipelined unit has any.
-  std::uint64_t idle_clocks = 0;    ///< no test was there
-  std::uint64_t output_stalls = 0;  ///< a result was not taken
-
-  HitCounters& operator+=(const HitCounters& other);
-};
-
 /// One or two batches that wait to be finished, in the order of their start.
 class StartedBatches {
  public:
@@ -96,7 +76,7 @@ class StartedBatches {
   int count_ = 0;
 };
 
-/// One engine. Not for use by two threads at once: each thread makes its own.
+/// A unit and its host. Not for use by two threads at once: each thread makes its own.
 ///
 /// What it promises: a sure hit is a hit and an unreported pair a miss (or farther than a sure hit
 /// of its burst) in exact arithmetic on the records' coordinates; P has the plane unit's bits.
@@ -113,9 +93,9 @@ class HitTester {
   virtual void start(std::span<const RayBundle> batch) { started_.push(batch); }
   virtual void finish(HitResults& results) { test(started_.pop(), results); }
 
-  /// Where the caller may do this engine's tests itself, one by one as it comes to them, with the
-  /// same promise: the counts to add them to. Else nullptr.
-  [[nodiscard]] virtual HitCounters* in_place() { return nullptr; }
+  /// Batches of fewer tests leave the unit mostly empty: they are worth lengthening by tests that
+  /// may turn out to be behind a hit.
+  [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
 
   [[nodiscard]] virtual HitCounters counters() const = 0;
 

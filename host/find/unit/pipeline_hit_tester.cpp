@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/reference_burst_unit.h"
 
 namespace raygate {
 namespace {

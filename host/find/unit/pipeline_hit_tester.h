@@ -17,6 +17,7 @@ class PipelineHitTester : public HitTester {
   void test(std::span<const RayBundle> batch, HitResults& results) override;
   void start(std::span<const RayBundle> batch) override;
   void finish(HitResults& results) override;
+  [[nodiscard]] std::size_t enough_tests() const override { return unit_->enough_tests(); }
   [[nodiscard]] HitCounters counters() const override;
 
   /// The unit's own counts, its stalls among them.

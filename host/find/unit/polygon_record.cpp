@@ -34,10 +34,6 @@ constexpr int kMaxExponent = 60;
 
 bool ordinary(double x) { return x == 0.0 || std::abs(std::ilogb(x)) <= kMaxExponent; }
 
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 glm::dvec3 scaled(const glm::dvec3& v, int exponent) {
   return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
 }

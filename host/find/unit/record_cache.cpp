@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <new>
 #include <span>
@@ -27,11 +28,8 @@ RecordCache::RecordCache(const Bvh& bvh, const glm::vec3& origin) : bvh_(bvh), o
   states_ = std::make_unique<std::atomic<State>[]>(slots);
 }
 
-void RecordCache::make_all() {
-  if (bvh_.slot_count() > 0) make(0, bvh_.slot_count());
-}
-
-void RecordCache::make(std::uint32_t first, std::uint32_t count) {
+std::uint64_t RecordCache::make(std::uint32_t first, std::uint32_t count) {
+  std::uint64_t made = 0;
   const std::uint32_t end = first + count;
   for (std::uint32_t slot = first; slot < end;) {
     const std::uint32_t begin = slot;
@@ -42,7 +40,7 @@ void RecordCache::make(std::uint32_t first, std::uint32_t count) {
     if (const std::uint32_t claimed = slot - begin; claimed != 0) {
       make_records(origin_, std::span(corners).first(claimed),
                    std::span(&records_[begin], claimed));
-      made_.fetch_add(claimed, std::memory_order_relaxed);
+      made += claimed;
       for (std::uint32_t i = begin; i < slot; ++i) {
         states_[i].store(State::kMade, std::memory_order_release);
       }
@@ -52,11 +50,21 @@ void RecordCache::make(std::uint32_t first, std::uint32_t count) {
   for (std::uint32_t slot = first; slot < end; ++slot) {
     while (states_[slot].load(std::memory_order_acquire) != State::kMade) std::this_thread::yield();
   }
+  return made;
 }
 
 bool RecordCache::claim(std::uint32_t slot) {
   State expected = State::kNone;
   return states_[slot].compare_exchange_strong(expected, State::kBusy);
+}
+
+RecordCache& RecordCaches::at(const glm::vec3& origin, std::uint64_t& made) {
+  const std::scoped_lock lock(mutex_);
+  const auto [at, is_new] =
+      caches_.try_emplace(std::bit_cast<std::array<std::uint32_t, 3>>(origin), bvh_, origin);
+  const std::uint32_t slots = bvh_.slot_count();
+  if (is_new && !on_first_touch_ && slots != 0) (void)at->second.leaf(0, slots, made);
+  return at->second;
 }
 
 }  // namespace raygate

@@ -1,10 +1,13 @@
 // The polygon records of one common origin, each made when a ray first comes near its polygon.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "host/find/unit/polygon_record.h"
 #include "host/tree/bvh.h"
@@ -20,22 +23,18 @@ class RecordCache {
 
   [[nodiscard]] const glm::vec3& origin() const { return origin_; }
 
-  /// The records of the slots first .. first + count, at least one.
-  [[nodiscard]] const PolygonRecord* leaf(std::uint32_t first, std::uint32_t count) {
+  /// The records of the slots first .. first + count, at least one. Adds to `made` the number of
+  /// those that had to be made.
+  [[nodiscard]] const PolygonRecord* leaf(std::uint32_t first, std::uint32_t count,
+                                          std::uint64_t& made) {
     for (std::uint32_t slot = first; slot < first + count; ++slot) {
       if (states_[slot].load(std::memory_order_acquire) != State::kMade) {
-        make(first, count);
+        made += make(first, count);
         break;
       }
     }
     return records_.get() + first;
   }
-
-  /// Makes the records that are not there yet. Not while others ask.
-  void make_all();
-
-  /// Records made so far, once no thread is asking.
-  [[nodiscard]] std::uint64_t made() const { return made_; }
 
  private:
   enum class State : std::uint8_t { kNone, kBusy, kMade };
@@ -44,14 +43,32 @@ class RecordCache {
     void operator()(void* memory) const;
   };
 
-  void make(std::uint32_t first, std::uint32_t count);
+  std::uint64_t make(std::uint32_t first, std::uint32_t count);
   bool claim(std::uint32_t slot);
 
   const Bvh& bvh_;
   glm::vec3 origin_;
   std::unique_ptr<PolygonRecord[], Free> records_;
   std::unique_ptr<std::atomic<State>[]> states_;  // of the slots
-  std::atomic<std::uint64_t> made_{0};
+};
+
+/// The caches of all common origins of a scene, each made when it is first asked for. For any
+/// number of threads.
+class RecordCaches {
+ public:
+  /// `on_first_touch`: whether records are made when a ray comes near their polygon, or all of an
+  /// origin at once. The tree must outlive this.
+  explicit RecordCaches(const Bvh& bvh, bool on_first_touch = true)
+      : bvh_(bvh), on_first_touch_(on_first_touch) {}
+
+  /// Adds to `made` the number of records that had to be made.
+  [[nodiscard]] RecordCache& at(const glm::vec3& origin, std::uint64_t& made);
+
+ private:
+  const Bvh& bvh_;
+  bool on_first_touch_;
+  std::mutex mutex_;
+  std::map<std::array<std::uint32_t, 3>, RecordCache> caches_;  // by the origin's bits
 };
 
 }  // namespace raygate

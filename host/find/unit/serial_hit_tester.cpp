@@ -55,25 +55,20 @@ void SerialHitTester::test(std::span<const RayBundle> batch, HitResults& results
 }
 
 void SerialHitTester::collect(std::uint32_t index, const RayBundle& bundle) {
-  verdicts_.resize(bundle.record_count);
-  test_edges(bundle, verdicts_);
-  LaneMask lanes = 0;  // those with anything for the unit to do
-  for (const EdgeVerdict& verdict : verdicts_) {
-    counters_.tests += std::popcount(bundle.lanes);
-    counters_.misses += std::popcount(verdict.miss);
-    counters_.hits += std::popcount(verdict.hit);
-    counters_.edge_doubts += std::popcount(bundle.lanes & ~(verdict.hit | verdict.miss));
-    lanes |= order_ == Order::kPlanesFirst ? bundle.lanes : bundle.lanes & ~verdict.miss;
-  }
-  for (; lanes != 0; lanes &= lanes - 1) {
+  const ReferenceBurstUnit software;
+  for (LaneMask lanes = bundle.lanes; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
+    const glm::vec3 direction = bundle.lane_direction(lane);
     for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
-      const bool hit = verdicts_[i].hit >> lane & 1, miss = verdicts_[i].miss >> lane & 1;
-      if (miss && order_ == Order::kEdgesFirst) continue;
-      pairs_.push_back({index, static_cast<std::uint32_t>(lane), i,
-                        hit ? Verdict::kHit : (miss ? Verdict::kMiss : Verdict::kDoubt)});
-      plane_tests_.push_back(
-          {bundle.lane_direction(lane), bundle.records[i].normal, bundle.records[i].d});
+      const PolygonRecord& record = bundle.records[i];
+      const UnitVerdict verdict = software.edges_verdict(record, direction);
+      ++counters_.tests;
+      counters_.misses += verdict == UnitVerdict::kMiss;
+      counters_.hits += verdict == UnitVerdict::kHit;
+      counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
+      if (verdict == UnitVerdict::kMiss && order_ == Order::kEdgesFirst) continue;
+      pairs_.push_back({index, static_cast<std::uint32_t>(lane), i, verdict});
+      plane_tests_.push_back({direction, record.normal, record.d});
     }
   }
 }
@@ -87,8 +82,8 @@ void SerialHitTester::report_burst(std::span<const RayBundle> batch, std::size_t
     const auto& [index, lane, record, verdict] = pairs_[i];
     const RayBundle& bundle = batch[index];
     const std::uint32_t tag = bundle.first_tag + record;
-    if (verdict == Verdict::kDoubt) results.doubts.push_back({index, lane, tag, points_[i]});
-    if (verdict != Verdict::kHit) continue;
+    if (verdict == UnitVerdict::kDoubt) results.doubts.push_back({index, lane, tag, points_[i]});
+    if (verdict != UnitVerdict::kHit) continue;
     const Interval t =
         distance_bounds(bundle.records[record], bundle.lane_direction(static_cast<int>(lane)));
     if (t.low > nearest) continue;

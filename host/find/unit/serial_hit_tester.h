@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "host/find/cpu/edge_test.h"
 #include "host/find/unit/hit_tester.h"
 #include "host/find/unit/plane_unit.h"
+#include "host/find/unit/reference_burst_unit.h"
 
 namespace raygate {
 
@@ -27,12 +27,10 @@ class SerialHitTester : public HitTester {
   [[nodiscard]] HitCounters counters() const override;
 
  private:
-  enum class Verdict : std::uint8_t { kMiss, kHit, kDoubt };
-
   /// A pair on its way through the unit.
   struct Pair {
     std::uint32_t bundle, lane, record;
-    Verdict verdict;
+    UnitVerdict verdict;
   };
 
   void collect(std::uint32_t index, const RayBundle& bundle);
@@ -43,7 +41,6 @@ class SerialHitTester : public HitTester {
   Order order_;
   HitCounters counters_;
   // Room to work in, kept from batch to batch.
-  std::vector<EdgeVerdict> verdicts_;
   std::vector<Pair> pairs_;  // bundle by bundle, lane by lane, in the order of the records
   std::vector<PlaneTest> plane_tests_;
   std::vector<glm::vec3> points_;

@@ -17,6 +17,7 @@
 #include "host/film/png.h"
 #include "host/lab/picture/decision_audit.h"
 #include "host/lab/variants/rtl_variant_units.h"
+#include "host/find/unit/unit_finder.h"
 #include "host/lab/variants/variant_hit_tester.h"
 #include "host/light/lights.h"
 #include "host/picture/renderer.h"
@@ -95,14 +96,33 @@ json to_json(const BenchRun& run) {
 /// Binary32 as it stands: what the renderer's own engines are.
 bool is_plain(const Variant& variant) { return variant.math == Arithmetic{} && variant.doubts; }
 
-HitTesterFactory factory_of(const BenchRun& run, const Variant& variant) {
-  if (run.engine == "twin") return [&variant] { return make_variant_tester(variant); };
-  if (run.engine == "unit") return [&variant] { return make_rtl_variant_tester(variant); };
+Options options_of(const BenchRun& run, const Variant& variant) {
+  const bool serial = variant.unit == Variant::Unit::kSerial;
   Options options;
-  options.engine = run.engine == "rtl" ? Engine::kRtl : Engine::kCpu;
-  options.unit = variant.unit == Variant::Unit::kSerial ? "serial" : "pipeline";
+  options.engine = run.engine == "rtl" ? Engine::kRtl : serial ? Engine::kModel : Engine::kCpu;
+  options.unit = serial ? "serial" : "pipeline";
   options.lanes = run.lanes;
-  return make_tester_factory(options);
+  return options;
+}
+
+FinderFactory factory_of(const BenchRun& run, const Variant& variant, const Bvh& bvh) {
+  if (run.engine != "twin" && run.engine != "unit") {
+    return make_finder_factory(options_of(run, variant), bvh);
+  }
+  const auto caches = std::make_shared<RecordCaches>(bvh);
+  return [&variant, &bvh, caches, simulated = run.engine == "unit"] {
+    return std::make_unique<UnitFinder>(
+        bvh, simulated ? make_rtl_variant_tester(variant) : make_variant_tester(variant), caches);
+  };
+}
+
+/// What decides, for the audit: the cpu engine's decisions are its reference model's.
+std::unique_ptr<HitTester> tester_of(const BenchRun& run, const Variant& variant) {
+  if (run.engine == "twin") return make_variant_tester(variant);
+  if (run.engine == "unit") return make_rtl_variant_tester(variant);
+  Options options = options_of(run, variant);
+  if (options.engine == Engine::kCpu) options.engine = Engine::kModel;
+  return make_tester(options);
 }
 
 IntegratorKind kind_of(const std::string& name) {
@@ -164,14 +184,13 @@ class Performance {
                                 .height = run_.height,
                                 .window = {},
                                 .threads = run_.threads,
-                                .lanes = run_.lanes,
                                 .samples = run_.samples,
                                 .seed = run_.seed,
                                 .integrator = kind_of(run_.integrator),
                                 .max_depth = run_.depth};
     const double start = processor_seconds();
     const Film film =
-        render(stage_.scene, stage_.bvh, camera_, options, factory_of(run_, variant_), stats_);
+        render(stage_.scene, stage_.bvh, camera_, options, factory_of(run_, variant_, stage_.bvh), stats_);
     const double busy = processor_seconds() - start;
     if (film_ && !same_picture(*film_, film)) {
       throw std::logic_error("two pictures of one run differ: " + to_json(run_).dump());
@@ -190,24 +209,23 @@ class Performance {
     json object = to_json(run_);
     object["command"] = "build/picture_bench --run '" + to_json(run_).dump() + "'";
     object["triangles"] = stage_.scene.triangles.size();
-    object["records"] = stats_.records;
+    object["records"] = stats_.find.own_records + stats_.find.common_records;
     object["rays"] = stats_.rays;
     object["shadow_rays"] = stats_.shadow_rays;
-    object["tests"] = stats_.hit.tests;
-    object["unit_tests"] = stats_.hit.unit_tests;
-    object["edge_doubts"] = stats_.hit.edge_doubts;
-    object["exact_inside"] = stats_.exact_inside;
-    object["exact_depth"] = stats_.exact_depth;
-    object["clocks"] = stats_.hit.clocks;
-    object["idle_clocks"] = stats_.hit.idle_clocks;
-    object["output_stalls"] = stats_.hit.output_stalls;
+    object["tests"] = stats_.find.hit.tests;
+    object["unit_tests"] = stats_.find.hit.unit_tests;
+    object["edge_doubts"] = stats_.find.hit.edge_doubts;
+    object["exact_inside"] = stats_.find.exact_inside;
+    object["exact_depth"] = stats_.find.exact_depth;
+    object["clocks"] = stats_.find.hit.clocks;
+    object["idle_clocks"] = stats_.find.hit.idle_clocks;
+    object["output_stalls"] = stats_.find.hit.output_stalls;
     object["seconds"] = seconds_;
     object["processor_seconds"] = processor_seconds_;
     object["yardstick_seconds"] = yardstick_seconds_;
-    object["thread_seconds"] = {{"boxes", stats_.traverse_seconds},
-                                {"hit_tests", stats_.hit_seconds},
-                                {"records", stats_.record_seconds},
-                                {"doubts", stats_.doubt_seconds},
+    object["thread_seconds"] = {{"boxes", stats_.find.traverse},
+                                {"hit_tests", stats_.find.hit_tests},
+                                {"records", stats_.find.record},
                                 {"shading", stats_.shade_seconds}};
     if (run_.audit) object["decisions"] = audit();
     return object;
@@ -226,7 +244,7 @@ class Performance {
 
  private:
   [[nodiscard]] json audit() const {
-    const auto tester = factory_of(run_, variant_)();
+    const auto tester = tester_of(run_, variant_);
     const DecisionAudit audit =
         audit_decisions(stage_.bvh, camera_, run_.width, run_.height, variant_, *tester);
     const auto errors = [](const ErrorSummary& summary) {

@@ -4,11 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include "host/find/cpu/edge_test.h"
-#include "host/find/unit/cpu_burst_unit.h"
-#include "host/find/unit/pipeline_hit_tester.h"
-#include "host/find/unit/record_cache.h"
-#include "host/find/unit/wavefront.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/unit_finder.h"
 #include "host/lab/variants/variant_hit_tester.h"
 #include "host/lab/variants/variant_units.h"
 
@@ -38,25 +36,19 @@ class AuditTester : public HitTester {
 
  private:
   void judge(const RayBundle& bundle) {
-    verdicts_.resize(bundle.record_count);
     // With the serial unit, software decides.
     const bool serial = variant_.unit == Variant::Unit::kSerial;
-    if (serial) test_edges(bundle, verdicts_);
     for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
       const PolygonRecord record = variant_record(variant_, bundle.records[i]);
       for (LaneMask lanes = bundle.lanes; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         const glm::vec3 direction = bundle.lane_direction(lane);
         const UnitVerdict said =
-            serial ? verdict_of(verdicts_[i], lane) : unit_.verdict(record, host_.read(direction));
+            serial ? ReferenceBurstUnit().edges_verdict(bundle.records[i], direction)
+                   : unit_.verdict(record, host_.read(direction));
         count(said, record, direction, bundle.first_tag + i);
       }
     }
-  }
-
-  static UnitVerdict verdict_of(const EdgeVerdict& verdict, int lane) {
-    if (verdict.hit >> lane & 1) return UnitVerdict::kHit;
-    return verdict.miss >> lane & 1 ? UnitVerdict::kMiss : UnitVerdict::kDoubt;
   }
 
   void count(UnitVerdict said, const PolygonRecord& record, const glm::vec3& direction,
@@ -83,7 +75,6 @@ class AuditTester : public HitTester {
   Arithmetic host_ = variant_.math;  // what puts a ray into the format
   HitTester& tester_;
   DecisionAudit& audit_;
-  std::vector<EdgeVerdict> verdicts_;
 };
 
 /// In units of the last place of the float next to `exact`.
@@ -137,15 +128,13 @@ DecisionAudit audit_decisions(const Bvh& bvh, const Camera& camera, int width, i
   DecisionAudit audit;
   const glm::vec3 eye = camera.eye();
   const std::vector<Ray> rays = camera_rays(camera, width, height);
-  AuditTester auditor(bvh, eye, variant, tester, audit);
-  PipelineHitTester exact_tester(std::make_unique<CpuBurstUnit>());
-  RecordCache records(bvh, eye), exact_records(bvh, eye);
-  Wavefront seen(bvh, auditor), exact(bvh, exact_tester);
-  seen.trace(rays, {.common = &records});
-  exact.trace(rays, {.common = &exact_records});
+  std::vector<NearestHit> seen(rays.size()), exact(rays.size());
+  UnitFinder(bvh, std::make_shared<AuditTester>(bvh, eye, variant, tester, audit))
+      .find(rays, {.common_origin = true}, seen);
+  CpuFinder(bvh).find(rays, {.common_origin = true}, exact);
   std::vector<double> t_errors, point_errors;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const NearestHit &got = seen.nearest(i), &truth = exact.nearest(i);
+    const NearestHit &got = seen[i], &truth = exact[i];
     ++audit.rays;
     if (got.slot != truth.slot) ++audit.wrong_rays;
     if (got.slot != truth.slot || truth.slot == NearestHit::kNone) continue;

@@ -1,20 +1,15 @@
-// This project's answers, as the renderer gets them: a wavefront a tile, polygon records made on
-// first touch (none is left from the run before), exact arithmetic for what float32 leaves open,
-// and P for every hit.
+// This project's answers, as the renderer gets them from the cpu engine: a tile's rays at a time,
+// exact arithmetic for what float32 leaves open, and P for every nearest hit.
 #include <algorithm>
 #include <memory>
-#include <optional>
+#include <vector>
 
-#include "host/find/unit/cpu_hit_tester.h"
-#include "host/find/unit/record_cache.h"
-#include "host/find/unit/wavefront.h"
+#include "host/find/cpu/cpu_finder.h"
 #include "host/lab/rays/peer.h"
 #include "host/tree/bvh.h"
 
 namespace raygate::rays {
 namespace {
-
-constexpr std::size_t kTileRays = std::size_t{128} * 128;  // as many as the renderer traces at once
 
 class RaygatePeer : public Peer {
  public:
@@ -25,21 +20,19 @@ class RaygatePeer : public Peer {
   void prepare(const RaySet& set) override { set_ = &set; }
 
   void run(Found& found) override {
-    CpuHitTester tester;
-    Wavefront wavefront(bvh_, tester);
-    std::optional<RecordCache> records;
+    CpuFinder finder(bvh_);
     Search search;
-    if (set_->common_origin) search.common = &records.emplace(bvh_, set_->rays[0].origin);
+    search.common_origin = set_->common_origin;
     const std::span<const Ray> rays(set_->rays);
-    for (std::size_t first = 0; first < rays.size(); first += kTileRays) {
-      const std::size_t count = std::min(kTileRays, rays.size() - first);
+    std::vector<NearestHit> hits(finder.preferred_batch());
+    for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
+      const std::size_t count = std::min(hits.size(), rays.size() - first);
       if (!set_->limits.empty()) search.limits = std::span(set_->limits).subspan(first, count);
       if (set_->any_hit) search.enough_before = search.limits;
-      wavefront.trace(rays.subspan(first, count), search);
+      finder.find(rays.subspan(first, count), search, std::span(hits).first(count));
       for (std::size_t i = 0; i < count; ++i) {
-        const NearestHit& hit = wavefront.nearest(i);
-        found.triangle[first + i] = triangle_of(hit);
-        found.t[first + i] = static_cast<float>(hit.t.low);
+        found.triangle[first + i] = triangle_of(hits[i]);
+        found.t[first + i] = static_cast<float>(hits[i].t.low);
       }
     }
   }

@@ -44,7 +44,7 @@ Run timed(const Scene& scene, const Bvh& bvh, const Camera& camera, const Option
   Run best;
   for (int i = 0; i < 3; ++i) {
     Run run;
-    run.film = render(scene, bvh, camera, render_options, make_tester_factory(options), run.stats);
+    run.film = render(scene, bvh, camera, render_options, make_finder_factory(options, bvh), run.stats);
     if (i == 0 || run.stats.wall_seconds < best.stats.wall_seconds) best = std::move(run);
     if (best.stats.wall_seconds > 5.0) break;
   }
@@ -53,7 +53,7 @@ Run timed(const Scene& scene, const Bvh& bvh, const Camera& camera, const Option
 
 void print_row(const std::string& name, const RenderStats& stats, const RenderStats& base) {
   std::printf("  %-24s %12s %14s %14s %12s %8.2f\n", name.c_str(), format_count(stats.rays).c_str(),
-              format_count(stats.hit.tests).c_str(), format_count(stats.records).c_str(),
+              format_count(stats.find.hit.tests).c_str(), format_count(stats.find.own_records + stats.find.common_records).c_str(),
               format_duration(stats.wall_seconds).c_str(), stats.wall_seconds / base.wall_seconds);
 }
 
@@ -71,9 +71,9 @@ bool bench(const std::filesystem::path& file) {
       static_cast<double>(all.stats.rays) * static_cast<double>(scene.triangles.size());
   std::printf("\n%s: %s polygons; %s tests of %s: %.0f times fewer\n", file.stem().string().c_str(),
               format_count(scene.triangles.size()).c_str(),
-              format_count(all.stats.hit.tests).c_str(),
+              format_count(all.stats.find.hit.tests).c_str(),
               format_count(static_cast<std::uint64_t>(every_test)).c_str(),
-              every_test / static_cast<double>(all.stats.hit.tests));
+              every_test / static_cast<double>(all.stats.find.hit.tests));
   std::printf("  %-24s %12s %14s %14s %12s %8s\n", "", "rays", "tests", "records", "time", "");
   print_row("all skips", all.stats, all.stats);
   // It tests what is in a leaf one by one, where the cpu engine tests four polygons at a time.

@@ -2,12 +2,11 @@
 // through tree, tester and merging for the nearest hit.
 #include <algorithm>
 
-#include "host/find/unit/cpu_burst_unit.h"
-#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/reference_plane_unit.h"
 #include "host/find/unit/pipeline_hit_tester.h"
-#include "host/find/unit/record_cache.h"
 #include "host/find/unit/serial_hit_tester.h"
-#include "host/find/unit/wavefront.h"
+#include "host/find/unit/unit_finder.h"
 #include "host/lab/stress/variants.h"
 #include "host/tree/bvh.h"
 #include "sim/rtl_burst_unit.h"
@@ -18,7 +17,7 @@ namespace {
 
 class EngineVariant : public Variant {
  public:
-  EngineVariant(std::unique_ptr<HitTester> tester, bool simulated)
+  EngineVariant(std::shared_ptr<HitTester> tester, bool simulated)
       : tester_(std::move(tester)), simulated_(simulated) {}
 
   void run(std::span<const Shot> shots, Answers& answers) override {
@@ -110,32 +109,33 @@ class EngineVariant : public Variant {
   void trace(const Shot& shot, std::optional<std::uint32_t>* nearest) {
     if (shot.mesh != mesh_) {
       mesh_ = shot.mesh;
-      wavefront_.reset();
+      finder_.reset();
       bvh_ = std::make_unique<Bvh>(scene_of(*mesh_));
-      wavefront_ = std::make_unique<Wavefront>(*bvh_, *tester_);
+      finder_ = std::make_unique<UnitFinder>(*bvh_, tester_);
     }
-    RecordCache records(*bvh_, shot.origin);
     rays_.clear();
     for (const glm::vec3& direction : shot.directions) rays_.push_back({shot.origin, direction});
-    wavefront_->trace(rays_, {.common = &records});
+    hits_.resize(rays_.size());
+    finder_->find(rays_, {.common_origin = true}, hits_);
     for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
-      const NearestHit& hit = wavefront_->nearest(ray);
+      const NearestHit& hit = hits_[ray];
       nearest[ray] =
           hit.slot == NearestHit::kNone ? std::nullopt : std::optional(bvh_->triangle_of(hit.slot));
     }
   }
 
-  std::unique_ptr<HitTester> tester_;
+  std::shared_ptr<HitTester> tester_;
   bool simulated_;
-  std::shared_ptr<const Mesh> mesh_;  // whose tree and wavefront these are
+  std::shared_ptr<const Mesh> mesh_;  // whose tree and finder these are
   std::unique_ptr<Bvh> bvh_;
-  std::unique_ptr<Wavefront> wavefront_;
+  std::unique_ptr<UnitFinder> finder_;
   // Room to work in.
   std::vector<PolygonRecord> records_;
   std::vector<RayBundle> batch_;
   std::vector<Place> places_;
   HitResults results_;
   std::vector<Ray> rays_;
+  std::vector<NearestHit> hits_;
 };
 
 template <class Tester, class Unit, class... Lanes>
@@ -143,7 +143,7 @@ VariantKind engine(const char* name, const char* what, double share, bool simula
                    Lanes... lanes) {
   return {name, what, true, share, "24", [=] {
             return std::make_unique<EngineVariant>(
-                std::make_unique<Tester>(std::make_unique<Unit>(lanes...)), simulated);
+                std::make_shared<Tester>(std::make_unique<Unit>(lanes...)), simulated);
           }};
 }
 
@@ -151,9 +151,9 @@ VariantKind engine(const char* name, const char* what, double share, bool simula
 
 std::vector<VariantKind> engine_variants() {
   return {
-      engine<PipelineHitTester, CpuBurstUnit>("cpu", "the pipelined unit's CPU twin", 1.0, false),
+      engine<PipelineHitTester, ReferenceBurstUnit>("cpu", "the pipelined unit's CPU twin", 1.0, false),
       engine<PipelineHitTester, RtlBurstUnit>("rtl", "the pipelined unit, simulated", 0.1, true, 1),
-      engine<SerialHitTester, CpuPlaneUnit>("cpu serial", "the paper's unit's CPU twin", 0.1,
+      engine<SerialHitTester, ReferencePlaneUnit>("cpu serial", "the paper's unit's CPU twin", 0.1,
                                             false),
       engine<SerialHitTester, RtlPlaneUnit>("rtl serial", "the paper's unit, simulated", 0.1,
                                             true)};

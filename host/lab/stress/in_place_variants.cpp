@@ -1,10 +1,9 @@
-// The `cpu` engine's searches in place, by the way ./render goes: tree, wavefront, CpuHitTester.
+// The `cpu` engine's searches in place, by the way ./render goes: tree and CpuFinder.
 #include <deque>
 
-#include "host/find/unit/cpu_hit_tester.h"
-#include "host/find/unit/record_cache.h"
-#include "host/find/unit/wavefront.h"
+#include "host/find/cpu/cpu_finder.h"
 #include "host/lab/stress/variants.h"
+#include "host/lanes.h"
 #include "host/tree/bvh.h"
 
 namespace raygate::stress {
@@ -39,10 +38,10 @@ class InPlaceVariant : public Variant {
 
  private:
   struct Tree {
-    Tree(const Mesh& mesh, HitTester& tester) : bvh(scene_of(mesh)), wavefront(bvh, tester) {}
+    explicit Tree(const Mesh& mesh) : bvh(scene_of(mesh)), finder(bvh) {}
 
     Bvh bvh;
-    Wavefront wavefront;
+    CpuFinder finder;
   };
 
   /// What a search says about a ray.
@@ -79,44 +78,44 @@ class InPlaceVariant : public Variant {
     if (mesh == mesh_) return;
     mesh_ = mesh;
     trees_.clear();
-    trees_.emplace_back(*mesh, tester_);
+    trees_.emplace_back(*mesh);
     if (mesh->triangles.size() == 1) return;
-    for (const Corners& triangle : mesh->triangles) trees_.emplace_back(Mesh{{triangle}}, tester_);
+    for (const Corners& triangle : mesh->triangles) trees_.emplace_back(Mesh{{triangle}});
   }
 
   /// Searches for all rays at once and, where there were doubts, for each alone to learn whose they
   /// were. Cones are searched once more, full: every ray in several groups and lanes. What a ray
   /// finds must not depend on its company.
   void search(Tree& tree) {
-    RecordCache origin(tree.bvh, rays_[0].origin);
-    const Search search = {.common = way_ == Way::kCones ? &origin : nullptr};
+    const Search search = {.common_origin = way_ == Way::kCones};
     found_.assign(rays_.size(), {});
     const std::uint64_t doubts = trace(tree, rays_, search);
     for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
-      found_[ray].hit = tree.wavefront.nearest(ray);
+      found_[ray].hit = hits_[ray];
     }
     for (std::size_t ray = 0; doubts != 0 && ray < rays_.size(); ++ray) {
       found_[ray].doubt = trace(tree, std::span(rays_).subspan(ray, 1), search) != 0;
-      compare(tree, 0, ray);
+      compare(0, ray);
     }
     if (way_ != Way::kCones) return;
     const auto nth = [&](std::size_t i) { return (i + i / kLanes) % rays_.size(); };
     company_.clear();
     for (std::size_t i = 0; i < kCone; ++i) company_.push_back(rays_[nth(i)]);
     trace(tree, company_, search);
-    for (std::size_t i = 0; i < kCone; ++i) compare(tree, i, nth(i));
+    for (std::size_t i = 0; i < kCone; ++i) compare(i, nth(i));
   }
 
   /// The number of doubts about edges.
   std::uint64_t trace(Tree& tree, std::span<const Ray> rays, const Search& search) {
-    const std::uint64_t before = tester_.in_place()->edge_doubts;
-    tree.wavefront.trace(rays, search);
-    return tester_.in_place()->edge_doubts - before;
+    const std::uint64_t before = tree.finder.counters().hit.edge_doubts;
+    hits_.resize(rays.size());
+    tree.finder.find(rays, search, hits_);
+    return tree.finder.counters().hit.edge_doubts - before;
   }
 
   /// Whether ray `number` of the last trace has found what ray `ray` had found before.
-  void compare(const Tree& tree, std::size_t number, std::size_t ray) {
-    if (tree.wavefront.nearest(number).slot != found_[ray].hit.slot) torn_[ray] = true;
+  void compare(std::size_t number, std::size_t ray) {
+    if (hits_[number].slot != found_[ray].hit.slot) torn_[ray] = true;
   }
 
   static Answer answer(const Found& found) {
@@ -133,11 +132,11 @@ class InPlaceVariant : public Variant {
   static constexpr std::size_t kCone = 64;  // rays of a full one
 
   Way way_;
-  CpuHitTester tester_;
   std::shared_ptr<const Mesh> mesh_;  // whose trees these are
   std::deque<Tree> trees_;
   // Room to work in.
   std::vector<Ray> rays_, company_;
+  std::vector<NearestHit> hits_;  // of the last trace
   std::vector<Found> found_;
   std::vector<bool> torn_;  // of the rays: found different things in different company
 };

@@ -4,7 +4,7 @@
 
 namespace raygate {
 
-template class BurstUnitTwin<Arithmetic>;
+template class BasicReferenceBurstUnit<Arithmetic>;
 
 void VariantPlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) {
   assert(tests.size() == points.size());

@@ -1,15 +1,15 @@
 // The hit-test units with a variant's arithmetic, in C++: the twins of what is Verilated.
 #pragma once
 
-#include "host/find/unit/burst_unit_twin.h"
+#include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/plane_unit.h"
 #include "host/lab/variants/arithmetic.h"
 
 namespace raygate {
 
-/// In binary32 it is CpuBurstUnit, slower.
-extern template class BurstUnitTwin<Arithmetic>;
-using VariantBurstUnit = BurstUnitTwin<Arithmetic>;
+/// In binary32 it is ReferenceBurstUnit, slower.
+extern template class BasicReferenceBurstUnit<Arithmetic>;
+using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 
 /// PlaneUnit's contract in a variant's format: bit for bit hit_test_unit with these parameters.
 /// Tests need not hold numbers of the format: their words are rounded to it first, as the host

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "host/find/unit/reference_plane_unit.h"
 #include "host/find/unit/serial_hit_tester.h"
 #include "host/light/test/light_scenes.h"
 
@@ -13,13 +14,23 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
+/// A finder that likes larger tiles.
+class ManyAtOnce : public CpuFinder {
+ public:
+  ManyAtOnce(const Bvh& bvh, std::size_t lanes) : CpuFinder(bvh), lanes_(lanes) {}
+  [[nodiscard]] std::size_t preferred_batch() const override { return lanes_ * kBatch; }
+
+ private:
+  std::size_t lanes_;
+};
+
 class EveryIntegrator : public testing::TestWithParam<IntegratorKind> {
  protected:
   RenderOptions options(int width = 40, int height = 30) const {
     return light(GetParam(), width, height, 5);  // two passes
   }
   Film film(const RenderOptions& options, RenderStats& stats) const {
-    return render(scene_, bvh_, camera_, options, pipeline_twin(), stats);
+    return render(scene_, bvh_, camera_, options, pipeline_model(bvh_), stats);
   }
   Film film(const RenderOptions& options) const {
     RenderStats stats;
@@ -42,16 +53,18 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
     more.threads = threads;
     EXPECT_TRUE(same(one, film(more))) << threads;
   }
-  for (const int lanes : {4, 8}) {  // larger tiles
-    RenderOptions more = options(150, 100);
-    more.lanes = lanes;
-    EXPECT_TRUE(same(one, film(more))) << lanes;
-  }
   RenderStats stats;
-  const HitTesterFactory serial = [] {
-    return std::make_unique<SerialHitTester>(std::make_unique<CpuPlaneUnit>());
+  for (const std::size_t lanes : {4, 8}) {  // larger tiles
+    const FinderFactory several = [&] { return std::make_unique<ManyAtOnce>(bvh_, lanes); };
+    EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), several, stats)));
+  }
+  const FinderFactory serial = [&] {
+    return std::make_unique<UnitFinder>(
+        bvh_, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>()));
   };
   EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), serial, stats)));
+  const FinderFactory cpu = [&] { return std::make_unique<CpuFinder>(bvh_); };
+  EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), cpu, stats)));
 }
 
 TEST_P(EveryIntegrator, WindowsArePartsOfTheWhole) {
@@ -77,10 +90,10 @@ TEST(ManyLights, WindowsArePartsOfTheWhole) {
   RenderOptions options = light(IntegratorKind::kWhitted, 96, 96, 1);
   options.max_depth = 1;
   RenderStats stats;
-  const Film whole = render(scene, bvh, camera, options, pipeline_twin(), stats);
+  const Film whole = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
   EXPECT_GT(stats.shadow_rays, 1u << 17);
   options.window = {50, 20, 77, 63};
-  const Film part = render(scene, bvh, camera, options, pipeline_twin(), stats);
+  const Film part = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
   for (int y = 20; y < 63; ++y) {
     for (int x = 50; x < 77; ++x) {
       ASSERT_EQ(part.color[std::size_t(y - 20) * 27 + (x - 50)], whole.color[y * 96u + x]);
@@ -106,14 +119,14 @@ TEST_P(EveryIntegrator, SkipsChangeNoByteAndSaveWork) {
       none.skips.*skip = false;
       RenderStats stats;
       EXPECT_TRUE(same(expected, film(one, stats)));
-      EXPECT_GE(stats.hit.tests, all_on.hit.tests);
+      EXPECT_GE(stats.find.hit.tests, all_on.find.hit.tests);
     }
     none.max_depth = 1;  // weightless rays are many
     RenderOptions some = options(20, 15);
     some.max_depth = 1;
     RenderStats stats;
     EXPECT_TRUE(same(film(some), film(none, stats)));
-    EXPECT_EQ(stats.hit.tests, stats.rays * scene_.triangles.size());
+    EXPECT_EQ(stats.find.hit.tests, stats.rays * scene_.triangles.size());
     EXPECT_EQ(stats.skipped.lights_behind + stats.skipped.weightless, 0u);
   }
 }
@@ -166,8 +179,8 @@ TEST(Skips, AreCounted) {
   const Camera camera = camera_at({0.6, 0.4, 60}, {12, 12, 0}, 40.0);
   RenderOptions options = light(IntegratorKind::kWhitted, 400, 400, 1);
   RenderStats stats;
-  const Film film = render(scene, bvh, camera, options, pipeline_twin(), stats);
-  EXPECT_GT(stats.skipped.culled_tests, 100 * stats.hit.tests);
+  const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
+  EXPECT_GT(stats.skipped.culled_tests, 100 * stats.find.hit.tests);
   EXPECT_GT(stats.skipped.records, 0u);
   EXPECT_GT(stats.skipped.lights_behind, 0u);
   EXPECT_GT(stats.skipped.weightless, 0u);
@@ -175,7 +188,7 @@ TEST(Skips, AreCounted) {
   EXPECT_GT(stats.skipped.first_occluders, 0u);
   EXPECT_EQ(stats.skipped.empty_tile_rays + stats.camera_rays, 400u * 400u);
   options.skips.empty_tiles = false;
-  EXPECT_TRUE(same(film, render(scene, bvh, camera, options, pipeline_twin(), stats)));
+  EXPECT_TRUE(same(film, render(scene, bvh, camera, options, pipeline_model(bvh), stats)));
   EXPECT_EQ(stats.camera_rays, 400u * 400u);
 }
 
@@ -187,10 +200,10 @@ TEST(Threshold, SavesRaysThatHardlyCount) {
   RenderOptions options = light(IntegratorKind::kWhitted, 64, 64, 1);
   RenderStats all, some;
   options.threshold = 0.0;
-  const Film exact = render(scene, bvh, camera, options, pipeline_twin(), all);
+  const Film exact = render(scene, bvh, camera, options, pipeline_model(bvh), all);
   EXPECT_EQ(all.skipped.dim, 0u);
   options.threshold = 0.05;
-  const Film film = render(scene, bvh, camera, options, pipeline_twin(), some);
+  const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), some);
   EXPECT_GT(some.skipped.dim, 100u);
   EXPECT_LT(some.rays, all.rays);
   for (std::size_t i = 0; i < film.color.size(); ++i) {
@@ -213,7 +226,8 @@ TEST(Snapshots, AreTakenOnTheWay) {
   options.snapshot_seconds = 0.0;
   const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
   RenderStats stats;
-  (void)render(scene, Bvh(scene), camera, options, pipeline_twin(), stats);
+  const Bvh bvh(scene);
+  (void)render(scene, bvh, camera, options, pipeline_model(bvh), stats);
   EXPECT_EQ(snapshots, 2) << "of three passes of one tile, the last is the film";
 }
 

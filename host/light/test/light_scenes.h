@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "host/exact/test/meshes.h"
-#include "host/find/unit/cpu_burst_unit.h"
 #include "host/find/unit/pipeline_hit_tester.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/unit_finder.h"
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 
@@ -62,8 +63,14 @@ inline void add(Scene& scene, const std::vector<Corners>& triangles, const Mater
   scene.positions.insert(scene.positions.end(), more.positions.begin(), more.positions.end());
 }
 
-inline HitTesterFactory pipeline_twin() {
-  return [] { return std::make_unique<PipelineHitTester>(std::make_unique<CpuBurstUnit>()); };
+/// The pipelined unit's reference model, in batches.
+inline std::unique_ptr<Finder> pipeline_finder(const Bvh& bvh) {
+  return std::make_unique<UnitFinder>(
+      bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
+}
+
+inline FinderFactory pipeline_model(const Bvh& bvh) {
+  return [&bvh] { return pipeline_finder(bvh); };
 }
 
 inline RenderOptions light(IntegratorKind integrator, int width, int height, int samples) {
@@ -78,7 +85,8 @@ inline RenderOptions light(IntegratorKind integrator, int width, int height, int
 
 inline Film film_of(const Scene& scene, const Camera& camera, const RenderOptions& options) {
   RenderStats stats;
-  return render(scene, Bvh(scene), camera, options, pipeline_twin(), stats);
+  const Bvh bvh(scene);
+  return render(scene, bvh, camera, options, pipeline_model(bvh), stats);
 }
 
 template <typename T>

@@ -37,9 +37,10 @@ class ShadowRaysTest : public testing::Test {
     for (int i = 0; i < count; ++i) {
       rays.push_back({eye, scaled_direction(glm::dvec3(random_.point()) - 1e-9)});
     }
-    wavefront_.trace(rays);
+    std::vector<NearestHit> hits(rays.size());
+    finder_->find(rays, {}, hits);
     for (int i = 0; i < count; ++i) {
-      const std::uint32_t slot = wavefront_.nearest(i).slot;
+      const std::uint32_t slot = hits[i].slot;
       if (slot == NearestHit::kNone) continue;
       const auto origin = departure.find(rays[i], slot, Departure::kBefore);
       if (!origin) continue;
@@ -83,9 +84,8 @@ class ShadowRaysTest : public testing::Test {
 
   Scene scene_ = obstacles();
   Bvh bvh_{scene_};
-  Lights lights_{scene_, bvh_, true};
-  PipelineHitTester tester_{std::make_unique<CpuBurstUnit>()};
-  Wavefront wavefront_{bvh_, tester_};
+  Lights lights_{scene_, bvh_};
+  std::unique_ptr<Finder> finder_ = pipeline_finder(bvh_);
   Random random_;
   std::vector<ShadowRay> questions_;
 };
@@ -95,7 +95,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
     add_questions(eye, 2000);
   }
   std::vector<ShadowRay> nearest = questions_;
-  ShadowRays(scene_, bvh_, lights_, wavefront_, {}, true).resolve(questions_);
+  ShadowRays(scene_, bvh_, lights_, *finder_, {}, true).resolve(questions_);
   int dark = 0, lit = 0, different = 0;
   for (const ShadowRay& answer : questions_) {
     const bool blocked = is_blocked(answer);
@@ -112,7 +112,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   // Without the first-occluder skip: the same, to the last one.
   Skips skips;
   skips.first_occluder = false;
-  ShadowRays(scene_, bvh_, lights_, wavefront_, skips, true).resolve(nearest);
+  ShadowRays(scene_, bvh_, lights_, *finder_, skips, true).resolve(nearest);
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     ASSERT_EQ(nearest[i].light, questions_[i].light) << i;
   }

@@ -6,8 +6,9 @@
 #include <cstring>
 
 #include "host/exact/test/meshes.h"
-#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/reference_plane_unit.h"
 #include "host/find/unit/serial_hit_tester.h"
+#include "host/find/unit/unit_finder.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -15,9 +16,11 @@ namespace {
 
 using Order = SerialHitTester::Order;
 
-HitTesterFactory cpu(Order order = Order::kEdgesFirst) {
-  return [order] {
-    return std::make_unique<SerialHitTester>(std::make_unique<CpuPlaneUnit>(), order);
+FinderFactory serial(const Bvh& bvh, Order order = Order::kEdgesFirst) {
+  return [&bvh, order, caches = std::make_shared<RecordCaches>(bvh)] {
+    return std::make_unique<UnitFinder>(
+        bvh, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>(), order),
+        caches);
   };
 }
 
@@ -57,7 +60,7 @@ TEST(Renderer, EveryPixelIsTheExactNearestPolygon) {
   const Scene scene = sphere_in_box();
   const Bvh bvh(scene);
   RenderStats stats;
-  const Film film = render(scene, bvh, kCamera, size(65, 65), cpu(), stats);
+  const Film film = render(scene, bvh, kCamera, size(65, 65), serial(bvh), stats);
   for (int y = 0; y < 65; ++y) {
     for (int x = 0; x < 65; ++x) {
       const Ray ray = {kCamera.eye(), kCamera.direction((x + 0.5) / 65, (y + 0.5) / 65)};
@@ -83,9 +86,9 @@ TEST(Renderer, EveryPixelIsTheExactNearestPolygon) {
     }
   }
   EXPECT_EQ(stats.rays, 65u * 65u);
-  EXPECT_GT(stats.exact_inside, 0u);
-  EXPECT_GT(stats.records, 0u);
-  EXPECT_LE(stats.records, scene.triangles.size());
+  EXPECT_GT(stats.find.exact_inside, 0u);
+  EXPECT_GT(stats.find.common_records, 0u);
+  EXPECT_LE(stats.find.common_records, scene.triangles.size());
   EXPECT_FALSE(stats.cancelled);
 }
 
@@ -93,24 +96,24 @@ TEST(Renderer, FilmDoesNotDependOnThreadsOrOrder) {
   const Scene scene = sphere_in_box();
   const Bvh bvh(scene);
   RenderStats one, other;
-  const Film film = render(scene, bvh, kCamera, size(200, 150), cpu(), one);
+  const Film film = render(scene, bvh, kCamera, size(200, 150), serial(bvh), one);
   for (const int threads : {2, 3, 8}) {
-    EXPECT_TRUE(same(film, render(scene, bvh, kCamera, size(200, 150, threads), cpu(), other)));
-    EXPECT_EQ(one.hit.tests, other.hit.tests);
-    EXPECT_EQ(one.records, other.records);
+    EXPECT_TRUE(same(film, render(scene, bvh, kCamera, size(200, 150, threads), serial(bvh), other)));
+    EXPECT_EQ(one.find.hit.tests, other.find.hit.tests);
+    EXPECT_EQ(one.find.common_records, other.find.common_records);
   }
   EXPECT_TRUE(
-      same(film, render(scene, bvh, kCamera, size(200, 150), cpu(Order::kPlanesFirst), other)));
+      same(film, render(scene, bvh, kCamera, size(200, 150), serial(bvh, Order::kPlanesFirst), other)));
 }
 
 TEST(Renderer, WindowIsAPartOfTheWhole) {
   const Scene scene = sphere_in_box();
   const Bvh bvh(scene);
   RenderStats stats;
-  const Film whole = render(scene, bvh, kCamera, size(100, 80), cpu(), stats);
+  const Film whole = render(scene, bvh, kCamera, size(100, 80), serial(bvh), stats);
   RenderOptions options = size(100, 80);
   options.window = {13, 7, 60, 71};
-  const Film part = render(scene, bvh, kCamera, options, cpu(), stats);
+  const Film part = render(scene, bvh, kCamera, options, serial(bvh), stats);
   ASSERT_EQ(part.color.size(), 47u * 64u);
   for (int y = 7; y < 71; ++y) {
     for (int x = 13; x < 60; ++x) {
@@ -123,12 +126,13 @@ TEST(Renderer, WindowIsAPartOfTheWhole) {
 
 TEST(Renderer, MissesLeaveNothing) {
   const Scene scene = test::scene_of({});
+  const Bvh bvh(scene);
   RenderStats stats;
-  const Film film = render(scene, Bvh(scene), kCamera, size(9, 5, 4), cpu(), stats);
+  const Film film = render(scene, bvh, kCamera, size(9, 5, 4), serial(bvh), stats);
   EXPECT_EQ(film.primitive, std::vector<std::uint32_t>(45, kNoPrimitive));
   EXPECT_EQ(film.depth[0], std::numeric_limits<float>::infinity());
   EXPECT_EQ(film.color[44], glm::vec4(0.0f));
-  EXPECT_EQ(stats.hit.tests, 0u);
+  EXPECT_EQ(stats.find.hit.tests, 0u);
 }
 
 // Straight at a wall two units away: the colour is the material's, the depth two.
@@ -138,8 +142,9 @@ TEST(Renderer, LambertLitFromTheCamera) {
   scene.materials[0].diffuse = glm::vec3(0.5f, 0.25f, 1.0f);
   const Camera camera =
       Camera::look_at(glm::dvec3(0), glm::dvec3(0, 0, -1), glm::dvec3(0, 1, 0), 60.0, 1.0);
+  const Bvh bvh(scene);
   RenderStats stats;
-  Film film = render(scene, Bvh(scene), camera, size(1, 1), cpu(), stats);
+  Film film = render(scene, bvh, camera, size(1, 1), serial(bvh), stats);
   EXPECT_EQ(film.color[0], glm::vec4(0.5f, 0.25f, 1.0f, 1.0f));
   EXPECT_EQ(film.normal[0], glm::vec3(0, 0, 1));
   EXPECT_EQ(film.depth[0], 2.0f);
@@ -147,7 +152,7 @@ TEST(Renderer, LambertLitFromTheCamera) {
   const float c = 0.5f, s = std::sqrt(0.75f);
   scene.normals = {glm::vec3(s, 0, -c)};
   scene.triangles[0].normals = {0, 0, 0};
-  film = render(scene, Bvh(scene), camera, size(1, 1), cpu(), stats);
+  film = render(scene, bvh, camera, size(1, 1), serial(bvh), stats);
   EXPECT_NEAR(film.color[0].b, 0.5f, 1e-6f);
   EXPECT_NEAR(film.normal[0].z, 0.5f, 1e-6f);
 }
@@ -161,13 +166,13 @@ TEST(Renderer, ExtraChannelsOnDemand) {
   for (std::size_t i = sphere_size; i < scene.triangles.size(); ++i) scene.triangles[i].object = 1;
   const Bvh bvh(scene);
   RenderStats stats;
-  const Film plain = render(scene, bvh, kCamera, size(64, 64), cpu(), stats);
+  const Film plain = render(scene, bvh, kCamera, size(64, 64), serial(bvh), stats);
   for (const auto wanted :
        {&ExtraChannels::position, &ExtraChannels::albedo, &ExtraChannels::object,
         &ExtraChannels::tests, &ExtraChannels::doubts}) {
     RenderOptions options = size(64, 64);
     options.channels.*wanted = true;
-    const Film film = render(scene, bvh, kCamera, options, cpu(), stats);
+    const Film film = render(scene, bvh, kCamera, options, serial(bvh), stats);
     EXPECT_TRUE(same(film, plain));
     const auto expected = [&](auto channel) { return channel == wanted ? 64u * 64u : 0u; };
     EXPECT_EQ(film.position.size(), expected(&ExtraChannels::position));
@@ -193,24 +198,25 @@ TEST(Renderer, ProgressReachesOneAndCanCancel) {
   const Bvh bvh(scene);
   RenderStats stats;
   double last = 0.0;
-  (void)render(scene, bvh, kCamera, size(300, 300, 2), cpu(), stats, [&](double done) {
+  (void)render(scene, bvh, kCamera, size(300, 300, 2), serial(bvh), stats, [&](double done) {
     EXPECT_GE(done, last);
     last = done;
     return true;
   });
   EXPECT_EQ(last, 1.0);
-  (void)render(scene, bvh, kCamera, size(300, 300), cpu(), stats, [](double) { return false; });
+  (void)render(scene, bvh, kCamera, size(300, 300), serial(bvh), stats, [](double) { return false; });
   EXPECT_TRUE(stats.cancelled);
   EXPECT_LT(stats.rays, 300u * 300u);
 }
 
-TEST(Renderer, ATestersExceptionReachesTheCaller) {
+TEST(Renderer, AFindersExceptionReachesTheCaller) {
   const Scene scene = sphere_in_box();
   RenderStats stats;
-  const HitTesterFactory broken = []() -> std::unique_ptr<HitTester> {
+  const Bvh bvh(scene);
+  const FinderFactory broken = []() -> std::unique_ptr<Finder> {
     throw std::runtime_error("no unit");
   };
-  EXPECT_THROW((void)render(scene, Bvh(scene), kCamera, size(64, 64, 3), broken, stats),
+  EXPECT_THROW((void)render(scene, bvh, kCamera, size(64, 64, 3), broken, stats),
                std::runtime_error);
 }
 

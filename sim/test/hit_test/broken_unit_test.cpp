@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "Vhit_test_array_broken.h"
-#include "host/find/unit/check_burst_unit.h"
-#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/same_results.h"
+#include "host/find/unit/reference_burst_unit.h"
 #include "sim/array_model.h"
 #include "sim/random_bursts.h"
 
@@ -19,7 +19,7 @@ constexpr int kTests = 20'000;
 TEST(BrokenUnitTest, IsNoticed) {
   const BurstBatch batch = RandomBursts(1).make(kTests);
   BurstResults expected, got;
-  CpuBurstUnit().run(batch.bundles, expected);
+  ReferenceBurstUnit().run(batch.bundles, expected);
   ArrayModel<Vhit_test_array_broken, 1> broken(BurstStalls{});
   broken.start(batch.bundles);
   broken.finish(got);
@@ -29,7 +29,7 @@ TEST(BrokenUnitTest, IsNoticed) {
 TEST(BrokenUnitTest, SoundOnePassesTheSameTests) {
   const BurstBatch batch = RandomBursts(1).make(kTests);
   BurstResults expected, got;
-  CpuBurstUnit().run(batch.bundles, expected);
+  ReferenceBurstUnit().run(batch.bundles, expected);
   RtlBurstUnit(1).run(batch.bundles, got);
   EXPECT_NO_THROW(require_same(batch.bundles, got, expected));
 }

@@ -7,8 +7,8 @@
 #include <random>
 #include <tuple>
 
-#include "host/find/unit/check_burst_unit.h"
-#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/same_results.h"
+#include "host/find/unit/reference_burst_unit.h"
 #include "sim/random_bursts.h"
 
 namespace raygate {
@@ -39,7 +39,7 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   RecordProperty("seed", static_cast<int>(seed));
   RandomBursts random(seed);
   std::mt19937_64 size(seed);
-  CpuBurstUnit cpu;
+  ReferenceBurstUnit cpu;
   BurstCounters rtl_total;
   std::uint64_t done = 0;
   const std::uint64_t wanted = tests_wanted();

@@ -1,4 +1,4 @@
-// A wavefront that tests in place against one that sends batches.
+// What tests in place find against what batches to the reference model find.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,13 +6,19 @@
 #include <cstring>
 #include <memory>
 #include <span>
+#include <vector>
 
-#include "host/find/unit/cpu_burst_unit.h"
-#include "host/find/unit/cpu_hit_tester.h"
+#include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
-#include "host/find/unit/wavefront.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/unit_finder.h"
 
 namespace raygate::test {
+
+inline std::unique_ptr<Finder> reference_finder(const Bvh& bvh) {
+  return std::make_unique<UnitFinder>(
+      bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
+}
 
 /// What the tests in place did.
 struct InPlace {
@@ -20,18 +26,17 @@ struct InPlace {
   HitCounters counters;
 };
 
-/// Expects what both find to be the same, P's bits included. `search` is that in place, `reference`
-/// the same with records of its own.
-inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, const Search& search,
-                                const Search& reference) {
-  CpuHitTester in_place;
-  PipelineHitTester batches(std::make_unique<CpuBurstUnit>());
-  Wavefront tested(bvh, in_place), expected(bvh, batches);
-  tested.trace(rays, search);
-  expected.trace(rays, reference);
+/// Expects what both find to be the same, P's bits included; and each ray's counts to add up.
+inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, Search search) {
+  CpuFinder in_place(bvh);
+  std::vector<NearestHit> found(rays.size()), expected(rays.size());
+  reference_finder(bvh)->find(rays, search, expected);
+  std::vector<RayWork> work(rays.size());
+  search.work = work;
+  in_place.find(rays, search, found);
   InPlace done;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const NearestHit &a = tested.nearest(i), &b = expected.nearest(i);
+    const NearestHit &a = found[i], &b = expected[i];
     if (search.enough_before.empty()) {
       EXPECT_EQ(a.slot, b.slot) << i;
       if (search.ignored.empty()) {
@@ -44,10 +49,16 @@ inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, const
     }
     done.hits += a.slot != NearestHit::kNone;
   }
-  EXPECT_EQ(tested.own_records(), 0u);
-  done.counters = in_place.counters();
+  done.counters = in_place.counters().hit;
   EXPECT_EQ(done.counters.tests,
             done.counters.misses + done.counters.hits + done.counters.edge_doubts);
+  RayWork sum;
+  for (const RayWork& ray : work) {
+    sum.tests += ray.tests;
+    sum.doubts += ray.doubts;
+  }
+  EXPECT_EQ(sum.tests, done.counters.tests);
+  EXPECT_EQ(sum.doubts, done.counters.edge_doubts);
   return done;
 }
 

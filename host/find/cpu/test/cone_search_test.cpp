@@ -5,7 +5,6 @@
 
 #include "host/exact/test/meshes.h"
 #include "host/find/cpu/test/compare_in_place.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
@@ -38,11 +37,8 @@ class ConeSearchTest : public testing::Test {
   /// Traces in place and in batches; returns the number of hits.
   int compare(const std::vector<Corners>& mesh, const std::vector<Ray>& rays, Search search) {
     const Bvh bvh(test::scene_of(mesh));
-    RecordCache records(bvh, rays[0].origin), same_records(bvh, rays[0].origin);
-    Search reference = search;
-    search.common = &records;
-    reference.common = &same_records;
-    const test::InPlace done = test::compare_in_place(bvh, rays, search, reference);
+    search.common_origin = true;
+    const test::InPlace done = test::compare_in_place(bvh, rays, search);
     tests_ += done.counters.tests;
     return done.hits;
   }

@@ -5,7 +5,6 @@
 
 #include "host/exact/test/meshes.h"
 #include "host/find/cpu/test/compare_in_place.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
@@ -45,7 +44,7 @@ class RaySearchTest : public testing::Test {
 
   /// Traces one by one and in batches; returns the number of hits.
   int compare(const Bvh& bvh, const std::vector<Ray>& rays, const Search& search) {
-    const test::InPlace done = test::compare_in_place(bvh, rays, search, search);
+    const test::InPlace done = test::compare_in_place(bvh, rays, search);
     EXPECT_GT(done.counters.tests, 0u);
     return done.hits;
   }
@@ -64,6 +63,7 @@ class RaySearchTest : public testing::Test {
                                                     random_.below(static_cast<int>(mesh.size()))));
     }
     hits += compare(bvh, rays, {.limits = limits});
+    hits += compare(bvh, rays, {.limits = limits, .culling = false});
     hits += compare(bvh, rays, {.limits = limits, .ignored = ignored});
     hits += compare(bvh, rays, {.limits = limits, .ignored = ignored, .enough_before = limits});
     EXPECT_GT(hits, 1000);
@@ -98,17 +98,17 @@ TEST_F(RaySearchTest, FindsWhatBatchesFindAtAnyScale) {
 TEST_F(RaySearchTest, LimitsAndTiesAreExact) {
   const Corners wall = {glm::vec3(-4, -4, 3), glm::vec3(4, -4, 3), glm::vec3(0, 4, 3)};
   const Bvh bvh(test::scene_of({wall, wall}));
-  CpuHitTester tester;
-  Wavefront wavefront(bvh, tester);
+  CpuFinder finder(bvh);
+  std::vector<NearestHit> hits(3);
   const std::vector<Ray> rays(3, {glm::vec3(0), glm::vec3(0.25f, 0.5f, 1)});
   const float past = std::nextafter(3.0f, 4.0f);
   const std::vector<float> limits = {std::nextafter(3.0f, 0.0f), 3.0f, past};
-  wavefront.trace(rays, {.limits = limits});
-  EXPECT_EQ(wavefront.nearest(0).slot, NearestHit::kNone);
-  EXPECT_EQ(wavefront.nearest(1).slot, NearestHit::kNone);
-  ASSERT_NE(wavefront.nearest(2).slot, NearestHit::kNone);
-  EXPECT_EQ(bvh.triangle_of(wavefront.nearest(2).slot), 0u);
-  EXPECT_EQ(wavefront.nearest(2).point, glm::vec3(0.75f, 1.5f, 3));
+  finder.find(rays, {.limits = limits}, hits);
+  EXPECT_EQ(hits[0].slot, NearestHit::kNone);
+  EXPECT_EQ(hits[1].slot, NearestHit::kNone);
+  ASSERT_NE(hits[2].slot, NearestHit::kNone);
+  EXPECT_EQ(bvh.triangle_of(hits[2].slot), 0u);
+  EXPECT_EQ(hits[2].point, glm::vec3(0.75f, 1.5f, 3));
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "host/exact/test/meshes.h"
-#include "host/find/unit/cpu_burst_unit.h"
-#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/reference_plane_unit.h"
 #include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/serial_hit_tester.h"
 #include "host/scene/camera.h"
@@ -115,14 +115,14 @@ void expect_the_truth(HitTester& tester) {
 }
 
 TEST(SerialHitTester, ReportsHoldTheTruth) {
-  SerialHitTester tester(std::make_unique<CpuPlaneUnit>());
+  SerialHitTester tester(std::make_unique<ReferencePlaneUnit>());
   expect_the_truth(tester);
   const HitCounters counters = tester.counters();
   EXPECT_EQ(counters.plane_tests, counters.hits + counters.edge_doubts);
 }
 
 TEST(PipelineHitTester, ReportsHoldTheTruth) {
-  PipelineHitTester tester(std::make_unique<CpuBurstUnit>());
+  PipelineHitTester tester(std::make_unique<ReferenceBurstUnit>());
   expect_the_truth(tester);
 }
 
@@ -130,8 +130,8 @@ TEST(PipelineHitTester, ReportsHoldTheTruth) {
 TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
   Random random;
   const Batch batch(random, 2000);
-  SerialHitTester serial(std::make_unique<CpuPlaneUnit>());
-  PipelineHitTester pipeline(std::make_unique<CpuBurstUnit>());
+  SerialHitTester serial(std::make_unique<ReferencePlaneUnit>());
+  PipelineHitTester pipeline(std::make_unique<ReferenceBurstUnit>());
   HitResults a, b;
   serial.test(batch.bundles, a);
   pipeline.test(batch.bundles, b);
@@ -154,8 +154,8 @@ TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
 TEST(SerialHitTester, BothOrdersReportTheSame) {
   Random random;
   const Batch batch(random, 2000);
-  SerialHitTester first(std::make_unique<CpuPlaneUnit>());
-  SerialHitTester paper(std::make_unique<CpuPlaneUnit>(), SerialHitTester::Order::kPlanesFirst);
+  SerialHitTester first(std::make_unique<ReferencePlaneUnit>());
+  SerialHitTester paper(std::make_unique<ReferencePlaneUnit>(), SerialHitTester::Order::kPlanesFirst);
   HitResults a, b;
   first.test(batch.bundles, a);
   paper.test(batch.bundles, b);
@@ -180,7 +180,7 @@ TEST(SerialHitTester, ThePlaneOfTheOriginIsAMissAndAnEmptyRunNothing) {
   RayBundle empty = bundle;
   empty.record_count = 0;
   const RayBundle batch[] = {bundle, empty};
-  SerialHitTester tester(std::make_unique<CpuPlaneUnit>());
+  SerialHitTester tester(std::make_unique<ReferencePlaneUnit>());
   HitResults results;
   tester.test(batch, results);
   EXPECT_TRUE(results.hits.empty() && results.doubts.empty());

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "host/exact/exact.h"
-#include "host/find/unit/check_burst_unit.h"
-#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/same_results.h"
+#include "host/find/unit/reference_burst_unit.h"
 #include "host/lab/stress/random.h"
 #include "host/lab/variants/variant_units.h"
 #include "host/scene/camera.h"
@@ -20,7 +20,7 @@ using stress::Random;
 
 TEST(VariantBurstUnit, InBinary32IsTheCpusTwin) {
   RandomBursts random(1);
-  CpuBurstUnit cpu;
+  ReferenceBurstUnit cpu;
   VariantBurstUnit variant{Arithmetic{}};
   for (int i = 0; i < 20; ++i) {
     const BurstBatch batch = random.make(3000);

@@ -1,86 +1,85 @@
-#include "host/find/unit/wavefront.h"
+#include "host/find/unit/unit_finder.h"
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <utility>
 
-#include "host/find/cpu/cone_search.h"
-#include "host/find/cpu/ray_search.h"
+#include "host/find/unit/record_batch.h"
 #include "host/stopwatch.h"
 
 namespace raygate {
 
-Wavefront::Wavefront(const Bvh& bvh, HitTester& tester, std::size_t enough_tests)
-    : bvh_(bvh), tester_(tester), enough_tests_(enough_tests), nearest_(bvh) {}
+UnitFinder::UnitFinder(const Bvh& bvh, std::shared_ptr<HitTester> tester,
+                       std::shared_ptr<RecordCaches> caches)
+    : bvh_(bvh),
+      tester_(std::move(tester)),
+      caches_(caches ? std::move(caches) : std::make_shared<RecordCaches>(bvh)) {}
 
-void Wavefront::trace(std::span<const Ray> rays, const Search& search) {
+std::size_t UnitFinder::preferred_batch() const {
+  constexpr std::size_t kRaysPerTest = 256;  // so that batches are long against what fills the unit
+  return std::max(kBatch, kRaysPerTest * tester_->enough_tests());
+}
+
+FindCounters UnitFinder::counters() const {
+  FindCounters counters = counters_;
+  counters.hit = tester_->counters();
+  return counters;
+}
+
+void UnitFinder::find(std::span<const Ray> rays, const Search& search,
+                      std::span<NearestHit> hits) {
+  assert(hits.size() == rays.size());
   Stopwatch watch;
-  nearest_.reset(rays.size(), search.limits);
-  if (counting_) work_.assign(rays.size(), {});
-  if (trace_in_place(rays, search)) {
-    const double before = seconds_.doubt;
-    seconds_.doubt = nearest_.counters().seconds;
-    seconds_.hit += watch.lap() - (seconds_.doubt - before);
-    return;
+  rays_ = rays;
+  search_ = search;
+  hits_ = hits;
+  std::ranges::fill(hits, NearestHit{});
+  std::ranges::fill(search.work, RayWork{});
+  common_ = nullptr;
+  if (search.common_origin && !rays.empty()) {
+    common_ = &caches_->at(rays[0].origin, counters_.common_records);
   }
-  make_packets(rays, search);
+  make_packets();
   for (bool busy = true; busy;) {
     busy = false;
     for (Half& half : halves_) {
-      if (half.started) finish(rays, search, half);
+      if (half.started) finish(half);
       watch.lap();
-      collect(rays, search, half);
-      seconds_.traverse += watch.lap();
+      collect(half);
+      counters_.traverse += watch.lap();
       if (half.batch.empty()) continue;
-      if (search.common == nullptr) make_own_records(rays, half);
-      seconds_.record += watch.lap();
-      tester_.start(half.batch);
+      if (common_ == nullptr) make_own_records(half);
+      counters_.record += watch.lap();
+      tester_->start(half.batch);
       half.started = busy = true;
     }
   }
 }
 
 /// Takes the answers to a half's batch.
-void Wavefront::finish(std::span<const Ray> rays, const Search& search, Half& half) {
+void UnitFinder::finish(Half& half) {
   Stopwatch watch;
   results_.clear();
-  tester_.finish(results_);
+  tester_->finish(results_);
   half.started = false;
-  merge(rays, search, half);
-  if (counting_) count_batch(half);
-  const double before = seconds_.doubt;
-  seconds_.doubt = nearest_.counters().seconds;
-  seconds_.hit += watch.lap() - (seconds_.doubt - before);
-}
-
-/// What the host can do without batches; false where batches are needed.
-bool Wavefront::trace_in_place(std::span<const Ray> rays, const Search& search) {
-  HitCounters* const counters = tester_.in_place();
-  if (counters == nullptr || !search.culling || counting_) return false;
-  const SearchWishes wishes = {search.limits, search.ignored, search.enough_before};
-  const auto trace_by = [&](auto&& way) {
-    way.trace(rays, wishes);
-    ended_early_ += way.ended_early();
-  };
-  if (search.common != nullptr) {
-    trace_by(ConeSearch(bvh_, search.common->origin(), nearest_, *counters));
-  } else {
-    trace_by(RaySearch(bvh_, nearest_, *counters));
-  }
-  return true;
+  merge(half);
+  if (!search_.work.empty()) count_work(half);
+  counters_.hit_tests += watch.lap();
 }
 
 /// Packets are filled octant by octant, each in the order of the rays; the second half of them is
 /// the second half.
-void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
+void UnitFinder::make_packets() {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   packets_.clear();
   std::array<std::uint32_t, 8> open;  // the packet of each octant that has room
   std::array<int, 8> filled{};
   open.fill(kNone);
-  for (std::uint32_t number = 0; number < rays.size(); ++number) {
-    const Ray& ray = rays[number];
+  for (std::uint32_t number = 0; number < rays_.size(); ++number) {
+    const Ray& ray = rays_[number];
     if (!is_usable(ray.direction)) continue;
+    if (!is_scaled(ray.direction)) refuse_unscaled(ray);
     const int octant = octant_of(ray.direction);
     if (open[octant] == kNone) {
       open[octant] = static_cast<std::uint32_t>(packets_.size());
@@ -93,7 +92,7 @@ void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
     packet.rays[lane] = number;
     packet.traversal.set_ray(lane, ray.origin, ray.direction);
     packet.lanes |= 1u << lane;
-    if (!search.limits.empty()) packet.traversal.set_cutoff(lane, search.limits[number]);
+    if (!search_.limits.empty()) packet.traversal.set_cutoff(lane, search_.limits[number]);
     if (filled[octant] == kLanes) open[octant] = kNone;
   }
   for (Half& half : halves_) half.active.clear();
@@ -102,8 +101,8 @@ void Wavefront::make_packets(std::span<const Ray> rays, const Search& search) {
   }
 }
 
-std::optional<LeafVisit> Wavefront::next_visit(Packet& packet, const Search& search) {
-  if (search.culling) return packet.traversal.next_leaf();
+std::optional<LeafVisit> UnitFinder::next_visit(Packet& packet) {
+  if (search_.culling) return packet.traversal.next_leaf();
   const std::uint32_t first = packet.next_slot;
   if (first >= bvh_.slot_count()) return std::nullopt;
   const std::uint32_t count = std::min(Bvh::kMaxLeafSize, bvh_.slot_count() - first);
@@ -113,12 +112,12 @@ std::optional<LeafVisit> Wavefront::next_visit(Packet& packet, const Search& sea
 
 /// Fills the batch: every packet goes to its next leaf or, while there are too few tests, to the
 /// one after that.
-void Wavefront::collect(std::span<const Ray> rays, const Search& search, Half& half) {
+void UnitFinder::collect(Half& half) {
   half.batch.clear();
   half.owner.clear();
   for (std::size_t tests = 0; !half.active.empty();) {
-    tests += visit_leaves(rays, search, half);
-    if (tests >= enough_tests_) break;
+    tests += visit_leaves(half);
+    if (tests >= tester_->enough_tests()) break;
   }
 }
 
@@ -156,20 +155,21 @@ void add_own_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> n
 
 /// Sends every packet to its next leaf and writes the tests found there into the batch; their
 /// number. Packets that are through leave the active ones.
-std::size_t Wavefront::visit_leaves(std::span<const Ray> rays, const Search& search, Half& half) {
+std::size_t UnitFinder::visit_leaves(Half& half) {
   std::size_t kept = 0, tests = 0;
   for (const std::uint32_t index : half.active) {
     Packet& packet = packets_[index];
-    const auto visit = next_visit(packet, search);
+    const auto visit = next_visit(packet);
     if (!visit) continue;
     half.active[kept++] = index;
     tests += visit->count * static_cast<std::size_t>(std::popcount(visit->lanes));
-    if (search.common != nullptr) {
-      assert(rays[packet.rays[0]].origin == search.common->origin());
-      half.batch.push_back(make_bundle(rays, packet.rays, *visit, visit->lanes));
-      half.batch.back().records = search.common->leaf(visit->first, visit->count);
+    if (common_ != nullptr) {
+      assert(rays_[packet.rays[0]].origin == common_->origin());
+      half.batch.push_back(make_bundle(rays_, packet.rays, *visit, visit->lanes));
+      half.batch.back().records =
+          common_->leaf(visit->first, visit->count, counters_.common_records);
     } else {
-      add_own_bundles(rays, packet.rays, *visit, half.batch);
+      add_own_bundles(rays_, packet.rays, *visit, half.batch);
     }
     half.owner.resize(half.batch.size(), index);
   }
@@ -178,75 +178,88 @@ std::size_t Wavefront::visit_leaves(std::span<const Ray> rays, const Search& sea
 }
 
 /// All at once, when it is known how many: bundles point at their records.
-void Wavefront::make_own_records(std::span<const Ray> rays, Half& half) {
+void UnitFinder::make_own_records(Half& half) {
   std::size_t count = 0;
   for (const RayBundle& bundle : half.batch) count += bundle.record_count;
   if (half.records.size() < count) half.records.resize(count);
   PolygonRecord* next = half.records.data();
   for (std::size_t i = 0; i < half.batch.size(); ++i) {
     RayBundle& bundle = half.batch[i];
-    const Ray& ray = rays[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
-    bundle.records = next;
+    const Ray& ray = rays_[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
+    std::array<Corners, Bvh::kMaxLeafSize> corners;
     for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
-      *next++ = make_record(ray.origin, bvh_.corners_of(bundle.first_tag + k));
+      corners[k] = bvh_.corners_of(bundle.first_tag + k);
     }
+    make_records(ray.origin, std::span(corners).first(bundle.record_count),
+                 std::span(next, bundle.record_count));
+    bundle.records = next;
+    next += bundle.record_count;
   }
-  own_records_ += count;
+  counters_.own_records += count;
+}
+
+bool UnitFinder::take(std::uint32_t number, const SureHit& hit) {
+  return take_if_nearer(bvh_, rays_[number], search_.limit(number), {hit.tag, hit.point, hit.t},
+                        hits_[number], counters_);
+}
+
+bool UnitFinder::take(std::uint32_t number, const Doubt& doubt) {
+  return settle_doubt(bvh_, rays_[number], search_.limit(number), {doubt.tag, doubt.point, {}},
+                      hits_[number], counters_);
 }
 
 template <class Report>
-void Wavefront::offer(std::span<const Ray> rays, const Search& search, const Half& half,
-                      const Report& report) {
+void UnitFinder::offer(const Half& half, const Report& report) {
   Packet& packet = packets_[half.owner[report.bundle]];
   const std::uint32_t number = packet.rays[report.lane];
   const LaneMask lane = 1u << report.lane;
-  if ((packet.ended & lane) != 0 || !nearest_.offer(number, rays[number], report)) return;
-  const bool ends = !search.enough_before.empty() &&
-                    nearest_.is_before(number, rays[number], search.enough_before[number]);
-  ended_early_ += ends;
+  if ((packet.ended & lane) != 0 || !take(number, report)) return;
+  const bool ends =
+      !search_.enough_before.empty() &&
+      is_before(bvh_, rays_[number], hits_[number], search_.enough_before[number]);
+  counters_.ended_early += ends;
   if (ends) packet.ended |= lane;
-  packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : nearest_[number].t.high);
+  packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
 }
 
 /// A burst reports no hit that is surely farther than another one: where that one is ignored, exact
 /// arithmetic tries them all.
-void Wavefront::offer_hidden(std::span<const Ray> rays, const Search& search, const Half& half,
-                             const SureHit& ignored) {
+void UnitFinder::offer_hidden(const Half& half, const SureHit& ignored) {
   const RayBundle& bundle = half.batch[ignored.bundle];
   const std::uint32_t number = packets_[half.owner[ignored.bundle]].rays[ignored.lane];
-  if (!search.limits.empty() && ignored.t.low >= search.limits[number]) return;
+  if (ignored.t.low >= search_.limit(number)) return;
   for (std::uint32_t tag = bundle.first_tag; tag < bundle.first_tag + bundle.record_count; ++tag) {
     if (tag == ignored.tag) continue;
-    offer(rays, search, half, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
+    offer(half, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
   }
 }
 
-void Wavefront::merge(std::span<const Ray> rays, const Search& search, const Half& half) {
+void UnitFinder::merge(const Half& half) {
   const auto is_ignored = [&](const auto& report) {
-    return !search.ignored.empty() &&
-           search.ignored[packets_[half.owner[report.bundle]].rays[report.lane]] == report.tag;
+    return !search_.ignored.empty() &&
+           search_.ignored[packets_[half.owner[report.bundle]].rays[report.lane]] == report.tag;
   };
   for (const SureHit& hit : results_.hits) {
     if (is_ignored(hit)) {
-      offer_hidden(rays, search, half, hit);
+      offer_hidden(half, hit);
     } else {
-      offer(rays, search, half, hit);
+      offer(half, hit);
     }
   }
   for (const Doubt& doubt : results_.doubts) {
-    if (!is_ignored(doubt)) offer(rays, search, half, doubt);
+    if (!is_ignored(doubt)) offer(half, doubt);
   }
 }
 
-void Wavefront::count_batch(const Half& half) {
+void UnitFinder::count_work(const Half& half) {
   for (std::size_t i = 0; i < half.batch.size(); ++i) {
     for (LaneMask lanes = half.batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
       const std::uint32_t ray = packets_[half.owner[i]].rays[std::countr_zero(lanes)];
-      work_[ray].tests += half.batch[i].record_count;
+      search_.work[ray].tests += half.batch[i].record_count;
     }
   }
   for (const Doubt& doubt : results_.doubts) {
-    ++work_[packets_[half.owner[doubt.bundle]].rays[doubt.lane]].doubts;
+    ++search_.work[packets_[half.owner[doubt.bundle]].rays[doubt.lane]].doubts;
   }
 }
 

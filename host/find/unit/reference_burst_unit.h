@@ -1,4 +1,4 @@
-// The pipelined unit in C++, whatever its arithmetic.
+// The pipelined unit's reference model: the unit in C++, whatever its arithmetic.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "host/exact/binary32.h"
 #include "host/find/unit/burst_unit.h"
 
 namespace raygate {
@@ -27,9 +28,9 @@ struct HitDistance {
 /// for it. The same operations in the same order as hit_test_pipeline with these parameters, so
 /// that the bits are equal.
 template <typename Math>
-class BurstUnitTwin : public BurstUnit {
+class BasicReferenceBurstUnit : public BurstUnit {
  public:
-  explicit BurstUnitTwin(const Math& math = {}) : math_(math) {}
+  explicit BasicReferenceBurstUnit(const Math& math = {}) : math_(math) {}
 
   void run(std::span<const RayBundle> batch, BurstResults& results) override {
     for (std::uint32_t i = 0; i < batch.size(); ++i) {
@@ -47,6 +48,23 @@ class BurstUnitTwin : public BurstUnit {
     const UnitVerdict decided = decide(record, direction, v);
     if (decided != UnitVerdict::kHit) return decided;
     return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  }
+
+  /// What the edges alone say: a hit is one if it is ahead, which those of d's sign are.
+  [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
+                                          const glm::vec3& direction) const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    if (record.d == 0.0f) return UnitVerdict::kMiss;
+    const bool side = std::signbit(record.d);
+    bool all_sure = true;
+    for (int k = 0; k < 3; ++k) {
+      const float u = math_.dot(record.edges[k], direction);
+      const float bound = record.bounds[k];
+      const bool sure = !std::signbit(bound) && std::abs(u) > bound && std::abs(u) < kInfinity;
+      if (sure && std::signbit(u) != side) return UnitVerdict::kMiss;
+      all_sure = all_sure && sure;
+    }
+    return all_sure ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
   /// BurstUnit's t and its error, for a record that the ray surely hits.
@@ -85,20 +103,11 @@ class BurstUnitTwin : public BurstUnit {
   /// Before the division: whether the edges decide, and whether V may divide.
   [[nodiscard]] UnitVerdict decide(const PolygonRecord& record, const glm::vec3& direction,
                                    float v) const {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    if (record.d == 0.0f) return UnitVerdict::kMiss;
-    const bool side = std::signbit(record.d);
-    bool all_sure = true;
-    for (int k = 0; k < 3; ++k) {
-      const float u = math_.dot(record.edges[k], direction);
-      const float bound = record.bounds[k];
-      const bool sure = !std::signbit(bound) && std::abs(u) > bound && std::abs(u) < kInfinity;
-      if (sure && std::signbit(u) != side) return UnitVerdict::kMiss;
-      all_sure = all_sure && sure;
-    }
-    const bool divisible =
-        math_.is_normal(v) && std::signbit(v) == side && grazing(record.normal, v) <= max_grazing();
-    return all_sure && divisible ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+    const UnitVerdict inside = edges_verdict(record, direction);
+    if (inside != UnitVerdict::kHit) return inside;
+    const bool divisible = math_.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
+                           grazing(record.normal, v) <= max_grazing();
+    return divisible ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
   /// Whether two distances (positive) are as close as their errors add up to.
@@ -154,5 +163,15 @@ class BurstUnitTwin : public BurstUnit {
   Math math_;
   BurstCounters counters_;
 };
+
+/// In the machine's own float arithmetic.
+extern template class BasicReferenceBurstUnit<Binary32>;
+using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
+
+/// As BasicReferenceBurstUnit::distance, in binary32.
+[[nodiscard]] HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction);
+
+/// As BasicReferenceBurstUnit::point, in binary32.
+[[nodiscard]] glm::vec3 plane_point(const PolygonRecord& record, const glm::vec3& direction);
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-#include "host/find/unit/cpu_plane_unit.h"
+#include "host/find/unit/reference_plane_unit.h"
 
 #include <bit>
 #include <cassert>
@@ -13,7 +13,7 @@ float canonical(float x) { return std::isnan(x) ? std::bit_cast<float>(0x7FC0000
 
 }  // namespace
 
-void CpuPlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) {
+void ReferencePlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) {
   assert(tests.size() == points.size());
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const auto& [direction, normal, d] = tests[i];

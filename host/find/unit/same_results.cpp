@@ -1,10 +1,9 @@
-#include "host/find/unit/check_burst_unit.h"
+#include "host/find/unit/same_results.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <string>
-#include <utility>
 
 namespace raygate {
 namespace {
@@ -63,32 +62,5 @@ void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
   require_same_list<BurstHit>(batch, actual.hits, expected.hits);
   require_same_list<TestReport>(batch, actual.reports, expected.reports);
 }
-
-CheckBurstUnit::CheckBurstUnit(std::unique_ptr<BurstUnit> unit,
-                               std::unique_ptr<BurstUnit> reference)
-    : unit_(std::move(unit)), reference_(std::move(reference)) {}
-
-void CheckBurstUnit::run(std::span<const RayBundle> batch, BurstResults& results) {
-  start(batch);
-  finish(results);
-}
-
-void CheckBurstUnit::start(std::span<const RayBundle> batch) {
-  started_.push(batch);
-  unit_->start(batch);
-}
-
-void CheckBurstUnit::finish(BurstResults& results) {
-  const std::span<const RayBundle> batch = started_.pop();
-  actual_.clear();
-  expected_.clear();
-  unit_->finish(actual_);
-  reference_->run(batch, expected_);
-  require_same(batch, actual_, expected_);
-  results.hits.insert(results.hits.end(), actual_.hits.begin(), actual_.hits.end());
-  results.reports.insert(results.reports.end(), actual_.reports.begin(), actual_.reports.end());
-}
-
-BurstCounters CheckBurstUnit::counters() const { return unit_->counters(); }
 
 }  // namespace raygate

@@ -1,15 +1,15 @@
-#include "host/find/unit/cpu_burst_unit.h"
+#include "host/find/unit/reference_burst_unit.h"
 
 namespace raygate {
 
-template class BurstUnitTwin<Binary32>;
+template class BasicReferenceBurstUnit<Binary32>;
 
 HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction) {
-  return CpuBurstUnit().distance(record, direction);
+  return ReferenceBurstUnit().distance(record, direction);
 }
 
 glm::vec3 plane_point(const PolygonRecord& record, const glm::vec3& direction) {
-  return CpuBurstUnit().point(record, direction);
+  return ReferenceBurstUnit().point(record, direction);
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// The plane unit's twin in the machine's own float arithmetic.
+// The plane unit's reference model in the machine's own float arithmetic.
 #pragma once
 
 #include "host/find/unit/plane_unit.h"
@@ -7,7 +7,7 @@ namespace raygate {
 
 /// The same operations in the same order as the hardware: IEEE 754 makes the bits equal. Needs the
 /// machine's default floating-point environment (round to nearest even, subnormals kept).
-class CpuPlaneUnit : public PlaneUnit {
+class ReferencePlaneUnit : public PlaneUnit {
  public:
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
 };

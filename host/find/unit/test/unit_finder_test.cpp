@@ -1,14 +1,13 @@
 // Rays of any origins find what trying every triangle in exact arithmetic finds.
-#include "host/find/unit/wavefront.h"
+#include "host/find/unit/unit_finder.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
 #include "host/exact/test/meshes.h"
-#include "host/find/unit/cpu_burst_unit.h"
 #include "host/find/unit/pipeline_hit_tester.h"
-#include "host/scene/camera.h"
+#include "host/find/unit/reference_burst_unit.h"
 
 namespace raygate {
 namespace {
@@ -51,74 +50,76 @@ std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int
   return rays;
 }
 
-class WavefrontTest : public testing::Test {
+class UnitFinderTest : public testing::Test {
  protected:
   std::vector<Corners> mesh_ = sphere_in_box();
   Bvh bvh_{test::scene_of(mesh_)};
-  PipelineHitTester tester_{std::make_unique<CpuBurstUnit>()};
-  Wavefront wavefront_{bvh_, tester_};
+  UnitFinder finder_{bvh_, std::make_shared<PipelineHitTester>(
+                               std::make_unique<ReferenceBurstUnit>())};
   Random random_;
+
+  std::vector<NearestHit> find(const std::vector<Ray>& rays, const Search& search = {}) {
+    std::vector<NearestHit> hits(rays.size());
+    finder_.find(rays, search, hits);
+    return hits;
+  }
 };
 
-TEST_F(WavefrontTest, OwnOriginsFindTheExactNearest) {
+TEST_F(UnitFinderTest, OwnOriginsFindTheExactNearest) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 3000);
   std::vector<float> limits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     limits.push_back(i % 2 == 0 ? std::numeric_limits<float>::infinity()
                                 : random_.uniform(0.01f, 3.0f));
   }
-  wavefront_.trace(rays, {.limits = limits});
+  const auto hits_found = find(rays, {.limits = limits});
   int hits = 0, misses = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::uint32_t expected = exact_nearest(bvh_, rays[i], limits[i]);
-    ASSERT_EQ(wavefront_.nearest(i).slot, expected) << i;
+    ASSERT_EQ(hits_found[i].slot, expected) << i;
     ++(expected == NearestHit::kNone ? misses : hits);
   }
   EXPECT_GT(hits, 1000);
   EXPECT_GT(misses, 100);
-  EXPECT_GT(wavefront_.counters().exact_inside, 0u);
-  EXPECT_GT(wavefront_.own_records(), 0u);
+  EXPECT_GT(finder_.counters().exact_inside, 0u);
+  EXPECT_GT(finder_.counters().own_records, 0u);
 }
 
-TEST_F(WavefrontTest, CachedRecordsChangeNothing) {
+TEST_F(UnitFinderTest, CachedRecordsChangeNothing) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 2000);
   for (Ray& ray : rays) ray.origin = rays[0].origin;
-  RecordCache cache(bvh_, rays[0].origin);
-  wavefront_.trace(rays, {.common = &cache});
-  std::vector<NearestHit> cached;
-  for (std::size_t i = 0; i < rays.size(); ++i) cached.push_back(wavefront_.nearest(i));
-  EXPECT_EQ(wavefront_.own_records(), 0u);
-  EXPECT_GT(cache.made(), 0u);
-  wavefront_.trace(rays);
+  const auto cached = find(rays, {.common_origin = true});
+  EXPECT_EQ(finder_.counters().own_records, 0u);
+  EXPECT_GT(finder_.counters().common_records, 0u);
+  EXPECT_LE(finder_.counters().common_records, mesh_.size());
+  const auto own = find(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    ASSERT_EQ(wavefront_.nearest(i).slot, cached[i].slot);
-    ASSERT_EQ(wavefront_.nearest(i).point, cached[i].point);
+    ASSERT_EQ(own[i].slot, cached[i].slot);
+    ASSERT_EQ(own[i].point, cached[i].point);
   }
-  EXPECT_GT(wavefront_.own_records(), cache.made()) << "made once for each packet and leaf";
+  EXPECT_GT(finder_.counters().own_records, mesh_.size()) << "made once for each packet and leaf";
 }
 
-TEST_F(WavefrontTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
+TEST_F(UnitFinderTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 300);
-  wavefront_.count_work(true);
-  wavefront_.trace(rays);
-  std::vector<std::uint32_t> slots;
+  std::vector<RayWork> work(rays.size());
+  const auto culled = find(rays, {.work = work});
   std::uint64_t tests = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    slots.push_back(wavefront_.nearest(i).slot);
-    EXPECT_LT(wavefront_.work()[i].tests, mesh_.size() / 2);
-    tests += wavefront_.work()[i].tests;
+  for (const RayWork& ray : work) {
+    EXPECT_LT(ray.tests, mesh_.size() / 2);
+    tests += ray.tests;
   }
-  EXPECT_EQ(tests, tester_.counters().tests);
-  wavefront_.trace(rays, {.culling = false});
+  EXPECT_EQ(tests, finder_.counters().hit.tests);
+  const auto all = find(rays, {.culling = false, .work = work});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    ASSERT_EQ(wavefront_.nearest(i).slot, slots[i]);
-    ASSERT_EQ(wavefront_.work()[i].tests, mesh_.size());
+    ASSERT_EQ(all[i].slot, culled[i].slot);
+    ASSERT_EQ(work[i].tests, mesh_.size());
   }
 }
 
 // Rays that may end at any hit before some t end there whenever there is one; the others find their
 // nearest.
-TEST_F(WavefrontTest, RaysEndAtAnyHitThatWillDo) {
+TEST_F(UnitFinderTest, RaysEndAtAnyHitThatWillDo) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
   std::vector<float> enough;
   for (Ray& ray : rays) {
@@ -126,37 +127,36 @@ TEST_F(WavefrontTest, RaysEndAtAnyHitThatWillDo) {
     ray.direction = scaled_direction(glm::dvec3(random_.point(2.0f) - ray.origin));
     enough.push_back(random_.below(4) == 0 ? INFINITY : random_.uniform(2.0f, 20.0f));
   }
-  wavefront_.trace(rays, {.enough_before = enough});
+  const auto hits = find(rays, {.enough_before = enough});
   int ended = 0, farther = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::uint32_t exact = exact_nearest(bvh_, rays[i], INFINITY);
-    const std::uint32_t found = wavefront_.nearest(i).slot;
+    const std::uint32_t found = hits[i].slot;
     ASSERT_EQ(exact == NearestHit::kNone, found == NearestHit::kNone);
     if (found == NearestHit::kNone) continue;
-    const bool is_before = wavefront_.nearest_is_before(i, rays[i], enough[i]);
+    const bool is_before = raygate::is_before(bvh_, rays[i], hits[i], enough[i]);
     ASSERT_EQ(is_before, exact_nearest(bvh_, rays[i], enough[i]) != NearestHit::kNone);
     ASSERT_TRUE(is_before || found == exact);
     ++(is_before ? ended : farther);
   }
   EXPECT_GT(ended, 100);
   EXPECT_GT(farther, 100);
-  EXPECT_EQ(wavefront_.ended_early(), static_cast<std::uint64_t>(ended));
+  EXPECT_EQ(finder_.counters().ended_early, static_cast<std::uint64_t>(ended));
 }
 
 // Also where an ignored hit hides a farther one of its leaf from the reports.
-TEST_F(WavefrontTest, IgnoredSlotsDoNotCount) {
+TEST_F(UnitFinderTest, IgnoredSlotsDoNotCount) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
   for (Ray& ray : rays) {
     ray.origin *= 10.0f;  // outside: the sphere's two sides, and the box's
     ray.direction = scaled_direction(glm::dvec3(random_.point(1.5f) - ray.origin));
   }
-  wavefront_.trace(rays);
   std::vector<std::uint32_t> ignored;
-  for (std::size_t i = 0; i < rays.size(); ++i) ignored.push_back(wavefront_.nearest(i).slot);
-  wavefront_.trace(rays, {.ignored = ignored});
+  for (const NearestHit& hit : find(rays)) ignored.push_back(hit.slot);
+  const auto others = find(rays, {.ignored = ignored});
   int hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::uint32_t found = wavefront_.nearest(i).slot;
+    const std::uint32_t found = others[i].slot;
     ASSERT_EQ(found, exact_nearest(bvh_, rays[i], INFINITY, ignored[i]));
     hits += found != NearestHit::kNone;
   }
@@ -164,32 +164,33 @@ TEST_F(WavefrontTest, IgnoredSlotsDoNotCount) {
 }
 
 // Three sheets in one leaf, behind each other: a burst reports the nearest alone.
-TEST(Wavefront, IgnoredHitsHideNothing) {
+TEST(UnitFinder, IgnoredHitsHideNothing) {
   std::vector<Corners> sheets;
   for (const float z : {1.0f, 1.01f, 1.02f}) {
     sheets.push_back({glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)});
   }
   const Bvh bvh(test::scene_of(sheets));
-  PipelineHitTester tester(std::make_unique<CpuBurstUnit>());
-  Wavefront wavefront(bvh, tester);
+  UnitFinder finder(bvh,
+                    std::make_shared<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
   const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
-  wavefront.trace(rays);
-  const std::uint32_t first = wavefront.nearest(0).slot;
+  std::vector<NearestHit> hits(1);
+  finder.find(rays, {}, hits);
+  const std::uint32_t first = hits[0].slot;
   ASSERT_EQ(bvh.triangle_of(first), 0u);
-  wavefront.trace(rays, {.ignored = std::span(&first, 1)});
-  ASSERT_NE(wavefront.nearest(0).slot, NearestHit::kNone);
-  EXPECT_EQ(bvh.triangle_of(wavefront.nearest(0).slot), 1u);
+  finder.find(rays, {.ignored = std::span(&first, 1)}, hits);
+  ASSERT_NE(hits[0].slot, NearestHit::kNone);
+  EXPECT_EQ(bvh.triangle_of(hits[0].slot), 1u);
 }
 
-TEST_F(WavefrontTest, DirectionsThatLeadNowhereHitNothing) {
+TEST_F(UnitFinderTest, DirectionsThatLeadNowhereHitNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0)},
                                  {glm::vec3(0), glm::vec3(nan, 1, 0)},
                                  {glm::vec3(0), glm::vec3(0, 0, 1)}};
-  wavefront_.trace(rays);
-  EXPECT_EQ(wavefront_.nearest(0).slot, NearestHit::kNone);
-  EXPECT_EQ(wavefront_.nearest(1).slot, NearestHit::kNone);
-  EXPECT_NE(wavefront_.nearest(2).slot, NearestHit::kNone);
+  const auto hits = find(rays);
+  EXPECT_EQ(hits[0].slot, NearestHit::kNone);
+  EXPECT_EQ(hits[1].slot, NearestHit::kNone);
+  EXPECT_NE(hits[2].slot, NearestHit::kNone);
 }
 
 }  // namespace

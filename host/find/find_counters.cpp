@@ -1,4 +1,4 @@
-#include "host/find/unit/hit_tester.h"
+#include "host/find/find_counters.h"
 
 namespace raygate {
 
@@ -15,6 +15,19 @@ HitCounters& HitCounters::operator+=(const HitCounters& other) {
   clocks += other.clocks;
   idle_clocks += other.idle_clocks;
   output_stalls += other.output_stalls;
+  return *this;
+}
+
+FindCounters& FindCounters::operator+=(const FindCounters& other) {
+  hit += other.hit;
+  exact_inside += other.exact_inside;
+  exact_depth += other.exact_depth;
+  ended_early += other.ended_early;
+  own_records += other.own_records;
+  common_records += other.common_records;
+  traverse += other.traverse;
+  record += other.record;
+  hit_tests += other.hit_tests;
   return *this;
 }
 

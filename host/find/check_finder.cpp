@@ -1,0 +1,65 @@
+#include "host/find/check_finder.h"
+
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <utility>
+
+namespace raygate {
+namespace {
+
+std::string hex(std::span<const float> words) {
+  std::string text;
+  for (const float word : words) {
+    char buffer[16];
+    std::snprintf(buffer, sizeof buffer, " %08X", std::bit_cast<std::uint32_t>(word));
+    text += buffer;
+  }
+  return text;
+}
+
+std::string hex(const glm::vec3& v) { return hex({&v.x, 3}); }
+
+std::string describe(const Bvh& bvh, const NearestHit& hit) {
+  if (hit.slot == NearestHit::kNone) return "no hit";
+  char t[64];
+  std::snprintf(t, sizeof t, ", t in [%.17g, %.17g]", hit.t.low, hit.t.high);
+  return "triangle " + std::to_string(bvh.triangle_of(hit.slot)) + ", P" + hex(hit.point) + t;
+}
+
+}  // namespace
+
+CheckFinder::CheckFinder(const Bvh& bvh, std::unique_ptr<Finder> finder,
+                         std::unique_ptr<Finder> reference)
+    : bvh_(bvh), finder_(std::move(finder)), reference_(std::move(reference)) {}
+
+void CheckFinder::find(std::span<const Ray> rays, const Search& search,
+                       std::span<NearestHit> hits) {
+  finder_->find(rays, search, hits);
+  Search same = search;
+  same.work = {};
+  expected_.resize(rays.size());
+  reference_->find(rays, same, expected_);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (agree(rays[i], search, i, hits[i], expected_[i])) continue;
+    const float limit = search.limit(i);
+    throw FinderMismatch("the finders differ: ray" + hex(rays[i].origin) + "," +
+                         hex(rays[i].direction) + ", limit" + hex({&limit, 1}) + ": " +
+                         describe(bvh_, hits[i]) + "; reference: " + describe(bvh_, expected_[i]));
+  }
+}
+
+bool CheckFinder::agree(const Ray& ray, const Search& search, std::size_t number,
+                        const NearestHit& a, const NearestHit& b) const {
+  if (a.slot == NearestHit::kNone || b.slot == NearestHit::kNone) return a.slot == b.slot;
+  if (!search.enough_before.empty() && a.slot != b.slot) {
+    const float enough = search.enough_before[number];
+    return is_before(bvh_, ray, a, enough) && is_before(bvh_, ray, b, enough);
+  }
+  const bool with_point = search.ignored.empty() && search.enough_before.empty();
+  return a.slot == b.slot && a.t.low <= b.t.high && b.t.low <= a.t.high &&
+         (!with_point || std::memcmp(&a.point, &b.point, sizeof a.point) == 0);
+}
+
+}  // namespace raygate

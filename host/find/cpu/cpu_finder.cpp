@@ -1,0 +1,25 @@
+#include "host/find/cpu/cpu_finder.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "host/find/cpu/cone_search.h"
+#include "host/find/cpu/ray_search.h"
+#include "host/stopwatch.h"
+
+namespace raygate {
+
+void CpuFinder::find(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits) {
+  assert(hits.size() == rays.size());
+  Stopwatch watch;
+  std::ranges::fill(hits, NearestHit{});
+  std::ranges::fill(search.work, RayWork{});
+  if (search.common_origin && search.culling && !rays.empty()) {
+    ConeSearch(bvh_, counters_).trace(rays, search, hits);
+  } else {
+    RaySearch(bvh_, counters_).trace(rays, search, hits);
+  }
+  counters_.hit_tests += watch.lap();
+}
+
+}  // namespace raygate
