@@ -1,12 +1,14 @@
 // Adder of a chosen kind: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational.
 //
 // Every addition of the cores goes through here, so that one parameter changes them all.
+// Arith: see arith_pkg; the other parameters are of Structural alone.
 // Adder: one of arith_pkg::adder_e (a number, for tools can only override those from outside).
 // GroupWidths: the groups of a carry-select adder (see arith_pkg), or 0 for those of its kind: up
 // to 12 bits, as in exponents, one look-ahead group is not worth cutting.
 // LookAhead: how the groups of a carry-select adder add, see there.
 module adder #(
   parameter int unsigned Width = 48,
+  parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = '0,
   parameter bit LookAhead = 1'b1
@@ -18,7 +20,9 @@ module adder #(
   output logic             carry_o
 );
 
-  if (Adder == arith_pkg::AdderRipple) begin : gen_ripple
+  if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
+    assign {carry_o, sum_o} = (Width + 1)'(a_i) + (Width + 1)'(b_i) + (Width + 1)'(carry_i);
+  end else if (Adder == arith_pkg::AdderRipple) begin : gen_ripple
     ripple_carry_adder #(
       .Width(Width)
     ) u_adder (
@@ -48,7 +52,7 @@ module adder #(
       .sum_o,
       .carry_o
     );
-  end else if (Adder == arith_pkg::AdderPrefix) begin : gen_prefix
+  end else begin : gen_prefix
     prefix_adder #(
       .Width(Width)
     ) u_adder (
@@ -58,8 +62,6 @@ module adder #(
       .sum_o,
       .carry_o
     );
-  end else begin : gen_tool
-    assign {carry_o, sum_o} = (Width + 1)'(a_i) + (Width + 1)'(b_i) + (Width + 1)'(carry_i);
   end
 
 endmodule

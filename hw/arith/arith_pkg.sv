@@ -1,16 +1,23 @@
-// The kinds of adder that every core is built from, and the group widths of carry-select adders.
+// The two kinds of arithmetic, the kinds of adder, and the group widths of carry-select adders.
+//
+// Arith, a parameter of all that calculates, says how: Structural is Booth recoding, a carry-save tree
+// and adders of the kind Adder; Behavioural is the language's own +, * and <, for tools that know how to
+// build those (DSP blocks, carry chains). Both are the same modules with the same stages and the same
+// bits: adder, comparator, incrementer and multiplier alone tell them apart.
 //
 // A list of group widths is one flat vector of MaxGroups bytes: the lowest byte is the least
 // significant group, a byte of 0 ends the list. (A flat vector, because Yosys 0.23 has no array
 // parameters.)
 package arith_pkg;
 
+  localparam int unsigned Structural  = 0;
+  localparam int unsigned Behavioural = 1;
+
   typedef enum int unsigned {
     AdderRipple  = 0,  // a chain of full adders
     AdderUniform = 1,  // carry-select, groups of one width
     AdderGraded  = 2,  // carry-select, groups that grow towards the top
-    AdderPrefix  = 3,  // Sklansky parallel prefix, a yardstick
-    AdderTool    = 4   // the tool's own `+`, the other yardstick
+    AdderPrefix  = 3   // Sklansky parallel prefix, a yardstick
   } adder_e;
 
   localparam int unsigned MaxGroups = 16;

@@ -45,7 +45,7 @@ module booth_multiplier #(
   // is 2**(Width+1) + ~n * 2**(Width+1),
   // where the odd bits of ~n are the constants that stand for all sign extensions.
 
-  logic [2*Width*Rows-1:0] rows  /*verilator split_var*/;  // simulated as Rows words
+  logic [2*Width*Rows-1:0] rows;
 
   for (genvar k = 0; k < Digits; k++) begin : gen_row
     logic [Width:0] row;

@@ -11,12 +11,7 @@ module carry_save_adder #(
   output logic [Width-1:0] carry_o
 );
 
-  // full_adder, word-wide: one instance a bit simulates seven times slower. Steps in this order keep
-  // the simulator from moving the shift to each of the three words.
-  always_comb begin
-    sum_o = a_i ^ b_i ^ c_i;
-    carry_o = (a_i & b_i) | ((a_i ^ b_i) & c_i);
-    carry_o = carry_o << 1;
-  end
+  assign sum_o   = a_i ^ b_i ^ c_i;
+  assign carry_o = ((a_i & b_i) | ((a_i ^ b_i) & c_i)) << 1;
 
 endmodule

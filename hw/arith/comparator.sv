@@ -3,11 +3,11 @@
 // A tree: each level joins pairs of neighbours, the upper one deciding unless it is equal. Written
 // as word-wide steps, of which all but the tree that ends in the top bit is pruned by synthesis.
 //
-// Adder: AdderTool leaves all this to the tool's own `<`; other kinds make no difference.
+// Arith: Behavioural is the language's own `<` and `==`.
 // Combinational, $clog2(Width) levels. Any input.
 module comparator #(
   parameter int unsigned Width = 31,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Arith = arith_pkg::Structural
 ) (
   input  logic [Width-1:0] a_i,
   input  logic [Width-1:0] b_i,
@@ -15,7 +15,7 @@ module comparator #(
   output logic             equal_o
 );
 
-  if (Adder == arith_pkg::AdderTool) begin : gen_tool
+  if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign less_o = a_i < b_i;
     assign equal_o = a_i == b_i;
   end else begin : gen_tree

@@ -4,18 +4,18 @@
 // is found by a prefix AND of $clog2(Width) levels before the carry is known; the carry then costs
 // one AND and one XOR. A rounder has its decision late and its word early.
 //
-// Adder: AdderTool leaves all this to the tool's own `+`; other kinds make no difference.
+// Arith: Behavioural is the language's own `+`.
 // Combinational. Any input; all ones wrap to zero.
 module incrementer #(
   parameter int unsigned Width = 8,  // at least 2
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Arith = arith_pkg::Structural
 ) (
   input  logic [Width-1:0] a_i,
   input  logic             carry_i,
   output logic [Width-1:0] sum_o
 );
 
-  if (Adder == arith_pkg::AdderTool) begin : gen_tool
+  if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign sum_o = a_i + Width'(carry_i);
   end else begin : gen_prefix
     localparam int unsigned Levels = $clog2(Width);

@@ -1,8 +1,7 @@
 // Counts the zeros above the highest one of a word.
 //
 // The highest one is smeared over all places below it, which leaves a mark where the ones begin; bit j
-// of the count is the OR of all places whose number of zeros above has that bit. Written as word-wide
-// steps, a third of what a tree of partial counts takes to simulate; none where the top bit is set.
+// of the count is the OR of all places whose number of zeros above has that bit.
 //
 // Combinational, $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1
 // and count_o is all ones.
@@ -27,13 +26,14 @@ module leading_zero_counter #(
     smeared = a_i;
     highest = a_i;
     count_o = '0;
-    if (!a_i[Width-1]) begin  // the usual case, and then a simulation has nothing to do
+    if (!a_i[Width-1]) begin
       for (int unsigned step = 1; step < Width; step = step * 2) begin
         smeared = smeared | (smeared >> step);
       end
       highest = smeared & ~(smeared >> 1);
-      for (int unsigned j = 0; j < CountWidth; j++)
-      count_o[j] = ~smeared[0] | (|(highest & places(j)));
+      for (int unsigned j = 0; j < CountWidth; j++) begin
+        count_o[j] = ~smeared[0] | (|(highest & places(j)));
+      end
     end
   end
   assign zero_o = a_i == '0;

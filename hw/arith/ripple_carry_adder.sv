@@ -10,7 +10,7 @@ module ripple_carry_adder #(
   output logic             carry_o
 );
 
-  // One carry signal per bit: a vector would feed itself, and be simulated bit after bit.
+  // One carry signal per bit: a vector would feed itself.
   for (genvar i = 0; i < Width; i++) begin : gen_bit
     logic carry_in, carry_out;
     if (i == 0) begin : gen_first

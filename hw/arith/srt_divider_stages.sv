@@ -18,6 +18,7 @@ module srt_divider_stages #(
   parameter int unsigned Width = 24,  // of both operands
   parameter int unsigned Rows  = 12,
   parameter int unsigned BesideWidth = 1,
+  parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit          Pipelined = 1'b0
 ) (
@@ -115,6 +116,7 @@ module srt_divider_stages #(
         .Width(ResWidth),
         .DigitsWidth(DigitsWidth - 2),
         .BesideWidth(BesideWidth),
+        .Arith(Arith),
         .Adder(Adder),
         .Pipelined(Pipelined)
       ) u_row (
@@ -148,6 +150,7 @@ module srt_divider_stages #(
 
   adder #(
     .Width(ResWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_remainder (
     .a_i(gen_row[Rows].sum),
@@ -164,6 +167,7 @@ module srt_divider_stages #(
 
   adder #(
     .Width(QuotientWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_quotient (
     .a_i(positives),

@@ -13,6 +13,7 @@ module srt_row #(
   parameter int unsigned Width = 25,
   parameter int unsigned DigitsWidth = 2,  // of the digits so far
   parameter int unsigned BesideWidth = 1,
+  parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit          Pipelined = 1'b0
 ) (
@@ -41,6 +42,7 @@ module srt_row #(
 
   adder #(
     .Width(EstimateWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_estimate (
     .a_i(sum_i[Width-1-:EstimateWidth]),

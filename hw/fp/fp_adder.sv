@@ -4,6 +4,7 @@
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -18,6 +19,7 @@ module fp_adder #(
   fp_adder_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_stages (
     .clk_i(1'b0),

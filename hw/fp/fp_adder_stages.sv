@@ -16,6 +16,7 @@
 module fp_adder_stages #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
   parameter bit [2:0]    Cuts      = 3'b000
 ) (
@@ -82,7 +83,7 @@ module fp_adder_stages #(
 
   comparator #(
     .Width(ExpWidth + FracWidth),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_order (
     .a_i(a_i[ExpWidth+FracWidth-1:0]),
     .b_i(b_i[ExpWidth+FracWidth-1:0]),
@@ -101,6 +102,7 @@ module fp_adder_stages #(
 
   adder #(
     .Width(ExpWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_a_minus_b (
     .a_i(a_exp),
@@ -111,6 +113,7 @@ module fp_adder_stages #(
   );
   adder #(
     .Width(ExpWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_b_minus_a (
     .a_i(b_exp),
@@ -201,6 +204,7 @@ module fp_adder_stages #(
 
   adder #(
     .Width(FarWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_far_sum (
     .a_i(far_big),
@@ -214,30 +218,26 @@ module fp_adder_stages #(
 
   logic [ExpWidth-1:0] far_exp;
 
-  if (Adder == arith_pkg::AdderTool) begin : gen_tool_exp
-    assign far_exp = big_exp_1 - ExpWidth'(1) - ExpWidth'(subtract_1);
-  end else begin : gen_exp
-    logic [ExpWidth-1:0] exp_plus_1_n, exp_plus_2_n;  // complements count downwards
+  logic [ExpWidth-1:0] exp_plus_1_n, exp_plus_2_n;  // complements count downwards
 
-    incrementer #(
-      .Width(ExpWidth),
-      .Adder(Adder)
-    ) u_exp_less_1 (
-      .a_i(~big_exp_1),
-      .carry_i(1'b1),
-      .sum_o(exp_plus_1_n)
-    );
-    incrementer #(
-      .Width(ExpWidth - 1),
-      .Adder(Adder)
-    ) u_exp_less_2 (
-      .a_i(~big_exp_1[ExpWidth-1:1]),
-      .carry_i(1'b1),
-      .sum_o(exp_plus_2_n[ExpWidth-1:1])
-    );
-    assign exp_plus_2_n[0] = ~big_exp_1[0];
-    assign far_exp = ~(subtract_1 ? exp_plus_2_n : exp_plus_1_n);
-  end
+  incrementer #(
+    .Width(ExpWidth),
+    .Arith(Arith)
+  ) u_exp_less_1 (
+    .a_i(~big_exp_1),
+    .carry_i(1'b1),
+    .sum_o(exp_plus_1_n)
+  );
+  incrementer #(
+    .Width(ExpWidth - 1),
+    .Arith(Arith)
+  ) u_exp_less_2 (
+    .a_i(~big_exp_1[ExpWidth-1:1]),
+    .carry_i(1'b1),
+    .sum_o(exp_plus_2_n[ExpWidth-1:1])
+  );
+  assign exp_plus_2_n[0] = ~big_exp_1[0];
+  assign far_exp = ~(subtract_1 ? exp_plus_2_n : exp_plus_1_n);
 
   // ---- Near path: subtract, the distance known from the exponents' lowest bits
 
@@ -248,6 +248,7 @@ module fp_adder_stages #(
 
   adder #(
     .Width(NearWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_near_difference (
     .a_i({big_sig_1, 1'b0}),
@@ -308,8 +309,8 @@ module fp_adder_stages #(
   end
 
   // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one:
-  // what is left is subnormal, or zero, and has the exponent field 0. Where this path isn't taken there
-  // is nothing to count, which a simulation is glad of.
+  // what is left is subnormal, or zero, and has the exponent field 0. Nothing is counted where this path
+  // isn't taken.
 
   logic [NearWidth-1:0] near_normal;
   logic [CountWidth-1:0] near_count;
@@ -327,6 +328,7 @@ module fp_adder_stages #(
   assign near_shift = ExpWidth'(near_count);
   adder #(
     .Width(ExpWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_near_exp (
     .a_i(big_exp_2),
@@ -350,7 +352,7 @@ module fp_adder_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
     .SubnormalShift(1'b0),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_round (
     .sign_i(sign_2),
     .exponent_i({2'b00, far_exp_2}),

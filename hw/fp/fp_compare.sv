@@ -7,7 +7,8 @@
 // Combinational; takes every bit pattern. Source: IEEE 754-2019, clause 5.11.
 module fp_compare #(
   parameter int unsigned ExpWidth  = 8,
-  parameter int unsigned FracWidth = 23
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
@@ -37,7 +38,8 @@ module fp_compare #(
 
   logic mag_less, mag_equal;
   comparator #(
-    .Width(MagWidth)
+    .Width(MagWidth),
+    .Arith(Arith)
   ) u_magnitudes (
     .a_i(a_mag),
     .b_i(b_mag),

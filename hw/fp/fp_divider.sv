@@ -4,6 +4,7 @@
 module fp_divider #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
   parameter int unsigned QuotientBits = 0
 ) (
@@ -18,6 +19,7 @@ module fp_divider #(
   fp_divider_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
+    .Arith(Arith),
     .Adder(Adder),
     .QuotientBits(QuotientBits)
   ) u_stages (

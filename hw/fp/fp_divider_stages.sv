@@ -19,6 +19,7 @@
 module fp_divider_stages #(
   parameter int unsigned ExpWidth     = 8,
   parameter int unsigned FracWidth    = 23,
+  parameter int unsigned Arith        = arith_pkg::Structural,
   parameter int unsigned Adder        = arith_pkg::AdderGraded,
   parameter int unsigned QuotientBits = 0,
   parameter bit          Pipelined    = 1'b0
@@ -116,6 +117,7 @@ module fp_divider_stages #(
   assign b_count_wide = RoundExpWidth'(b_count);
   adder #(
     .Width(RoundExpWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_offset (
     .a_i({2'b00, a_exp}),
@@ -126,6 +128,7 @@ module fp_divider_stages #(
   );
   adder #(
     .Width(RoundExpWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_exp_difference (
     .a_i(a_exp_offset),
@@ -136,6 +139,7 @@ module fp_divider_stages #(
   );
   adder #(
     .Width(RoundExpWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_count_difference (
     .a_i(b_count_wide),
@@ -189,6 +193,7 @@ module fp_divider_stages #(
 
   adder #(
     .Width(RoundExpWidth),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_exponent (
     .a_i(exp_difference_1),
@@ -207,6 +212,7 @@ module fp_divider_stages #(
     .Width(SigWidth),
     .Rows(Rows),
     .BesideWidth(RoundExpWidth + 6),
+    .Arith(Arith),
     .Adder(Adder),
     .Pipelined(Pipelined)
   ) u_divide (
@@ -250,7 +256,7 @@ module fp_divider_stages #(
   fp_round #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_round (
     .sign_i(sign_2),
     .exponent_i(exponent_2),

@@ -4,6 +4,7 @@
 module fp_multiplier #(
   parameter int unsigned ExpWidth    = 8,
   parameter int unsigned FracWidth   = 23,
+  parameter int unsigned Arith       = arith_pkg::Structural,
   parameter int unsigned Adder       = arith_pkg::AdderGraded,
   parameter bit          ConstantRow = 1'b0
 ) (
@@ -18,6 +19,7 @@ module fp_multiplier #(
   fp_multiplier_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
+    .Arith(Arith),
     .Adder(Adder),
     .ConstantRow(ConstantRow)
   ) u_stages (

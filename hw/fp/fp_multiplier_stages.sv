@@ -5,9 +5,8 @@
 // left by the leading zeros, but not beyond the smallest exponent, or to the right for a subnormal
 // result. Behind the multiplier are left one shift and the shared rounder.
 //
-// Adder: the kind of the significands' and the exponents' adders.
+// Arith, Adder: see arith_pkg.
 // ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
-// ArrayMultiplier: 1 for booth_array_multiplier in its place, which a simulation runs faster.
 // Cuts: bit 0 and 1 put registers behind the product, and behind the result. As many clocks of
 // latency as cuts, one operation a clock; clocks without enable_i don't count. No cut:
 // combinational. The rounding mode is used in the second stage only.
@@ -18,9 +17,9 @@
 module fp_multiplier_stages #(
   parameter int unsigned ExpWidth    = 8,
   parameter int unsigned FracWidth   = 23,
+  parameter int unsigned Arith       = arith_pkg::Structural,
   parameter int unsigned Adder       = arith_pkg::AdderGraded,
   parameter bit          ConstantRow = 1'b0,
-  parameter bit          ArrayMultiplier = 1'b0,
   parameter bit [1:0]    Cuts        = 2'b00
 ) (
   input  logic                        clk_i,
@@ -78,25 +77,16 @@ module fp_multiplier_stages #(
 
   logic [ProdWidth-1:0] product;
 
-  if (ArrayMultiplier) begin : gen_array
-    booth_array_multiplier #(
-      .Width(SigWidth)
-    ) u_multiplier (
-      .a_i(a_sig),
-      .b_i(b_sig),
-      .product_o(product)
-    );
-  end else begin : gen_tree
-    booth_multiplier #(
-      .Width(SigWidth),
-      .Adder(Adder),
-      .ConstantRow(ConstantRow)
-    ) u_multiplier (
-      .a_i(a_sig),
-      .b_i(b_sig),
-      .product_o(product)
-    );
-  end
+  multiplier #(
+    .Width(SigWidth),
+    .Arith(Arith),
+    .Adder(Adder),
+    .ConstantRow(ConstantRow)
+  ) u_multiplier (
+    .a_i(a_sig),
+    .b_i(b_sig),
+    .product_o(product)
+  );
 
   // ---- Add the exponents: the biased exponent of the product less one, as the rounder wants it, is
   // a_exp + b_exp - bias - 1 = a_exp + b_exp - 2**(ExpWidth-1), which leaves the low bits alone.
@@ -106,6 +96,7 @@ module fp_multiplier_stages #(
 
   adder #(
     .Width(ExpWidth + 1),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_exp_sum (
     .a_i({1'b0, a_exp}),
@@ -115,11 +106,7 @@ module fp_multiplier_stages #(
     .carry_o(unused_exp_carry)
   );
   assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
-  if (Adder == arith_pkg::AdderTool) begin : gen_tool_exp
-    assign exp = exp_sum - (ExpWidth + 1)'(2 ** (ExpWidth - 1));
-  end else begin : gen_exp
-    assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
-  end
+  assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
 
   // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two
   // is far below the smallest subnormal). A mark stops the count where the exponent is the smallest.
@@ -172,6 +159,7 @@ module fp_multiplier_stages #(
 
   adder #(
     .Width(ExpWidth + 1),
+    .Arith(Arith),
     .Adder(Adder)
   ) u_exp_less_left (
     .a_i(exp),
@@ -225,7 +213,7 @@ module fp_multiplier_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
     .SubnormalShift(1'b0),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_round (
     .sign_i(sign_1),
     .exponent_i({1'b0, exp_1 & {(ExpWidth + 1){~exp_negative_1}}}),

@@ -8,8 +8,7 @@
 //
 // What the cores are made of: sums and differences of significands and exponents are instances of
 // hw/arith's adder (its kind is their parameter Adder), steps by one of its incrementer, products
-// and quotients of its multiplier and divider. The operators + - * / stand in constants alone,
-// and where the kind is AdderTool.
+// and quotients of its multiplier and divider. The operators + - * / stand in constants alone.
 //
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;

@@ -25,7 +25,7 @@ module fp_round #(
   parameter int unsigned ExpWidth       = 8,
   parameter int unsigned FracWidth      = 23,
   parameter bit          SubnormalShift = 1'b1,
-  parameter int unsigned Adder          = arith_pkg::AdderGraded  // AdderTool: + alone
+  parameter int unsigned Arith          = arith_pkg::Structural
 ) (
   input  logic                          sign_i,
   input  logic signed [ExpWidth+1:0]    exponent_i,
@@ -90,15 +90,7 @@ module fp_round #(
   logic [FracWidth-1:0] fraction;
   logic guard, sticky;
 
-  if (Adder == arith_pkg::AdderTool) begin : gen_tool_normal
-    // The same by a shift: a simulation has no branch to guess.
-    logic [SigWidth-1:0] upper;
-    assign upper = SigWidth'(placed[SigWidth-1]);
-    assign normal = (SigWidth - 1)'((placed >> upper[0]) | (placed & upper));
-  end else begin : gen_normal
-    assign normal = placed[SigWidth-1] ? {placed[SigWidth-1:2], |placed[1:0]}
-                                       : placed[SigWidth-2:0];
-  end
+  assign normal = placed[SigWidth-1] ? {placed[SigWidth-1:2], |placed[1:0]} : placed[SigWidth-2:0];
   assign fraction = normal[SigWidth-3-:FracWidth];
   assign guard = normal[2];
   assign sticky = |normal[1:0];
@@ -110,56 +102,41 @@ module fp_round #(
 
   assign inexact = guard | sticky;
 
-  if (Adder == arith_pkg::AdderTool) begin : gen_tool
-    logic [FieldWidth-1:0] above;  // of the integer bit that `normal` has
-    logic [2:0] nudge;  // added to guard, round and sticky, carries exactly where to round up
-    logic [SigWidth-4:0] up;  // `normal`, rounded
-    logic [2:0] unused_places;
-    logic [WordWidth:0] word;
+  logic [FieldWidth-1:0] base_plus_1, base_plus_2, field;
+  logic increment, unused_integer_bit;
 
-    assign above = base + FieldWidth'(placed[SigWidth-1]);
-    assign nudge = nearest_even ? 3'd3 + 3'(fraction[0]) : nearest ? 3'd4 : {3{away}};
-    assign {up, unused_places} = SigWidth'(normal) + SigWidth'(nudge);
-    assign word = {above, {FracWidth{1'b0}}} + (WordWidth + 1)'(up);
-    assign rounded = word[WordWidth-1:0];
-    assign overflow = word >= {InfField, {FracWidth{1'b0}}};
-  end else begin : gen_incrementers
-    logic [FieldWidth-1:0] base_plus_1, base_plus_2, field;
-    logic increment, unused_integer_bit;
+  assign increment = (nearest & guard & (sticky | fraction[0] | ~nearest_even))
+                   | (away & (guard | sticky));
+  assign unused_integer_bit = normal[SigWidth-2];
+  incrementer #(
+    .Width(FieldWidth),
+    .Arith(Arith)
+  ) u_base_plus_1 (
+    .a_i(base),
+    .carry_i(1'b1),
+    .sum_o(base_plus_1)
+  );
+  incrementer #(
+    .Width(FieldWidth - 1),
+    .Arith(Arith)
+  ) u_base_plus_2 (
+    .a_i(base[FieldWidth-1:1]),
+    .carry_i(1'b1),
+    .sum_o(base_plus_2[FieldWidth-1:1])
+  );
+  assign base_plus_2[0] = base[0];
+  assign field = placed[SigWidth-1] ? base_plus_2 : placed[SigWidth-2] ? base_plus_1 : base;
 
-    assign increment = (nearest & guard & (sticky | fraction[0] | ~nearest_even))
-                     | (away & (guard | sticky));
-    assign unused_integer_bit = normal[SigWidth-2];
-    incrementer #(
-      .Width(FieldWidth),
-      .Adder(Adder)
-    ) u_base_plus_1 (
-      .a_i(base),
-      .carry_i(1'b1),
-      .sum_o(base_plus_1)
-    );
-    incrementer #(
-      .Width(FieldWidth - 1),
-      .Adder(Adder)
-    ) u_base_plus_2 (
-      .a_i(base[FieldWidth-1:1]),
-      .carry_i(1'b1),
-      .sum_o(base_plus_2[FieldWidth-1:1])
-    );
-    assign base_plus_2[0] = base[0];
-    assign field = placed[SigWidth-1] ? base_plus_2 : placed[SigWidth-2] ? base_plus_1 : base;
-
-    incrementer #(
-      .Width(WordWidth),
-      .Adder(Adder)
-    ) u_round (
-      .a_i({field[ExpWidth-1:0], fraction}),
-      .carry_i(increment),
-      .sum_o(rounded)
-    );
-    // Found beside the increment and not after it.
-    assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
-  end
+  incrementer #(
+    .Width(WordWidth),
+    .Arith(Arith)
+  ) u_round (
+    .a_i({field[ExpWidth-1:0], fraction}),
+    .carry_i(increment),
+    .sum_o(rounded)
+  );
+  // Found beside the increment and not after it.
+  assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
 
   // ---- Tininess: a leading bit below the smallest exponent. After rounding, it is not tiny if the
   // unbounded rounding, one bit further down, carries into that bit: all ones, and an increment.

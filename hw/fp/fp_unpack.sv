@@ -36,7 +36,7 @@ module fp_unpack #(
 
   always_comb begin
     {zero_o, infinity_o, nan_o, signaling_nan_o} = 4'b0000;
-    if (special_o) begin  // seldom, and else a simulation has nothing to do
+    if (special_o) begin
       zero_o = field_zero;
       infinity_o = field_ones & fraction_zero;
       nan_o = field_ones & ~fraction_zero;

@@ -12,8 +12,8 @@ module hit_test_array #(
   parameter int unsigned Lanes     = 1,
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
-  parameter bit          ArrayMultiplier = 1'b0,  // see fp_multiplier_stages
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
   parameter int unsigned CounterWidth = 48,
@@ -57,8 +57,8 @@ module hit_test_array #(
     hit_test_pipeline #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
+      .Arith(Arith),
       .Adder(Adder),
-      .ArrayMultiplier(ArrayMultiplier),
       .RoundingMode(RoundingMode),
       .TagWidth(TagWidth)
     ) u_pipeline (

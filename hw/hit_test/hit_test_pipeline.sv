@@ -30,8 +30,8 @@
 module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
-  parameter bit          ArrayMultiplier = 1'b0,  // see fp_multiplier_stages
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
@@ -59,7 +59,6 @@ module hit_test_pipeline #(
   output logic [3*Width-1:0]                        point_o,
   output logic [hit_test_pkg::NumCounts-1:0]        events_o  // this clock's, see count_e
 );
-  /* verilator no_inline_module */  // the lanes of an array share their code in the simulation
 
   localparam int unsigned DotLatency = hit_test_pkg::DotLatency;
   localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(FracWidth);
@@ -103,8 +102,8 @@ module hit_test_pipeline #(
     scaler #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
+      .Arith(Arith),
       .Adder(Adder),
-      .ArrayMultiplier(ArrayMultiplier),
       .RoundingMode(RoundingMode),
       .Words(ScaledWords)
     ) u_scaler (
@@ -128,6 +127,7 @@ module hit_test_pipeline #(
     sum_of_three #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
+      .Arith(Arith),
       .Adder(Adder),
       .RoundingMode(RoundingMode)
     ) u_sum (
@@ -231,6 +231,7 @@ module hit_test_pipeline #(
   fp_divider_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
+    .Arith(Arith),
     .Adder(Adder),
     .Pipelined(1'b1)
   ) u_divider (
@@ -316,6 +317,7 @@ module hit_test_pipeline #(
   point_unit #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
+    .Arith(Arith),
     .Adder(Adder),
     .RoundingMode(RoundingMode)
   ) u_point (

@@ -30,6 +30,7 @@
 module hit_test_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter int unsigned QuotientBits = 0,
   parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
@@ -86,6 +87,7 @@ module hit_test_unit #(
   fp_multiplier #(
     .ExpWidth   (ExpWidth),
     .FracWidth  (FracWidth),
+    .Arith      (Arith),
     .Adder      (Adder),
     .ConstantRow(1'b1)  // the paper's carry-save tree
   ) u_multiplier (
@@ -100,6 +102,7 @@ module hit_test_unit #(
   fp_adder #(
     .ExpWidth (ExpWidth),
     .FracWidth(FracWidth),
+    .Arith    (Arith),
     .Adder    (Adder)
   ) u_adder (
     .a_i             (accumulator_q),
@@ -114,6 +117,7 @@ module hit_test_unit #(
   fp_divider #(
     .ExpWidth    (ExpWidth),
     .FracWidth   (FracWidth),
+    .Arith       (Arith),
     .Adder       (Adder),
     .QuotientBits(QuotientBits)
   ) u_divider (

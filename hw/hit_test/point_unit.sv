@@ -9,6 +9,7 @@
 module point_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit [2:0] RoundingMode = 3'd0,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
@@ -39,6 +40,7 @@ module point_unit #(
     fp_divider_stages #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
+      .Arith(Arith),
       .Adder(Adder),
       .Pipelined(1'b1)
     ) u_divider (

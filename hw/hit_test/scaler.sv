@@ -6,8 +6,8 @@
 module scaler #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
-  parameter bit          ArrayMultiplier = 1'b0,  // see fp_multiplier_stages
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned Words     = 5,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
@@ -18,7 +18,6 @@ module scaler #(
   input  logic [Width-1:0]       factor_i,
   output logic [Words*Width-1:0] products_o
 );
-  /* verilator no_inline_module */  // simulated by one piece of code, three times a lane
 
   for (genvar n = 0; n < Words; n++) begin : gen_word
     fp_pkg::flags_t unused_flags;
@@ -26,8 +25,8 @@ module scaler #(
     fp_multiplier_stages #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
+      .Arith(Arith),
       .Adder(Adder),
-      .ArrayMultiplier(ArrayMultiplier),
       .Cuts(hit_test_pkg::MultiplierCuts)
     ) u_multiplier (
       .clk_i,

@@ -5,6 +5,7 @@
 module sum_of_three #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
@@ -16,7 +17,6 @@ module sum_of_three #(
   input  logic [Width-1:0] z_i,
   output logic [Width-1:0] sum_o
 );
-  /* verilator no_inline_module */  // simulated by one piece of code, four times a lane
 
   logic [Width-1:0] first_sum, z;
   fp_pkg::flags_t unused_flags_1, unused_flags_2;
@@ -24,6 +24,7 @@ module sum_of_three #(
   fp_adder_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
+    .Arith(Arith),
     .Adder(Adder),
     .Cuts(hit_test_pkg::AdderCuts)
   ) u_first (
@@ -49,6 +50,7 @@ module sum_of_three #(
   fp_adder_stages #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
+    .Arith(Arith),
     .Adder(Adder),
     .Cuts(hit_test_pkg::AdderCuts)
   ) u_second (

@@ -1,0 +1,29 @@
+// Unsigned multiplier of a chosen kind: product_o = a_i * b_i. Combinational; any Width from 2.
+//
+// Arith: Structural is booth_multiplier, whose the other parameters are; Behavioural is `*`.
+module multiplier #(
+  parameter int unsigned Width = 24,
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter bit ConstantRow = 1'b0
+) (
+  input  logic [Width-1:0]   a_i,
+  input  logic [Width-1:0]   b_i,
+  output logic [2*Width-1:0] product_o
+);
+
+  if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
+    assign product_o = (2 * Width)'(a_i) * (2 * Width)'(b_i);
+  end else begin : gen_booth
+    booth_multiplier #(
+      .Width(Width),
+      .Adder(Adder),
+      .ConstantRow(ConstantRow)
+    ) u_multiplier (
+      .a_i,
+      .b_i,
+      .product_o
+    );
+  end
+
+endmodule
