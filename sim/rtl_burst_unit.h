@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "host/find/unit/burst_unit.h"
+#include "sim/arith.h"
 
 namespace raygate {
 
@@ -20,7 +21,8 @@ class BurstModel;
 class RtlBurstUnit : public BurstUnit {
  public:
   /// `lanes`: 1, 2, 4 or 8, others are a bug of the caller.
-  explicit RtlBurstUnit(int lanes, const BurstStalls& stalls = {});
+  explicit RtlBurstUnit(int lanes, Arith arith = Arith::kStructural,
+                        const BurstStalls& stalls = {});
   ~RtlBurstUnit() override;
 
   void run(std::span<const RayBundle> batch, BurstResults& results) override;

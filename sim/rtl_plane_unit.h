@@ -4,23 +4,26 @@
 #include <memory>
 
 #include "host/find/unit/plane_unit.h"
+#include "sim/arith.h"
 
 namespace raygate {
+
+/// What RtlPlaneUnit needs of a Verilated unit, of either kind of arithmetic.
+class PlaneModel;
 
 /// hw/hit_test/hit_test_unit.sv in binary32, rounded to nearest even. Tests go through it back to
 /// back: 7 clocks each, and 3 more a call for the last one's result. Not for two threads at once;
 /// each may have its own.
 class RtlPlaneUnit final : public PlaneUnit {
  public:
-  RtlPlaneUnit();
+  explicit RtlPlaneUnit(Arith arith = Arith::kStructural);
   ~RtlPlaneUnit() override;
 
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
   [[nodiscard]] std::uint64_t clocks() const override;
 
  private:
-  struct Unit;  // keeps Verilator's headers out of the renderer
-  std::unique_ptr<Unit> unit_;
+  std::unique_ptr<PlaneModel> model_;
 };
 
 }  // namespace raygate

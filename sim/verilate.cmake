@@ -56,7 +56,7 @@ list(TRANSFORM RAYGATE_HW_FOLDERS PREPEND -I)
 # (SYNCASYNCNET). What the RTL leaves open (registers before their first load, x in an assignment) is 0 in
 # a model, or random in one whose context asks for it (sim/model.h): its bits must not depend on that.
 set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-SYNCASYNCNET -fno-const-bit-op-tree --assert
-  --x-assign unique --x-initial unique)
+  --x-assign unique --x-initial unique ${CMAKE_SOURCE_DIR}/sim/words.vlt)
 set(RAYGATE_CHECKS ${CMAKE_SOURCE_DIR}/sim/checks)  # bindings.sv binds them to the modules of hw/
 
 function(raygate_model NAME)

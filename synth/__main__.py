@@ -36,8 +36,9 @@ def one_design(given: argparse.Namespace) -> catalogue.Design:
     parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width}
     widths = [int(width) for width in given.groups.split(",")] if given.groups else None
     kind = given.adder or ("graded" if widths else "")
-    if kind and kind not in catalogue.adder_kinds():
-        raise ValueError(f"no adder {kind}; there are {', '.join(catalogue.adder_kinds())}")
+    kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
+    if kind and kind not in kinds:
+        raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}")
     if widths and given.width and given.top == "adder" and sum(widths) != int(given.width):
         raise ValueError(f"the groups have {sum(widths)} bits together, the adder {given.width}")
     if widths and not given.width and given.top == "adder":

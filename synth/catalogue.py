@@ -9,7 +9,6 @@ import threading
 from synth import cores, store, tools
 
 HW = cores.HW
-YARDSTICKS = tools.ROOT / "synth" / "yardsticks"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,7 +17,7 @@ class Design:
 
     name: str  # also the stem of its files
     top: str
-    folder: str  # of hw/, or "yardsticks"
+    folder: str  # of hw/
     parameters: tuple[tuple[str, str], ...] = ()
     clock: str = ""  # "" for combinational designs
     cut: str = ""  # an instance that is left out; its ports become the design's
@@ -34,8 +33,6 @@ class Design:
 
         `structural`: full adders and multiplexers as cells (flows/structure.v).
         """
-        if self.folder == "yardsticks":
-            return [YARDSTICKS / f"{self.top}.v"]
         files = cores.files(self.folder)
         if self.top:
             files = cores.used(self.top, files)
@@ -133,6 +130,9 @@ FLOWS = {
 }
 
 
+BEHAVIOURAL = "behavioural"  # in place of a kind of adder: the language's own operators
+
+
 def adder_kinds() -> dict[str, int]:
     """The adder kinds by name ("ripple", "graded", ...), as hw/arith/arith_pkg.sv numbers them."""
     text = (HW / "arith" / "arith_pkg.sv").read_text()
@@ -156,17 +156,16 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
            look_ahead: bool | None = None, **parameters: object) -> Design:
     """A design of hw/ by its module's name; unknown modules raise FileNotFoundError.
 
-    `adder`: a kind of `adder_kinds`. `widths`: carry-select groups. The others: as in the RTL.
+    `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL.
     """
-    if (YARDSTICKS / f"{top}.v").exists():
-        folder = "yardsticks"
-    else:
-        found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists()]
-        if not found:
-            raise FileNotFoundError(f"no module {top} in hw/{{{','.join(cores.names())}}}")
-        folder = found[0]
+    found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists()]
+    if not found:
+        raise FileNotFoundError(f"no module {top} in hw/{{{','.join(cores.names())}}}")
+    folder = found[0]
     text = {key: str(value) for key, value in parameters.items()}
-    if adder:
+    if adder == BEHAVIOURAL:
+        text["Arith"] = "1"
+    elif adder:
         text["Adder"] = str(adder_kinds()[adder])
     if widths:
         text["GroupWidths"] = group_widths(widths)
@@ -191,7 +190,7 @@ ADDERS = [
     ("uniform-6x8-look-ahead", "uniform", [8] * 6, True),
     ("graded-look-ahead", "graded", None, True),
     ("prefix", "prefix", None, None),
-    ("tool", "tool", None, None),
+    (BEHAVIOURAL, BEHAVIOURAL, None, None),
 ]
 
 
@@ -223,14 +222,14 @@ def report_rows() -> list[Row]:
     rows.append(Row(section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13), cells))
     rows += [Row(section, design("booth_multiplier", f"booth-{kind}", kind, Width=24),
                  everywhere if kind == "graded" else
-                 {"osu035": ("small", "fast", "faster")} if kind in ("prefix", "tool") else cells)
+                 {"osu035": ("small", "fast", "faster")} if kind == "prefix" else cells)
              for kind in adder_kinds()]
     rows.append(Row(section, design("booth_multiplier", "booth-graded-ripple-groups", "graded",
                                     look_ahead=False, Width=24),
                     {"osu035": ("cells", "area", "small", "fast", "faster")}))
     rows.append(Row(section, design("booth_multiplier", "booth-graded-14-rows", "graded", Width=24,
                                     ConstantRow="1'b1"), cells))
-    rows.append(Row(section, design("tool_multiplier", "tool-multiplier", Width=24),
+    rows.append(Row(section, design("multiplier", "multiplier-behavioural", BEHAVIOURAL, Width=24),
                     {**everywhere, "osu035": ("small", "fast", "faster")}))
     rows += core_rows()
     parts = {"osu035": ("parts",), "osu018": ("parts",)}

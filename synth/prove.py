@@ -94,7 +94,7 @@ def all_proofs() -> list[Proof]:
         Proof(f"adder.{name}", "carry, sum = a + b + carry at 48 bits", "SAT",
               functools.partial(adds, catalogue.design("adder", f"adder-{name}", kind, widths,
                                                        look_ahead, Width=48)))
-        for name, kind, widths, look_ahead in catalogue.ADDERS if kind != "tool"]
+        for name, kind, widths, look_ahead in catalogue.ADDERS if kind != catalogue.BEHAVIOURAL]
     contracts = PROOFS / "contracts"
     package = [file for file in _files("arith") if file.stem == "arith_pkg"]
     unit = [*(file for file in _files("hit_test") if file.stem in ("arith_pkg", "fp_pkg")),

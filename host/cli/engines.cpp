@@ -19,13 +19,13 @@ std::unique_ptr<HitTester> make_tester(const Options& options) {
   const bool simulated = options.engine != Engine::kModel;
   if (options.unit == "serial") {
     std::unique_ptr<PlaneUnit> unit = std::make_unique<ReferencePlaneUnit>();
-    if (simulated) unit = std::make_unique<RtlPlaneUnit>();
+    if (simulated) unit = std::make_unique<RtlPlaneUnit>(options.arith);
     return std::make_unique<SerialHitTester>(
         std::move(unit), options.light.skips.divisions ? SerialHitTester::Order::kEdgesFirst
                                                        : SerialHitTester::Order::kPlanesFirst);
   }
   std::unique_ptr<BurstUnit> unit = std::make_unique<ReferenceBurstUnit>();
-  if (simulated) unit = std::make_unique<RtlBurstUnit>(options.lanes);
+  if (simulated) unit = std::make_unique<RtlBurstUnit>(options.lanes, options.arith);
   return std::make_unique<PipelineHitTester>(std::move(unit));
 }
 

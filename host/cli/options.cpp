@@ -32,7 +32,7 @@ constexpr const char* kFooter =
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
-  std::string scene, size, engine, unit, lanes, threads, camera, crop, seed;
+  std::string scene, size, engine, unit, arith, lanes, threads, camera, crop, seed;
   RawOutputOptions output;
   RawLightOptions light;
   bool no_scene_file = false;
@@ -78,6 +78,9 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   value("--unit", raw.unit, "pipeline|serial",
         "which hit-test unit the hardware is: a test\n"
         "every clock, or the paper's (pipeline)");
+  value("--arith", raw.arith, "structural|behavioural",
+        "the hardware's arithmetic: Booth trees and carry-\n"
+        "select adders, or + and *, simulated faster;\nthe same bits (structural)");
   value("--lanes", raw.lanes, "1|2|4|8", "pipelined units side by side, per thread (1)");
   value("--threads", raw.threads, "N", "threads on the host (one for each processor)");
   value("--seed", raw.seed, "N", "start of all random numbers (0)");
@@ -135,6 +138,7 @@ void check_values(const RawValues& raw, Options& options) {
   }
   if (!raw.engine.empty()) options.engine = parse_engine(raw.engine);
   if (!raw.unit.empty()) options.unit = parse_unit(raw.unit);
+  if (!raw.arith.empty()) options.arith = parse_arith(raw.arith);
   if (!raw.lanes.empty()) options.lanes = parse_lanes(raw.lanes);
   if (options.unit == "serial" && options.lanes != 1) {
     throw InputError("--lanes: expected 1 with --unit serial, got " + raw.lanes);
@@ -213,6 +217,10 @@ std::string to_string(Engine engine) {
       return "check";
   }
   return "";
+}
+
+std::string to_string(Arith arith) {
+  return arith == Arith::kStructural ? "structural" : "behavioural";
 }
 
 Options parse_options(int argc, const char* const* argv) {

@@ -12,6 +12,7 @@
 #include "host/film/film.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/scene_file.h"
+#include "sim/arith.h"
 
 namespace raygate {
 
@@ -35,6 +36,7 @@ struct Options {
   PixelRect window;               ///< to be rendered: the frame or --crop
   Engine engine = Engine::kRtl;
   std::string unit = "pipeline";  ///< or "serial"
+  Arith arith = Arith::kStructural;
   int lanes = 1;                  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
   unsigned threads = 1;
   std::optional<CameraSetting> camera;  ///< in the OBJ's coordinates; none: framed on the scene
@@ -56,5 +58,8 @@ struct Options {
 
 /// "rtl", "model", "cpu" or "check".
 [[nodiscard]] std::string to_string(Engine engine);
+
+/// "structural" or "behavioural".
+[[nodiscard]] std::string to_string(Arith arith);
 
 }  // namespace raygate

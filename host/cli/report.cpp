@@ -46,6 +46,7 @@ std::string headline(const Report& report) {
   line += ", engine " + to_string(options.engine);
   if (options.engine == Engine::kCpu) return line + ", " + plural(options.threads, "thread");
   line += ", unit " + options.unit;
+  if (options.engine != Engine::kModel) line += " (" + to_string(options.arith) + ")";
   if (options.unit == "pipeline" && options.lanes > 1) {
     line += " of " + std::to_string(options.lanes) + " lanes";
   }
@@ -185,6 +186,7 @@ std::string to_json(const Report& report) {
       {"window", {window.x0, window.y0, window.x1, window.y1}},
       {"engine", to_string(options.engine)},
       {"unit", options.unit},
+      {"arith", to_string(options.arith)},
       {"lanes", options.lanes},
       {"threads", options.threads},
       {"seed", options.seed},

@@ -46,6 +46,13 @@ std::string parse_unit(const std::string& text) {
   return text;
 }
 
+Arith parse_arith(const std::string& text) {
+  for (const Arith arith : {Arith::kStructural, Arith::kBehavioural}) {
+    if (text == to_string(arith)) return arith;
+  }
+  fail_value("--arith", text, "structural or behavioural");
+}
+
 int parse_lanes(const std::string& text) {
   const auto lanes = parse_number<int>(text);
   if (!lanes || (*lanes != 1 && *lanes != 2 && *lanes != 4 && *lanes != 8)) {

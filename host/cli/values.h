@@ -21,6 +21,7 @@ struct Size {
 };
 [[nodiscard]] Size parse_size(const std::string& text);                  ///< "640x480"
 [[nodiscard]] Engine parse_engine(const std::string& text);              ///< "rtl", "cpu", "check"
+[[nodiscard]] Arith parse_arith(const std::string& text);  ///< "structural", "behavioural"
 [[nodiscard]] std::string parse_unit(const std::string& text);           ///< "pipeline", "serial"
 [[nodiscard]] int parse_lanes(const std::string& text);                  ///< "1", "2", "4", "8"
 [[nodiscard]] unsigned parse_threads(const std::string& text);           ///< "1" to "1024"

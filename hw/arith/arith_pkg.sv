@@ -10,8 +10,10 @@
 // parameters.)
 package arith_pkg;
 
-  localparam int unsigned Structural  = 0;
-  localparam int unsigned Behavioural = 1;
+  typedef enum int unsigned {
+    Structural  = 0,
+    Behavioural = 1
+  } arith_e;
 
   typedef enum int unsigned {
     AdderRipple  = 0,  // a chain of full adders

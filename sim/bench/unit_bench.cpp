@@ -1,8 +1,8 @@
 // How fast the units are simulated: tests a second on one thread, the median of several runs, and,
 // where valgrind is installed, the instructions that a test takes. Nothing passes or fails here.
 //
-//   unit_bench                     the table
-//   unit_bench LANES AIMED ROUNDS  only that: so many rounds of the stream (valgrind counts them)
+//   unit_bench                           the table
+//   unit_bench ARITH LANES AIMED ROUNDS  only that: so many rounds of the stream (valgrind counts them)
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -23,6 +23,12 @@ namespace {
 
 constexpr int kBursts = 1024, kTests = 8;  // 8,192 tests a round
 constexpr int kRuns = 9, kRounds = 8;
+
+struct Kind {
+  const char* name;
+  Arith arith;
+};
+constexpr Kind kKinds[] = {{"structural", Arith::kStructural}, {"behavioural", Arith::kBehavioural}};
 
 /// Tests a second, the median of kRuns runs.
 template <class Round>
@@ -55,16 +61,16 @@ double instructions(const std::string& command) {
 }
 
 /// The difference of a long run and a short one: without what is done once.
-double instructions_per_test(const char* program, int lanes, double aimed) {
-  const std::string command =
-      std::string(program) + " " + std::to_string(lanes) + " " + std::to_string(aimed) + " ";
+double instructions_per_test(const char* program, const Kind& kind, int lanes, double aimed) {
+  const std::string command = std::string(program) + " " + kind.name + " " + std::to_string(lanes) +
+                              " " + std::to_string(aimed) + " ";
   const double few = instructions(command + "1"), many = instructions(command + "4");
   return (many - few) / (3.0 * kBursts * kTests);
 }
 
-void run_rounds(int lanes, double aimed, int rounds) {
+void run_rounds(Arith arith, int lanes, double aimed, int rounds) {
   const TestStream stream = random_stream(kBursts, kTests, aimed);
-  RtlBurstUnit unit(lanes);
+  RtlBurstUnit unit(lanes, arith);
   BurstResults results;
   for (int i = 0; i < rounds; ++i) {
     results.clear();
@@ -80,8 +86,9 @@ double share_of_hits(const TestStream& stream) {
          static_cast<double>(unit.counters().tests);
 }
 
-void print_row(const char* unit, const std::string& lanes, double hits, double rate, double count) {
-  std::printf("%-10s %5s %8.1f %12.0f", unit, lanes.c_str(), hits, rate);
+void print_row(const char* unit, const char* arith, const std::string& lanes, double hits,
+               double rate, double count) {
+  std::printf("%-10s %-12s %5s %8.1f %12.0f", unit, arith, lanes.c_str(), hits, rate);
   if (count > 0.0) std::printf(" %14.0f", count);
   std::printf("\n");
 }
@@ -91,48 +98,56 @@ void bench(const char* program) {
   const bool valgrind = std::system("command -v valgrind >/dev/null") == 0;
   std::printf("Median of %d runs of %d tests, on the processor time of one thread.\n", kRuns,
               kRounds * kBursts * kTests);
-  std::printf("%-10s %5s %8s %12s %14s\n", "unit", "lanes", "hits, %", "tests/s", "instructions");
+  std::printf("%-10s %-12s %5s %8s %12s %14s\n", "unit", "arithmetic", "lanes", "hits, %", "tests/s", "instructions");
   for (const double aimed : {0.0, 0.5}) {
     const TestStream stream = random_stream(kBursts, kTests, aimed);
     const double hits = share_of_hits(stream);
-    for (const int lanes : {1, 2, 4, 8}) {
-      RtlBurstUnit unit(lanes);
-      BurstResults results;
-      const double rate = tests_per_second([&] {
-        results.clear();
-        unit.run(stream.bundles, results);
-      });
-      print_row("pipeline", std::to_string(lanes), hits, rate,
-                valgrind ? instructions_per_test(program, lanes, aimed) : 0.0);
+    for (const Kind& kind : kKinds) {
+      for (const int lanes : {1, 2, 4, 8}) {
+        RtlBurstUnit unit(lanes, kind.arith);
+        BurstResults results;
+        const double rate = tests_per_second([&] {
+          results.clear();
+          unit.run(stream.bundles, results);
+        });
+        print_row("pipeline", kind.name, std::to_string(lanes), hits, rate,
+                  valgrind ? instructions_per_test(program, kind, lanes, aimed) : 0.0);
+      }
     }
     ReferenceBurstUnit twin;
     BurstResults results;
-    print_row("its twin", "-", hits, tests_per_second([&] {
+    print_row("its twin", "C++", "-", hits, tests_per_second([&] {
                 results.clear();
                 twin.run(stream.bundles, results);
               }),
               0.0);
   }
   const TestStream stream = random_stream(kBursts, kTests, 0.0);
-  RtlPlaneUnit serial;
   std::vector<glm::vec3> points(stream.plane_tests.size());
-  print_row("serial", "-", share_of_hits(stream),
-            tests_per_second([&] { serial.intersect(stream.plane_tests, points); }), 0.0);
+  for (const Kind& kind : kKinds) {
+    RtlPlaneUnit serial(kind.arith);
+    print_row("serial", kind.name, "-", share_of_hits(stream),
+              tests_per_second([&] { serial.intersect(stream.plane_tests, points); }), 0.0);
+  }
 }
 
 }  // namespace
 }  // namespace raygate
 
 int main(int argc, char** argv) {
-  if (argc == 4) {
-    raygate::run_rounds(static_cast<int>(std::strtol(argv[1], nullptr, 10)),
-                        std::strtod(argv[2], nullptr),
-                        static_cast<int>(std::strtol(argv[3], nullptr, 10)));
-  } else if (argc == 1) {
+  if (argc == 1) {
     raygate::bench(argv[0]);
-  } else {
-    std::fputs("usage: unit_bench [LANES AIMED ROUNDS]\n", stderr);
-    return 2;
+    return 0;
   }
-  return 0;
+  if (argc == 5) {
+    for (const raygate::Kind& kind : raygate::kKinds) {
+      if (std::strcmp(argv[1], kind.name) != 0) continue;
+      raygate::run_rounds(kind.arith, static_cast<int>(std::strtol(argv[2], nullptr, 10)),
+                          std::strtod(argv[3], nullptr),
+                          static_cast<int>(std::strtol(argv[4], nullptr, 10)));
+      return 0;
+    }
+  }
+  std::fputs("usage: unit_bench [structural|behavioural LANES AIMED ROUNDS]\n", stderr);
+  return 2;
 }

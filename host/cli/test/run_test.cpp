@@ -72,7 +72,7 @@ TEST_F(Render, StatisticsAreWholeAndAgree) {
       "lanes",         "unit_tests",     "quotients",       "idle_clocks",
       "output_stalls", "thread_seconds", "integrator",      "spp",
       "depth",         "camera_rays",    "shadow_rays",     "common_records",
-      "skipped",       "input_bytes"};
+      "skipped",       "input_bytes",     "arith"};
   std::set<std::string> actual;
   for (const auto& [key, value] : stats_.items()) actual.insert(key);
   EXPECT_EQ(actual, expected);
@@ -100,7 +100,7 @@ TEST_F(Render, StatisticsAreWholeAndAgree) {
   EXPECT_LE(parts, seconds.at("total").get<double>() + 1e-3);
   // The text says the same.
   EXPECT_NE(outcome.out.find("cornell.obj: "), std::string::npos);
-  EXPECT_NE(outcome.out.find("60x50, engine rtl, unit pipeline, 2 threads\n"), std::string::npos);
+  EXPECT_NE(outcome.out.find("60x50, engine rtl, unit pipeline (structural), 2 threads\n"), std::string::npos);
   for (const char* row : {"\nrays ", "\ntests ", "\nhits ", "\ndoubts ", "\nclocks ", "\ntime "}) {
     EXPECT_NE(outcome.out.find(row), std::string::npos) << row;
   }

@@ -77,8 +77,10 @@ def simulation() -> list[dict]:
     """The simulated units' tests a second, and their instructions where valgrind can count them."""
     command = "build/sim/unit_bench"
     done = subprocess.run([ROOT / command], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
-    row = r"(?P<unit>.+?) +(?P<lanes>\S+) +(?P<hits>[\d.]+) +(?P<rate>\d+)(?: +(?P<count>\d+))?$"
-    return [{"unit": match["unit"], "lanes": match["lanes"], "hits_percent": float(match["hits"]),
+    row = (r"(?P<unit>.+?) +(?P<arithmetic>\S+) +(?P<lanes>\S+) +(?P<hits>[\d.]+) +(?P<rate>\d+)"
+           r"(?: +(?P<count>\d+))?$")
+    return [{"unit": match["unit"], "arithmetic": match["arithmetic"], "lanes": match["lanes"],
+             "hits_percent": float(match["hits"]),
              "tests_per_second": float(match["rate"]), "command": command,
              "instructions": float(match["count"]) if match["count"] else None}
             for match in re.finditer(row, done.stdout, re.MULTILINE)]

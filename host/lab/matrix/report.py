@@ -266,10 +266,10 @@ def simulation_section(results: dict) -> list[Block]:
     """Speed and instructions of the simulation; a quick run leaves them to build/sim/unit_bench."""
     if not results["simulation"]:
         return []
-    rows = [[row["unit"], row["lanes"], f"{row['hits_percent']:.1f}",
+    rows = [[row["unit"], row["arithmetic"], row["lanes"], f"{row['hits_percent']:.1f}",
              f"{row['tests_per_second']:,.0f}", number(row["instructions"], ",.0f")]
             for row in results["simulation"]]
     return [Heading(2, "The simulation of the hardware"), Text(
         "`build/sim/unit_bench`, one thread. Instructions a test are callgrind's: the same on every "
         "machine of one instruction set and compiler."),
-        Table(["unit", "lanes", "hits, %", "tests/s", "instructions a test"], rows)]
+        Table(["unit", "arithmetic", "lanes", "hits, %", "tests/s", "instructions a test"], rows)]

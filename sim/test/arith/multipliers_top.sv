@@ -1,12 +1,12 @@
 // Booth multipliers of many widths on the same operands: trees with the constants in the partial products
-// and in a row of their own, and arrays; and a 24-bit tree with each kind of adder.
+// and in a row of their own, and `*`; and a 24-bit tree with each kind of adder.
 module multipliers_top (
   input  logic               clk_i,
   input  logic [31:0]        a_i,
   input  logic [31:0]        b_i,
   output logic [64*24-1:0]   product_o,        // 64 bits for each width of Widths, ConstantRow 0 and 1
-  output logic [64*12-1:0]   product_array_o,  // 64 bits for each width of Widths
-  output logic [64*5-1:0]    product_24_o      // 64 bits for each kind of adder
+  output logic [64*12-1:0]   product_own_o,    // `*`: 64 bits for each width of Widths
+  output logic [64*4-1:0]    product_24_o      // 64 bits for each kind of adder
 );
 
   localparam int unsigned NumWidths = 12;
@@ -39,23 +39,24 @@ module multipliers_top (
       assign product_o[64*(2*w+c)+:64] = 64'(product);
     end
 
-    logic [2*Width-1:0] product_array;
+    logic [2*Width-1:0] product_own;
 
-    booth_array_multiplier #(
-      .Width(Width)
-    ) u_array (
+    multiplier #(
+      .Width(Width),
+      .Arith(arith_pkg::Behavioural)
+    ) u_own (
       .a_i      (a[Width-1:0]),
       .b_i      (b[Width-1:0]),
-      .product_o(product_array)
+      .product_o(product_own)
     );
 
-    assign product_array_o[64*w+:64] = 64'(product_array);
+    assign product_own_o[64*w+:64] = 64'(product_own);
   end
 
-  for (genvar k = 0; k < 5; k++) begin : gen_kind
+  for (genvar k = 0; k < 4; k++) begin : gen_kind
     logic [47:0] product;
 
-    booth_multiplier #(
+    multiplier #(
       .Width(24),
       .Adder(k)
     ) u_multiplier (

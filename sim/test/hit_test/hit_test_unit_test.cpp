@@ -1,7 +1,7 @@
 // The paper's unit: its worked example, its timetable, and random streams against C++ floats.
 #include <gtest/gtest.h>
 
-#include "Vhit_test_unit.h"
+#include "Vhit_test_unit_structural.h"
 #include "Vhit_test_unit_open.h"
 #include "Vhit_test_unit_open___024root.h"
 #include "Vhit_test_unit_paper.h"
@@ -90,7 +90,7 @@ TEST(HitTestUnit, WorkedExampleWithThePapersDivider) {
 }
 
 TEST(HitTestUnit, TakesATestEvery7ClocksAndAnswersIn10) {
-  Model<Vhit_test_unit> unit;
+  Model<Vhit_test_unit_structural> unit;
   unit.reset();
   const auto results = stream_tests(unit, std::vector(100, kWorkedExample));
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -106,7 +106,7 @@ TEST(HitTestUnit, TakesATestEvery7ClocksAndAnswersIn10) {
 }
 
 TEST(HitTestUnit, ResetEndsATestHalfway) {
-  Model<Vhit_test_unit> unit;
+  Model<Vhit_test_unit_structural> unit;
   for (int clocks = 1; clocks < 12; ++clocks) {
     unit.reset();
     for (int k = 0; k < clocks; ++k) {
@@ -132,7 +132,7 @@ TEST(HitTestUnit, RandomStreamsEqualFloatArithmetic) {
     for (auto& word : test.words) word = std::bit_cast<std::uint32_t>(floats());
     test.gap = floats.gap();
   }
-  Model<Vhit_test_unit> unit;
+  Model<Vhit_test_unit_structural> unit;
   unit.reset();
   const auto results = stream_tests(unit, tests);
   ASSERT_EQ(results.size(), kTests);

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <deque>
 #include <random>
+#include <string>
 #include <tuple>
 
 #include "host/find/unit/same_results.h"
@@ -30,12 +31,13 @@ void expect_same_events(const BurstCounters& rtl, const BurstCounters& cpu) {
   EXPECT_EQ(rtl.coordinates, cpu.coordinates);
 }
 
-class RtlBurstUnitTest : public testing::TestWithParam<int> {};
+class RtlBurstUnitTest : public testing::TestWithParam<std::tuple<Arith, int>> {};
 
 /// Every field of every result, under random stalls, in many small and large batches, a batch close
 /// behind the other or alone.
 TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
-  const auto seed = static_cast<std::uint64_t>(GetParam());
+  const auto [arith, lanes] = GetParam();
+  const auto seed = static_cast<std::uint64_t>(lanes);
   RecordProperty("seed", static_cast<int>(seed));
   RandomBursts random(seed);
   std::mt19937_64 size(seed);
@@ -51,7 +53,7 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
                                                   {200, 0, 16},
                                                   {0, 230, 16},
                                                   {100, 200, 8}}) {
-    RtlBurstUnit rtl(GetParam(), {no_test, not_taken, seed});
+    RtlBurstUnit rtl(lanes, arith, {no_test, not_taken, seed});
     std::deque<BurstBatch> started;
     const auto finish = [&] {
       BurstResults expected, got;
@@ -89,7 +91,16 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   EXPECT_GT(cpu.counters().distances, cpu.counters().hits);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, RtlBurstUnitTest, testing::Values(1, 2, 4, 8));
+std::string name(const testing::TestParamInfo<std::tuple<Arith, int>>& info) {
+  const auto [arith, lanes] = info.param;
+  return (arith == Arith::kStructural ? "structural_" : "behavioural_") + std::to_string(lanes);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Lanes, RtlBurstUnitTest,
+    testing::Combine(testing::Values(Arith::kStructural, Arith::kBehavioural),
+                     testing::Values(1, 2, 4, 8)),
+    name);
 
 }  // namespace
 }  // namespace raygate

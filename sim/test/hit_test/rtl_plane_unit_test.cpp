@@ -28,11 +28,13 @@ glm::vec3 expected(const PlaneTest& test) {
   return point;
 }
 
-TEST(RtlPlaneUnit, BatchesOfAllSizesEqualFloatArithmetic) {
+class RtlPlaneUnitTest : public testing::TestWithParam<Arith> {};
+
+TEST_P(RtlPlaneUnitTest, BatchesOfAllSizesEqualFloatArithmetic) {
   constexpr std::uint32_t kSeed = 20260103;
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   FloatStream floats(kSeed);
-  RtlPlaneUnit unit;
+  RtlPlaneUnit unit(GetParam());
   std::uint64_t clocks = 0;
   for (std::size_t size : {0, 1, 2, 3, 20, 0, 1, 5000}) {
     std::vector<PlaneTest> tests(size);
@@ -50,14 +52,14 @@ TEST(RtlPlaneUnit, BatchesOfAllSizesEqualFloatArithmetic) {
   }
 }
 
-TEST(RtlPlaneUnit, TwoUnitsDoNotShareState) {
+TEST_P(RtlPlaneUnitTest, TwoUnitsDoNotShareState) {
   FloatStream floats(20260104);
   const std::vector<PlaneTest> tests{random_test(floats), random_test(floats)};
   std::vector<glm::vec3> points(2), again(2);
-  RtlPlaneUnit one;
+  RtlPlaneUnit one(GetParam());
   one.intersect(tests, points);
   {
-    RtlPlaneUnit other;
+    RtlPlaneUnit other(GetParam());
     other.intersect(tests, again);
   }
   one.intersect(tests, again);
@@ -65,6 +67,9 @@ TEST(RtlPlaneUnit, TwoUnitsDoNotShareState) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(bits(points[i][k]), bits(again[i][k]));
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RtlPlaneUnitTest,
+                         testing::Values(Arith::kStructural, Arith::kBehavioural));
 
 }  // namespace
 }  // namespace raygate

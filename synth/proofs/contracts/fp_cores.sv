@@ -2,6 +2,7 @@
 module fp_multiplier #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0,
   parameter bit ConstantRow = 1'b0
 ) (
@@ -19,6 +20,7 @@ endmodule
 module fp_adder #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -36,6 +38,7 @@ endmodule
 module fp_divider #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0,
   parameter int unsigned QuotientBits = 0
 ) (
