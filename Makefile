@@ -38,7 +38,7 @@ gallery: verilate ## render the pictures of the gallery again, each by the comma
 	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
 	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
 
-frames: verilate ## the paper's frame: clocks, and frames a second at 10 MHz, for 1 to 10 lanes
+frames: verilate ## the paper's frame at 10 MHz: clocks, frames a second, bytes read; every polygon, and with culling
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj
 
 test: everything ## build and run all tests

@@ -158,9 +158,9 @@ def write() -> None:
     waveform.draw(trace, tools.ROOT / "sim" / "worked_example.gtkw", DIAGRAMS / "worked_example")
     for file in DIAGRAMS.glob("*.json"):
         file.with_suffix(".svg").write_text(waveform.render(file))
-    drawn = store.OUT / "hit_test_unit"
-    diagram.draw("hit_test_unit", drawn)
-    (DIAGRAMS / "hit_test_unit.svg").write_text(drawn.with_suffix(".svg").read_text())
+    for unit in ("hit_test_unit", "hit_test_pipeline"):
+        diagram.draw(unit, store.OUT / unit)
+        (DIAGRAMS / f"{unit}.svg").write_text((store.OUT / f"{unit}.svg").read_text())
 
 
 def check() -> list[str]:

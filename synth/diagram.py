@@ -3,7 +3,9 @@
 `python3 -m synth.diagram TOP OUT`: OUT.svg and OUT.png, by graphviz.
 """
 
+import collections
 import pathlib
+import re
 import sys
 
 from synth import catalogue, mapping, store, tools
@@ -12,15 +14,15 @@ SHAPES = {"register": "box", "multiplexer": "invtrapezium", "core": "box3d", "po
 
 
 def blocks(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tuple[str, str]]]:
-    """Nodes (name -> kind, label) and arrows of the paths that are `width` bits wide.
+    """Nodes (name -> kind, label) and arrows of the paths that are at least `width` bits wide.
 
-    Registers are named after what they drive; logic that isn't a block is passed through.
+    Registers are named after what they drive; other logic is left out.
     """
     netnames = {tuple(net["bits"]): name for name, net in module["netnames"].items()
                 if not net.get("hide_name")}
     nodes, outputs, inputs = {}, {}, {}
     for name, port in module["ports"].items():
-        if len(port["bits"]) == width:
+        if len(port["bits"]) >= width:
             nodes[name] = ("port", name)
             side = outputs if port["direction"] == "input" else inputs
             side.setdefault(name, []).append(port["bits"])
@@ -33,19 +35,21 @@ def blocks(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tu
         if not kind:
             continue
         directions = cell["port_directions"]
-        wide = {port: bits for port, bits in cell["connections"].items() if len(bits) == width}
+        wide = {port: bits for port, bits in cell["connections"].items() if len(bits) >= width}
         out = [bits for port, bits in wide.items() if directions[port] == "output"]
-        if not out:
+        if not out and kind != "core":
             continue
-        label = name.removeprefix("u_") if kind == "core" else netnames.get(tuple(out[0]), "")
+        label = re.sub(r"\bu_|\bgen_", "", name) if kind == "core" else netnames.get(tuple(out[0]), "")
         nodes[name] = (kind, label.removesuffix("_q"))
         outputs[name] = out
         inputs[name] = [bits for port, bits in wide.items() if directions[port] == "input"]
     drives = {bit: name for name, words in outputs.items() for word in words for bit in word
               if isinstance(bit, int)}
-    arrows = {(drives[bit], name) for name, words in inputs.items() for word in words
-              for bit in word if bit in drives}
-    return nodes, arrows
+    bits = collections.Counter((drives[bit], name) for name, words in inputs.items() for word in words
+                               for bit in word if bit in drives)
+    arrows = {arrow for arrow, count in bits.items() if count >= width}
+    met = {name for arrow in arrows for name in arrow}
+    return {name: node for name, node in nodes.items() if name in met}, arrows
 
 
 def draw(top: str, out: pathlib.Path, width: int = 32) -> None:
