@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string_view>
 
 #include "host/cli/values.h"
+#include "host/exact/exact.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
@@ -48,6 +50,16 @@ PixelFilter parse_filter(const std::string& text) {
     if (text == known.name) return known.filter;
   }
   fail("--filter", text, "box, tent, gauss or blackman-harris");
+}
+
+/// "inf": whatever the unit says.
+float parse_point_error(const std::string& text) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  const auto error = text == "inf" ? kLargest : parse_number<double>(text);
+  if (!error || !(*error >= 0.0 && *error <= kLargest)) {
+    fail("--point-error", text, "a share of the distance, 0 or more, or inf");
+  }
+  return float_below(*error);
 }
 
 /// "records,culling" or "all".
@@ -107,6 +119,9 @@ void declare_light_options(CLI::App& app, RawLightOptions& raw) {
   value("--ambient", raw.ambient, "X",
         "whitted: light from all sides, without shadows\n(the background's, or a guess from the "
         "lamps)");
+  value("--point-error", raw.point_error, "X",
+        "how far off, of the distance, the unit's point of\n"
+        "a hit may be before the host computes it: 0\nalways, inf never (2^-16)");
   value("--no-skip", raw.no_skip, "NAMES",
         "do work that the picture does not need: culling,\n"
         "records, light-behind, weightless, empty-tiles,\n"
@@ -132,6 +147,7 @@ LightOptions parse_light_options(const RawLightOptions& raw) {
       fail("--ambient", raw.ambient, "a radiance, 0 or more");
     }
   }
+  if (!raw.point_error.empty()) options.point_error = parse_point_error(raw.point_error);
   if (!raw.no_skip.empty()) options.skips = parse_no_skip(raw.no_skip);
   return options;
 }

@@ -7,6 +7,7 @@
 #include "host/film/pixel_filter.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/skips.h"
+#include "host/light/surface.h"
 
 namespace CLI {
 class App;
@@ -23,6 +24,7 @@ struct LightOptions {
   int samples = 1;
   PixelFilter filter = PixelFilter::kBlackmanHarris;
   Skips skips;
+  float point_error = kPointError;
 
   /// 4 for Whitted, as the paper has it; for paths, which end by chance, 64.
   [[nodiscard]] int max_depth() const {
@@ -32,7 +34,8 @@ struct LightOptions {
 
 /// As they were typed; empty where they were not given.
 struct RawLightOptions {
-  std::string integrator, depth, threshold, ambient, samples, filter, no_skip;
+  std::string integrator, depth, threshold, ambient, samples, filter, no_skip,
+      point_error;
 };
 
 void declare_light_options(CLI::App& app, RawLightOptions& raw);

@@ -206,6 +206,7 @@ std::string to_json(const Report& report) {
       {"depth_doubts", hit.depth_doubts},
       {"exact_inside", render.find.exact_inside},
       {"exact_depth", render.find.exact_depth},
+      {"point_doubts", render.point_doubts},
       {"plane_tests", hit.plane_tests},
       {"unit_tests", hit.unit_tests},
       {"quotients", hit.quotients},

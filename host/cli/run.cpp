@@ -99,7 +99,8 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                                .max_depth = options.light.max_depth(),
                                .threshold = options.light.threshold,
                                .ambient = options.light.ambient,
-                               .skips = options.light.skips};
+                               .skips = options.light.skips,
+                               .point_error = options.light.point_error};
   if (outputs.save_seconds > 0.0) {
     render_options.snapshot = [&](const Film& film) { write_partial(outputs, film, metadata); };
     render_options.snapshot_seconds = outputs.save_seconds;

@@ -19,13 +19,18 @@ std::string hex(std::span<const float> words) {
   return text;
 }
 
+bool same_bits(const glm::vec3& a, const glm::vec3& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
 std::string hex(const glm::vec3& v) { return hex({&v.x, 3}); }
 
 std::string describe(const Bvh& bvh, const NearestHit& hit) {
   if (hit.slot == NearestHit::kNone) return "no hit";
   char t[64];
   std::snprintf(t, sizeof t, ", t in [%.17g, %.17g]", hit.t.low, hit.t.high);
-  return "triangle " + std::to_string(bvh.triangle_of(hit.slot)) + ", P" + hex(hit.point) + t;
+  return "triangle " + std::to_string(bvh.triangle_of(hit.slot)) + ", P" + hex(hit.point) +
+         " within " + hex({&hit.point_error, 1}) + t;
 }
 
 }  // namespace
@@ -59,7 +64,7 @@ bool CheckFinder::agree(const Ray& ray, const Search& search, std::size_t number
   }
   const bool with_point = search.ignored.empty() && search.enough_before.empty();
   return a.slot == b.slot && a.t.low <= b.t.high && b.t.low <= a.t.high &&
-         (!with_point || std::memcmp(&a.point, &b.point, sizeof a.point) == 0);
+         (!with_point || (same_bits(a.point, b.point) && a.point_error == b.point_error));
 }
 
 }  // namespace raygate

@@ -16,9 +16,17 @@ struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   std::uint32_t slot = kNone;  ///< of the tree; kNone: nothing hit
-  glm::vec3 point{0.0f};  ///< P = d I / (I . N) in the unit's bits, seen from the ray's origin
-  Interval t{};           ///< holds the exact t
+  glm::vec3 point{0.0f};       ///< P = d I / (I . N) in the unit's bits, seen from the ray's origin
+  /// Each coordinate of P is off by at most so much of itself; +infinity where the unit has no P to
+  /// speak of. The same bits whatever found the hit.
+  float point_error = std::numeric_limits<float>::infinity();
+  Interval t{};  ///< holds the exact t
 };
+
+/// Whether P may be off by more than `most` (finite) of itself: then it is for the host to compute.
+[[nodiscard]] inline bool is_point_doubt(const NearestHit& hit, float most) {
+  return !(hit.point_error <= most);
+}
 
 /// Whether the hit has t < limit (positive), exactly.
 [[nodiscard]] bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float limit);

@@ -140,7 +140,7 @@ glm::dvec3 ShadowRays::transmittance(std::size_t number) const {
   const std::uint32_t slot = hits_[number].slot;
   const Material& material = scene_.materials[scene_.triangles[bvh_.triangle_of(slot)].material];
   if (!is_clear(material)) return glm::dvec3(0.0);
-  return shadow_transmittance(Surface(scene_, bvh_, wave_[number], slot), through_refraction_);
+  return shadow_transmittance(Surface(scene_, bvh_, wave_[number], slot, nullptr), through_refraction_);
 }
 
 }  // namespace raygate

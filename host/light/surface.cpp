@@ -32,14 +32,20 @@ glm::dvec3 file_normal(const Scene& scene, const Triangle& triangle, const Corne
   return triangle_normal(corners);
 }
 
-Surface::Surface(const Scene& scene, const Bvh& bvh, const Ray& ray, std::uint32_t hit_slot)
+Surface::Surface(const Scene& scene, const Bvh& bvh, const Ray& ray, std::uint32_t hit_slot,
+                 const glm::vec3* unit_point)
     : slot(hit_slot), triangle(bvh.triangle_of(hit_slot)) {
   const Corners& corners = bvh.corners_of(slot);
   const Triangle& face = scene.triangles[triangle];
   material = &scene.materials[face.material];
-  const glm::dvec3 weights = barycentric(corners, ray);
-  point = weights.x * glm::dvec3(corners[0]) + weights.y * glm::dvec3(corners[1]) +
-          weights.z * glm::dvec3(corners[2]);
+  const bool uses_weights = unit_point == nullptr ||
+                            std::ranges::count(face.normals, kNoIndex) == 0 ||
+                            material->diffuse_texture != kNoIndex;
+  const glm::dvec3 weights = uses_weights ? barycentric(corners, ray) : glm::dvec3(1.0 / 3.0);
+  point = unit_point != nullptr ? glm::dvec3(ray.origin) + glm::dvec3(*unit_point)
+                                : weights.x * glm::dvec3(corners[0]) +
+                                      weights.y * glm::dvec3(corners[1]) +
+                                      weights.z * glm::dvec3(corners[2]);
   diffuse = glm::dvec3(diffuse_at(scene, face, weights));
   view = -glm::normalize(glm::dvec3(ray.direction));
 

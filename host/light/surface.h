@@ -10,6 +10,10 @@
 
 namespace raygate {
 
+/// How far off, of itself, the unit's P may be before the host computes the point, where nobody says
+/// otherwise: rays that meet a surface at a flat angle are the host's.
+inline constexpr float kPointError = 0x1p-16f;
+
 /// The weights of the vertices where `ray` hits; they sum to 1, none is negative.
 [[nodiscard]] glm::dvec3 barycentric(const Corners& corners, const Ray& ray);
 
@@ -33,7 +37,10 @@ struct Surface {
   /// vertices run counter-clockwise.
   bool outside = true;
 
-  Surface(const Scene& scene, const Bvh& bvh, const Ray& ray, std::uint32_t slot);
+  /// `unit_point`: P as the hit-test unit has it, which the surface's point is made of; nullptr: it
+  /// is found from the corners, in double.
+  Surface(const Scene& scene, const Bvh& bvh, const Ray& ray, std::uint32_t slot,
+          const glm::vec3* unit_point);
 };
 
 }  // namespace raygate

@@ -10,6 +10,7 @@
 #include "host/find/finder.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/skips.h"
+#include "host/light/surface.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -31,6 +32,9 @@ struct RenderOptions {
   double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced
   std::optional<double> ambient{};  ///< Whitted: radiance; none: see Lights::ambient
   Skips skips{};                    ///< the film does not depend on them
+  /// The unit's P is used where it is off by no more of the distance than that, in all else the
+  /// host's: 0 for the host's alone; the largest float for the unit's wherever it has one.
+  float point_error = kPointError;
   /// If not empty: called with the film so far every so many seconds, from one thread at a time;
   /// the others wait.
   std::function<void(const Film&)> snapshot{};
@@ -43,6 +47,7 @@ struct RenderStats {
   std::uint64_t rays = 0;            ///< of all kinds; the others are reflected or refracted
   std::uint64_t camera_rays = 0;     ///< of these, from the camera
   std::uint64_t shadow_rays = 0;     ///< of these, between surfaces and lights
+  std::uint64_t point_doubts = 0;    ///< hits of the others whose P the host computed
   SkipCounters skipped;
   FindCounters find;           ///< summed over the threads' finders
   double shade_seconds = 0.0;  ///< making the rays and shading them

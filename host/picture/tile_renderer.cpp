@@ -159,15 +159,17 @@ void TileRenderer::shade(const LightRay& ray, const NearestHit& hit) {
     if (integrator_) output_.radiance[ray.sample] += ray.weight * job_.lights.background();
     return;
   }
-  const Surface surface(job_.scene, job_.bvh, ray.ray, hit.slot);
+  const bool doubtful = is_point_doubt(hit, job_.options.point_error);
+  stats_.point_doubts += doubtful;
+  const Surface surface(job_.scene, job_.bvh, ray.ray, hit.slot, doubtful ? nullptr : &hit.point);
   if (ray.depth == 0) {
     Seen& seen = seen_[ray.sample];
     seen.slot = hit.slot;
     seen.normal = surface.normal;
     seen.albedo = surface.diffuse;
-    // The engine's P is as good as float32 makes it; what is written is better.
     if (first_sample_ == 0) {
-      seen.point = precise_hit(ray.ray, job_.bvh.corners_of(hit.slot)).point;
+      seen.point =
+          doubtful ? precise_hit(ray.ray, job_.bvh.corners_of(hit.slot)).point : hit.point;
     }
   }
   if (!integrator_) {
@@ -231,6 +233,7 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.rays += stats_.rays + shadow_rays;
   stats.camera_rays += stats_.camera_rays;
   stats.shadow_rays += shadow_rays;
+  stats.point_doubts += stats_.point_doubts;
   stats.find += finder_.counters();
   stats.skipped += stats_.skipped;
   if (integrator_) stats.skipped += integrator_->skipped();

@@ -223,6 +223,13 @@ TEST(Options, LightByName) {
   EXPECT_FALSE(path.skips.culling || path.skips.records);
   EXPECT_TRUE(path.skips.weightless && path.skips.divisions);
   EXPECT_EQ(parse({"a.obj", "--depth", "0"}).light.max_depth(), 0);
+  EXPECT_EQ(plain.point_error, 0x1p-16f);
+  const auto point_error = [](const char* text) {
+    return parse({"a.obj", "--point-error", text}).light.point_error;
+  };
+  EXPECT_EQ(point_error("0"), 0.0f);
+  EXPECT_EQ(point_error("1e-4"), 1e-4f);
+  EXPECT_EQ(point_error("inf"), std::numeric_limits<float>::max());
   const Skips none = parse({"a.obj", "--no-skip", "all"}).light.skips;
   for (const SkipName& skip : kSkipNames) EXPECT_FALSE(none.*skip.on) << skip.name;
   expect_error({"a.obj", "--integrator", "photon"}, "--integrator: expected primary, whitted or");
@@ -231,6 +238,8 @@ TEST(Options, LightByName) {
   expect_error({"a.obj", "--filter", "lanczos"}, "--filter: expected box, tent, gauss");
   expect_error({"a.obj", "--threshold", "2"}, "--threshold: expected a number from 0 to 1");
   expect_error({"a.obj", "--threshold", "nan"}, "--threshold: expected");
+  expect_error({"a.obj", "--point-error", "-1"}, "--point-error: expected a share of the distance");
+  expect_error({"a.obj", "--point-error", "nan"}, "--point-error: expected a share of the distance");
   expect_error({"a.obj", "--ambient", "inf"}, "--ambient: expected a radiance");
   expect_error({"a.obj", "--no-skip", "rays"}, "--no-skip: expected some of culling, records");
 }

@@ -72,7 +72,8 @@ TEST_F(Render, StatisticsAreWholeAndAgree) {
       "lanes",         "unit_tests",     "quotients",       "idle_clocks",
       "output_stalls", "thread_seconds", "integrator",      "spp",
       "depth",         "camera_rays",    "shadow_rays",     "common_records",
-      "skipped",       "input_bytes",     "arith"};
+      "skipped",       "input_bytes",     "arith",
+      "point_doubts"};
   std::set<std::string> actual;
   for (const auto& [key, value] : stats_.items()) actual.insert(key);
   EXPECT_EQ(actual, expected);

@@ -149,7 +149,7 @@ TEST_F(Render, SkipsChangeNoByte) {
     EXPECT_GT(done.at("skipped").at(what), 0) << what;
   }
   // Of the paper's 34 polygons each comes near some ray, of the teapot's 4,032 not.
-  render({RAYGATE_SCENES "/teapot.obj", "--size", "40x30", "--engine", "cpu", "-o", "teapot"});
+  render({RAYGATE_SCENES "/teapot.obj", "--size", "40x30", "--engine", "model", "-o", "teapot"});
   EXPECT_GT(stats_.at("skipped").at("records"), 0);
   render(with({"none", "--no-skip", "all"}));
   EXPECT_GT(stats_.at("tests"), 20 * done.at("tests").get<std::uint64_t>());

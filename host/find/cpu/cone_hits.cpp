@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "host/find/cpu/cone_search.h"
+#include "host/find/unit/point_error.h"
 #include "host/find/unit/record_batch.h"
 
 namespace raygate {
@@ -53,7 +54,7 @@ void ConeSearch::put_work(const ConeWalk& walk) {
 RAYGATE_INLINE void ConeSearch::put(const ConeWalk& walk, const Seen& seen) {
   for (std::uint64_t rays = seen.rays; rays != 0; rays &= rays - 1) {
     const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
-    hits_[walk.number(g, lane)] = {seen.slot, glm::vec3(0.0f), walk.t(g, lane)};
+    hits_[walk.number(g, lane)] = {.slot = seen.slot, .t = walk.t(g, lane)};
   }
 }
 
@@ -76,6 +77,12 @@ RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<
                        &z = walk.block->direction[2][g];
       const FloatLanes v = 0.0f + ((n.x * x + n.y * y) + n.z * z);
       FloatLanes point[3] = {d * x / v, d * y / v, d * z / v};
+      IntLanes v_bits, grazing, error_bits;
+      bits_of(v, v_bits);
+      grazing_of(planes[i], v_bits, grazing);
+      point_error_of(planes[i], v_bits, grazing, error_bits);
+      FloatLanes error;
+      floats_of(error_bits, error);
       for (FloatLanes& p : point) {
         const IntLanes nan = IntLanes{} + 0x7FC00000;
         p = p == p ? p : reinterpret_cast<FloatLanes>(nan);
@@ -84,7 +91,7 @@ RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<
         const int lane = std::countr_zero(lanes);
         hits_[walk.number(g, lane)] = {seen[i].slot,
                                        glm::vec3(point[0][lane], point[1][lane], point[2][lane]),
-                                       walk.t(g, lane)};
+                                       error[lane], walk.t(g, lane)};
       }
     }
     counters_.hit.plane_tests += static_cast<std::uint64_t>(std::popcount(seen[i].rays));

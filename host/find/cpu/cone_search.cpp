@@ -249,10 +249,10 @@ bool ConeSearch::settle(ConeWalk& walk, int group, int lane, std::int32_t slot,
                         const Interval* sure) {
   const std::uint32_t number = walk.number(group, lane);
   const Ray& ray = rays_[number];
-  NearestHit best, hit = {static_cast<std::uint32_t>(slot), glm::vec3(0.0f), {}};
+  NearestHit best, hit = {.slot = static_cast<std::uint32_t>(slot)};
   if (walk.slot[group][lane] >= 0) {
-    best = {static_cast<std::uint32_t>(walk.slot[group][lane]), glm::vec3(0.0f),
-            walk.t(group, lane)};
+    best.slot = static_cast<std::uint32_t>(walk.slot[group][lane]);
+    best.t = walk.t(group, lane);
     counters_.hit.depth_doubts += sure != nullptr;
   }
   const float limit = search_.limit(number);

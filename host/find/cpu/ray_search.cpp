@@ -173,10 +173,11 @@ bool RaySearch::settle(Walk& walk, std::uint32_t slot, bool sure) {
   const Ray& ray = walk.ray;
   NearestHit best;
   if (walk.slot != NearestHit::kNone) {
-    best = {walk.slot, glm::vec3(0.0f), walk.t()};
+    best.slot = walk.slot;
+    best.t = walk.t();
     counters_.hit.depth_doubts += sure;
   }
-  NearestHit hit = {slot, glm::vec3(0.0f), {}};
+  NearestHit hit = {.slot = slot};
   const float limit = search_.limit(walk.number);
   if (sure) hit.t = hit_distance(ray, bvh_.corners_of(slot));
   if (!(sure ? take_if_nearer(bvh_, ray, limit, hit, best, counters_)
@@ -231,7 +232,8 @@ void RaySearch::trace(std::span<const Ray> rays, const Search& search,
     counters.edge_doubts += walk.work.doubts;
     if (!search.work.empty()) search.work[number] = walk.work;
     if (walk.slot == NearestHit::kNone) continue;
-    hits[number] = {walk.slot, glm::vec3(0.0f), walk.t()};
+    hits[number].slot = walk.slot;
+    hits[number].t = walk.t();
     if (search.enough_before.empty()) add_point(number);
   }
   add_points();
@@ -257,7 +259,10 @@ void RaySearch::add_points() {
   std::array<PolygonRecord, kPlanes> planes;
   make_planes(views, planes);
   for (int i = 0; i < pointless_count_; ++i) {
-    hits_[pointless_[i]].point = plane_point(planes[i], rays_[pointless_[i]].direction);
+    NearestHit& hit = hits_[pointless_[i]];
+    const UnitPoint found = plane_point(planes[i], rays_[pointless_[i]].direction);
+    hit.point = found.point;
+    hit.point_error = found.error;
     ++counters_.hit.plane_tests;
   }
   pointless_count_ = 0;

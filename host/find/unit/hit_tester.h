@@ -32,8 +32,9 @@ struct SureHit {
   std::uint32_t bundle = 0;  ///< index into the batch
   std::uint32_t lane = 0;
   std::uint32_t tag = 0;
-  glm::vec3 point{0.0f};  ///< P = d I / (I . N) relative to the origin, in the plane unit's bits
-  Interval t{};           ///< high = +infinity where float32 says nothing
+  glm::vec3 point{0.0f};     ///< P = d I / (I . N) relative to the origin, in the unit's bits
+  float point_error = 0.0f;  ///< as NearestHit has it
+  Interval t{};              ///< high = +infinity where float32 says nothing
 };
 
 /// A polygon that float32 can neither call hit nor missed: for exact arithmetic to settle.
@@ -41,7 +42,8 @@ struct Doubt {
   std::uint32_t bundle = 0;
   std::uint32_t lane = 0;
   std::uint32_t tag = 0;
-  glm::vec3 point{0.0f};  ///< as in SureHit, should it be a hit
+  glm::vec3 point{0.0f};     ///< as in SureHit, should it be a hit
+  float point_error = 0.0f;  ///< likewise
 };
 
 /// What a batch gave. Bursts without a hit or doubt leave nothing here.
@@ -79,7 +81,7 @@ class StartedBatches {
 /// A unit and its host. Not for use by two threads at once: each thread makes its own.
 ///
 /// What it promises: a sure hit is a hit and an unreported pair a miss (or farther than a sure hit
-/// of its burst) in exact arithmetic on the records' coordinates; P has the plane unit's bits.
+/// of its burst) in exact arithmetic on the records' coordinates; P has the unit's bits.
 /// Which pairs are in doubt may differ between engines; decisions made from the reports do not.
 class HitTester {
  public:

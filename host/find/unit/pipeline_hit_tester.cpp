@@ -44,12 +44,12 @@ void PipelineHitTester::finish(HitResults& results) {
       const PolygonRecord& record = bundle.records[report->record];
       const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report->lane));
       const std::uint32_t tag = bundle.first_tag + report->record;
-      const glm::vec3 point = plane_point(record, direction);
+      const auto [point, error] = plane_point(record, direction);
       if (report->kind == TestReport::Kind::kDoubt) {
-        results.doubts.push_back({report->bundle, report->lane, tag, point});
+        results.doubts.push_back({report->bundle, report->lane, tag, point, error});
       } else {
-        results.hits.push_back(
-            {report->bundle, report->lane, tag, point, around(hit_distance(record, direction))});
+        results.hits.push_back({report->bundle, report->lane, tag, point, error,
+                                around(hit_distance(record, direction))});
       }
     }
   };
@@ -57,8 +57,11 @@ void PipelineHitTester::finish(HitResults& results) {
     take_reports([&](const TestReport& r) {
       return r.bundle != hit.bundle ? r.bundle < hit.bundle : r.lane <= hit.lane;
     });
-    results.hits.push_back({hit.bundle, hit.lane, batch[hit.bundle].first_tag + hit.record,
-                            hit.point, around({hit.t, hit.t_error})});
+    const RayBundle& bundle = batch[hit.bundle];
+    const float error = point_error(bundle.records[hit.record],
+                                    bundle.lane_direction(static_cast<int>(hit.lane)), hit.t_error);
+    results.hits.push_back({hit.bundle, hit.lane, bundle.first_tag + hit.record, hit.point, error,
+                            around({hit.t, hit.t_error})});
   }
   take_reports([](const TestReport&) { return true; });
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 
 #include "host/exact/binary32.h"
 #include "host/find/unit/burst_unit.h"
@@ -171,7 +172,18 @@ using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
 /// As BasicReferenceBurstUnit::distance, in binary32.
 [[nodiscard]] HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction);
 
+/// P, and how far off it may be: see NearestHit.
+struct UnitPoint {
+  glm::vec3 point;
+  float error;
+};
+
 /// As BasicReferenceBurstUnit::point, in binary32.
-[[nodiscard]] glm::vec3 plane_point(const PolygonRecord& record, const glm::vec3& direction);
+[[nodiscard]] UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction);
+
+/// The error of a P that the unit gave. `grazing`: what it says of that, or nothing where it does
+/// not say.
+[[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
+                                std::optional<std::uint32_t> grazing = std::nullopt);
 
 }  // namespace raygate

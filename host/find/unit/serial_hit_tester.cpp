@@ -82,13 +82,17 @@ void SerialHitTester::report_burst(std::span<const RayBundle> batch, std::size_t
     const auto& [index, lane, record, verdict] = pairs_[i];
     const RayBundle& bundle = batch[index];
     const std::uint32_t tag = bundle.first_tag + record;
-    if (verdict == UnitVerdict::kDoubt) results.doubts.push_back({index, lane, tag, points_[i]});
-    if (verdict != UnitVerdict::kHit) continue;
-    const Interval t =
-        distance_bounds(bundle.records[record], bundle.lane_direction(static_cast<int>(lane)));
+    if (verdict == UnitVerdict::kMiss) continue;
+    const glm::vec3 direction = bundle.lane_direction(static_cast<int>(lane));
+    const float error = point_error(bundle.records[record], direction);
+    if (verdict == UnitVerdict::kDoubt) {
+      results.doubts.push_back({index, lane, tag, points_[i], error});
+      continue;
+    }
+    const Interval t = distance_bounds(bundle.records[record], direction);
     if (t.low > nearest) continue;
     nearest = std::min(nearest, t.high);
-    results.hits.push_back({index, lane, tag, points_[i], t});
+    results.hits.push_back({index, lane, tag, points_[i], error, t});
   }
   if (results.hits.size() - first_hit < 2) return;
   results.hits.erase(

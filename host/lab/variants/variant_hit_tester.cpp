@@ -65,6 +65,11 @@ Interval around(const Arithmetic& math, float t, std::uint32_t error) {
           math.from_word(std::min(word + margin, math.to_word(kInfinity)))};
 }
 
+/// NearestHit's, in the format: half a unit in the last place is `unit_roundoff`.
+float point_error(const Arithmetic& math, std::uint32_t t_error) {
+  return static_cast<float>(std::ldexp(math.unit_roundoff(), 6 + static_cast<int>(t_error)));
+}
+
 }  // namespace
 
 double variant_edge_bound(const Arithmetic& math) {
@@ -148,7 +153,8 @@ void VariantHitTester::test(std::span<const RayBundle> batch, HitResults& result
       return r.bundle != hit.bundle ? r.bundle < hit.bundle : r.lane <= hit.lane;
     });
     results.hits.push_back({hit.bundle, hit.lane, batch[hit.bundle].first_tag + hit.record,
-                            hit.point, around(variant_.math, hit.t, hit.t_error)});
+                            hit.point, point_error(variant_.math, hit.t_error),
+                            around(variant_.math, hit.t, hit.t_error)});
   }
   take_reports([](const TestReport&) { return true; });
 }
@@ -162,10 +168,11 @@ void VariantHitTester::report(const RayBundle& wide, HitResults& results,
   const std::uint32_t tag = wide.first_tag + report.record;
   const glm::vec3 point = twin_.point(record, direction);
   if (report.kind == TestReport::Kind::kDoubt) {
-    results.doubts.push_back({report.bundle, report.lane, tag, point});
+    results.doubts.push_back({report.bundle, report.lane, tag, point, kInfinity});
   } else {
     const HitDistance distance = twin_.distance(record, direction);
     results.hits.push_back({report.bundle, report.lane, tag, point,
+                            point_error(variant_.math, distance.error),
                             around(variant_.math, distance.t, distance.error)});
   }
 }
@@ -177,7 +184,8 @@ void VariantHitTester::resolve_nothing(std::span<const RayBundle> batch, HitResu
     const std::uint32_t tag = batch[index].first_tag + record;
     // Equal distances become different ones, far below float32's digits, in the order of the tags.
     const double told_apart = t * (1.0 + std::ldexp(static_cast<double>(tag), -52));
-    const SureHit hit{index, lane, tag, point, {told_apart, told_apart}};
+    // Plain arithmetic has no bounds: its P is the picture's, whatever it is.
+    const SureHit hit{index, lane, tag, point, 0.0f, {told_apart, told_apart}};
     const bool same_burst = !results.hits.empty() && results.hits.back().bundle == index &&
                             results.hits.back().lane == lane;
     if (!same_burst) {

@@ -67,7 +67,7 @@ class Seen {
         bvh_(scene_) {
     scene_.materials[0] = material;
     const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
-    surface_.emplace(scene_, bvh_, Ray{eye, -eye}, 0);
+    surface_.emplace(scene_, bvh_, Ray{eye, -eye}, 0, nullptr);
   }
   [[nodiscard]] const Surface& surface() const { return *surface_; }
 

@@ -67,6 +67,27 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
   EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), cpu, stats)));
 }
 
+// The unit's P in place of the host's: another picture, but not one that can be told from it.
+TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
+  RenderOptions host = options(80, 60), unit = host;
+  host.channels.position = unit.channels.position = true;
+  host.point_error = 0.0f;
+  unit.point_error = std::numeric_limits<float>::max();
+  RenderStats all, none, some;
+  const Film exact = film(host, all), given = film(unit, none);
+  (void)film(options(80, 60), some);
+  EXPECT_EQ(none.point_doubts, 0u);
+  EXPECT_GT(some.point_doubts, 0u);
+  EXPECT_LT(10 * some.point_doubts, all.point_doubts);
+  EXPECT_EQ(exact.primitive, given.primitive);
+  EXPECT_NE(exact.position, given.position);
+  for (std::size_t i = 0; i < exact.depth.size(); ++i) {
+    if (exact.primitive[i] != kNoPrimitive) {
+      ASSERT_NEAR(given.depth[i] / exact.depth[i], 1.0, 0x1p-12);
+    }
+  }
+}
+
 TEST_P(EveryIntegrator, WindowsArePartsOfTheWhole) {
   const Film whole = film(options());
   RenderOptions cropped = options();

@@ -48,7 +48,7 @@ class ShadowRaysTest : public testing::Test {
       ray.light = glm::dvec3(1.0);
       ray.surface = *origin;
       ray.surface_slot = slot;
-      const Surface surface(scene_, bvh_, rays[i], slot);
+      const Surface surface(scene_, bvh_, rays[i], slot, &hits[i].point);
       const auto ask = [&](const glm::dvec3& at) {
         if (glm::dot(at - surface.point, surface.flat_normal) > 0.0) questions_.push_back(ray);
       };

@@ -41,6 +41,7 @@ inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, Searc
       EXPECT_EQ(a.slot, b.slot) << i;
       if (search.ignored.empty()) {
         EXPECT_EQ(std::memcmp(&a.point, &b.point, sizeof a.point), 0) << i;
+        EXPECT_EQ(a.point_error, b.point_error) << i;
       }
       EXPECT_LE(a.t.low, b.t.high);
       EXPECT_GE(a.t.high, b.t.low);

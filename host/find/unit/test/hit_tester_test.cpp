@@ -69,6 +69,8 @@ struct Batch {
   }
 };
 
+constexpr float kFlat = 0x1p-12f;  // an error of P
+
 using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 
 /// Checks the promises of `tester`, which is new, against exact arithmetic.
@@ -148,6 +150,41 @@ TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
   for (const SureHit& hit : b.hits) expect_same(hit);
   for (const Doubt& doubt : b.doubts) expect_same(doubt);
   EXPECT_GT(compared, 1000u);
+}
+
+// P is no farther off than its error says, from straight on to as flat as the unit goes.
+TEST(PipelineHitTester, PointsAreWithinTheirErrors) {
+  Random random;
+  int flat = 0, none = 0;
+  double worst = 0.0;
+  for (int i = 0; i < 200'000; ++i) {
+    const float scale = std::ldexp(1.0f, random.below(41) - 20);
+    Corners t = {random.point(scale), random.point(scale), random.point(scale)};
+    const glm::vec3 origin = random.point(2.0f * scale);
+    if (random.below(2) == 0) {  // nearly in the plane of the origin
+      const float share = std::ldexp(1.0f, -random.below(16));
+      t[2] = glm::mix(glm::mix(t[0], t[1], 0.4f) + 0.5f * (t[0] - origin), t[2], share);
+    }
+    const glm::dvec3 aim = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
+    const Ray ray = {origin, scaled_direction(aim - glm::dvec3(origin))};
+    if (!hits_triangle(ray, t)) continue;
+    const auto [point, error] = plane_point(make_record(origin, t), ray.direction);
+    if (std::isinf(error)) {
+      ++none;
+      continue;
+    }
+    const Interval exact = hit_distance(ray, t);
+    for (int k = 0; k < 3; ++k) {
+      const double p = 0.5 * (exact.low + exact.high) * ray.direction[k];
+      const double off = std::abs(point[k] - p) / std::abs(p);
+      ASSERT_LE(off, error) << i;
+      worst = std::max(worst, off / error);
+    }
+    flat += error > kFlat;
+  }
+  EXPECT_GT(flat, 10'000);
+  EXPECT_GT(none, 100);
+  EXPECT_GT(worst, 0.02) << "the bound is a bound, not a guess";
 }
 
 // The paper's order asks the unit about every pair and reports the same, bit for bit.

@@ -21,6 +21,7 @@ Outcome look_around(const std::vector<Corners>& walls, const glm::dvec3& eye) {
   Scene scene;
   test::add(scene, walls, test::mirror(1.0f));
   scene.background = glm::vec3(1.0f);
+  const Bvh bvh(scene);
   RenderOptions options = test::light(IntegratorKind::kWhitted, kSize, kSize, kSamples);
   options.max_depth = kDepth;
   Outcome outcome;
@@ -30,9 +31,13 @@ Outcome look_around(const std::vector<Corners>& walls, const glm::dvec3& eye) {
                              {0.2, -1, 0.1}, {0.1, 0.2, 1},  {0.3, 0.1, -1}};
   for (const glm::dvec3& way : ways) {
     const Camera camera = test::camera_at(eye, eye + way, 100.0);
-    const Film film = render(scene, Bvh(scene), camera, options, test::pipeline_twin(), stats);
-    for (const glm::vec4& color : film.color) outcome.lit += color.r != 0.0f || color.a != 1.0f;
-    rays += static_cast<double>(stats.rays);
+    // Whoever computes the points of hits: where rays begin is decided exactly.
+    for (const float point_error : {0.0f, kPointError, std::numeric_limits<float>::max()}) {
+      options.point_error = point_error;
+      const Film film = render(scene, bvh, camera, options, test::pipeline_model(bvh), stats);
+      for (const glm::vec4& color : film.color) outcome.lit += color.r != 0.0f || color.a != 1.0f;
+      rays += static_cast<double>(stats.rays) / 3.0;
+    }
   }
   outcome.rays_a_path = rays / (std::size(ways) * kSize * kSize * kSamples);
   return outcome;
