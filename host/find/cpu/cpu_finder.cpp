@@ -12,7 +12,7 @@ namespace raygate {
 void CpuFinder::find(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits) {
   assert(hits.size() == rays.size());
   Stopwatch watch;
-  std::ranges::fill(hits, NearestHit{});
+  for (NearestHit& hit : hits) hit.slot = NearestHit::kNone;  // the rest has no meaning
   std::ranges::fill(search.work, RayWork{});
   if (search.common_origin && search.culling && !rays.empty()) {
     ConeSearch(bvh_, counters_).trace(rays, search, hits);

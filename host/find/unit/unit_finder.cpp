@@ -34,7 +34,7 @@ void UnitFinder::find(std::span<const Ray> rays, const Search& search,
   rays_ = rays;
   search_ = search;
   hits_ = hits;
-  std::ranges::fill(hits, NearestHit{});
+  for (NearestHit& hit : hits) hit.slot = NearestHit::kNone;  // the rest has no meaning
   std::ranges::fill(search.work, RayWork{});
   common_ = nullptr;
   if (search.common_origin && !rays.empty()) {
