@@ -245,25 +245,22 @@ ARITHMETICS = {"structural": 0, "behavioural": 1}  # arith_pkg's
 
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
-    """The units that are placed and routed: design, format, arithmetic, device.
-
-    Those that take an hour or fill the device are placed once.
-    """
-    def unit(top: str, form: str, arithmetic: str, device: str, seeds: int = 3,
+    """The units that are placed and routed: design, format, arithmetic, device."""
+    def unit(top: str, form: str, arithmetic: str, device: str,
              **more: object) -> tuple[Design, str, str, Fpga]:
         exponent, fraction = FORMATS[form]
         fpga = next(fpga for fpga in FPGAS if fpga.name == device)
         return (design(top, f"{top}-{form}-{arithmetic}" + "".join(f"-{key}{value}" for key, value
                                                                    in more.items()),
                        ExpWidth=exponent, FracWidth=fraction, Arith=ARITHMETICS[arithmetic], **more),
-                form, arithmetic, dataclasses.replace(fpga, seeds=fpga.seeds[:seeds]))
+                form, arithmetic, fpga)
 
     rows = [unit("hit_test_unit", "binary32", kind, "ecp5") for kind in ARITHMETICS]
     rows.append(unit("hit_test_unit", "binary32", "behavioural", "ecp5", QuotientBits=21))
     rows.append(unit("general_hit_test_unit", "binary32", "behavioural", "ecp5"))
     rows += [unit("hit_test_unit", "binary16", kind, "ice40") for kind in ARITHMETICS]
-    rows.append(unit("hit_test_pipeline", "binary32", "behavioural", "ecp5", 1))
-    rows += [unit("hit_test_pipeline", "bfloat16", kind, "ecp5", 1) for kind in ARITHMETICS]
+    rows.append(unit("hit_test_pipeline", "binary32", "behavioural", "ecp5"))
+    rows += [unit("hit_test_pipeline", "bfloat16", kind, "ecp5") for kind in ARITHMETICS]
     return rows
 
 

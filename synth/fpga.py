@@ -1,10 +1,12 @@
 """Places and routes one design on an FPGA, between registers, and reads its clock rate.
 
 A design without a clock, or with more ports than a package has pins, is put between registers first.
-`python3 -m synth.fpga [NAME ...]` does so with the units (`make fpga`), or with those whose names begin so:
-the table is printed and kept in build/synth/fpga.md, fpga.json.
+`python3 -m synth.fpga` does so with the units (`make fpga`); the table is printed and kept in
+build/synth/fpga.md, fpga.json.
 """
 
+import argparse
+import dataclasses
 import inspect
 import json
 import pathlib
@@ -94,11 +96,18 @@ def registered(design: Design, ports: list[tuple[str, str, int]]) -> str:
 
 
 def main() -> int:
-    """Places the units, prints and keeps their table; 1 where one fails, 2 where a tool is missing."""
-    units = [unit for unit in catalogue.fpga_units() if unit[0].name.startswith(tuple(sys.argv[1:] or [""]))]
+    """Places the units, prints and keeps their table; 1 where one fails, 2 for what the user can mend."""
+    parser = argparse.ArgumentParser(prog="synth.fpga", description="Places and routes the units on FPGAs.")
+    parser.add_argument("names", nargs="*", help="beginnings of units' names; all if none")
+    parser.add_argument("--seeds", type=int, default=3, help="placements, of which the median counts "
+                        "(%(default)s)")
+    given = parser.parse_args()
     try:
-        if not units:
-            raise ValueError(f"no unit {' or '.join(sys.argv[1:])}; there are "
+        units = [(design, form, kind, dataclasses.replace(fpga, seeds=tuple(range(1, given.seeds + 1))))
+                 for design, form, kind, fpga in catalogue.fpga_units()
+                 if design.name.startswith(tuple(given.names or [""]))]
+        if not units or given.seeds < 1:
+            raise ValueError("expected at least one seed, and some of "
                              + ", ".join(unit[0].name for unit in catalogue.fpga_units()))
         for _, _, _, fpga in units:
             tools.find(fpga.tool)

@@ -4,6 +4,7 @@ import functools
 import hashlib
 import json
 import pathlib
+import re
 from collections.abc import Callable, Iterable
 
 from synth import tools
@@ -13,7 +14,12 @@ OUT = tools.ROOT / "build" / "synth"
 
 @functools.cache
 def _digest(file: pathlib.Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+    """Of the contents; RTL without its comments and blanks, which change no netlist."""
+    text = file.read_bytes()
+    if file.suffix == ".sv":
+        text = re.sub(rb"//[^\n]*|\s+", b" ", text)
+        text = re.sub(rb" +", b" ", text)
+    return hashlib.sha256(text).hexdigest()
 
 
 def key(files: Iterable[pathlib.Path], *facts: object) -> str:

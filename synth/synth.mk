@@ -21,9 +21,9 @@ verilog: ## a module as one file of plain Verilog: make verilog TOP=fp_adder_sta
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
 
-fpga: ## place and route the units on FPGAs, hours: make fpga [UNITS=hit_test_unit-binary32]
+fpga: ## place and route the units on FPGAs, an hour or two: make fpga [UNITS=hit_test_unit-binary32] [SEEDS=3]
 	@$(SETUP) synth
-	@$(PYTHON) -m synth.fpga $(UNITS)
+	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(UNITS)
 
 datasheet: ## fill hw/README.md from the sources and from what synth and fpga measured, draw its diagrams
 	$(call build,build,worked_example)
