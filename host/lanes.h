@@ -1,8 +1,11 @@
 // Eight rays at a time: the one place that knows how wide the machine's vectors are.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 #if defined(__SSE__)
 #include <immintrin.h>
 #endif
@@ -58,6 +61,69 @@ RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
 #else
   return mask_of(lanes >> 31, IntLanes{});
 #endif
+}
+
+/// -1 in the lanes of the mask, 0 in the others.
+RAYGATE_INLINE void lanes_of(LaneMask mask, IntLanes& lanes) {
+  constexpr IntLanes kBit = {1, 2, 4, 8, 16, 32, 64, 128};
+  lanes = ((IntLanes{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
+}
+
+/// The largest lane; no NaN.
+RAYGATE_INLINE float largest_of(const FloatLanes& lanes) {
+  FloatLanes x = lanes, other = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
+  x = x > other ? x : other;
+  other = __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
+  x = x > other ? x : other;
+  other = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
+  x = x > other ? x : other;
+  return x[0];
+}
+
+/// Four floats at a time: one SSE register, for the triangles of a leaf.
+inline constexpr int kQuad = 4;
+using FloatQuad = float __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
+using IntQuad = std::int32_t __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
+
+RAYGATE_INLINE void load_quad(const float* from, FloatQuad& to) {
+  std::memcpy(&to, from, sizeof to);
+}
+
+/// The elements whose sign bit is set.
+RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
+#if defined(__SSE__)
+  return static_cast<LaneMask>(_mm_movemask_ps(reinterpret_cast<__m128>(quad)));
+#else
+  LaneMask mask = 0;
+  for (int i = 0; i < kQuad; ++i) mask |= static_cast<LaneMask>(quad[i] < 0) << i;
+  return mask;
+#endif
+}
+
+/// |x|, of a number or of vectors of floats or doubles.
+template <class T>
+RAYGATE_INLINE void magnitude(const T& x, T& result) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    result = std::abs(x);
+  } else {
+    using Bits = decltype(x < x);
+    using Word = std::remove_cvref_t<decltype(Bits{}[0])>;
+    result = reinterpret_cast<T>(reinterpret_cast<Bits>(x) & std::numeric_limits<Word>::max());
+  }
+}
+
+/// u x v, and for each component the sum of the magnitudes of its two products.
+template <class T>
+RAYGATE_INLINE void cross(const T (&u)[3], const T (&v)[3], T (&value)[3], T (&size)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const T plus = u[i] * v[j], minus = u[j] * v[i];
+    T plus_size, minus_size;
+    magnitude(plus, plus_size);
+    magnitude(minus, minus_size);
+    value[k] = plus - minus;
+    size[k] = plus_size + minus_size;
+  }
 }
 
 /// The same bits as integers, and back.

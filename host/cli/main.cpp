@@ -7,6 +7,7 @@
 #include "host/cli/interrupt.h"
 #include "host/cli/options.h"
 #include "host/cli/run.h"
+#include "host/exact/ieee_floats.h"
 #include "host/scene/io/input_error.h"
 
 namespace {
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   // A file that grows past the user's limit becomes a failed write, not a death.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
+    raygate::require_ieee_floats();
     const raygate::Options options = raygate::parse_options(argc, argv);
     if (options.information.empty()) {
       raygate::run(options);

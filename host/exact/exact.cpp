@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "host/exact/exact_vector.h"
+#include "host/lanes.h"
 
 namespace raygate {
 namespace {
@@ -30,10 +31,11 @@ struct Cross {
   glm::dvec3 value, magnitude;
 
   Cross(const glm::dvec3& u, const glm::dvec3& v) {
-    const glm::dvec3 plus(u.y * v.z, u.z * v.x, u.x * v.y);
-    const glm::dvec3 minus(u.z * v.y, u.x * v.z, u.y * v.x);
-    value = plus - minus;
-    magnitude = glm::abs(plus) + glm::abs(minus);
+    const double from[3] = {u.x, u.y, u.z}, to[3] = {v.x, v.y, v.z};
+    double product[3], size[3];
+    cross(from, to, product, size);
+    value = {product[0], product[1], product[2]};
+    magnitude = {size[0], size[1], size[2]};
   }
 
   /// Whether each component's error is surely at most 2^-34 of |value|_1. The bound is 8u, not

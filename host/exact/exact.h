@@ -7,6 +7,8 @@
 #include <glm/glm.hpp>
 #include <limits>
 
+#include "host/exact/ieee_floats.h"
+
 namespace raygate {
 
 /// The vertices of a triangle, in its order.

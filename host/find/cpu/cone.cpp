@@ -5,8 +5,6 @@
 #include <cstddef>
 
 #include "host/exact/exact.h"
-#include "host/find/cpu/float_quad.h"
-#include "host/find/cpu/lane_math.h"
 
 namespace raygate {
 namespace {

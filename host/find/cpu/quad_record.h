@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "host/exact/exact.h"
-#include "host/find/cpu/float_quad.h"
+#include "host/lanes.h"
 
 // Why a sure answer is right
 //
@@ -55,19 +55,6 @@ RAYGATE_INLINE void join(const FloatQuad& low, const FloatQuad& high, FloatLanes
   both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// u x v, and the sum of the magnitudes of the products that it is made of.
-RAYGATE_INLINE void cross(const FloatLanes (&u)[3], const FloatLanes (&v)[3],
-                          FloatLanes (&result)[3], FloatLanes& size) {
-  size = FloatLanes{};
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const FloatLanes plus = u[i] * v[j], minus = u[j] * v[i];
-    result[k] = plus - minus;
-    size += reinterpret_cast<FloatLanes>(reinterpret_cast<IntLanes>(plus) & 0x7FFFFFFF) +
-            reinterpret_cast<FloatLanes>(reinterpret_cast<IntLanes>(minus) & 0x7FFFFFFF);
-  }
-}
-
 /// The record of 1 to 4 triangles, their corners as test_quad takes them.
 RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corners,
                                      std::uint32_t count, QuadRecord& record) {
@@ -95,12 +82,17 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
     join(p[0][k], p[1][k], u[k]);
     join(sides[0][k], sides[1][k], v[k]);
   }
-  cross(u, v, planes[0], sizes[0]);
+  const auto cross_of = [&](FloatLanes(&plane)[3], FloatLanes& sum) __attribute__((always_inline)) {
+    FloatLanes size[3];
+    cross(u, v, plane, size);
+    sum = size[0] + size[1] + size[2];
+  };
+  cross_of(planes[0], sizes[0]);
   for (int k = 0; k < 3; ++k) {
     join(p[2][k], sides[0][k], u[k]);
     join(sides[2][k], sides[1][k], v[k]);
   }
-  cross(u, v, planes[1], sizes[1]);
+  cross_of(planes[1], sizes[1]);
   const auto low_of = [](const FloatLanes& x) __attribute__((always_inline)) {
     return __builtin_shufflevector(x, x, 0, 1, 2, 3);
   };

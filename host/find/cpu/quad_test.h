@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "host/exact/exact.h"
-#include "host/find/cpu/float_quad.h"
+#include "host/lanes.h"
 
 // Why a sure answer is right
 //

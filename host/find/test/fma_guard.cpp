@@ -2,8 +2,10 @@
 // rounds, and 2^-24 when it does not. Built a second time with fusing allowed, it must fail.
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <span>
 
+#include "host/exact/ieee_floats.h"
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/reference_plane_unit.h"
 
@@ -65,7 +67,15 @@ void check_exact() {
 }  // namespace
 }  // namespace raygate
 
-int main() {
+int main(int argc, char**) {
+  if (argc > 1) {  // as programs begin
+    try {
+      raygate::require_ieee_floats();
+    } catch (const std::exception& error) {
+      std::puts(error.what());
+    }
+    return 0;
+  }
   raygate::check_edges();
   raygate::check_plane();
   raygate::check_exact();

@@ -30,9 +30,19 @@ namespace raygate {
 namespace {
 
 // Words whose exponents are in here are far enough from under- and overflow for all that follows.
-constexpr int kMaxExponent = 60;
+constexpr double kSmallest = 0x1p-60, kLargest = 0x1p61;
 
-bool ordinary(double x) { return x == 0.0 || std::abs(std::ilogb(x)) <= kMaxExponent; }
+/// Not so for a NaN.
+bool ordinary(double x) {
+  const double size = std::abs(x);
+  return size == 0.0 || (size >= kSmallest && size < kLargest);
+}
+
+/// By which power of two `v` is to be multiplied for its largest component to be in [1, 2).
+int to_unit(const glm::dvec3& v) {
+  const double size = largest(v);
+  return size > 0.0 && std::isfinite(size) ? -std::ilogb(size) : 0;
+}
 
 glm::dvec3 scaled(const glm::dvec3& v, int exponent) {
   return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
@@ -52,7 +62,7 @@ bool lower(const glm::vec3& a, const glm::vec3& b) {
 /// away, spares the digits that A x B would cancel.
 glm::vec3 edge_words(const glm::vec3& origin, const glm::vec3& a, const glm::vec3& b) {
   glm::dvec3 edge = lower(a, b) ? edge_normal(origin, a, b) : -edge_normal(origin, b, a);
-  if (!ordinary(largest(edge))) edge = scaled(edge, -std::ilogb(largest(edge)));
+  if (!ordinary(largest(edge))) edge = scaled(edge, to_unit(edge));
   return glm::vec3(edge);
 }
 
@@ -69,7 +79,7 @@ struct Plane {
   Plane(const glm::vec3& origin, const Corners& t)
       : normal(triangle_normal(t)), d(plane_distance(origin, t)) {
     if (ordinary(largest(normal)) && ordinary(d)) return;
-    const int exponent = normal == glm::dvec3(0.0) ? 0 : -std::ilogb(largest(normal));
+    const int exponent = to_unit(normal);
     normal = scaled(normal, exponent);
     d = std::ldexp(d, exponent);
   }

@@ -23,20 +23,15 @@ using Ints = std::int32_t __attribute__((vector_size(4 * kBatch), aligned(4 * kB
 
 constexpr double kU = 0x1p-53;  // as in exact.cpp
 
-struct Points {
-  Doubles x, y, z;
-};
+using Points = Doubles[3];
 
 RAYGATE_INLINE void subtract(const Points& a, const Points& b, Points& result) {
-  result = {a.x - b.x, a.y - b.y, a.z - b.z};
+  for (int k = 0; k < 3; ++k) result[k] = a[k] - b[k];
 }
 
-RAYGATE_INLINE void magnitude(const Doubles& x, Doubles& result) {
-  result = reinterpret_cast<Doubles>(reinterpret_cast<Longs>(x) & 0x7FFFFFFFFFFFFFFF);
-}
-
-RAYGATE_INLINE void larger(const Doubles& a, const Doubles& b, Doubles& result) {
-  result = a > b ? a : b;
+RAYGATE_INLINE void largest_of(const Points& p, Doubles& result) {
+  result = p[0] > p[1] ? p[0] : p[1];
+  result = result > p[2] ? result : p[2];
 }
 
 /// The exponent of each is in [-60, 60], or it is 0.
@@ -45,20 +40,15 @@ RAYGATE_INLINE void require_ordinary(const Doubles& size, Longs& good) {
 }
 
 /// u x v; leaves those lanes good in which it is accurate enough and of an ordinary size.
-RAYGATE_INLINE void cross(const Points& u, const Points& v, Points& value, Points& size,
+RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
                           Longs& good) {
-  const Points plus = {u.y * v.z, u.z * v.x, u.x * v.y};
-  const Points minus = {u.z * v.y, u.x * v.z, u.y * v.x};
-  subtract(plus, minus, value);
-  Points p, m, s;
-  magnitude(plus.x, p.x), magnitude(plus.y, p.y), magnitude(plus.z, p.z);
-  magnitude(minus.x, m.x), magnitude(minus.y, m.y), magnitude(minus.z, m.z);
-  size = {p.x + m.x, p.y + m.y, p.z + m.z};
-  magnitude(value.x, s.x), magnitude(value.y, s.y), magnitude(value.z, s.z);
+  cross(u, v, value, size);
+  Points s;
+  for (int k = 0; k < 3; ++k) magnitude(value[k], s[k]);
   Doubles largest, largest_value;
-  larger(size.x, size.y, largest), larger(largest, size.z, largest);
-  good &= 8.0 * kU * largest <= 0x1p-34 * (s.x + s.y + s.z);
-  larger(s.x, s.y, largest_value), larger(largest_value, s.z, largest_value);
+  largest_of(size, largest);
+  good &= 8.0 * kU * largest <= 0x1p-34 * (s[0] + s[1] + s[2]);
+  largest_of(s, largest_value);
   require_ordinary(largest_value, good);
 }
 
@@ -78,9 +68,7 @@ RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& 
 }
 
 RAYGATE_INLINE void to_floats(const Points& p, Floats (&words)[3]) {
-  words[0] = __builtin_convertvector(p.x, Floats);
-  words[1] = __builtin_convertvector(p.y, Floats);
-  words[2] = __builtin_convertvector(p.z, Floats);
+  for (int k = 0; k < 3; ++k) words[k] = __builtin_convertvector(p[k], Floats);
 }
 
 /// The bound of an edge: its sum of magnitudes times a constant, rounded up.
@@ -105,8 +93,7 @@ RAYGATE_INLINE void load_corners(const Corners* const (&triangles)[kBatch], Poin
   for (int v = 0; v < 3; ++v) {
     Floats f[3];
     std::memcpy(f, corners[v], sizeof f);
-    t[v] = {__builtin_convertvector(f[0], Doubles), __builtin_convertvector(f[1], Doubles),
-            __builtin_convertvector(f[2], Doubles)};
+    for (int k = 0; k < 3; ++k) t[v][k] = __builtin_convertvector(f[k], Doubles);
   }
 }
 
@@ -117,10 +104,10 @@ RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& n
   Points to_b, to_c, size, far;
   subtract(t[1], t[0], to_b);
   subtract(t[2], t[0], to_c);
-  cross(to_b, to_c, normal, size, good);
-  d = a.x * normal.x + a.y * normal.y + a.z * normal.z;
-  magnitude(a.x, far.x), magnitude(a.y, far.y), magnitude(a.z, far.z);
-  const Doubles error = 10.0 * kU * (far.x * size.x + far.y * size.y + far.z * size.z);
+  accurate_cross(to_b, to_c, normal, size, good);
+  d = a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
+  for (int k = 0; k < 3; ++k) magnitude(a[k], far[k]);
+  const Doubles error = 10.0 * kU * (far[0] * size[0] + far[1] * size[1] + far[2] * size[2]);
   Doubles distance;
   magnitude(d, distance);
   good &= (error <= 0x1p-32 * distance) & (distance > error);
@@ -151,15 +138,16 @@ RAYGATE_LANES LaneMask make_four(const glm::vec3& origin, const Corners* const (
 
   for (int k = 0; k < 3; ++k) {
     const Points &p = t[k], &q = t[(k + 1) % 3];
-    const Longs lower = (p.x < q.x) | ((p.x == q.x) & ((p.y < q.y) | ((p.y == q.y) & (p.z < q.z))));
+    const Longs lower =
+        (p[0] < q[0]) | ((p[0] == q[0]) & ((p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]))));
     const Points &pf = from_o[k], &qf = from_o[(k + 1) % 3];
-    const Points start = {lower ? pf.x : qf.x, lower ? pf.y : qf.y, lower ? pf.z : qf.z};
-    const Points begin = {lower ? p.x : q.x, lower ? p.y : q.y, lower ? p.z : q.z};
-    const Points end = {lower ? q.x : p.x, lower ? q.y : p.y, lower ? q.z : p.z};
-    Points way, edge;
-    subtract(end, begin, way);
-    cross(start, way, edge, size, good);
-    edge = {lower ? edge.x : -edge.x, lower ? edge.y : -edge.y, lower ? edge.z : -edge.z};
+    Points start, way, edge;
+    for (int i = 0; i < 3; ++i) {
+      start[i] = lower ? pf[i] : qf[i];
+      way[i] = lower ? q[i] - p[i] : p[i] - q[i];
+    }
+    accurate_cross(start, way, edge, size, good);
+    for (int i = 0; i < 3; ++i) edge[i] = lower ? edge[i] : -edge[i];
     to_floats(edge, edges[k]);
     edge_bound(edges[k], bounds[k]);
   }
@@ -183,10 +171,7 @@ RAYGATE_LANES LaneMask make_four_planes(const std::array<PlaneView, kBatch>& vie
   std::memcpy(o, origins, sizeof o);
   Points t[3], a, normal;
   load_corners(triangles, t);
-  subtract(t[0],
-           {__builtin_convertvector(o[0], Doubles), __builtin_convertvector(o[1], Doubles),
-            __builtin_convertvector(o[2], Doubles)},
-           a);
+  for (int k = 0; k < 3; ++k) a[k] = t[0][k] - __builtin_convertvector(o[k], Doubles);
   Longs good = Longs{} - 1;
   Doubles d;
   find_planes(t, a, normal, d, good);

@@ -5,7 +5,7 @@
 
 #include "host/exact/exact_vector.h"
 #include "host/exact/test/meshes.h"
-#include "host/scene/camera.h"
+#include "host/find/unit/reference_burst_unit.h"
 
 namespace raygate {
 namespace {
@@ -90,6 +90,22 @@ TEST(PolygonRecord, SureSignsAreRightAtEveryScale) {
     }
   }
   EXPECT_GT(sure, 300000);
+}
+
+// Numbers that no loader lets in: nothing is sure of them, and nothing undefined happens.
+TEST(PolygonRecord, WhatIsNotFiniteLeavesADoubt) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {infinity, -infinity, infinity - infinity}) {
+    for (int word = 0; word < 12; ++word) {
+      glm::vec3 points[4] = {{0, 0, 0}, {-1, -1, 2}, {1, -1, 2}, {0, 1, 2}};  // origin and corners
+      points[word / 3][word % 3] = bad;
+      const Corners corners = {points[1], points[2], points[3]};
+      const PolygonRecord record = make_record(points[0], corners);
+      for (const glm::vec3& way : {glm::vec3(0, 0, 1), glm::vec3(0.2f, -0.1f, 1)}) {
+        EXPECT_EQ(ReferenceBurstUnit().verdict(record, way), UnitVerdict::kDoubt) << word;
+      }
+    }
+  }
 }
 
 TEST(PolygonRecord, NoAreaOrOriginInThePlaneHasNoDistance) {

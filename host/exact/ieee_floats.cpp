@@ -1,0 +1,41 @@
+#include "host/exact/ieee_floats.h"
+
+#include <cfenv>
+#include <stdexcept>
+
+namespace raygate {
+namespace {
+
+/// a a - (1 + 2 h) for a = 1 + h, whose square does not fit the format: 0 if the product is rounded,
+/// h^2 if not. What is volatile is computed when the program runs.
+template <class T>
+bool is_fused(T h) {
+  volatile T a = T(1) + h, whole = T(1) + T(2) * h;
+  return a * a - whole != T(0);
+}
+
+/// Half the smallest normal number, made and used.
+template <class T>
+bool keeps_subnormals() {
+  volatile T smallest = std::numeric_limits<T>::min();
+  volatile T half = smallest * T(0.5);
+  volatile T back = half + half;
+  return half != T(0) && back == smallest;
+}
+
+}  // namespace
+
+void require_ieee_floats() {
+  if (std::fegetround() != FE_TONEAREST) {
+    throw std::runtime_error("arithmetic: found another rounding mode, expected to nearest");
+  }
+  if (!keeps_subnormals<float>() || !keeps_subnormals<double>()) {
+    throw std::runtime_error("arithmetic: found subnormals flushed to zero, expected them kept");
+  }
+  if (is_fused(0x1p-12f) || is_fused(0x1p-27)) {
+    throw std::runtime_error(
+        "arithmetic: found multiply and add fused, expected -ffp-contract=off");
+  }
+}
+
+}  // namespace raygate
