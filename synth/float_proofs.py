@@ -1,8 +1,9 @@
 """The float cores held against IEEE 754, for every operand: the queries, and the solver's answers.
 
 A query is one file of SMT-LIB, build/synth/proofs/float.NAME/query.smt2, that any solver reads:
-the specification (proofs/float/*.smt2), the core as Yosys writes it, and the claim
-(proofs/float/claims). "unsat" means that no operand breaks the claim.
+the specification (proofs/float/*.smt2), the core as Yosys writes it, and a claim
+(proofs/float/claims). "unsat" means that no operand breaks the claim. Placeholders ($E, $S) are
+numbers that follow from the format.
 """
 
 import dataclasses
@@ -11,149 +12,77 @@ import json
 import pathlib
 import re
 import string
+import struct
 import sys
 
 from synth import cores, store, tools
 
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
-# Exponent and fraction widths.
-FORMATS = {"binary16": (5, 10), "binary32": (8, 23)}
-# The next wider of the formats that Bitwuzla knows.
-WIDER = {"binary16": (8, 23), "binary32": (11, 52)}
+# Exponent and fraction widths of a format, and of the next wider one that Bitwuzla knows.
+FORMATS = {"binary16": (5, 10, 8, 23), "binary32": (8, 23, 11, 52)}
 
 # What a core is made of, as its parameters.
 ARITHMETIC = {
-    "ripple": "Adder 0", "uniform": "Adder 1", "graded": "Adder 2", "prefix": "Adder 3",
-    "behavioural": "Adder 4"}
-
-MODES = ["near_even", "minMag", "min", "max", "near_maxMag"]  # TestFloat's names
+    "ripple": "Arith 0 Adder 0", "uniform": "Arith 0 Adder 1", "graded": "Arith 0 Adder 2",
+    "prefix": "Arith 0 Adder 3", "structural": "Arith 0", "behavioural": "Arith 1", "": ""}
+ADDERS = ["ripple", "uniform", "graded", "prefix"]  # the structural kinds
 
 
 @dataclasses.dataclass(frozen=True)
 class Operation:
-    """What is specified: the core, its specification, its claim, what stands for its parts."""
+    """What is claimed of which module, by which specification, around which contracts.
+
+    `top`: "" for a claim about the specification alone. `parameters`: the module's.
+    """
 
     top: str
     says: str
     specification: tuple[str, ...]
-    claim: str
-    contracts: tuple[str, ...] = ()  # modules that are replaced
+    contracts: tuple[str, ...] = ()
+    parameters: str = "ExpWidth $E FracWidth $F"
 
 
 OPERATIONS = {
-    "add": Operation("fp_adder", "is IEEE 754's sum, all modes and flags",
-                     ("add",), "add"),
-    "multiply": Operation("fp_multiplier", "rounds the product of the significands as IEEE 754 does",
-                          ("multiply",), "multiply", ("booth_multiplier",)),
-    "multiply_whole": Operation("fp_multiplier", "is IEEE 754's product, all modes and flags",
-                                ("multiply",), "multiply_whole"),
-    "divide": Operation("fp_divider", "rounds the quotient of the significands as IEEE 754 does",
-                        ("multiply", "divide"), "divide", ("srt_divider_stages",)),
-    "compare": Operation("fp_compare", "is IEEE 754's comparison",
-                         ("compare",), "compare"),
+    "add": Operation("fp_adder", "the sum, all modes and flags", ("format", "add")),
+    "multiply": Operation(
+        "fp_multiplier", "the product, all modes and flags, around any product of significands",
+        ("format", "multiply"), ("multiplier",)),
+    "multiply_whole": Operation("fp_multiplier", "the product", ("format", "multiply")),
+    "divide": Operation(
+        "fp_divider", "the quotient, all modes and flags, around any quotient of significands",
+        ("format", "multiply", "divide"), ("srt_divider_stages",)),
+    "divide_cut": Operation(
+        "fp_divider", "the quotient cut off after 21 bits, around any of significands",
+        ("format", "multiply", "divide"), ("srt_divider_stages",),
+        "ExpWidth $E FracWidth $F QuotientBits 21"),
+    "srt_row": Operation(
+        "srt_row", "a row of the divider: w' = 4 w - digit d, and |w'| <= 2/3 d again", ("srt",), (),
+        "Width $N DigitsWidth 2"),
+    "srt_ends": Operation(
+        "srt_divider_stages", "first digit, remainder and quotient, around any rows", ("srt",),
+        ("srt_row",), "Width $S Rows $ROWS"),
+    "decode": Operation("", "a number is its significand by a power of two", ("format", "multiply")),
+    "compare": Operation("fp_compare", "equal, less, unordered, flags", ("format", "compare")),
 }
-
-
-def numbers(name: str, quotient_bits: int = 0) -> dict[str, object]:
-    """What the specifications' placeholders stand for in the format `name`."""
-    exp, frac = FORMATS[name]
-    wide_exp, wide_frac = WIDER[name]
-    width = 1 + exp + frac
-    bias, wide_bias = 2 ** (exp - 1) - 1, 2 ** (wide_exp - 1) - 1
-    infinity = (2 ** exp - 1) << frac
-    rows = ((quotient_bits - 1 if quotient_bits else frac + 1) + 1) // 2
-
-    def wide(significand: int, exponent: int) -> str:
-        """significand * 2**exponent as a Wide."""
-        top = significand.bit_length() - 1
-        fraction = (significand << (wide_frac - top)) - (1 << wide_frac)
-        return f"(fp #b0 #b{exponent + top + wide_bias:0{wide_exp}b} #b{fraction:0{wide_frac}b})"
-
-    def power(exponent: int) -> str:
-        """The number before 2**exponent, the middle between the two, and 2**exponent."""
-        one = 2 ** (frac + 2)
-        return " ".join(wide(n, exponent - frac - 2) for n in (one - 2, one - 1, one))
-
-    return {
-        "E": exp, "S": frac + 1, "F": frac, "W": width, "SIGN": width - 1, "QUIET": frac - 1,
-        "FIELD_HIGH": width - 2, "FIELD_LOW": frac, "P": 2 * frac + 2,
-        "WE": wide_exp, "WS": wide_frac + 1, "WF": wide_frac, "WW": 1 + wide_exp + wide_frac,
-        "EXTEND": wide_exp - exp, "PAD": wide_frac - 2 * frac - 2,
-        "NAN": f"#b{infinity | 1 << (frac - 1):0{width}b}",
-        "OVERFLOW": power(bias + 1), "UNDERFLOW": power(1 - bias),
-        "PRODUCT_FIELD": wide_bias + wide_frac - 2 * (bias + frac),
-        "WFIELD_HIGH": wide_exp + wide_frac - 1, "WF_TOP": wide_frac - 1, "WF_S": wide_frac - frac,
-        "Q": 2 * rows + 2, "QUOTIENT_ONE": 4 ** rows, "QPAD": wide_frac - 2 * rows - 3,
-        "QUOTIENT_FIELD": wide_bias + wide_frac - 2 - 2 * rows,
-    }
-
-
-def specification(operation: str, name: str, quotient_bits: int = 0) -> str:
-    """The specification of `operation` in the format `name`."""
-    files = [FLOAT / f"{part}.smt2"
-             for part in ("format", *OPERATIONS[operation].specification)]
-    values = numbers(name, quotient_bits)
-    text = "".join(string.Template(file.read_text()).substitute(values) for file in files)
-    return "(set-logic QF_BVFP)\n" + text
-
-
-def sources(operation: Operation) -> list[pathlib.Path]:
-    """The RTL of a core, contracts in place of what they stand for."""
-    files = [file for file in cores.files("fp") if file.stem not in operation.contracts]
-    return files + [FLOAT / "contracts" / f"{module}.sv" for module in operation.contracts]
-
-
-def ports(model: str, top: str) -> tuple[str, list[str]]:
-    """Names for the core's ports and for what contracts leave free ("free_..."), and those names."""
-    text = [f"(declare-const state |{top}_s|)"]
-    names = []
-    pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
-                         r"(\([^)]*\)|Bool)")
-    for function, wire, sort in pattern.findall(model):
-        last = wire.split(".")[-1]
-        if "." in wire and not last.startswith("free_"):
-            continue
-        if not re.fullmatch(r"\w+_[io]|free_\w+", last):
-            continue
-        text.append(f"(define-fun {last} () {sort} (|{function}| state))")
-        names.append(last)
-    return "\n".join(text) + "\n", names
-
-
-def query(operation: str, name: str, model: str, extra: str = "") -> tuple[str, list[str]]:
-    """All of a query but its last assertion, and the names of the core's ports."""
-    named, wires = ports(model, OPERATIONS[operation].top)
-    claim = (FLOAT / "claims" / f"{OPERATIONS[operation].claim}.smt2").read_text()
-    return specification(operation, name) + model + named + claim + extra, wires
-
-
-def installed() -> None:
-    """Raises MissingTool where the solver is not."""
-    if importlib.util.find_spec("bitwuzla") is None:
-        raise tools.MissingTool("Bitwuzla is not installed: pip install -r synth/requirements.txt")
-
-
-def solve(file: pathlib.Path, text: str, terms: tuple[str, ...] = ()) -> dict:
-    """Bitwuzla's answer to `text`, which is kept in `file`."""
-    file.write_text(text + "(check-sat)\n")
-    out = tools.run([sys.executable, FLOAT / "solve.py", file, *terms], file.with_suffix(".log"))
-    return json.loads(out.splitlines()[-1])
 
 
 @dataclasses.dataclass(frozen=True)
 class FloatProof:
-    """A claim about one core; `long`: it takes more than a few minutes."""
+    """A claim about one module; `long`: it takes more than a few minutes."""
 
     operation: str
     format: str
-    arithmetic: str
+    arithmetic: str = ""
+    quotient_bits: int = 0
     long: bool = False
 
     @property
     def name(self) -> str:
         """Unique; of the folder too."""
-        return ".".join(filter(None, (self.operation, self.format, self.arithmetic)))
+        bits = self.quotient_bits
+        parts = (self.operation, self.format, self.arithmetic, f"{bits}_bits" if bits else "")
+        return ".".join(filter(None, parts))
 
     @property
     def says(self) -> str:
@@ -162,33 +91,148 @@ class FloatProof:
 
     @property
     def parameters(self) -> str:
-        """The core's, "Name value ..."."""
-        exp, frac = FORMATS[self.format]
-        return f"ExpWidth {exp} FracWidth {frac} {ARITHMETIC.get(self.arithmetic, '')}"
+        """The module's, "Name value ..."."""
+        fixed = string.Template(OPERATIONS[self.operation].parameters).substitute(self.numbers())
+        return f"{fixed} {ARITHMETIC[self.arithmetic]}"
+
+    def numbers(self) -> dict[str, object]:
+        """What the specifications' placeholders stand for."""
+        exp, frac, wide_exp, wide_frac = FORMATS[self.format]
+        width = 1 + exp + frac
+        bias, wide_bias = 2 ** (exp - 1) - 1, 2 ** (wide_exp - 1) - 1
+        infinity = (2 ** exp - 1) << frac
+        rows = (self.quotient_bits or frac + 2) // 2  # of the divider, two bits each
+        residual = frac + 2
+
+        def wide(significand: int, exponent: int) -> str:
+            """significand * 2**exponent as a Wide."""
+            top = significand.bit_length() - 1
+            fraction = (significand << (wide_frac - top)) - (1 << wide_frac)
+            return (f"(fp #b0 #b{exponent + top + wide_bias:0{wide_exp}b} "
+                    f"#b{fraction:0{wide_frac}b})")
+
+        def power(exponent: int) -> str:
+            """The number before 2**exponent, the middle between the two, and 2**exponent."""
+            one = 2 ** (frac + 2)
+            return " ".join(wide(n, exponent - frac - 2) for n in (one - 2, one - 1, one))
+
+        chain = "".join(
+            f"(= free_{wire}_i_{row} {f'free_{wire}_o_{row - 1}' if wire != 'divisor' else wire})"
+            for row in range(2, rows + 1)
+            for wire in ("sum", "carry", "positives", "negatives", "divisor"))
+        return {
+            # format
+            "E": exp, "S": frac + 1, "F": frac, "W": width, "SIGN": width - 1, "QUIET": frac - 1,
+            "WE": wide_exp, "WS": wide_frac + 1, "WF": wide_frac, "WW": 1 + wide_exp + wide_frac,
+            "NAN": f"#b{infinity | 1 << (frac - 1):0{width}b}",
+            "OVERFLOW": power(bias + 1), "UNDERFLOW": power(1 - bias),
+            # multiply
+            "FIELD_HIGH": width - 2, "P": 2 * frac + 2, "EXTEND": wide_exp - exp,
+            "PAD": wide_frac - 2 * frac - 2,
+            "PRODUCT_FIELD": wide_bias + wide_frac - 2 * (bias + frac),
+            "DECODE_FIELD": wide_bias + wide_frac - bias - frac, "DECODE_PAD": wide_frac - frac - 1,
+            # divide
+            "WFIELD_HIGH": wide_exp + wide_frac - 1, "WF_TOP": wide_frac - 1,
+            "WF_S": wide_frac - frac, "Q": 2 * rows + 2, "QUOTIENT_ONE": 4 ** rows,
+            "QPAD": wide_frac - 2 * rows - 3, "QUOTIENT_FIELD": wide_bias + wide_frac - 2 - 2 * rows,
+            "QUOTIENT_SHIFT": 2 * rows + 1, "QX": frac + 2 * rows + 2,
+            "CUT_FROM_2": 2 * rows + 2 - self.quotient_bits,
+            "CUT_FROM_1": 2 * rows + 1 - self.quotient_bits,
+            # rows of the divider
+            "N": residual, "N4": residual + 4, "N2": residual + 2, "N_TOP": residual - 1,
+            "N_NEXT": residual - 2, "ROWS": rows, "Q1": 2 * rows + 1, "CHAIN": f"(and true {chain})",
+        }
+
+    def files(self) -> list[pathlib.Path]:
+        """The specification, and behind it the claim."""
+        parts = OPERATIONS[self.operation].specification
+        return [*(FLOAT / f"{part}.smt2" for part in parts),
+                FLOAT / "claims" / f"{self.operation}.smt2"]
+
+    def texts(self) -> list[str]:
+        """The contents of `files`, numbers in place of placeholders."""
+        numbers = self.numbers()
+        return [string.Template(file.read_text()).substitute(numbers) for file in self.files()]
+
+    def sources(self) -> list[pathlib.Path]:
+        """The RTL, contracts in place of the modules that they stand for."""
+        contracts = OPERATIONS[self.operation].contracts
+        files = [file for file in cores.files("fp") if file.stem not in contracts]
+        return files + [FLOAT / "contracts" / f"{module}.sv" for module in contracts]
 
 
+_CORES = [FloatProof(operation, name, kind)
+          for operation in ("add", "multiply", "divide") for name in FORMATS
+          for kind in (*ADDERS, "behavioural")]
 PROOFS = [
-    *(FloatProof(operation, "binary16", kind)
-      for operation in ("add", "multiply", "divide") for kind in ARITHMETIC),
-    *(FloatProof(operation, "binary32", kind)
-      for operation in ("multiply", "divide") for kind in ARITHMETIC),
-    *(FloatProof("compare", name, "") for name in FORMATS),
-    *(FloatProof("add", "binary32", kind, long=True) for kind in ("behavioural", "graded")),
+    *(one for one in _CORES if (one.operation, one.format) != ("add", "binary32")),
+    *(FloatProof("compare", name, kind) for name in FORMATS
+      for kind in ("structural", "behavioural")),
+    *(FloatProof(part, name, kind) for part in ("srt_row", "srt_ends") for name in FORMATS
+      for kind in (*ADDERS, "behavioural")),
+    *(FloatProof("decode", name) for name in FORMATS),
+    FloatProof("divide_cut", "binary32", "graded", 21),
+    FloatProof("srt_ends", "binary32", "graded", 21),
+    *(dataclasses.replace(one, long=True) for one in _CORES
+      if (one.operation, one.format) == ("add", "binary32")),
 ]
+
+
+def ports(model: str, top: str) -> tuple[str, list[str]]:
+    """Names for a module's ports and for what contracts leave free ("free_..."; with the number of
+    its row, where it is in one), and those names."""
+    text = [f"(declare-const state |{top}_s|)"]
+    names = []
+    pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
+                         r"(\([^)]*\)|Bool)")
+    for function, wire, sort in pattern.findall(model):
+        found = re.fullmatch(r"(?:.*\[(\d+)\])?(?:.*\.)?(free_\w+)", wire)
+        name = wire
+        if found:
+            name = found[2] + (f"_{found[1]}" if found[1] else "")
+        elif not re.fullmatch(r"\w+_[io]", wire):
+            continue
+        text.append(f"(define-fun {name} () {sort} (|{function}| state))")
+        names.append(name)
+    return "\n".join(text) + "\n", names
+
+
+def write_model(one: FloatProof, folder: pathlib.Path, keep: str = "") -> str:
+    """A module as SMT-LIB; its netlist goes to `keep`."""
+    smt2 = folder / "model.smt2"
+    tools.run(["yosys", "-c", FLOAT / "model.tcl"], folder / "yosys.log", {
+        "SOURCES": " ".join(map(str, one.sources())), "TOP": OPERATIONS[one.operation].top,
+        "PARAMETERS": one.parameters, "SMT2": str(smt2), "KEEP": keep})
+    return smt2.read_text()
+
+
+def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
+    """A query but for its last assertions, and the names of the module's ports."""
+    *specification, claim = one.texts()
+    top = OPERATIONS[one.operation].top
+    named, wires = ports(model, top) if top else ("", [])
+    return "(set-logic QF_BVFP)\n" + "".join([*specification, model, named, claim]), wires
+
+
+def solve(file: pathlib.Path, text: str, terms: tuple[str, ...] = (), limit: float = 0) -> dict:
+    """Bitwuzla's answer to `text`, which is kept in `file`; see proofs/float/solve.py."""
+    if importlib.util.find_spec("bitwuzla") is None:
+        raise tools.MissingTool("Bitwuzla is not installed: pip install -r synth/requirements.txt")
+    file.write_text(text + "(check-sat)\n")
+    out = tools.run([sys.executable, FLOAT / "solve.py", file, limit, *terms],
+                    file.with_suffix(".log"))
+    return json.loads(out.splitlines()[-1])
 
 
 def proven(one: FloatProof) -> tuple[dict, bool]:
     """Proves a claim; raises ToolFailed, with the operands, where it does not hold."""
-    installed()
-    parts = OPERATIONS[one.operation]
     folder = store.OUT / "proofs" / f"float.{one.name}"
-    claim = FLOAT / "claims" / f"{parts.claim}.smt2"
-    wanted = store.key([*sources(parts), *sorted(FLOAT.glob("*.*")), claim],
-                       tools.version("yosys"), one.parameters, sorted(numbers(one.format).items()))
+    wanted = store.key([*one.sources(), FLOAT / "model.tcl", FLOAT / "solve.py"],
+                       tools.version("yosys"), one.parameters, one.texts())
 
     def work() -> dict:
-        write_model(parts, one.parameters, folder / "model.smt2")
-        text, wires = query(one.operation, one.format, (folder / "model.smt2").read_text())
+        model = write_model(one, folder) if OPERATIONS[one.operation].top else ""
+        text, wires = query(one, model)
         if solve(folder / "assumption.smt2", text + "(assert assumed)\n")["answer"] != "sat":
             raise tools.ToolFailed(f"{one.name}: what it assumes cannot be")
         answer = solve(folder / "query.smt2",
@@ -200,8 +244,89 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
     return store.cached(folder, wanted, work)
 
 
-def write_model(parts: Operation, parameters: str, smt2: pathlib.Path, keep: str = "") -> None:
-    """Writes a core as SMT-LIB, and its netlist to `keep`."""
-    tools.run(["yosys", "-c", FLOAT / "model.tcl"], smt2.with_name("yosys.log"), {
-        "SOURCES": " ".join(map(str, sources(parts))), "TOP": parts.top, "PARAMETERS": parameters,
-        "SMT2": str(smt2), "KEEP": keep})
+SPECIFICATIONS = [FloatProof(operation, name)
+                  for operation in ("add", "multiply", "divide", "compare") for name in FORMATS]
+VECTORS = 125_000  # for each of these
+BATCH = 5000  # evaluated in one query
+
+# What MPFR is asked of each specification: FloatOp of sim/fp/float_format.h, and `second` of vectors/.
+ASKED = {"add": {0: "false", 1: "true"}, "multiply": {2: "false"}, "divide": {3: "false"},
+         "compare": {4: "false", 6: "true"}}
+CODES = {"binary16": ("<H", "<e", "<f", "<I"), "binary32": ("<I", "<f", "<d", "<Q")}
+
+
+def wide_word(word: int, name: str) -> str:
+    """The word of a number in the next wider format."""
+    narrow, as_narrow, as_wide, wide = CODES[name]
+    value = struct.unpack(as_narrow, struct.pack(narrow, word))[0]
+    bits = struct.unpack(wide, struct.pack(as_wide, value))[0]
+    return f"#b{bits:0{8 * struct.calcsize(wide)}b}"
+
+
+def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]:
+    """Evaluates a specification, by the solver, on `count` operations of which MPFR gives the result;
+    and sees that it refuses one of them with a bit of the result changed."""
+    folder = store.OUT / "proofs" / f"float.specification.{one.name}"
+    vectors = FLOAT / "vectors" / f"{one.operation}.smt2"
+    numbers = one.numbers()
+    width = numbers["W"]
+    text = "".join(["(set-logic QF_BVFP)\n", *one.texts()[:-1],
+                    "" if one.operation == "divide" else "(define-sort WideWord () (_ BitVec $WW))\n",
+                    vectors.read_text()])
+    text = string.Template(text).substitute(numbers)
+    oracle = [tools.ROOT / "sim" / name for name in ("fp/vectors.cpp", "test/fp/oracle.cpp")]
+    program = FLOAT / "mpfr_vectors.cpp"
+    wanted = store.key([*oracle, program, FLOAT / "solve.py"], text, count)
+
+    def case(line: str, second: str) -> str:
+        mode, after, a, b, result, flags = map(int, line.split())
+        after_text = "true" if after else "false"
+        return (f"(agrees (mode #b{mode:03b}) {after_text} #b{a:0{width}b} #b{b:0{width}b} "
+                f"#b{result:0{width}b} #b{flags:05b} {second} "
+                f"{wide_word(a, one.format)} {wide_word(b, one.format)})")
+
+    def evaluate(cases: list[str]) -> dict:
+        return solve(folder / "cases.smt2",
+                     text + "(assert (not (and true\n" + "\n".join(cases) + ")))\n")
+
+    def work() -> dict:
+        maker = folder / "mpfr_vectors"
+        tools.run(["g++", "-std=c++20", "-O2", "-I", tools.ROOT, program, *oracle, "-lmpfr", "-lgmp",
+                   "-o", maker], folder / "build.log")
+        exp, frac, *_ = FORMATS[one.format]
+        seconds, megabytes = 0.0, 0
+        asked = ASKED[one.operation]
+        for op, second in asked.items():
+            lines = tools.run([str(maker), exp, frac, op, count // len(asked)],
+                              folder / "vectors.txt").splitlines()
+            mode, after, a, b, result, flags = lines[0].split()
+            wrong = " ".join((mode, after, a, b, str(int(result) ^ 1), flags))
+            if evaluate([case(wrong, second)])["answer"] != "sat":
+                raise tools.ToolFailed(f"{one.name}: a wrong result passes: {folder}/cases.smt2")
+            for start in range(0, len(lines), BATCH):
+                answer = evaluate([case(line, second) for line in lines[start:start + BATCH]])
+                if answer["answer"] != "unsat":
+                    raise tools.ToolFailed(f"{one.name}: differs from MPFR: {folder}/cases.smt2")
+                seconds += answer["seconds"]
+                megabytes = max(megabytes, answer["megabytes"])
+        return {"holds": True, "seconds": round(seconds, 1), "megabytes": megabytes}
+
+    return store.cached(folder, wanted, work)
+
+
+def lemma(name: str) -> tuple[dict, bool]:
+    """Proves a lemma of whole numbers: each of its questions is "unsat" to z3."""
+    file = FLOAT / "lemmas" / f"{name}.smt2"
+    folder = store.OUT / "proofs" / f"float.lemma.{name}"
+
+    def work() -> dict:
+        answers = tools.run(["z3", file], folder / "z3.log").split()
+        if answers != ["unsat"] * file.read_text().count("(check-sat)"):
+            raise tools.ToolFailed(f"{file}: {' '.join(answers)}")
+        return {"holds": True}
+
+    return store.cached(folder, store.key([file], tools.version("z3")), work)
+
+
+LEMMAS = {"multiplication": "what claims/multiply.smt2 assumes of a product",
+          "division": "from the rows to the quotient"}

@@ -133,6 +133,11 @@ def all_proofs() -> list[Proof]:
     proofs += [Proof(f"float.{one.name}", one.says, "Bitwuzla",
                      functools.partial(float_proofs.proven, one), False, one.long)
                for one in float_proofs.PROOFS]
+    proofs += [Proof(f"float.lemma.{name}", says, "z3", functools.partial(float_proofs.lemma, name))
+               for name, says in float_proofs.LEMMAS.items()]
+    proofs += [Proof(f"float.specification.{one.name}", f"as MPFR, {float_proofs.VECTORS:,} times",
+                     "evaluation", functools.partial(float_proofs.agrees_with_mpfr, one), False)
+               for one in float_proofs.SPECIFICATIONS]
     # The pipelined unit in binary16: Verilator would take an hour for binary32's hundred thousand
     # cells.
     narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)

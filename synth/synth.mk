@@ -2,7 +2,7 @@
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth prove verilog fpga datasheet
+.PHONY: synth prove refute verilog fpga datasheet
 
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
@@ -16,6 +16,11 @@ synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=grad
 prove: ## prove adders, multiplier, float cores, timetable: make prove [PROOFS='adder. float.add'] [LONG=1]
 	@$(SETUP) prove
 	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(PROOFS)
+
+refute: ## faults in the float cores, refuted: make refute [CORES='add divide'] [FAULTS=50]
+	@$(SETUP) prove
+	$(call build,test,check_vectors)
+	@$(PYTHON) -m synth.float_faults --count $(or $(FAULTS),50) --jobs '$(SYNTH_JOBS)' $(CORES)
 
 verilog: ## a module as one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5 FracWidth=10']
 	@$(SETUP) synth

@@ -3,7 +3,7 @@
 (define-sort Product () (_ BitVec $P))
 
 ; A finite number is significand / 2^($S - 1) * 2^(exponent - bias); a subnormal's exponent is 1.
-(define-fun field ((w Word)) (_ BitVec $E) ((_ extract $FIELD_HIGH $FIELD_LOW) w))
+(define-fun field ((w Word)) (_ BitVec $E) ((_ extract $FIELD_HIGH $F) w))
 (define-fun is-normal-field ((w Word)) Bool (not (= (field w) (_ bv0 $E))))
 (define-fun significand ((w Word)) (_ BitVec $S)
   (concat (bit (is-normal-field w)) ((_ extract $QUIET 0) w)))

@@ -1,12 +1,16 @@
-"""`solve.py FILE [TERM ...]`: Bitwuzla's answer to an SMT-LIB file, as a line of JSON.
+"""`solve.py FILE SECONDS [TERM ...]`: Bitwuzla's answer to an SMT-LIB file, as a line of JSON.
 
-{"answer": "sat" or "unsat" or "unknown", "seconds": of processor time, "megabytes": at most,
+{"answer": "sat", "unsat", or "unknown" if SECONDS of processor time (0: no limit) are not enough,
+"seconds": of processor time, "megabytes": at most,
 "values": {TERM: its value in bits, where the answer is "sat"}}
 """
 
 import json
+import math
+import os
 import pathlib
 import resource
+import signal
 import sys
 
 import bitwuzla
@@ -21,9 +25,25 @@ def bits(term: bitwuzla.Term) -> str:
     return term.value(2)
 
 
+def report(answer: str, values: dict[str, str], usage: resource.struct_rusage) -> None:
+    """Prints the line."""
+    print(json.dumps({"answer": answer, "seconds": round(usage.ru_utime + usage.ru_stime, 1),
+                      "megabytes": usage.ru_maxrss // 1024, "values": values}), flush=True)
+
+
 def main() -> None:
-    """Solves the file named first, and prints the terms named after it."""
-    file, *terms = sys.argv[1:]
+    """Solves the file and prints the values of the terms."""
+    file, limit, *terms = sys.argv[1:]
+    if float(limit):  # a child may run out of time
+        child = os.fork()
+        if child:
+            status = os.waitpid(child, 0)[1]
+            if os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGXCPU:
+                report("unknown", {}, resource.getrusage(resource.RUSAGE_CHILDREN))
+                status = 0
+            sys.exit(os.waitstatus_to_exitcode(status) != 0)
+        most = math.ceil(float(limit))
+        resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
     options = bitwuzla.Options()
     options.set(bitwuzla.Option.PRODUCE_MODELS, bool(terms))
     parser = bitwuzla.Parser(bitwuzla.TermManager(), options)
@@ -34,9 +54,7 @@ def main() -> None:
     values = {}
     if answer == "sat":
         values = {term: bits(solver.get_value(parser.parse_term(term))) for term in terms}
-    usage = resource.getrusage(resource.RUSAGE_SELF)
-    print(json.dumps({"answer": answer, "seconds": round(usage.ru_utime + usage.ru_stime, 1),
-                      "megabytes": usage.ru_maxrss // 1024, "values": values}))
+    report(answer, values, resource.getrusage(resource.RUSAGE_SELF))
 
 
 main()

@@ -3,6 +3,7 @@ module srt_divider_stages #(
   parameter int unsigned Width = 24,
   parameter int unsigned Rows  = 12,
   parameter int unsigned BesideWidth = 1,
+  parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0,
   parameter bit          Pipelined = 1'b0
 ) (

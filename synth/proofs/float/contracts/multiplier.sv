@@ -1,6 +1,7 @@
 // A multiplier that promises nothing: the query says what its product is.
-module booth_multiplier #(
+module multiplier #(
   parameter int unsigned Width = 24,
+  parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0,
   parameter bit ConstantRow = 1'b0
 ) (

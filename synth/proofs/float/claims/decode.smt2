@@ -1,0 +1,7 @@
+; A finite number is its significand by a power of two: in the form in which exact-product has the product.
+(declare-const a Word)
+(define-fun assumed () Bool (is-finite a))
+(define-fun claimed () Bool
+  (let ((e (bvadd (exponent a) (_ bv$DECODE_FIELD $WE))))
+    (= (fp.abs (wide a))
+       (fp.sub RNE (fp #b0 e (concat (_ bv0 $DECODE_PAD) (significand a))) (fp #b0 e (_ bv0 $WF))))))

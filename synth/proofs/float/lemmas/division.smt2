@@ -1,0 +1,35 @@
+; From the rows to the quotient, in whole numbers of any size. x, d: the significands; p = 4^r; D: the
+; digits up to row r as one number; w: its residual. For z3: "unsat" to each question.
+(declare-const x Int)
+(declare-const d Int)
+(declare-const p Int)
+(declare-const D Int)
+(declare-const w Int)
+(declare-const digit Int)
+
+; First digit and rows keep 2 x p = D d + w: the first has p = 1 and w = 2 x - D d, and a row goes on
+; to 4 p, 4 D + digit and 4 w - digit d.
+(push)
+(assert (= (* 2 x p) (+ (* D d) w)))
+(assert (not (= (* 2 x (* 4 p)) (+ (* (+ (* 4 D) digit) d) (- (* 4 w) (* digit d))))))
+(check-sat)
+(pop)
+
+; In the end D, less one where w is negative, is 2 x p / d cut off, and something is left of it
+; where w is not zero.
+(push)
+(define-fun Q () Int (ite (< w 0) (- D 1) D))
+(assert (and (> d 0) (<= (* -2 d) (* 3 w)) (<= (* 3 w) (* 2 d))))
+(assert (= (* 2 x p) (+ (* D d) w)))
+(assert (not (and (<= (* Q d) (* 2 x p)) (< (* 2 x p) (+ (* Q d) d))
+                  (= (= w 0) (= (* 2 x p) (* Q d))))))
+(check-sat)
+(pop)
+
+; The quotient is in (p, 4 p) if the significands are in [f, 2 f), so two integer bits hold it.
+(push)
+(declare-const f Int)
+(assert (and (> f 0) (<= f x) (< x (* 2 f)) (<= f d) (< d (* 2 f)) (> p 0)))
+(assert (not (and (< d (* 2 x)) (< (* 2 x) (* 4 d)))))
+(check-sat)
+(pop)
