@@ -9,18 +9,18 @@ date, or where the example does not pass Verilator. A mark is `<!-- KIND ARGUMEN
   declaration MODULE         its header and its declaration, word for word
   section FILE | TITLE       what stands in FILE under the comment `// ---- TITLE`
   lines FILE | EXPRESSION    the lines of FILE that match
-  figures                    of `make synth`, build/synth/results.json; kept where there are none
-  fpga                       of `make fpga`, build/synth/fpga.md; likewise
+  figures                    area and time of some designs, measured where they have changed
+  fpga                       the units that `make fpga` has placed
 """
 
+import dataclasses
 import difflib
-import json
 import pathlib
 import re
 import subprocess
 import sys
 
-from synth import cores, store, tables, tools, waveform
+from synth import catalogue, cores, fpga, measure, store, tables, tools, waveform
 
 README = cores.HW / "README.md"
 DIAGRAMS = cores.HW / "diagrams"
@@ -85,35 +85,35 @@ def quoted(argument: str, pattern: str) -> str:
     return f"```{language}\n" + "\n".join(line[margin:] for line in lines) + "\n```\n"
 
 
-def figures() -> str | None:
-    """The fastest netlist of each design in each library; None where nothing was measured."""
-    file = store.OUT / "results.json"
-    if not file.exists():
-        return None
-    measured = json.loads(file.read_text())
-    fastest: dict[tuple[str, str], dict] = {}
-    for record in measured["results"]:
-        if "area" in record and record["section"] != "reduced cores":
-            key = record["target"], record["design"]
-            fastest[key] = min(fastest.get(key, record), record, key=lambda row: row["delay_ns"])
-    rows = [[record["section"], record["design"], record["target"], record["flow"],
-             f"{record['area'] / 1e6:.3f}", f"{record['delay_ns']:.2f}",
-             f"{1000 / record['delay_ns']:.1f}" if "from" in record else ""]
-            for record in fastest.values()]
-    return f"Made by `make synth` with {measured['tools']}.\n\n" + tables.markdown(
-        ["section", "design", "library", "flow", "area, mm2", "slowest path, ns", "MHz"], rows)
+# Design of the catalogue -> the flow that is shown.
+SHOWN = {"adder-graded": "fast", "booth-graded-ripple-groups": "fast", "fp-multiplier": "fast",
+         "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
+         "hit_test_pipeline": "parts"}
 
 
-def fpga() -> str | None:
-    """The table of `make fpga`, if it was made."""
-    file = store.OUT / "fpga.md"
-    return file.read_text() if file.exists() else None
+def figures() -> str:
+    """Area and slowest path of some designs; what was measured before is not measured again."""
+    library = catalogue.LIBRARIES[0]
+    rows = [dataclasses.replace(row, flows={library.name: (SHOWN[row.design.name],)})
+            for row in catalogue.report_rows() if row.design.name in SHOWN]
+    records, failures = measure.measure(rows, measure.Targets((library.name,)))
+    if failures:
+        raise tools.ToolFailed("\n".join(failures))
+    return f"{library.title}, {' and '.join(versions())}.\n\n" + tables.markdown(
+        ["design", "flow", "area, mm2", "slowest path, ns", "MHz"],
+        [[record["design"], record["flow"], f"{record['area'] / 1e6:.3f}", f"{record['delay_ns']:.2f}",
+          f"{1000 / record['delay_ns']:.1f}" if "from" in record else ""] for record in records])
+
+
+def versions() -> list[str]:
+    """The tools behind the figures."""
+    return [f"Yosys {tools.version('yosys')}", f"OpenSTA {tools.version('sta')}"]
 
 
 KINDS = {"modules": modules, "declaration": declaration,
          "section": lambda argument: quoted(argument, r"^ *// ---- %s\n(?: *//\n|\n)*(.*?)(?=^ *// ----|^endpackage)"),
          "lines": lambda argument: quoted(argument, r"^[^\n]*%s[^\n]*$")}
-MEASURED = {"figures": figures, "fpga": fpga}
+MEASURED = {"figures": figures, "fpga": fpga.table}
 
 
 def filled(text: str, measured: bool = True) -> str:
@@ -121,13 +121,13 @@ def filled(text: str, measured: bool = True) -> str:
     def fill(mark: re.Match) -> str:
         kind, argument, old = mark.groups()
         if kind in MEASURED:
-            new = MEASURED[kind]() if measured else None
+            new = MEASURED[kind]() if measured else old
         elif kind in KINDS:
             new = KINDS[kind](argument)
         else:
             raise ValueError(f"{README}: found the mark {kind}, expected one of {', '.join(KINDS)}")
         head = f"<!-- {kind} {argument}".rstrip() + " -->"
-        return f"{head}\n{old if new is None else new}<!-- end -->"
+        return f"{head}\n{new}<!-- end -->"
 
     return MARK.sub(fill, text)
 

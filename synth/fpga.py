@@ -1,8 +1,7 @@
 """Places and routes one design on an FPGA, between registers, and reads its clock rate.
 
 A design without a clock, or with more ports than a package has pins, is put between registers first.
-`python3 -m synth.fpga` does so with the units (`make fpga`); the table is printed and kept in
-build/synth/fpga.md, fpga.json.
+`python3 -m synth.fpga` does so with the units (`make fpga`) and prints the table.
 """
 
 import argparse
@@ -22,16 +21,33 @@ MOST_PINS = 150  # what every package here has
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     """LUTs, registers, multipliers, and the slowest path between registers as MHz: the median of the seeds."""
+    folder, wanted, seeds = _keys(design, fpga)
+    _, mapped = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
+    runs = [store.cached(folder / f"seed-{seed}", key, lambda s=seed: _place(fpga, folder, s))
+            for seed, key in seeds.items()]
+    return median([run for run, _ in runs]), mapped and all(there for _, there in runs)
+
+
+def placed(design: Design, fpga: Fpga) -> dict | None:
+    """The same of those seeds alone that were placed before, with their number; None where none was."""
+    folder, _, seeds = _keys(design, fpga)
+    runs = [run for seed, key in seeds.items() if (run := store.kept(folder / f"seed-{seed}", key))]
+    return {**median(runs), "seeds": len(runs)} if runs else None
+
+
+def median(runs: list[dict]) -> dict:
+    """The run of the median clock rate."""
+    return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
+
+
+def _keys(design: Design, fpga: Fpga) -> tuple[pathlib.Path, str, dict[int, str]]:
+    """Where results are kept, under what key the netlist is, and each seed's placement."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     files = [*design.sources(), tools.FLOWS / "fpga.tcl", tools.FLOWS / "elaborate.tcl"]
     wanted = store.key(files, tools.version("yosys"), design.facts, fpga.name,
                        inspect.getsource(registered))
-    _, mapped = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
-    placed = [store.cached(folder / f"seed-{seed}", store.key([], wanted, tools.version(fpga.tool), fpga.tool,
-                                                              fpga.arguments, fpga.wanted_mhz),
-                           lambda s=seed: _place(fpga, folder, s)) for seed in fpga.seeds]
-    median = sorted(placed, key=lambda run: run[0]["mhz"])[len(placed) // 2][0]
-    return median, mapped and all(kept for _, kept in placed)
+    key = store.key([], wanted, tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz)
+    return folder, wanted, dict.fromkeys(fpga.seeds, key)
 
 
 def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
@@ -111,25 +127,29 @@ def main() -> int:
                              + ", ".join(unit[0].name for unit in catalogue.fpga_units()))
         for _, _, _, fpga in units:
             tools.find(fpga.tool)
-        results, failures = runner.run_all(
+        _, failures = runner.run_all(
             [runner.Job(f"{design.name} {fpga.name}", lambda d=design, f=fpga: place(d, f),
                         lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz")
              for design, _, _, fpga in units], 1)
     except (tools.MissingTool, ValueError) as error:
         print(f"fpga: {error}", file=sys.stderr)
         return 2
-    rows = [{"unit": design.top + (", 21-bit quotients" if "QuotientBits21" in design.name else ""),
-             "format": form, "arithmetic": kind, "device": fpga.title, "seeds": len(fpga.seeds), **got}
-            for (design, form, kind, fpga), got in zip(units, results, strict=True) if got]
-    heads = ["unit", "format", "arithmetic", "device", "luts", "registers", "multipliers", "mhz", "seeds"]
-    table = tables.markdown([head.replace("luts", "LUTs").replace("mhz", "MHz") for head in heads],
-                            [[row[head] for head in heads] for row in rows])
-    (store.OUT / "fpga.md").write_text(table)
-    (store.OUT / "fpga.json").write_text(json.dumps(rows, indent=1) + "\n")
-    print(table)
+    print(table())
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
     return 1 if failures else 0
+
+
+def table() -> str:
+    """All units that have been placed as they are now."""
+    heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz", "seeds"]
+    rows = []
+    for design, form, kind, fpga in catalogue.fpga_units():
+        if tools.installed(fpga.tool) and (got := placed(design, fpga)):
+            short = ", 21-bit quotients" if ("QuotientBits", "21") in design.parameters else ""
+            rows.append([design.top + short, form, kind, fpga.title,
+                         *(got[head.lower()] for head in heads[4:])])
+    return tables.markdown(heads, rows)
 
 
 if __name__ == "__main__":

@@ -28,17 +28,23 @@ def key(files: Iterable[pathlib.Path], *facts: object) -> str:
     return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
+def kept(folder: pathlib.Path, wanted: str) -> dict | None:
+    """The result in `folder` if it was made under the key `wanted`."""
+    file = folder / "result.json"
+    found = json.loads(file.read_text()) if file.exists() else {}
+    return found["result"] if found.get("key") == wanted else None
+
+
 def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple[dict, bool]:
     """The result in `folder` if it was made under the key `wanted`; else makes and keeps it.
 
     Returns the result and whether it was already there.
     """
+    there = kept(folder, wanted)
+    if there is not None:
+        return there, True
     file = folder / "result.json"
-    if file.exists():
-        kept = json.loads(file.read_text())
-        if kept["key"] == wanted:
-            return kept["result"], True
-        file.unlink()  # a run that fails must not leave an older answer behind
+    file.unlink(missing_ok=True)  # a run that fails must not leave an older answer behind
     folder.mkdir(parents=True, exist_ok=True)
     result = make()
     file.write_text(json.dumps({"key": wanted, "result": result}, indent=1))
