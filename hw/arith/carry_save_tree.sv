@@ -16,30 +16,25 @@ module carry_save_tree #(
   output logic [Width-1:0]      carry_o
 );
 
-  localparam int unsigned Total = Rows + 2 * (Rows - 2);  // that are ever in the queue
+  localparam int unsigned Adders = Rows - 2;
 
-  for (genvar r = 0; r < Total; r++) begin : gen_row
-    logic [Width-1:0] row;
-    if (r < Rows) begin : gen_given
-      assign row = rows_i[Width*r+:Width];
-    end else if ((r - Rows) % 2 == 0) begin : gen_sum
-      localparam int unsigned Oldest = 3 * ((r - Rows) / 2);
-      logic [Width-1:0] carry;
-      carry_save_adder #(
-        .Width(Width)
-      ) u_adder (
-        .a_i    (gen_row[Oldest].row),
-        .b_i    (gen_row[Oldest+1].row),
-        .c_i    (gen_row[Oldest+2].row),
-        .sum_o  (row),
-        .carry_o(carry)
-      );
-    end else begin : gen_carry
-      assign row = gen_row[r-1].gen_sum.carry;
-    end
+  // Its rows feed each other, but never in a loop: which Verilator sees when they are signals of their own.
+  logic [Width*(Rows+2*Adders)-1:0] queue  /*verilator split_var*/;
+
+  assign queue[Width*Rows-1:0] = rows_i;
+
+  for (genvar k = 0; k < Adders; k++) begin : gen_adder
+    carry_save_adder #(
+      .Width(Width)
+    ) u_adder (
+      .a_i    (queue[Width*(3*k) +: Width]),
+      .b_i    (queue[Width*(3*k+1) +: Width]),
+      .c_i    (queue[Width*(3*k+2) +: Width]),
+      .sum_o  (queue[Width*(Rows+2*k) +: Width]),
+      .carry_o(queue[Width*(Rows+2*k+1) +: Width])
+    );
   end
 
-  assign sum_o   = gen_row[Total-2].row;
-  assign carry_o = gen_row[Total-1].row;
+  assign {carry_o, sum_o} = queue[Width*(3*Adders)+:2*Width];
 
 endmodule
