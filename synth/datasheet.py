@@ -10,7 +10,7 @@ date, or where the example does not pass Verilator. A mark is `<!-- KIND ARGUMEN
   section FILE | TITLE       what stands in FILE under the comment `// ---- TITLE`
   lines FILE | EXPRESSION    the lines of FILE that match
   figures                    area and time of some designs, measured where they have changed
-  fpga                       the units that `make fpga` has placed
+  fpga                       the units that `make fpga` has placed; where none are, the old text stays
 """
 
 import dataclasses
@@ -121,7 +121,7 @@ def filled(text: str, measured: bool = True) -> str:
     def fill(mark: re.Match) -> str:
         kind, argument, old = mark.groups()
         if kind in MEASURED:
-            new = MEASURED[kind]() if measured else old
+            new = measured and MEASURED[kind]() or old
         elif kind in KINDS:
             new = KINDS[kind](argument)
         else:
