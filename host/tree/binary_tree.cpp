@@ -4,6 +4,7 @@
 #include <bit>
 #include <condition_variable>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <span>
 
@@ -13,9 +14,10 @@ namespace raygate {
 namespace {
 
 constexpr std::uint32_t kTaskSize = 4096;  // runs no longer than that are one thread's
-constexpr std::uint32_t kSweptSize = 8;    // of these all splits are tried, of others those of bins
-constexpr int kBins = 16;
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kFew = 4;  // of these all cuts are tried, of more those between slices
+constexpr int kBins = 16;  // most slices of an axis; half as many where not many are to be cut
+constexpr std::uint32_t kMany = 64;
+constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// A run of primitives that becomes a node, and whose child it is.
 struct Run {
@@ -39,58 +41,58 @@ struct Around {
 
 /// Equal slices of the middles' box on each axis.
 struct Slices {
-  IntLanes last;  ///< in lanes 0 to 2
-  FloatLanes low, scale;
+  int count;
+  FloatLanes low, scale;  ///< in lanes 0 to 2
 
-  RAYGATE_INLINE explicit Slices(const Box& middles) : low(middles), scale{} {
+  RAYGATE_INLINE Slices(const Box& middles, std::uint32_t size)
+      : count(size < kMany ? kBins / 2 : kBins), low(middles), scale{} {
     for (int k = 0; k < 3; ++k) {
       const float extent = -(middles[k + 4] + middles[k]);
       constexpr float kMost = std::numeric_limits<float>::max();
-      scale[k] = extent > 0.0f ? std::min(kBins / extent, kMost) : 0.0f;
+      scale[k] = extent > 0.0f ? std::min(static_cast<float>(count) / extent, kMost) : 0.0f;
     }
-    low[3] = low[7] = 0.0f;
-    last = IntLanes{} + (kBins - 1);
   }
-  /// Of a middle; lanes 0 to 2. A primitive's lane 3 is anything: its scale is 0.
+  /// Which slices a box's middle is in; lanes 0 to 2.
   RAYGATE_INLINE void of(const Box& box, IntLanes& slice) const {
     Box middle;
     middle_of(box, middle);
-    middle[3] = middle[7] = 0.0f;
-    slice = __builtin_convertvector((middle - low) * scale, IntLanes);
-    slice = slice < last ? slice : last;
+    middle = (middle - low) * scale;
+    middle[3] = 0.0f;
+    slice = __builtin_convertvector(middle, IntLanes);
+    slice = slice < count - 1 ? slice : IntLanes{} + (count - 1);
   }
 };
 
-/// Where to cut a run: what is in slices below `slice` goes left; or, swept, the `slice` first in
-/// the order of middles.
+/// Where to cut a run: what is in slices below `part` goes left; or, of a few, the first `part`.
 struct Cut {
-  double cost = kNever;  ///< a sum of area times count
+  float cost = kNever;  ///< a sum of area times count
   int axis = 0;
-  int slice = 0;
+  int part = 0;
 };
 
 RAYGATE_INLINE void look_at(std::span<const Primitive> run, Around& around) {
   clear(around.box);
   clear(around.middles);
   for (const Primitive& primitive : run) {
-    Box middle;
-    middle_of(primitive.box, middle);
-    grow(around.box, primitive.box);
+    Box box, middle;
+    primitive.get(box);
+    middle_of(box, middle);
+    grow(around.box, box);
     grow(around.middles, middle);
   }
 }
 
 /// The cheapest cut between parts of these boxes and counts.
-RAYGATE_INLINE void cheapest_cut(const Box* boxes, const std::uint32_t* counts, int parts, int axis,
-                                 Cut& best) {
-  double right_cost[kBins];
+RAYGATE_INLINE void find_cut(const Box* boxes, const std::uint32_t* counts, int parts, int axis,
+                             float unit, Cut& best) {
+  float right_cost[kBins];
   Box box;
   clear(box);
   std::uint32_t count = 0;
   for (int part = parts - 1; part > 0; --part) {
     grow(box, boxes[part]);
     count += counts[part];
-    right_cost[part] = count == 0 ? kNever : half_area(box) * count;
+    right_cost[part] = count == 0 ? kNever : half_area(box, unit) * static_cast<float>(count);
   }
   clear(box);
   count = 0;
@@ -98,92 +100,108 @@ RAYGATE_INLINE void cheapest_cut(const Box* boxes, const std::uint32_t* counts, 
     grow(box, boxes[part - 1]);
     count += counts[part - 1];
     if (count == 0) continue;
-    const double cost = half_area(box) * count + right_cost[part];
+    const float cost = half_area(box, unit) * static_cast<float>(count) + right_cost[part];
     if (cost < best.cost) best = {cost, axis, part};
   }
 }
 
 RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Slices& slices,
-                                       Cut& best) {
+                                       float unit, Cut& best) {
   Box boxes[3][kBins];
   std::uint32_t counts[3][kBins] = {};
   for (auto& axis : boxes) {
-    for (Box& box : axis) clear(box);
+    for (int i = 0; i < slices.count; ++i) clear(axis[i]);
   }
-  for (const Primitive& primitive : run) {
+  const auto put = [&](const Primitive& primitive) __attribute__((always_inline)) {
+    Box box;
     IntLanes slice;
-    slices.of(primitive.box, slice);
+    primitive.get(box);
+    slices.of(box, slice);
     for (int axis = 0; axis < 3; ++axis) {
-      grow(boxes[axis][slice[axis]], primitive.box);
+      grow(boxes[axis][slice[axis]], box);
       ++counts[axis][slice[axis]];
     }
+  };
+  // Neighbours are often in the same slices, and would wait for each other.
+  const std::size_t half = run.size() / 2;
+  for (std::size_t i = 0; i < half; ++i) {
+    put(run[i]);
+    put(run[half + i]);
   }
+  if (run.size() % 2 != 0) put(run.back());
   for (int axis = 0; axis < 3; ++axis) {
-    if (slices.scale[axis] > 0.0f) cheapest_cut(boxes[axis], counts[axis], kBins, axis, best);
+    if (slices.scale[axis] > 0.0f) {
+      find_cut(boxes[axis], counts[axis], slices.count, axis, unit, best);
+    }
   }
+}
+
+/// Puts what is in slices below the cut first; how many these are. Keeps the order on both sides.
+/// `room` is as large as the run.
+RAYGATE_INLINE std::uint32_t part_at(const Cut& cut, const Slices& slices, std::span<Primitive> run,
+                                     Primitive* room) {
+  const float low = slices.low[cut.axis], scale = slices.scale[cut.axis];
+  const auto limit = static_cast<float>(cut.part);
+  std::uint32_t left = 0, right = 0;
+  for (const Primitive& primitive : run) {
+    const bool is_left = (primitive.middle(cut.axis) - low) * scale < limit;
+    room[right] = primitive;
+    run[left] = primitive;  // itself, or one that has been moved
+    left += is_left;
+    right += !is_left;
+  }
+  std::copy_n(room, right, run.begin() + left);
+  return left;
 }
 
 /// Puts a few primitives in the order of their middles along an axis; stable.
 RAYGATE_INLINE void sort_along(std::span<Primitive> run, int axis) {
-  float keys[kSweptSize];
-  for (std::size_t i = 0; i < run.size(); ++i) {
+  for (std::size_t i = 1; i < run.size(); ++i) {
     const Primitive moved = run[i];
-    const float key = 0.5f * moved.box[axis] - 0.5f * moved.box[axis + 4];
     std::size_t place = i;
-    for (; place > 0 && keys[place - 1] > key; --place) {
-      keys[place] = keys[place - 1];
+    for (; place > 0 && run[place - 1].middle(axis) > moved.middle(axis); --place) {
       run[place] = run[place - 1];
     }
-    keys[place] = key;
     run[place] = moved;
   }
 }
 
-RAYGATE_INLINE void cut_few(std::span<Primitive> run, Cut& best) {
-  constexpr std::uint32_t kOnes[kSweptSize] = {1, 1, 1, 1, 1, 1, 1, 1};
-  const auto size = static_cast<int>(run.size());
+RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
+  constexpr std::uint32_t kOnes[kFew] = {1, 1, 1, 1};
   for (int axis = 0; axis < 3; ++axis) {
     sort_along(run, axis);
-    Box boxes[kSweptSize];
-    for (int i = 0; i < size; ++i) boxes[i] = run[static_cast<std::size_t>(i)].box;
-    cheapest_cut(boxes, kOnes, size, axis, best);
+    Box boxes[kFew];
+    for (std::size_t i = 0; i < run.size(); ++i) run[i].get(boxes[i]);
+    find_cut(boxes, kOnes, static_cast<int>(run.size()), axis, unit, best);
   }
   if (best.axis != 2) sort_along(run, best.axis);
 }
 
 }  // namespace
 
-/// Where the run is cut in two; puts its primitives on their sides. Not far from the largest depth
-/// halves are split, whatever it costs.
-RAYGATE_LANES std::uint32_t cut_run(std::span<Primitive> run, int depth, Box& box) {
+/// Where the run is cut in two; puts its primitives on their sides, in a room as large as it. Not
+/// far from the largest depth, and where no cut is found, halves are split.
+RAYGATE_LANES std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depth,
+                                    Box& box) {
   const auto size = static_cast<std::uint32_t>(run.size());
   Around around;
   look_at(run, around);
   box = around.box;
   if (size == 2) return 1;
-  const bool is_deep = static_cast<int>(std::bit_width(size)) >= BinaryTree::kMaxDepth - depth;
   Cut cut;
-  if (size <= kSweptSize) {
-    cut_few(run, cut);
-    if (!is_deep && cut.cost < kNever) return static_cast<std::uint32_t>(cut.slice);
+  const bool is_deep = static_cast<int>(std::bit_width(size)) >= BinaryTree::kMaxDepth - depth;
+  if (is_deep) {
+    std::ranges::stable_sort(run, {},
+                             [](const Primitive& primitive) { return primitive.middle(0); });
+  } else if (size <= kFew) {
+    cut_few(run, unit_of(box), cut);
+    return static_cast<std::uint32_t>(cut.part);
   } else {
-    const Slices slices(around.middles);
-    cut_between_slices(run, slices, cut);
-    if (!is_deep && cut.cost < kNever) {
-      const auto right = std::partition(run.begin(), run.end(), [&](const Primitive& primitive) {
-        IntLanes slice;
-        slices.of(primitive.box, slice);
-        return slice[cut.axis] < cut.slice;
-      });
-      return static_cast<std::uint32_t>(right - run.begin());
-    }
+    const Slices slices(around.middles, size);
+    cut_between_slices(run, slices, unit_of(box), cut);
+    if (cut.cost < kNever) return part_at(cut, slices, run, room);
   }
-  const std::uint32_t half = size / 2;
-  const auto key = [&](const Primitive& primitive) {
-    return 0.5f * primitive.box[cut.axis] - 0.5f * primitive.box[cut.axis + 4];
-  };
-  std::ranges::nth_element(run, run.begin() + half, {}, key);
-  return half;
+  return size / 2;
 }
 
 namespace {
@@ -191,7 +209,8 @@ namespace {
 /// Cuts runs up to the last one.
 class Divider {
  public:
-  explicit Divider(BinaryTree& tree) : tree_(tree) {
+  explicit Divider(BinaryTree& tree)
+      : tree_(tree), room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {
     waiting_.push_back({0, tree.size(), 0, 0, 0});
   }
 
@@ -226,8 +245,8 @@ class Divider {
     }
     Box box;
     const std::span<Primitive> primitives(tree_.primitives);
-    const std::uint32_t middle =
-        run.begin + cut_run(primitives.subspan(run.begin, run.size()), run.depth, box);
+    const std::uint32_t middle = run.begin + cut_run(primitives.subspan(run.begin, run.size()),
+                                                     &room_[run.begin], run.depth, box);
     BinaryTree::Node& node = tree_.nodes[middle];
     node.box = box;
     node.first = run.begin;
@@ -246,6 +265,7 @@ class Divider {
   }
 
   BinaryTree& tree_;
+  std::unique_ptr<Primitive[]> room_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Run> waiting_;
@@ -263,9 +283,10 @@ BinaryTree::BinaryTree(const Scene& scene, int threads)
     const std::size_t end = std::min(begin + kTaskSize, primitives.size());
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [a, b, c] = scene.triangles[i].vertices;
-      Box& box = primitives[i].box;
+      Box box;
       box_around(scene.positions[a], scene.positions[b], scene.positions[c], box);
-      box[3] = std::bit_cast<float>(static_cast<std::uint32_t>(i));
+      std::memcpy(&primitives[i], &box, sizeof box);
+      primitives[i].triangle = static_cast<std::uint32_t>(i);
     }
   });
   Divider divider(*this);

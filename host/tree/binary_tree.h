@@ -1,8 +1,8 @@
 // How triangles are divided, two ways at a time: the plan of a tree.
 #pragma once
 
-#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "host/scene/scene.h"
@@ -10,10 +10,18 @@
 
 namespace raygate {
 
-/// A triangle's grown box.
+/// A triangle and its grown box.
 struct Primitive {
-  Box box;  ///< lane 3: the triangle's index, as bits
-  [[nodiscard]] std::uint32_t triangle() const { return std::bit_cast<std::uint32_t>(box[3]); }
+  float low[3];
+  std::uint32_t triangle;
+  float turned_high[3];
+  std::uint32_t unused;
+
+  RAYGATE_INLINE void get(Box& box) const { std::memcpy(&box, this, sizeof box); }
+  /// Twice the box's middle, halved first: finite.
+  [[nodiscard]] RAYGATE_INLINE float middle(int axis) const {
+    return 0.5f * low[axis] - 0.5f * turned_high[axis];
+  }
 };
 
 /// A binary tree of boxes with one triangle to a leaf, split top-down by the surface area heuristic
@@ -38,8 +46,12 @@ struct BinaryTree {
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }
   [[nodiscard]] bool is_leaf(Ref ref) const { return ref >= size(); }
-  [[nodiscard]] const Box& box(Ref ref) const {
-    return is_leaf(ref) ? primitives[ref - size()].box : nodes[ref].box;
+  RAYGATE_INLINE void get_box(Ref ref, Box& box) const {
+    if (is_leaf(ref)) {
+      primitives[ref - size()].get(box);
+    } else {
+      box = nodes[ref].box;
+    }
   }
   [[nodiscard]] std::uint32_t first(Ref ref) const {
     return is_leaf(ref) ? ref - size() : nodes[ref].first;

@@ -1,6 +1,7 @@
 // Axis-aligned boxes in one register each: what a tree is built with.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -18,11 +19,17 @@ RAYGATE_INLINE void clear(Box& box) { box = FloatLanes{} + std::numeric_limits<f
 
 RAYGATE_INLINE void grow(Box& box, const Box& other) { box = other < box ? other : box; }
 
-/// Half the surface of a box that is not empty, in double: a float would overflow at 1e19.
-RAYGATE_INLINE double half_area(const Box& box) {
-  const double x = static_cast<double>(box[0]) + box[4], y = static_cast<double>(box[1]) + box[5],
-               z = static_cast<double>(box[2]) + box[6];
-  return x * y + y * z + z * x;  // of negative sizes: the signs fall out
+/// One over a box's longest side: areas in that unit are finite.
+RAYGATE_INLINE float unit_of(const Box& box) {
+  const float longest = -std::min({box[0] + box[4], box[1] + box[5], box[2] + box[6]});
+  return std::min(1.0f / longest, std::numeric_limits<float>::max());
+}
+
+/// Half the surface of a box that is not empty, with lengths times `unit`.
+RAYGATE_INLINE float half_area(const Box& box, float unit) {
+  const FloatLanes sizes =
+      unit * (box + __builtin_shufflevector(box, box, 4, 5, 6, 7, 0, 1, 2, 3));  // negative
+  return sizes[0] * sizes[1] + sizes[1] * sizes[2] + sizes[2] * sizes[0];
 }
 
 /// The box around three corners, one float wider than they are on every side. Finite for
