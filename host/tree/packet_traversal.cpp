@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/tree/box.h"
+
 // Why no true hit is culled
 //
 // Let the ray meet a triangle at t* > 0, t* at most the exact cutoff, I its direction, and
@@ -39,13 +41,23 @@ namespace {
 
 constexpr float kFarthest = std::numeric_limits<float>::max();  // no t is, nor any entry
 
+/// The smallest lane; no NaN.
+RAYGATE_INLINE float smallest_of(const FloatLanes& lanes) {
+  FloatLanes x = lanes, other = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
+  x = x < other ? x : other;
+  other = __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
+  x = x < other ? x : other;
+  other = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
+  x = x < other ? x : other;
+  return x[0];
+}
+
 }  // namespace
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
     : cutoff_(FloatLanes{} - 1.0f),  // below any entry: no ray
       bvh_(&bvh),
-      octant_(octant),
-      stack_({0, 0, 0}) {}
+      octant_(octant) {}
 
 void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction) {
   assert(octant_of(direction) == octant_);
@@ -61,67 +73,100 @@ void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3
 void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_beyond(t); }
 
 /// A packet on its way, at hand in registers.
-struct PacketTraversal::Visitor {
-  const PacketTraversal& packet;
-  const Bvh& bvh;
-  const Bvh::Node* node;            // of the last meeting
-  std::uint8_t lanes[Bvh::kWidth];  // the rays that meet its children
+struct PacketVisitor {
+  int octant;
+  FloatLanes origin[3], inverse_near[3], inverse_far[3], cutoff;
+  LaneMask lanes[Bvh::kWidth];  ///< the rays that meet the children of the last node
 
-  /// The rays that meet a child's box, and where they enter it.
-  RAYGATE_INLINE LaneMask lanes_at(const Bvh::Node& of, int child, FloatLanes& enter) const {
-    FloatLanes leave = packet.cutoff_;
+  RAYGATE_INLINE explicit PacketVisitor(const PacketTraversal& packet)
+      : octant(packet.octant_), cutoff(packet.cutoff_) {
+    for (int k = 0; k < 3; ++k) {
+      origin[k] = packet.origin_[k];
+      inverse_near[k] = packet.inverse_near_[k];
+      inverse_far[k] = packet.inverse_far_[k];
+    }
+  }
+
+  /// The rays that meet a box, given as the planes that they come to first and last, and where.
+  RAYGATE_INLINE LaneMask lanes_at(const float (&near)[3], const float (&far)[3],
+                                   FloatLanes& enter) const {
+    FloatLanes leave = cutoff;
     enter = FloatLanes{};
     for (int k = 0; k < 3; ++k) {
-      const int negative = packet.octant_ >> k & 1;
-      const float near = of.bounds[negative][k][child], far = of.bounds[negative ^ 1][k][child];
-      const FloatLanes t_near = (near - packet.origin_[k]) * packet.inverse_near_[k];
-      const FloatLanes t_far = (far - packet.origin_[k]) * packet.inverse_far_[k];
+      const FloatLanes t_near = (near[k] - origin[k]) * inverse_near[k];
+      const FloatLanes t_far = (far[k] - origin[k]) * inverse_far[k];
       enter = t_near > enter ? t_near : enter;
       leave = t_far < leave ? t_far : leave;
     }
     return sign_mask(enter <= leave);
   }
 
-  RAYGATE_INLINE bool goes_on(float, Rays& rays) const {
-    if (rays.lanes == 0) return true;  // the root
-    FloatLanes enter;
-    rays.lanes &= lanes_at(bvh.nodes()[rays.node], rays.child, enter);
-    return rays.lanes != 0;
+  RAYGATE_INLINE bool goes_on(float entry, LaneMask& rays) const {
+    rays &= sign_mask(cutoff >= entry);
+    return rays != 0;
   }
 
-  RAYGATE_INLINE LaneMask meet(const Bvh::Node& of, const Rays&, FloatLanes& entry) {
-    node = &of;
+  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, LaneMask, FloatLanes& entry) {
     LaneMask met = 0;
     entry = FloatLanes{};
-    for (int i = 0; i < Bvh::kWidth && of.bounds[0][0][i] <= of.bounds[1][0][i]; ++i) {
+    for (int i = 0; i < Bvh::kWidth && node.bounds[0][0][i] <= node.bounds[1][0][i]; ++i) {
+      float near[3], far[3];
+      for (int k = 0; k < 3; ++k) {
+        const int negative = octant >> k & 1;
+        near[k] = node.bounds[negative][k][i];
+        far[k] = node.bounds[negative ^ 1][k][i];
+      }
       FloatLanes enter;
-      const LaneMask in = lanes_at(of, i, enter);
-      lanes[i] = static_cast<std::uint8_t>(in);
-      if (in == 0) continue;
+      lanes[i] = lanes_at(near, far, enter);
+      if (lanes[i] == 0) continue;
       met |= 1u << i;
-      entry[i] = enter[std::countr_zero(in)];
+      enter = enter <= cutoff ? enter : FloatLanes{} + kFarthest;
+      entry[i] = smallest_of(enter);
     }
     return met;
   }
 
-  RAYGATE_INLINE Rays rays_at(int i) const {
-    return {static_cast<std::uint32_t>(node - bvh.nodes().data()), static_cast<std::uint8_t>(i),
-            lanes[i]};
+  RAYGATE_INLINE LaneMask rays_at(int i) const { return lanes[i]; }
+
+  /// The rays that meet the box of one triangle of a leaf.
+  RAYGATE_INLINE LaneMask lanes_at(const Bvh::Corners& corners) const {
+    Box box;
+    box_around(corners[0], corners[1], corners[2], box);
+    float near[3], far[3];
+    for (int k = 0; k < 3; ++k) {
+      const bool negative = (octant >> k & 1) != 0;
+      near[k] = negative ? -box[k + 4] : box[k];
+      far[k] = negative ? box[k] : -box[k + 4];
+    }
+    FloatLanes enter;
+    return lanes_at(near, far, enter);
   }
 };
 
-/// Goes on to the next leaf: false when there is none.
-RAYGATE_LANES bool advance(PacketTraversal& packet, LeafVisit& visit) {
-  PacketTraversal::Visitor visitor{packet, *packet.bvh_, nullptr, {}};
-  Waiting<PacketTraversal::Rays> leaf;
-  if (!next_leaf(*packet.bvh_, visitor, packet.stack_, leaf)) return false;
-  visit = {leaf.child.first, leaf.child.count, leaf.rays.lanes};
-  return true;
+/// Goes on to the next leaf.
+RAYGATE_LANES void advance(PacketTraversal& packet, LeafVisits& leaf) {
+  PacketVisitor visitor(packet);
+  Waiting<LaneMask> waiting;
+  leaf.count = 0;
+  while (leaf.count == 0 && next_leaf(*packet.bvh_, visitor, packet.stack_, waiting)) {
+    const std::uint32_t end = waiting.child.first + waiting.child.count;
+    for (std::uint32_t slot = waiting.child.first; slot < end; ++slot) {
+      const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(slot));
+      if (lanes == 0) continue;
+      LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
+      if (last != nullptr && last->lanes == lanes && last->first + last->count == slot) {
+        ++last->count;
+      } else {
+        leaf.visits[leaf.count++] = {slot, 1, lanes};
+      }
+    }
+  }
 }
 
-std::optional<LeafVisit> PacketTraversal::next_leaf() {
-  LeafVisit visit;
-  return advance(*this, visit) ? std::optional(visit) : std::nullopt;
+LeafVisits PacketTraversal::next_leaf() {
+  LeafVisits leaf;
+  advance(*this, leaf);
+  return leaf;
 }
 
 }  // namespace raygate

@@ -1,9 +1,10 @@
 // The way of eight rays through the tree, one leaf at a time.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 
 #include "host/lanes.h"
 #include "host/tree/beam.h"
@@ -12,11 +13,20 @@
 
 namespace raygate {
 
-/// The leaf that a packet came to, and which of its rays.
+/// Some slots of a leaf that a packet came to, and which of its rays meet the boxes of each.
 struct LeafVisit {
   std::uint32_t first = 0;  ///< the slots first .. first + count
   std::uint32_t count = 0;
   LaneMask lanes = 0;
+};
+
+/// A leaf falls apart into runs of slots that the same rays meet.
+struct LeafVisits {
+  std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
+  std::size_t count = 0;  ///< 0: all rays have seen everything
+
+  [[nodiscard]] const LeafVisit* begin() const { return visits.data(); }
+  [[nodiscard]] const LeafVisit* end() const { return visits.data() + count; }
 };
 
 /// A traversal that can be left at every leaf and resumed, front to back along the octant of its
@@ -37,26 +47,19 @@ class PacketTraversal {
   /// From now on the ray in `lane` looks for nothing beyond `t`.
   void set_cutoff(int lane, double t);
 
-  /// The next leaf for any ray; nothing when all have seen everything.
-  [[nodiscard]] std::optional<LeafVisit> next_leaf();
+  /// The next leaf for any ray.
+  [[nodiscard]] LeafVisits next_leaf();
 
  private:
-  friend bool advance(PacketTraversal& packet, LeafVisit& visit);
-
-  /// The rays that may meet what waits, and where its box is.
-  struct Rays {
-    std::uint32_t node;
-    std::uint8_t child;
-    std::uint8_t lanes;
-  };
-  struct Visitor;
+  friend struct PacketVisitor;
+  friend void advance(PacketTraversal& packet, LeafVisits& leaf);
 
   FloatLanes origin_[3] = {};
   FloatLanes inverse_near_[3] = {}, inverse_far_[3] = {};
   FloatLanes cutoff_;
   const Bvh* bvh_;
   int octant_;
-  WalkStack<Rays> stack_;
+  WalkStack<LaneMask> stack_{0xFF};
 };
 
 }  // namespace raygate

@@ -27,8 +27,7 @@ FindCounters UnitFinder::counters() const {
   return counters;
 }
 
-void UnitFinder::find(std::span<const Ray> rays, const Search& search,
-                      std::span<NearestHit> hits) {
+void UnitFinder::find(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits) {
   assert(hits.size() == rays.size());
   Stopwatch watch;
   rays_ = rays;
@@ -101,13 +100,13 @@ void UnitFinder::make_packets() {
   }
 }
 
-std::optional<LeafVisit> UnitFinder::next_visit(Packet& packet) {
+LeafVisits UnitFinder::next_leaf(Packet& packet) {
   if (search_.culling) return packet.traversal.next_leaf();
   const std::uint32_t first = packet.next_slot;
-  if (first >= bvh_.slot_count()) return std::nullopt;
+  if (first >= bvh_.slot_count()) return {};
   const std::uint32_t count = std::min(Bvh::kMaxLeafSize, bvh_.slot_count() - first);
   packet.next_slot += count;
-  return LeafVisit{first, count, packet.lanes};
+  return {{LeafVisit{first, count, packet.lanes}}, 1};
 }
 
 /// Fills the batch: every packet goes to its next leaf or, while there are too few tests, to the
@@ -159,17 +158,19 @@ std::size_t UnitFinder::visit_leaves(Half& half) {
   std::size_t kept = 0, tests = 0;
   for (const std::uint32_t index : half.active) {
     Packet& packet = packets_[index];
-    const auto visit = next_visit(packet);
-    if (!visit) continue;
+    const LeafVisits leaf = next_leaf(packet);
+    if (leaf.count == 0) continue;
     half.active[kept++] = index;
-    tests += visit->count * static_cast<std::size_t>(std::popcount(visit->lanes));
-    if (common_ != nullptr) {
-      assert(rays_[packet.rays[0]].origin == common_->origin());
-      half.batch.push_back(make_bundle(rays_, packet.rays, *visit, visit->lanes));
-      half.batch.back().records =
-          common_->leaf(visit->first, visit->count, counters_.common_records);
-    } else {
-      add_own_bundles(rays_, packet.rays, *visit, half.batch);
+    for (const LeafVisit& visit : leaf) {
+      tests += visit.count * static_cast<std::size_t>(std::popcount(visit.lanes));
+      if (common_ != nullptr) {
+        assert(rays_[packet.rays[0]].origin == common_->origin());
+        half.batch.push_back(make_bundle(rays_, packet.rays, visit, visit.lanes));
+        half.batch.back().records =
+            common_->leaf(visit.first, visit.count, counters_.common_records);
+      } else {
+        add_own_bundles(rays_, packet.rays, visit, half.batch);
+      }
     }
     half.owner.resize(half.batch.size(), index);
   }
@@ -214,9 +215,8 @@ void UnitFinder::offer(const Half& half, const Report& report) {
   const std::uint32_t number = packet.rays[report.lane];
   const LaneMask lane = 1u << report.lane;
   if ((packet.ended & lane) != 0 || !take(number, report)) return;
-  const bool ends =
-      !search_.enough_before.empty() &&
-      is_before(bvh_, rays_[number], hits_[number], search_.enough_before[number]);
+  const bool ends = !search_.enough_before.empty() &&
+                    is_before(bvh_, rays_[number], hits_[number], search_.enough_before[number]);
   counters_.ended_early += ends;
   if (ends) packet.ended |= lane;
   packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);

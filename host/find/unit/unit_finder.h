@@ -16,13 +16,13 @@
 
 namespace raygate {
 
-/// In each round every packet of eight rays goes on to its next leaf; the leaves' tests together are
-/// one batch for the tester; its answers shorten the rays. The packets are two halves: while the
-/// tester works on the one, the other goes on. The unit sees few large batches, the host's memory a
-/// few packets.
+/// In each round every packet of eight rays goes on to its next leaf; the leaves' tests together
+/// are one batch for the tester; its answers shorten the rays. The packets are two halves: while
+/// the tester works on the one, the other goes on. The unit sees few large batches, the host's
+/// memory a few packets.
 ///
-/// Polygon records of a common origin come from a cache. Otherwise they are made for the leaf that a
-/// ray comes to, once for those rays of a packet that have one origin.
+/// Polygon records of a common origin come from a cache. Otherwise they are made for the leaf that
+/// a ray comes to, once for those rays of a packet that have one origin.
 class UnitFinder : public Finder {
  public:
   /// `caches`: those that finders share; without them this one has its own. The tree must outlive
@@ -59,7 +59,7 @@ class UnitFinder : public Finder {
   };
 
   void make_packets();
-  std::optional<LeafVisit> next_visit(Packet& packet);
+  LeafVisits next_leaf(Packet& packet);
   void collect(Half& half);
   std::size_t visit_leaves(Half& half);
   void make_own_records(Half& half);

@@ -33,12 +33,12 @@ int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool sho
     left &= ~lanes;
     std::vector<std::vector<std::uint32_t>> hits(rays.size());
     std::vector<double> farthest(rays.size(), std::numeric_limits<double>::infinity());
-    while (const auto visit = packet.next_leaf()) {
-      EXPECT_NE(visit->lanes, 0u);
-      EXPECT_EQ(visit->lanes & ~lanes, 0u);
+    const auto look_at = [&](const LeafVisit& visit) {
+      EXPECT_NE(visit.lanes, 0u);
+      EXPECT_EQ(visit.lanes & ~lanes, 0u);
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        if ((visit->lanes >> i & 1) == 0) continue;
-        for (std::uint32_t s = visit->first; s < visit->first + visit->count; ++s) {
+        if ((visit.lanes >> i & 1) == 0) continue;
+        for (std::uint32_t s = visit.first; s < visit.first + visit.count; ++s) {
           if (!hits_triangle(rays[i], bvh.corners_of(s))) continue;
           hits[i].push_back(s);
           if (!shorten) continue;
@@ -46,6 +46,9 @@ int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool sho
           packet.set_cutoff(static_cast<int>(i), farthest[i]);
         }
       }
+    };
+    for (LeafVisits leaf = packet.next_leaf(); leaf.count != 0; leaf = packet.next_leaf()) {
+      for (const LeafVisit& visit : leaf) look_at(visit);
     }
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if ((lanes >> i & 1) == 0) continue;
@@ -145,10 +148,10 @@ TEST(PacketTraversal, FindsNothingInAnEmptySceneOrWithoutRays) {
   const Bvh empty((Scene()));
   PacketTraversal packet(empty, 0);
   packet.set_ray(0, glm::vec3(0), glm::vec3(1, 0, 0));
-  EXPECT_FALSE(packet.next_leaf());
+  EXPECT_EQ(packet.next_leaf().count, 0u);
   const Bvh bvh(test::scene_of(test::sphere(0)));
   PacketTraversal idle(bvh, 0);
-  EXPECT_FALSE(idle.next_leaf());
+  EXPECT_EQ(idle.next_leaf().count, 0u);
 }
 
 }  // namespace
