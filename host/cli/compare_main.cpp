@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/cli/option_text.h"
+#include "host/cli/process.h"
 #include "host/cli/version.h"
 #include "host/film/compare.h"
 #include "host/film/false_color.h"
@@ -20,7 +21,6 @@ namespace raygate {
 namespace {
 
 constexpr int kTooFar = 1;
-constexpr int kUserError = 2;
 
 constexpr const char* kFooter =
     "Measures, over the pixels that both pictures hold, of PICTURE minus REFERENCE:\n"
@@ -115,7 +115,7 @@ void print_json(const Comparison& c, const std::vector<Measure>& measures) {
   nlohmann::ordered_json json = {{"pixels", c.pixels},
                                  {"window", {c.window.x0, c.window.y0, c.window.x1, c.window.y1}}};
   for (const Measure& measure : measures) json[measure.name] = number(measure.value);
-  std::printf("%s\n", json.dump(2).c_str());
+  std::printf("%s\n", json.dump(2, ' ', true).c_str());
 }
 
 /// The differences in false colours; black where one picture alone is not finite.
@@ -128,12 +128,17 @@ void write_difference(const CompareOptions& options, const ChannelPicture& pictu
   const Picture8 shown =
       false_color(picture.width, picture.height, comparison.window, channel, scale);
   PendingFile(options.difference, encode_png(shown)).commit();
-  std::fprintf(options.json ? stderr : stdout, "wrote         %s, %s\n", options.difference.c_str(),
-               shown.texts.at(0).second.c_str());
+  print("wrote         " + options.difference + ", " + shown.texts.at(0).second + "\n",
+        options.json ? stderr : stdout);
 }
 
 int compare_files(const CompareOptions& options) {
-  if (!options.difference.empty()) require_writable(options.difference);
+  if (!options.difference.empty()) {
+    const std::filesystem::path outputs[] = {options.difference};
+    const std::filesystem::path inputs[] = {options.picture, options.reference};
+    require_others(outputs, inputs);
+    require_writable(options.difference);
+  }
   const std::vector<std::string> names = channel_names(options.channels);
   const ChannelPicture picture = read_exr(options.picture, names);
   const ChannelPicture reference = read_exr(options.reference, names);
@@ -146,7 +151,7 @@ int compare_files(const CompareOptions& options) {
   (options.json ? print_json : print_text)(comparison, measures);
   if (!options.difference.empty()) write_difference(options, picture, comparison);
   for (const std::string& threshold : exceeded) {
-    std::fprintf(stderr, "threshold %s is exceeded\n", threshold.c_str());
+    print("threshold " + threshold + " is exceeded\n", stderr);
   }
   return exceeded.empty() ? 0 : kTooFar;
 }
@@ -177,10 +182,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    std::fputs(app.help().c_str(), stdout);
+    print(app.help());
     return 0;
   } catch (const CLI::CallForVersion&) {
-    std::puts(kSoftware);
+    print(std::string(kSoftware) + "\n");
     return 0;
   } catch (const CLI::ParseError& error) {
     throw InputError(std::string(error.what()) + " (see --help)");
@@ -192,12 +197,6 @@ int run(int argc, char** argv) {
 }  // namespace raygate
 
 int main(int argc, char** argv) {
-  try {
-    return raygate::run(argc, argv);
-  } catch (const std::bad_alloc&) {
-    std::fputs("error: out of memory\n", stderr);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-  }
-  return raygate::kUserError;
+  // 1 says that a threshold is exceeded, so a fault of ours has to be 2 as well.
+  return raygate::run_guarded([&] { return raygate::run(argc, argv); }, 2);
 }

@@ -34,8 +34,7 @@ struct LightOptions {
 
 /// As they were typed; empty where they were not given.
 struct RawLightOptions {
-  std::string integrator, depth, threshold, ambient, samples, filter, no_skip,
-      point_error;
+  std::string integrator, depth, threshold, ambient, samples, filter, no_skip, point_error;
 };
 
 void declare_light_options(CLI::App& app, RawLightOptions& raw);

@@ -1,10 +1,33 @@
 #include "host/cli/option_text.h"
 
 #include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <utility>
 
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
+namespace {
+
+/// How many letters to add, leave out, change, or swap with their neighbour make `a` into `b`.
+std::size_t changes_between(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1), last, before;
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before = std::exchange(last, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
 
 std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> words;
@@ -16,8 +39,37 @@ std::vector<std::string> split_at_commas(const std::string& text) {
   return words;
 }
 
-void fail_value(const std::string& option, const std::string& text, const std::string& expected) {
-  throw InputError(option + ": expected " + expected + ", got '" + text + "'");
+std::string did_you_mean(const std::string& text, std::span<const std::string> words) {
+  const auto lower = [](std::string word) {
+    for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return word;
+  };
+  const std::string typed = lower(text);
+  const std::string* best = nullptr;
+  std::size_t least = std::max<std::size_t>(1, typed.size() / 3) + 1;
+  for (const std::string& word : words) {
+    const std::string known = lower(word);
+    const bool is_start = typed.size() > 2 && known.starts_with(typed);
+    const std::size_t changes = is_start ? 0 : changes_between(typed, known);
+    if (changes >= least) continue;
+    least = changes;
+    best = &word;
+  }
+  return best != nullptr ? "; did you mean " + *best + "?" : "";
+}
+
+void fail_value(const std::string& option, const std::string& text, const std::string& expected,
+                const std::string& hint) {
+  throw InputError(option + ": expected " + expected + ", got '" + text + "'" + hint);
+}
+
+void fail_choice(const std::string& option, const std::string& text,
+                 std::span<const std::string> choices) {
+  std::string list;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 < choices.size() ? ", " : " or ") + choices[i];
+  }
+  fail_value(option, text, list, did_you_mean(text, choices));
 }
 
 }  // namespace raygate

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <charconv>
+#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace raygate {
@@ -37,8 +40,28 @@ template <typename T>
 /// "a,b" as two words, which may be empty; at least one.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
 
-/// Throws InputError: "--size: expected WIDTHxHEIGHT, got 'big'".
+/// "; did you mean --size?" if `text` is likely to be a misspelling of one of `words`; else
+/// nothing.
+[[nodiscard]] std::string did_you_mean(const std::string& text, std::span<const std::string> words);
+
+/// Throws InputError: "--size: expected WIDTHxHEIGHT, got 'big'", and `hint`.
 [[noreturn]] void fail_value(const std::string& option, const std::string& text,
-                             const std::string& expected);
+                             const std::string& expected, const std::string& hint = "");
+
+/// Throws InputError: "--tone: expected clip or filmic, got 'flimic'; did you mean filmic?"
+[[noreturn]] void fail_choice(const std::string& option, const std::string& text,
+                              std::span<const std::string> choices);
+
+/// What the choice named `text` stands for, or fail_choice.
+template <typename T>
+[[nodiscard]] T choose(const std::string& option, const std::string& text,
+                       std::initializer_list<std::pair<const char*, T>> choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, meaning] : choices) {
+    if (text == name) return meaning;
+    names.emplace_back(name);
+  }
+  fail_choice(option, text, names);
+}
 
 }  // namespace raygate

@@ -11,24 +11,66 @@
 namespace raygate {
 namespace {
 
-constexpr const char* kDescription =
-    "Renders a Wavefront OBJ scene; the rays' hits are found by a hardware unit, simulated from\n"
-    "its SystemVerilog. Writes SCENE.exr and SCENE.png into the current folder.";
+constexpr const char* kHelp =
+    R"(Usage: ./render SCENE.obj [options]       or SCENE.json, with camera and lights
 
-constexpr const char* kFooter =
-    "Exit status:\n"
-    "  0    the pictures are written\n"
-    "  1    the engines differ (--engine check), or an error of the program itself\n"
-    "  2    the command line, the scene or an output file cannot be used\n"
-    "  130  interrupted (Ctrl-C); 143 terminated. What was rendered by then is written\n"
-    "\n"
-    "Equal scenes and options give equal bytes, whatever the engine and the number of threads.\n"
-    "\n"
-    "Examples:\n"
-    "  ./render scenes/cornell.obj\n"
-    "  ./render scenes/teapot.obj --frames 24 -o /tmp/turn.png --engine cpu\n"
-    "  ./render scenes/teapot.obj -o pot.png --size 1280x720 --engine cpu\n"
-    "  ./render scenes/paper.obj --size 320x200 --engine check --stats run.json";
+Renders a Wavefront OBJ scene. A ray-tracing unit, simulated from its
+SystemVerilog, finds the hits; --engine cpu finds the same without it, faster.
+Writes SCENE.exr and SCENE.png into the current folder.
+
+  ./render scenes/cornell.obj --engine cpu
+  ./render scenes/teapot.obj -o pot.png --size 1280x720 --spp 16 --engine cpu
+  ./render scenes/paper.obj --size 320x200 --lanes 4 --stats run.json
+
+Engine
+  --engine NAME              rtl: the simulated hardware (default); cpu: without
+                             it, much faster; model: the unit's reference model;
+                             check: rtl and cpu, stopping where they differ
+  --unit pipeline|serial     a test every clock (default), or the paper's unit
+  --arith NAME               structural: Booth trees, carry-select (default); or
+                             behavioural: + and *, simulated faster
+  --lanes 1|2|4|8            pipelined units side by side, per thread (1)
+  --threads N                threads (one per processor)
+  --point-error X            compute a hit's point on the host if the unit's may
+                             be off by X of the distance (2^-16; 0: always, inf)
+  --no-skip NAMES            do work that cannot change the picture: culling,
+                             records, light-behind, weightless, empty-tiles,
+                             first-occluder, divisions or all
+Picture
+  -o, --output NAME          NAME.exr, NAME.png, or NAME (or a folder) for both
+  --size WxH                 the frame in pixels (640x480)
+  --crop X0,Y0,X1,Y1         only this part of it; X1 and Y1 are not included
+  --camera EX,EY,EZ,TX,TY,TZ[,FOV]   eye, target, vertical field of view (35);
+                             default: the scene file's, or the whole scene
+  --exposure STOPS           exposure of the PNG in stops: +1 is twice as bright
+  --tone clip|filmic         tone curve of the PNG (clip)
+  --channels NAMES           more of the EXR: P,Albedo,objectId,tests,doubts
+  --false-colour CHANNEL[:LOW:HIGH]=FILE.png   a channel in false colours
+  --frames N                 a film of N pictures, NAME-0001 and on: along the
+                             scene file's path, or once around the target
+Light
+  --integrator NAME          primary: camera rays alone, lit from the camera;
+                             whitted: shadows, reflection, refraction (default);
+                             path: full global illumination
+  --spp, --samples N         samples per pixel (1)
+  --filter NAME              reconstruction filter: box, tent, gauss or
+                             blackman-harris (default)
+  --depth, --max-depth N     reflections and refractions in a row (4; path: 64)
+  --threshold X              whitted: ignore rays that weigh less (0.00390625)
+  --ambient X                whitted: ambient light (from background or lamps)
+  --seed N                   seed of the random numbers (0)
+
+Run
+  --save-every SECONDS       save the unfinished pictures now and then
+  --stats FILE.json          all statistics as JSON; - prints them
+  --skip-degenerate          leave out faces without area, with a warning
+  --no-scene-file            do not read the .json beside an OBJ
+  -q, --quiet; -v, --verbose print no statistics and no progress; or all of them
+  -h, --help; --version
+
+Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
+line, the scene or an output cannot be used; 130 interrupted (partial pictures).
+)";
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
@@ -38,75 +80,59 @@ struct RawValues {
   bool no_scene_file = false;
 };
 
-/// All names, for the message about an unknown one.
-std::string names_of(const CLI::App& app) {
-  std::string names;
+/// What `unknown` may have been meant to be: ", did you mean --size?", or nothing.
+std::string meant_option(const CLI::App& app, const std::string& unknown) {
+  std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
-    if (option->get_positional()) continue;
-    std::string name = option->get_name(false, true);  // "-o,--output"
-    std::replace(name.begin(), name.end(), ',', '/');
-    names += (names.empty() ? "" : ", ") + name;
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
-  return names;
+  return did_you_mean(unknown.substr(0, unknown.find('=')), names);
 }
 
+/// Every name must be in kHelp.
 void declare(CLI::App& app, RawValues& raw, Options& options) {
-  const auto value = [&app](const char* names, std::string& text, const char* form,
-                            const char* help) {
-    app.add_option(names, text, help)->type_name(form)->take_last();
+  const auto value = [&app](const char* names, std::string& text) {
+    app.add_option(names, text)->take_last();
   };
-  const auto flag = [&app](const char* names, bool& on, const char* help) {
-    app.add_flag(names, on, help)->disable_flag_override();
+  const auto flag = [&app](const char* names, bool& on) {
+    app.add_flag(names, on)->disable_flag_override();
   };
-  app.add_option(
-         "scene", raw.scene,
-         "a Wavefront OBJ file, or a scene file (see\nscenes/README.md) with camera and lights")
-      ->type_name("SCENE.obj|.json");
-  value("--size", raw.size, "WxH", "the frame in pixels (640x480)");
-  value("--crop", raw.crop, "X0,Y0,X1,Y1",
-        "only these pixels of the frame; 0,0 is the top\nleft one, X1 and Y1 are not included");
-  value("--camera", raw.camera, "EX,EY,EZ,TX,TY,TZ[,FOV]",
-        "eye and target in the file's coordinates, and\n"
-        "vertical field of view in degrees (35);\n"
-        "without it, the whole scene is framed");
+  app.add_option("scene", raw.scene);
+  value("--size", raw.size);
+  value("--crop", raw.crop);
+  value("--camera", raw.camera);
   declare_output_options(app, raw.output);
   declare_light_options(app, raw.light);
-  value("--engine", raw.engine, "rtl|model|cpu|check",
-        "rtl: the simulated hardware; model: its reference\n"
-        "model in C++; cpu: fast tests without a unit; check:\n"
-        "rtl and cpu, and the first difference stops the run\n(rtl)");
-  value("--unit", raw.unit, "pipeline|serial",
-        "which hit-test unit the hardware is: a test\n"
-        "every clock, or the paper's (pipeline)");
-  value("--arith", raw.arith, "structural|behavioural",
-        "the hardware's arithmetic: Booth trees and carry-\n"
-        "select adders, or + and *, simulated faster;\nthe same bits (structural)");
-  value("--lanes", raw.lanes, "1|2|4|8", "pipelined units side by side, per thread (1)");
-  value("--threads", raw.threads, "N", "threads on the host (one for each processor)");
-  value("--seed", raw.seed, "N", "start of all random numbers (0)");
-  flag("--skip-degenerate", options.skip_degenerate,
-       "leave out faces without area, with a warning,\ninstead of refusing the scene");
-  flag("--no-scene-file", raw.no_scene_file, "don't read the .json beside an OBJ");
-  flag("-q,--quiet", options.quiet, "no progress bar and no statistics");
-  app.set_help_flag("-h,--help", "print this help");
-  app.set_version_flag("--version", std::string(kSoftware), "print the version");
+  value("--engine", raw.engine);
+  value("--unit", raw.unit);
+  value("--arith", raw.arith);
+  value("--lanes", raw.lanes);
+  value("--threads", raw.threads);
+  value("--seed", raw.seed);
+  flag("--skip-degenerate", options.skip_degenerate);
+  flag("--no-scene-file", raw.no_scene_file);
+  flag("-q,--quiet", options.quiet);
+  flag("-v,--verbose", options.verbose);
+  app.set_help_flag("-h,--help");
+  app.set_version_flag("--version", std::string(kSoftware));
 }
 
 /// Reads a command line; CLI11's complaints in our words, one line each. Flags go to `options`.
 RawValues read_line(const std::vector<std::string>& words, Options& options) {
   RawValues raw;
-  CLI::App app(kDescription, "render");
-  app.footer(kFooter);
-  app.get_formatter()->column_width(30);
+  CLI::App app("", "render");
   declare(app, raw, options);
-  app.allow_extras();  // so that an unknown option can be answered with the known ones
+  app.allow_extras();  // so that an unknown option can be answered with a known one
   try {
     std::vector<std::string> reversed(words.rbegin(), words.rend());  // as the library wants them
     app.parse(reversed);
   } catch (const CLI::CallForHelp&) {
-    options.information = app.help();
+    options.information = kHelp;
   } catch (const CLI::CallForVersion&) {
     options.information = std::string(kSoftware) + "\n";
+  } catch (const CLI::ArgumentMismatch& error) {  // "--size: 1 required TEXT missing"
+    const std::string what = error.what();
+    throw InputError(what.substr(0, what.find(':')) + ": expected a value (see --help)");
   } catch (const CLI::ParseError& error) {
     throw InputError(std::string(error.what()) + " (see --help)");
   }
@@ -117,11 +143,15 @@ RawValues read_line(const std::vector<std::string>& words, Options& options) {
     }
   }
   const std::vector<std::string> extras = app.remaining();
-  if (extras.empty()) return raw;
-  if (extras[0].size() > 1 && extras[0][0] == '-') {
-    throw InputError(extras[0] + ": unknown option; the options are " + names_of(app));
+  for (const std::string& extra : extras) {
+    if (extra.size() > 1 && extra[0] == '-') {
+      throw InputError(extra + ": unknown option" + meant_option(app, extra) + " (see --help)");
+    }
   }
-  throw InputError(extras[0] + ": a second scene; one run renders one scene");
+  if (!extras.empty()) {
+    throw InputError(extras[0] + ": a second scene; one run renders one scene");
+  }
+  return raw;
 }
 
 void check_values(const RawValues& raw, Options& options) {

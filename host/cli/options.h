@@ -37,13 +37,13 @@ struct Options {
   Engine engine = Engine::kRtl;
   std::string unit = "pipeline";  ///< or "serial"
   Arith arith = Arith::kStructural;
-  int lanes = 1;                  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
+  int lanes = 1;  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
   unsigned threads = 1;
   std::optional<CameraSetting> camera;  ///< in the OBJ's coordinates; none: framed on the scene
   std::vector<CameraSetting> path;      ///< of --frames; empty: once round the target
   LightOptions light;
   std::uint64_t seed = 0;
-  bool quiet = false;
+  bool quiet = false, verbose = false;
   bool skip_degenerate = false;
 
   [[nodiscard]] const std::filesystem::path& obj() const {

@@ -21,6 +21,8 @@ constexpr std::pair<std::string_view, bool ExtraChannels::*> kExtraChannels[] = 
     {"tests", &ExtraChannels::tests},
     {"doubts", &ExtraChannels::doubts}};
 
+constexpr const char* kStandardOutput = "/dev/stdout";
+
 /// Marks a channel or layer as wanted; false if it is none of those on demand.
 bool want(std::string_view name, ExtraChannels& channels) {
   for (const auto& [known, wanted] : kExtraChannels) {
@@ -35,8 +37,11 @@ ExtraChannels parse_channels(const std::string& text) {
   ExtraChannels channels;
   for (const std::string& name : split_at_commas(text)) {
     if (!want(name, channels)) {
+      std::vector<std::string> names;
+      for (const auto& [known, wanted] : kExtraChannels) names.emplace_back(known);
       fail_value("--channels", text,
-                 "some of P, Albedo, objectId, tests, doubts with commas between");
+                 "some of P, Albedo, objectId, tests, doubts with commas between",
+                 did_you_mean(name, names));
     }
   }
   return channels;
@@ -75,9 +80,7 @@ double parse_exposure(const std::string& text) {
 }
 
 Tone parse_tone(const std::string& text) {
-  if (text == "clip") return Tone::kClip;
-  if (text != "filmic") fail_value("--tone", text, "clip or filmic");
-  return Tone::kFilmic;
+  return choose<Tone>("--tone", text, {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}});
 }
 
 int parse_frames(const std::string& text) {
@@ -149,6 +152,12 @@ OutputOptions OutputOptions::numbered(int frame) const {
   char number[16];
   std::snprintf(number, sizeof number, "-%04d", frame);
   const auto rename = [&](std::filesystem::path& path) {
+    std::error_code ignored;
+    const auto kind = std::filesystem::status(path, ignored).type();
+    if (kind == std::filesystem::file_type::character ||  // a stream takes them all
+        kind == std::filesystem::file_type::fifo || path == kStandardOutput) {
+      return;
+    }
     const std::string ending = path.extension().string();
     path.replace_filename(path.stem().string() + number + ending);
   };
@@ -161,37 +170,24 @@ OutputOptions OutputOptions::numbered(int frame) const {
 }
 
 void declare_output_options(CLI::App& app, RawOutputOptions& raw) {
-  const auto value = [&app](const char* names, std::string& text, const char* form,
-                            const char* help) {
-    app.add_option(names, text, help)->type_name(form)->take_last();
+  const auto value = [&app](const char* names, std::string& text) {
+    app.add_option(names, text)->take_last();
   };
-  value("-o,--output", raw.output, "NAME",
-        "what to write: NAME.exr, NAME.png, or NAME\nfor both; a folder for both in there");
-  value("--exposure", raw.exposure, "STOPS", "the PNG this many times twice as bright (0)");
-  value("--tone", raw.tone, "clip|filmic",
-        "what the PNG does with light beyond white: clip\n"
-        "it, or bend the scale as film does (clip)");
-  value("--channels", raw.channels, "NAMES",
-        "more channels of the EXR: P (position), Albedo,\n"
-        "objectId, tests, doubts; commas between them");
-  app.add_option("--false-colour,--false-color", raw.false_colors,
-                 "a channel of the EXR as a PNG in colours from\n"
-                 "violet to yellow; :LOW:HIGH after its name sets\n"
-                 "the scale; may be given several times")
-      ->type_name("CHANNEL=FILE.png")
-      ->allow_extra_args(false);
-  value("--frames", raw.frames, "N",
-        "a film of N pictures, NAME-0001 and on, along\n"
-        "the scene file's path or once round the target");
-  value("--save-every", raw.save_every, "SECONDS", "save the pictures so far, again and again");
-  value("--stats", raw.stats, "FILE.json", "write the statistics of the run as JSON");
+  value("-o,--output", raw.output);
+  value("--exposure", raw.exposure);
+  value("--tone", raw.tone);
+  value("--channels", raw.channels);
+  app.add_option("--false-colour,--false-color", raw.false_colors)->allow_extra_args(false);
+  value("--frames", raw.frames);
+  value("--save-every", raw.save_every);
+  value("--stats", raw.stats);
 }
 
 OutputOptions parse_output_options(const RawOutputOptions& raw,
                                    const std::filesystem::path& scene) {
   OutputOptions options;
   parse_output(raw.output, scene, options);
-  if (!raw.stats.empty()) options.stats = raw.stats;
+  if (!raw.stats.empty()) options.stats = raw.stats == "-" ? kStandardOutput : raw.stats;
   if (!raw.channels.empty()) {
     options.channels = parse_channels(raw.channels);
     if (!options.exr) throw InputError("--channels: expected an EXR among the outputs");

@@ -56,8 +56,9 @@ std::string progress_line(double fraction, double elapsed, int columns) {
 
 ProgressBar::ProgressBar(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) != 0) {}
 
-ProgressBar::~ProgressBar() {
+void ProgressBar::erase() {
   if (drawn_) print(kEraseLine);
+  drawn_ = false;
 }
 
 void ProgressBar::update(double fraction) {

@@ -18,7 +18,10 @@ class ProgressBar {
   explicit ProgressBar(bool enabled);
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  ~ProgressBar();  ///< removes the line
+  ~ProgressBar() { erase(); }
+
+  /// Removes the line, for another one to be printed.
+  void erase();
 
   /// Redraws the line, at most ten times a second. From one thread at a time.
   void update(double fraction);

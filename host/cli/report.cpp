@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "host/cli/format.h"
 #include "host/cli/version.h"
@@ -10,28 +11,22 @@
 namespace raygate {
 namespace {
 
-/// Lines of a name, a right-aligned count and a remark.
-class Table {
- public:
-  void add(const std::string& name, std::uint64_t count, const std::string& remark = "") {
-    std::string number = format_count(count);
-    number.insert(0, number.size() < 15 ? 15 - number.size() : 0, ' ');
-    add(name, number + (remark.empty() ? "" : "  " + remark));
-  }
-  void add(std::string name, const std::string& value) {
-    name.resize(8, ' ');
-    text_ += name + value + "\n";
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
 double ratio(double a, double b) { return b > 0.0 ? a / b : 0.0; }
 
 std::string plural(std::uint64_t count, const std::string& noun) {
   return format_count(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+/// "rays     " and the like: the width of all names.
+std::string row(std::string name, const std::string& value) {
+  name.resize(9, ' ');
+  return name + value + "\n";
+}
+
+/// "1,234 rays/s".
+std::string rate(std::uint64_t count, double seconds, const char* of_what) {
+  const double per_second = ratio(static_cast<double>(count), seconds);
+  return format_count(static_cast<std::uint64_t>(per_second)) + " " + of_what + "/s";
 }
 
 std::string headline(const Report& report) {
@@ -44,22 +39,21 @@ std::string headline(const Report& report) {
             std::to_string(options.window.height());
   }
   line += ", engine " + to_string(options.engine);
-  if (options.engine == Engine::kCpu) return line + ", " + plural(options.threads, "thread");
+  if (options.engine == Engine::kCpu) return line + ", " + plural(options.threads, "thread") + "\n";
   line += ", unit " + options.unit;
   if (options.engine != Engine::kModel) line += " (" + to_string(options.arith) + ")";
   if (options.unit == "pipeline" && options.lanes > 1) {
     line += " of " + std::to_string(options.lanes) + " lanes";
   }
-  return line + ", " + plural(options.threads, "thread");
+  return line + ", " + plural(options.threads, "thread") + "\n";
 }
 
 /// "hit tests 80 %, boxes 15 %, ...": of the time of all threads.
 std::string shares(const RenderStats& render) {
-  const std::pair<const char*, double> parts[] = {
-      {"hit tests", render.find.hit_tests},
-      {"boxes", render.find.traverse},
-      {"records", render.find.record},
-      {"shading", render.shade_seconds}};
+  const std::pair<const char*, double> parts[] = {{"hit tests", render.find.hit_tests},
+                                                  {"boxes", render.find.traverse},
+                                                  {"records", render.find.record},
+                                                  {"shading", render.shade_seconds}};
   double sum = 0.0;
   for (const auto& [name, seconds] : parts) sum += seconds;
   std::string text;
@@ -70,13 +64,15 @@ std::string shares(const RenderStats& render) {
   return text;
 }
 
-/// "a test 98.2 %, idle 1.8 %, ...": what the lanes of the pipelined unit did with their clocks.
+/// "testing 98.2 %, no input 1.8 %, ...": what the lanes of the pipelined unit did with their
+/// clocks.
 std::string lane_clocks(const Report& report) {
   const HitCounters& hit = report.render.find.hit;
   const double all = static_cast<double>(hit.clocks) * report.options.lanes;
-  const std::pair<const char*, std::uint64_t> parts[] = {{"a test", hit.unit_tests},
-                                                         {"idle", hit.idle_clocks},
-                                                         {"results not taken", hit.output_stalls}};
+  const std::pair<const char*, std::uint64_t> parts[] = {
+      {"testing", hit.unit_tests},
+      {"no input", hit.idle_clocks},
+      {"stalled by the consumer", hit.output_stalls}};
   std::string text;
   for (const auto& [name, clocks] : parts) {
     text += (text.empty() ? "" : ", ") + std::string(name) + " " +
@@ -85,47 +81,92 @@ std::string lane_clocks(const Report& report) {
   return text;
 }
 
-/// What was left out, and about what it would have cost: by the mean cost of what was done.
-std::string skips(const Report& report) {
+/// A kind of work that was skipped, and about what it would have cost, by the mean cost of what was
+/// done. 0 where that is not known.
+struct Skipped {
+  std::uint64_t count;
+  const char* what;
+  double tests, seconds;
+};
+
+std::vector<Skipped> skipped(const Report& report) {
   const RenderStats& render = report.render;
-  const SkipCounters& skipped = render.skipped;
-  const auto rays = static_cast<double>(render.rays), tests = static_cast<double>(render.find.hit.tests);
+  const SkipCounters& counts = render.skipped;
+  const auto rays = static_cast<double>(render.rays),
+             tests = static_cast<double>(render.find.hit.tests);
   const double ray_seconds =
       ratio(render.find.traverse + render.find.record + render.shade_seconds, rays);
   const double test_seconds = ratio(render.find.hit_tests, tests);
-  std::string text =
-      "not done, for the picture does not need it (see --no-skip; costs as of what was):\n";
-  const auto add = [&](std::uint64_t count, const char* what, double saved_tests, double seconds) {
-    if (count == 0) return;
-    std::string number = format_count(count);
-    number.insert(0, number.size() < 23 ? 23 - number.size() : 0, ' ');
-    text += number + "  " + what;
-    if (saved_tests > 0.0) {
-      text += ": " + format_count(static_cast<std::uint64_t>(saved_tests)) + " tests";
-    }
-    if (seconds > 0.0) text += (saved_tests > 0.0 ? ", " : ": ") + format_duration(seconds);
-    text += '\n';
+  const auto of_rays = [&](std::uint64_t count, const char* what) {
+    const double saved = static_cast<double>(count) * ratio(tests, rays);
+    return Skipped{count, what, saved,
+                   static_cast<double>(count) * ray_seconds + saved * test_seconds};
   };
-  const auto rays_left_out = [&](std::uint64_t count, const char* what) {
-    const auto number = static_cast<double>(count);
-    const double saved = number * ratio(tests, rays);
-    add(count, what, saved, number * ray_seconds + saved * test_seconds);
-  };
-  add(skipped.culled_tests, "tests of rays against polygons in boxes off their way", 0.0,
-      static_cast<double>(skipped.culled_tests) * test_seconds);
-  add(skipped.records, "records of polygons that no ray of their origin came near", 0.0, 0.0);
-  rays_left_out(skipped.lights_behind, "shadow rays to lights that bring nothing");
-  rays_left_out(skipped.weightless, "reflected and refracted rays that bring nothing");
-  rays_left_out(skipped.dim, "reflected and refracted rays below --threshold");
-  rays_left_out(skipped.empty_tile_rays, "camera rays where there is nothing");
-  add(skipped.first_occluders, "shadow rays' ways beyond the first occluder found", 0.0, 0.0);
+  std::vector<Skipped> all{
+      {counts.culled_tests, "tests of polygons in boxes that the ray does not enter", 0.0,
+       static_cast<double>(counts.culled_tests) * test_seconds},
+      {counts.records, "records of polygons that no ray of that origin came near", 0.0, 0.0},
+      of_rays(counts.lights_behind, "shadow rays to lamps that contribute nothing"),
+      of_rays(counts.weightless, "reflected and refracted rays without weight"),
+      of_rays(counts.dim, "reflected and refracted rays below --threshold"),
+      of_rays(counts.empty_tile_rays, "camera rays where there is nothing"),
+      {counts.first_occluders, "searches for a nearer occluder than the first", 0.0, 0.0}};
   if (render.find.hit.unit_tests != 0 &&
       (report.options.unit == "pipeline" || report.options.light.skips.divisions)) {
-    const std::uint64_t all = 3 * render.find.hit.tests;
-    add(all - std::min(all, render.find.hit.quotients), "divisions of the paper's three for each test",
-        0.0, 0.0);
+    const std::uint64_t quotients = 3 * render.find.hit.tests;
+    all.push_back({quotients - std::min(quotients, render.find.hit.quotients),
+                   "divisions of the paper's three per test", 0.0, 0.0});
+  }
+  std::erase_if(all, [](const Skipped& kind) { return kind.count == 0; });
+  return all;
+}
+
+/// One line of all that --verbose lists.
+std::string skipped_line(const Report& report) {
+  double seconds = 0.0;
+  for (const Skipped& kind : skipped(report)) seconds += kind.seconds;
+  const SkipCounters& counts = report.render.skipped;
+  const std::uint64_t rays =
+      counts.lights_behind + counts.weightless + counts.dim + counts.empty_tile_rays;
+  return row("skipped", plural(counts.culled_tests, "test") + ", " + plural(rays, "ray") +
+                            ": about " + format_duration(seconds) + " (see --verbose)");
+}
+
+std::string skipped_table(const Report& report) {
+  std::string text =
+      "Work skipped because it cannot change the picture (and the time it would have taken):\n";
+  for (const Skipped& kind : skipped(report)) {
+    std::string number = format_count(kind.count);
+    number.insert(0, number.size() < 23 ? 23 - number.size() : 0, ' ');
+    text += number + "  " + kind.what;
+    std::string cost;
+    if (kind.tests > 0.0) {
+      cost = format_count(static_cast<std::uint64_t>(kind.tests)) + " tests";
+    }
+    if (kind.seconds > 0.0) cost += (cost.empty() ? "" : ", ") + format_duration(kind.seconds);
+    text += (cost.empty() ? "" : " (" + cost + ")") + "\n";
   }
   return text;
+}
+
+std::string details(const Report& report) {
+  const RenderStats& render = report.render;
+  const HitCounters& hit = render.find.hit;
+  std::string text = row("hits", format_count(hit.hits));
+  text += row("doubts", format_count(hit.edge_doubts) + " about edges, " +
+                            format_count(hit.depth_doubts) +
+                            " about the order of hits, settled by exact arithmetic");
+  text += row("points",
+              format_count(render.point_doubts) + " computed by the host, as --point-error says");
+  if (hit.clocks > 0) {
+    text += row("unit", plural(hit.unit_tests, "test") + ", " + plural(hit.quotients, "division"));
+    if (report.options.unit == "pipeline") text += row("lanes", lane_clocks(report));
+  }
+  text += row("times", "load " + format_duration(report.load_seconds) + ", tree " +
+                           format_duration(report.tree_seconds) + ", render " +
+                           format_duration(render.wall_seconds) + ", write " +
+                           format_duration(report.write_seconds));
+  return text + row("threads", shares(render)) + skipped_table(report);
 }
 
 }  // namespace
@@ -137,36 +178,29 @@ double clocks_per_test(const HitCounters& counters) {
 std::string to_text(const Report& report) {
   const RenderStats& render = report.render;
   const HitCounters& hit = render.find.hit;
-  Table table;
-  table.add("rays", render.rays,
-            format_count(render.camera_rays) + " from the camera, " +
-                format_count(render.shadow_rays) + " to lights, " +
-                format_count(render.rays - render.camera_rays - render.shadow_rays) + " others");
-  table.add(
-      "tests", hit.tests,
-      format_fixed(ratio(static_cast<double>(hit.tests), static_cast<double>(render.rays)), 2) +
-          " for each ray");
-  table.add("hits", hit.hits);
-  table.add("doubts", hit.edge_doubts + hit.depth_doubts, "settled by exact arithmetic");
-  if (hit.unit_tests > 0) table.add("unit", hit.unit_tests, "tests that went through the unit");
-  if (hit.clocks > 0) {
-    table.add("clocks", hit.clocks,
-              format_fixed(clocks_per_test(hit), 2) + " for each test of the unit");
-    if (report.options.unit == "pipeline") table.add("lanes", lane_clocks(report));
-  }
-  table.add("time", format_duration(report.total_seconds) + ": load " +
-                        format_duration(report.load_seconds) + ", tree " +
-                        format_duration(report.tree_seconds) + ", render " +
-                        format_duration(render.wall_seconds) + ", write " +
-                        format_duration(report.write_seconds));
-  table.add("render", shares(render));
+  const std::uint64_t others = render.rays - render.camera_rays - render.shadow_rays;
+  std::string text = headline(report);
+  text += row("rays", format_count(render.rays) + " (" + format_count(render.camera_rays) +
+                          " camera, " + format_count(render.shadow_rays) + " shadow, " +
+                          format_count(others) +
+                          " others): " + rate(render.rays, render.wall_seconds, "rays"));
+  text += row(
+      "tests",
+      format_count(hit.tests) + ", " +
+          format_fixed(ratio(static_cast<double>(hit.tests), static_cast<double>(render.rays)), 1) +
+          " per ray" +
+          (hit.clocks > 0 ? ", " + format_count(hit.clocks) + " clocks, " +
+                                format_fixed(clocks_per_test(hit), 2) + " per test"
+                          : "") +
+          ": " + rate(hit.tests, render.wall_seconds, "tests"));
+  text += skipped_line(report);
   std::string pictures;
   for (const auto& path : report.pictures) {
     pictures += (pictures.empty() ? "" : ", ") + path.string();
   }
-  table.add("wrote", pictures);
-  for (const std::string& legend : report.legends) table.add("scale", legend);
-  return headline(report) + "\n" + table.text() + skips(report);
+  text += row("wrote", pictures + " in " + format_duration(report.total_seconds));
+  for (const std::string& legend : report.legends) text += row("scale", legend);
+  return report.options.verbose ? text + details(report) : text;
 }
 
 std::string to_json(const Report& report) {
@@ -236,7 +270,7 @@ std::string to_json(const Report& report) {
         {"shading", render.shade_seconds}}},
   };
   // File names need not be UTF-8, JSON must be.
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', true, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace raygate

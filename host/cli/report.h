@@ -27,10 +27,11 @@ struct Report {
 /// Simulated clocks for each test that the unit did; 0 where nothing is simulated.
 [[nodiscard]] double clocks_per_test(const HitCounters& counters);
 
-/// The block at the end of a run; several lines, the last one ended too.
+/// The summary at the end of a run: five lines, one more for each legend, and with --verbose all
+/// there is to say. Every line is ended.
 [[nodiscard]] std::string to_text(const Report& report);
 
-/// The same and some more as a JSON object, for --stats. The README lists the keys.
+/// The same and some more as a JSON object, for --stats. host/README.md lists the keys.
 [[nodiscard]] std::string to_json(const Report& report);
 
 }  // namespace raygate

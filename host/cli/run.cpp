@@ -4,14 +4,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "host/cli/engines.h"
 #include "host/cli/format.h"
-#include "host/cli/interrupt.h"
 #include "host/cli/outputs.h"
+#include "host/cli/process.h"
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
 #include "host/cli/version.h"
@@ -35,7 +36,18 @@ double seconds_since(Clock::time_point start) {
 void print_warnings(const Scene& scene) {
   std::set<std::string> printed;
   for (const std::string& warning : scene.warnings) {
-    if (printed.insert(warning).second) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (printed.insert(warning).second) print_warning(warning);
+  }
+}
+
+/// No output may take the place of a file that the scene was read from.
+void require_inputs_kept(const Options& options, const Scene& scene) {
+  std::vector<std::filesystem::path> inputs = scene.files;
+  inputs.push_back(options.scene);
+  const int frames = options.output.frames;
+  for (int frame = frames == 0 ? 0 : 1; frame <= frames; ++frame) {
+    require_others(frame == 0 ? options.output.paths() : options.output.numbered(frame).paths(),
+                   inputs);
   }
 }
 
@@ -83,7 +95,53 @@ void write_partial(const OutputOptions& outputs, const Film& film, ExrMetadata m
   for (PendingFile& file : make_ready(outputs, film, metadata).files) file.commit();
 }
 
-/// Renders with a progress bar, until a signal comes; saves what there is now and then.
+std::string listed(const std::vector<std::filesystem::path>& paths) {
+  std::string text;
+  for (const auto& path : paths) text += (text.empty() ? "" : ", ") + path.string();
+  return text;
+}
+
+/// Writes what had been rendered when a signal came, if that is anything.
+[[noreturn]] void end_interrupted(const OutputOptions& outputs, const Film& film,
+                                  const ExrMetadata& metadata) {
+  const int signal = interruption();
+  if (std::ranges::all_of(film.primitive, [](auto id) { return id == kNoPrimitive; })) {
+    throw Interrupted(signal, "no file was changed");
+  }
+  write_partial(outputs, film, metadata);
+  OutputOptions pictures = outputs;
+  pictures.stats.reset();
+  throw Interrupted(signal, "wrote what there was: " + listed(pictures.paths()));
+}
+
+/// Saves what there is now and then. What goes wrong is said once and tried again.
+class Saver {
+ public:
+  Saver(const OutputOptions& outputs, const ExrMetadata& metadata, ProgressBar& bar)
+      : outputs_(outputs), metadata_(metadata), bar_(bar) {}
+
+  void save(const Film& film) {
+    std::string trouble;
+    try {
+      write_partial(outputs_, film, metadata_);
+    } catch (const std::exception& error) {
+      trouble = error.what();
+    }
+    if (!trouble.empty() && trouble != last_trouble_) {
+      bar_.erase();
+      print_warning(trouble + "; the render goes on, and the next save tries again");
+    }
+    last_trouble_ = trouble;
+  }
+
+ private:
+  const OutputOptions& outputs_;
+  const ExrMetadata& metadata_;
+  ProgressBar& bar_;
+  std::string last_trouble_;
+};
+
+/// Renders with a progress bar, until a signal comes.
 Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
                  const Bvh& bvh, const Camera& camera, const ExrMetadata& metadata,
                  RenderStats& stats) {
@@ -101,35 +159,30 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                                .ambient = options.light.ambient,
                                .skips = options.light.skips,
                                .point_error = options.light.point_error};
+  ProgressBar bar(!options.quiet);
+  Saver saver(outputs, metadata, bar);
   if (outputs.save_seconds > 0.0) {
-    render_options.snapshot = [&](const Film& film) { write_partial(outputs, film, metadata); };
+    render_options.snapshot = [&](const Film& film) { saver.save(film); };
     render_options.snapshot_seconds = outputs.save_seconds;
   }
-  ProgressBar bar(!options.quiet);
-  return render(scene, bvh, camera, render_options, make_finder_factory(options, bvh), stats,
-                [&](double fraction) {
-                  bar.update(fraction);
-                  return InterruptGuard::signal() == 0;
-                });
-}
-
-std::string listed(const std::vector<std::filesystem::path>& paths) {
-  std::string text;
-  for (const auto& path : paths) text += (text.empty() ? "" : ", ") + path.string();
-  return text;
-}
-
-/// Writes what had been rendered when a signal came, if that is anything.
-[[noreturn]] void end_interrupted(const OutputOptions& outputs, const Film& film,
-                                  const ExrMetadata& metadata) {
-  const int signal = InterruptGuard::signal();
-  if (std::ranges::all_of(film.primitive, [](auto id) { return id == kNoPrimitive; })) {
-    throw Interrupted(signal, "no file was changed");
+  // The threads are deep in a search and will not stop soon: end without them.
+  render_options.abandon = [&](const Film& film) {
+    bar.erase();
+    std::_Exit(run_guarded([&]() -> int { end_interrupted(outputs, film, metadata); }, 1));
+  };
+  Film film = render(scene, bvh, camera, render_options, make_finder_factory(options, bvh), stats,
+                     [&](double fraction) {
+                       // Before there is something to save, a signal simply ends the program.
+                       if (interruption() == 0) note_interruptions();
+                       bar.update(fraction);
+                       return interruption() == 0;
+                     });
+  bar.erase();
+  if (stats.missing_threads > 0) {
+    print_warning("only " + std::to_string(options.threads - stats.missing_threads) + " of " +
+                  std::to_string(options.threads) + " threads could be started");
   }
-  write_partial(outputs, film, metadata);
-  OutputOptions pictures = outputs;
-  pictures.stats.reset();
-  throw Interrupted(signal, "wrote what there was: " + listed(pictures.paths()));
+  return film;
 }
 
 /// Renders one picture and writes it with `report` completed.
@@ -152,16 +205,17 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
 
 /// One picture after the other; a line for each.
 void render_film_of_frames(const Options& options, const Scene& scene, const Bvh& bvh,
-                           Report& report) {
+                           Report& report, std::FILE* console) {
   const int frames = options.output.frames;
   for (int frame = 1; frame <= frames; ++frame) {
     const Clock::time_point start = Clock::now();
     render_picture(options, options.output.numbered(frame), scene, bvh,
                    make_camera(options, scene, frame), start, report);
     if (options.quiet) continue;
-    std::printf("frame %d of %d: %s, wrote %s\n", frame, frames,
-                format_duration(report.total_seconds).c_str(), listed(report.pictures).c_str());
-    std::fflush(stdout);
+    print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
+              format_duration(report.total_seconds) + ", wrote " + listed(report.pictures) + "\n",
+          console);
+    flush_standard_output();
   }
 }
 
@@ -170,9 +224,14 @@ void render_film_of_frames(const Options& options, const Scene& scene, const Bvh
 void run(const Options& options) {
   const Clock::time_point start = Clock::now();
   const int frames = options.output.frames;
+  std::FILE* console = stdout;
   for (int frame = frames == 0 ? 0 : 1; frame <= frames; ++frame) {
     const OutputOptions outputs = frame == 0 ? options.output : options.output.numbered(frame);
-    for (const auto& path : outputs.paths()) require_writable(path);
+    for (const auto& path : outputs.paths()) {
+      require_writable(path);
+      // What is for people makes room for what is for programs.
+      if (is_standard_output(path)) console = stderr;
+    }
   }
   Report report;
   report.options = options;
@@ -182,19 +241,19 @@ void run(const Options& options) {
   report.load_seconds = seconds_since(start);
   report.triangles = scene.triangles.size();
   print_warnings(scene);
+  require_inputs_kept(options, scene);
 
   const Clock::time_point tree_start = Clock::now();
   const Bvh bvh(scene, static_cast<int>(options.threads));
   report.tree_seconds = seconds_since(tree_start);
 
-  const InterruptGuard guard;
   light_if_dark(scene, make_camera(options, scene, 1));
   if (frames > 0) {
-    render_film_of_frames(options, scene, bvh, report);
+    render_film_of_frames(options, scene, bvh, report, console);
   } else {
     render_picture(options, options.output, scene, bvh, make_camera(options, scene, 1), start,
                    report);
-    if (!options.quiet) std::fputs(to_text(report).c_str(), stdout);
+    if (!options.quiet) print(to_text(report), console);
   }
 }
 

@@ -35,22 +35,20 @@ Size parse_size(const std::string& text) {
 }
 
 Engine parse_engine(const std::string& text) {
-  for (const Engine engine : {Engine::kRtl, Engine::kModel, Engine::kCpu, Engine::kCheck}) {
-    if (text == to_string(engine)) return engine;
-  }
-  fail_value("--engine", text, "rtl, model, cpu or check");
+  return choose<Engine>("--engine", text,
+                        {{"rtl", Engine::kRtl},
+                         {"model", Engine::kModel},
+                         {"cpu", Engine::kCpu},
+                         {"check", Engine::kCheck}});
 }
 
 std::string parse_unit(const std::string& text) {
-  if (text != "pipeline" && text != "serial") fail_value("--unit", text, "pipeline or serial");
-  return text;
+  return choose<std::string>("--unit", text, {{"pipeline", "pipeline"}, {"serial", "serial"}});
 }
 
 Arith parse_arith(const std::string& text) {
-  for (const Arith arith : {Arith::kStructural, Arith::kBehavioural}) {
-    if (text == to_string(arith)) return arith;
-  }
-  fail_value("--arith", text, "structural or behavioural");
+  return choose<Arith>("--arith", text,
+                       {{"structural", Arith::kStructural}, {"behavioural", Arith::kBehavioural}});
 }
 
 int parse_lanes(const std::string& text) {

@@ -25,25 +25,38 @@ namespace fs = std::filesystem;
 /// What the bytes will replace.
 struct Target {
   fs::path path;                      ///< symbolic links resolved
-  bool is_stream = false;             ///< a device, pipe or socket
+  bool is_stream = false;             ///< a device, pipe or socket, or standard output
   std::optional<mode_t> permissions;  ///< of the file that is there
 };
 
 Target inspect(const fs::path& name) {
-  std::error_code error;
   Target target;
-  target.path = fs::weakly_canonical(name, error);
-  if (error) fail(name, error.value());
   struct stat status {};
-  if (::stat(name.c_str(), &status) != 0) {
-    if (errno != ENOENT) fail(name, errno);
-    return target;
+  const bool is_there = ::stat(name.c_str(), &status) == 0;
+  if (!is_there && errno != ENOENT) fail(name, errno);
+  target.is_stream = is_there && (!(S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) ||
+                                  is_standard_output(name));
+  if (!target.is_stream) {  // a stream's name may lead to what has no path, as /dev/stdout does
+    std::error_code error;
+    target.path = fs::weakly_canonical(name, error);
+    if (error) fail(name, error.value());
   }
+  if (!is_there) return target;
   if (S_ISDIR(status.st_mode)) fail(name, EISDIR);
   if (::access(name.c_str(), W_OK) != 0) fail(name, errno);
-  target.is_stream = !S_ISREG(status.st_mode);
   if (!target.is_stream) target.permissions = status.st_mode & 07777;
   return target;
+}
+
+/// A descriptor of the stream `name`.
+int open_stream(const fs::path& name) {
+  if (is_standard_output(name)) return ::dup(STDOUT_FILENO);
+  // Opening a pipe waits for its reader, for ever if none comes; without waiting it fails.
+  const int fd = ::open(name.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0 && errno == ENXIO) throw InputError(name.string() + ": cannot write: nobody reads it");
+  if (fd < 0) fail(name, errno);
+  ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
+  return fd;
 }
 
 /// A new file beside `target`: its path and its descriptor.
@@ -88,8 +101,7 @@ PendingFile::PendingFile(const fs::path& path, std::string_view bytes) : name_(p
   target_ = std::move(target.path);
   int fd = -1;
   if (target.is_stream) {
-    fd = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (fd < 0) fail(name_, errno);
+    fd = open_stream(name_);
   } else {
     std::tie(temporary_, fd) = create_beside(target_, name_);
   }
@@ -114,9 +126,31 @@ void PendingFile::commit() {
   temporary_.clear();
 }
 
+bool is_standard_output(const fs::path& file) {
+  struct stat named {
+  }, standard{};
+  return ::stat(file.c_str(), &named) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0 &&
+         named.st_dev == standard.st_dev && named.st_ino == standard.st_ino;
+}
+
+void require_others(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
+  for (const fs::path& output : outputs) {
+    for (const fs::path& input : inputs) {
+      std::error_code ignored;  // one that is not there is no other's
+      if (fs::equivalent(output, input, ignored)) {
+        throw InputError(output.string() + ": would overwrite " + input.string());
+      }
+    }
+  }
+}
+
 void require_writable(const fs::path& path) {
   const Target target = inspect(path);
-  if (target.is_stream) return;
+  if (target.is_stream) {
+    // A pipe stays open until the program ends: its reader would take its closing for the end.
+    if (fs::is_fifo(path) && !is_standard_output(path)) open_stream(path);
+    return;
+  }
   const auto [probe, fd] = create_beside(target.path, path);
   ::close(fd);
   ::unlink(probe.c_str());

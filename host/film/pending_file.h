@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 namespace raygate {
@@ -11,9 +12,9 @@ namespace raygate {
 /// the target, at whatever moment and whatever fails, finds the old file or the new one, whole;
 /// and several files can be made ready before the first one is replaced.
 ///
-/// Symbolic links are followed; an old file's permissions are kept. A device or a pipe
-/// (/dev/stdout) has nothing to keep whole: the bytes go there at once. All errors are InputError,
-/// "path: cannot write: reason".
+/// Symbolic links are followed; an old file's permissions are kept. A device, a pipe or standard
+/// output (/dev/stdout) has nothing to keep whole: the bytes go there at once, or fail where nobody
+/// reads the pipe. All errors are InputError, "path: cannot write: reason".
 class PendingFile {
  public:
   /// Writes `bytes`, for `path`.
@@ -31,9 +32,17 @@ class PendingFile {
   std::filesystem::path temporary_;  ///< empty: none
 };
 
+/// Throws InputError where one of `outputs` is, under whatever name, one of `inputs`: "a.png: would
+/// overwrite scene.mtl".
+void require_others(std::span<const std::filesystem::path> outputs,
+                    std::span<const std::filesystem::path> inputs);
+
+/// Whether writing to `file` is writing to standard output.
+[[nodiscard]] bool is_standard_output(const std::filesystem::path& file);
+
 /// Throws the InputError that a PendingFile for `path` would end in as things stand: folder
-/// missing, no permission, a folder by that name. Changes nothing. To be called before hours of
-/// work whose result goes to `path`.
+/// missing, no permission, a folder by that name, a pipe that nobody reads. Changes nothing. To be
+/// called before hours of work whose result goes to `path`.
 void require_writable(const std::filesystem::path& path);
 
 }  // namespace raygate

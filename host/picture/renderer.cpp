@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "host/light/lights.h"
+#include "host/picture/schedule.h"
 #include "host/picture/tile_renderer.h"
 #include "host/picture/tiles.h"
 #include "host/scene/camera.h"
@@ -43,81 +47,170 @@ Film empty_film(const RenderOptions& options) {
   return film;
 }
 
-/// What the threads share besides the film: pass after pass, all tiles of each.
-class Progress {
+/// The threads that trace, and the one that called, which watches over them: only this one reports
+/// and saves, so that nobody waits for a terminal or a disk.
+class Crew {
  public:
-  Progress(const Tiles& tiles, const RenderOptions& options, const ProgressFunction& report)
-      : tiles_(tiles), options_(options), report_(report) {}
+  Crew(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
+       const FinderFactory& make_finder, const ProgressFunction& report, Film& film, FilmSums& sums,
+       RenderStats& stats)
+      : job_(job),
+        tiles_(tiles),
+        first_finder_(std::move(first_finder)),
+        make_finder_(make_finder),
+        report_(report),
+        film_(film),
+        sums_(sums),
+        stats_(stats),
+        schedule_(tiles.count, tiles.passes()) {}
 
-  /// The next tile and pass; false when there is none, or the render is to stop. A pass begins
-  /// when the one before is done: a pixel's samples are added up in their order.
-  bool next(int& tile, int& pass) {
-    std::unique_lock lock(mutex_);
-    const int total = tiles_.count * tiles_.passes();
-    if (stopped_ || next_ >= total) return false;
-    pass = next_ / tiles_.count;
-    tile = next_++ % tiles_.count;
-    pass_done_.wait(lock, [&] { return stopped_ || done_ >= pass * tiles_.count; });
-    return !stopped_;
-  }
-
-  /// Called between waves: false when the render is to stop.
-  bool keep_going() {
-    const std::scoped_lock lock(mutex_);
-    report();
-    return !stopped_;
-  }
-
-  /// Writes a tile; lets the caller look at the film if it is time.
-  void tile_done(TileRenderer& renderer, const Film& film) {
-    const std::scoped_lock lock(mutex_);
-    renderer.write();
-    ++done_;
-    report();
-    pass_done_.notify_all();
-    if (!options_.snapshot || is_complete() || stopped_) return;
-    since_snapshot_ += watch_.lap();
-    if (since_snapshot_ < options_.snapshot_seconds) return;
-    options_.snapshot(film);
-    since_snapshot_ = 0.0;
-    watch_.lap();
-  }
-
-  void failed(std::exception_ptr error) {
-    const std::scoped_lock lock(mutex_);
-    if (!error_) error_ = std::move(error);
-    stopped_ = true;
-    pass_done_.notify_all();
-  }
-
-  void add(const TileRenderer& renderer, RenderStats& stats) {
-    const std::scoped_lock lock(mutex_);
-    renderer.add_to(stats);
-  }
-
-  // When the threads are gone.
-  [[nodiscard]] bool is_complete() const { return done_ == tiles_.count * tiles_.passes(); }
-  void rethrow() const {
+  /// Returns when all is traced, or the caller wants no more.
+  void run() {
+    look();
+    {
+      const int wanted = std::min(job_.options.threads, tiles_.count);
+      std::vector<std::jthread> threads;
+      try {
+        while (static_cast<int>(threads.size()) < wanted) threads.emplace_back([this] { work(); });
+      } catch (const std::system_error&) {  // no more to be had: these will do
+        stats_.missing_threads = wanted - std::max(1, static_cast<int>(threads.size()));
+      }
+      if (threads.empty()) {
+        is_alone_ = true;
+        work();
+      }
+      watch(static_cast<int>(threads.size()));
+    }
     if (error_) std::rethrow_exception(error_);
+    stats_.cancelled = !schedule_.all_ended();
+    if (!stats_.cancelled && report_) report_(1.0);
   }
 
  private:
-  void report() {
-    const double fraction = static_cast<double>(done_) / (tiles_.count * tiles_.passes());
-    if (report_ && !stopped_ && !report_(fraction)) {
-      stopped_ = true;
-      pass_done_.notify_all();
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kLook{50};    // between reports, at most
+  static constexpr std::chrono::milliseconds kGrace{500};  // for threads that are to stop
+
+  /// A thread's: until there is nothing left to begin.
+  void work() {
+    try {
+      auto finder = take_first_finder();
+      if (!finder) finder = make_finder_();
+      TileRenderer renderer(job_, *finder, film_, sums_);
+      const auto keep_going = [this] {
+        if (is_alone_) look();
+        const std::scoped_lock lock(mutex_);
+        return !stopped_;
+      };
+      while (const auto step = next()) {
+        if (!renderer.trace(tiles_[step->tile], tiles_.first_sample(step->pass),
+                            tiles_.samples_of(step->pass), keep_going)) {
+          break;
+        }
+        const std::scoped_lock lock(mutex_);
+        renderer.write();
+        schedule_.end(step->tile);
+        changed_.notify_all();
+      }
+      const std::scoped_lock lock(mutex_);
+      renderer.add_to(stats_);
+    } catch (...) {
+      fail(std::current_exception());
+    }
+    const std::scoped_lock lock(mutex_);
+    ++gone_;
+    changed_.notify_all();
+  }
+
+  std::unique_ptr<Finder> take_first_finder() {
+    const std::scoped_lock lock(mutex_);
+    return std::move(first_finder_);
+  }
+
+  /// None when there is none left, or the render is to stop.
+  std::optional<Schedule::Step> next() {
+    std::unique_lock lock(mutex_);
+    std::optional<Schedule::Step> step;
+    changed_.wait(lock, [&] {
+      if (stopped_ || schedule_.all_begun()) return true;
+      step = schedule_.begin();
+      return step.has_value();
+    });
+    return step;
+  }
+
+  /// Until so many threads are gone.
+  void watch(int threads) {
+    std::unique_lock lock(mutex_);
+    while (gone_ < threads) {
+      changed_.wait_for(lock, kLook);
+      lock.unlock();
+      look();
+      lock.lock();
     }
   }
 
+  /// Reports, and saves if it is time.
+  void look() {
+    try {
+      std::unique_lock lock(mutex_);
+      if (stopped_) {
+        if (job_.options.abandon && !error_ && Clock::now() - stopped_at_ > kGrace) {
+          const Film film = film_;
+          lock.unlock();
+          job_.options.abandon(film);
+        }
+        return;
+      }
+      const double fraction = schedule_.fraction();
+      lock.unlock();
+      if (report_ && !report_(fraction)) stop();
+      lock.lock();
+      if (stopped_ || schedule_.all_ended() || !job_.options.snapshot) return;
+      since_snapshot_ += watch_.lap();
+      if (since_snapshot_ < job_.options.snapshot_seconds) return;
+      const Film film = film_;
+      lock.unlock();
+      job_.options.snapshot(film);
+      since_snapshot_ = 0.0;
+      watch_.lap();
+    } catch (...) {
+      fail(std::current_exception());
+    }
+  }
+
+  void stop() {
+    const std::scoped_lock lock(mutex_);
+    stopped_ = true;
+    stopped_at_ = Clock::now();
+    changed_.notify_all();
+  }
+
+  void fail(std::exception_ptr error) {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (!error_) error_ = std::move(error);
+    }
+    stop();
+  }
+
+  const RenderJob& job_;
   const Tiles& tiles_;
-  const RenderOptions& options_;
+  std::unique_ptr<Finder> first_finder_;  // of the thread that begins first
+  const FinderFactory& make_finder_;
   const ProgressFunction& report_;
-  std::mutex mutex_;  // of all that follows, and of the film
-  std::condition_variable pass_done_;
-  int next_ = 0, done_ = 0;
+  std::mutex mutex_;  // of all that follows
+  std::condition_variable changed_;
+  Film& film_;
+  FilmSums& sums_;
+  RenderStats& stats_;
+  Schedule schedule_;
+  int gone_ = 0;
   bool stopped_ = false;
+  Clock::time_point stopped_at_;
   std::exception_ptr error_;
+  // Of the watching thread alone.
+  bool is_alone_ = false;
   Stopwatch watch_;
   double since_snapshot_ = 0.0;
 };
@@ -126,14 +219,13 @@ class Progress {
 
 Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const RenderOptions& options,
             const FinderFactory& make_finder, RenderStats& stats,
-            const ProgressFunction& progress_function) {
+            const ProgressFunction& progress) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
   stats = {};
   Film film = empty_film(options);
   auto first_finder = make_finder();
-  const Tiles tiles(film.window, options.samples, first_finder->preferred_batch(),
-                    options.threads);
+  const Tiles tiles(film.window, options.samples, first_finder->preferred_batch(), options.threads);
   FilmSums sums;
   if (tiles.passes() > 1) {
     sums.color.assign(film.color.size(), glm::dvec4(0.0));
@@ -141,38 +233,13 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
   }
   const Lights lights(scene, bvh);
   const RenderJob job{scene, bvh, camera, options, lights};
-  Progress progress(tiles, options, progress_function);
-
-  const auto work = [&](std::unique_ptr<Finder> finder) {
-    try {
-      if (!finder) finder = make_finder();
-      TileRenderer renderer(job, *finder, film, sums);
-      const auto keep_going = [&] { return progress.keep_going(); };
-      for (int tile = 0, pass = 0; progress.next(tile, pass);) {
-        if (!renderer.trace(tiles[tile], tiles.first_sample(pass), tiles.samples_of(pass),
-                            keep_going)) {
-          break;
-        }
-        progress.tile_done(renderer, film);
-      }
-      progress.add(renderer, stats);
-    } catch (...) {
-      progress.failed(std::current_exception());
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (int i = 1; i < std::min(options.threads, tiles.count); ++i) threads.emplace_back(work, nullptr);
-    work(std::move(first_finder));
-  }
-  progress.rethrow();
+  Crew(job, tiles, std::move(first_finder), make_finder, progress, film, sums, stats).run();
   if (stats.find.common_records != 0) {
     stats.skipped.records =
         bvh.slot_count() * (1 + lights.points().size()) - stats.find.common_records;
   }
   const std::uint64_t every_test = stats.rays * bvh.slot_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);
-  stats.cancelled = !progress.is_complete();
   stats.wall_seconds = wall.lap();
   return film;
 }

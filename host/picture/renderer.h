@@ -35,27 +35,31 @@ struct RenderOptions {
   /// The unit's P is used where it is off by no more of the distance than that, in all else the
   /// host's: 0 for the host's alone; the largest float for the unit's wherever it has one.
   float point_error = kPointError;
-  /// If not empty: called with the film so far every so many seconds, from one thread at a time;
-  /// the others wait.
+  /// If not empty: called with a copy of the film so far every so many seconds, on the thread that
+  /// called render(); the others go on.
   std::function<void(const Film&)> snapshot{};
   double snapshot_seconds = 10.0;
+  /// If not empty: called with a copy of the film so far when the threads have not stopped half a
+  /// second after they were told to, deep in a search as they are. Must end the process.
+  std::function<void(const Film&)> abandon{};
 };
 
 /// What a render did. Seconds of the parts are summed over the threads (two threads busy for a
 /// second make two seconds); `wall_seconds` is what a clock on the wall shows.
 struct RenderStats {
-  std::uint64_t rays = 0;            ///< of all kinds; the others are reflected or refracted
-  std::uint64_t camera_rays = 0;     ///< of these, from the camera
-  std::uint64_t shadow_rays = 0;     ///< of these, between surfaces and lights
-  std::uint64_t point_doubts = 0;    ///< hits of the others whose P the host computed
+  std::uint64_t rays = 0;          ///< of all kinds; the others are reflected or refracted
+  std::uint64_t camera_rays = 0;   ///< of these, from the camera
+  std::uint64_t shadow_rays = 0;   ///< of these, between surfaces and lights
+  std::uint64_t point_doubts = 0;  ///< hits of the others whose P the host computed
   SkipCounters skipped;
   FindCounters find;           ///< summed over the threads' finders
   double shade_seconds = 0.0;  ///< making the rays and shading them
   double wall_seconds = 0.0;
-  bool cancelled = false;  ///< the progress function said stop: the film has what there was
+  int missing_threads = 0;  ///< that could not be started; the others did their work
+  bool cancelled = false;   ///< the progress function said stop: the film has what there was
 };
 
-/// Called with the fraction done, in [0, 1], now and then and from one thread at a time; false
+/// Called with the fraction done, in [0, 1], now and then on the thread that called render(); false
 /// stops the render. May be empty.
 using ProgressFunction = std::function<bool(double)>;
 

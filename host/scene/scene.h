@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>
 #include <string>
@@ -69,6 +70,7 @@ struct Scene {
   std::vector<PointLight> lights;
   glm::vec3 background{0.0f};         ///< radiance from where no geometry is, scene-linear RGB
   glm::dvec3 origin{0.0};             ///< world = origin + position
+  std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures
   std::vector<std::string> warnings;  ///< "file:line: ...": of statements, then of faces
 };
 

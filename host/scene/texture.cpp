@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "host/scene/io/input_error.h"
 #include "host/scene/scene.h"
@@ -67,6 +68,24 @@ Neighbours neighbours(double coordinate, int size, Wrap wrap) {
   return found;
 }
 
+/// Whether the bytes begin as one of the formats that Texture::load promises. The library knows
+/// more of them, and reads for ever at the header of a Radiance picture. TGA has no magic number
+/// but a header that leaves little room.
+bool is_known_format(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") ||
+      bytes.starts_with("BM")) {
+    return true;
+  }
+  constexpr std::size_t kTgaHeader = 18;
+  if (bytes.size() < kTgaHeader) return false;
+  const auto one_of = [&](std::size_t place, std::string_view values) {
+    return values.find(bytes[place]) != std::string_view::npos;
+  };
+  return one_of(1, "\0\1"sv) && one_of(2, "\1\2\3\x09\x0a\x0b") &&
+         one_of(16, "\x08\x0f\x10\x18\x20");
+}
+
 }  // namespace
 
 Texture::Texture(int width, int height, std::vector<Texel> texels)
@@ -78,6 +97,9 @@ Texture::Texture(int width, int height, std::vector<Texel> texels)
 Texture Texture::load(const std::filesystem::path& file) {
   const std::vector<unsigned char> bytes = read_bytes(file);
   const std::string unreadable = "not a PNG, JPEG, TGA or BMP picture that can be read: ";
+  if (!is_known_format({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
+    fail(file, unreadable + "it begins as none of them");
+  }
   if (bytes.size() > INT_MAX) fail(file, unreadable + "too large");
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
@@ -136,6 +158,7 @@ void load_textures(Scene& scene) {
                                ": the texture is missing, its material is plain instead");
     } else if (is_new) {
       entry->second = static_cast<std::uint32_t>(scene.textures.size());
+      scene.files.emplace_back(material.diffuse_map);
       scene.textures.push_back(Texture::load(material.diffuse_map));
     }
     material.diffuse_texture = entry->second;

@@ -203,7 +203,8 @@ TEST_F(BadInput, ImpossibleOptions) {
   refused("--threads", "0");
   refused("--camera", "0,0,0,0,0,0");
   refused("--seed", "dice");
-  expect_refused(render({"scene.obj", "--frobnicate"}), "--frobnicate: unknown option; [^\n]+");
+  expect_refused(render({"scene.obj", "--frobnicate"}),
+                 "--frobnicate: unknown option \\(see --help\\)");
   expect_refused(render({"scene.obj", "scene.obj"}), "scene\\.obj: a second scene; [^\n]+");
   expect_refused(render({}), "no scene given; [^\n]+");
 }

@@ -90,5 +90,43 @@ TEST_F(ComparePictures, WhatCannotBeComparedIsRefused) {
   expect_refused({"a.exr"}, "");
 }
 
+TEST_F(ComparePictures, InputsAreKept) {
+  const std::string before = folder_.read("a.exr");
+  expect_refused({"a.exr", "b.exr", "--difference", "a.exr"}, "a.exr: would overwrite a.exr");
+  expect_refused({"b.exr", "a.exr", "--difference", "./a.exr"}, "./a.exr: would overwrite a.exr");
+  EXPECT_EQ(folder_.read("a.exr"), before);
+}
+
+TEST_F(ComparePictures, FullDisksAreErrors) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"a.exr", "b.exr"}, {"a.exr", "b.exr", "--json"}, {"--help"}}) {
+    const Outcome outcome =
+        run_program({.arguments = arguments, .folder = folder_.path(), .out_file = "/dev/full"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err, "error: standard output: cannot write: No space left on device\n");
+  }
+  const Outcome limited = run_program({.arguments = {"a.exr", "b.exr", "--difference", "d.png"},
+                                       .folder = folder_.path(),
+                                       .file_size_limit = 100});
+  EXPECT_EQ(limited.signal, 0);
+  EXPECT_EQ(limited.status, 2);
+  EXPECT_EQ(limited.err, "error: d.png: cannot write: File too large\n");
+}
+
+TEST_F(ComparePictures, ControlCharactersDoNotReachTheTerminal) {
+  std::string bytes = folder_.read("a.exr");
+  const std::string depth("Z\0\2\0\0\0", 6);  // the channel's name, and that it is float
+  ASSERT_NE(bytes.find(depth), std::string::npos);
+  bytes[bytes.find(depth)] = '\x1b';
+  folder_.write("odd.exr", bytes);
+  const Outcome listed = compare({"odd.exr", "b.exr", "--channels", "none"});
+  EXPECT_EQ(listed.status, 2);
+  EXPECT_NE(listed.err.find("\\x1B"), std::string::npos) << listed.err;
+  EXPECT_EQ(listed.err.find('\x1b'), std::string::npos) << listed.err;
+  const Outcome drawn = compare({"a.exr", "b.exr", "--difference", "\x1b[31m.png"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_EQ(drawn.out.find('\x1b'), std::string::npos) << drawn.out;
+}
+
 }  // namespace
 }  // namespace raygate

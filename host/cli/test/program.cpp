@@ -58,7 +58,16 @@ Channel make_terminal() {
     const rlimit limit{bytes, bytes};
     ready = ready && ::setrlimit(RLIMIT_FSIZE, &limit) == 0;
   }
+  if (!invocation.out_file.empty()) {
+    const int file = ::open(invocation.out_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    ready = ready && ::dup2(file, STDOUT_FILENO) >= 0;
+  }
   if (invocation.without_rights && ::geteuid() == 0) ready = ready && ::setuid(65534) == 0;
+  if (invocation.most_threads > 0) {
+    const auto threads = static_cast<rlim_t>(invocation.most_threads);
+    const rlimit limit{threads, threads};
+    ready = ready && ::setrlimit(RLIMIT_NPROC, &limit) == 0;
+  }
   if (ready) ::execv(RAYGATE_PROGRAM, argv.data());
   ::_exit(127);
 }
@@ -86,6 +95,7 @@ Outcome run_program(const Invocation& invocation) {
 
   Outcome outcome;
   bool signalled = invocation.signal_when_busy == 0;
+  std::size_t said = 0, heard = 0;  // of when_said; of standard error
   pollfd waits[] = {{out.read_end, POLLIN, 0}, {err.read_end, POLLIN, 0}};
   std::string* texts[] = {&outcome.out, &outcome.err};
   while (waits[0].fd >= 0 || waits[1].fd >= 0) {
@@ -96,6 +106,14 @@ Outcome run_program(const Invocation& invocation) {
         ::close(waits[i].fd);
         waits[i].fd = -1;  // poll leaves it out
       }
+    }
+    while (said < invocation.when_said.size()) {
+      const auto& [text, react] = invocation.when_said[said];
+      const std::size_t found = outcome.err.find(text, heard);
+      if (found == std::string::npos) break;
+      heard = found + text.size();
+      ++said;
+      react(child);
     }
     if (!signalled && outcome.err.find("[=") != std::string::npos) {
       ::kill(child, invocation.signal_when_busy);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace raygate {
@@ -13,8 +15,13 @@ struct Invocation {
   std::filesystem::path folder;  ///< the current folder; also what file names are relative to
   bool terminal = false;         ///< standard error is a terminal of 80 columns, not a pipe
   int signal_when_busy = 0;      ///< with a terminal: sent when the progress bar has begun to fill
-  long file_size_limit = 0;      ///< bytes that a file may grow to; 0: no limit
-  bool without_rights = false;   ///< as a user who is not root
+  /// Called with the program's process id, one after the other, each when standard error has its
+  /// text in what came since the last one's.
+  std::vector<std::pair<std::string, std::function<void(int)>>> when_said{};
+  std::string out_file{};       ///< standard output goes there instead
+  long file_size_limit = 0;     ///< bytes that a file may grow to; 0: no limit
+  bool without_rights = false;  ///< as a user who is not root
+  int most_threads = 0;         ///< that its user may have, its first one counted; 0: no limit
 };
 
 /// What came of it.

@@ -1,11 +1,12 @@
-// What a run says on its way, and at its end; interruption.
+// What a run says on its way, and at its end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <csignal>
+#include <fstream>
+#include <set>
+#include <sstream>
 
 #include "host/cli/test/render_run.h"
-#include "host/film/test/exr_reader.h"
 
 namespace raygate {
 namespace {
@@ -31,52 +32,38 @@ TEST_F(Render, ProgressBarOnTerminalsOnly) {
   EXPECT_EQ(silent.out, "");
 }
 
-TEST_F(Render, InterruptedRunsWriteWhatThereIs) {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    // A crop without the empty border, so that the first tile has something to see.
-    const Outcome outcome =
-        run_program({.arguments = {kCornell, "--size", "640x480", "--crop", "200,120,520,440",
-                                   "--threads", "1", "--spp", "4", "-o", "a", "--stats", "s.json"},
-                     .folder = folder_.path(),
-                     .terminal = true,
-                     .signal_when_busy = signal});
-    EXPECT_EQ(outcome.status, 128 + signal);
-    ASSERT_NE(outcome.err.find("error: interrupted; wrote what there was: a.exr, a.png"),
-              std::string::npos)
-        << outcome.err;
-    EXPECT_EQ(folder_.list(), (std::vector<std::string>{"a.exr", "a.png"}));
-    ExrReader partial(folder_.read("a.exr"));
-    EXPECT_EQ(partial.text("partial"), "not finished when it was saved");
-    const auto ids = partial.read<std::uint32_t>("id", Imf::UINT);
-    ASSERT_EQ(ids.size(), 102400u);
-    const auto missing = std::ranges::count(ids, 4294967295u);
-    EXPECT_GT(missing, 0);
-    EXPECT_LT(missing, 102400);
-    EXPECT_NE(folder_.read("a.png").find("tEXtComment\0not finished when it was saved"s),
-              std::string::npos);
-    fs::remove(folder_.path() / "a.exr");
-    fs::remove(folder_.path() / "a.png");
+/// "seconds.load" for a key within a key.
+std::set<std::string> keys_of(const json& object) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) {
+    if (!value.is_object()) keys.insert(key);
+    if (value.is_object()) {
+      for (const std::string& inner : keys_of(value)) keys.insert(key + "." + inner);
+    }
   }
+  return keys;
 }
 
-TEST_F(Render, StatisticsAreWholeAndAgree) {
+/// Those in the first column of the table in host/README.md.
+std::set<std::string> documented_keys() {
+  std::ifstream page(RAYGATE_HOST_README);
+  std::set<std::string> keys;
+  bool here = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("## ")) here = line == "## Statistics";
+    if (!here || !line.starts_with("| `")) continue;
+    std::istringstream words(line.substr(1, line.find('|', 1) - 1));
+    for (std::string key; std::getline(std::getline(words, key, '`'), key, '`');) {
+      EXPECT_TRUE(keys.insert(key).second) << key << " is documented twice";
+    }
+  }
+  return keys;
+}
+
+TEST_F(Render, StatisticsAreWholeDocumentedAndAgree) {
   const Outcome outcome =
       render({kCornell, "--size", "60x50", "--threads", "2", "--seed", "9", "-o", "a.png"});
-  const std::set<std::string> expected{
-      "software",      "scene",          "triangles",       "width",
-      "height",        "window",         "engine",          "unit",
-      "threads",       "seed",           "pictures",        "rays",
-      "records",       "tests",          "misses",          "hits",
-      "edge_doubts",   "depth_doubts",   "exact_inside",    "exact_depth",
-      "plane_tests",   "clocks",         "clocks_per_test", "seconds",
-      "lanes",         "unit_tests",     "quotients",       "idle_clocks",
-      "output_stalls", "thread_seconds", "integrator",      "spp",
-      "depth",         "camera_rays",    "shadow_rays",     "common_records",
-      "skipped",       "input_bytes",     "arith",
-      "point_doubts"};
-  std::set<std::string> actual;
-  for (const auto& [key, value] : stats_.items()) actual.insert(key);
-  EXPECT_EQ(actual, expected);
+  EXPECT_EQ(keys_of(stats_), documented_keys());
   EXPECT_EQ(stats_.at("camera_rays"), 60 * 50);
   EXPECT_GT(stats_.at("shadow_rays"), 0);
   EXPECT_EQ(stats_.at("window"), (json{0, 0, 60, 50}));
@@ -101,10 +88,28 @@ TEST_F(Render, StatisticsAreWholeAndAgree) {
   EXPECT_LE(parts, seconds.at("total").get<double>() + 1e-3);
   // The text says the same.
   EXPECT_NE(outcome.out.find("cornell.obj: "), std::string::npos);
-  EXPECT_NE(outcome.out.find("60x50, engine rtl, unit pipeline (structural), 2 threads\n"), std::string::npos);
-  for (const char* row : {"\nrays ", "\ntests ", "\nhits ", "\ndoubts ", "\nclocks ", "\ntime "}) {
+  EXPECT_NE(outcome.out.find("60x50, engine rtl, unit pipeline (structural), 2 threads\n"),
+            std::string::npos);
+  for (const char* row : {"\nrays ", "\ntests ", "\nskipped ", "\nwrote "}) {
     EXPECT_NE(outcome.out.find(row), std::string::npos) << row;
   }
+  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << outcome.out;
+}
+
+TEST_F(Render, TheSummaryNamesNoUnitWhereNoneIsAtWork) {
+  const Outcome brief = render({kCornell, "--size", "60x50", "--engine", "cpu"});
+  EXPECT_EQ(std::ranges::count(brief.out, '\n'), 5) << brief.out;
+  EXPECT_EQ(brief.out.find("unit"), std::string::npos) << brief.out;
+  EXPECT_NE(brief.out.find(" rays/s\n"), std::string::npos) << brief.out;
+  EXPECT_NE(brief.out.find(" tests/s\n"), std::string::npos) << brief.out;
+  for (std::size_t start = 0; start < brief.out.size(); start = brief.out.find('\n', start) + 1) {
+    EXPECT_LE(brief.out.find('\n', start) - start, 80u) << brief.out;
+  }
+  const Outcome verbose = render({kCornell, "--size", "60x50", "--engine", "cpu", "--verbose"});
+  for (const char* row : {"\nhits ", "\ndoubts ", "\ntimes ", "\nthreads ", "\nWork skipped "}) {
+    EXPECT_NE(verbose.out.find(row), std::string::npos) << row;
+  }
+  EXPECT_EQ(verbose.out.find("unit"), std::string::npos) << verbose.out;
 }
 
 TEST_F(Render, WarningsAreSaidOnce) {

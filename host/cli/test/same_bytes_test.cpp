@@ -131,7 +131,8 @@ TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
     render(with({"-o", "rtl", "--engine", "rtl"}));
     EXPECT_GT(stats_.at("clocks"), 0);
     expect_same_pictures("cpu", "rtl");
-    render(with({"-o", "serial", "--engine", "model", "--unit", "serial", "--no-skip", "divisions"}));
+    render(
+        with({"-o", "serial", "--engine", "model", "--unit", "serial", "--no-skip", "divisions"}));
     expect_same_pictures("cpu", "serial");
   }
 }

@@ -1,6 +1,7 @@
 // Whatever goes wrong, the file that was there stays as it was.
 #include "host/film/pending_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "host/scene/io/input_error.h"
 
@@ -196,6 +198,46 @@ TEST_F(PendingFileTest, DevicesAreWrittenToAsTheyAre) {
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
   EXPECT_EQ(message_of("/dev/null", "x"), "(written)");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+/// Opening such a pipe would wait for ever.
+TEST_F(PendingFileTest, APipeThatNobodyReadsIsRefused) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(message_of(pipe, "x"), pipe.string() + ": cannot write: nobody reads it");
+  EXPECT_THROW(require_writable(pipe), InputError);
+}
+
+TEST_F(PendingFileTest, APipesReaderGetsTheBytesThoughItWasAskedBefore) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  require_writable(pipe);
+  char bytes[8] = {};
+  EXPECT_EQ(::read(reader, bytes, sizeof bytes), -1) << "the end, before anything came";
+  replace_file(pipe, "abc");
+  EXPECT_EQ(::read(reader, bytes, sizeof bytes), 3);
+  EXPECT_STREQ(bytes, "abc");
+  ::close(reader);
+}
+
+TEST_F(PendingFileTest, InputsAreNoOutputsUnderWhateverName) {
+  replace_file(folder_ / "in.mtl", "old");
+  fs::create_hard_link(folder_ / "in.mtl", folder_ / "hard");
+  fs::create_symlink("in.mtl", folder_ / "soft");
+  const std::vector<fs::path> inputs{folder_ / "gone", folder_ / "in.mtl"};
+  for (const char* name : {"in.mtl", "hard", "soft"}) {
+    const std::vector<fs::path> outputs{folder_ / "new", folder_ / name};
+    try {
+      require_others(outputs, inputs);
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(),
+                (folder_ / name).string() + ": would overwrite " + (folder_ / "in.mtl").string());
+    }
+  }
+  require_others(std::vector<fs::path>{folder_ / "new"}, inputs);
 }
 
 }  // namespace

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
 #include <cstring>
+#include <thread>
 
 #include "host/exact/test/meshes.h"
 #include "host/find/unit/reference_plane_unit.h"
@@ -207,6 +211,24 @@ TEST(Renderer, ProgressReachesOneAndCanCancel) {
   (void)render(scene, bvh, kCamera, size(300, 300), serial(bvh), stats, [](double) { return false; });
   EXPECT_TRUE(stats.cancelled);
   EXPECT_LT(stats.rays, 300u * 300u);
+}
+
+/// A thread deep in a long search is not waited for.
+TEST(Renderer, AThreadThatDoesNotStopIsAbandoned) {
+  const Scene scene = sphere_in_box();
+  const Bvh bvh(scene);
+  std::atomic<int> made = 0;
+  const FinderFactory stuck = [&, usual = serial(bvh)] {
+    while (made++ > 0) std::this_thread::sleep_for(std::chrono::hours(1));
+    return usual();
+  };
+  RenderOptions options = size(300, 300, 2);
+  options.abandon = [](const Film& film) { std::_Exit(film.color.size() == 300 * 300 ? 7 : 8); };
+  RenderStats stats;
+  int reports = 0;
+  EXPECT_EXIT((void)render(scene, bvh, kCamera, options, stuck, stats,
+                           [&](double) { return reports++ == 0; }),
+              testing::ExitedWithCode(7), "");
 }
 
 TEST(Renderer, AFindersExceptionReachesTheCaller) {

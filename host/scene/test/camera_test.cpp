@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "host/exact/exact.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {

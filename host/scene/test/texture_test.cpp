@@ -105,6 +105,35 @@ TEST_F(TextureFile, WhatIsNoPictureIsRefused) {
   EXPECT_TRUE(error_of("\x89PNG\r\n\x1a\n").starts_with("t.png: not a PNG, JPEG, TGA or BMP"));
 }
 
+/// The library would read some of them, and the Radiance header for ever.
+TEST_F(TextureFile, OtherFormatsAreRefused) {
+  using namespace std::string_literals;
+  const std::string radiance = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000 +X 99999\n";
+  const std::string refusal = "t.png: not a PNG, JPEG, TGA or BMP picture";
+  for (const std::string& bytes :
+       {radiance, std::string("#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\1\1\1\1"),
+        "GIF89a\1\0\1\0\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\1\0\1\0\0\2\2D\1\0;"s,
+        std::string("P6 1 1 255\nabc"), std::string("8BPS\0\1", 6) + std::string(60, '\0'),
+        std::string("\x53\x80\xf6\x34") + std::string(120, '\0')}) {
+    EXPECT_TRUE(error_of(bytes).starts_with(refusal)) << error_of(bytes);
+  }
+}
+
+TEST_F(TextureFile, EveryPromisedFormatIsRead) {
+  using namespace std::string_literals;
+  // One pixel each: a PNG, a BMP, and TGA as run lengths.
+  EXPECT_EQ(error_of("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\2\0\0\0\x90wS\xde"
+                     "\0\0\0\x0cIDATx\x9c"
+                     "c\xf8\xcf\xc0\0\0\3\1\1\0\xc9\xfe\x92\xef"
+                     "\0\0\0\0IEND\xae"
+                     "B`\x82"s),
+            "(read)");
+  EXPECT_EQ(error_of("BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x18\0"
+                     "\0\0\0\0\4\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\1\2\3\0"s),
+            "(read)");
+  EXPECT_EQ(error_of("\0\0\x0a\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\x20\x80\1\2\3"s), "(read)");
+}
+
 TEST_F(TextureFile, DamagedFilesNeverCrash) {
   const std::string bytes = tga(9, 7, std::vector<Texture::Texel>(63, kGreen));
   std::mt19937_64 random(5);

@@ -1,14 +1,15 @@
-#include "host/scene/io/mtl_text.h"
+#include "host/scene/io/mtl_reader.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "host/scene/io/words.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 namespace {
@@ -27,8 +28,6 @@ constexpr std::array<Value, 5> kValues{{
     {"Tr", 0.0, 1.0, 0.0},
     {"illum", 0.0, 10.0, 2.0},
 }};
-
-constexpr std::array<std::string_view, 5> kColours{"Kd", "Ks", "Ke", "Tf", "Ka"};
 
 /// map_Kd options and how many words may follow each; all but the first must be numbers.
 struct TextureOption {
@@ -56,51 +55,71 @@ std::string shortest(double number) {
   return text;
 }
 
-std::string shortest(const glm::vec3& colour) {
-  return shortest(colour.r) + " " + shortest(colour.g) + " " + shortest(colour.b);
+/// The material's member of a colour statement; Ka is read and not used.
+glm::vec3* colour_of(Material& material, glm::vec3& unused, std::string_view keyword) {
+  if (keyword == "Kd") return &material.diffuse;
+  if (keyword == "Ks") return &material.specular;
+  if (keyword == "Ke") return &material.emission;
+  if (keyword == "Tf") return &material.transmittance;
+  return keyword == "Ka" ? &unused : nullptr;
 }
 
 }  // namespace
 
-void MtlText::clean(std::string_view statement, std::string& clean) {
-  const std::string_view keyword = take_word(statement);
-  if (keyword == "newmtl") return begin_material(statement, clean);
+std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                               std::string_view name) {
+  std::string slashed(name);
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  for (const std::string& spelling : {std::string(name), slashed}) {
+    std::error_code ignored;
+    std::filesystem::path file = folder / spelling;
+    if (std::filesystem::is_regular_file(file, ignored)) return file;
+  }
+  return std::nullopt;
+}
 
-  const bool is_colour = std::find(kColours.begin(), kColours.end(), keyword) != kColours.end();
+std::vector<Material> MtlReader::read() {
+  while (const auto statement = lines().next()) read_statement(*statement);
+  if (is_kept_) materials_.push_back(std::move(material_));
+  return std::move(materials_);
+}
+
+void MtlReader::read_statement(std::string_view statement) {
+  const std::string_view keyword = take_word(statement);
+  if (keyword == "newmtl") return begin_material(statement);
+  glm::vec3 unused;
+  glm::vec3* const colour = colour_of(material_, unused, keyword);
   const bool is_value = std::any_of(kValues.begin(), kValues.end(),
                                     [&](const Value& value) { return value.keyword == keyword; });
-  if ((is_colour || is_value || keyword == "map_Kd") && !in_material_) {
+  if ((colour != nullptr || is_value || keyword == "map_Kd") && !in_material_) {
     lines().fail(in_quotes(keyword) + " before the first newmtl");
   }
-  if (is_colour) {
-    check_colour(keyword, statement, clean);
+  if (colour != nullptr) {
+    read_colour(keyword, statement, *colour);
   } else if (is_value) {
-    check_value(keyword, statement, clean);
+    read_value(keyword, statement);
   } else if (keyword == "map_Kd") {
-    check_diffuse_map(statement, clean);
+    read_diffuse_map(statement);
   } else {
     warn_once(keyword, in_quotes(keyword) + " is not supported, ignored");
   }
-  if (nameless_) clean.clear();
 }
 
-void MtlText::begin_material(std::string_view name, std::string& clean) {
+void MtlReader::begin_material(std::string_view name) {
+  if (is_kept_) materials_.push_back(std::move(material_));
+  material_ = {};
+  material_.name = name;
   in_material_ = true;
-  has_diffuse_ = false;
-  nameless_ = name.empty();
-  if (nameless_) return warn("newmtl without a name: nothing can use this material, ignored");
-  if (!names_.emplace(name).second) {
+  has_diffuse_ = has_opacity_ = false;
+  is_kept_ = !name.empty() && names_.emplace(name).second;
+  if (name.empty()) {
+    warn("newmtl without a name: nothing can use this material, ignored");
+  } else if (!is_kept_) {
     warn("material " + in_quotes(name) + " was defined before, which stands");
   }
-  const Material defaults;
-  clean.append("newmtl ").append(name);
-  clean.append("\nKd ").append(shortest(defaults.diffuse));
-  clean.append("\nTf ").append(shortest(defaults.transmittance));
-  clean.append("\nNs ").append(shortest(defaults.shininess));
-  clean.append("\nillum ").append(std::to_string(defaults.illumination_model)).append("\n");
 }
 
-void MtlText::check_colour(std::string_view keyword, std::string_view words, std::string& clean) {
+void MtlReader::read_colour(std::string_view keyword, std::string_view words, glm::vec3& colour) {
   std::string_view peeked = words;
   const std::string_view first = take_word_before_comment(peeked);
   if (first == "spectral" || first == "xyz") {
@@ -125,12 +144,10 @@ void MtlText::check_colour(std::string_view keyword, std::string_view words, std
                  " numbers, expected red, green and blue, or one for all three");
   }
   has_diffuse_ = has_diffuse_ || keyword == "Kd";
-  clean.append(keyword);
-  for (const double component : rgb) clean.append(" ").append(shortest(component));
-  clean += '\n';
+  colour = {rgb[0], rgb[1], rgb[2]};
 }
 
-void MtlText::check_value(std::string_view keyword, std::string_view words, std::string& clean) {
+void MtlReader::read_value(std::string_view keyword, std::string_view words) {
   std::string_view word = take_word_before_comment(words);
   if (keyword == "d" && word == "-halo") {
     warn("d -halo is not supported, taken as d");
@@ -149,14 +166,25 @@ void MtlText::check_value(std::string_view keyword, std::string_view words, std:
     warn(std::string(keyword) + " " + in_quotes(word) + " is out of range, taken as " +
          shortest(number));
   }
-  if (keyword == "illum" && number != std::floor(number)) {
-    lines().fail("illum: " + in_quotes(word) + ", expected a whole number from 0 to 10");
+  if (keyword == "illum") {
+    if (number != std::floor(number)) {
+      lines().fail("illum: " + in_quotes(word) + ", expected a whole number from 0 to 10");
+    }
+    material_.illumination_model = static_cast<int>(number);
+  } else if (keyword == "Ns") {
+    material_.shininess = static_cast<float>(number);
+  } else if (keyword == "Ni") {
+    material_.refraction_index = static_cast<float>(number);
+  } else if (keyword == "d") {
+    material_.opacity = static_cast<float>(number);
+    has_opacity_ = true;
+  } else if (!has_opacity_) {  // Tr
+    material_.opacity = static_cast<float>(1.0 - number);
   }
-  clean.append(keyword).append(" ").append(shortest(number)).append("\n");
 }
 
-void MtlText::check_diffuse_map(std::string_view words, std::string& clean) {
-  std::string kept;
+void MtlReader::read_diffuse_map(std::string_view words) {
+  TextureMapping mapping;
   while (words.starts_with('-')) {
     std::string_view rest = words;
     const std::string_view name = take_word(rest);
@@ -166,10 +194,12 @@ void MtlText::check_diffuse_map(std::string_view words, std::string& clean) {
     if (option == kTextureOptions.end()) break;  // a file whose name begins with '-'
     words = rest;
     if (name == "-clamp") {
-      kept += take_word(rest) == "on" ? "-clamp on " : "";
+      mapping.clamp = take_word(rest) == "on" || mapping.clamp;
       words = rest;
-    } else if (name == "-s" || name == "-o") {
-      kept += std::string(name) + " " + take_texture_vector(name, words) + " ";
+    } else if (name == "-s") {
+      mapping.scale = take_texture_vector(name, words);
+    } else if (name == "-o") {
+      mapping.offset = take_texture_vector(name, words);
     } else {
       warn_once("map_Kd option", "map_Kd " + std::string(name) + " is not supported, ignored");
       for (int i = 0; i < option->words; ++i) {
@@ -181,15 +211,16 @@ void MtlText::check_diffuse_map(std::string_view words, std::string& clean) {
   }
   if (words.empty()) return warn("map_Kd without a file, ignored");
   // Without a Kd of its own the texture's colours stand as they are. (A later Kd still counts.)
-  if (!has_diffuse_) clean.append("Kd 1 1 1\n");
-  clean.append("map_Kd ").append(kept).append(words).append("\n");
+  if (!has_diffuse_) material_.diffuse = glm::vec3(1.0f);
+  has_diffuse_ = true;
+  material_.diffuse_map = find_file(folder_, words).value_or(folder_ / words).string();
+  material_.diffuse_mapping = mapping;
 }
 
-std::string MtlText::take_texture_vector(std::string_view option, std::string_view& words) const {
-  // One to three numbers; the third is for solid textures. The library wants all three.
-  const bool is_scale = option == "-s";
+glm::vec2 MtlReader::take_texture_vector(std::string_view option, std::string_view& words) const {
+  // One to three numbers; the third is for solid textures.
   std::array<double, 3> uvw{};
-  uvw.fill(is_scale ? 1.0 : 0.0);
+  uvw.fill(option == "-s" ? 1.0 : 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     std::string_view rest = words;
     const std::string_view word = take_word(rest);
@@ -197,7 +228,7 @@ std::string MtlText::take_texture_vector(std::string_view option, std::string_vi
     uvw[i] = expect_number(lines(), word, "map_Kd " + std::string(option));
     words = rest;
   }
-  return shortest(uvw[0]) + " " + shortest(uvw[1]) + " " + shortest(uvw[2]);
+  return {uvw[0], uvw[1]};
 }
 
 }  // namespace raygate

@@ -1,10 +1,9 @@
 // Every bad file is refused, with its line and what is wrong.
-#include "host/scene/io/obj_text.h"
-
 #include <gtest/gtest.h>
 
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/obj_loader.h"
+#include "host/scene/io/obj_reader.h"
 #include "host/scene/test/temp_folder.h"
 
 namespace raygate {

@@ -1,0 +1,112 @@
+#include "host/cli/process.h"
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+namespace {
+
+constexpr int kUserError = 2;
+constexpr int kSignalBase = 128;  // as shells report a death by signal
+
+std::atomic<int> noted_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
+
+void note(int signal) { noted_signal = signal; }
+
+int fail(int status, const char* message) {
+  std::fprintf(stderr, "error: %s\n", printable(message).c_str());
+  return status;
+}
+
+/// The length of the UTF-8 character that `text` begins with, if it is one that a terminal shows;
+/// else 0.
+std::size_t shown_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
+  }
+  return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;  // U+0080 to U+009F are controls
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, bool newlines) {
+  std::string shown;
+  while (!text.empty()) {
+    std::size_t length = shown_length(text);
+    if (length == 0 && newlines && text[0] == '\n') length = 1;
+    if (length > 0) {
+      shown += text.substr(0, length);
+    } else {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02X", static_cast<unsigned char>(text[0]));
+      shown += code;
+      length = 1;
+    }
+    text.remove_prefix(length);
+  }
+  return shown;
+}
+
+void print(std::string_view text, std::FILE* stream) {
+  std::fputs(printable(text, true).c_str(), stream);
+}
+
+void print_warning(std::string_view what) {
+  std::fprintf(stderr, "warning: %s\n", printable(what).c_str());
+}
+
+void flush_standard_output() {
+  errno = 0;
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  if (!failed) return;
+  const std::string reason = errno != 0 ? std::strerror(errno) : "an earlier write failed";
+  throw InputError("standard output: cannot write: " + reason);
+}
+
+int run_guarded(const std::function<int()>& program, int internal_error) {
+  // A file that grows past the user's limit, or a pipe whose reader is gone, becomes a failed
+  // write, not a death.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    const int status = program();
+    flush_standard_output();
+    return status;
+  } catch (const InputError& error) {
+    return fail(kUserError, error.what());
+  } catch (const Interrupted& interrupted) {
+    return fail(kSignalBase + interrupted.signal(), interrupted.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kUserError, "out of memory; a smaller picture needs less");
+  } catch (const std::exception& error) {
+    return fail(internal_error, error.what());
+  }
+}
+
+void note_interruptions() {
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second one kills
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction old {};
+    if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_DFL) {
+      ::sigaction(signal, &action, nullptr);
+    }
+  }
+}
+
+int interruption() { return noted_signal; }
+
+}  // namespace raygate

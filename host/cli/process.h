@@ -1,0 +1,51 @@
+// The program as its shell sees it: standard streams, signals, exit status.
+#pragma once
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace raygate {
+
+/// `text` as a terminal may have it: control characters, which file names can hold, become "\x1B"
+/// and the like, and so do bytes that are not UTF-8. Newlines are kept if `newlines` says so.
+[[nodiscard]] std::string printable(std::string_view text, bool newlines = false);
+
+/// Prints `text`, made printable; newlines are kept.
+void print(std::string_view text, std::FILE* stream = stdout);
+
+/// Prints "warning: WHAT" on standard error, one line, made printable.
+void print_warning(std::string_view what);
+
+/// Throws InputError if what was printed cannot reach standard output: a full disk.
+void flush_standard_output();
+
+/// The body of main(): runs `program`, and turns what it throws into one line on standard error and
+/// an exit status: 2 for InputError and where memory is short, `internal_error` for a fault of
+/// ours, 128 + signal for Interrupted.
+int run_guarded(const std::function<int()>& program, int internal_error);
+
+/// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one ends the program at once.
+/// Signals that the program was started to ignore stay ignored.
+void note_interruptions();
+
+/// The signal that was noted, or 0.
+[[nodiscard]] int interruption();
+
+/// What ends a run that was interrupted.
+class Interrupted : public std::exception {
+ public:
+  /// `outcome` says what became of the files.
+  Interrupted(int signal, const std::string& outcome)
+      : signal_(signal), what_("interrupted; " + outcome) {}
+  [[nodiscard]] int signal() const { return signal_; }
+  [[nodiscard]] const char* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  int signal_;
+  std::string what_;
+};
+
+}  // namespace raygate
