@@ -82,7 +82,4 @@ everything:
 	$(call build,test,all)
 
 include synth/synth.mk
-include host/lab/rays/rays.mk
-include host/lab/bench.mk
-include host/lab/skips/skips.mk
-include host/lab/stress/stress.mk
+include host/lab/lab.mk

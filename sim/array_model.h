@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/model.h"
+#include "sim/port_numbers.h"
 #include "sim/rtl_burst_unit.h"
 
 namespace raygate {
@@ -22,14 +23,6 @@ class BurstModel {
   virtual void finish(BurstResults& results) = 0;
   virtual BurstCounters counters() = 0;
 };
-
-/// Slot `n` of a port, `size` bytes a slot: Verilator keeps the lowest bits at the lowest address,
-/// as this machine does.
-template <class Port>
-char* slot(Port& port, int n, std::size_t size) {
-  static_assert(std::endian::native == std::endian::little);
-  return reinterpret_cast<char*>(&port) + size * static_cast<std::size_t>(n);
-}
 
 template <class T, class Port>
 T read_slot(Port& port, int n) {
@@ -108,11 +101,12 @@ enum Count {
 };
 
 /// The array `Top` (a class that Verilator made), with so many lanes.
-template <class Top, int kHardwareLanes>
+template <class Top, int kHardwareLanes, class Numbers = Binary32Numbers>
 class ArrayModel : public BurstModel {
  public:
-  explicit ArrayModel(const BurstStalls& stalls)
-      : stalls_(stalls),
+  explicit ArrayModel(const BurstStalls& stalls, const Numbers& numbers = {})
+      : numbers_(numbers),
+        stalls_(stalls),
         random_(stalls.seed),
         throttled_(stalls.no_test > 0 || stalls.not_taken > 0) {
     model_->valid_i = 0;
@@ -209,7 +203,7 @@ class ArrayModel : public BurstModel {
       const RayBundle& bundle = work.batch[burst.bundle];
       inputs_[n] = {bundle.records, bundle.records + bundle.record_count, 0};
       const glm::vec3 direction = bundle.lane_direction(static_cast<int>(burst.lane));
-      std::memcpy(slot(model_->direction_i, n, sizeof direction), &direction, sizeof direction);
+      numbers_.write(model_->direction_i, n, &direction.x, 3);
       return;
     }
   }
@@ -217,8 +211,7 @@ class ArrayModel : public BurstModel {
   /// Puts the lane's next test into its slot.
   void offer_test(int n) {
     const LaneInput& lane = inputs_[n];
-    std::memcpy(slot(model_->record_i, n, sizeof(PolygonRecord)), lane.record,
-                sizeof(PolygonRecord));
+    numbers_.write(model_->record_i, n, &lane.record->normal.x, 16);
     std::memcpy(slot(model_->tag_i, n, sizeof lane.tag), &lane.tag, sizeof lane.tag);
     set_bit(model_->first_i, n, lane.tag == 0);
     set_bit(model_->last_i, n, lane.record + 1 == lane.end);
@@ -255,20 +248,17 @@ class ArrayModel : public BurstModel {
       }
       if (model_->closed_o >> n & 1) {
         if (model_->found_o >> n & 1) {
-          share->results.hits.push_back(
-              {bundle,
-               bundle_lane,
-               read_slot<std::uint32_t>(model_->tag_o, n),
-               read_slot<float>(model_->t_o, n),
-               static_cast<std::uint32_t>(model_->t_error_o >> (4 * n) & 15),
-               {}});
+          BurstHit& hit = share->results.hits.emplace_back();
+          hit = {bundle, bundle_lane, read_slot<std::uint32_t>(model_->tag_o, n)};
+          numbers_.read(model_->t_o, n, &hit.t, 1);
+          hit.t_error = static_cast<std::uint32_t>(model_->t_error_o >> (4 * n) & 15);
         }
         ++share->closed;
       }
     }
     if (model_->point_valid_o >> n & 1) {
       LaneShare& share = *awaited(n, &LaneShare::all_pointed);
-      share.results.hits[share.pointed++].point = read_slot<glm::vec3>(model_->point_o, n);
+      numbers_.read(model_->point_o, n, &share.results.hits[share.pointed++].point.x, 3);
     }
   }
 
@@ -289,6 +279,7 @@ class ArrayModel : public BurstModel {
   }
 
   Model<Top> model_;
+  Numbers numbers_;
   LaneInput inputs_[kHardwareLanes];
   unsigned offered_ = 0;  // lanes whose slot holds a test that was not taken yet
   Work works_[kMostBatches];

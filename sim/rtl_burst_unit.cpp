@@ -1,6 +1,7 @@
 #include "sim/rtl_burst_unit.h"
 
 #include <cassert>
+#include <utility>
 
 #include "Vhit_test_array_behavioural_1.h"
 #include "Vhit_test_array_behavioural_1___024root.h"
@@ -62,6 +63,9 @@ RtlBurstUnit::RtlBurstUnit(int lanes, Arith arith, const BurstStalls& stalls)
     : model_(arith == Arith::kStructural ? make_structural(lanes, stalls)
                                          : make_behavioural(lanes, stalls)),
       enough_tests_(kEnoughTestsALane * static_cast<std::size_t>(lanes)) {}
+
+RtlBurstUnit::RtlBurstUnit(std::unique_ptr<BurstModel> model)
+    : model_(std::move(model)), enough_tests_(kEnoughTestsALane) {}
 
 RtlBurstUnit::~RtlBurstUnit() = default;
 

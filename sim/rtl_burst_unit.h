@@ -23,6 +23,7 @@ class RtlBurstUnit : public BurstUnit {
   /// `lanes`: 1, 2, 4 or 8, others are a bug of the caller.
   explicit RtlBurstUnit(int lanes, Arith arith = Arith::kStructural,
                         const BurstStalls& stalls = {});
+  explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< of another format
   ~RtlBurstUnit() override;
 
   void run(std::span<const RayBundle> batch, BurstResults& results) override;

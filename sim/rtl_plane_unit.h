@@ -17,6 +17,7 @@ class PlaneModel;
 class RtlPlaneUnit final : public PlaneUnit {
  public:
   explicit RtlPlaneUnit(Arith arith = Arith::kStructural);
+  explicit RtlPlaneUnit(std::unique_ptr<PlaneModel> model);  ///< of another format
   ~RtlPlaneUnit() override;
 
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;

@@ -1,4 +1,4 @@
-// What the ray bench times: one way of tracing a set of rays.
+// What `lab rays` times: one way of tracing a set of rays.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include "host/exact/exact.h"
 #include "host/scene/scene.h"
 
-namespace raygate::rays {
+namespace raygate::lab {
 
 /// Rays to trace, in an order in which neighbours belong together.
 struct RaySet {
@@ -50,4 +50,4 @@ class Peer {
 /// none where this was built without Embree.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene);
 
-}  // namespace raygate::rays
+}  // namespace raygate::lab

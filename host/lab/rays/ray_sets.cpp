@@ -6,7 +6,7 @@
 #include "host/film/film.h"
 #include "host/scene/camera.h"
 
-namespace raygate::rays {
+namespace raygate::lab {
 namespace {
 
 /// Visits blocks of width x height that cover `rect`, row by row.
@@ -26,9 +26,9 @@ glm::vec3 light_of(const Scene& scene) {
 
 }  // namespace
 
-RaySet primary_rays(const Scene& scene, int size) {
+RaySet camera_rays(const Scene& scene, int size) {
   const Camera camera = Camera::frame(scene, 1.0);
-  RaySet set{"primary", {}, true, {}, false};
+  RaySet set{"camera", {}, true, {}, false};
   for_blocks({0, 0, size, size}, 128, 128, [&](const PixelRect& tile) {
     for_blocks(tile, 8, 8, [&](const PixelRect& square) {
       for_blocks(square, 4, 2, [&](const PixelRect& block) {
@@ -42,12 +42,12 @@ RaySet primary_rays(const Scene& scene, int size) {
   return set;
 }
 
-RaySet shadow_rays(const Scene& scene, const RaySet& primary, const Found& found) {
-  RaySet set{"shadow", {}, true, {}, true};
+RaySet light_rays(const Scene& scene, const RaySet& camera, const Found& found) {
+  RaySet set{"light", {}, true, {}, true};
   const glm::vec3 light = light_of(scene);
-  for (std::size_t i = 0; i < primary.rays.size(); ++i) {
+  for (std::size_t i = 0; i < camera.rays.size(); ++i) {
     if (found.triangle[i] == Found::kNone) continue;
-    const auto& [origin, direction] = primary.rays[i];
+    const auto& [origin, direction] = camera.rays[i];
     const glm::dvec3 point = glm::dvec3(origin) + double(found.t[i]) * glm::dvec3(direction);
     const glm::dvec3 way = point - glm::dvec3(light);
     const glm::vec3 scaled = scaled_direction(way);
@@ -58,13 +58,13 @@ RaySet shadow_rays(const Scene& scene, const RaySet& primary, const Found& found
   return set;
 }
 
-RaySet scattered_rays(const Scene& scene, const RaySet& primary, const Found& found) {
+RaySet scattered_rays(const Scene& scene, const RaySet& camera, const Found& found) {
   RaySet set{"scattered", {}, false, {}, false};
   std::mt19937_64 random(1);
   std::normal_distribution<double> gauss;
-  for (std::size_t i = 0; i < primary.rays.size(); ++i) {
+  for (std::size_t i = 0; i < camera.rays.size(); ++i) {
     if (found.triangle[i] == Found::kNone) continue;
-    const auto& [origin, direction] = primary.rays[i];
+    const auto& [origin, direction] = camera.rays[i];
     const auto& v = scene.triangles[found.triangle[i]].vertices;
     const glm::dvec3 a(scene.positions[v[0]]), b(scene.positions[v[1]]), c(scene.positions[v[2]]);
     glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
@@ -77,4 +77,4 @@ RaySet scattered_rays(const Scene& scene, const RaySet& primary, const Found& fo
   return set;
 }
 
-}  // namespace raygate::rays
+}  // namespace raygate::lab

@@ -8,7 +8,7 @@
 #include "host/lab/rays/peer.h"
 #include "host/tree/bvh.h"
 
-namespace raygate::rays {
+namespace raygate::lab {
 namespace {
 
 class RaygatePeer : public Peer {
@@ -54,4 +54,4 @@ std::unique_ptr<Peer> make_raygate(const Scene& scene) {
   return std::make_unique<RaygatePeer>(scene);
 }
 
-}  // namespace raygate::rays
+}  // namespace raygate::lab

@@ -3,10 +3,10 @@
 #include <optional>
 
 #include "host/lab/stress/meshes.h"
-#include "host/lab/stress/variants.h"
+#include "host/lab/stress/subjects.h"
 #include "host/scene/camera.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 constexpr int kRays = 8, kBounces = 12;
@@ -82,4 +82,4 @@ Shot Bounces::operator()(Random& random) {
   return shot;
 }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

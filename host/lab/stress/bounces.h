@@ -9,7 +9,7 @@
 #include "host/light/departure.h"
 #include "host/tree/bvh.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 /// A generator whose shots are the bounces of one another: eight rays from a point in a wedge or a
 /// box; the next shot starts where one of them is mirrored, by the renderer's own rule for origins.
@@ -30,4 +30,4 @@ class Bounces {
   int bounces_left_ = 0;
 };
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

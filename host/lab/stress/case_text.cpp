@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 std::string to_text(const Case& failure) {
   std::string text;
@@ -60,4 +60,4 @@ Shot shot_of(const Case& failure) {
   return shot;
 }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

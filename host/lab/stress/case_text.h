@@ -6,7 +6,7 @@
 
 #include "host/lab/stress/shot.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 /// One ray and the triangles it is tested against: what a failure comes down to.
 struct Case {
@@ -23,4 +23,4 @@ struct Case {
 /// As something to shoot at.
 [[nodiscard]] Shot shot_of(const Case& failure);
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

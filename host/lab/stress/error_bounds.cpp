@@ -20,7 +20,7 @@
 // 4. The division rounds once, and so does the product d I_k that P has before it. I is taken as
 //    it is: a float.
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 constexpr double kU = 0x1p-24;
@@ -40,4 +40,4 @@ double bound_of_point(double sine) { return bound(sine, 2); }
 
 double in_ulp(double relative) { return relative * 0x1p24; }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -1,7 +1,7 @@
 // How far off t and P may be at most, by the angle between ray and plane.
 #pragma once
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 /// The largest relative error that the unit's t = d / (I . N) may have in a sure hit, and its
 /// P_k = (d I_k) / (I . N), the exact ones being normal floats; `sine` of the angle between ray
@@ -17,4 +17,4 @@ namespace raygate::stress {
 /// is off by no more than so many ulp, at any angle.
 inline constexpr double kDeliveredUlp = 0.5 + 0x1p-10;
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

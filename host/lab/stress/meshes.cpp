@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 using Face = std::array<int, 3>;
@@ -169,4 +169,4 @@ MeshPointer wedge(double angle, const Placement& placement) {
       placement);
 }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

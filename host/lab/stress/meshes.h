@@ -6,7 +6,7 @@
 #include "host/lab/stress/random.h"
 #include "host/lab/stress/shot.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 /// Where a mesh made around the origin at size 1 is put: p goes to p * scale + shift, rounded once.
 struct Placement {
@@ -26,4 +26,4 @@ using MeshPointer = std::shared_ptr<const Mesh>;
 /// `angle` rad.
 [[nodiscard]] MeshPointer wedge(double angle, const Placement& placement = {});
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

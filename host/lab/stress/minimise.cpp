@@ -10,7 +10,7 @@
 #include "host/lab/stress/tally.h"
 #include "host/scene/camera.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 int word_complexity(float x) {
@@ -181,14 +181,14 @@ Case minimise(Case failure, const std::function<bool(const Case&)>& fails) {
   return Minimiser(std::move(failure), fails).run();
 }
 
-bool decides_wrongly(const VariantKind& kind, Variant& variant, const Case& failure) {
+bool decides_wrongly(const SubjectKind& kind, Subject& subject, const Case& failure) {
   const Shot shot = shot_of(failure);
   const Truth truth = find_truth(shot);
   Answers answers;
-  variant.run({&shot, 1}, answers);
+  subject.run({&shot, 1}, answers);
   Tally tally;
-  count({&shot, 1}, {&truth, 1}, answers, kind.exact, tally);
+  count({&shot, 1}, {&truth, 1}, answers, kind, tally);
   return tally.wrong_decisions(kind.exact) != 0;
 }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

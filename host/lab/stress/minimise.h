@@ -4,9 +4,9 @@
 #include <functional>
 
 #include "host/lab/stress/case_text.h"
-#include "host/lab/stress/variants.h"
+#include "host/lab/stress/subjects.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 /// How much there is to a case: fewer triangles, then fewer bits set and exponents nearer to that
 /// of 1 are less.
@@ -18,8 +18,8 @@ namespace raygate::stress {
 /// (scaled_direction). `failure` itself must fail.
 [[nodiscard]] Case minimise(Case failure, const std::function<bool(const Case&)>& fails);
 
-/// Whether a variant decides a case otherwise than the truth: hit or miss, or which triangle is
+/// Whether a subject decides a case otherwise than the truth: hit or miss, or which triangle is
 /// nearest. Ties count for those that promise to be exact.
-[[nodiscard]] bool decides_wrongly(const VariantKind& kind, Variant& variant, const Case& failure);
+[[nodiscard]] bool decides_wrongly(const SubjectKind& kind, Subject& subject, const Case& failure);
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

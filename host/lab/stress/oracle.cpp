@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 using Wide = __int128;
@@ -237,4 +237,4 @@ Truth find_truth(const Shot& shot) {
               : find<mpz_class>(shot, coordinates.low, directions.low);
 }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -7,7 +7,7 @@
 
 #include "host/lab/stress/shot.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 /// The truth about one ray and one triangle.
 struct Verdict {
@@ -32,4 +32,4 @@ struct Truth {
 /// hits nothing. 128 bits where they are enough, GMP's integers elsewhere.
 [[nodiscard]] Truth find_truth(const Shot& shot);
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <random>
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 class Random {
  public:
@@ -39,4 +39,4 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -1,44 +1,32 @@
 #include "host/lab/stress/runner.h"
 
 #include <algorithm>
-#include <atomic>
-#include <ctime>
-#include <exception>
+#include <cmath>
 #include <mutex>
-#include <thread>
+#include <set>
 
-namespace raygate::stress {
+#include "host/lab/timing.h"
+#include "host/threads.h"
+
+namespace raygate::lab {
 namespace {
 
 constexpr std::uint64_t kBlockTests = 4096;  // made, decided and counted at once
 
-std::uint64_t hash(const std::string& text) {  // FNV-1a
-  std::uint64_t result = 14695981039346656037u;
-  for (const char c : text) result = (result ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return result;
-}
-
-/// Of this thread. On a machine that does other things as well, the time on the wall says little.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-SuiteOutcome run_suite(const Suite& suite, const std::vector<VariantKind>& kinds,
-                       const RunOptions& options) {
-  const double start = processor_seconds();
+SuiteOutcome run_suite(const Suite& suite, const std::vector<SubjectKind>& kinds,
+                       const StressOptions& options) {
+  const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
   SuiteOutcome outcome;
   outcome.suite = &suite;
   outcome.tallies.resize(kinds.size());
-  std::vector<std::unique_ptr<Variant>> variants;
+  std::vector<std::unique_ptr<Subject>> subjects;
   std::vector<std::uint64_t> wanted;
-  for (const VariantKind& kind : kinds) {
-    variants.push_back(kind.make());
+  for (const SubjectKind& kind : kinds) {
+    subjects.push_back(kind.make());
     wanted.push_back(std::max<std::uint64_t>(
         1, static_cast<std::uint64_t>(kind.share * static_cast<double>(options.tests))));
   }
-  Random random(options.seed ^ hash(suite.name));
+  Random random(options.seed ^ digest(suite.name));
   const Generator generate = suite.make();
   std::vector<Shot> shots;
   std::vector<Truth> truths;
@@ -59,47 +47,88 @@ SuiteOutcome run_suite(const Suite& suite, const std::vector<VariantKind>& kinds
         outcome.broken_claims += hits % 2 == 0;
       }
     }
-    for (std::size_t v = 0; v < variants.size(); ++v) {
+    for (std::size_t v = 0; v < subjects.size(); ++v) {
       Tally& tally = outcome.tallies[v];
       if (tally.tests >= wanted[v]) continue;
-      variants[v]->run(shots, answers);
-      count(shots, truths, answers, kinds[v].exact, tally);
+      subjects[v]->run(shots, answers);
+      count(shots, truths, answers, kinds[v], tally);
       more = more || tally.tests < wanted[v];
     }
   }
-  outcome.seconds = processor_seconds() - start;
+  outcome.seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
   return outcome;
 }
 
 }  // namespace
 
 std::vector<SuiteOutcome> run(const std::vector<const Suite*>& suites,
-                              const std::vector<VariantKind>& variants, const RunOptions& options,
+                              const std::vector<SubjectKind>& subjects,
+                              const StressOptions& options,
                               const std::function<void(const SuiteOutcome&)>& done) {
   std::vector<SuiteOutcome> outcomes(suites.size());
-  std::atomic<std::size_t> next{0};
   std::mutex mutex;
-  std::exception_ptr error;
-  const auto work = [&] {
-    try {
-      for (std::size_t i; (i = next++) < suites.size();) {
-        outcomes[i] = run_suite(*suites[i], variants, options);
-        const std::scoped_lock lock(mutex);
-        done(outcomes[i]);
-      }
-    } catch (...) {
-      const std::scoped_lock lock(mutex);
-      error = std::current_exception();
-      next = suites.size();
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (int i = 1; i < options.threads; ++i) threads.emplace_back(work);
-    work();
-  }
-  if (error) std::rethrow_exception(error);
+  for_each_on_threads(options.threads, suites.size(), [&](std::size_t i) {
+    outcomes[i] = run_suite(*suites[i], subjects, options);
+    const std::scoped_lock lock(mutex);
+    done(outcomes[i]);
+  });
   return outcomes;
 }
 
-}  // namespace raygate::stress
+std::vector<Row> rows_of(const SuiteOutcome& outcome, const std::vector<SubjectKind>& subjects) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    const SubjectKind& subject = subjects[i];
+    Row& row = rows.emplace_back(Row{{"table", "stress"},
+                                     {"suite", outcome.suite->name},
+                                     {"suite_is", outcome.suite->what},
+                                     {"subject", subject.name},
+                                     {"subject_is", subject.what},
+                                     {"exact", subject.exact},
+                                     {"spotless", outcome.tallies[i].spotless()},
+                                     {"broken_claims", outcome.broken_claims},
+                                     {"seconds", outcome.seconds}});
+    row.update(outcome.tallies[i].row());
+  }
+  return rows;
+}
+
+Verdicts sum_up(std::span<const Row> rows, std::uint64_t seed) {
+  Verdicts verdicts;
+  std::set<std::string> suites;
+  std::uint64_t broken_claims = 0;
+  double seconds = 0.0;
+  bool spotless = true;
+  for (const Row& row : rows) {
+    if (suites.insert(row["suite"]).second) {  // these two are the suite's
+      broken_claims += row["broken_claims"].get<std::uint64_t>();
+      seconds += row["seconds"].get<double>();
+    }
+    if (!row["exact"]) continue;
+    verdicts.judged = true;
+    spotless = spotless && row["spotless"] && row["tests"] != 0;
+  }
+  if (!verdicts.judged) {
+    verdicts.summary = "stress: none of the engines was asked for, so nothing can pass or fail";
+    return verdicts;
+  }
+  verdicts.passed = spotless && broken_claims == 0;
+  const auto sum = [&](std::initializer_list<const char*> keys) {
+    std::uint64_t total = 0;
+    for (const Row& row : rows) {
+      for (const char* key : keys) total += row["exact"] ? row[key].get<std::uint64_t>() : 0;
+    }
+    return std::to_string(total);
+  };
+  verdicts.summary = std::string("stress: ") + (verdicts.passed ? "PASSED" : "FAILED") + ": " +
+                     std::to_string(suites.size()) + " suites, " + sum({"tests"}) +
+                     " tests by the engines: " + sum({"wrong", "wrong_ties"}) + " wrong, " +
+                     sum({"leaks"}) + " leaks, " + sum({"double_hits"}) + " double hits, " +
+                     sum({"wrong_nearest", "wrong_tied_nearest"}) + " wrong nearest, " +
+                     std::to_string(broken_claims) + " broken claims, " + sum({"doubts"}) +
+                     " doubts; seed " + std::to_string(seed) + ", " +
+                     std::to_string(std::lround(seconds)) + " s of processor time";
+  return verdicts;
+}
+
+}  // namespace raygate::lab

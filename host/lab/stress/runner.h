@@ -1,23 +1,24 @@
-// Runs suites against variants.
+// Runs suites against subjects.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "host/lab/stress/suites.h"
 #include "host/lab/stress/tally.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
-struct RunOptions {
-  std::uint64_t tests = 0;  ///< for each suite, by the variants whose share is 1
+struct StressOptions {
+  std::uint64_t tests = 0;  ///< for each suite, by the subjects whose share is 1
   std::uint64_t seed = 1;
   int threads = 1;
 };
 
-/// One row of the outcome: a suite, and a tally for each variant.
+/// What each subject did in a suite.
 struct SuiteOutcome {
   const Suite* suite = nullptr;
   std::vector<Tally> tallies;
@@ -27,12 +28,25 @@ struct SuiteOutcome {
   double seconds = 0.0;  ///< of a processor
 };
 
-/// Every suite against every variant. Each suite draws from its own random numbers and is run by
+/// Every suite against every subject. Each suite draws from its own random numbers and is run by
 /// one thread, so the outcome does not depend on how many there are. `done` is called after each
 /// suite, by one thread at a time.
 [[nodiscard]] std::vector<SuiteOutcome> run(const std::vector<const Suite*>& suites,
-                                            const std::vector<VariantKind>& variants,
-                                            const RunOptions& options,
+                                            const std::vector<SubjectKind>& subjects,
+                                            const StressOptions& options,
                                             const std::function<void(const SuiteOutcome&)>& done);
 
-}  // namespace raygate::stress
+/// A row for each subject, as it is kept.
+[[nodiscard]] std::vector<Row> rows_of(const SuiteOutcome& outcome,
+                                       const std::vector<SubjectKind>& subjects);
+
+/// What a whole run comes to, from its rows.
+struct Verdicts {
+  bool judged = false;  ///< any exact subject
+  /// Every exact subject spotless (see Tally), in tests that were really done, and no claim broken.
+  bool passed = false;
+  std::string summary;  ///< one line: "stress: PASSED: 20 suites, ..."
+};
+[[nodiscard]] Verdicts sum_up(std::span<const Row> rows, std::uint64_t seed);
+
+}  // namespace raygate::lab

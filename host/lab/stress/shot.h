@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 using Corners = std::array<glm::vec3, 3>;  ///< the vertices of a triangle
 
@@ -26,4 +26,4 @@ struct Shot {
   [[nodiscard]] std::size_t tests() const { return directions.size() * mesh->triangles.size(); }
 };
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -8,7 +8,7 @@
 #include "host/lab/stress/meshes.h"
 #include "host/scene/camera.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 constexpr int kRays = 8;
@@ -315,4 +315,4 @@ const std::vector<Suite>& all_suites() {
   return suites;
 }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

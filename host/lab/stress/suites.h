@@ -8,7 +8,7 @@
 #include "host/lab/stress/random.h"
 #include "host/lab/stress/shot.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
 using Generator = std::function<Shot(Random&)>;
 
@@ -22,4 +22,4 @@ struct Suite {
 /// All suites, in the order of the report.
 [[nodiscard]] const std::vector<Suite>& all_suites();
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -6,7 +6,7 @@
 
 #include "host/lab/stress/error_bounds.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 constexpr std::size_t kFailures = 5;
@@ -47,7 +47,7 @@ std::optional<Off> off(const glm::vec3& point, const glm::vec3& direction, doubl
 }
 
 void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& direction,
-                Tally& tally) {
+                bool bounded, Tally& tally) {
   if (!ordinary(truth.t)) return;
   if (const auto error = off(answer.t, truth.t)) {
     tally.t_ulp.add(error->ulps);
@@ -56,12 +56,15 @@ void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& dir
       const int decade =
           std::clamp(static_cast<int>(-std::log10(truth.sine)), 0, Tally::kDecades - 1);
       tally.t_ulp_by_angle[decade].add(error->ulps);
-      tally.t_of_bound = std::max(tally.t_of_bound, error->relative / bound_of_t(truth.sine));
+      if (bounded) {
+        tally.t_of_bound = std::max(tally.t_of_bound, error->relative / bound_of_t(truth.sine));
+      }
     }
   }
   if (const auto error = off(answer.point, direction, truth.t)) {
     tally.point_ulp.add(error->ulps);
-    if (!answer.doubt) {
+    tally.point_of_said = std::max(tally.point_of_said, error->relative / answer.point_error);
+    if (bounded && !answer.doubt) {
       tally.point_of_bound =
           std::max(tally.point_of_bound, error->relative / bound_of_point(truth.sine));
     }
@@ -74,38 +77,45 @@ void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& dir
 
 }  // namespace
 
-void Tally::add(const Tally& other) {
-  tests += other.tests;
-  rays += other.rays;
-  wrong += other.wrong;
-  ties += other.ties;
-  wrong_ties += other.wrong_ties;
-  leaks += other.leaks;
-  escapes += other.escapes;
-  double_hits += other.double_hits;
-  wrong_nearest += other.wrong_nearest;
-  wrong_tied_nearest += other.wrong_tied_nearest;
-  hits += other.hits;
-  doubts += other.doubts;
-  t_ulp.add(other.t_ulp);
-  point_ulp.add(other.point_ulp);
-  t_relative.add(other.t_relative);
-  delivered_t_ulp.add(other.delivered_t_ulp);
-  delivered_point_ulp.add(other.delivered_point_ulp);
-  for (int k = 0; k < kDecades; ++k) t_ulp_by_angle[k].add(other.t_ulp_by_angle[k]);
-  t_of_bound = std::max(t_of_bound, other.t_of_bound);
-  point_of_bound = std::max(point_of_bound, other.point_of_bound);
-  failures.insert(failures.end(), other.failures.begin(), other.failures.end());
-}
-
 bool Tally::spotless() const {
   return wrong_decisions(true) + leaks + double_hits == 0 && t_of_bound <= 1.0 &&
-         point_of_bound <= 1.0 && delivered_t_ulp.max() <= kDeliveredUlp &&
+         point_of_bound <= 1.0 && point_of_said <= 1.0 && delivered_t_ulp.max() <= kDeliveredUlp &&
          delivered_point_ulp.max() <= kDeliveredUlp;
 }
 
+Row Tally::row() const {
+  const auto binned = [](const Errors& errors) -> Row {
+    return {{"max", errors.max()}, {"bins", errors.bins()}};
+  };
+  Row angles = Row::array(), cases = Row::array();
+  for (const Errors& errors : t_ulp_by_angle) angles.push_back(binned(errors));
+  for (const Case& failure : failures) cases.push_back(to_text(failure));
+  return {{"tests", tests},
+          {"rays", rays},
+          {"wrong", wrong},
+          {"ties", ties},
+          {"wrong_ties", wrong_ties},
+          {"leaks", leaks},
+          {"escapes", escapes},
+          {"double_hits", double_hits},
+          {"wrong_nearest", wrong_nearest},
+          {"wrong_tied_nearest", wrong_tied_nearest},
+          {"hits", hits},
+          {"doubts", doubts},
+          {"t_of_bound", t_of_bound},
+          {"point_of_bound", point_of_bound},
+          {"point_of_said", point_of_said},
+          {"t_ulp", binned(t_ulp)},
+          {"t_relative", binned(t_relative)},
+          {"point_ulp", binned(point_ulp)},
+          {"delivered_t_ulp", binned(delivered_t_ulp)},
+          {"delivered_point_ulp", binned(delivered_point_ulp)},
+          {"t_ulp_by_angle", angles},
+          {"failures", cases}};
+}
+
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
-           bool exact_variant, Tally& tally) {
+           const SubjectKind& subject, Tally& tally) {
   const auto fails = [&](const Shot& shot, const glm::vec3& direction,
                          std::span<const Corners> triangles) {
     if (tally.failures.size() == kFailures) return;
@@ -130,9 +140,9 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
         true_hits += exact.hit;
         if (answer.hit != exact.hit || (exact.hit && !holds(answer.bounds, exact.t))) {
           ++(exact.tie ? tally.wrong_ties : tally.wrong);
-          if (exact_variant || !exact.tie) fails(shot, direction, {&triangle, 1});
+          if (subject.exact || !exact.tie) fails(shot, direction, {&triangle, 1});
         } else if (exact.hit) {
-          add_errors(answer, exact, direction, tally);
+          add_errors(answer, exact, direction, subject.binary32, tally);
         }
       }
       ++tally.rays;
@@ -143,10 +153,10 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
       if (answers.nearest[ray_number] != truth.nearest[ray]) {
         const bool tied = truth.nearest_tied[ray];
         ++(tied ? tally.wrong_tied_nearest : tally.wrong_nearest);
-        if (exact_variant || !tied) fails(shot, direction, triangles);
+        if (subject.exact || !tied) fails(shot, direction, triangles);
       }
     }
   }
 }
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -1,24 +1,25 @@
-// How wrong a variant is: counts, and errors in units of the last place.
+// How wrong a subject is: counts, and errors in units of the last place.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "host/lab/results.h"
 #include "host/lab/stress/case_text.h"
 #include "host/lab/stress/errors.h"
 #include "host/lab/stress/oracle.h"
-#include "host/lab/stress/variants.h"
+#include "host/lab/stress/subjects.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 
-/// What one variant did in one suite.
+/// What one subject did in one suite.
 struct Tally {
   std::uint64_t tests = 0, rays = 0;
   /// Tests decided otherwise than the truth, or hit at another t than they say, ties aside.
   std::uint64_t wrong = 0;
   std::uint64_t ties = 0;           ///< tests that only the tie-break decides
-  std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact variants only
+  std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact subjects only
   std::uint64_t leaks = 0;          ///< rays from inside a closed mesh with an even number of hits
   std::uint64_t escapes = 0;        ///< of these, rays with none
   std::uint64_t double_hits = 0;    ///< rays from inside with more hits than there are
@@ -34,21 +35,24 @@ struct Tally {
   /// 10^-k.
   static constexpr int kDecades = 8;
   std::array<Errors, kDecades> t_ulp_by_angle;
-  /// The largest errors of sure hits over what error_bounds.h allows them.
+  /// The largest errors of sure hits over what error_bounds.h allows binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
-  std::vector<Case> failures;  ///< the first few, ties only of exact variants
+  /// The largest error of P over what the hit itself says (NearestHit::point_error).
+  double point_of_said = 0.0;
+  std::vector<Case> failures;  ///< the first few, ties only of exact subjects
 
-  void add(const Tally& other);
-  /// Hit or miss and nearest, those on ties for exact variants alone.
+  /// Hit or miss and nearest, those on ties for exact subjects alone.
   [[nodiscard]] std::uint64_t wrong_decisions(bool exact) const {
     return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest : 0);
   }
-  /// What an exact variant must be: never wrong, and no farther off than is proven.
+  /// What an exact subject must be: never wrong, and no farther off than is proven.
   [[nodiscard]] bool spotless() const;
+  /// A column for each member; errors as lists of [end of a bin, errors in it].
+  [[nodiscard]] Row row() const;
 };
 
-/// Compares the answers of a variant, exact or not, for some shots with the truth about them.
+/// Compares a subject's answers for some shots with the truth about them.
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
-           bool exact_variant, Tally& tally);
+           const SubjectKind& subject, Tally& tally);
 
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -65,10 +65,48 @@ Interval around(const Arithmetic& math, float t, std::uint32_t error) {
           math.from_word(std::min(word + margin, math.to_word(kInfinity)))};
 }
 
-/// NearestHit's, in the format: half a unit in the last place is `unit_roundoff`.
-float point_error(const Arithmetic& math, std::uint32_t t_error) {
+/// NearestHit's, where a hit has been found as `point` by words of the format: infinite where its
+/// range is not enough for a coordinate. `wide` is the ray as it was before.
+float point_error(const Arithmetic& math, float d, const glm::vec3& direction,
+                  const glm::vec3& wide, const glm::vec3& point, std::uint32_t t_error) {
+  for (int k = 0; k < 3; ++k) {
+    const bool in_range = math.is_normal(direction[k]) && math.is_normal(point[k]) &&
+                          math.is_normal(math.multiply(d, direction[k]));
+    if (wide[k] != 0.0f && !in_range) return kInfinity;
+  }
   return static_cast<float>(std::ldexp(math.unit_roundoff(), 6 + static_cast<int>(t_error)));
 }
+
+/// The paper's unit in a variant's format: software decides, in binary32, so only P is another.
+class SerialVariantTester : public SerialHitTester {
+ public:
+  SerialVariantTester(const Variant& variant, std::unique_ptr<PlaneUnit> unit)
+      : SerialHitTester(std::move(unit)), variant_(variant) {}
+
+  void test(std::span<const RayBundle> batch, HitResults& results) override {
+    const std::size_t hits = results.hits.size(), doubts = results.doubts.size();
+    SerialHitTester::test(batch, results);
+    for (std::size_t i = hits; i < results.hits.size(); ++i) widen(batch, results.hits[i]);
+    for (std::size_t i = doubts; i < results.doubts.size(); ++i) widen(batch, results.doubts[i]);
+  }
+
+ private:
+  /// The error in the format, for one in binary32: as many units in the last place. Beyond an
+  /// eighth the bound of V's error no longer holds.
+  template <class Report>
+  void widen(std::span<const RayBundle> batch, Report& report) const {
+    if (variant_.math == Arithmetic{} || std::isinf(report.point_error)) return;
+    const RayBundle& bundle = batch[report.bundle];
+    const glm::vec3 wide = bundle.lane_direction(static_cast<int>(report.lane));
+    const Arithmetic math = to_nearest(variant_.math);
+    const float d = math.read(bundle.records[report.tag - bundle.first_tag].d);
+    const float error = std::ldexp(report.point_error, 24 - math.digits);
+    const bool ranged = !std::isinf(point_error(math, d, math.read(wide), wide, report.point, 0));
+    report.point_error = ranged && error <= 0.125f ? error : kInfinity;
+  }
+
+  Variant variant_;
+};
 
 }  // namespace
 
@@ -114,6 +152,14 @@ PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) 
   return record;
 }
 
+float variant_t(const Variant& variant, const PolygonRecord& record, const glm::vec3& direction) {
+  static const Variant host;
+  const Variant& used = variant.unit == Variant::Unit::kSerial ? host : variant;
+  return VariantBurstUnit(used.math)
+      .distance(variant_record(used, record), to_nearest(used.math).read(direction))
+      .t;
+}
+
 VariantHitTester::VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
     : variant_(variant), unit_(std::move(unit)), twin_(variant.math) {}
 
@@ -152,9 +198,14 @@ void VariantHitTester::test(std::span<const RayBundle> batch, HitResults& result
     take_reports([&](const TestReport& r) {
       return r.bundle != hit.bundle ? r.bundle < hit.bundle : r.lane <= hit.lane;
     });
-    results.hits.push_back({hit.bundle, hit.lane, batch[hit.bundle].first_tag + hit.record,
-                            hit.point, point_error(variant_.math, hit.t_error),
-                            around(variant_.math, hit.t, hit.t_error)});
+    const RayBundle& wide = batch[hit.bundle];
+    const RayBundle& bundle = batch_[hit.bundle];
+    const int lane = static_cast<int>(hit.lane);
+    results.hits.push_back(
+        {hit.bundle, hit.lane, wide.first_tag + hit.record, hit.point,
+         point_error(variant_.math, bundle.records[hit.record].d, bundle.lane_direction(lane),
+                     wide.lane_direction(lane), hit.point, hit.t_error),
+         around(variant_.math, hit.t, hit.t_error)});
   }
   take_reports([](const TestReport&) { return true; });
 }
@@ -171,9 +222,11 @@ void VariantHitTester::report(const RayBundle& wide, HitResults& results,
     results.doubts.push_back({report.bundle, report.lane, tag, point, kInfinity});
   } else {
     const HitDistance distance = twin_.distance(record, direction);
-    results.hits.push_back({report.bundle, report.lane, tag, point,
-                            point_error(variant_.math, distance.error),
-                            around(variant_.math, distance.t, distance.error)});
+    results.hits.push_back(
+        {report.bundle, report.lane, tag, point,
+         point_error(variant_.math, record.d, direction,
+                     wide.lane_direction(static_cast<int>(report.lane)), point, distance.error),
+         around(variant_.math, distance.t, distance.error)});
   }
 }
 
@@ -217,9 +270,14 @@ void VariantHitTester::resolve_nothing(std::span<const RayBundle> batch, HitResu
 
 HitCounters VariantHitTester::counters() const { return hit_counters(unit_->counters()); }
 
+std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
+                                               std::unique_ptr<PlaneUnit> unit) {
+  return std::make_unique<SerialVariantTester>(variant, std::move(unit));
+}
+
 std::unique_ptr<HitTester> make_variant_tester(const Variant& variant) {
   if (variant.unit == Variant::Unit::kSerial) {
-    return std::make_unique<SerialHitTester>(std::make_unique<VariantPlaneUnit>(variant.math));
+    return make_variant_tester(variant, std::make_unique<VariantPlaneUnit>(variant.math));
   }
   return std::make_unique<VariantHitTester>(variant,
                                             std::make_unique<VariantBurstUnit>(variant.math));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/find/unit/hit_tester.h"
+#include "host/find/unit/plane_unit.h"
 #include "host/lab/variants/variant_table.h"
 #include "host/lab/variants/variant_units.h"
 
@@ -18,6 +19,11 @@ namespace raygate {
 
 /// The bound in units of 2^-digits |E|_1, for rounding to nearest.
 [[nodiscard]] double variant_edge_bound(const Arithmetic& math);
+
+/// t as the variant's unit has it, by its own formula, of a record that make_record has made; of
+/// the serial unit's host, in binary32.
+[[nodiscard]] float variant_t(const Variant& variant, const PolygonRecord& record,
+                              const glm::vec3& direction);
 
 /// Rays and records go to the unit in the variant's format.
 ///
@@ -50,7 +56,11 @@ class VariantHitTester : public HitTester {
   BurstResults found_;
 };
 
-/// The twin's tester for a variant of either unit.
+/// The paper's unit, which computes P alone: the tester of a serial variant.
+[[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
+                                                             std::unique_ptr<PlaneUnit> unit);
+
+/// The reference model's tester for a variant of either unit.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant);
 
 }  // namespace raygate

@@ -1,36 +1,48 @@
-// The variants of arithmetic that are compared, from variants.txt.
+// The variants of arithmetic that are compared, from variants.json.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "host/lab/results.h"
 #include "host/lab/variants/arithmetic.h"
 
 namespace raygate {
 
-/// A line of variants.txt.
+/// An object of variants.json. What it leaves out is as in binary32:
+///
+///   variant          its name; -raw where doubts are ignored
+///   unit             "pipeline" (decides, t, P), or "serial": the paper's, P alone
+///   exponent_bits, digits, rounding ("nearest-even", "toward-zero", "down", "up", "nearest-away"),
+///   flush, quotient_digits (serial alone), fused (no hardware)      see Arithmetic
+///   doubts           whether exact arithmetic on the host resolves them; else there are no bounds
+///
+/// That is all there is to a new variant: CMake verilates its design, if hw/ has such parameters,
+/// and `make bench` and `make stress` take their rows from here.
 struct Variant {
   enum class Unit : std::uint8_t {
     kPipeline,  ///< decides hit, miss or doubt, orders hits, gives t and P
     kSerial,    ///< the paper's: gives P; software decides, in binary32 and exactly
   };
 
-  std::string name;
+  std::string name = "binary32";
   Unit unit = Unit::kPipeline;
   Arithmetic math;
   bool doubts = true;  ///< false: no error bounds; what the unit says is taken as it comes
 
-  /// Whether hw/ can be given these parameters; else there is the C++ twin alone.
+  /// Whether hw/ can be given these parameters; else there is the reference model alone.
   [[nodiscard]] bool has_hardware() const { return !math.flush && !math.fused; }
+  /// All columns of the object, and `hardware`.
+  [[nodiscard]] lab::Row row() const;
 };
 
-/// Reads such a table. Throws InputError (with `name` and the line's number): columns missing, a
-/// value that is none of those allowed, or a format for which no bound of its errors is proven
-/// although its doubts are to be resolved (see variant_hit_tester.h).
-[[nodiscard]] std::vector<Variant> parse_variants(std::string_view text, std::string_view name);
+/// Reads such a table. Throws InputError that names `file` and the variant: unknown or wrong
+/// values, or a format for which no bound of its errors is proven although its doubts are to be
+/// resolved (see variant_hit_tester.h).
+[[nodiscard]] std::vector<Variant> parse_variants(std::string_view text, const std::string& file);
 
-/// variants.txt as it was when the program was built.
+/// variants.json as it was when the program was built.
 [[nodiscard]] const std::vector<Variant>& all_variants_of_arithmetic();
 
 /// The one of that name. Throws InputError, with the names that there are.

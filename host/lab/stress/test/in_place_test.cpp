@@ -4,13 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/lab/stress/subjects.h"
 #include "host/lab/stress/suites.h"
 #include "host/lab/stress/tally.h"
-#include "host/lab/stress/variants.h"
 #include "host/scene/camera.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
+
+/// The cpu engine, both ways.
+std::vector<SubjectKind> cpu_subjects() {
+  auto kinds = engine_subjects();
+  kinds.resize(2);
+  return kinds;
+}
 
 class InPlace : public testing::Test {
  protected:
@@ -27,7 +34,7 @@ class InPlace : public testing::Test {
 
   Tally judge(const Answers& answers) const {
     Tally tally;
-    count(shots_, truths_, answers, true, tally);
+    count(shots_, truths_, answers, {.exact = true, .binary32 = true}, tally);
     return tally;
   }
 
@@ -36,7 +43,7 @@ class InPlace : public testing::Test {
 };
 
 TEST_F(InPlace, SearchesAreSpotless) {
-  for (const VariantKind& kind : in_place_variants()) {
+  for (const SubjectKind& kind : cpu_subjects()) {
     EXPECT_TRUE(kind.exact);
     Answers answers;
     kind.make()->run(shots_, answers);
@@ -78,11 +85,11 @@ TEST(InPlaceStacks, TheNearestIsNotCulled) {
     }
     truths.push_back(find_truth(shot));
   }
-  for (const VariantKind& kind : in_place_variants()) {
+  for (const SubjectKind& kind : cpu_subjects()) {
     Answers answers;
     kind.make()->run(shots, answers);
     Tally tally;
-    count(shots, truths, answers, true, tally);
+    count(shots, truths, answers, kind, tally);
     EXPECT_GT(tally.hits, tally.rays) << kind.name;
     EXPECT_TRUE(tally.spotless()) << kind.name;
   }
@@ -94,7 +101,7 @@ TEST_F(InPlace, ASearchThatIsOneFloatOffIsSeen) {
   for (Shot& shot : moved) {
     for (glm::vec3& direction : shot.directions) direction.x = std::nextafter(direction.x, 2.0f);
   }
-  for (const VariantKind& kind : in_place_variants()) {
+  for (const SubjectKind& kind : cpu_subjects()) {
     Answers answers;
     kind.make()->run(moved, answers);
     const Tally tally = judge(answers);
@@ -105,7 +112,7 @@ TEST_F(InPlace, ASearchThatIsOneFloatOffIsSeen) {
 }
 
 TEST_F(InPlace, BoundsThatDoNotHoldTAreSeen) {
-  for (const VariantKind& kind : in_place_variants()) {
+  for (const SubjectKind& kind : cpu_subjects()) {
     Answers answers;
     kind.make()->run(shots_, answers);
     std::uint64_t hits = 0;
@@ -120,4 +127,4 @@ TEST_F(InPlace, BoundsThatDoNotHoldTAreSeen) {
 }
 
 }  // namespace
-}  // namespace raygate::stress
+}  // namespace raygate::lab

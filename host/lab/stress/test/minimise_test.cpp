@@ -7,7 +7,7 @@
 
 #include "host/lab/stress/runner.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 TEST(Minimise, KeepsWhatFailsAndNothingElse) {
@@ -27,16 +27,16 @@ TEST(Minimise, KeepsWhatFailsAndNothingElse) {
 }
 
 TEST(Minimise, WrongDecisionsOfTheUnitWithoutDoubts) {
-  const auto kinds = unit_variants();
-  const auto no_doubts = std::ranges::find(kinds, "no doubts", &VariantKind::name);
+  const auto kinds = variant_subjects();
+  const auto no_doubts = std::ranges::find(kinds, "binary32-raw", &SubjectKind::name);
   const auto edges = std::ranges::find(all_suites(), "sphere edges", &Suite::name);
   ASSERT_NE(no_doubts, kinds.end());
   const auto outcomes = run({&*edges}, {*no_doubts}, {.tests = 200000}, [](const SuiteOutcome&) {});
   const auto& failures = outcomes[0].tallies[0].failures;
   ASSERT_FALSE(failures.empty());
-  const auto variant = no_doubts->make();
-  const auto fails = [&](const Case& c) { return decides_wrongly(*no_doubts, *variant, c); };
-  const auto cpu = engine_variants()[0];
+  const auto subject = no_doubts->make();
+  const auto fails = [&](const Case& c) { return decides_wrongly(*no_doubts, *subject, c); };
+  const auto cpu = engine_subjects()[0];
   const auto engine = cpu.make();
   for (const Case& failure : failures) {
     ASSERT_TRUE(fails(failure));
@@ -55,4 +55,4 @@ TEST(CaseText, ComesBack) {
 }
 
 }  // namespace
-}  // namespace raygate::stress
+}  // namespace raygate::lab

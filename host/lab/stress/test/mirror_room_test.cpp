@@ -44,12 +44,11 @@ Outcome look_around(const std::vector<Corners>& walls, const glm::dvec3& eye) {
 }
 
 TEST(MirrorRoom, NoRayGetsOutOfClosedRooms) {
-  stress::Random random(1);
-  const stress::MeshPointer rooms[] = {
-      stress::box(), stress::sphere(1), stress::random_sphere(42, random),
-      stress::box({glm::dvec3(1), glm::dvec3(900, -700, 800)}),
-      stress::sphere(1, {glm::dvec3(1, 0.1, 0.02), glm::dvec3(0)})};
-  for (const stress::MeshPointer& room : rooms) {
+  lab::Random random(1);
+  const lab::MeshPointer rooms[] = {lab::box(), lab::sphere(1), lab::random_sphere(42, random),
+                                    lab::box({glm::dvec3(1), glm::dvec3(900, -700, 800)}),
+                                    lab::sphere(1, {glm::dvec3(1, 0.1, 0.02), glm::dvec3(0)})};
+  for (const lab::MeshPointer& room : rooms) {
     glm::dvec3 center(0.0);
     for (const Corners& t : room->triangles) center += glm::dvec3(t[0] + t[1] + t[2]) / 3.0;
     center /= static_cast<double>(room->triangles.size());
@@ -62,7 +61,7 @@ TEST(MirrorRoom, NoRayGetsOutOfClosedRooms) {
 TEST(MirrorRoom, NoRayGetsOutOfSharpCorners) {
   for (const double angle : {1.0, 0.1, 1e-2, 1e-4, 1e-6}) {
     const Outcome outcome =
-        look_around(stress::wedge(angle)->triangles, {0.7, 0.35 * std::tan(angle), 0.2});
+        look_around(lab::wedge(angle)->triangles, {0.7, 0.35 * std::tan(angle), 0.2});
     EXPECT_EQ(outcome.lit, 0) << angle;
     EXPECT_GT(outcome.rays_a_path, 2.0) << angle;
   }
@@ -70,7 +69,7 @@ TEST(MirrorRoom, NoRayGetsOutOfSharpCorners) {
 
 // The same room with one of its triangles gone: light comes in, so that it would be seen above.
 TEST(MirrorRoom, LightComesThroughAHole) {
-  auto walls = stress::box()->triangles;
+  auto walls = lab::box()->triangles;
   walls.pop_back();
   EXPECT_GT(look_around(walls, glm::dvec3(0.1)).lit, 1000);
 }

@@ -6,7 +6,7 @@
 
 #include "host/lab/stress/suites.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
 using Rational3 = std::array<mpq_class, 3>;
@@ -83,4 +83,4 @@ TEST(Oracle, TellsTheNearestAndItsTies) {
 }
 
 }  // namespace
-}  // namespace raygate::stress
+}  // namespace raygate::lab

@@ -5,12 +5,12 @@
 
 #include "host/lab/stress/case_text.h"
 #include "host/lab/stress/oracle.h"
-#include "host/lab/stress/variants.h"
+#include "host/lab/stress/subjects.h"
 
-namespace raygate::stress {
+namespace raygate::lab {
 namespace {
 
-TEST(Regressions, VerdictsOfExactVariantsAreTheTruth) {
+TEST(Regressions, VerdictsOfExactSubjectsAreTheTruth) {
   std::ifstream file(RAYGATE_REGRESSIONS);
   std::vector<Shot> shots;
   for (std::string line; std::getline(file, line);) {
@@ -18,11 +18,11 @@ TEST(Regressions, VerdictsOfExactVariantsAreTheTruth) {
     shots.push_back(shot_of(case_from(line)));
   }
   ASSERT_FALSE(shots.empty());
-  for (const VariantKind& kind : all_variants()) {
+  for (const SubjectKind& kind : all_subjects()) {
     if (!kind.exact) continue;
-    const auto variant = kind.make();
+    const auto subject = kind.make();
     Answers answers;
-    variant->run(shots, answers);
+    subject->run(shots, answers);
     auto answer = answers.tests.cbegin();
     for (std::size_t i = 0; i < shots.size(); ++i) {
       const Truth truth = find_truth(shots[i]);
@@ -35,4 +35,4 @@ TEST(Regressions, VerdictsOfExactVariantsAreTheTruth) {
 }
 
 }  // namespace
-}  // namespace raygate::stress
+}  // namespace raygate::lab

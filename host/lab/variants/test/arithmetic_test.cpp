@@ -14,7 +14,7 @@
 namespace raygate {
 namespace {
 
-using stress::Random;
+using lab::Random;
 
 /// Any finite float, exponents near one another more often than not.
 float any_float(Random& random) {

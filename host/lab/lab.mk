@@ -1,0 +1,45 @@
+# What the lab measures: see host/lab/README.md. Each target keeps its rows in build/results/.
+LAB := build/lab
+LAB_ROWS := build/results
+LAB_REPORT := $(PYTHON) -m host.lab.report
+LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
+# `make stress`: tests by the cpu engine in each suite; others do their share of it.
+TESTS ?= 10000000
+
+.PHONY: stress bench rays skips predicates doubts
+
+# An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
+stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
+ifdef QUICK
+	$(call build,build,lab >/dev/null)
+	@$(LAB) stress --quiet --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
+else
+	$(call build,lab,lab)
+	@$(LAB) --results $(LAB_ROWS)/stress.jsonl stress --tests $(TESTS) --threads $(JOBS) \
+	  --seed $(or $(SEED),1); status=$$?; \
+	$(LAB_REPORT) stress $(if $(PUBLISH),--publish) && exit $$status
+endif
+
+bench: ## run time against error, one report: make bench [QUICK=1 BASE=old.jsonl PUBLISH=1]
+	$(call build,bench,lab scenes unit_bench table_1 worked_example)
+	@$(LAB_REPORT) bench $(if $(QUICK),--quick) $(if $(BASE),--base '$(BASE)') \
+	  $(if $(PUBLISH),--publish)
+
+rays: ## rays per second of the cpu engine next to Embree 3
+	$(call build,lab,lab scenes)
+	@$(LAB) --results $(LAB_ROWS)/rays.jsonl rays scenes/cornell.obj scenes/teapot.obj \
+	  scenes/paper.obj $(LARGE_SCENES) build/scenes/landscape.obj
+
+skips: ## tests and time that each skip saves
+	$(call build,build,lab scenes)
+	@python3 -B scenes/make_teapot.py build/scenes/teapot_coarse.obj --fineness 3
+	@$(LAB) --results $(LAB_ROWS)/skips.jsonl skips scenes/paper.obj \
+	  build/scenes/teapot_coarse.obj scenes/teapot.obj $(LARGE_SCENES)
+
+predicates: ## what an exact decision costs, beside rationals and __float128
+	$(call build,build,lab)
+	@$(LAB) --results $(LAB_ROWS)/predicates.jsonl predicates
+
+doubts: ## doubts and their share of the time, scene by scene
+	$(call build,lab,render scenes)
+	@$(LAB_REPORT) doubts scenes/*.obj build/scenes/*.obj

@@ -1,1 +1,0 @@
-"""`make bench`: run time against error, from the adder to the picture."""

@@ -1,0 +1,10 @@
+// Where CMake found no Embree 3: the lab leaves it out.
+#include "host/lab/rays/peer.h"
+#include "host/lab/stress/subjects.h"
+
+namespace raygate::lab {
+
+std::vector<std::unique_ptr<Peer>> make_embrees(const Scene&) { return {}; }
+std::vector<SubjectKind> embree_subjects() { return {}; }
+
+}  // namespace raygate::lab

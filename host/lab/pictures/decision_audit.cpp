@@ -1,0 +1,158 @@
+#include "host/lab/pictures/decision_audit.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "host/find/cpu/cpu_finder.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/unit_finder.h"
+#include "host/lab/timing.h"
+#include "host/lab/variants/variant_hit_tester.h"
+#include "host/lab/variants/variant_units.h"
+
+namespace raygate::lab {
+namespace {
+
+/// Passes batches on, and judges each of their tests.
+class AuditTester : public HitTester {
+ public:
+  AuditTester(const Bvh& bvh, const glm::vec3& origin, const Variant& variant, HitTester& tester,
+              DecisionAudit& audit)
+      : bvh_(bvh),
+        origin_(origin),
+        variant_(variant),
+        unit_(variant.math),
+        tester_(tester),
+        audit_(audit) {
+    host_.rounding = Rounding::kNearestEven;
+  }
+
+  void test(std::span<const RayBundle> batch, HitResults& results) override {
+    tester_.test(batch, results);
+    for (const RayBundle& bundle : batch) judge(bundle);
+  }
+
+  [[nodiscard]] HitCounters counters() const override { return tester_.counters(); }
+
+ private:
+  void judge(const RayBundle& bundle) {
+    // With the serial unit, software decides.
+    const bool serial = variant_.unit == Variant::Unit::kSerial;
+    for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
+      const PolygonRecord record = variant_record(variant_, bundle.records[i]);
+      for (LaneMask lanes = bundle.lanes; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        const glm::vec3 direction = bundle.lane_direction(lane);
+        const UnitVerdict said =
+            serial ? ReferenceBurstUnit().edges_verdict(bundle.records[i], direction)
+                   : unit_.verdict(record, host_.read(direction));
+        count(said, record, direction, bundle.first_tag + i);
+      }
+    }
+  }
+
+  void count(UnitVerdict said, const PolygonRecord& record, const glm::vec3& direction,
+             std::uint32_t slot) {
+    ++audit_.tests;
+    bool hit = said == UnitVerdict::kHit;
+    if (said == UnitVerdict::kDoubt) {
+      if (variant_.doubts) {
+        ++audit_.doubts;
+        return;
+      }
+      const float t = unit_.distance(record, host_.read(direction)).t;
+      hit = t > 0.0f && !std::isinf(t);
+    }
+    const bool truth = hits_triangle({origin_, direction}, bvh_.corners_of(slot));
+    audit_.wrong_hits += hit && !truth;
+    audit_.wrong_misses += !hit && truth;
+  }
+
+  const Bvh& bvh_;
+  glm::vec3 origin_;
+  const Variant& variant_;
+  VariantBurstUnit unit_;
+  Arithmetic host_ = variant_.math;  // what puts a ray into the format
+  HitTester& tester_;
+  DecisionAudit& audit_;
+};
+
+/// In units of the last place of the float next to `exact`.
+double ulps(double value, double exact) {
+  const int exponent = exact == 0.0 ? -126 : std::max(std::ilogb(exact), -126);
+  const double error = std::abs(value - exact);
+  return std::isnan(error) ? std::numeric_limits<double>::infinity()
+                           : std::ldexp(error, 23 - exponent);
+}
+
+/// Rays through the pixels' centres, in blocks of eight close together.
+std::vector<Ray> camera_rays(const Camera& camera, int width, int height) {
+  constexpr int kBlockWidth = 4, kBlockHeight = kLanes / kBlockWidth;
+  std::vector<Ray> rays;
+  for (int y0 = 0; y0 < height; y0 += kBlockHeight) {
+    for (int x0 = 0; x0 < width; x0 += kBlockWidth) {
+      for (int y = y0; y < std::min(y0 + kBlockHeight, height); ++y) {
+        for (int x = x0; x < std::min(x0 + kBlockWidth, width); ++x) {
+          rays.push_back({camera.eye(), camera.direction((x + 0.5) / width, (y + 0.5) / height)});
+        }
+      }
+    }
+  }
+  return rays;
+}
+
+ErrorSummary summary_of(const std::vector<double>& errors) {
+  if (errors.empty()) return {};
+  return {quantile(errors, 0.5), quantile(errors, 0.99), quantile(errors, 1.0)};
+}
+
+}  // namespace
+
+Row DecisionAudit::row() const {
+  const auto errors = [](const ErrorSummary& summary) -> Row {
+    return {{"p50", summary.p50}, {"p99", summary.p99}, {"max", summary.max}};
+  };
+  return {{"tests", tests},
+          {"doubts", doubts},
+          {"wrong_hits", wrong_hits},
+          {"wrong_misses", wrong_misses},
+          {"rays", rays},
+          {"wrong_rays", wrong_rays},
+          {"hits", hits},
+          {"t_ulp", errors(t_ulp)},
+          {"point_ulp", errors(point_ulp)}};
+}
+
+DecisionAudit audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
+                              const Variant& variant, HitTester& tester) {
+  DecisionAudit audit;
+  const glm::vec3 eye = camera.eye();
+  const std::vector<Ray> rays = camera_rays(camera, width, height);
+  std::vector<NearestHit> seen(rays.size()), exact(rays.size());
+  UnitFinder(bvh, std::make_shared<AuditTester>(bvh, eye, variant, tester, audit))
+      .find(rays, {.common_origin = true}, seen);
+  CpuFinder(bvh).find(rays, {.common_origin = true}, exact);
+  std::vector<double> t_errors, point_errors;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const NearestHit &got = seen[i], &truth = exact[i];
+    ++audit.rays;
+    if (got.slot != truth.slot) ++audit.wrong_rays;
+    if (got.slot != truth.slot || truth.slot == NearestHit::kNone) continue;
+    const Interval t = hit_distance(rays[i], bvh.corners_of(got.slot));
+    const double exact_t = 0.5 * (t.low + t.high);
+    const PolygonRecord record = make_record(eye, bvh.corners_of(got.slot));
+    t_errors.push_back(ulps(variant_t(variant, record, rays[i].direction), exact_t));
+    double worst = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      worst = std::max(worst, ulps(got.point[k], exact_t * rays[i].direction[k]));
+    }
+    point_errors.push_back(worst);
+  }
+  audit.hits = t_errors.size();
+  audit.t_ulp = summary_of(t_errors);
+  audit.point_ulp = summary_of(point_errors);
+  return audit;
+}
+
+}  // namespace raygate::lab

@@ -1,0 +1,272 @@
+#include "host/lab/pictures/picture_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "host/cli/engines.h"
+#include "host/film/compare.h"
+#include "host/film/display.h"
+#include "host/film/pending_file.h"
+#include "host/film/png.h"
+#include "host/find/unit/unit_finder.h"
+#include "host/lab/pictures/decision_audit.h"
+#include "host/lab/pictures/stage.h"
+#include "host/lab/timing.h"
+#include "host/lab/variants/rtl_variant_units.h"
+#include "host/lab/variants/variant_hit_tester.h"
+#include "host/picture/renderer.h"
+#include "host/scene/io/input_error.h"
+
+namespace raygate::lab {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PictureRun, scene, section, width, height, variant, engine,
+                                   lanes, threads, integrator, samples, depth, seed, point_error,
+                                   repeats, audit, picture, against)
+
+namespace {
+
+Row row_of(const PictureRun& run) { return nlohmann::json(run); }
+
+constexpr std::pair<const char*, IntegratorKind> kIntegrators[] = {
+    {"primary", IntegratorKind::kPrimary},
+    {"whitted", IntegratorKind::kWhitted},
+    {"path", IntegratorKind::kPath}};
+
+[[noreturn]] void fail(const char* name, const Row& found, const std::string& expected) {
+  throw InputError(std::string("a run's ") + name + " is " + found.dump() + ", expected " +
+                   expected);
+}
+
+/// Binary32 as it stands: what the renderer's own engines are.
+bool is_plain(const Variant& variant) { return variant.math == Arithmetic{} && variant.doubts; }
+
+Options options_of(const PictureRun& run, const Variant& variant) {
+  const bool serial = variant.unit == Variant::Unit::kSerial;
+  Options options;
+  options.engine = run.engine == "rtl" ? Engine::kRtl : serial ? Engine::kModel : Engine::kCpu;
+  options.unit = serial ? "serial" : "pipeline";
+  options.lanes = run.lanes;
+  return options;
+}
+
+std::unique_ptr<HitTester> tester_of(const PictureRun& run, const Variant& variant) {
+  return run.engine == "unit" ? make_rtl_variant_tester(variant) : make_variant_tester(variant);
+}
+
+FinderFactory factory_of(const PictureRun& run, const Variant& variant, const Bvh& bvh) {
+  if (run.engine == "cpu" || run.engine == "rtl") {
+    return make_finder_factory(options_of(run, variant), bvh);
+  }
+  const auto caches = std::make_shared<RecordCaches>(bvh);
+  return [&run, &variant, &bvh, caches] {
+    return std::make_unique<UnitFinder>(bvh, tester_of(run, variant), caches);
+  };
+}
+
+bool same_picture(const Film& a, const Film& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+  };
+  return same(a.color, b.color) && same(a.depth, b.depth) && same(a.primitive, b.primitive);
+}
+
+/// Red, green and blue, to compare.
+ChannelPicture light_of(const Film& film) {
+  ChannelPicture picture{film.width, film.height, film.window, {"R", "G", "B"}, {}};
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double>& channel = picture.channels.emplace_back();
+    for (const glm::vec4& color : film.color) channel.push_back(color[k]);
+  }
+  return picture;
+}
+
+/// Processor seconds of a fixed piece of work that no change of this project touches: how fast the
+/// machine was in between.
+double time_yardstick() {
+  const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+  std::uint64_t state = 1;
+  double sum = 0.0;
+  for (int i = 0; i < 4'000'000; ++i) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    sum += 1.0 / static_cast<double>(1 + (state >> 40));
+  }
+  if (!(sum > 0.0)) throw std::logic_error("the yardstick's sum");  // so that it must be computed
+  return seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
+}
+
+/// One run, from its first picture on.
+class Performance {
+ public:
+  Performance(const PictureRun& run, const Stage& stage)
+      : run_(run),
+        variant_(variant_named(run.variant)),
+        stage_(stage),
+        camera_(stage.camera(run.width, run.height)) {}
+
+  /// Renders once more; what was first is only kept as the picture where there are more repeats.
+  void render_once() {
+    const RenderOptions options{
+        .width = run_.width,
+        .height = run_.height,
+        .window = {},
+        .threads = run_.threads,
+        .samples = run_.samples,
+        .seed = run_.seed,
+        .integrator = std::ranges::find(kIntegrators, run_.integrator,
+                                        [](const auto& kind) { return std::string(kind.first); })
+                          ->second,
+        .max_depth = run_.depth,
+        .point_error = run_.point_error < 0.0 ? std::numeric_limits<float>::max()
+                                              : static_cast<float>(run_.point_error)};
+    const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const Film film = render(stage_.scene, stage_.bvh, camera_, options,
+                             factory_of(run_, variant_, stage_.bvh), stats_);
+    const double busy = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
+    if (film_ && !same_picture(*film_, film)) {
+      throw std::logic_error("two pictures of one run differ: " + row_of(run_).dump());
+    }
+    if (film_ || run_.repeats == 1) {
+      seconds_.push_back(stats_.wall_seconds);
+      processor_seconds_.push_back(busy);
+      yardstick_seconds_.push_back(time_yardstick());
+    }
+    if (!film_) film_ = film;
+  }
+
+  [[nodiscard]] bool done() const { return static_cast<int>(seconds_.size()) >= run_.repeats; }
+  [[nodiscard]] const PictureRun& run() const { return run_; }
+  [[nodiscard]] const Film& film() const { return *film_; }
+
+  [[nodiscard]] Row row() const {
+    Row row = {{"table", "pictures"}};
+    row.update(row_of(run_));
+    row.update(Row{{"command", "build/lab pictures --run '" + row_of(run_).dump() + "'"},
+                   {"triangles", stage_.scene.triangles.size()},
+                   {"records", stats_.find.own_records + stats_.find.common_records},
+                   {"rays", stats_.rays},
+                   {"shadow_rays", stats_.shadow_rays},
+                   {"tests", stats_.find.hit.tests},
+                   {"unit_tests", stats_.find.hit.unit_tests},
+                   {"edge_doubts", stats_.find.hit.edge_doubts},
+                   {"exact_inside", stats_.find.exact_inside},
+                   {"exact_depth", stats_.find.exact_depth},
+                   {"point_doubts", stats_.point_doubts},
+                   {"clocks", stats_.find.hit.clocks},
+                   {"idle_clocks", stats_.find.hit.idle_clocks},
+                   {"output_stalls", stats_.find.hit.output_stalls},
+                   {"seconds", seconds_},
+                   {"processor_seconds", processor_seconds_},
+                   {"yardstick_seconds", yardstick_seconds_},
+                   {"thread_seconds",
+                    {{"boxes", stats_.find.traverse},
+                     {"hit_tests", stats_.find.hit_tests},
+                     {"records", stats_.find.record},
+                     {"shading", stats_.shade_seconds}}}});
+    if (run_.audit) {
+      row["decisions"] = audit_decisions(stage_.bvh, camera_, run_.width, run_.height, variant_,
+                                         *tester_of(run_, variant_))
+                             .row();
+    }
+    return row;
+  }
+
+  void write_picture() const {
+    if (run_.picture.empty()) return;
+    PendingFile(run_.picture + ".png", encode_png(to_display(*film_))).commit();
+  }
+
+ private:
+  const PictureRun& run_;
+  const Variant& variant_;
+  const Stage& stage_;
+  Camera camera_;
+  RenderStats stats_;
+  std::optional<Film> film_;
+  std::vector<double> seconds_, processor_seconds_, yardstick_seconds_;
+};
+
+/// How far a picture is from its reference; psnr is null for equal ones.
+Row difference(const Film& film, const Film& reference) {
+  const Comparison comparison = compare(light_of(film), light_of(reference));
+  return {{"differing_pixels", comparison.differing},
+          {"rmse", comparison.rmse},
+          {"psnr_db", comparison.psnr},
+          {"ssim", comparison.ssim ? Row(*comparison.ssim) : Row()}};
+}
+
+}  // namespace
+
+PictureRun parse_run(const Row& object) {
+  const Row row = with_usual(object, row_of(PictureRun{}), "a run");
+  const auto run = nlohmann::json(row).get<PictureRun>();
+  if (run.scene.empty()) fail("scene", run.scene, "an OBJ file");
+  in_range("width", run.width, 1, 65536);
+  in_range("height", run.height, 1, 65536);
+  in_range("threads", run.threads, 1, 256);
+  in_range("samples", run.samples, 1, 1 << 20);
+  in_range("depth", run.depth, 0, 1000);
+  in_range("repeats", run.repeats, 1, 1000);
+  const Variant& variant = variant_named(run.variant);
+  const bool of_the_renderer = run.engine == "cpu" || run.engine == "rtl";
+  if (!of_the_renderer && run.engine != "model" && run.engine != "unit") {
+    fail("engine", run.engine, "cpu, rtl, model or unit");
+  }
+  if (of_the_renderer && !is_plain(variant)) {
+    fail("engine", run.engine, "model or unit for " + run.variant);
+  }
+  if (run.engine == "unit" && !variant.has_hardware()) {
+    fail("engine", run.engine, "model: no hardware takes the parameters of " + run.variant);
+  }
+  if (std::ranges::none_of(kIntegrators,
+                           [&](const auto& kind) { return run.integrator == kind.first; })) {
+    fail("integrator", run.integrator, "primary, whitted or path");
+  }
+  const bool several_lanes = run.engine == "rtl" && variant.unit == Variant::Unit::kPipeline;
+  if (run.lanes != 1 && run.lanes != 2 && run.lanes != 4 && run.lanes != 8) {
+    fail("lanes", run.lanes, "1, 2, 4 or 8");
+  }
+  if (run.lanes != 1 && !several_lanes) fail("lanes", run.lanes, "1, but for the pipelined rtl");
+  return run;
+}
+
+std::vector<Row> measure(const std::vector<PictureRun>& runs,
+                         const std::function<void(const std::string&)>& progress) {
+  std::map<std::string, std::unique_ptr<Stage>> stages;
+  std::vector<std::unique_ptr<Performance>> performances;
+  for (const PictureRun& run : runs) {
+    std::unique_ptr<Stage>& stage = stages[run.scene];
+    if (!stage) stage = std::make_unique<Stage>(run.scene);
+    performances.push_back(std::make_unique<Performance>(run, *stage));
+  }
+  for (bool busy = true; busy;) {
+    busy = false;
+    for (const auto& performance : performances) {
+      if (performance->done()) continue;
+      const PictureRun& run = performance->run();
+      progress(run.scene + " " + run.variant + " " + run.engine);
+      performance->render_once();
+      busy = true;
+    }
+  }
+  std::vector<Row> rows;
+  for (const auto& performance : performances) {
+    performance->write_picture();
+    Row& row = rows.emplace_back(performance->row());
+    const std::string& against = performance->run().against;
+    if (against.empty()) continue;
+    const auto reference = std::ranges::find_if(
+        performances, [&](const auto& other) { return other->run().picture == against; });
+    if (reference == performances.end()) fail("against", against, "another run's picture");
+    row.update(difference(performance->film(), (*reference)->film()));
+  }
+  return rows;
+}
+
+}  // namespace raygate::lab

@@ -1,0 +1,30 @@
+// A scene with its tree, lit, for as many pictures as are wanted.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "host/light/lights.h"
+#include "host/scene/camera.h"
+#include "host/scene/io/obj_loader.h"
+#include "host/tree/bvh.h"
+
+namespace raygate::lab {
+
+struct Stage {
+  std::string name;
+  Scene scene;
+  Bvh bvh;
+
+  explicit Stage(const std::filesystem::path& file)
+      : name(file.stem().string()), scene(load_obj(file, {.skip_degenerate = true})), bvh(scene) {
+    light_if_dark(scene, Camera::frame(scene, 4.0 / 3.0));
+  }
+
+  /// The whole scene in view.
+  [[nodiscard]] Camera camera(int width, int height) const {
+    return Camera::frame(scene, static_cast<double>(width) / height);
+  }
+};
+
+}  // namespace raygate::lab

@@ -1,0 +1,1 @@
+"""What the lab has found, on paper: `make bench`, `make stress`, `make doubts`."""

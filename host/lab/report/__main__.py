@@ -1,0 +1,108 @@
+"""`python3 -m host.lab.report`: what `make bench`, `make stress` and `make doubts` run."""
+
+import argparse
+import pathlib
+import shutil
+import sys
+
+from host.lab.report import bench, bench_report, compare, document, doubts, stress_report
+from host.lab.report import rows as kept
+from host.lab.report.rows import KEPT, ROOT
+
+PUBLISHED = ROOT / "host" / "lab" / "results"
+# A run of all suites with so many tests in each may be published.
+ENOUGH = 1_000_000
+
+
+def arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="report", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    command = commands.add_parser("bench", help="run time against error: build/bench/report.md")
+    command.add_argument("--quick", action="store_true", help="small pictures, few repeats")
+    command.add_argument("--base", type=pathlib.Path, metavar="OLD.jsonl",
+                         help="older rows: says what got slower or less accurate since")
+    command.add_argument("--report-only", action="store_true",
+                         help="draw build/results/bench.jsonl again, measuring nothing")
+    stress = commands.add_parser("stress", help="build/results/stress.jsonl as a report")
+    for publishing in (command, stress):
+        publishing.add_argument("--publish", action="store_true",
+                                help="write the report into host/lab/results/ as well")
+    command = commands.add_parser("doubts", help="what doubts cost in pictures by ./render")
+    command.add_argument("scenes", nargs="+")
+    command.add_argument("--repeats", type=int, default=3)
+    command.add_argument("--size", default="640x480")
+    return parser.parse_args()
+
+
+def write(rows: list[dict], build: object, name: str, publish: bool) -> None:
+    """NAME's report into build/NAME/; with `publish`, into host/lab/results/ too."""
+    folder = ROOT / "build" / name
+    folder.mkdir(parents=True, exist_ok=True)
+    text = build(rows, folder)
+    document.write(text, folder)
+    if publish:
+        PUBLISHED.mkdir(exist_ok=True)
+        (PUBLISHED / f"{name}.md").write_text(text)
+        for file in folder.glob("*.png"):
+            shutil.copy(file, PUBLISHED)
+    print(f"Report: build/{name}/report.md, and report.html beside it")
+
+
+def run_bench(given: argparse.Namespace) -> int:
+    """1 where a reference model is not its hardware."""
+    base = kept.read(given.base) if given.base else None
+    file = KEPT / "bench.jsonl"
+    if not given.report_only:
+        kept.write(file, bench.measure(given.quick))
+    rows = kept.read(file)
+    write(rows, bench_report.build, "bench", given.publish)
+    table = kept.comma_separated(kept.of(rows, "pictures"))
+    for folder in (ROOT / "build" / "bench", *([PUBLISHED] if given.publish else [])):
+        (folder / "results.csv").write_text(table)
+    if base:
+        print("\n".join(compare.compare(base, rows)))
+    wrong = [row for row in kept.of(rows, "checks") if row["difference"] != "none"]
+    for row in wrong:
+        print(f"error: {row['variant']}: model and hardware differ: {row['difference']}",
+              file=sys.stderr)
+    return 1 if wrong else 0
+
+
+def run_stress(given: argparse.Namespace) -> int:
+    """The verdict is `lab stress`'s."""
+    rows = kept.read(KEPT / "stress.jsonl")
+    tests = next(row["run"]["tests"] for row in rows)
+    if given.publish and tests < ENOUGH:
+        print(f"error: found {tests:,} tests in each suite, expected {ENOUGH:,} to publish",
+              file=sys.stderr)
+        return 2
+    write(rows, stress_report.build, "stress", given.publish)
+    return 0
+
+
+def run_doubts(given: argparse.Namespace) -> int:
+    """Prints the table and keeps its rows."""
+    rows = [doubts.row(scene, given.repeats, ["--size", given.size]) for scene in given.scenes]
+    kept.write(KEPT / "doubts.jsonl", rows)
+    print(document.table(
+        {"scene": "", "triangles": ",", "rays": ",", "reflected, refracted": ",", "tests": ",",
+         "doubts about edges": ",", "of the tests, %": ".4f", "about depth": ",",
+         "time on doubts, %": ".2f", "on rays' origins, %": ".2f"},
+        [[kept.scene_name(row), *list(row.values())[2:]] for row in rows]))
+    return 0
+
+
+def main() -> int:
+    """Runs the command line; 2 for what the user can mend."""
+    given = arguments()
+    commands = {"bench": run_bench, "stress": run_stress, "doubts": run_doubts}
+    try:
+        return commands[given.command](given)
+    except (OSError, ValueError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

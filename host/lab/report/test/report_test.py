@@ -1,0 +1,123 @@
+"""Documents, costs from synthesis, quantiles, laws, and what is derived from rows."""
+
+import math
+import pathlib
+import tempfile
+import unittest
+
+from host.lab.report import bench, claims, costs, document, rows, statistics
+
+VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "exponent_bits": 8,
+           "digits": 24, "rounding": "nearest-even", "flush": False, "quotient_digits": 0, "fused": False,
+           "doubts": True, "hardware": True}
+
+
+def core(top, area, delay, **parameters):
+    """A row of synthesis."""
+    return {"table": "synthesis", "top": top, "design": top, "target": "osu035", "flow": "small",
+            "area": area, "delay_ns": delay, "parameters": parameters}
+
+
+class Document(unittest.TestCase):
+    def test_cells(self):
+        text = document.table({"n": ",", "what": ""}, [[1234, "one"], [None, "none"]])
+        self.assertEqual([[cell.strip() for cell in line.split("|")[1:-1]]
+                          for line in text.splitlines()[2:]], [["1,234", "one"], ["-", "none"]])
+
+    def test_a_page_has_its_pictures_in_it(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "a.png").write_bytes(b"<png/>")
+            page = document.page("# A < B\n\n**all** of `x < y`\n\n| n |\n|--:|\n| 1 |\n\n"
+                                 "![a picture](a.png)\n", folder)
+            for wanted in ("<title>A < B</title>", "<h1>A &lt; B</h1>", "<strong>all</strong>",
+                           "<code>x &lt; y</code>", '<td style="text-align: right;">1</td>',
+                           "data:image/png;base64,PHBuZy8+"):
+                self.assertIn(wanted, page)
+            self.assertNotIn(name, page)
+
+
+class Rows(unittest.TestCase):
+    def test_quantiles_of_bins_of_several_runs(self):
+        parts = [{"max": 3.0, "bins": [[1.0, 60], [4.0, 38]]}, {"max": 7.0, "bins": [[8.0, 2]]}]
+        self.assertEqual(rows.summary(parts), {"count": 100, "median": 1.0, "p99": 7.0, "max": 7.0})
+        self.assertEqual(rows.summary([{"max": 0, "bins": []}])["median"], None)
+        endless = rows.summary([{"max": None, "bins": [[2.0**64 * 65 / 64, 1]]}])
+        self.assertEqual(endless["median"], math.inf)
+
+    def test_csv_explains_every_column(self):
+        text = rows.comma_separated([{"variant": "a", "seconds": [3.0, 1.0, 2.0],
+                                      "decisions": {"tests": 7}}])
+        self.assertEqual(text, "variant,seconds,decisions.tests\na,2.0,7\n")
+        with self.assertRaisesRegex(ValueError, "nonsense"):
+            rows.comma_separated([{"nonsense": 1}])
+
+
+class Statistics(unittest.TestCase):
+    def test_spread(self):
+        # Distances from 10: 0, 1, 1, 2, 90. One wild value doesn't count.
+        self.assertEqual(statistics.spread([10, 9, 11, 12, 100]), 1 / 11)
+        self.assertEqual(statistics.spread([5.0]), 0)
+
+    def test_power_law_of_exact_points(self):
+        law = statistics.power_law([1, 2, 4, 8], [3, 12, 48, 192])
+        for got, expected in ((law.exponent, 2), (law.factor, 3), (law.exponent_error, 0),
+                              (law.largest_miss, 1), (law.at(10), 300)):
+            self.assertAlmostEqual(got, expected)
+
+    def test_power_law_says_how_bad_it_is(self):
+        law = statistics.power_law([1, 10, 100], [1, 20, 100])
+        self.assertAlmostEqual(law.exponent, 1)
+        self.assertGreater(law.exponent_error, 0.1)
+        self.assertAlmostEqual(law.largest_miss, 4 ** (1 / 3))  # misses: -1/3, 2/3, -1/3 of log 2
+
+    def test_no_power_law_through_one_point(self):
+        self.assertIsNone(statistics.power_law([2, 2], [1, 3]))
+        self.assertIsNone(statistics.power_law([], []))
+
+    def test_front(self):
+        # 1 is worse than 0 in both; 3 equals 0 in x and is worse; 4 is best in y.
+        points = [(1, 5), (2, 6), (3, 2), (1, 7), (9, 1)]
+        self.assertEqual(statistics.front(points), [0, 2, 4])
+
+
+class Costs(unittest.TestCase):
+    CORES = [core("fp_multiplier", 10, 5.0), core("fp_adder", 4, 3.0, Adder="2"),
+             core("fp_divider", 20, 9.0), core("fp_divider", 7, 6.0, FracWidth="15")]
+
+    def test_cores_add_up(self):
+        self.assertEqual(costs.cost(self.CORES, VARIANT), costs.Cost(34, 14.0))
+
+    def test_a_unit_goes_before_its_cores(self):
+        self.assertEqual(costs.cost([*self.CORES, core("hit_test_unit", 50, 20.0)], VARIANT),
+                         costs.Cost(50, 20.0))
+
+    def test_unknown_formats_cost_nothing_known(self):
+        self.assertIsNone(costs.cost(self.CORES, {**VARIANT, "digits": 16}))
+        self.assertIsNone(costs.cost(self.CORES, {**VARIANT, "fused": True}))
+        self.assertIsNone(costs.cost([core("fp_multiplier", 1, 1.0, Adder="0")], VARIANT))
+
+
+class Frames(unittest.TestCase):
+    def test_a_frame(self):
+        row = {"table": "pictures", "section": "variants", "scene": "scenes/a.obj",
+               "variant": "binary32", "engine": "model", "unit_tests": 1000, "clocks": 0,
+               "decisions": {"wrong_hits": 1, "wrong_misses": 1, "tests": 500, "doubts": 0,
+                             "point_ulp": {"p99": 2.0}}}
+        simulated = {**row, "engine": "unit", "unit_tests": 100, "clocks": 700}
+        (frame,) = bench.frames([row, simulated, {**VARIANT, "variant": "serial"}, VARIANT,
+                                 core("hit_test_unit", 50, 20.0)])
+        self.assertEqual((frame["scene"], frame["clocks"], frame["wrong"]), ("a", 7000, 4000))
+        self.assertFalse(frame["clocks_modelled"])
+        self.assertAlmostEqual(frame["frame_ms"], 0.14)
+        self.assertAlmostEqual(frame["area_time"], 7.0)
+
+
+class Claims(unittest.TestCase):
+    def test_words_on_the_bus(self):
+        line = "   8  Ix " + " ".join(["40540000"] * 7)
+        self.assertEqual(claims.bus_words(f"edge in\n{line} 3DC873F8\n{line}\n"), ["3DC873F8"])
+
+
+if __name__ == "__main__":
+    unittest.main()

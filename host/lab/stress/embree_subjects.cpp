@@ -1,0 +1,92 @@
+// Embree 3, its traversal included. Every hit of a ray is collected by a filter that turns it down.
+#include <algorithm>
+#include <limits>
+
+#include "host/exact/exact.h"
+#include "host/lab/embree_scene.h"
+#include "host/lab/stress/subjects.h"
+
+namespace raygate::lab {
+namespace {
+
+/// The context of one query: where its hits go.
+struct Collector {
+  RTCIntersectContext context;  // first: Embree hands back a pointer to it
+  Answer* answers;              // of the ray, triangle by triangle
+  const glm::vec3* direction;
+};
+
+void collect(const RTCFilterFunctionNArguments* arguments) {
+  auto* collector = reinterpret_cast<Collector*>(arguments->context);
+  Answer& answer = collector->answers[RTCHitN_primID(arguments->hit, arguments->N, 0)];
+  answer.hit = true;
+  answer.t = RTCRayN_tfar(arguments->ray, arguments->N, 0);
+  answer.point = answer.t * *collector->direction;
+  arguments->valid[0] = 0;  // go on
+}
+
+/// Whether Debian's Embree takes the ray: it aborts where one is not finite or beyond its range of
+/// coordinates, and leaves out triangles that are.
+bool accepts(const glm::vec3& origin, const glm::vec3& direction) {
+  constexpr float kLargest = 1.8e18f;
+  const glm::vec3 size = glm::abs(origin);
+  return is_usable(direction) && std::max({size.x, size.y, size.z}) < kLargest;
+}
+
+class EmbreeSubject : public Subject {
+ public:
+  explicit EmbreeSubject(int flags)
+      : flags_(static_cast<RTCSceneFlags>(flags | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION)) {}
+
+  void run(std::span<const Shot> shots, Answers& answers) override {
+    std::size_t tests = 0;
+    for (const Shot& shot : shots) tests += shot.tests();
+    answers.tests.assign(tests, {});
+    Answer* next = answers.tests.data();
+    for (const Shot& shot : shots) {
+      if (shot.mesh != mesh_) {
+        mesh_ = shot.mesh;
+        scene_ = embree_scene(device_, scene_of(*mesh_), flags_);
+      }
+      for (const glm::vec3& direction : shot.directions) {
+        if (accepts(shot.origin, direction)) shoot(shot.origin, direction, next);
+        next += shot.mesh->triangles.size();
+      }
+    }
+    nearest_by_t(shots, answers);
+  }
+
+ private:
+  void shoot(const glm::vec3& origin, const glm::vec3& direction, Answer* answers) {
+    Collector collector{{}, answers, &direction};
+    rtcInitIntersectContext(&collector.context);
+    collector.context.filter = collect;
+    RTCRayHit query{};
+    query.ray.org_x = origin.x, query.ray.org_y = origin.y, query.ray.org_z = origin.z;
+    query.ray.dir_x = direction.x, query.ray.dir_y = direction.y, query.ray.dir_z = direction.z;
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &collector.context, &query);
+  }
+
+  RTCSceneFlags flags_;
+  std::shared_ptr<RTCDeviceTy> device_ = embree_device();
+  std::shared_ptr<RTCSceneTy> scene_;
+  std::shared_ptr<const Mesh> mesh_;  // whose scene it is
+};
+
+SubjectKind kind(const char* name, const char* what, RTCSceneFlags flags) {
+  return {.name = name, .what = what, .share = 0.02, .make = [flags] {
+            return std::make_unique<EmbreeSubject>(flags);
+          }};
+}
+
+}  // namespace
+
+std::vector<SubjectKind> embree_subjects() {
+  return {kind("Embree", "Embree 3 as it comes, traversal included", RTC_SCENE_FLAG_NONE),
+          kind("Embree robust", "Embree 3 in robust mode", RTC_SCENE_FLAG_ROBUST)};
+}
+
+}  // namespace raygate::lab

@@ -1,0 +1,105 @@
+// What ray tracers do in float32.
+#include <cmath>
+#include <utility>
+
+#include "host/lab/stress/subjects.h"
+
+namespace raygate::lab {
+namespace {
+
+using Test = Answer (*)(const glm::vec3& origin, const glm::vec3& direction, const Corners& t);
+
+/// Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, both sides,
+/// without an epsilon.
+Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  Answer answer;
+  const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], from_a = origin - t[0];
+  const glm::vec3 p = glm::cross(direction, ac), q = glm::cross(from_a, ab);
+  const float determinant = glm::dot(ab, p);
+  if (!(std::abs(determinant) > 0.0f)) return answer;
+  const float inverse = 1.0f / determinant;
+  const float u = glm::dot(from_a, p) * inverse, v = glm::dot(direction, q) * inverse;
+  const float distance = glm::dot(ac, q) * inverse;
+  if (!(u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance > 0.0f)) return answer;
+  answer.hit = true;
+  answer.t = distance;
+  answer.point = distance * direction;
+  return answer;
+}
+
+/// Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: the triangle is sheared so
+/// that the ray runs along an axis; edge functions of zero are computed again in double.
+Answer woop(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  Answer answer;
+  const glm::vec3 size = glm::abs(direction);
+  const int z = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
+  int x = (z + 1) % 3, y = (z + 2) % 3;
+  if (direction[z] < 0.0f) std::swap(x, y);
+  const float shear_x = direction[x] / direction[z], shear_y = direction[y] / direction[z];
+  const float scale_z = 1.0f / direction[z];
+  float px[3], py[3], pz[3];
+  for (int k = 0; k < 3; ++k) {
+    const glm::vec3 v = t[k] - origin;
+    px[k] = v[x] - shear_x * v[z];
+    py[k] = v[y] - shear_y * v[z];
+    pz[k] = scale_z * v[z];
+  }
+  float weight[3];
+  for (int k = 0; k < 3; ++k) {
+    const int b = (k + 1) % 3, c = (k + 2) % 3;
+    weight[k] = px[c] * py[b] - py[c] * px[b];
+  }
+  if (weight[0] == 0.0f || weight[1] == 0.0f || weight[2] == 0.0f) {
+    for (int k = 0; k < 3; ++k) {
+      const int b = (k + 1) % 3, c = (k + 2) % 3;
+      weight[k] = static_cast<float>(static_cast<double>(px[c]) * py[b] -
+                                     static_cast<double>(py[c]) * px[b]);
+    }
+  }
+  const bool negative = weight[0] < 0.0f || weight[1] < 0.0f || weight[2] < 0.0f;
+  const bool positive = weight[0] > 0.0f || weight[1] > 0.0f || weight[2] > 0.0f;
+  const float determinant = weight[0] + weight[1] + weight[2];
+  if ((negative && positive) || !(std::abs(determinant) > 0.0f)) return answer;
+  const float scaled = (weight[0] * pz[0] + weight[1] * pz[1]) + weight[2] * pz[2];
+  const float distance = scaled * (1.0f / determinant);
+  if (!(distance > 0.0f)) return answer;
+  answer.hit = true;
+  answer.t = distance;
+  answer.point = distance * direction;
+  return answer;
+}
+
+class FloatSubject : public Subject {
+ public:
+  explicit FloatSubject(Test test) : test_(test) {}
+
+  void run(std::span<const Shot> shots, Answers& answers) override {
+    answers.tests.clear();
+    for (const Shot& shot : shots) {
+      for (const glm::vec3& direction : shot.directions) {
+        for (const Corners& t : shot.mesh->triangles) {
+          answers.tests.push_back(test_(shot.origin, direction, t));
+        }
+      }
+    }
+    nearest_by_t(shots, answers);
+  }
+
+ private:
+  Test test_;
+};
+
+SubjectKind kind(const char* name, const char* what, Test test) {
+  return {.name = name, .what = what, .share = 0.1, .make = [test] {
+            return std::make_unique<FloatSubject>(test);
+          }};
+}
+
+}  // namespace
+
+std::vector<SubjectKind> float_subjects() {
+  return {kind("Moeller-Trumbore", "the test most ray tracers use, in float32", moeller_trumbore),
+          kind("Woop 2013", "the watertight test, in float32, not fused", woop)};
+}
+
+}  // namespace raygate::lab

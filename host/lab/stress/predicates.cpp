@@ -1,0 +1,150 @@
+// What an exact decision costs: nanoseconds for each ray and triangle, by method and kind of case.
+// Compare the columns of one run.
+#include <gmpxx.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <stdexcept>
+
+#include "host/exact/exact.h"
+#include "host/lab/commands.h"
+#include "host/lab/results.h"
+#include "host/lab/stress/oracle.h"
+#include "host/lab/stress/suites.h"
+#include "host/lab/timing.h"
+
+namespace raygate::lab {
+namespace {
+
+constexpr int kRepeats = 7;
+
+/// Some shots of a suite; a benchmark goes through all their tests, again and again.
+struct Cases {
+  std::vector<Shot> shots;
+  std::size_t tests = 0;
+
+  Cases(const Suite& suite, std::size_t count) {
+    Random random(1);
+    const Generator generate = suite.make();
+    while (tests < count) tests += shots.emplace_back(generate(random)).tests();
+  }
+
+  /// How many of the tests `hits` says are hits.
+  template <class Hits>
+  std::size_t count(const Hits& hits) const {
+    std::size_t sum = 0;
+    for (const Shot& shot : shots) {
+      for (const glm::vec3& direction : shot.directions) {
+        for (const Corners& t : shot.mesh->triangles) sum += hits(shot.origin, direction, t);
+      }
+    }
+    return sum;
+  }
+};
+
+/// The definition in any arithmetic, without the tie-break.
+template <class Number>
+bool plain(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  using Vector = std::array<Number, 3>;
+  const auto minus = [](const glm::vec3& a, const glm::vec3& b) {
+    return Vector{Number(a.x) - Number(b.x), Number(a.y) - Number(b.y), Number(a.z) - Number(b.z)};
+  };
+  const auto cross = [](const Vector& a, const Vector& b) {
+    return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  const auto side = [](const Vector& a, const Vector& b) {
+    const Number sum = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return sum > 0 ? 1 : (sum < 0 ? -1 : 0);
+  };
+  const Vector i = minus(direction, glm::vec3(0.0f));
+  const Vector v[3] = {minus(t[0], origin), minus(t[1], origin), minus(t[2], origin)};
+  const int plane = side(v[0], cross(v[1], v[2]));
+  for (int k = 0; k < 3; ++k) {
+    if (side(i, cross(v[k], v[(k + 1) % 3])) != plane) return false;
+  }
+  return plane != 0;
+}
+
+struct Method {
+  const char* key;
+  std::size_t (*hits)(const Cases& cases);  // how many of the tests
+};
+
+template <bool (*hits)(const glm::vec3&, const glm::vec3&, const Corners&)>
+std::size_t count_with(const Cases& cases) {
+  return cases.count(hits);
+}
+
+bool ours(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  return hits_triangle({origin, direction}, t);
+}
+
+std::size_t count_with_oracle(const Cases& cases) {
+  std::size_t sum = 0;
+  for (const Shot& shot : cases.shots) {
+    for (const Verdict& verdict : find_truth(shot).verdicts) sum += verdict.hit;
+  }
+  return sum;
+}
+
+/// The median of some repeats of ten milliseconds or more each, in nanoseconds a test.
+double time_of(const Method& method, const Cases& cases) {
+  std::vector<double> times;
+  for (int i = 0; i < kRepeats; ++i) {
+    const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    double seconds = 0.0;
+    std::size_t rounds = 0, hits = 0;
+    for (; seconds < 0.01; ++rounds, seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start) {
+      hits += method.hits(cases);
+    }
+    if (hits > rounds * cases.tests) throw std::logic_error("more hits than tests");
+    times.push_back(1e9 * seconds / static_cast<double>(rounds * cases.tests));
+  }
+  return median(times);
+}
+
+Row row_of(const Suite& suite) {
+  // Rationals are slow: few cases, each often.
+  const Cases cases(suite, 2000);
+  const Method methods[] = {{"double_ns", count_with<plain<double>>},
+                            {"raygate_ns", count_with<ours>},
+                            {"float128_ns", count_with<plain<__float128>>},
+                            {"rationals_ns", count_with<plain<mpq_class>>},
+                            {"oracle_ns", count_with_oracle}};
+  Row row = {{"table", "predicates"}, {"suite", suite.name}};
+  for (const Method& method : methods) row[method.key] = time_of(method, cases);
+  row["raygate"] = cases.count(ours) == count_with_oracle(cases) ? "right" : "WRONG";
+  return row;
+}
+
+}  // namespace
+
+void add_predicates(CLI::App& lab, Common& common) {
+  auto* app = lab.add_subcommand("predicates",
+                                 "what an exact decision costs, beside rationals and __float128");
+  app->callback([&common] {
+    std::printf(
+        "Nanoseconds of a processor for each ray and triangle (median of %d). raygate: double "
+        "with\n"
+        "an error bound, and expansions where that is not enough. double and __float128 are not\n"
+        "exact; rationals are GMP's; the oracle of `lab stress` also finds t and the nearest.\n",
+        kRepeats);
+    Results results(common.results);
+    TextTable table({{"suite", "suite", -1, 18},
+                     {"double_ns", "double", 1, 9},
+                     {"raygate_ns", "raygate", 1, 9},
+                     {"float128_ns", "__float128", 1},
+                     {"rationals_ns", "rationals", 1},
+                     {"oracle_ns", "oracle", 1, 9},
+                     {"raygate", "raygate is"}});
+    for (const Suite& suite : all_suites()) {
+      if (suite.name == "useless") continue;  // has no rationals
+      const Row row = row_of(suite);
+      results.add(row);
+      table.print(row);
+      if (row["raygate"] != "right") common.status = 1;
+    }
+  });
+}
+
+}  // namespace raygate::lab

@@ -1,0 +1,161 @@
+// The stress test: engines and cheaper subjects against exact integers, on cases made to be hard.
+#include <malloc.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "host/lab/commands.h"
+#include "host/lab/stress/error_bounds.h"
+#include "host/lab/stress/minimise.h"
+#include "host/lab/stress/runner.h"
+
+namespace raygate::lab {
+namespace {
+
+struct Asked {
+  StressOptions options{.tests = 10'000'000};
+  std::vector<std::string> suites, subjects;
+  bool quiet = false, minimised = false;
+};
+
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.push_back(item.name);
+  return names;
+}
+
+/// Those of exact subjects, and with `all` everyone's, as test/regressions.txt takes them.
+void print_failures(std::span<const Row> rows, const std::vector<SubjectKind>& subjects, bool all) {
+  for (const SubjectKind& kind : subjects) {
+    if (!kind.exact && !all) continue;
+    std::set<std::string> seen;
+    const auto subject = kind.make();
+    const auto fails = [&](const Case& failure) {
+      return decides_wrongly(kind, *subject, failure);
+    };
+    for (const Row& row : rows) {
+      if (row["subject"] != kind.name) continue;
+      for (const std::string text : row["failures"]) {
+        // Alone, it may be decided otherwise than among others.
+        const Case failure = case_from(text);
+        const bool alone = fails(failure);
+        const std::string line = alone ? to_text(minimise(failure, fails)) : text;
+        if (!seen.insert(line).second) continue;
+        std::printf("# %s, %s%s\n%s\n", kind.name.c_str(), row["suite"].get<std::string>().c_str(),
+                    alone ? "" : ": only among other rays", line.c_str());
+      }
+    }
+  }
+}
+
+/// Exact arithmetic about depths asks for 2 MB, all the time in some suites: the heap keeps them,
+/// or the system would take and give every page of them again and again.
+void keep_memory() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 24);
+  mallopt(M_TRIM_THRESHOLD, 1 << 25);
+}
+
+/// What makes rows those of one run: the program, and all that they depend on.
+Row run_of(const StressOptions& options, const std::vector<SubjectKind>& subjects) {
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(program), {}};
+  return {{"program", digest(bytes)},
+          {"tests", options.tests},
+          {"seed", options.seed},
+          {"subjects", names_of(subjects)}};
+}
+
+/// How far off the unit's t may be, from a sine of 1 down to 1e-8, ten steps a decade.
+Row bounds() {
+  Row sines = Row::array(), ulps = Row::array();
+  for (int tenths = 0; tenths <= 80; ++tenths) {
+    sines.push_back(std::pow(10.0, -0.1 * tenths));
+    ulps.push_back(in_ulp(bound_of_t(sines.back())));
+  }
+  return {{"table", "bounds"}, {"sine", sines}, {"t_ulp", ulps}};
+}
+
+/// All rows but the bounds.
+std::vector<Row> stress_rows(const Results& results) {
+  std::vector<Row> rows = results.rows();
+  std::erase_if(rows, [](const Row& row) { return row["table"] != "stress"; });
+  return rows;
+}
+
+void print_suite(std::span<const Row> rows) {
+  std::printf("%-18s %6.1f s", rows[0]["suite"].get<std::string>().c_str(),
+              rows[0]["seconds"].get<double>());
+  for (const Row& row : rows) {
+    std::uint64_t bad = 0;
+    for (const char* key : {"wrong", "wrong_nearest", "leaks", "double_hits"}) {
+      bad += row[key].get<std::uint64_t>();
+    }
+    if (row["exact"]) {
+      bad +=
+          row["wrong_ties"].get<std::uint64_t>() + row["wrong_tied_nearest"].get<std::uint64_t>();
+    }
+    std::printf("  %s %llu", row["subject"].get<std::string>().c_str(),
+                static_cast<unsigned long long>(bad));
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+int run_stress(const Asked& asked, const std::filesystem::path& file) {
+  keep_memory();
+  const auto wanted = [](const std::vector<std::string>& list, const std::string& name) {
+    return list.empty() || std::ranges::count(list, name) > 0;
+  };
+  std::vector<SubjectKind> subjects = all_subjects();
+  std::erase_if(subjects, [&](const SubjectKind& s) { return !wanted(asked.subjects, s.name); });
+  Results results(file, run_of(asked.options, subjects));
+  std::set<std::string> done;
+  if (results.rows().empty()) results.add(bounds());
+  for (const Row& row : stress_rows(results)) done.insert(row["suite"]);
+  if (!done.empty() && !asked.quiet) {
+    std::printf("(%zu suites were there already, in %s)\n", done.size(), file.c_str());
+  }
+  std::vector<const Suite*> to_run;
+  for (const Suite& suite : all_suites()) {
+    if (wanted(asked.suites, suite.name) && !done.contains(suite.name)) to_run.push_back(&suite);
+  }
+  (void)run(to_run, subjects, asked.options, [&](const SuiteOutcome& outcome) {
+    const std::vector<Row> rows = rows_of(outcome, subjects);
+    results.add(rows);
+    if (!asked.quiet) print_suite(rows);
+  });
+  const std::vector<Row> rows = stress_rows(results);
+  print_failures(rows, subjects, asked.minimised);
+  const Verdicts verdicts = sum_up(rows, asked.options.seed);
+  std::printf("%s\n", verdicts.summary.c_str());
+  return verdicts.passed || !verdicts.judged ? 0 : 1;
+}
+
+}  // namespace
+
+void add_stress(CLI::App& lab, Common& common) {
+  auto* app = lab.add_subcommand(
+      "stress", "engines and cheaper arithmetic in hard cases; exit status 1: an engine was wrong");
+  const auto asked = std::make_shared<Asked>();
+  app->add_option("--tests", asked->options.tests,
+                  "tests of the cpu engine for each suite; others do their share of it");
+  app->add_option("--seed", asked->options.seed, "of everything random");
+  app->add_option("--threads", asked->options.threads, "suites run at once")
+      ->check(CLI::PositiveNumber);
+  app->add_option("--suite", asked->suites, "only these suites")
+      ->check(CLI::IsMember(names_of(all_suites())));
+  app->add_option("--subject", asked->subjects, "only these engines and variants")
+      ->check(CLI::IsMember(names_of(all_subjects())));
+  app->add_flag("--minimise", asked->minimised,
+                "print some wrong decisions of all subjects, made as simple as they can be");
+  app->add_flag("--quiet", asked->quiet, "the last line only");
+  app->callback([asked, &common] { common.status = run_stress(*asked, common.results); });
+}
+
+}  // namespace raygate::lab
