@@ -8,6 +8,7 @@
 #     parameters stand for; models that several programs use are built once.
 #
 #     PATCHES <folder>: modules found there are taken instead of those of hw/, to break them on purpose.
+#     NETLIST <file>: TOP is in that file, all of it, as Yosys wrote it.
 #
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...] [RANDOM_RESETS <filter>])
 #     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest. RANDOM_RESETS: those
@@ -60,7 +61,7 @@ set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-SYNCASYNCNET -fno-const-bit-op-tree --ass
 set(RAYGATE_CHECKS ${CMAKE_SOURCE_DIR}/sim/checks)  # bindings.sv binds them to the modules of hw/
 
 function(raygate_model NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES" "PARAMETERS")
+  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES;NETLIST" "PARAMETERS")
   if(NOT MODEL_TOP OR MODEL_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN] [SHARED], "
       "got ${ARGN}")
@@ -70,7 +71,13 @@ function(raygate_model NAME)
   if(NOT top_file)
     set(top_file ${CMAKE_CURRENT_SOURCE_DIR}/${MODEL_TOP}.sv)
   endif()
-  if(NOT EXISTS ${top_file})
+  set(patches)
+  set(options ${RAYGATE_VERILATED_OPTIONS})
+  if(MODEL_NETLIST)  # lint is for what people write; and it is compiled more often than run for long
+    set(top_file ${MODEL_NETLIST})
+    set(patches -Wno-lint -Wno-style -Wno-UNOPTFLAT)
+    list(APPEND options -O1)
+  elseif(NOT EXISTS ${top_file})
     message(FATAL_ERROR "raygate_model(${NAME}): no ${MODEL_TOP}.sv in hw/*/*.core or this folder")
   endif()
 
@@ -84,7 +91,6 @@ function(raygate_model NAME)
   if(MODEL_SHARED)
     list(APPEND open ${CMAKE_SOURCE_DIR}/sim/shared.vlt)
   endif()
-  set(patches)
   if(MODEL_PATCHES)
     set(patches -y ${MODEL_PATCHES})
   endif()
@@ -105,7 +111,7 @@ function(raygate_model NAME)
   target_include_directories(${NAME} SYSTEM PUBLIC ${dir})
   target_link_libraries(${NAME} PUBLIC verilated)
   target_compile_definitions(${NAME} PRIVATE VM_TRACE=$<BOOL:${MODEL_OPEN}>)
-  target_compile_options(${NAME} PRIVATE ${RAYGATE_VERILATED_OPTIONS})
+  target_compile_options(${NAME} PRIVATE ${options})
 endfunction()
 
 function(raygate_sim_test NAME)
@@ -118,7 +124,7 @@ function(raygate_sim_test NAME)
       add_test(NAME ${NAME}.random_reset_${seed}
         COMMAND ${NAME} --gtest_filter=${TEST_RANDOM_RESETS} --gtest_brief=1)
       set_tests_properties(${NAME}.random_reset_${seed} PROPERTIES
-        ENVIRONMENT RAYGATE_RANDOM_RESET=${seed} PASS_REGULAR_EXPRESSION "PASSED  . [1-9]")
+        ENVIRONMENT "RAYGATE_RANDOM_RESET=${seed};RAYGATE_STRESS=100000" PASS_REGULAR_EXPRESSION "PASSED  . [1-9]")
     endforeach()
   endif()
 endfunction()

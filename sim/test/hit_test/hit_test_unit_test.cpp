@@ -1,10 +1,10 @@
 // The paper's unit: its worked example, its timetable, and random streams against C++ floats.
 #include <gtest/gtest.h>
 
-#include "Vhit_test_unit_structural.h"
 #include "Vhit_test_unit_open.h"
 #include "Vhit_test_unit_open___024root.h"
 #include "Vhit_test_unit_paper.h"
+#include "Vhit_test_unit_structural.h"
 #include "sim/bus_stream.h"
 #include "sim/model.h"
 #include "sim/test/hit_test/float_stream.h"
