@@ -16,7 +16,7 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help verilate example render gallery frames test check soak fuzz lint analyze format clean
+.PHONY: help verilate example render gallery frames test check soak mutate fuzz lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -50,8 +50,15 @@ check: everything ## clang-tidy, and the host's tests under the sanitizers
 	@.ci/sanitize address,undefined
 	@.ci/sanitize thread
 
-soak: everything ## ten million tests of the pipelined unit with each number of lanes
+soak: everything ## ten million tests of the pipelined unit with each number of lanes and arithmetic
 	@RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
+
+COUNT ?= $(if $(QUICK),100,1000)
+mutate: ## single faults in each core that the tests' vectors catch: make mutate [COUNT=1000 | QUICK=1]
+	@$(SETUP) test
+	@cmake -S . -B build/mutate -G Ninja -DBUILD_TESTING=ON -DRAYGATE_MUTANTS=$(COUNT) >/dev/null
+	@cmake --build build/mutate -j $(JOBS) --target core_mutants
+	@python3 -m sim.mutate build/mutate --jobs $(JOBS)
 
 FUZZ_SECONDS ?= 60
 fuzz: ## run libFuzzer on the scene loader and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]

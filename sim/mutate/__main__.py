@@ -1,0 +1,122 @@
+"""`python3 -m sim.mutate BUILD`: how many single faults of the hardware the vectors of `make test` catch.
+
+For each core: a netlist with faults (netlist.py) runs the vectors with one fault after the other. A fault
+that survives is held against the sound netlist by ABC's equivalence check: one that changes no output
+for any input is no fault. What is left is listed, with its lines in hw/. `--one-in N`: only every N-th
+vector, which `make test` can spare the time for; the check is then that no more survive than
+`--at-most` percent."""
+
+import argparse
+import collections
+import concurrent.futures
+import dataclasses
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+
+@dataclasses.dataclass
+class Outcome:
+    """What became of a core's faults."""
+
+    core: str
+    faults: int
+    equivalent: int = 0
+    survivors: list[str] = dataclasses.field(default_factory=list)  # as the list has them
+
+    @property
+    def caught(self) -> int:
+        """By the vectors."""
+        return self.faults - self.equivalent - len(self.survivors)
+
+
+def run(command: list[object], **options: object) -> str:
+    """The output of `command`; raises CalledProcessError, with stderr shown, where it fails."""
+    return subprocess.run([str(word) for word in command], check=True, text=True,
+                          stdout=subprocess.PIPE, **options).stdout
+
+
+def equivalent(netlist: pathlib.Path, fault: str) -> bool:
+    """Whether the module in NETLIST.il gives the same outputs with this fault as without, by ABC within
+    20 s. False where that is not known."""
+    gates = "techmap; opt -fast; aigmap; opt_clean; write_aiger"
+    with tempfile.TemporaryDirectory() as folder:
+        mutate = re.sub(r" -ctrl mutant \d+ \d+", "", fault)
+        run(["yosys", "-q", "-p", f"read_rtlil {netlist}.il; {gates} {folder}/sound.aig; design -reset; "
+             f"read_rtlil {netlist}.il; {mutate}; {gates} {folder}/broken.aig"])
+        said = run(["yosys-abc", "-c", f"cec -T 20 {folder}/sound.aig {folder}/broken.aig"])
+    return "Networks are equivalent" in said
+
+
+def place(fault: str) -> str:
+    """mode, port and bit, and the innermost line of hw/."""
+    words = dict(re.findall(r"-(mode|port|portbit) (\S+)", fault))
+    lines = re.findall(r"-src \S*?(hw/\S+?):(\d+)", fault) or [("?", "0")]
+    file, line = lines[-1] if "wire" not in fault else lines[0]
+    return f"{file}:{line} {words['mode']} {words['port']}[{words['portbit']}]"
+
+
+def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, one_in: int,
+          prove: bool) -> Outcome:
+    """Runs a core's faults."""
+    netlist = netlists / core
+    faults = (netlists / f"{core}.list").read_text().splitlines()
+    program = programs / "core_mutants"
+    survived = [int(line) for line in run([program, core, f"{netlist}.list", one_in]).split()]
+    outcome = Outcome(core, len(faults))
+    if prove:
+        same = {number for number in survived if equivalent(netlist, faults[number - 1])}
+        outcome.equivalent = len(same)
+        survived = [number for number in survived if number not in same]
+        if one_in > 1 and survived:  # the others see every vector
+            survived = [int(line) for line in run([program, core, "-", 1],
+                                                  input="\n".join(map(str, survived))).split()]
+    outcome.survivors = [faults[number - 1] for number in survived]
+    return outcome
+
+
+def main() -> int:
+    """1 where too many faults survive or a program fails, 2 for what the user can mend."""
+    parser = argparse.ArgumentParser(prog="sim.mutate", description=__doc__)
+    parser.add_argument("build", type=pathlib.Path, help="CMake's build folder")
+    parser.add_argument("cores", nargs="*", help="all if none")
+    parser.add_argument("--one-in", type=int, default=0, metavar="N", help="see above")
+    parser.add_argument("--at-most", type=float, default=100.0, metavar="PERCENT", help="see above")
+    parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
+    given = parser.parse_args()
+    netlists = given.build / "sim" / "mutate"
+    cores = given.cores or sorted(file.stem for file in netlists.glob("*.list"))
+    if not cores:
+        print(f"sim.mutate: {netlists}: no netlists, expected core.list", file=sys.stderr)
+        return 2
+    try:
+        with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+            outcomes = list(pool.map(
+                lambda core: judge(core, given.build / "sim", netlists, given.one_in or 100,
+                                   not given.one_in), cores))
+    except (subprocess.CalledProcessError, FileNotFoundError) as error:
+        print(f"sim.mutate: {error}", file=sys.stderr)
+        return 1
+    print("| core | faults | caught | equivalent | survive |\n|---|---:|---:|---:|---:|")
+    for one in outcomes:
+        print(f"| {one.core} | {one.faults} | {one.caught} | {one.equivalent} | {len(one.survivors)} |")
+    faults = sum(one.faults for one in outcomes)
+    survivors = [(one.core, fault) for one in outcomes for fault in one.survivors]
+    if survivors and not given.one_in:
+        print("\nSurvivors, by line:")
+        lines = collections.Counter(f"{core}: {place(fault)}" for core, fault in survivors)
+        for line, count in sorted(lines.items()):
+            print(f"  {line}" + (f"  x {count}" if count > 1 else ""))
+    share = 100.0 * len(survivors) / max(faults, 1)
+    print(f"{faults} faults: {sum(one.caught for one in outcomes)} caught, "
+          f"{sum(one.equivalent for one in outcomes)} proven to be none, {len(survivors)} survive")
+    if faults == 0 or share > given.at_most:
+        print(f"sim.mutate: {share:.1f} % survive, expected at most {given.at_most:g}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

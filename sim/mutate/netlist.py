@@ -1,0 +1,68 @@
+"""`python3 -m sim.mutate.netlist`: a module of hw/ as Yosys elaborates it, with single faults in it, of
+which an input chooses one.
+
+Writes NAME.v, the flattened module with one more port, `mutant`: 0 for the sound module, k for fault k;
+NAME.list, Yosys's own lines, a fault each, with the lines of hw/ it is in; and NAME.il, the sound one.
+A fault inverts a bit at a cell's port or holds it at 0 or 1. They are chosen by the seed, evenly over
+modules, cells, wires and lines of source (Yosys's `mutate`, as YosysHQ's mcy uses it)."""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+
+from synth import cores
+
+# Yosys's other modes invert a bit where a neighbour is 0 or 1: two of those in one netlist make a loop.
+MODES = ("inv", "const0", "const1")
+
+
+def yosys(script: str) -> None:
+    """Runs a script; raises CalledProcessError with Yosys's own words on stderr."""
+    subprocess.run(["yosys", "-q", "-w", "Replacing memory", "-p", script], check=True,
+                   stdout=sys.stderr)
+
+
+def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int) -> int:
+    """Writes OUT.v, OUT.list and OUT.il; returns the number of faults."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    sources = " ".join(str(file) for file in
+                       dict.fromkeys(file for core in cores.names() for file in cores.files(core)))
+    chosen = " ".join(f"-chparam {name} {value}" for name, value in
+                      (text.split("=", 1) for text in parameters))
+    faults = out.with_suffix(".list")
+    # Of the modes that Yosys chooses from three in five are of use here.
+    yosys(f"read_verilog -sv -D SYNTHESIS -defer {sources}; hierarchy -check -top {top} {chosen}; "
+          f"proc; flatten; rename -top {top}; opt -full; opt_clean; write_rtlil {out}.il; "
+          f"mutate -list {2 * count + 20} -seed {seed} -o {faults}")
+    lines = [line for line in faults.read_text().splitlines()
+             if re.search(r"-mode (\w+)", line).group(1) in MODES][:count]
+    lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
+             for number, line in enumerate(lines, 1)]
+    faults.write_text("\n".join(lines) + "\n")
+    # Wires bit by bit: Verilator takes a word of which one bit depends on another for a loop.
+    yosys(f"read_rtlil {out}.il; script {faults}; splitnets -driver; opt_clean; "
+          f"write_verilog -noattr {out}.v")
+    return len(lines)
+
+
+def main() -> int:
+    """Exit status 2 where Yosys fails."""
+    parser = argparse.ArgumentParser(prog="sim.mutate.netlist", description=__doc__)
+    parser.add_argument("out", type=pathlib.Path, help="path and NAME of the files to write")
+    parser.add_argument("top", help="the module")
+    parser.add_argument("parameters", nargs="*", help="Name=value")
+    parser.add_argument("--count", type=int, default=1000, help="faults (%(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="(%(default)s)")
+    given = parser.parse_args()
+    try:
+        write(given.out, given.top, given.parameters, given.count, given.seed)
+    except subprocess.CalledProcessError as error:
+        print(f"sim.mutate.netlist: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
