@@ -1,7 +1,7 @@
 """`python3 -m synth.float_faults [CORE ...]`: single faults in the binary16 cores, refuted.
 
-The solver finds operands that show the fault. What the faulty core gives for them goes, as a vector,
-to build/sim/check_vectors, whose simulated core has no fault: it must differ.
+The solver finds operands that show the fault. What the faulty core gives for them goes, as a
+vector, to build/sim/check_vectors, whose simulated core has no fault: it must differ.
 """
 
 import argparse
@@ -40,7 +40,7 @@ def results(core: str, values: dict[str, str]) -> list[tuple[str, str]]:
 
 
 def differs(core: str, values: dict[str, str]) -> tuple[str, bool]:
-    """A counterexample as a vector, with what the faulty core gave; whether the sound core differs."""
+    """A counterexample as a vector, with the faulty result; whether the sound core differs."""
     vector = ""
     for operation, result in results(core, values):
         options = [operation, "--check-nans"]
@@ -93,7 +93,8 @@ def put_faults(core: str, count: int, seed: int) -> Faulty:
     folder.mkdir(parents=True, exist_ok=True)
     one = float_proofs.FloatProof(CLAIMS[core], "binary16", "structural")
     netlist, smt2 = folder / "netlist.il", folder / "faulty.smt2"
-    float_proofs.write_model(one, folder, str(netlist))
+    top = float_proofs.OPERATIONS[CLAIMS[core]].top
+    float_proofs.write_model(one.sources(), top, one.parameters, folder, str(netlist))
     tools.run(["yosys", "-c", float_proofs.FLOAT / "faults.tcl"], folder / "faults.log", {
         "NETLIST": str(netlist), "FAULTS": str(count), "SEED": str(seed),
         "LIST": str(folder / "faults.txt"), "SMT2": str(smt2)})
@@ -120,10 +121,13 @@ def refute(core: str, wanted: int, seed: int, limit: float, jobs: int) -> list[l
 def main() -> int:
     """Prints what came of every fault; 1 where one is open, 2 for what the user can mend."""
     parser = argparse.ArgumentParser(prog="synth.float_faults", description=__doc__)
-    parser.add_argument("cores", nargs="*", metavar="CORE", help=f"{', '.join(CLAIMS)}; all if none")
-    parser.add_argument("--count", type=int, default=50, help="so many refuted of each (%(default)s)")
+    parser.add_argument("cores", nargs="*", metavar="CORE",
+                        help=f"{', '.join(CLAIMS)}; all if none")
+    parser.add_argument("--count", type=int, default=50,
+                        help="so many refuted of each (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="chooses the faults (%(default)s)")
-    parser.add_argument("--limit", type=float, default=120, help="seconds for a fault (%(default)s)")
+    parser.add_argument("--limit", type=float, default=120,
+                        help="processor seconds for a fault (%(default)s)")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     given = parser.parse_args()
     for core in given.cores:

@@ -133,7 +133,8 @@ def all_proofs() -> list[Proof]:
     proofs += [Proof(f"float.{one.name}", one.says, "Bitwuzla",
                      functools.partial(float_proofs.proven, one), False, one.long)
                for one in float_proofs.PROOFS]
-    proofs += [Proof(f"float.lemma.{name}", says, "z3", functools.partial(float_proofs.lemma, name))
+    proofs += [Proof(f"float.lemma.{name}", says, "z3",
+                     functools.partial(float_proofs.lemma, name), False)
                for name, says in float_proofs.LEMMAS.items()]
     proofs += [Proof(f"float.specification.{one.name}", f"as MPFR, {float_proofs.VECTORS:,} times",
                      "evaluation", functools.partial(float_proofs.agrees_with_mpfr, one), False)

@@ -10,4 +10,5 @@ yosys proc
 yosys flatten
 yosys opt
 if {$::env(KEEP) ne ""} { yosys write_rtlil $::env(KEEP) }
+yosys dffunmap
 yosys write_smt2 -stbv -wires $::env(SMT2)
