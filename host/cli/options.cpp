@@ -36,6 +36,7 @@ Engine
   --no-skip NAMES            do work that cannot change the picture: culling,
                              records, light-behind, weightless, empty-tiles,
                              first-occluder, divisions or all
+
 Picture
   -o, --output NAME          NAME.exr, NAME.png, or NAME (or a folder) for both
   --size WxH                 the frame in pixels (640x480)
@@ -48,6 +49,7 @@ Picture
   --false-colour CHANNEL[:LOW:HIGH]=FILE.png   a channel in false colours
   --frames N                 a film of N pictures, NAME-0001 and on: along the
                              scene file's path, or once around the target
+
 Light
   --integrator NAME          primary: camera rays alone, lit from the camera;
                              whitted: shadows, reflection, refraction (default);

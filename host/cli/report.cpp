@@ -39,11 +39,11 @@ std::string headline(const Report& report) {
             std::to_string(options.window.height());
   }
   line += ", engine " + to_string(options.engine);
-  if (options.engine == Engine::kCpu) return line + ", " + plural(options.threads, "thread") + "\n";
-  line += ", unit " + options.unit;
-  if (options.engine != Engine::kModel) line += " (" + to_string(options.arith) + ")";
-  if (options.unit == "pipeline" && options.lanes > 1) {
-    line += " of " + std::to_string(options.lanes) + " lanes";
+  if (options.engine != Engine::kCpu) {
+    line += " (" + options.unit;
+    if (options.engine != Engine::kModel) line += ", " + to_string(options.arith);
+    if (options.lanes > 1) line += ", " + std::to_string(options.lanes) + " lanes";
+    line += ')';
   }
   return line + ", " + plural(options.threads, "thread") + "\n";
 }

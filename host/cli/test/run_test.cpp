@@ -88,7 +88,7 @@ TEST_F(Render, StatisticsAreWholeDocumentedAndAgree) {
   EXPECT_LE(parts, seconds.at("total").get<double>() + 1e-3);
   // The text says the same.
   EXPECT_NE(outcome.out.find("cornell.obj: "), std::string::npos);
-  EXPECT_NE(outcome.out.find("60x50, engine rtl, unit pipeline (structural), 2 threads\n"),
+  EXPECT_NE(outcome.out.find("60x50, engine rtl (pipeline, structural), 2 threads\n"),
             std::string::npos);
   for (const char* row : {"\nrays ", "\ntests ", "\nskipped ", "\nwrote "}) {
     EXPECT_NE(outcome.out.find(row), std::string::npos) << row;
