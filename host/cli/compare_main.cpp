@@ -22,25 +22,36 @@ namespace {
 
 constexpr int kTooFar = 1;
 
-constexpr const char* kFooter =
-    "Measures, over the pixels that both pictures hold, of PICTURE minus REFERENCE:\n"
-    "  rmse, mse      root of the mean square, and the mean square\n"
-    "  mae, max       mean and greatest magnitude\n"
-    "  relative_mse   mean of the squares over (REFERENCE squared + 0.01)\n"
-    "  psnr           decibels, of a peak of 1; infinite for equal pictures\n"
-    "  ssim           structural similarity (Wang et al., 2004) of what a display shows, at most "
-    "1\n"
-    "  differing      pixels with any difference, however small\n"
-    "  not_finite     pixels with a NaN or an infinity in one picture alone; they make errors\n"
-    "                 infinite\n"
-    "\n"
-    "Exit status:\n"
-    "  0  compared, and within all thresholds\n"
-    "  1  a threshold is exceeded\n"
-    "  2  a picture or the command line cannot be used\n"
-    "\n"
-    "Example:\n"
-    "  ./compare noisy.exr converged.exr --threshold rmse=0.02 --difference error.png";
+constexpr const char* kHelp =
+    R"(Usage: ./compare PICTURE REFERENCE [options]
+
+Compares an OpenEXR picture with a reference, over the pixels that both hold.
+
+  ./compare noisy.exr converged.exr --threshold rmse=0.02 --difference error.png
+
+  --threshold MEASURE=NUMBER  exit with status 1 if that measure is worse;
+                              may be given several times
+  --difference FILE.png       the largest difference of each pixel's channels in
+                              false colours
+  --scale NUMBER              the difference that is yellow there (the largest)
+  --channels NAMES            the channels to compare (R,G,B)
+  --json                      print the measures as a JSON object
+  -h, --help; --version
+
+Measures of PICTURE minus REFERENCE
+  rmse, mse                   root of the mean square; mean square
+  mae, max                    mean and greatest magnitude
+  relative_mse                mean of square / (REFERENCE squared + 0.01)
+  psnr                        decibels of a peak of 1; infinite if equal
+  ssim                        structural similarity (Wang et al., 2004) of what
+                              a display shows, at most 1
+  differing                   pixels with any difference, however small
+  not_finite                  pixels with a NaN or an infinity in one picture
+                              only, which make the errors infinite
+
+Exit status: 0 within all thresholds; 1 a threshold is exceeded; 2 a picture,
+the command line or an output cannot be used.
+)";
 
 struct CompareOptions {
   std::string picture, reference, difference;
@@ -74,17 +85,20 @@ bool is_kept(const std::string& text, const std::vector<Measure>& measures) {
   const std::string name = text.substr(0, equals);
   const auto limit =
       parse_number<double>(std::string_view(text).substr(std::min(equals + 1, text.size())));
-  std::string names;
+  std::string list;
+  std::vector<std::string> names;
   for (const Measure& measure : measures) {
-    names += (names.empty() ? "" : ", ") + std::string(measure.name);
+    list += (list.empty() ? "" : ", ") + std::string(measure.name);
+    names.emplace_back(measure.name);
     if (measure.name != name || !limit || std::isnan(*limit)) continue;
     if (!measure.value) {
       throw InputError("--threshold: " + name + " needs channels R,G,B and 11x11 pixels");
     }
     return measure.more_is_better ? *measure.value >= *limit : *measure.value <= *limit;
   }
-  throw InputError("--threshold: expected MEASURE=NUMBER with one of " + names + ", got '" + text +
-                   "'");
+  const bool is_known = std::ranges::find(names, name) != names.end();
+  fail_value("--threshold", text, "MEASURE=NUMBER with one of " + list,
+             is_known ? "" : did_you_mean(name, names));
 }
 
 std::vector<std::string> channel_names(const std::string& list) {
@@ -158,31 +172,20 @@ int compare_files(const CompareOptions& options) {
 
 int run(int argc, char** argv) {
   CompareOptions options;
-  CLI::App app("Says how far an OpenEXR picture is from a reference.", "compare");
-  app.footer(kFooter);
-  app.get_formatter()->column_width(30);
-  app.add_option("picture", options.picture, "an OpenEXR file")->type_name("PICTURE")->required();
-  app.add_option("reference", options.reference, "what it should be like")
-      ->type_name("REFERENCE")
-      ->required();
-  app.add_option("--threshold", options.thresholds,
-                 "exit with status 1 if that measure is worse;\nmay be given several times")
-      ->type_name("MEASURE=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--difference", options.difference,
-                 "the largest difference of each pixel's\nchannels in false colours")
-      ->type_name("FILE.png");
-  app.add_option("--scale", options.scale, "the difference that is yellow there (the largest)")
-      ->type_name("NUMBER")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--channels", options.channels, "what is compared (R,G,B)")->type_name("NAMES");
-  app.add_flag("--json", options.json, "the measures as a JSON object");
-  app.set_help_flag("-h,--help", "print this help");
-  app.set_version_flag("--version", std::string(kSoftware), "print the version");
+  CLI::App app("", "compare");
+  app.add_option("PICTURE", options.picture)->required();
+  app.add_option("REFERENCE", options.reference)->required();
+  app.add_option("--threshold", options.thresholds)->allow_extra_args(false);
+  app.add_option("--difference", options.difference);
+  app.add_option("--scale", options.scale)->check(CLI::PositiveNumber);
+  app.add_option("--channels", options.channels);
+  app.add_flag("--json", options.json);
+  app.set_help_flag("-h,--help");
+  app.set_version_flag("--version", std::string(kSoftware));
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    print(app.help());
+    print(kHelp);
     return 0;
   } catch (const CLI::CallForVersion&) {
     print(std::string(kSoftware) + "\n");

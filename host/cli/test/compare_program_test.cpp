@@ -82,6 +82,8 @@ TEST_F(ComparePictures, WhatCannotBeComparedIsRefused) {
   expect_refused({"a.exr", "b.exr", "--channels", "P.X"}, "a.exr: no channel P.X; ");
   expect_refused({"a.exr", "b.exr", "--channels", "R,,G"}, "--channels: expected ");
   expect_refused({"a.exr", "b.exr", "--threshold", "beauty=1"}, "--threshold: expected ");
+  EXPECT_NE(compare({"a.exr", "b.exr", "--threshold", "rsme=1"}).err.find("did you mean rmse?"),
+            std::string::npos);
   expect_refused({"a.exr", "b.exr", "--threshold", "mse"}, "--threshold: expected ");
   expect_refused({"a.exr", "crop.exr", "--threshold", "ssim=1"}, "--threshold: ssim needs ");
   expect_refused({"a.exr", "b.exr", "--scale", "-1"}, "--scale: ");
