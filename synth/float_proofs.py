@@ -7,6 +7,7 @@ numbers that follow from the format.
 """
 
 import dataclasses
+import functools
 import importlib.util
 import json
 import pathlib
@@ -58,10 +59,13 @@ OPERATIONS = {
         "ExpWidth $E FracWidth $F QuotientBits 21"),
     "srt_row": Operation(
         "srt_row", "a row of the divider: w' = 4 w - digit d, and |w'| <= 2/3 d again",
-        ("srt",), (), "Width $N DigitsWidth 2"),
+        ("srt",), (), "Width $N"),
+    "srt_first_row": Operation(
+        "srt_first_row", "the first row: w = 2 x - digit d, and |w| <= 2/3 d",
+        ("srt",), (), "Width $N"),
     "srt_ends": Operation(
-        "srt_divider_stages", "first digit, remainder and quotient, around any rows", ("srt",),
-        ("srt_row",), "Width $S Rows $ROWS"),
+        "srt_divider_stages", "what enters the rows, remainder and quotient, around any rows",
+        ("srt",), ("srt_row", "srt_first_row"), "Width $S Rows $ROWS"),
     "decode": Operation("", "a number is its significand by a power of two",
                         ("format", "multiply")),
     "sticky": Operation("", "what is left of a quotient may count as half a place",
@@ -121,8 +125,13 @@ class FloatProof:
 
         chain = "".join(
             f"(= free_{wire}_i_{row} {f'free_{wire}_o_{row - 1}' if wire != 'divisor' else wire})"
-            for row in range(2, rows + 1)
-            for wire in ("sum", "carry", "positives", "negatives", "divisor"))
+            for row in range(1, rows + 1) for wire in ("sum", "carry", "divisor"))
+
+        def digits(first: str, sign: str) -> str:
+            """The digits of a sign, the first one on top."""
+            return functools.reduce(lambda upper, row: f"(concat {upper} free_{sign}_o_{row})",
+                                    range(1, rows + 1), first)
+
         return {
             # format
             "E": exp, "S": frac + 1, "F": frac, "W": width, "SIGN": width - 1, "QUIET": frac - 1,
@@ -150,6 +159,8 @@ class FloatProof:
             "N": residual, "N4": residual + 4, "N2": residual + 2, "N_TOP": residual - 1,
             "N_NEXT": residual - 2, "ROWS": rows, "Q1": 2 * rows + 1,
             "CHAIN": f"(and true {chain})",
+            "POSITIVES": digits("free_digit_o_0", "positive"),
+            "NEGATIVES": digits("#b00", "negative"),
         }
 
     def files(self) -> list[pathlib.Path]:
@@ -181,6 +192,7 @@ PROOFS = [
       for kind in (*ADDERS, "behavioural")),
     *(FloatProof(part, name) for part in ("decode", "sticky") for name in FORMATS),
     FloatProof("divide_cut", "binary32", "graded", 21),
+    *(FloatProof("srt_first_row", name) for name in FORMATS),
     FloatProof("srt_ends", "binary32", "graded", 21),
     *(dataclasses.replace(one, long=True) for one in _CORES
       if (one.operation, one.format) == ("add", "binary32")),

@@ -6,8 +6,7 @@
 //         the leading bit: exact, so only a leading-zero count and a left shift
 //
 // Cuts: bit 0, 1, 2 puts registers between ordering and adding, between adding and rounding, behind
-// the result. As many clocks of latency as cuts, one operation a clock; clocks without enable_i don't
-// count. No cut: combinational. The rounding mode is used in several stages and should stay the same.
+// the result. As many clocks of latency as cuts, one operation a clock. No cut: combinational. The rounding mode is used in several stages and should stay the same.
 //
 // Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when
 // rounding down, unless both addends are zeros of one sign. Infinity minus infinity is invalid. A
@@ -21,11 +20,10 @@ module fp_adder_stages #(
   parameter bit [2:0]    Cuts      = 3'b000
 ) (
   input  logic                        clk_i,
-  input  logic                        enable_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic                        subtract_i,
-  input  fp_pkg::rounding_mode_e      rounding_mode_i,
+  input  logic [2:0]                  rounding_mode_i,
   input  logic                        tininess_after_i,
   output logic [ExpWidth+FracWidth:0] result_o,
   output fp_pkg::flags_t              flags_o
@@ -34,7 +32,6 @@ module fp_adder_stages #(
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
   localparam int unsigned NearWidth = FracWidth + 2;  // one place more, for a neighbour exponent
   localparam int unsigned FarWidth = FracWidth + 3;  // two integer bits, fraction, guard
-  localparam int unsigned ShiftWidth = $clog2(FarWidth + 1);
   localparam int unsigned CountWidth = $clog2(NearWidth);
 
   // ---- Unpack; subtracting is adding with the other sign
@@ -144,57 +141,43 @@ module fp_adder_stages #(
   assign near_0 = subtract & ~nan & ~infinity & (distance == '0);
   assign near_1 = subtract & ~nan & ~infinity & (distance == ExpWidth'(1));
 
-  if (Cuts[0]) begin : gen_cut_0
-    always_ff @(posedge clk_i) begin
-      if (enable_i) begin
-        {sign_1, subtract_1, odd_1, near_0_1, near_1_1, nan_1, infinity_1, invalid_1, big_exp_1,
-         distance_1, big_sig_1, small_sig_1} <= {
-          sign,
-          subtract,
-          odd,
-          near_0,
-          near_1,
-          nan,
-          infinity,
-          invalid,
-          big_exp,
-          distance,
-          big_sig,
-          small_sig
-        };
-      end
-    end
-  end else begin : gen_no_cut_0
-    assign {sign_1, subtract_1, odd_1, near_0_1, near_1_1, nan_1, infinity_1, invalid_1, big_exp_1,
-            distance_1, big_sig_1, small_sig_1} = {
-      sign,
-      subtract,
-      odd,
-      near_0,
-      near_1,
-      nan,
-      infinity,
-      invalid,
-      big_exp,
-      distance,
-      big_sig,
-      small_sig
-    };
-  end
+  delay_line #(
+    .Width(2 * ExpWidth + 8),
+    .Depth(32'(Cuts[0]))
+  ) u_ordered (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({sign, subtract, odd, near_0, near_1, nan, infinity, invalid, big_exp, distance}),
+    .data_o({sign_1, subtract_1, odd_1, near_0_1, near_1_1, nan_1, infinity_1, invalid_1, big_exp_1,
+             distance_1})
+  );
+  delay_line #(
+    .Width(2 * SigWidth),
+    .Depth(32'(Cuts[0]))
+  ) u_significands (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({big_sig, small_sig}),
+    .data_o({big_sig_1, small_sig_1})
+  );
 
   // ---- Far path: align. A difference is taken one place further left: its value, doubled, is in
   // [1, 4) like that of a sum (but for those that the near path gives), and its exponent one less.
 
-  logic [FarWidth-1:0] far_big, far_small, far_aligned, far_lost;
-  logic [ShiftWidth-1:0] far_shift;
+  logic [FarWidth-1:0] far_big, far_small, far_aligned;
   logic far_sticky;
 
   assign far_big = subtract_1 ? {big_sig_1, 2'b00} : {1'b0, big_sig_1, 1'b0};
   assign far_small = subtract_1 ? {small_sig_1, 2'b00} : {1'b0, small_sig_1, 1'b0};
-  assign far_shift = |(distance_1 >> ShiftWidth) ? '1 : ShiftWidth'(distance_1);
-  assign far_aligned = far_small >> far_shift;
-  assign far_lost = far_small & ~({FarWidth{1'b1}} << far_shift);
-  assign far_sticky = |far_lost;
+  sticky_right_shift #(
+    .Width(FarWidth),
+    .AmountWidth(ExpWidth)
+  ) u_align (
+    .a_i(far_small),
+    .amount_i(distance_1),
+    .shifted_o(far_aligned),
+    .lost_o(far_sticky)
+  );
 
   // ---- Far path: add. A lost part of the subtrahend takes the place of the one that completes its
   // complement: the difference is then too low by less than a place, which the sticky bit tells.
@@ -272,41 +255,25 @@ module fp_adder_stages #(
   logic [FarWidth-1:0] far_sum_2;
   logic [NearWidth-1:0] near_difference_2, near_mark_2;
 
-  if (Cuts[1]) begin : gen_cut_1
-    always_ff @(posedge clk_i) begin
-      if (enable_i) begin
-        {sign_2, near_2, nan_2, infinity_2, invalid_2, far_sticky_2, big_exp_2, far_exp_2,
-         far_sum_2, near_difference_2, near_mark_2} <= {
-          sign_1,
-          near,
-          nan_1,
-          infinity_1,
-          invalid_1,
-          far_sticky,
-          big_exp_1,
-          far_exp,
-          far_sum,
-          near_difference,
-          near_mark
-        };
-      end
-    end
-  end else begin : gen_no_cut_1
-    assign {sign_2, near_2, nan_2, infinity_2, invalid_2, far_sticky_2, big_exp_2, far_exp_2,
-            far_sum_2, near_difference_2, near_mark_2} = {
-      sign_1,
-      near,
-      nan_1,
-      infinity_1,
-      invalid_1,
-      far_sticky,
-      big_exp_1,
-      far_exp,
-      far_sum,
-      near_difference,
-      near_mark
-    };
-  end
+  delay_line #(
+    .Width(2 * ExpWidth + FarWidth + 6),
+    .Depth(32'(Cuts[1]))
+  ) u_far (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({sign_1, near, nan_1, infinity_1, invalid_1, far_sticky, big_exp_1, far_exp, far_sum}),
+    .data_o({sign_2, near_2, nan_2, infinity_2, invalid_2, far_sticky_2, big_exp_2, far_exp_2,
+             far_sum_2})
+  );
+  delay_line #(
+    .Width(2 * NearWidth),
+    .Depth(32'(Cuts[1]))
+  ) u_near (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({near_difference, near_mark}),
+    .data_o({near_difference_2, near_mark_2})
+  );
 
   // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one:
   // what is left is subnormal, or zero, and has the exponent field 0. Nothing is counted where this path
@@ -373,15 +340,23 @@ module fp_adder_stages #(
 
   // ---- Last cut
 
-  if (Cuts[2]) begin : gen_cut_2
-    always_ff @(posedge clk_i) if (enable_i) {result_o, flags_o} <= {result, flags};
-  end else begin : gen_no_cut_2
-    assign {result_o, flags_o} = {result, flags};
-  end
-
-  if (Cuts == '0) begin : gen_combinational
-    logic unused_clock;
-    assign unused_clock = clk_i & enable_i;
-  end
+  delay_line #(
+    .Width(ExpWidth + FracWidth + 1),
+    .Depth(32'(Cuts[2]))
+  ) u_result (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(result),
+    .data_o(result_o)
+  );
+  delay_line #(
+    .Width($bits(flags)),
+    .Depth(32'(Cuts[2]))
+  ) u_flags (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(flags),
+    .data_o(flags_o)
+  );
 
 endmodule

@@ -7,11 +7,11 @@
 // printed in the paper's worked example, up to 5 ulp low in binary32). Only a subnormal result is
 // then still rounded, from what the cut has left; what was cut off raises no flag.
 //
-// Pipelined = 0: combinational. Pipelined = 1: registers behind normalising, behind every stage of the
-// significands' division and behind the result, a division a clock, latency Rows + 5 (Rows: two bits
-// of the quotient each, 12 in binary32); clocks without enable_i don't count. Only what came with
-// valid_i moves; in other clocks the outputs mean nothing. The rounding mode is used in the last stage
-// only.
+// Cuts: registers behind normalising (bit 0), each stage of the significands' division (bits 1 to
+// Rows + 3, see srt_divider_stages; Rows: two bits of the quotient each, 12 in binary32) and the result
+// (bit Rows + 4). As many clocks of latency as cuts, a division a clock. No cut: combinational. Registers
+// load only what came with valid_i; in other clocks the outputs mean nothing. The rounding mode is used
+// in the last stage only.
 //
 // Takes every bit pattern. A finite number by zero is infinity and raises
 // divide_by_zero; 0/0 and inf/inf are invalid.
@@ -22,14 +22,13 @@ module fp_divider_stages #(
   parameter int unsigned Arith        = arith_pkg::Structural,
   parameter int unsigned Adder        = arith_pkg::AdderGraded,
   parameter int unsigned QuotientBits = 0,
-  parameter bit          Pipelined    = 1'b0
+  parameter bit [31:0]   Cuts         = 32'd0
 ) (
   input  logic                        clk_i,
-  input  logic                        enable_i,
   input  logic                        valid_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
-  input  fp_pkg::rounding_mode_e      rounding_mode_i,
+  input  logic [2:0]                  rounding_mode_i,
   input  logic                        tininess_after_i,
   output logic [ExpWidth+FracWidth:0] result_o,
   output fp_pkg::flags_t              flags_o
@@ -171,25 +170,33 @@ module fp_divider_stages #(
   logic sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2;
   logic valid_1, divided;
 
-  if (Pipelined) begin : gen_first_cut
-    always_ff @(posedge clk_i) begin
-      if (enable_i) valid_1 <= valid_i;
-      if (enable_i & valid_i) begin
-        a_norm_1 <= a_norm;
-        b_norm_1 <= b_norm;
-        exp_difference_1 <= exp_difference;
-        count_difference_1 <= count_difference;
-        specials_1 <= {a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero};
-      end
-    end
-  end else begin : gen_no_first_cut
-    assign valid_1 = valid_i;
-    assign a_norm_1 = a_norm;
-    assign b_norm_1 = b_norm;
-    assign exp_difference_1 = exp_difference;
-    assign count_difference_1 = count_difference;
-    assign specials_1 = {a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero};
-  end
+  delay_line #(
+    .Width(1),
+    .Depth(32'(Cuts[0]))
+  ) u_valid (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(valid_i),
+    .data_o(valid_1)
+  );
+  delay_line #(
+    .Width(2 * SigWidth),
+    .Depth(32'(Cuts[0]))
+  ) u_significands (
+    .clk_i,
+    .enable_i(valid_i),
+    .data_i({a_norm, b_norm}),
+    .data_o({a_norm_1, b_norm_1})
+  );
+  delay_line #(
+    .Width(2 * RoundExpWidth + 6),
+    .Depth(32'(Cuts[0]))
+  ) u_exponents (
+    .clk_i,
+    .enable_i(valid_i),
+    .data_i({exp_difference, count_difference, a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero}),
+    .data_o({exp_difference_1, count_difference_1, specials_1})
+  );
 
   adder #(
     .Width(RoundExpWidth),
@@ -211,20 +218,19 @@ module fp_divider_stages #(
   srt_divider_stages #(
     .Width(SigWidth),
     .Rows(Rows),
-    .BesideWidth(RoundExpWidth + 6),
+    .SideWidth(RoundExpWidth + 6),
     .Arith(Arith),
     .Adder(Adder),
-    .Pipelined(Pipelined)
+    .Cuts(Cuts >> 1)
   ) u_divide (
     .clk_i,
-    .enable_i,
     .valid_i(valid_1),
     .dividend_i(a_norm_1),
     .divisor_i(b_norm_1),
-    .beside_i({exponent, specials_1}),
+    .side_i({exponent, specials_1}),
     .quotient_o(quotient),
     .remainder_o(remainder),
-    .beside_o({exponent_2, sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2}),
+    .side_o({exponent_2, sign_2, nan_2, infinity_2, zero_2, invalid_2, by_zero_2}),
     .valid_o(divided)
   );
 
@@ -274,12 +280,14 @@ module fp_divider_stages #(
 
   // ---- Last cut
 
-  if (Pipelined) begin : gen_result
-    always_ff @(posedge clk_i) if (enable_i & divided) {result_o, flags_o} <= {result, flags};
-  end else begin : gen_combinational
-    logic unused;
-    assign unused = clk_i & enable_i & divided;
-    assign {result_o, flags_o} = {result, flags};
-  end
+  delay_line #(
+    .Width(ExpWidth + FracWidth + 6),
+    .Depth(32'(Cuts[Rows+4]))
+  ) u_result (
+    .clk_i,
+    .enable_i(divided),
+    .data_i({result, flags}),
+    .data_o({result_o, flags_o})
+  );
 
 endmodule

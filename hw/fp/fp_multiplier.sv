@@ -10,7 +10,7 @@ module fp_multiplier #(
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
-  input  fp_pkg::rounding_mode_e      rounding_mode_i,
+  input  logic [2:0]                  rounding_mode_i,
   input  logic                        tininess_after_i,
   output logic [ExpWidth+FracWidth:0] result_o,
   output fp_pkg::flags_t              flags_o
@@ -24,7 +24,6 @@ module fp_multiplier #(
     .ConstantRow(ConstantRow)
   ) u_stages (
     .clk_i(1'b0),
-    .enable_i(1'b0),
     .a_i,
     .b_i,
     .rounding_mode_i,

@@ -8,8 +8,7 @@
 // Arith, Adder: see arith_pkg.
 // ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
 // Cuts: bit 0 and 1 put registers behind the product, and behind the result. As many clocks of
-// latency as cuts, one operation a clock; clocks without enable_i don't count. No cut:
-// combinational. The rounding mode is used in the second stage only.
+// latency as cuts, one operation a clock. No cut: combinational. The rounding mode is used in the second stage only.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
 // operands' signs, also that of zeros and infinities. Zero times infinity is invalid.
@@ -23,10 +22,9 @@ module fp_multiplier_stages #(
   parameter bit [1:0]    Cuts        = 2'b00
 ) (
   input  logic                        clk_i,
-  input  logic                        enable_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
-  input  fp_pkg::rounding_mode_e      rounding_mode_i,
+  input  logic [2:0]                  rounding_mode_i,
   input  logic                        tininess_after_i,
   output logic [ExpWidth+FracWidth:0] result_o,
   output fp_pkg::flags_t              flags_o
@@ -35,7 +33,6 @@ module fp_multiplier_stages #(
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
   localparam int unsigned ProdWidth = 2 * SigWidth;  // two integer bits
   localparam int unsigned LeftWidth = $clog2(SigWidth);
-  localparam int unsigned RightWidth = $clog2(FracWidth + 3);
 
   // ---- Unpack
 
@@ -126,14 +123,6 @@ module fp_multiplier_stages #(
     .zero_o(unused_zero)
   );
 
-  // ---- Right shift: by -exp = ~exp + 1, where exp is negative; all far ones leave a sticky bit alone
-
-  logic [ExpWidth-1:0] complement;
-  logic [RightWidth-1:0] right;
-
-  assign complement = ~exp[ExpWidth-1:0];
-  assign right = |(complement >> RightWidth) ? '1 : RightWidth'(complement);
-
   // ---- Specials
 
   logic sign, nan, infinity, zero, invalid;
@@ -174,35 +163,44 @@ module fp_multiplier_stages #(
   logic [ProdWidth-1:0] product_1;
   logic [ExpWidth:0] exp_1;
   logic [LeftWidth-1:0] left_1;
-  logic [RightWidth-1:0] right_1;
-  logic exp_negative_1, sign_1, nan_1, infinity_1, zero_1, invalid_1;
+  logic sign_1, exp_negative_1, nan_1, infinity_1, zero_1, invalid_1;
 
-  if (Cuts[0]) begin : gen_cut_0
-    always_ff @(posedge clk_i) begin
-      if (enable_i) begin
-        {product_1, exp_1, left_1, right_1, exp_negative_1, sign_1, nan_1, infinity_1, zero_1,
-         invalid_1} <=
-            {
-          product, exp_less_left, left, right, exp_negative, sign, nan, infinity, zero, invalid
-        };
-      end
-    end
-  end else begin : gen_no_cut_0
-    assign {product_1, exp_1, left_1, right_1, exp_negative_1, sign_1, nan_1, infinity_1, zero_1,
-            invalid_1} =
-        {
-      product, exp_less_left, left, right, exp_negative, sign, nan, infinity, zero, invalid
-    };
-  end
+  delay_line #(
+    .Width(ProdWidth),
+    .Depth(32'(Cuts[0]))
+  ) u_product (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(product),
+    .data_o(product_1)
+  );
+  delay_line #(
+    .Width(ExpWidth + LeftWidth + 7),
+    .Depth(32'(Cuts[0]))
+  ) u_beside_product (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({exp_negative ? exp : exp_less_left, left, exp_negative, sign, nan, infinity, zero,
+             invalid}),
+    .data_o({exp_1, left_1, exp_negative_1, sign_1, nan_1, infinity_1, zero_1, invalid_1})
+  );
 
-  // ---- Shift
+  // ---- Shift: to the left, or by -exp = ~exp + 1 to the right, where exp is negative
 
-  logic [ProdWidth-1:0] half, lost;
+  logic [ProdWidth-2:0] shifted;
+  logic lost;
   logic [ProdWidth:0] placed;  // with a place for all that is lost to the right
 
-  assign half = product_1 >> 1;
-  assign lost = product_1 & ~({{(ProdWidth - 1) {1'b1}}, 1'b0} << right_1);
-  assign placed = exp_negative_1 ? {half >> right_1, |lost} : {product_1 << left_1, 1'b0};
+  sticky_right_shift #(
+    .Width(ProdWidth - 1),
+    .AmountWidth(ExpWidth)
+  ) u_right (
+    .a_i(product_1[ProdWidth-1:1]),
+    .amount_i(~exp_1[ExpWidth-1:0]),
+    .shifted_o(shifted),
+    .lost_o(lost)
+  );
+  assign placed = exp_negative_1 ? {1'b0, shifted, lost | product_1[0]} : {product_1 << left_1, 1'b0};
 
   // ---- Round
 
@@ -231,15 +229,23 @@ module fp_multiplier_stages #(
 
   // ---- Last cut
 
-  if (Cuts[1]) begin : gen_cut_1
-    always_ff @(posedge clk_i) if (enable_i) {result_o, flags_o} <= {result, flags};
-  end else begin : gen_no_cut_1
-    assign {result_o, flags_o} = {result, flags};
-  end
-
-  if (Cuts == '0) begin : gen_combinational
-    logic unused_clock;
-    assign unused_clock = clk_i & enable_i;
-  end
+  delay_line #(
+    .Width(ExpWidth + FracWidth + 1),
+    .Depth(32'(Cuts[1]))
+  ) u_result (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(result),
+    .data_o(result_o)
+  );
+  delay_line #(
+    .Width($bits(flags)),
+    .Depth(32'(Cuts[1]))
+  ) u_flags (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(flags),
+    .data_o(flags_o)
+  );
 
 endmodule

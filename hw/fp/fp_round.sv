@@ -35,7 +35,7 @@ module fp_round #(
   input  logic                          zero_i,
   input  logic                          invalid_i,
   input  logic                          divide_by_zero_i,
-  input  fp_pkg::rounding_mode_e        rounding_mode_i,
+  input  logic [2:0]                    rounding_mode_i,
   input  logic                          tininess_after_i,
   output logic [ExpWidth+FracWidth:0]   result_o,
   output fp_pkg::flags_t                flags_o
@@ -67,19 +67,21 @@ module fp_round #(
   assign base = exponent_i[FieldWidth-1:0] & {FieldWidth{~negative}};
 
   if (SubnormalShift) begin : g_shift
-    // By -exponent_i = ~exponent_i + 1; all from SigWidth on leave the sticky bit alone.
-    localparam int unsigned ShiftWidth = $clog2(SigWidth);
-    localparam int unsigned MaxShift = 2 ** ShiftWidth - 1;
-    logic [ExpWidth:0] complement;
-    logic [ShiftWidth-1:0] amount;
-    logic [SigWidth-1:0] half, lost;
+    // By -exponent_i = ~exponent_i + 1
+    logic [SigWidth-2:0] shifted;
+    logic lost;
 
-    assign complement = ~exponent_i[ExpWidth:0];
-    assign amount = (complement > (ExpWidth + 1)'(MaxShift)) ? ShiftWidth'(MaxShift)
-                                                             : complement[ShiftWidth-1:0];
-    assign half = significand_i >> 1;
-    assign lost = significand_i & ~({{(SigWidth - 1) {1'b1}}, 1'b0} << amount);
-    assign placed = negative ? (half >> amount) | SigWidth'(|lost) : significand_i;
+    sticky_right_shift #(
+      .Width(SigWidth - 1),
+      .AmountWidth(ExpWidth + 1)
+    ) u_shift (
+      .a_i(significand_i[SigWidth-1:1]),
+      .amount_i(~exponent_i[ExpWidth:0]),
+      .shifted_o(shifted),
+      .lost_o(lost)
+    );
+    assign placed = negative ? {1'b0, shifted[SigWidth-2:1], shifted[0] | lost | significand_i[0]}
+                             : significand_i;
   end else begin : g_in_place
     assign placed = significand_i;
   end

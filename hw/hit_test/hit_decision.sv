@@ -26,6 +26,10 @@ module hit_decision #(
   output logic [hit_test_pkg::TErrorWidth-1:0] t_error_o
 );
 
+  if (FracWidth < 7 || FracWidth > 26) begin : gen_check
+    $error("hit_decision: the bound of t's error holds for 7 <= FracWidth <= 26");
+  end
+
   localparam int unsigned MaxGrazing = hit_test_pkg::max_grazing(FracWidth);
   localparam logic [Width-2:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 

@@ -21,11 +21,12 @@
 //                    If neither found_o nor a report, report_tag_o is the tag of the last test.
 //   point_valid_o    point_o is the P of a burst that was closed (and found) earlier; in their order
 //
-// ready_o and valid_o are registers; ready_o is true but where nobody takes the results, when the
-// whole unit stands still.
+// ready_o and valid_o are registers. What has been taken in never stands still: a test is taken only while
+// the queue of results has room for all that may be on its way, a word from every clock of the latency.
+// So ready_o is low only where results are not taken.
 //
 // All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are
-// ((0 + x) + y) + z, rounded after each operation. RoundingMode: one for all, RoundNearestEven for
+// (x + y) + z, rounded after each operation. RoundingMode: one for all, RoundNearestEven for
 // verdicts that are never wrong.
 module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
@@ -63,12 +64,6 @@ module hit_test_pipeline #(
   localparam int unsigned DotLatency = hit_test_pkg::DotLatency;
   localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(FracWidth);
 
-  // ---- Everything moves or nothing does
-
-  logic advance;
-
-  assign ready_o = advance;
-
   // ---- Take
 
   logic [3*Width-1:0] direction_q;
@@ -79,24 +74,25 @@ module hit_test_pipeline #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) test_q <= '0;
-    else if (advance) test_q <= {test_q[DotLatency-1:0], valid_i};
+    else test_q <= {test_q[DotLatency-1:0], valid_i & ready_o};
   end
 
   always_ff @(posedge clk_i) begin
-    if (advance) begin
-      direction_q <= direction_i;
-      record_q    <= record_i;
-      tag_q       <= tag_i;
-      first_q     <= first_i;
-      last_q      <= last_i;
-    end
+    direction_q <= direction_i;
+    record_q    <= record_i;
+    tag_q       <= tag_i;
+    first_q     <= first_i;
+    last_q      <= last_i;
   end
 
   // ---- Scale: all that a coordinate of I is multiplied by, and d for the point
 
-  localparam int unsigned ScaledWords = 5;  // of N, E0, E1, E2 a component each; d
-  localparam int unsigned ScaledWidth = ScaledWords * Width;
-  logic [3*ScaledWidth-1:0] scaled;  // not an array: Yosys 0.23 takes one for a memory here
+  // The words of `scaled` for coordinate k: products of a component each of N, E0, E1, E2; of d
+  localparam int unsigned ScaledNormal = 0;
+  localparam int unsigned ScaledEdges = 1;
+  localparam int unsigned ScaledD = 4;
+  localparam int unsigned ScaledWords = 5;
+  logic [3*ScaledWords*Width-1:0] scaled;  // not an array: Yosys 0.23 takes one for a memory here
 
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
     scaler #(
@@ -108,20 +104,24 @@ module hit_test_pipeline #(
       .Words(ScaledWords)
     ) u_scaler (
       .clk_i,
-      .enable_i(advance),
       .words_i({record_q[Width*hit_test_pkg::RecordD +: Width],
                 record_q[Width*(hit_test_pkg::RecordEdges+6+k) +: Width],
                 record_q[Width*(hit_test_pkg::RecordEdges+3+k) +: Width],
                 record_q[Width*(hit_test_pkg::RecordEdges+k) +: Width],
                 record_q[Width*(hit_test_pkg::RecordNormal+k) +: Width]}),
       .factor_i(direction_q[Width*k +: Width]),
-      .products_o(scaled[ScaledWidth*k +: ScaledWidth])
+      .products_o(scaled[ScaledWords*Width*k +: ScaledWords*Width])
     );
   end
 
   // ---- Add: V and U_k
 
-  logic [4*Width-1:0] dots;
+  logic [Width-1:0] v;
+  logic [3*Width-1:0] u;
+  logic [4*Width-1:0] dots;  // in the order of the first four words of `scaled`
+
+  assign v = dots[Width*ScaledNormal+:Width];
+  assign u = dots[Width*ScaledEdges+:3*Width];
 
   for (genvar n = 0; n < 4; n++) begin : gen_dot
     sum_of_three #(
@@ -132,10 +132,9 @@ module hit_test_pipeline #(
       .RoundingMode(RoundingMode)
     ) u_sum (
       .clk_i,
-      .enable_i(advance),
       .x_i(scaled[Width*n +: Width]),
-      .y_i(scaled[ScaledWidth+Width*n +: Width]),
-      .z_i(scaled[2*ScaledWidth+Width*n +: Width]),
+      .y_i(scaled[Width*(ScaledWords+n) +: Width]),
+      .z_i(scaled[Width*(2*ScaledWords+n) +: Width]),
       .sum_o(dots[Width*n +: Width])
     );
   end
@@ -160,7 +159,7 @@ module hit_test_pipeline #(
     .Depth(DotLatency)
   ) u_beside_dot (
     .clk_i,
-    .enable_i(advance),
+    .enable_i(1'b1),
     .data_i({normal_exponent, first_q, last_q, tag_q,
              record_q[Width*hit_test_pkg::RecordBounds +: 3*Width],
              record_q[Width*hit_test_pkg::RecordD +: Width]}),
@@ -171,9 +170,9 @@ module hit_test_pipeline #(
     .Depth(DotLatency - hit_test_pkg::MultiplierLatency)
   ) u_dividends (
     .clk_i,
-    .enable_i(advance),
-    .data_i({scaled[2*ScaledWidth+4*Width +: Width], scaled[ScaledWidth+4*Width +: Width],
-             scaled[4*Width +: Width]}),
+    .enable_i(1'b1),
+    .data_i({scaled[Width*(2*ScaledWords+ScaledD) +: Width],
+             scaled[Width*(ScaledWords+ScaledD) +: Width], scaled[Width*ScaledD +: Width]}),
     .data_o(dot_dividends)
   );
 
@@ -188,8 +187,8 @@ module hit_test_pipeline #(
   ) u_decision (
     .d_i(dot_d),
     .normal_exponent_i(dot_exponent),
-    .v_i(dots[0 +: Width]),
-    .u_i(dots[Width +: 3*Width]),
+    .v_i(v),
+    .u_i(u),
     .bounds_i(dot_bounds),
     .miss_o(miss),
     .hit_o(hit),
@@ -205,22 +204,20 @@ module hit_test_pipeline #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) decided_q <= 1'b0;
-    else if (advance) decided_q <= test_q[DotLatency];
+    else decided_q <= test_q[DotLatency];
   end
 
   always_ff @(posedge clk_i) begin
-    if (advance) begin
-      miss_q              <= miss;
-      hit_q               <= hit;
-      doubt_q             <= doubt;
-      t_error_q           <= t_error;
-      decided_first_q     <= dot_first;
-      decided_last_q      <= dot_last;
-      decided_tag_q       <= dot_tag;
-      decided_dividends_q <= dot_dividends;
-      decided_d_q         <= dot_d;
-      decided_v_q         <= dots[0 +: Width];
-    end
+    miss_q              <= miss;
+    hit_q               <= hit;
+    doubt_q             <= doubt;
+    t_error_q           <= t_error;
+    decided_first_q     <= dot_first;
+    decided_last_q      <= dot_last;
+    decided_tag_q       <= dot_tag;
+    decided_dividends_q <= dot_dividends;
+    decided_d_q         <= dot_d;
+    decided_v_q         <= v;
   end
 
   // ---- Divide: t, of which a sure hit makes use
@@ -233,10 +230,9 @@ module hit_test_pipeline #(
     .FracWidth(FracWidth),
     .Arith(Arith),
     .Adder(Adder),
-    .Pipelined(1'b1)
+    .Cuts(hit_test_pkg::DividerCuts)
   ) u_divider (
     .clk_i,
-    .enable_i(advance),
     .valid_i(decided_q & hit_q),
     .a_i(decided_d_q),
     .b_i(decided_v_q),
@@ -259,7 +255,7 @@ module hit_test_pipeline #(
     .Depth(DivideLatency)
   ) u_beside_divider (
     .clk_i,
-    .enable_i(advance),
+    .enable_i(1'b1),
     .data_i({t_error_q, decided_first_q, decided_last_q, hit_q, doubt_q, decided_tag_q,
              decided_dividends_q, decided_v_q}),
     .data_o({divided_t_error, divided_first, divided_last, divided_hit, divided_doubt, divided_tag,
@@ -268,7 +264,7 @@ module hit_test_pipeline #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) dividing_q <= '0;
-    else if (advance) dividing_q <= {dividing_q[DivideLatency-2:0], decided_q};
+    else dividing_q <= {dividing_q[DivideLatency-2:0], decided_q};
   end
 
   // ---- Nearest
@@ -288,7 +284,6 @@ module hit_test_pipeline #(
   ) u_nearest (
     .clk_i,
     .rst_ni,
-    .enable_i(advance),
     .valid_i(dividing_q[DivideLatency-1]),
     .first_i(divided_first),
     .last_i(divided_last),
@@ -323,7 +318,6 @@ module hit_test_pipeline #(
   ) u_point (
     .clk_i,
     .rst_ni,
-    .enable_i(advance),
     .valid_i(closed & found),
     .dividends_i(nearest_payload[Width+:3*Width]),
     .v_i(nearest_payload[0+:Width]),
@@ -331,17 +325,21 @@ module hit_test_pipeline #(
     .point_o(point)
   );
 
-  // ---- Results
+  // ---- Results: the queue keeps a word free for each clock edge at which what is on its way may end
+
+  localparam int unsigned Reserve = hit_test_pkg::point_latency(FracWidth) - 1;
 
   fifo #(
-    .Width(2 + TagWidth + 2 + TagWidth + Width + TErrorWidth + 1 + 3 * Width)
+    .Width(2 + TagWidth + 2 + TagWidth + Width + TErrorWidth + 1 + 3 * Width),
+    .Depth(Reserve + 3),
+    .Reserve(Reserve)
   ) u_results (
     .clk_i,
     .rst_ni,
-    .push_i(advance & (report != hit_test_pkg::ReportNone | closed | point_valid)),
+    .push_i(report != hit_test_pkg::ReportNone | closed | point_valid),
     .data_i({report, closed, found, nearest_t_error, point_valid, report_tag, nearest_tag, t,
              point}),
-    .space_o(advance),
+    .space_o(ready_o),
     .pop_i(valid_o & ready_i),
     .valid_o,
     .data_o({report_o, closed_o, found_o, t_error_o, point_valid_o, report_tag_o, tag_o, t_o,
@@ -350,17 +348,24 @@ module hit_test_pipeline #(
 
   // ---- Events
 
+  logic stalled_q;  // when the take register was loaded
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) stalled_q <= 1'b0;
+    else stalled_q <= ~ready_o;
+  end
+
   always_comb begin
     events_o = '0;
-    events_o[hit_test_pkg::CountTests]          = advance & test_q[0];
-    events_o[hit_test_pkg::CountMisses]         = advance & decided_q & miss_q;
-    events_o[hit_test_pkg::CountHits]           = advance & sure_hit;
-    events_o[hit_test_pkg::CountDoubts]         = advance & (report == hit_test_pkg::ReportDoubt);
-    events_o[hit_test_pkg::CountNearTies]       = advance & (report == hit_test_pkg::ReportNearTie);
-    events_o[hit_test_pkg::CountDistances] = advance & decided_q & hit_q;
-    events_o[hit_test_pkg::CountPoints] = advance & point_valid;
-    events_o[hit_test_pkg::CountIdleClocks]     = advance & ~test_q[0];
-    events_o[hit_test_pkg::CountOutputStalls]   = ~advance;
+    events_o[hit_test_pkg::CountTests]        = test_q[0];
+    events_o[hit_test_pkg::CountMisses]       = decided_q & miss_q;
+    events_o[hit_test_pkg::CountHits]         = sure_hit;
+    events_o[hit_test_pkg::CountDoubts]       = report == hit_test_pkg::ReportDoubt;
+    events_o[hit_test_pkg::CountNearTies]     = report == hit_test_pkg::ReportNearTie;
+    events_o[hit_test_pkg::CountDistances]    = decided_q & hit_q;
+    events_o[hit_test_pkg::CountPoints]       = point_valid;
+    events_o[hit_test_pkg::CountIdleClocks]   = ~test_q[0] & ~stalled_q;
+    events_o[hit_test_pkg::CountOutputStalls] = stalled_q;
   end
 
 endmodule

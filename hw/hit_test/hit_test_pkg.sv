@@ -42,6 +42,7 @@ package hit_test_pkg;
 
   localparam bit [1:0] MultiplierCuts = 2'b11;
   localparam bit [2:0] AdderCuts = 3'b111;
+  localparam bit [31:0] DividerCuts = 32'hffff_ffff;
   localparam int unsigned MultiplierLatency = 2;
   localparam int unsigned AdderLatency = 3;
   localparam int unsigned DotLatency = MultiplierLatency + 2 * AdderLatency;
@@ -49,6 +50,11 @@ package hit_test_pkg;
   // fp_divider_stages: a row for each two bits of the quotient, and five stages around them.
   function automatic int unsigned divide_latency(int unsigned frac_width);
     divide_latency = (frac_width + 2) / 2 + 5;
+  endfunction
+
+  // From the clock edge that takes a test to that after which its P is there, if it has one.
+  function automatic int unsigned point_latency(int unsigned frac_width);
+    point_latency = DotLatency + 2 * divide_latency(frac_width) + 4;
   endfunction
 
   // ---- Counters of hit_test_array, by the number that selects them
@@ -62,7 +68,7 @@ package hit_test_pkg;
     CountDistances      = 4'd5,  // divisions for t
     CountPoints         = 4'd6,  // three divisions each
     CountIdleClocks     = 4'd7,  // a lane could have taken a test, and none was there
-    CountOutputStalls   = 4'd8   // a lane stood still because nobody took its result
+    CountOutputStalls   = 4'd8   // a lane took no test because too few of its results were taken
   } count_e;
 
   localparam int unsigned NumCounts = 9;

@@ -8,8 +8,7 @@
 //
 // A sure hit whose t is no positive normal number is reported as a doubt.
 //
-// All other outputs are registers, one clock after the test (clocks without enable_i don't count and keep
-// them). What comes out with the last test of a burst:
+// All other outputs are registers, one clock after the test. What comes out with the last test of a burst:
 //   closed_o  for this clock; then found_o says whether the burst has a nearest hit, and tag, t,
 //             t_error and payload_o are that hit's. closed_o and found_o are reset.
 //   report_o, report_tag_o may come with it, and concern this test or the one it ousted. Where
@@ -26,7 +25,6 @@ module nearest_hit #(
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic                    enable_i,
   input  logic                    valid_i,  // a test; else nothing below matters
   input  logic                    first_i,  // of its burst
   input  logic                    last_i,   // of its burst
@@ -80,7 +78,7 @@ module nearest_hit #(
       closed_o <= 1'b0;
       found_o  <= 1'b0;
       report_o <= hit_test_pkg::ReportNone;
-    end else if (enable_i) begin
+    end else begin
       closed_o <= valid_i & last_i;
       if (valid_i) found_o <= have | hit;
       report_o <= doubt ? hit_test_pkg::ReportDoubt
@@ -89,8 +87,8 @@ module nearest_hit #(
   end
 
   always_ff @(posedge clk_i) begin
-    if (enable_i) report_tag_o <= (near & smaller) ? tag_o : tag_i;
-    if (enable_i && replace) begin
+    report_tag_o <= (near & smaller) ? tag_o : tag_i;
+    if (replace) begin
       tag_o     <= tag_i;
       t_o       <= t_i;
       t_error_o <= t_error_i;

@@ -4,8 +4,7 @@
 // Three dividers: no fewer do for streams in which nearly every other test is a nearest hit, which is
 // what is left when a tree of boxes has ruled out most polygons.
 //
-// Throughput one point a clock, latency divide_latency (see hit_test_pkg); clocks without enable_i
-// don't count. valid_o is valid_i, as much later; it is reset.
+// Throughput one point a clock, latency divide_latency (see hit_test_pkg). valid_o is valid_i, as much later; it is reset.
 module point_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
@@ -16,7 +15,6 @@ module point_unit #(
 ) (
   input  logic               clk_i,
   input  logic               rst_ni,
-  input  logic               enable_i,
   input  logic               valid_i,
   input  logic [3*Width-1:0] dividends_i,
   input  logic [Width-1:0]   v_i,
@@ -30,7 +28,7 @@ module point_unit #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
-    else if (enable_i) valid_q <= {valid_q[Latency-2:0], valid_i};
+    else valid_q <= {valid_q[Latency-2:0], valid_i};
   end
   assign valid_o = valid_q[Latency-1];
 
@@ -42,10 +40,9 @@ module point_unit #(
       .FracWidth(FracWidth),
       .Arith(Arith),
       .Adder(Adder),
-      .Pipelined(1'b1)
+      .Cuts(hit_test_pkg::DividerCuts)
     ) u_divider (
       .clk_i,
-      .enable_i,
       .valid_i,
       .a_i(dividends_i[Width*k+:Width]),
       .b_i(v_i),

@@ -1,8 +1,7 @@
 // Multiplies several words by one: product[n] = word[n] * factor.
 //
 // The factor is what the multipliers recode, alike in all of them: tools keep one recoder.
-// Throughput one factor a clock, latency hit_test_pkg::MultiplierLatency; clocks without enable_i don't
-// count. Takes every bit pattern; no flags.
+// Throughput one factor a clock, latency hit_test_pkg::MultiplierLatency. Takes every bit pattern; no flags.
 module scaler #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
@@ -13,7 +12,6 @@ module scaler #(
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
   input  logic                   clk_i,
-  input  logic                   enable_i,
   input  logic [Words*Width-1:0] words_i,
   input  logic [Width-1:0]       factor_i,
   output logic [Words*Width-1:0] products_o
@@ -30,7 +28,6 @@ module scaler #(
       .Cuts(hit_test_pkg::MultiplierCuts)
     ) u_multiplier (
       .clk_i,
-      .enable_i,
       .a_i(words_i[Width*n +: Width]),
       .b_i(factor_i),
       .rounding_mode_i(RoundingMode),

@@ -1,7 +1,6 @@
 // Adds three words: (x + y) + z, rounded after each addition.
 //
-// Throughput one a clock, latency 2 * hit_test_pkg::AdderLatency; clocks without enable_i don't count.
-// Takes every bit pattern; no flags.
+// Throughput one a clock, latency 2 * hit_test_pkg::AdderLatency. Takes every bit pattern; no flags.
 module sum_of_three #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
@@ -11,7 +10,6 @@ module sum_of_three #(
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
   input  logic             clk_i,
-  input  logic             enable_i,
   input  logic [Width-1:0] x_i,
   input  logic [Width-1:0] y_i,
   input  logic [Width-1:0] z_i,
@@ -29,7 +27,6 @@ module sum_of_three #(
     .Cuts(hit_test_pkg::AdderCuts)
   ) u_first (
     .clk_i,
-    .enable_i,
     .a_i(x_i),
     .b_i(y_i),
     .subtract_i(1'b0),
@@ -43,7 +40,7 @@ module sum_of_three #(
     .Depth(hit_test_pkg::AdderLatency)
   ) u_z (
     .clk_i,
-    .enable_i,
+    .enable_i(1'b1),
     .data_i(z_i),
     .data_o(z)
   );
@@ -55,7 +52,6 @@ module sum_of_three #(
     .Cuts(hit_test_pkg::AdderCuts)
   ) u_second (
     .clk_i,
-    .enable_i,
     .a_i(first_sum),
     .b_i(z),
     .subtract_i(1'b0),

@@ -2,7 +2,8 @@
 // where valgrind is installed, the instructions that a test takes. Nothing passes or fails here.
 //
 //   unit_bench                           the table
-//   unit_bench ARITH LANES AIMED ROUNDS  only that: so many rounds of the stream (valgrind counts them)
+//   unit_bench ARITH LANES AIMED ROUNDS  only that: so many rounds of the stream (valgrind counts
+//   them)
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -28,7 +29,8 @@ struct Kind {
   const char* name;
   Arith arith;
 };
-constexpr Kind kKinds[] = {{"structural", Arith::kStructural}, {"behavioural", Arith::kBehavioural}};
+constexpr Kind kKinds[] = {{"structural", Arith::kStructural},
+                           {"behavioural", Arith::kBehavioural}};
 
 /// Tests a second, the median of kRuns runs.
 template <class Round>
@@ -98,7 +100,8 @@ void bench(const char* program) {
   const bool valgrind = std::system("command -v valgrind >/dev/null") == 0;
   std::printf("Median of %d runs of %d tests, on the processor time of one thread.\n", kRuns,
               kRounds * kBursts * kTests);
-  std::printf("%-10s %-12s %5s %8s %12s %14s\n", "unit", "arithmetic", "lanes", "hits, %", "tests/s", "instructions");
+  std::printf("%-10s %-12s %5s %8s %12s %14s\n", "unit", "arithmetic", "lanes", "hits, %",
+              "tests/s", "instructions");
   for (const double aimed : {0.0, 0.5}) {
     const TestStream stream = random_stream(kBursts, kTests, aimed);
     const double hits = share_of_hits(stream);

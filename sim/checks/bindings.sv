@@ -2,7 +2,8 @@
 // model lacks is passed over.
 
 bind fifo fifo_checks #(
-  .LogDepth(LogDepth)
+  .Depth(Depth),
+  .Reserve(Reserve)
 ) u_fifo_checks (
   .clk_i,
   .rst_ni,

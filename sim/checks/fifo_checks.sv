@@ -1,7 +1,7 @@
-// A FIFO's user pushes only where there is space and pops only where there is a word; the FIFO counts
-// right.
+// A FIFO's user pushes only where a word is free and pops only where there is one; the FIFO counts right.
 module fifo_checks #(
-  parameter int unsigned LogDepth = 1
+  parameter int unsigned Depth   = 2,
+  parameter int unsigned Reserve = 0
 ) (
   input logic clk_i,
   input logic rst_ni,
@@ -11,19 +11,21 @@ module fifo_checks #(
   input logic valid_o
 );
 
-  logic [LogDepth:0] count_q;
+  localparam int unsigned CountWidth = $clog2(Depth + 1);
+
+  logic [CountWidth-1:0] count_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) count_q <= '0;
-    else count_q <= count_q + (LogDepth + 1)'(push_i) - (LogDepth + 1)'(pop_i);
+    else count_q <= count_q + CountWidth'(push_i) - CountWidth'(pop_i);
   end
 
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
-      a_no_overflow : assert (!push_i || space_o);
+      a_no_overflow : assert (!push_i || count_q != CountWidth'(Depth));
       a_no_underflow : assert (!pop_i || valid_o);
       a_valid : assert (valid_o == (count_q != '0));
-      a_space : assert (space_o == !count_q[LogDepth]);
+      a_space : assert (space_o == (count_q < CountWidth'(Depth - Reserve)));
     end
   end
 

@@ -13,9 +13,12 @@ module pieces_top (
   input  logic [24:0] row_sum_i,
   input  logic [24:0] row_carry_i,
   input  logic [24:0] row_divisor_i,
-  output logic [1:0]  row_wrong_o,  // a bit for each kind of arithmetic
+  output logic [1:0]  row_wrong_o,    // a bit for each kind of arithmetic
+  output logic        first_wrong_o,  // srt_first_row, of dividend_i and divisor_i
+  // sticky_right_shift of a_i by the low bits of b_i
+  output logic [47:0] shifted_o,
+  output logic        lost_o,
   // srt_divider_stages, in one go and pipelined
-  input  logic        enable_i,
   input  logic        valid_i,
   input  logic [23:0] dividend_i,
   input  logic [23:0] divisor_i,
@@ -171,42 +174,59 @@ module pieces_top (
   end
 
   for (genvar n = 0; n < 2; n++) begin : gen_srt_row
-    logic [24:0] sum, carry_word, divisor;
-    logic [3:0] positives, negatives;
-    logic beside;
+    logic [24:0] sum, carry_word;
+    logic [1:0] plus, minus;
     logic signed [31:0] old_w, new_w, digit, d;
 
     srt_row #(.Width(25), .Arith(n)) u_row (
-      .clk_i, .enable_i(1'b1), .sum_i(row_sum), .carry_i(row_carry), .divisor_i(row_divisor),
-      .positives_i(2'b01), .negatives_i(2'b10), .beside_i(carry), .sum_o(sum), .carry_o(carry_word),
-      .divisor_o(divisor), .positives_o(positives), .negatives_o(negatives), .beside_o(beside));
+      .valid_i(1'b1), .sum_i(row_sum), .carry_i(row_carry), .divisor_i(row_divisor), .sum_o(sum),
+      .carry_o(carry_word), .positive_o(plus), .negative_o(minus));
     assign old_w = 32'(signed'(25'(row_sum + row_carry)));
     assign new_w = 32'(signed'(25'(sum + carry_word)));
-    assign digit = 32'(positives[1:0]) - 32'(negatives[1:0]);
-    assign d = 32'(divisor);
+    assign digit = 32'(plus) - 32'(minus);
+    assign d = 32'(row_divisor);
     assign row_wrong_o[n] = (new_w != 4 * old_w - digit * d) | (3 * new_w > 2 * d)
-                          | (3 * new_w < -2 * d) | (divisor != row_divisor) | (beside != carry)
-                          | (positives[3:2] != 2'b01) | (negatives[3:2] != 2'b10);
+                          | (3 * new_w < -2 * d);
   end
+
+  // ---- The first row: 2 x - digit * d = w, digit in 1 .. 4
+
+  logic [24:0] first_sum, first_carry;
+  logic [1:0] first_code;
+  logic signed [31:0] first_w, first_digit, first_d;
+
+  srt_first_row #(.Width(25)) u_first_row (
+    .dividend_doubled_i({dividend_i, 1'b0}), .divisor_i({1'b0, divisor_i}), .sum_o(first_sum),
+    .carry_o(first_carry), .digit_o(first_code));
+  assign first_w = 32'(signed'(25'(first_sum + first_carry)));
+  assign first_digit = (first_code == 2'd0) ? 4 : 32'(first_code);
+  assign first_d = 32'(divisor_i);
+  assign first_wrong_o = (first_w != 32'({dividend_i, 1'b0}) - first_digit * first_d)
+                       | (3 * first_w > 2 * first_d) | (3 * first_w < -2 * first_d);
+
+  // ---- The shift
+
+  sticky_right_shift #(.Width(48), .AmountWidth(9)) u_shift (
+    .a_i(a), .amount_i(b[8:0]), .shifted_o, .lost_o);
 
   // ---- The whole division
 
   for (genvar n = 0; n < 2; n++) begin : gen_divider
-    logic unused_beside, unused_valid;
+    logic unused_side, unused_valid;
     logic [5:0] unused_gap;
 
     srt_divider_stages #(.Width(24), .Rows(12), .Arith(n)) u_whole (
-      .clk_i, .enable_i, .valid_i, .dividend_i, .divisor_i, .beside_i(1'b0),
+      .clk_i, .valid_i, .dividend_i, .divisor_i, .side_i(1'b0),
       .quotient_o(quotient_o[32*n+1 +: 26]), .remainder_o(quotient_o[32*n]),
-      .beside_o(unused_beside), .valid_o(unused_valid));
+      .side_o(unused_side), .valid_o(unused_valid));
     assign quotient_o[32*n+27 +: 5] = '0;
     srt_divider_stages #(
-      .Width(24), .Rows(12), .BesideWidth(20), .Arith(n), .Pipelined(1'b1)
+      .Width(24), .Rows(12), .SideWidth(20), .Arith(n), .Cuts(32'hffff_ffff)
     ) u_pipelined (
-      .clk_i, .enable_i, .valid_i, .dividend_i, .divisor_i,
-      .beside_i({dividend_i[9:0], divisor_i[9:0]}),
+      .clk_i, .valid_i, .dividend_i, .divisor_i,
+      .side_i({dividend_i[9:0], divisor_i[9:0]}),
       .quotient_o(pipelined_o[48*n+1 +: 26]), .remainder_o(pipelined_o[48*n]),
-      .beside_o(pipelined_o[48*n+27 +: 20]), .valid_o(valid_o[n]));
+      .side_o(pipelined_o[48*n+27 +: 20]), .valid_o(valid_o[n]));
     assign pipelined_o[48*n+47] = 1'b0;
     assign unused_gap = '0;
   end

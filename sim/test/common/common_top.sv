@@ -15,7 +15,7 @@ module common_top (
   for (genvar n = 0; n < 3; n++) begin : gen_fifo
     fifo #(
       .Width(32),
-      .LogDepth(n + 1)
+      .Depth(2 << n)
     ) u_fifo (
       .clk_i,
       .rst_ni,

@@ -1,6 +1,5 @@
 // The float cores of both kinds, whole and cut: all the same bits and flags, which are those of
-// MPFR (and of the FPU), in five rounding modes, with clocks that don't count and operands that
-// aren't valid.
+// MPFR (and of the FPU), in five rounding modes, with operands that aren't valid.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -60,15 +59,12 @@ TEST(StagesTest, CutAndBehaviouralCoresHaveTheBitsOfMpfr) {
       model->b_i = pair.b;
       model->subtract_i = subtract;
       model->valid_i = random() % 4 != 0;
-      model->enable_i = random() % 8 != 0;
-      if (model->enable_i) {
-        const auto result = [&](FloatOp op) {
-          return result_of(op, pair.a, pair.b, rounding, tininess);
-        };
-        stages.push_front({pair.a, pair.b, model->valid_i != 0,
-                           result(subtract ? FloatOp::kSub : FloatOp::kAdd), result(FloatOp::kMul),
-                           result(FloatOp::kDiv)});
-      }
+      const auto result = [&](FloatOp op) {
+        return result_of(op, pair.a, pair.b, rounding, tininess);
+      };
+      stages.push_front({pair.a, pair.b, model->valid_i != 0,
+                         result(subtract ? FloatOp::kSub : FloatOp::kAdd), result(FloatOp::kMul),
+                         result(FloatOp::kDiv)});
       model.clock();
       if (stages.size() < kLatency) continue;
       stages.resize(kLatency);
@@ -77,7 +73,9 @@ TEST(StagesTest, CutAndBehaviouralCoresHaveTheBitsOfMpfr) {
                                       << std::hex << " operands " << due.a << ' ' << due.b);
       ASSERT_EQ(model->sum_o, packed(due.sum));
       ASSERT_EQ(model->product_o, packed(due.product));
-      ASSERT_EQ(model->quotient_o, packed(due.quotient));
+      if (due.valid) {
+        ASSERT_EQ(model->quotient_o, packed(due.quotient));
+      }
       ASSERT_EQ(model->valid_o, due.valid);
       ASSERT_EQ(model->differ_sum_o, 0u);
       ASSERT_EQ(model->differ_product_o, 0u);

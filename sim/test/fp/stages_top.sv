@@ -1,7 +1,7 @@
 // The float cores cut into stages, of both kinds of arithmetic, on one stream of operands.
 //
-// sum_o, product_o and quotient_o are those of the structural cores in one piece, Latency clocks later
-// (clocks without enable_i don't count), flags below the number. A bit of differ_*_o is set where a core
+// sum_o, product_o and quotient_o are those of the structural cores in one piece, Latency clocks later,
+// flags below the number. A bit of differ_*_o is set where a core
 // that is cut, or behavioural, then gives something else. The rounding mode must stay for Latency clocks.
 module stages_top #(
   parameter int unsigned ExpWidth  = 8,
@@ -10,7 +10,6 @@ module stages_top #(
   localparam int unsigned Latency = (FracWidth + 2) / 2 + 5
 ) (
   input  logic             clk_i,
-  input  logic             enable_i,
   input  logic [Width-1:0] a_i,
   input  logic [Width-1:0] b_i,
   input  logic             subtract_i,
@@ -39,11 +38,11 @@ module stages_top #(
     fp_adder_stages #(
       .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(32'(AdderKinds[4*n+3])), .Cuts(Cuts)
     ) u_adder (
-      .clk_i, .enable_i, .a_i, .b_i, .subtract_i, .rounding_mode_i, .tininess_after_i,
+      .clk_i, .a_i, .b_i, .subtract_i, .rounding_mode_i, .tininess_after_i,
       .result_o(result[Width+4:5]), .flags_o(result[4:0]));
     delay_line #(
       .Width(Width + 5), .Depth(Latency - 32'(Cuts[0]) - 32'(Cuts[1]) - 32'(Cuts[2]))
-    ) u_late (.clk_i, .enable_i, .data_i(result), .data_o(late));
+    ) u_late (.clk_i, .enable_i(1'b1), .data_i(result), .data_o(late));
     assign differ_sum_o[n] = late != sum_o;
   end
   assign sum_o = gen_adder[0].late;
@@ -55,28 +54,28 @@ module stages_top #(
     fp_multiplier_stages #(
       .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(32'(MultiplierKinds[3*n+2])), .Cuts(Cuts)
     ) u_multiplier (
-      .clk_i, .enable_i, .a_i, .b_i, .rounding_mode_i, .tininess_after_i,
+      .clk_i, .a_i, .b_i, .rounding_mode_i, .tininess_after_i,
       .result_o(result[Width+4:5]), .flags_o(result[4:0]));
     delay_line #(
       .Width(Width + 5), .Depth(Latency - 32'(Cuts[0]) - 32'(Cuts[1]))
-    ) u_late (.clk_i, .enable_i, .data_i(result), .data_o(late));
+    ) u_late (.clk_i, .enable_i(1'b1), .data_i(result), .data_o(late));
     assign differ_product_o[n] = late != product_o;
   end
   assign product_o = gen_multiplier[0].late;
 
   delay_line #(.Width(1), .Depth(Latency)) u_valid (
-    .clk_i, .enable_i, .data_i(valid_i), .data_o(valid_o));
+    .clk_i, .enable_i(1'b1), .data_i(valid_i), .data_o(valid_o));
   for (genvar n = 0; n < 4; n++) begin : gen_divider
     logic [Width+4:0] result, late;
 
     fp_divider_stages #(
-      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(n / 2), .Pipelined(n % 2 == 1)
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(n / 2), .Cuts({32{n % 2 == 1}})
     ) u_divider (
-      .clk_i, .enable_i, .valid_i, .a_i, .b_i, .rounding_mode_i, .tininess_after_i,
+      .clk_i, .valid_i, .a_i, .b_i, .rounding_mode_i, .tininess_after_i,
       .result_o(result[Width+4:5]), .flags_o(result[4:0]));
     delay_line #(
       .Width(Width + 5), .Depth(n % 2 == 1 ? 0 : Latency)
-    ) u_late (.clk_i, .enable_i, .data_i(result), .data_o(late));
+    ) u_late (.clk_i, .enable_i(1'b1), .data_i(result), .data_o(late));
     assign differ_quotient_o[n] = valid_o & (late != quotient_o);
   end
   assign quotient_o = gen_divider[0].late;

@@ -2,7 +2,6 @@
 module parts_top (
   input  logic         clk_i,
   input  logic         rst_ni,
-  input  logic         enable_i,
   input  logic         valid_i,
   // scaler, sum_of_three, point_unit: five words and a factor
   input  logic [159:0] words_i,
@@ -42,11 +41,11 @@ module parts_top (
   output logic [31:0]  payload_o
 );
 
-  scaler #(.Arith(1)) u_scaler (.clk_i, .enable_i, .words_i, .factor_i, .products_o);
+  scaler #(.Arith(1)) u_scaler (.clk_i, .words_i, .factor_i, .products_o);
   sum_of_three #(.Arith(1)) u_sum (
-    .clk_i, .enable_i, .x_i(words_i[31:0]), .y_i(words_i[63:32]), .z_i(words_i[95:64]), .sum_o);
+    .clk_i, .x_i(words_i[31:0]), .y_i(words_i[63:32]), .z_i(words_i[95:64]), .sum_o);
   point_unit #(.Arith(1)) u_point (
-    .clk_i, .rst_ni, .enable_i, .valid_i, .dividends_i(words_i[95:0]), .v_i(factor_i),
+    .clk_i, .rst_ni, .valid_i, .dividends_i(words_i[95:0]), .v_i(factor_i),
     .valid_o(point_valid_o), .point_o);
   hit_decision u_decision (
     .d_i, .normal_exponent_i, .v_i, .u_i, .bounds_i, .miss_o(verdict_o[2]), .hit_o(verdict_o[1]),
@@ -64,7 +63,7 @@ module parts_top (
 
   hit_test_pkg::report_e report;
   nearest_hit #(.PayloadWidth(32)) u_nearest (
-    .clk_i, .rst_ni, .enable_i, .valid_i, .first_i, .last_i, .hit_i, .doubt_i, .tag_i, .t_i,
+    .clk_i, .rst_ni, .valid_i, .first_i, .last_i, .hit_i, .doubt_i, .tag_i, .t_i,
     .t_error_i, .payload_i(~tag_i), .sure_hit_o, .report_o(report), .report_tag_o, .closed_o,
     .found_o, .tag_o(nearest_tag_o), .t_o(nearest_t_o), .t_error_o(nearest_t_error_o), .payload_o);
   assign report_o = report;

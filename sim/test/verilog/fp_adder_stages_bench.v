@@ -9,7 +9,7 @@ module bench;
   integer failures = 0, cases = 0;
 
   fp_adder_stages dut (
-    .clk_i(clk), .enable_i(1'b1), .a_i(a), .b_i(b), .subtract_i(subtract), .rounding_mode_i(mode),
+    .clk_i(clk), .a_i(a), .b_i(b), .subtract_i(subtract), .rounding_mode_i(mode),
     .tininess_after_i(1'b1), .result_o(sum), .flags_o(flags)
   );
 

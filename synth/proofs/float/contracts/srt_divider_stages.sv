@@ -2,20 +2,19 @@
 module srt_divider_stages #(
   parameter int unsigned Width = 24,
   parameter int unsigned Rows  = 12,
-  parameter int unsigned BesideWidth = 1,
+  parameter int unsigned SideWidth = 1,
   parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0,
-  parameter bit          Pipelined = 1'b0
+  parameter bit [31:0]   Cuts = 32'd0
 ) (
   input  logic                clk_i,
-  input  logic                enable_i,
   input  logic                valid_i,
   input  logic [Width-1:0]    dividend_i,
   input  logic [Width-1:0]    divisor_i,
-  input  logic [BesideWidth-1:0] beside_i,
+  input  logic [SideWidth-1:0] side_i,
   output logic [2*Rows+1:0]   quotient_o,
   output logic                remainder_o,
-  output logic [BesideWidth-1:0] beside_o,
+  output logic [SideWidth-1:0] side_o,
   output logic                valid_o
 );
   (* keep *) logic [Width-1:0] free_dividend, free_divisor;
@@ -25,6 +24,6 @@ module srt_divider_stages #(
   assign free_divisor = divisor_i;
   assign quotient_o = free_quotient;
   assign remainder_o = free_left;
-  assign beside_o = beside_i;
+  assign side_o = side_i;
   assign valid_o = valid_i;
 endmodule

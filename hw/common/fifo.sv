@@ -1,0 +1,57 @@
+// First-in first-out queue of Depth words.
+//
+// A word pushed at one clock edge is at data_o after it; throughput one word a clock. push_i is the
+// writer's promise that a word is free, pop_i the reader's that valid_o is high. space_o says that more
+// than Reserve words are free: with a Reserve of as many words as a writer may still push after it has
+// seen space_o fall, it is the writer's leave to begin. No combinational path from pop_i to space_o and
+// valid_o, which are registers.
+module fifo #(
+  parameter int unsigned Width   = 32,
+  parameter int unsigned Depth   = 2,  // at least 2
+  parameter int unsigned Reserve = 0   // below Depth
+) (
+  input  logic             clk_i,
+  input  logic             rst_ni,
+  input  logic             push_i,
+  input  logic [Width-1:0] data_i,
+  output logic             space_o,
+  input  logic             pop_i,
+  output logic             valid_o,
+  output logic [Width-1:0] data_o
+);
+
+  localparam int unsigned IndexWidth = $clog2(Depth);
+  localparam int unsigned CountWidth = $clog2(Depth + 1);
+  localparam logic [IndexWidth-1:0] Last = IndexWidth'(Depth - 1);
+
+  logic [Width-1:0] words[Depth];
+  logic [IndexWidth-1:0] write_q, read_q;
+  logic [CountWidth-1:0] count_q, count_d;
+
+  always_comb begin
+    count_d = count_q;
+    if (push_i && !pop_i) count_d = count_q + 1'b1;
+    if (pop_i && !push_i) count_d = count_q - 1'b1;
+  end
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      write_q <= '0;
+      read_q  <= '0;
+      count_q <= '0;
+      valid_o <= 1'b0;
+      space_o <= 1'b1;
+    end else begin
+      if (push_i) write_q <= (write_q == Last) ? '0 : write_q + 1'b1;
+      if (pop_i) read_q <= (read_q == Last) ? '0 : read_q + 1'b1;
+      count_q <= count_d;
+      valid_o <= count_d != '0;
+      space_o <= count_d < CountWidth'(Depth - Reserve);
+    end
+  end
+
+  always_ff @(posedge clk_i) if (push_i) words[write_q] <= data_i;
+
+  assign data_o = words[read_q];
+
+endmodule
