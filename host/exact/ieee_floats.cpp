@@ -6,8 +6,8 @@
 namespace raygate {
 namespace {
 
-/// a a - (1 + 2 h) for a = 1 + h, whose square does not fit the format: 0 if the product is rounded,
-/// h^2 if not. What is volatile is computed when the program runs.
+/// a a - (1 + 2 h) for a = 1 + h, whose square does not fit the format: 0 if the product is
+/// rounded, h^2 if not. What is volatile is computed when the program runs.
 template <class T>
 bool is_fused(T h) {
   volatile T a = T(1) + h, whole = T(1) + T(2) * h;

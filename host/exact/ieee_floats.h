@@ -24,9 +24,10 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 
 namespace raygate {
 
-/// Throws std::runtime_error, one line, where this thread's arithmetic is not that: another rounding
-/// mode, subnormals flushed to zero (as programs linked with -ffast-math do to others), or multiply
-/// and add fused. Threads inherit the state of the one that starts them: asking once is enough.
+/// Throws std::runtime_error, one line, where this thread's arithmetic is not that: another
+/// rounding mode, subnormals flushed to zero (as programs linked with -ffast-math do to others), or
+/// multiply and add fused. Threads inherit the state of the one that starts them: asking once is
+/// enough.
 void require_ieee_floats();
 
 }  // namespace raygate

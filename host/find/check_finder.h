@@ -16,10 +16,10 @@ class FinderMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Asks both finders everything, gives the first one's answers and counts, and throws FinderMismatch
-/// at the first ray of which they say different things: another triangle, another bit of P or of its error, or
-/// intervals of t that cannot both hold the truth. Of a ray that may end at any hit before some t,
-/// both must say that there is one.
+/// Asks both finders everything, gives the first one's answers and counts, and throws
+/// FinderMismatch at the first ray of which they say different things: another triangle, another
+/// bit of P or of its error, or intervals of t that cannot both hold the truth. Of a ray that may
+/// end at any hit before some t, both must say that there is one.
 class CheckFinder : public Finder {
  public:
   CheckFinder(const Bvh& bvh, std::unique_ptr<Finder> finder, std::unique_ptr<Finder> reference);

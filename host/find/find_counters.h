@@ -34,8 +34,8 @@ struct FindCounters {
   std::uint64_t own_records = 0;     ///< polygon records made for a single packet of rays
   std::uint64_t common_records = 0;  ///< polygon records made for origins that searches share
   // Seconds.
-  double traverse = 0.0;  ///< boxes, and records of common origins
-  double record = 0.0;    ///< own records
+  double traverse = 0.0;   ///< boxes, and records of common origins
+  double record = 0.0;     ///< own records
   double hit_tests = 0.0;  ///< tests, and settling what they leave open; of tests in place: all
 
   FindCounters& operator+=(const FindCounters& other);

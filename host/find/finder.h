@@ -23,8 +23,8 @@ struct RayWork {
 /// What is wanted of a search, given once. Spans have one element a ray, or are empty; they are
 /// used during the search only.
 struct Search {
-  /// All rays begin in one point, from which other searches begin, too (the camera, a lamp): what is
-  /// made for it is worth keeping. Changes nothing of what is found.
+  /// All rays begin in one point, from which other searches begin, too (the camera, a lamp): what
+  /// is made for it is worth keeping. Changes nothing of what is found.
   bool common_origin = false;
   /// Positive: only hits with t < limits[i], in exact arithmetic, count; +infinity for no limit.
   std::span<const float> limits{};

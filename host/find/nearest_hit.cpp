@@ -49,8 +49,7 @@ bool settle_doubt(const Bvh& bvh, const Ray& ray, float limit, NearestHit doubt,
     return false;
   }
   ++counters.exact_inside;
-  return hits_triangle(ray, corners) &&
-         take_if_nearer(bvh, ray, limit, doubt, best, counters);
+  return hits_triangle(ray, corners) && take_if_nearer(bvh, ray, limit, doubt, best, counters);
 }
 
 }  // namespace raygate

@@ -27,6 +27,9 @@ enum class Departure {
 ///   * a ray from O' that goes away from the triangle's plane (leaves() says so exactly) never
 ///     hits that triangle again.
 ///
+/// X is what exact arithmetic makes of the corners, in double, not the unit's P: an origin that
+/// stood off by what P may be off would be no nearer to what is seen, and farther from the surface.
+///
 /// How far: let u be one float step (ulp) of X's largest coordinate, or the error of X in double
 /// if that is more. Where no other triangle is within 4 u of X, O' is within 1.5 u, or 3 u next to
 /// a power of two, of X as double has it, on each axis: departure.cpp has the proof. From the exact

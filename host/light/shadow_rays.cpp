@@ -24,8 +24,8 @@ float scaled_way(const glm::dvec3& way, double share) {
 
 }  // namespace
 
-ShadowRays::ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights,
-                       Finder& finder, const Skips& skips, bool through_refraction)
+ShadowRays::ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights, Finder& finder,
+                       const Skips& skips, bool through_refraction)
     : scene_(scene),
       bvh_(bvh),
       lights_(lights),
@@ -123,10 +123,8 @@ void ShadowRays::trace(bool from_light, double enough) {
     }
     ignored_.push_back(segment.ignored);
   }
-  Search search{.common_origin = from_light,
-                .limits = limits_,
-                .ignored = ignored_,
-                .culling = culling_};
+  Search search{
+      .common_origin = from_light, .limits = limits_, .ignored = ignored_, .culling = culling_};
   if (first_occluder_) search.enough_before = enough_;
   work_.resize(traced_ != nullptr ? wave_.size() : 0);
   search.work = work_;
@@ -140,7 +138,8 @@ glm::dvec3 ShadowRays::transmittance(std::size_t number) const {
   const std::uint32_t slot = hits_[number].slot;
   const Material& material = scene_.materials[scene_.triangles[bvh_.triangle_of(slot)].material];
   if (!is_clear(material)) return glm::dvec3(0.0);
-  return shadow_transmittance(Surface(scene_, bvh_, wave_[number], slot, nullptr), through_refraction_);
+  return shadow_transmittance(Surface(scene_, bvh_, wave_[number], slot, nullptr),
+                              through_refraction_);
 }
 
 }  // namespace raygate

@@ -42,10 +42,10 @@ Surface::Surface(const Scene& scene, const Bvh& bvh, const Ray& ray, std::uint32
                             std::ranges::count(face.normals, kNoIndex) == 0 ||
                             material->diffuse_texture != kNoIndex;
   const glm::dvec3 weights = uses_weights ? barycentric(corners, ray) : glm::dvec3(1.0 / 3.0);
-  point = unit_point != nullptr ? glm::dvec3(ray.origin) + glm::dvec3(*unit_point)
-                                : weights.x * glm::dvec3(corners[0]) +
-                                      weights.y * glm::dvec3(corners[1]) +
-                                      weights.z * glm::dvec3(corners[2]);
+  point = unit_point != nullptr
+              ? glm::dvec3(ray.origin) + glm::dvec3(*unit_point)
+              : weights.x * glm::dvec3(corners[0]) + weights.y * glm::dvec3(corners[1]) +
+                    weights.z * glm::dvec3(corners[2]);
   diffuse = glm::dvec3(diffuse_at(scene, face, weights));
   view = -glm::normalize(glm::dvec3(ray.direction));
 

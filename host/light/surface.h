@@ -10,8 +10,8 @@
 
 namespace raygate {
 
-/// How far off, of itself, the unit's P may be before the host computes the point, where nobody says
-/// otherwise: rays that meet a surface at a flat angle are the host's.
+/// How far off, of itself, the unit's P may be before the host computes the point, where nobody
+/// says otherwise: rays that meet a surface at a flat angle are the host's.
 inline constexpr float kPointError = 0x1p-16f;
 
 /// The weights of the vertices where `ray` hits; they sum to 1, none is negative.

@@ -126,9 +126,9 @@ void TileRenderer::trace_wave() {
   stats_.shade_seconds += watch.lap();
   hits_.resize(rays_.size());
   work_.resize(is_counting_ ? rays_.size() : 0);
-  finder_.find(
-      rays_, {.common_origin = is_first, .culling = job_.options.skips.culling, .work = work_},
-      hits_);
+  finder_.find(rays_,
+               {.common_origin = is_first, .culling = job_.options.skips.culling, .work = work_},
+               hits_);
   watch.lap();
   output_.next.clear();
   for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], wave_[i].sample);
@@ -168,8 +168,7 @@ void TileRenderer::shade(const LightRay& ray, const NearestHit& hit) {
     seen.normal = surface.normal;
     seen.albedo = surface.diffuse;
     if (first_sample_ == 0) {
-      seen.point =
-          doubtful ? precise_hit(ray.ray, job_.bvh.corners_of(hit.slot)).point : hit.point;
+      seen.point = doubtful ? precise_hit(ray.ray, job_.bvh.corners_of(hit.slot)).point : hit.point;
     }
   }
   if (!integrator_) {

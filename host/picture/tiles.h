@@ -25,8 +25,8 @@ struct Tiles {
     const std::int64_t share = std::int64_t{window.width()} * window.height() / threads;
     const int square = edge * edge;
     const auto many = static_cast<std::int64_t>(batch) / samples_per_pass;
-    const int pixels =
-        static_cast<int>(std::clamp(share, std::int64_t{square}, std::max<std::int64_t>(square, many)));
+    const int pixels = static_cast<int>(
+        std::clamp(share, std::int64_t{square}, std::max<std::int64_t>(square, many)));
     width = pixels / edge;
     if (2 * width > window.width()) width = window.width();
     height =

@@ -20,6 +20,7 @@ TEST_F(Render, OnlyASceneGivesBothPicturesHere) {
 
 TEST_F(Render, ChannelsOnDemand) {
   render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "plain.exr"});
+  const json uncounted = stats_;
   render({kCornell, "--size", "40x30", "--engine", "cpu", "--channels",
           "P,Albedo,objectId,tests,doubts", "-o", "all.exr"});
   ExrReader plain(folder_.read("plain.exr")), all(folder_.read("all.exr"));
@@ -37,6 +38,7 @@ TEST_F(Render, ChannelsOnDemand) {
     return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
   };
   EXPECT_EQ(sum(tests), stats_.at("tests"));
+  EXPECT_EQ(stats_.at("tests"), uncounted.at("tests")) << "counting by pixel changes what is done";
   EXPECT_EQ(sum(doubts), stats_.at("edge_doubts"));
 }
 

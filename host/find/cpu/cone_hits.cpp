@@ -11,8 +11,7 @@ namespace raygate {
 /// Hands the nearest hits over, with their P where that is asked for: triangle by triangle, as rays
 /// that hit one share its plane.
 RAYGATE_LANES void finish(ConeSearch& search, const ConeWalk& walk) {
-  const bool with_points =
-      search.search_.ignored.empty() && search.search_.enough_before.empty();
+  const bool with_points = search.search_.ignored.empty() && search.search_.enough_before.empty();
   if (!search.search_.work.empty()) search.put_work(walk);
   std::uint64_t left = 0;
   for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {

@@ -23,8 +23,8 @@ RAYGATE_INLINE void split_group(ConeWalk& walk, int group) {
 }
 
 /// The children that any of the rays, which are of these groups, may meet; entry[i] is where.
-RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const Bvh::Node& node,
-                                 std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
+RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const Bvh::Node& node, std::uint64_t rays,
+                                 LaneMask groups, FloatLanes& entry) {
   const Cones& cones = walk.cones;
   if (several(groups)) return meet_children(cones.whole, node, walk.cutoff, entry);
   const int only = std::countr_zero(groups);

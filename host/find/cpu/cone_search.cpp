@@ -229,8 +229,7 @@ void ConeSearch::trace(std::span<const Ray> rays, const Search& search,
 
 /// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it
 /// is are hit by no ray: they leave those that are there.
-void ConeSearch::settle_sides(const Bvh::Child& leaf, QuadRecord& record,
-                              LaneMask& there) const {
+void ConeSearch::settle_sides(const Bvh::Child& leaf, QuadRecord& record, LaneMask& there) const {
   for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
     const int i = std::countr_zero(unsure);
     const int side =

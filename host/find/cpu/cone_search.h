@@ -11,10 +11,10 @@
 
 namespace raygate {
 
-/// A part of CpuFinder, for rays of one origin. What is needed of polygon records is made in float32
-/// when a cone comes to a leaf, and tested while it is at hand, against those of eight groups of
-/// eight rays whose cone it meets at all. What float32 leaves open exact arithmetic settles:
-/// decisions are the same, whatever decides first.
+/// A part of CpuFinder, for rays of one origin. What is needed of polygon records is made in
+/// float32 when a cone comes to a leaf, and tested while it is at hand, against those of eight
+/// groups of eight rays whose cone it meets at all. What float32 leaves open exact arithmetic
+/// settles: decisions are the same, whatever decides first.
 class ConeSearch {
  public:
   ConeSearch(const Bvh& bvh, FindCounters& counters) : bvh_(bvh), counters_(counters) {}
@@ -34,10 +34,10 @@ class ConeSearch {
   friend void walk_tree(ConeSearch& search, ConeWalk& walk);
   friend void finish(ConeSearch& search, const ConeWalk& walk);
 
-  void test_groups(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf,
-                   LaneMask there, std::uint64_t rays, LaneMask& changed);
-  void test_rays(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf,
-                 LaneMask there, std::uint64_t rays, LaneMask& changed);
+  void test_groups(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf, LaneMask there,
+                   std::uint64_t rays, LaneMask& changed);
+  void test_rays(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf, LaneMask there,
+                 std::uint64_t rays, LaneMask& changed);
   void settle_sides(const Bvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
   bool settle(ConeWalk& walk, int group, int lane, std::int32_t slot, const Interval* sure);
   void put(const ConeWalk& walk, const Seen& seen);

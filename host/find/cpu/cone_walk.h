@@ -51,7 +51,7 @@ struct ConeWalk {
   IntLanes slot[kGroups];                ///< of the nearest hit; -1: none
   IntLanes ignored[kGroups];             ///< a slot; -1: none
   IntLanes enough[kGroups];              ///< a hit that is surely before is enough
-  FloatLanes slack;     ///< lane g: how many times an edge's bound all of group g may be off it
+  FloatLanes slack;  ///< lane g: how many times an edge's bound all of group g may be off it
   // If that is asked for: what each ray's search took, and which rays there are.
   RayWork work[kGroups][kLanes];
   LaneMask started[kGroups];

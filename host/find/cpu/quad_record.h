@@ -82,7 +82,8 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
     join(p[0][k], p[1][k], u[k]);
     join(sides[0][k], sides[1][k], v[k]);
   }
-  const auto cross_of = [&](FloatLanes(&plane)[3], FloatLanes& sum) __attribute__((always_inline)) {
+  const auto cross_of = [&](FloatLanes(&plane)[3], FloatLanes & sum)
+      __attribute__((always_inline)) {
     FloatLanes size[3];
     cross(u, v, plane, size);
     sum = size[0] + size[1] + size[2];

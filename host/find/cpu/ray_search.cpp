@@ -40,7 +40,7 @@ struct RaySearch::Walk {
   float low, high;                            ///< its depth's bounds; without one, the limit's
   float cutoff;                               ///< boxes that are entered beyond do not matter
   RayWork work;
-  int count = 0;                              ///< of what is waiting
+  int count = 0;  ///< of what is waiting
   Waiting waiting[Bvh::kStackSize];
 
   Walk(const Ray& its_ray, std::uint32_t its_number)
@@ -66,8 +66,7 @@ namespace {
 using Key = std::int32_t;
 constexpr Key kNumber = Bvh::kWidth - 1;
 
-RAYGATE_INLINE void push(RaySearch::Walk& walk, const Bvh& tree, const Bvh::Node& node,
-                         Key key) {
+RAYGATE_INLINE void push(RaySearch::Walk& walk, const Bvh& tree, const Bvh::Node& node, Key key) {
   const Bvh::Child& child = node.child[key & kNumber];
   tree.prefetch(child);
   walk.waiting[walk.count++] = {child, std::bit_cast<float>(key & ~kNumber)};
@@ -203,8 +202,7 @@ std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
 
 }  // namespace
 
-void RaySearch::trace(std::span<const Ray> rays, const Search& search,
-                      std::span<NearestHit> hits) {
+void RaySearch::trace(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits) {
   rays_ = rays;
   search_ = search;
   hits_ = hits;

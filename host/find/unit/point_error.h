@@ -11,12 +11,12 @@
 
 // Why P is no farther off
 //
-// Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. hit_test_pkg.sv has
-// it that V is at most r = 48.5 u 2^g of itself off, and t, with 2 u of d and u of its division, at
-// most (48.5 * 2^g + 3.2) u / (1 - r). A coordinate of P has one rounding more, of d I_k:
-// (48.5 * 2^g + 4.3) u / (1 - r) of t I_k < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which is so up
-// to g = 12. A product d I_k that underflows is 2^-150 off, which is less than 2^-48 of d where d is
-// at least 2^-102; nothing overflows where d, t < 2^104.
+// Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. hit_test_pkg.sv
+// has it that V is at most r = 48.5 u 2^g of itself off, and t, with 2 u of d and u of its
+// division, at most (48.5 * 2^g + 3.2) u / (1 - r). A coordinate of P has one rounding more, of d
+// I_k: (48.5 * 2^g + 4.3) u / (1 - r) of t I_k < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which is
+// so up to g = 12. A product d I_k that underflows is 2^-150 off, which is less than 2^-48 of d
+// where d is at least 2^-102; nothing overflows where d, t < 2^104.
 
 namespace raygate {
 

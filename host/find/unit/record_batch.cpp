@@ -41,7 +41,7 @@ RAYGATE_INLINE void require_ordinary(const Doubles& size, Longs& good) {
 
 /// u x v; leaves those lanes good in which it is accurate enough and of an ordinary size.
 RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
-                          Longs& good) {
+                                   Longs& good) {
   cross(u, v, value, size);
   Points s;
   for (int k = 0; k < 3; ++k) magnitude(value[k], s[k]);

@@ -200,13 +200,13 @@ void UnitFinder::make_own_records(Half& half) {
 }
 
 bool UnitFinder::take(std::uint32_t number, const SureHit& hit) {
-  return take_if_nearer(bvh_, rays_[number], search_.limit(number), {hit.tag, hit.point, hit.point_error, hit.t},
-                        hits_[number], counters_);
+  return take_if_nearer(bvh_, rays_[number], search_.limit(number),
+                        {hit.tag, hit.point, hit.point_error, hit.t}, hits_[number], counters_);
 }
 
 bool UnitFinder::take(std::uint32_t number, const Doubt& doubt) {
-  return settle_doubt(bvh_, rays_[number], search_.limit(number), {doubt.tag, doubt.point, doubt.point_error, {}},
-                      hits_[number], counters_);
+  return settle_doubt(bvh_, rays_[number], search_.limit(number),
+                      {doubt.tag, doubt.point, doubt.point_error, {}}, hits_[number], counters_);
 }
 
 template <class Report>

@@ -234,22 +234,24 @@ TEST(Threshold, SavesRaysThatHardlyCount) {
   }
 }
 
-// Snapshots show what is there; the last one is part of the way to the film.
+// Snapshots show what is there, while the threads go on.
 TEST(Snapshots, AreTakenOnTheWay) {
   const Scene scene = everything();
-  RenderOptions options = light(IntegratorKind::kPath, 40, 30, 12);
+  RenderOptions options = light(IntegratorKind::kPath, 40, 30, 400);
   int snapshots = 0;
+  float seen = 0.0f;
   options.snapshot = [&](const Film& film) {
     ++snapshots;
     EXPECT_EQ(film.color.size(), 1200u);
-    EXPECT_GT(film.color[600].r, 0.0f);
+    seen = std::max(seen, film.color[600].r);
   };
   options.snapshot_seconds = 0.0;
   const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
   RenderStats stats;
   const Bvh bvh(scene);
   (void)render(scene, bvh, camera, options, pipeline_model(bvh), stats);
-  EXPECT_EQ(snapshots, 2) << "of three passes of one tile, the last is the film";
+  EXPECT_GT(snapshots, 0);
+  EXPECT_GT(seen, 0.0f);
 }
 
 }  // namespace

@@ -102,12 +102,13 @@ TEST(Renderer, FilmDoesNotDependOnThreadsOrOrder) {
   RenderStats one, other;
   const Film film = render(scene, bvh, kCamera, size(200, 150), serial(bvh), one);
   for (const int threads : {2, 3, 8}) {
-    EXPECT_TRUE(same(film, render(scene, bvh, kCamera, size(200, 150, threads), serial(bvh), other)));
+    EXPECT_TRUE(
+        same(film, render(scene, bvh, kCamera, size(200, 150, threads), serial(bvh), other)));
     EXPECT_EQ(one.find.hit.tests, other.find.hit.tests);
     EXPECT_EQ(one.find.common_records, other.find.common_records);
   }
-  EXPECT_TRUE(
-      same(film, render(scene, bvh, kCamera, size(200, 150), serial(bvh, Order::kPlanesFirst), other)));
+  EXPECT_TRUE(same(
+      film, render(scene, bvh, kCamera, size(200, 150), serial(bvh, Order::kPlanesFirst), other)));
 }
 
 TEST(Renderer, WindowIsAPartOfTheWhole) {
@@ -208,7 +209,8 @@ TEST(Renderer, ProgressReachesOneAndCanCancel) {
     return true;
   });
   EXPECT_EQ(last, 1.0);
-  (void)render(scene, bvh, kCamera, size(300, 300), serial(bvh), stats, [](double) { return false; });
+  (void)render(scene, bvh, kCamera, size(300, 300), serial(bvh), stats,
+               [](double) { return false; });
   EXPECT_TRUE(stats.cancelled);
   EXPECT_LT(stats.rays, 300u * 300u);
 }

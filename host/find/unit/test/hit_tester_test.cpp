@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "host/exact/test/meshes.h"
+#include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/reference_plane_unit.h"
-#include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/serial_hit_tester.h"
 #include "host/scene/camera.h"
 
@@ -192,7 +192,8 @@ TEST(SerialHitTester, BothOrdersReportTheSame) {
   Random random;
   const Batch batch(random, 2000);
   SerialHitTester first(std::make_unique<ReferencePlaneUnit>());
-  SerialHitTester paper(std::make_unique<ReferencePlaneUnit>(), SerialHitTester::Order::kPlanesFirst);
+  SerialHitTester paper(std::make_unique<ReferencePlaneUnit>(),
+                        SerialHitTester::Order::kPlanesFirst);
   HitResults a, b;
   first.test(batch.bundles, a);
   paper.test(batch.bundles, b);

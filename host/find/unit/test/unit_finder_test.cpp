@@ -54,8 +54,8 @@ class UnitFinderTest : public testing::Test {
  protected:
   std::vector<Corners> mesh_ = sphere_in_box();
   Bvh bvh_{test::scene_of(mesh_)};
-  UnitFinder finder_{bvh_, std::make_shared<PipelineHitTester>(
-                               std::make_unique<ReferenceBurstUnit>())};
+  UnitFinder finder_{bvh_,
+                     std::make_shared<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>())};
   Random random_;
 
   std::vector<NearestHit> find(const std::vector<Ray>& rays, const Search& search = {}) {
