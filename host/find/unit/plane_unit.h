@@ -25,9 +25,6 @@ class PlaneUnit {
   /// `points[i]` becomes the result of `tests[i]`; both spans have one size.
   virtual void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) = 0;
 
-  /// The error of a result relative to it, at most: P's is in proportion (NearestHit::point_error).
-  [[nodiscard]] virtual float unit_roundoff() const { return 0x1p-24f; }
-
   /// Simulated clock cycles since construction; 0 where nothing is simulated.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };

@@ -84,8 +84,7 @@ void SerialHitTester::report_burst(std::span<const RayBundle> batch, std::size_t
     const std::uint32_t tag = bundle.first_tag + record;
     if (verdict == UnitVerdict::kMiss) continue;
     const glm::vec3 direction = bundle.lane_direction(static_cast<int>(lane));
-    const float error =
-        point_error(bundle.records[record], direction) * (unit_->unit_roundoff() * 0x1p24f);
+    const float error = point_error(bundle.records[record], direction);
     if (verdict == UnitVerdict::kDoubt) {
       results.doubts.push_back({index, lane, tag, points_[i], error});
       continue;

@@ -1,8 +1,6 @@
 #include "host/lab/variants/variant_units.h"
 
-#include <algorithm>
 #include <cassert>
-#include <cmath>
 
 namespace raygate {
 
@@ -22,11 +20,6 @@ void VariantPlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm
       points[i][k] = math_.divide(math_.multiply(d, direction[k]), dot);
     }
   }
-}
-
-float VariantPlaneUnit::unit_roundoff() const {
-  const double cut = math_.quotient_digits == 0 ? 0.0 : std::ldexp(1.0, -math_.quotient_digits);
-  return static_cast<float>(std::max(math_.unit_roundoff(), cut));
 }
 
 }  // namespace raygate

@@ -19,7 +19,6 @@ class VariantPlaneUnit : public PlaneUnit {
   explicit VariantPlaneUnit(const Arithmetic& math) : math_(math) {}
 
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
-  [[nodiscard]] float unit_roundoff() const override;
 
  private:
   Arithmetic math_;
