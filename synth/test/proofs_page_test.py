@@ -15,7 +15,8 @@ class ProofsPage(unittest.TestCase):
     def test_every_module_has_a_row(self):
         rows = re.findall(r"^\| `(\w+)` \| (as|exhaustive|proof|random)\b", PAGE.read_text(), re.M)
         modules = {file.stem for name in cores.names() for file in cores.files(name)}
-        self.assertEqual(sorted(name for name, _ in rows), sorted(modules))
+        self.assertNotEqual(modules, set())
+        self.assertEqual({name for name, _ in rows} ^ modules, set())
 
     def test_every_proof_it_names_is_there(self):
         evidence = PAGE.read_text().split("## Every module")[1]
