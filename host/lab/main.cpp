@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "host/exact/ieee_floats.h"
 #include "host/lab/commands.h"
 #include "host/scene/io/input_error.h"
 
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   lab::add_rays(app, common);
   lab::add_skips(app, common);
   try {
+    require_ieee_floats();
     app.parse(argc, argv);
     return common.status;
   } catch (const CLI::ParseError& error) {
