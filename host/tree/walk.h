@@ -34,7 +34,7 @@ struct Whole {};
 
 /// Goes on to the next leaf; false when there is none. To be called again and again, whatever the
 /// visitor has learned in between. The visitor is asked
-///   * goes_on(entry, rays): whether what has waited still matters; may narrow `rays`;
+///   * goes_on(entry, rays): whether a child still matters to any of `rays`; may narrow them;
 ///   * meet(node, rays, entry): which children the rays meet, bit i for child i, and where they
 ///     enter them, 0 or more;
 ///   * rays_at(i): which of the rays meet child i, after that.
@@ -46,8 +46,8 @@ RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>
   constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
   while (stack.depth > 0) {
     leaf = stack.waiting[--stack.depth];
-    if (!visitor.goes_on(leaf.entry, leaf.rays)) continue;
-    while (leaf.child.count == 0) {
+    while (visitor.goes_on(leaf.entry, leaf.rays)) {
+      if (leaf.child.count != 0) return true;
       const Bvh::Node& node = tree.nodes()[leaf.child.first];
       FloatLanes entry;
       LaneMask met = visitor.meet(node, leaf.rays, entry);
@@ -63,11 +63,11 @@ RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>
       const auto child_at = [&](Key key, Waiting<Rays> & child) __attribute__((always_inline)) {
         const int i = key & kNumber;
         child = {node.child[i], std::bit_cast<float>(key & ~kNumber), visitor.rays_at(i)};
+        tree.prefetch(child.child);
       };
       const auto push = [&](Key key) __attribute__((always_inline)) {
         Waiting<Rays>& child = stack.waiting[stack.depth++];
         child_at(key, child);
-        tree.prefetch(child.child);
       };
       Key nearest = take();
       if (met != 0) {
@@ -90,7 +90,6 @@ RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>
       }
       child_at(nearest, leaf);
     }
-    if (leaf.child.count != 0) return true;
   }
   return false;
 }

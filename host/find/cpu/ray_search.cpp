@@ -12,18 +12,12 @@
 #include "host/find/unit/record_batch.h"
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/tree/beam.h"
-#include "host/tree/bvh.h"
+#include "host/tree/walk.h"
 
 namespace raygate {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// What of the tree waits to be visited: the nearest last, as far as one node knows.
-struct Waiting {
-  Bvh::Child child;
-  float entry;
-};
 
 }  // namespace
 
@@ -40,8 +34,6 @@ struct RaySearch::Walk {
   float low, high;                            ///< its depth's bounds; without one, the limit's
   float cutoff;                               ///< boxes that are entered beyond do not matter
   RayWork work;
-  int count = 0;  ///< of what is waiting
-  Waiting waiting[Bvh::kStackSize];
 
   Walk(const Ray& its_ray, std::uint32_t its_number)
       : ray(its_ray),
@@ -62,52 +54,16 @@ struct RaySearch::Walk {
 
 namespace {
 
-/// A child's number in the place of the last bits of its entry: in the order of entries.
-using Key = std::int32_t;
-constexpr Key kNumber = Bvh::kWidth - 1;
+/// What the tree asks (see next_leaf).
+struct RayVisitor {
+  const RaySearch::Walk& walk;
 
-RAYGATE_INLINE void push(RaySearch::Walk& walk, const Bvh& tree, const Bvh::Node& node, Key key) {
-  const Bvh::Child& child = node.child[key & kNumber];
-  tree.prefetch(child);
-  walk.waiting[walk.count++] = {child, std::bit_cast<float>(key & ~kNumber)};
-}
-
-/// Goes down from an inner node to the leaf that is met first: `child` is either. False where
-/// there is none.
-RAYGATE_INLINE bool go_down(const Bvh& tree, RaySearch::Walk& walk, Bvh::Child& child) {
-  while (child.count == 0) {
-    const Bvh::Node& node = tree.nodes()[child.first];
-    FloatLanes entry;
-
-    LaneMask met = meet_children(walk.beam, node, walk.cutoff, entry);
-    if (met == 0) return false;
-    constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
-    const IntLanes keys = (reinterpret_cast<IntLanes>(entry) & ~kNumber) | kNumbers;
-    Key nearest = keys[std::countr_zero(met)];
-    met &= met - 1;
-    if (met != 0) {
-      Key next = keys[std::countr_zero(met)];
-      met &= met - 1;
-      if (met == 0) {
-        push(walk, tree, node, std::max(nearest, next));
-        nearest = std::min(nearest, next);
-      } else {
-        Key sorted[Bvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
-        int count = 2;
-        for (; met != 0; met &= met - 1) {
-          next = keys[std::countr_zero(met)];
-          int place = count++;
-          for (; place > 0 && sorted[place - 1] < next; --place) sorted[place] = sorted[place - 1];
-          sorted[place] = next;
-        }
-        nearest = sorted[--count];
-        for (int i = 0; i < count; ++i) push(walk, tree, node, sorted[i]);
-      }
-    }
-    child = node.child[nearest & kNumber];
+  RAYGATE_INLINE bool goes_on(float entry, Whole) const { return entry <= walk.cutoff; }
+  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, Whole, FloatLanes& entry) const {
+    return meet_children(walk.beam, node, walk.cutoff, entry);
   }
-  return true;
-}
+  RAYGATE_INLINE static Whole rays_at(int) { return {}; }
+};
 
 }  // namespace
 
@@ -148,13 +104,10 @@ RAYGATE_INLINE bool RaySearch::test_leaf(Walk& walk, const Bvh::Child& leaf) {
 
 /// Walks the tree, near before far, and tests what is there.
 RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
-  const Bvh& tree = search.bvh_;
-  walk.waiting[walk.count++] = {{0, 0}, 0.0f};
-  while (walk.count > 0) {
-    const Waiting item = walk.waiting[--walk.count];
-    Bvh::Child leaf = item.child;
-    if (item.entry > walk.cutoff || !go_down(tree, walk, leaf)) continue;
-    if (!search.test_leaf(walk, leaf)) return;
+  const RayVisitor visitor{walk};
+  WalkStack<Whole> stack({});
+  Waiting<Whole> leaf;
+  while (next_leaf(search.bvh_, visitor, stack, leaf) && search.test_leaf(walk, leaf.child)) {
   }
 }
 
