@@ -7,6 +7,7 @@
 
 #include "host/scene/scene.h"
 #include "host/tree/box.h"
+#include "host/tree/bvh.h"
 
 namespace raygate {
 
@@ -18,7 +19,7 @@ struct Primitive {
   std::uint32_t unused;
 
   RAYGATE_INLINE void get(Box& box) const { std::memcpy(&box, this, sizeof box); }
-  /// Twice the box's middle, halved first: finite.
+  /// The box's along an axis; halved before it is added up, so that it is finite.
   [[nodiscard]] RAYGATE_INLINE float middle(int axis) const {
     return 0.5f * low[axis] - 0.5f * turned_high[axis];
   }
@@ -30,7 +31,7 @@ struct Primitive {
 /// nodes[m]. So each thread knows where its nodes go, and the tree does not depend on which thread
 /// made what.
 struct BinaryTree {
-  static constexpr int kMaxDepth = 48;  ///< of leaves: no way from the root is longer
+  static constexpr int kMaxDepth = Bvh::kMaxDepth;  ///< of leaves; the root's is 0
 
   /// A node's number; from `size()` on: that of a leaf's primitive, plus size().
   using Ref = std::uint32_t;

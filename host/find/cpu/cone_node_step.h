@@ -39,6 +39,10 @@ RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const Bvh::Node& node, st
 
 /// Puts what the rays meet of a node onto the stack. Where a beam meets several children,
 /// those within it are asked one by one: first the groups, then their rays.
+///
+/// Cones have a walk of their own beside next_leaf (host/tree/walk.h), which the others share: with
+/// a visitor for it, `build/lab rays landscape.obj` gave 0.88 as many shadow rays a second, and
+/// 0.93 as many camera rays.
 RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
   constexpr int kFew = 1;  // children

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "host/exact/test/meshes.h"
+#include "host/tree/binary_tree.h"
 
 namespace raygate {
 namespace {
@@ -131,6 +132,12 @@ TEST(Bvh, HoldsTrianglesThatNoSplitTellsApart) {
   }
 }
 
+int depth_below(const BinaryTree& tree, BinaryTree::Ref ref) {
+  if (tree.is_leaf(ref)) return 0;
+  const auto [left, right] = tree.nodes[ref].child;
+  return 1 + std::max(depth_below(tree, left), depth_below(tree, right));
+}
+
 // Each triangle a fraction of the size of the one before: the heuristic splits off one at a time.
 TEST(Bvh, DepthIsBounded) {
   std::vector<Corners> shrinking;
@@ -141,6 +148,10 @@ TEST(Bvh, DepthIsBounded) {
     }
   }
   expect_sound(shrinking);
+  const BinaryTree tree(test::scene_of(shrinking), 1);
+  const int depth = depth_below(tree, tree.root());
+  EXPECT_LE(depth, BinaryTree::kMaxDepth);
+  EXPECT_GT(depth, BinaryTree::kMaxDepth - 4);  // it would be deeper
 }
 
 bool same_bytes(const Bvh& a, const Bvh& b) {
