@@ -46,6 +46,10 @@ def write(rows: list[dict], build: object, name: str, publish: bool) -> None:
         (PUBLISHED / f"{name}.md").write_text(text)
         for file in folder.glob("*.png"):
             shutil.copy(file, PUBLISHED)
+        shown = "".join(page.read_text() for page in PUBLISHED.glob("*.md"))
+        for file in PUBLISHED.glob("*.*g"):  # pictures of older reports
+            if file.name not in shown:
+                file.unlink()
     print(f"Report: build/{name}/report.md, and report.html beside it")
 
 

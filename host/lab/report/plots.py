@@ -28,8 +28,10 @@ def pareto(points: list[dict], costs: dict[str, str], error: str, title: str,
            file: pathlib.Path) -> pathlib.Path:
     """A panel for each cost (key: label) of points {name, unit, doubts, error, key ...}; the lower
     the better in both; the front is a line."""
-    figure, grid = plt.subplots(-(-len(costs) // 2), 2, figsize=(13, 5 * -(-len(costs) // 2)),
-                                squeeze=False, layout="constrained")
+    columns = min(len(costs), 2)
+    lines = -(-len(costs) // 2)
+    figure, grid = plt.subplots(lines, columns, figsize=(6.5 * columns, 5 * lines), squeeze=False,
+                                layout="constrained")
     for axes in grid.flat[len(costs):]:
         axes.set_axis_off()
     for axes, (key, label) in zip(grid.flat, costs.items(), strict=False):
@@ -72,8 +74,8 @@ def _annotate(axes: plt.Axes, names: list[str], drawn: list[tuple[float, float]]
     groups: list[list[int]] = []
     for i in sorted(range(len(drawn)), key=lambda i: -places[i][1]):
         for group in groups:
-            apart = abs(places[group[-1]] - places[i])
-            if apart[0] < 45 and apart[1] < 14:
+            apart = abs(places[group[0]] - places[i])
+            if apart[0] < 80 and apart[1] < 14 * (len(group) + 1):
                 group.append(i)
                 break
         else:

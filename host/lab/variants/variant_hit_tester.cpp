@@ -218,16 +218,22 @@ void VariantHitTester::report(const RayBundle& wide, HitResults& results,
   const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report.lane));
   const std::uint32_t tag = wide.first_tag + report.record;
   const glm::vec3 point = twin_.point(record, direction);
-  if (report.kind == TestReport::Kind::kDoubt) {
-    results.doubts.push_back({report.bundle, report.lane, tag, point, kInfinity});
-  } else {
-    const HitDistance distance = twin_.distance(record, direction);
-    results.hits.push_back(
-        {report.bundle, report.lane, tag, point,
-         point_error(variant_.math, record.d, direction,
-                     wide.lane_direction(static_cast<int>(report.lane)), point, distance.error),
-         around(variant_.math, distance.t, distance.error)});
+  const HitDistance distance = twin_.distance(record, direction);
+  const float error =
+      point_error(variant_.math, record.d, direction,
+                  wide.lane_direction(static_cast<int>(report.lane)), point, distance.error);
+  if (report.kind == TestReport::Kind::kNearTie) {
+    results.hits.push_back({report.bundle, report.lane, tag, point, error,
+                            around(variant_.math, distance.t, distance.error)});
+    return;
   }
+  // Should it be a hit, its P is as good as a sure one's where V may divide.
+  const float v = variant_.math.dot(record.normal, direction);
+  const bool divisible =
+      variant_.math.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
+      static_cast<int>(distance.error) <= std::max(variant_.math.fraction_bits() - 11, 0) &&
+      !std::isinf(record.bounds[0]);  // d is its own
+  results.doubts.push_back({report.bundle, report.lane, tag, point, divisible ? error : kInfinity});
 }
 
 /// One hit a burst: the kept one or, where it is nearer, one that the unit left open.
