@@ -2,6 +2,7 @@
 netlists with the RTL that they were made of. Each proof is one command on the RTL itself."""
 
 import argparse
+import collections
 import dataclasses
 import functools
 import pathlib
@@ -157,6 +158,13 @@ def all_proofs() -> list[Proof]:
     return proofs
 
 
+def outcome(proof: Proof, result: dict | None) -> str:
+    """proven; simulated, which is none; or failed."""
+    if result is None:
+        return "FAILED"
+    return "simulated" if proof.how in ("simulation", "evaluation") else "proven"
+
+
 def main() -> int:
     """Runs the proofs asked for; 1 where one fails, 2 for what the user can mend."""
     parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
@@ -176,12 +184,14 @@ def main() -> int:
     except (tools.MissingTool, ValueError) as error:
         print(f"synth: {error}", file=sys.stderr)
         return 2
-    print(tables.markdown(["proof", "what", "by", "holds", "s", "MB"], [
-        [proof.name, proof.claim, proof.how, "no" if result is None else "yes",
+    print(tables.markdown(["what", "claim", "by", "outcome", "s", "MB"], [
+        [proof.name, proof.claim, proof.how, outcome(proof, result),
          (result or {}).get("seconds", ""), (result or {}).get("megabytes", "")]
         for proof, result in zip(chosen, results, strict=True)]))
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
+    counts = collections.Counter(map(outcome, chosen, results))
+    print(f"\n{counts['proven']} proven, {counts['simulated']} simulated, {counts['FAILED']} failed")
     return 1 if failures else 0
 
 

@@ -1,4 +1,4 @@
-# Proves the assertions of TOP for all inputs.
+# Proves the assertions of TOP for all inputs; a TOP without any is refused.
 #   SOURCES, TOP, PARAMETERS  as for elaborate.tcl
 #   PREPARE                   a Tcl file that makes what TOP instantiates, or ""
 #   SMT2                      "": by Yosys's SAT solver, here; else the file to write for an SMT one
@@ -11,11 +11,11 @@ yosys hierarchy -check -top $::env(TOP) {*}$overrides
 yosys proc
 yosys flatten
 yosys opt
+yosys select -assert-min 1 t:\$assert
 if {$::env(SMT2) ne ""} {
   yosys async2sync
   yosys dffunmap
   yosys write_smt2 -wires $::env(SMT2)
 } else {
-  yosys select -assert-min 1 t:\$assert
   yosys sat -verify -prove-asserts -show-inputs -set-def-inputs
 }
