@@ -30,7 +30,7 @@ void on_threads(int threads, const Work& work) {
     std::vector<std::jthread> others;
     try {
       for (int i = 1; i < threads; ++i) others.emplace_back(guarded);
-    } catch (const std::system_error&) {  // those that have started will do
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): these will do
     }
     guarded();
   }

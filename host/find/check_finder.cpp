@@ -1,8 +1,8 @@
 #include "host/find/check_finder.h"
 
+#include <array>
 #include <bit>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -20,7 +20,8 @@ std::string hex(std::span<const float> words) {
 }
 
 bool same_bits(const glm::vec3& a, const glm::vec3& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Bits = std::array<std::uint32_t, 3>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
 std::string hex(const glm::vec3& v) { return hex({&v.x, 3}); }

@@ -46,7 +46,7 @@ RAYGATE_INLINE void box_around(const glm::vec3& a, const glm::vec3& b, const glm
   // larger; of both zeros the smallest negative number.
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
-  const IntLanes below = bits > 0 ? bits - 1 : bits + 1;
+  const IntLanes below = bits + ((bits > 0) | 1);  // -1 where positive: no lane overflows
   box = reinterpret_cast<FloatLanes>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u)
                                           : below);
 }

@@ -64,7 +64,7 @@ class Bvh {
     const float* const from = &corners_[9 * std::size_t{slot - place.number} + place.number];
     Corners corners;
     for (int v = 0; v < 3; ++v) {
-      for (int k = 0; k < 3; ++k) corners[v][k] = from[(3 * v + k) * place.count];
+      for (int k = 0; k < 3; ++k) corners[v][k] = from[std::size_t(3 * v + k) * place.count];
     }
     return corners;
   }

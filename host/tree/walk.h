@@ -78,7 +78,7 @@ RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>
         } else {
           Key sorted[Bvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
           int count = 2;
-          while (met != 0) {
+          while (met != 0) {  // NOLINT(bugprone-infinite-loop): take() takes one of them
             const Key key = take();
             int place = count++;
             for (; place > 0 && sorted[place - 1] < key; --place) sorted[place] = sorted[place - 1];

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -15,12 +14,6 @@
 #include "host/tree/walk.h"
 
 namespace raygate {
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
-
 /// One ray on its way. Depths are distances along its longest axis.
 struct RaySearch::Walk {
   const Ray& ray;

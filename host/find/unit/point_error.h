@@ -41,10 +41,9 @@ RAYGATE_INLINE void point_error_of(const PolygonRecord& plane, const Bits& v, co
   const std::int32_t d_field = d >> 23 & 0xFF;
   const Bits v_field = v >> 23 & 0xFF, apart = d_field - v_field;
   const Bits known = Bits{} + (std::abs(d_field - kBias) <= kRange ? -1 : 0);
-  error = (known < 0) & (v_field > 0) & (v_field < 0xFF) & ((v ^ d) >= 0) &
-                  (grazing <= kMaxGrazing) & (apart <= kRange) & (apart >= -kRange)
-              ? (grazing + (kBias - 18)) << 23
-              : Bits{} + 0x7F800000;
+  const Bits in_range = (known < 0) & (v_field > 0) & (v_field < 0xFF) & ((v ^ d) >= 0) &
+                        (grazing <= kMaxGrazing) & (apart <= kRange) & (apart >= -kRange);
+  error = in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
 }
 
 }  // namespace raygate
