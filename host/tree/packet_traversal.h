@@ -1,4 +1,4 @@
-// The way of eight rays through the tree, one leaf at a time.
+// The way of eight rays through the tree, leaf by leaf, to the triangles that they may hit.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct LeafVisit {
   LaneMask lanes = 0;
 };
 
-/// A leaf falls apart into runs of slots that the same rays meet.
+/// A leaf's slots that any ray meets, as runs that the same rays meet.
 struct LeafVisits {
   std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
   std::size_t count = 0;  ///< 0: all rays have seen everything
@@ -32,9 +32,9 @@ struct LeafVisits {
 /// A traversal that can be left at every leaf and resumed, front to back along the octant of its
 /// rays. Many packets in flight keep a hit-test unit busy while each waits for its own results.
 ///
-/// No ray misses a leaf with a triangle that it hits in exact arithmetic (at t no farther than its
-/// cutoff): packet_traversal.cpp has the proof. Triangles in the plane of the origin, which no ray
-/// hits, may be missed.
+/// No ray misses a triangle that it hits in exact arithmetic (at t no farther than its cutoff):
+/// packet_traversal.cpp has the proof. Of others it comes to those whose own boxes it meets; those
+/// in the plane of its origin, which no ray hits, may be missed.
 class PacketTraversal {
  public:
   /// All rays point into one octant. Directions as scaled_direction gives them (the largest
