@@ -62,7 +62,7 @@ module srt_row #(
       from[1] = y >= M0[eighth+:EstimateWidth];
       from[2] = y >= M1[eighth+:EstimateWidth];
       from[3] = y >= M2[eighth+:EstimateWidth];
-      multiple = {Width{from[2]}} ^ (({Width{(from[0] ^ from[1]) | (from[2] ^ from[3])}} & divisor_i)
+      multiple = {Width{from[2]}} ^ (({Width{from[0] ^ from[1] ^ from[2] ^ from[3]}} & divisor_i)
                                    | ({Width{~from[0] | from[3]}} & (divisor_i << 1)));
     end
   end

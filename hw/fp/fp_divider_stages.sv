@@ -10,11 +10,10 @@
 // Cuts: registers behind normalising (bit 0), each stage of the significands' division (bits 1 to
 // Rows + 3, see srt_divider_stages; Rows: two bits of the quotient each, 12 in binary32) and the result
 // (bit Rows + 4). As many clocks of latency as cuts, a division a clock. No cut: combinational. Registers
-// load only what came with valid_i; in other clocks the outputs mean nothing. The rounding mode is used
-// in the last stage only.
+// load only what came with valid_i; in other clocks, and without cuts while valid_i is low, the outputs
+// mean nothing. The rounding mode is the last stage's.
 //
-// Takes every bit pattern. A finite number by zero is infinity and raises
-// divide_by_zero; 0/0 and inf/inf are invalid.
+// A finite number by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.
 // Source: IEEE 754-2019, clauses 5.4.1 and 7; Choi and Chung, Trans. KIEE 48A-5-21, section 4.2.
 module fp_divider_stages #(
   parameter int unsigned ExpWidth     = 8,
@@ -194,7 +193,8 @@ module fp_divider_stages #(
   ) u_exponents (
     .clk_i,
     .enable_i(valid_i),
-    .data_i({exp_difference, count_difference, a_sign ^ b_sign, nan, infinity, zero, invalid, by_zero}),
+    .data_i({exp_difference, count_difference, a_sign ^ b_sign, nan, infinity, zero, invalid,
+             by_zero}),
     .data_o({exp_difference_1, count_difference_1, specials_1})
   );
 

@@ -5,10 +5,9 @@
 // left by the leading zeros, but not beyond the smallest exponent, or to the right for a subnormal
 // result. Behind the multiplier are left one shift and the shared rounder.
 //
-// Arith, Adder: see arith_pkg.
-// ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
-// Cuts: bit 0 and 1 put registers behind the product, and behind the result. As many clocks of
-// latency as cuts, one operation a clock. No cut: combinational. The rounding mode is used in the second stage only.
+// Arith, Adder: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
+// Cuts: registers behind the product (bit 0) and behind the result (bit 1). As many clocks of latency
+// as cuts, one operation a clock. No cut: combinational. The rounding mode is the second stage's.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
 // operands' signs, also that of zeros and infinities. Zero times infinity is invalid.
@@ -200,7 +199,8 @@ module fp_multiplier_stages #(
     .shifted_o(shifted),
     .lost_o(lost)
   );
-  assign placed = exp_negative_1 ? {1'b0, shifted, lost | product_1[0]} : {product_1 << left_1, 1'b0};
+  assign placed = exp_negative_1 ? {1'b0, shifted, lost | product_1[0]}
+                                 : {product_1 << left_1, 1'b0};
 
   // ---- Round
 

@@ -16,7 +16,8 @@
 namespace raygate {
 namespace {
 
-/// Tests for each array: a million with one lane, else 100,000; RAYGATE_STRESS asks for another number.
+/// Tests for each array: a million with one lane, else 100,000; RAYGATE_STRESS asks for another
+/// number.
 std::uint64_t tests_wanted(int lanes) {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : lanes == 1 ? 1'000'000 : 100'000;
