@@ -9,6 +9,7 @@ from host.lab.report import bench, bench_report, compare, document, doubts, stre
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
 
+REPORTS = ROOT / "build" / "reports"
 PUBLISHED = ROOT / "host" / "lab" / "results"
 # A run of all suites with so many tests in each may be published.
 ENOUGH = 1_000_000
@@ -18,7 +19,7 @@ def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="report", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    command = commands.add_parser("bench", help="run time against error: build/bench/report.md")
+    command = commands.add_parser("bench", help="run time against error: build/reports/bench/report.md")
     command.add_argument("--quick", action="store_true", help="small pictures, few repeats")
     command.add_argument("--base", type=pathlib.Path, metavar="OLD.jsonl",
                          help="older rows: says what got slower or less accurate since")
@@ -36,8 +37,8 @@ def arguments() -> argparse.Namespace:
 
 
 def write(rows: list[dict], build: object, name: str, publish: bool) -> None:
-    """NAME's report into build/NAME/; with `publish`, into host/lab/results/ too."""
-    folder = ROOT / "build" / name
+    """NAME's report into build/reports/NAME/; with `publish`, into host/lab/results/ too."""
+    folder = REPORTS / name
     folder.mkdir(parents=True, exist_ok=True)
     text = build(rows, folder)
     document.write(text, folder)
@@ -50,7 +51,7 @@ def write(rows: list[dict], build: object, name: str, publish: bool) -> None:
         for file in PUBLISHED.glob("*.*g"):  # pictures of older reports
             if file.name not in shown:
                 file.unlink()
-    print(f"Report: build/{name}/report.md, and report.html beside it")
+    print(f"Report: build/reports/{name}/report.md, and report.html beside it")
 
 
 def run_bench(given: argparse.Namespace) -> int:
@@ -62,7 +63,7 @@ def run_bench(given: argparse.Namespace) -> int:
     rows = kept.read(file)
     write(rows, bench_report.build, "bench", given.publish)
     table = kept.comma_separated(kept.of(rows, "pictures"))
-    for folder in (ROOT / "build" / "bench", *([PUBLISHED] if given.publish else [])):
+    for folder in (REPORTS / "bench", *([PUBLISHED] if given.publish else [])):
         (folder / "results.csv").write_text(table)
     if base:
         print("\n".join(compare.compare(base, rows)))
