@@ -14,6 +14,7 @@
 #include "host/tree/walk.h"
 
 namespace raygate {
+
 /// One ray on its way. Depths are distances along its longest axis.
 struct RaySearch::Walk {
   const Ray& ray;
