@@ -1,14 +1,15 @@
 // lab: everything that is measured on the host, one subcommand each. `lab --help` lists them.
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 
+#include "host/cli/process.h"
 #include "host/exact/ieee_floats.h"
 #include "host/lab/commands.h"
-#include "host/scene/io/input_error.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   using namespace raygate;
+  require_ieee_floats();
   CLI::App app("Measures raygate: how wrong, how fast, at what cost. make targets call it.", "lab");
   lab::Common common;
   app.add_option("--results", common.results,
@@ -22,16 +23,15 @@ int main(int argc, char** argv) {
   lab::add_rays(app, common);
   lab::add_skips(app, common);
   try {
-    require_ieee_floats();
     app.parse(argc, argv);
     return common.status;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 1;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return raygate::run_guarded([&] { return run(argc, argv); }, 1);
 }

@@ -78,7 +78,7 @@ Row with_usual(const Row& object, Row usual, const std::string& what) {
     if (!usual.contains(name)) {
       std::string expected;
       for (const auto& item : usual.items()) {
-        expected += (expected.empty() ? "" : ", ") + item.key();
+        expected.append(expected.empty() ? "" : ", ").append(item.key());
       }
       throw InputError(what + " has " + name + ", expected " + expected);
     }

@@ -94,8 +94,10 @@ double time_of(const Method& method, const Cases& cases) {
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     double seconds = 0.0;
     std::size_t rounds = 0, hits = 0;
-    for (; seconds < 0.01; ++rounds, seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start) {
+    while (seconds < 0.01) {
       hits += method.hits(cases);
+      ++rounds;
+      seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     }
     if (hits > rounds * cases.tests) throw std::logic_error("more hits than tests");
     times.push_back(1e9 * seconds / static_cast<double>(rounds * cases.tests));

@@ -26,6 +26,7 @@ struct Asked {
 template <class List>
 std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;
+  names.reserve(std::size(list));
   for (const auto& item : list) names.push_back(item.name);
   return names;
 }
