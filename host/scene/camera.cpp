@@ -65,8 +65,7 @@ Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const gl
   }
   Camera camera;
   camera.forward_ = unit(view);
-  const glm::dvec3 sideways =
-      largest(up) == 0.0 ? up : glm::cross(camera.forward_, unit(up));
+  const glm::dvec3 sideways = largest(up) == 0.0 ? up : glm::cross(camera.forward_, unit(up));
   if (glm::length(sideways) < 1e-9) {
     throw InputError("camera: up " + text(up) +
                      " is zero or along the view: expected a direction across it");

@@ -68,10 +68,10 @@ struct Scene {
   std::vector<Texture> textures;     ///< that materials of triangles name
   std::vector<std::string> objects;  ///< never empty; "o" and "g" names of the file
   std::vector<PointLight> lights;
-  glm::vec3 background{0.0f};         ///< radiance from where no geometry is, scene-linear RGB
-  glm::dvec3 origin{0.0};             ///< world = origin + position
+  glm::vec3 background{0.0f};  ///< radiance from where no geometry is, scene-linear RGB
+  glm::dvec3 origin{0.0};      ///< world = origin + position
   std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures
-  std::vector<std::string> warnings;  ///< "file:line: ...": of statements, then of faces
+  std::vector<std::string> warnings;         ///< "file:line: ...": of statements, then of faces
 };
 
 }  // namespace raygate
