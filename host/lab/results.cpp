@@ -76,11 +76,9 @@ Row with_usual(const Row& object, Row usual, const std::string& what) {
   if (!object.is_object()) throw InputError(what + " is " + object.dump() + ", not an object");
   for (const auto& [name, value] : object.items()) {
     if (!usual.contains(name)) {
-      std::string expected;
-      for (const auto& item : usual.items()) {
-        expected.append(expected.empty() ? "" : ", ").append(item.key());
-      }
-      throw InputError(what + " has " + name + ", expected " + expected);
+      std::string text = what + " has " + name + ", expected";
+      for (const auto& item : usual.items()) text.append(" ").append(item.key());
+      throw InputError(text);
     }
     const Row& like = usual[name];
     const bool same_kind = like.is_number_float() ? value.is_number()
