@@ -76,7 +76,8 @@ Row with_usual(const Row& object, Row usual, const std::string& what) {
   if (!object.is_object()) throw InputError(what + " is " + object.dump() + ", not an object");
   for (const auto& [name, value] : object.items()) {
     if (!usual.contains(name)) {
-      std::string text = what + " has " + name + ", expected";
+      std::string text = what;
+      text.append(" has ").append(name).append(", expected");
       for (const auto& item : usual.items()) text.append(" ").append(item.key());
       throw InputError(text);
     }
