@@ -6,7 +6,7 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench rays skips predicates doubts
+.PHONY: stress bench rays skips predicates doubts claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -43,3 +43,6 @@ predicates: ## what an exact decision costs, beside rationals and __float128
 doubts: ## doubts and their share of the time, scene by scene
 	$(call build,lab,render scenes)
 	@$(LAB_REPORT) doubts scenes/*.obj build/scenes/*.obj
+
+claims: everything ## every figure of host/lab/CLAIMS.md, by its command: make claims [ONLY=frame_rates]
+	@python3 -B host/lab/claims.py --only '$(ONLY)'
