@@ -44,5 +44,5 @@ doubts: ## doubts and their share of the time, scene by scene
 	$(call build,lab,render scenes)
 	@$(LAB_REPORT) doubts scenes/*.obj build/scenes/*.obj
 
-claims: everything ## every figure of host/lab/CLAIMS.md, by its command: make claims [ONLY=frame_rates]
+claims: everything ## check the figures of host/lab/CLAIMS.md by their commands: make claims [ONLY=frame_rates]
 	@python3 -B host/lab/claims.py --only '$(ONLY)'
