@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "host/light/plain_departure.h"
 #include "host/tree/box_query.h"
 
 // How far O' is from X
@@ -67,14 +69,6 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
   return false;
 }
 
-/// Whether no point of `other` is on the given side of the plane of `hit`. A straight way from that
-/// plane to that side does not meet it then: neighbours along a ridge do not matter, however flat
-/// the ridge.
-bool lies_beyond(const Corners& other, const Corners& hit, int side) {
-  return std::ranges::all_of(
-      other, [&](const glm::vec3& vertex) { return plane_side(vertex, hit) != side; });
-}
-
 /// The side of `other` on which the ray is just before or just after it hits `hit`; 0 where it
 /// runs in the plane.
 int wanted_side(const Ray& ray, const Corners& hit, const Corners& other, Departure way) {
@@ -84,9 +78,45 @@ int wanted_side(const Ray& ray, const Corners& hit, const Corners& other, Depart
   return way == Departure::kBefore ? before : -before;
 }
 
+/// Hits word by word, as PlainHits has them.
+template <int kWidth>
+struct Words {
+  alignas(4 * kWidth) float words[18][kWidth];
+
+  void put(int i, const Ray& ray, const Corners& corners, Departure way,
+           const Clearances::Sides& clearance) {
+    int next = 0;
+    const auto add = [&](const glm::vec3& v) {
+      for (int k = 0; k < 3; ++k) words[next++][i] = v[k];
+    };
+    for (const glm::vec3& vertex : corners) add(vertex);
+    add(ray.origin);
+    add(ray.direction);
+    add({way == Departure::kBefore ? -1.0f : 1.0f, clearance.behind, clearance.before});
+  }
+  template <class Single>
+  void get(PlainHits<Single>& hits) const {
+    static_assert(sizeof hits == sizeof words);
+    std::memcpy(&hits, words, sizeof hits);
+  }
+};
+
 }  // namespace
 
 std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot, Departure way) {
+  Words<1> words;
+  words.put(0, ray, bvh_.corners_of(slot), way, clearances_.of(slot));
+  PlainHits<float> hits;
+  words.get(hits);
+  float point[3];
+  int sure;
+  bool clear = false;
+  depart_plainly<double>(hits, clearances_.margin(), point, sure, clear);
+  if (sure != 0 && clear) return glm::vec3(point[0], point[1], point[2]);
+  return search(ray, slot, way);
+}
+
+std::optional<glm::vec3> DeparturePoint::search(const Ray& ray, std::uint32_t slot, Departure way) {
   const Corners& hit = bvh_.corners_of(slot);
   const Interval t = hit_distance(ray, hit);
   const HitPoint x(ray, t);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/exact/exact.h"
+#include "host/light/clearance.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
@@ -39,7 +40,9 @@ enum class Departure {
 /// corners, narrower than floats can express, there may be none: the ray had better end there.
 class DeparturePoint {
  public:
-  explicit DeparturePoint(const Bvh& bvh) : bvh_(bvh) {}
+  /// The clearances must outlive this.
+  explicit DeparturePoint(const Clearances& clearances)
+      : clearances_(clearances), bvh_(clearances.bvh()) {}
 
   /// O' for `ray`, whose nearest hit is the triangle in `slot`. The triangles in whose plane the
   /// ray runs have no say.
@@ -51,6 +54,10 @@ class DeparturePoint {
                             const glm::vec3& direction) const;
 
  private:
+  /// As find(), looking at what is near.
+  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, Departure way);
+
+  const Clearances& clearances_;
   const Bvh& bvh_;
   std::vector<std::uint32_t> near_;  // kept from call to call
 };

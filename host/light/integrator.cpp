@@ -111,11 +111,13 @@ void Integrator::go_on_through(Hit& hit, const glm::dvec3& weight, std::uint32_t
         next, output);
 }
 
-std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Bvh& bvh,
+std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Clearances& clearances,
                                             const Lights& lights, const Skips& skips,
                                             const IntegratorOptions& options) {
-  if (kind == IntegratorKind::kPath) return std::make_unique<Path>(bvh, lights, skips, options);
-  return std::make_unique<Whitted>(bvh, lights, skips, options);
+  if (kind == IntegratorKind::kPath) {
+    return std::make_unique<Path>(clearances, lights, skips, options);
+  }
+  return std::make_unique<Whitted>(clearances, lights, skips, options);
 }
 
 }  // namespace raygate

@@ -63,9 +63,9 @@ struct IntegratorOptions {
 class Integrator {
  public:
   /// The references must outlive this.
-  Integrator(const Bvh& bvh, const Lights& lights, const Skips& skips,
+  Integrator(const Clearances& clearances, const Lights& lights, const Skips& skips,
              const IntegratorOptions& options)
-      : bvh_(bvh), lights_(lights), departure_(bvh), skips_(skips), options_(options) {}
+      : lights_(lights), departure_(clearances), skips_(skips), options_(options) {}
   virtual ~Integrator() = default;
 
   /// Adds what the hit of `ray` gives.
@@ -104,7 +104,6 @@ class Integrator {
   /// The ray through the surface.
   void go_on_through(Hit& hit, const glm::dvec3& weight, std::uint32_t branch, WaveOutput& output);
 
-  const Bvh& bvh_;
   const Lights& lights_;
   DeparturePoint departure_;
   Skips skips_;
@@ -116,7 +115,8 @@ class Integrator {
 };
 
 /// Not for kPrimary, which has none.
-[[nodiscard]] std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Bvh& bvh,
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(IntegratorKind kind,
+                                                          const Clearances& clearances,
                                                           const Lights& lights, const Skips& skips,
                                                           const IntegratorOptions& options);
 

@@ -24,13 +24,13 @@ float scaled_way(const glm::dvec3& way, double share) {
 
 }  // namespace
 
-ShadowRays::ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights, Finder& finder,
-                       const Skips& skips, bool through_refraction)
+ShadowRays::ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights,
+                       Finder& finder, const Skips& skips, bool through_refraction)
     : scene_(scene),
-      bvh_(bvh),
+      bvh_(clearances.bvh()),
       lights_(lights),
       finder_(finder),
-      departure_(bvh),
+      departure_(clearances),
       culling_(skips.culling),
       through_refraction_(through_refraction),
       any_clear_(std::ranges::any_of(scene.materials, is_clear)) {

@@ -38,7 +38,7 @@ struct ShadowRay {
 class ShadowRays {
  public:
   /// `through_refraction`: glass that bends light casts the shadow of one that does not.
-  ShadowRays(const Scene& scene, const Bvh& bvh, const Lights& lights, Finder& finder,
+  ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights, Finder& finder,
              const Skips& skips, bool through_refraction);
 
   /// Called for each ray that was traced with what its search took, by its shadow ray's index.

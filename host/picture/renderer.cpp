@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/light/clearance.h"
 #include "host/light/lights.h"
 #include "host/picture/schedule.h"
 #include "host/picture/tile_renderer.h"
@@ -232,7 +233,8 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
     sums.albedo.assign(film.albedo.size(), glm::dvec3(0.0));
   }
   const Lights lights(scene, bvh);
-  const RenderJob job{scene, bvh, camera, options, lights};
+  const Clearances clearances(bvh);
+  const RenderJob job{scene, bvh, camera, options, lights, clearances};
   Crew(job, tiles, std::move(first_finder), make_finder, progress, film, sums, stats).run();
   if (stats.find.common_records != 0) {
     stats.skipped.records =

@@ -39,13 +39,13 @@ TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film, Fil
   const RenderOptions& options = job.options;
   if (options.integrator == IntegratorKind::kPrimary) return;
   integrator_ = make_integrator(
-      options.integrator, job.bvh, job.lights, options.skips,
+      options.integrator, job.clearances, job.lights, options.skips,
       {.max_depth = options.max_depth,
        .threshold = options.threshold,
        .ambient = options.ambient ? glm::dvec3(*options.ambient) : job.lights.ambient(),
        .single_sample = options.samples == 1});
   shadow_rays_ =
-      std::make_unique<ShadowRays>(job.scene, job.bvh, job.lights, finder_, options.skips,
+      std::make_unique<ShadowRays>(job.scene, job.clearances, job.lights, finder_, options.skips,
                                    integrator_->shadows_through_refraction());
 }
 

@@ -23,6 +23,7 @@ struct RenderJob {
   const Camera& camera;
   const RenderOptions& options;
   const Lights& lights;
+  const Clearances& clearances;
 };
 
 /// What the samples of a pixel add up to, where they come in several passes.

@@ -49,7 +49,8 @@ void Bounces::start_anew(Random& random) {
 void Bounces::bounce(Random& random) {
   const Ray ray = {origin_, directions_[random.below(kRays)]};
   const auto slot = first_hit(*bvh_, ray);
-  DeparturePoint departure(*bvh_);
+  const Clearances clearances(*bvh_);
+  DeparturePoint departure(clearances);
   const auto point = slot ? departure.find(ray, *slot, Departure::kBefore) : std::nullopt;
   if (!point) return start_anew(random);
   mirrored_ = mirrored(ray.direction, bvh_->corners_of(*slot));

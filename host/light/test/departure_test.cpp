@@ -66,7 +66,8 @@ double steps_between(const glm::vec3& point, const Ray& ray, const Corners& t) {
 /// and every origin be inside.
 Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random& random, int rays) {
   const Bvh bvh(test::scene_of(mesh));
-  DeparturePoint departure(bvh);
+  const Clearances clearances(bvh);
+  DeparturePoint departure(clearances);
   EXPECT_TRUE(inside(bvh, start));
   Bounces result;
   for (; result.rays < rays; ++result.rays) {
@@ -139,7 +140,8 @@ TEST(Departure, NoRayEndsOnARidge) {
   Random random;
   const std::vector<Corners> mesh = test::sphere(4);
   const Bvh bvh(test::scene_of(mesh));
-  DeparturePoint departure(bvh);
+  const Clearances clearances(bvh);
+  DeparturePoint departure(clearances);
   int hits = 0;
   for (int i = 0; i < 600; ++i) {
     const glm::vec3 eye = 3.0f * glm::normalize(random.point() + 1e-3f);
@@ -177,7 +179,8 @@ TEST(Departure, StaysWithinTheBoundOnBothSides) {
     if (!hits_triangle(ray, t)) continue;
     ++hits;
     const Bvh bvh(test::scene_of({t}));
-    DeparturePoint departure(bvh);
+    const Clearances clearances(bvh);
+    DeparturePoint departure(clearances);
     for (const Departure way : {Departure::kBefore, Departure::kAfter}) {
       const auto point = departure.find(ray, 0, way);
       ASSERT_TRUE(point);

@@ -32,7 +32,7 @@ class ShadowRaysTest : public testing::Test {
  protected:
   /// Points on surfaces that are hit from `eye`, each with all lamps in front of it.
   void add_questions(const glm::vec3& eye, int count) {
-    DeparturePoint departure(bvh_);
+    DeparturePoint departure(clearances_);
     std::vector<Ray> rays;
     for (int i = 0; i < count; ++i) {
       rays.push_back({eye, scaled_direction(glm::dvec3(random_.point()) - 1e-9)});
@@ -84,6 +84,7 @@ class ShadowRaysTest : public testing::Test {
 
   Scene scene_ = obstacles();
   Bvh bvh_{scene_};
+  Clearances clearances_{bvh_};
   Lights lights_{scene_, bvh_};
   std::unique_ptr<Finder> finder_ = pipeline_finder(bvh_);
   Random random_;
@@ -95,7 +96,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
     add_questions(eye, 2000);
   }
   std::vector<ShadowRay> nearest = questions_;
-  ShadowRays(scene_, bvh_, lights_, *finder_, {}, true).resolve(questions_);
+  ShadowRays(scene_, clearances_, lights_, *finder_, {}, true).resolve(questions_);
   int dark = 0, lit = 0, different = 0;
   for (const ShadowRay& answer : questions_) {
     const bool blocked = is_blocked(answer);
@@ -112,7 +113,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   // Without the first-occluder skip: the same, to the last one.
   Skips skips;
   skips.first_occluder = false;
-  ShadowRays(scene_, bvh_, lights_, *finder_, skips, true).resolve(nearest);
+  ShadowRays(scene_, clearances_, lights_, *finder_, skips, true).resolve(nearest);
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     ASSERT_EQ(nearest[i].light, questions_[i].light) << i;
   }

@@ -1,0 +1,117 @@
+// Clearances against distances found by brute force.
+#include "host/light/clearance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "host/exact/test/meshes.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+
+/// Of a point and a segment.
+double distance(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b) {
+  const double t = std::clamp(glm::dot(x - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
+  return glm::length(x - a - t * (b - a));
+}
+
+/// Of a point and a triangle.
+double distance(const glm::dvec3& x, const Corners& t) {
+  const glm::dvec3 v[3] = {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
+  const glm::dvec3 normal = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
+  bool above = true;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3& a = v[k];
+    const glm::dvec3& b = v[(k + 1) % 3];
+    above = above && glm::dot(glm::cross(normal, b - a), x - a) >= 0.0;
+    least = std::min(least, distance(x, a, b));
+  }
+  return above ? std::abs(glm::dot(normal, x - v[0])) : least;
+}
+
+struct Seen {
+  int points = 0, known = 0;
+};
+
+/// Points of each triangle, most of them near its border.
+Seen check(const std::vector<Corners>& mesh, Random& random) {
+  const Bvh bvh(test::scene_of(mesh));
+  const Clearances clearances(bvh);
+  Seen seen;
+  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+    const Corners& t = bvh.corners_of(slot);
+    for (const int side : {1, -1}) {
+      const auto sides = clearances.of(slot);
+      const double clear = side == 1 ? sides.behind : sides.before;
+      ++seen.points;
+      seen.known += clear > 0.0;
+      glm::dvec3 w(0.0);
+      for (int k = 0; k < 3; ++k) w[k] = std::exp(random.uniform(-12, 0));
+      w /= w.x + w.y + w.z;
+      const glm::dvec3 x = w.x * glm::dvec3(t[0]) + w.y * glm::dvec3(t[1]) + w.z * glm::dvec3(t[2]);
+      for (std::uint32_t other = 0; other < bvh.slot_count(); ++other) {
+        if (other == slot || lies_beyond(bvh.corners_of(other), t, side)) continue;
+        EXPECT_GE(distance(x, bvh.corners_of(other)) + 2.0 * clearances.margin(),
+                  clear * std::min({w.x, w.y, w.z}))
+            << slot << " " << other << " " << side;
+      }
+    }
+  }
+  return seen;
+}
+
+TEST(Clearance, IsKnownAllOverAClosedMesh) {
+  Random random;
+  for (const float at : {0.0f, 100.0f}) {
+    const Seen seen = check(test::sphere(2, 1.0f, glm::vec3(at)), random);
+    EXPECT_EQ(seen.known, seen.points);
+  }
+  const Seen seen = check(test::box(glm::vec3(-1), glm::vec3(1)), random);
+  EXPECT_EQ(seen.known, seen.points);
+}
+
+TEST(Clearance, HoldsBetweenTrianglesOfAllKinds) {
+  Random random;
+  int known = 0, points = 0;
+  for (int i = 0; i < 300; ++i) {
+    // Some free, some with an edge or a corner in common, some flat.
+    const float height = std::exp(random.uniform(-10, 0)), size = std::exp(random.uniform(-3, 0));
+    std::vector<Corners> mesh;
+    for (int k = 0; k < 8; ++k) {
+      Corners t;
+      for (glm::vec3& v : t) v = random.point(size) * glm::vec3(1.0f, 1.0f, height);
+      if (k > 0) {
+        for (int v = 0; v < random.below(3); ++v) t[v] = mesh[0][(v + k) % 3];
+      }
+      mesh.push_back(t);
+    }
+    const Seen seen = check(mesh, random);
+    points += seen.points;
+    known += seen.known;
+  }
+  EXPECT_GT(known, points / 20);
+  EXPECT_LT(known, points);
+}
+
+// A table's leg stands on the floor: near it nothing is sure.
+TEST(Clearance, IsUnknownWhereSomethingStandsOnATriangle) {
+  std::vector<Corners> mesh = {{glm::vec3(-1, -1, 0), glm::vec3(1, -1, 0), glm::vec3(0, 1, 0)},
+                               {glm::vec3(0, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0.1f, 0, 1)}};
+  const Bvh bvh(test::scene_of(mesh));
+  const Clearances clearances(bvh);
+  for (std::uint32_t slot = 0; slot < 2; ++slot) {
+    if (bvh.triangle_of(slot) != 0) continue;
+    const auto sides = clearances.of(slot);
+    EXPECT_EQ(std::min(sides.behind, sides.before), 0.0f);
+    EXPECT_GT(std::max(sides.behind, sides.before), 0.0f);  // nothing is below
+  }
+}
+
+}  // namespace
+}  // namespace raygate
