@@ -1,4 +1,5 @@
-// Eight rays at a time: the one place that knows how wide the machine's vectors are.
+// Eight rays at a time: vectors, and what is done with them. They are compiled for each kind of
+// machine by in_vectors (host/vectors.h).
 #pragma once
 
 #include <cmath>
@@ -9,6 +10,8 @@
 #if defined(__SSE__)
 #include <immintrin.h>
 #endif
+
+#include "host/vectors.h"
 
 namespace raygate {
 
@@ -23,17 +26,6 @@ using LaneMask = std::uint32_t;
 /// explicitly, as the compiler's own choice does.
 using FloatLanes = float __attribute__((vector_size(4 * kLanes), aligned(4 * kLanes)));
 using IntLanes = std::int32_t __attribute__((vector_size(4 * kLanes), aligned(4 * kLanes)));
-
-// Functions marked so are compiled twice on x86-64 and the fitting one is picked at start-up.
-// Neither form fuses multiply and add, so both give the same bits. (The picking
-// runs before the sanitizers are ready for it.)
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define RAYGATE_LANES __attribute__((target_clones("avx2", "default")))
-#else
-#define RAYGATE_LANES
-#endif
-#define RAYGATE_INLINE inline __attribute__((always_inline))
 
 RAYGATE_INLINE void load_lanes(const float* from, FloatLanes& to) {
   std::memcpy(&to, from, sizeof to);

@@ -7,6 +7,7 @@
 int main(int argc, char** argv) {
   const auto program = [&] {
     raygate::require_ieee_floats();
+    raygate::choose_vectors();
     const raygate::Options options = raygate::parse_options(argc, argv);
     if (options.information.empty()) {
       raygate::run(options);

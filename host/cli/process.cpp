@@ -8,6 +8,7 @@
 #include <new>
 
 #include "host/scene/io/input_error.h"
+#include "host/vectors.h"
 
 namespace raygate {
 namespace {
@@ -73,6 +74,14 @@ void flush_standard_output() {
   if (!failed) return;
   const std::string reason = errno != 0 ? std::strerror(errno) : "an earlier write failed";
   throw InputError("standard output: cannot write: " + reason);
+}
+
+void choose_vectors() {
+  try {
+    use_vectors(wanted_vectors());
+  } catch (const std::runtime_error& error) {
+    throw InputError(error.what());
+  }
 }
 
 int run_guarded(const std::function<int()>& program, int internal_error) {

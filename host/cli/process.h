@@ -27,6 +27,10 @@ void flush_standard_output();
 /// ours, 128 + signal for Interrupted.
 int run_guarded(const std::function<int()>& program, int internal_error);
 
+/// Settles which vector code runs (host/vectors.h). Throws InputError where RAYGATE_VECTORS names
+/// none that this machine has.
+void choose_vectors();
+
 /// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one ends the program at once.
 /// Signals that the program was started to ignore stay ignored.
 void note_interruptions();

@@ -11,7 +11,7 @@
 // passes:
 //   * every decision (hit or miss, which is nearest, which side) is the same, as it is exact;
 //   * polygon records, t, P and their errors have the same bits, as they come from IEEE 754's
-//     addition, multiplication and division alone, in a fixed order, with and without AVX2;
+//     addition, multiplication and division alone, in a fixed order, whatever vector code runs;
 //   * pictures may differ in last digits where shading asks the C library for a power, a sine or a
 //     cosine: IEEE 754 leaves those to it. With one version of it they do not.
 

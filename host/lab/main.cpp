@@ -10,6 +10,7 @@ namespace {
 int run(int argc, char** argv) {
   using namespace raygate;
   require_ieee_floats();
+  choose_vectors();
   CLI::App app("Measures raygate: how wrong, how fast, at what cost. make targets call it.", "lab");
   lab::Common common;
   app.add_option("--results", common.results,

@@ -9,6 +9,7 @@
 #include "host/cli/format.h"
 #include "host/film/pending_file.h"
 #include "host/scene/io/input_error.h"
+#include "host/vectors.h"
 
 namespace raygate::lab {
 namespace {
@@ -111,16 +112,9 @@ Row machine_kind() {
   for (std::string line; std::getline(info, line);) {
     if (line.starts_with("model name")) processor = line.substr(line.find(": ") + 2);
   }
-#ifdef __x86_64__
-  const bool avx2 = __builtin_cpu_supports("avx2"), avx512 = __builtin_cpu_supports("avx512f");
-#else
-  const bool avx2 = false, avx512 = false;
-#endif
   return {{"processor", processor},
-          {"machine_vectors", avx512 ? "AVX-512"
-                              : avx2 ? "AVX2"
-                                     : "baseline"},
-          {"engine_vectors", avx2 ? "AVX2" : "baseline"}};
+          {"machine_vectors", name_of(widest_vectors())},
+          {"engine_vectors", name_of(vectors_in_use())}};
 }
 
 }  // namespace raygate::lab

@@ -60,7 +60,8 @@ int in_range(const std::string& name, int value, int low, int high);
 /// FNV-1a.
 [[nodiscard]] std::uint64_t digest(std::string_view bytes);
 
-/// The machine, as far as it decides speed: processor, widest vector code that the cpu engine runs.
+/// The machine, as far as it decides speed: processor, the widest vectors that it has,
+/// and those that the cpu engine uses (host/vectors.h).
 [[nodiscard]] Row machine_kind();
 
 }  // namespace raygate::lab

@@ -181,27 +181,28 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
 
 /// Where the run is cut in two; puts its primitives on their sides, in a room as large as it. Not
 /// far from the largest depth, and where no cut is found, halves are split.
-RAYGATE_LANES std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depth,
-                                    Box& box) {
-  const auto size = static_cast<std::uint32_t>(run.size());
-  Around around;
-  look_at(run, around);
-  box = around.box;
-  if (size == 2) return 1;
-  Cut cut;
-  const bool is_deep = static_cast<int>(std::bit_width(size)) >= BinaryTree::kMaxDepth - depth;
-  if (is_deep) {
-    std::ranges::stable_sort(run, {},
-                             [](const Primitive& primitive) { return primitive.middle(0); });
-  } else if (size <= kFew) {
-    cut_few(run, unit_of(box), cut);
-    return static_cast<std::uint32_t>(cut.part);
-  } else {
-    const Slices slices(around.middles, size);
-    cut_between_slices(run, slices, unit_of(box), cut);
-    if (cut.cost < kNever) return part_at(cut, slices, run, room);
-  }
-  return size / 2;
+std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depth, Box& box) {
+  return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
+    const auto size = static_cast<std::uint32_t>(run.size());
+    Around around;
+    look_at(run, around);
+    box = around.box;
+    if (size == 2) return 1;
+    Cut cut;
+    const bool is_deep = static_cast<int>(std::bit_width(size)) >= BinaryTree::kMaxDepth - depth;
+    if (is_deep) {
+      std::ranges::stable_sort(run, {},
+                               [](const Primitive& primitive) { return primitive.middle(0); });
+    } else if (size <= kFew) {
+      cut_few(run, unit_of(box), cut);
+      return static_cast<std::uint32_t>(cut.part);
+    } else {
+      const Slices slices(around.middles, size);
+      cut_between_slices(run, slices, unit_of(box), cut);
+      if (cut.cost < kNever) return part_at(cut, slices, run, room);
+    }
+    return size / 2;
+  });
 }
 
 namespace {

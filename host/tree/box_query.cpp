@@ -30,18 +30,20 @@ struct BoxVisitor {
 
 }  // namespace
 
-RAYGATE_LANES void slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
-                              std::vector<std::uint32_t>& slots) {
-  slots.clear();
-  BoxVisitor visitor{low, high};
-  WalkStack<Whole> stack({});
-  Waiting<Whole> leaf;
-  while (next_leaf(bvh, visitor, stack, leaf)) {
-    for (std::uint32_t i = 0; i < leaf.child.count; ++i) {
-      const std::uint32_t slot = leaf.child.first + i;
-      if (visitor.touches(bvh.corners_of(slot))) slots.push_back(slot);
+void slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                std::vector<std::uint32_t>& slots) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    slots.clear();
+    BoxVisitor visitor{low, high};
+    WalkStack<Whole> stack({});
+    Waiting<Whole> leaf;
+    while (next_leaf(bvh, visitor, stack, leaf)) {
+      for (std::uint32_t i = 0; i < leaf.child.count; ++i) {
+        const std::uint32_t slot = leaf.child.first + i;
+        if (visitor.touches(bvh.corners_of(slot))) slots.push_back(slot);
+      }
     }
-  }
+  });
 }
 
 }  // namespace raygate

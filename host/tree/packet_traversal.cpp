@@ -144,23 +144,25 @@ struct PacketVisitor {
 };
 
 /// Goes on to the next leaf.
-RAYGATE_LANES void advance(PacketTraversal& packet, LeafVisits& leaf) {
-  PacketVisitor visitor(packet);
-  Waiting<LaneMask> waiting;
-  leaf.count = 0;
-  while (leaf.count == 0 && next_leaf(*packet.bvh_, visitor, packet.stack_, waiting)) {
-    const std::uint32_t end = waiting.child.first + waiting.child.count;
-    for (std::uint32_t slot = waiting.child.first; slot < end; ++slot) {
-      const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(slot));
-      if (lanes == 0) continue;
-      LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
-      if (last != nullptr && last->lanes == lanes && last->first + last->count == slot) {
-        ++last->count;
-      } else {
-        leaf.visits[leaf.count++] = {slot, 1, lanes};
+void advance(PacketTraversal& packet, LeafVisits& leaf) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    PacketVisitor visitor(packet);
+    Waiting<LaneMask> waiting;
+    leaf.count = 0;
+    while (leaf.count == 0 && next_leaf(*packet.bvh_, visitor, packet.stack_, waiting)) {
+      const std::uint32_t end = waiting.child.first + waiting.child.count;
+      for (std::uint32_t slot = waiting.child.first; slot < end; ++slot) {
+        const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(slot));
+        if (lanes == 0) continue;
+        LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
+        if (last != nullptr && last->lanes == lanes && last->first + last->count == slot) {
+          ++last->count;
+        } else {
+          leaf.visits[leaf.count++] = {slot, 1, lanes};
+        }
       }
     }
-  }
+  });
 }
 
 LeafVisits PacketTraversal::next_leaf() {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <regex>
 
 #include "host/cli/test/program.h"
@@ -226,6 +227,14 @@ TEST_F(BadInput, SceneFiles) {
 }
 
 /// Numbers so large that differences, products or the camera's distance leave float's range.
+TEST_F(BadInput, VectorsThatNoMachineHas) {
+  folder_.write("scene.obj", kGoodScene);
+  setenv("RAYGATE_VECTORS", "sse9", 1);
+  expect_refused(render({"scene.obj"}), "RAYGATE_VECTORS: found sse9, expected one .*: baseline.*");
+  unsetenv("RAYGATE_VECTORS");
+  expect_old_files();
+}
+
 TEST_F(BadInput, ExtremeCoordinatesNeverCrash) {
   for (const char* size : {"1e-40", "1e-30", "1e15", "1e30", "3e38", "1e300"}) {
     SCOPED_TRACE(size);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <regex>
@@ -11,6 +12,7 @@
 
 #include "host/cli/test/render_run.h"
 #include "host/film/test/exr_reader.h"
+#include "host/vectors.h"
 
 namespace raygate {
 namespace {
@@ -44,6 +46,17 @@ TEST_P(EveryScene, EnginesGiveTheSameBytes) {
   expect_same_pictures("cpu", "lanes");
   render({scene, "--size", "64x48", "--unit", "serial", "--engine", "model", "-o", "serial"});
   expect_same_pictures("cpu", "serial");
+}
+
+TEST_P(EveryScene, VectorsGiveTheSameBytes) {
+  const std::string& scene = GetParam();
+  for (const Vectors vectors : machine_vectors()) {
+    const std::string name(name_of(vectors));
+    setenv("RAYGATE_VECTORS", name.c_str(), 1);
+    render({scene, "--size", "64x48", "--engine", "cpu", "-o", name});
+    unsetenv("RAYGATE_VECTORS");
+    expect_same_pictures("baseline", name);
+  }
 }
 
 TEST_P(EveryScene, CheckFindsNoDifference) {

@@ -78,109 +78,113 @@ RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (
 
 }  // namespace
 
-RAYGATE_LANES std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block) {
-  LaneMask positive[3] = {}, negative[3] = {};  // whether any
-  std::uint64_t unscaled = 0;
-  for (int group = 0; group < kGroups; ++group) {
-    const std::size_t begin = std::size_t(group) * kLanes;
-    const std::size_t count =
-        begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
-    const Ray* of[2][kQuad];  // past the end: the last one
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      of[i / kQuad][i % kQuad] = &rays[std::min(begin + i, rays.size() - 1)];
+std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block) {
+  return in_vectors([&](auto) RAYGATE_BODY {
+    LaneMask positive[3] = {}, negative[3] = {};  // whether any
+    std::uint64_t unscaled = 0;
+    for (int group = 0; group < kGroups; ++group) {
+      const std::size_t begin = std::size_t(group) * kLanes;
+      const std::size_t count =
+          begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
+      const Ray* of[2][kQuad];  // past the end: the last one
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        of[i / kQuad][i % kQuad] = &rays[std::min(begin + i, rays.size() - 1)];
+      }
+      FloatQuad half[2][3];
+      load_directions(of[0], half[0]);
+      load_directions(of[1], half[1]);
+      IntLanes largest = {};  // of each ray's magnitudes: as bits, in the order of floats
+      for (int k = 0; k < 3; ++k) {
+        const FloatLanes d =
+            __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
+        block.direction[k][group] = d;
+        block.negative[k][group] = sign_mask(d < 0.0f);
+        const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;
+        largest = size > largest ? size : largest;
+      }
+      const LaneMask usable =
+          ((1u << count) - 1) & ~sign_mask((largest >= 0x7F800000) | (largest == 0));
+      const IntLanes scaled = (largest >= 0x3F800000) & (largest < 0x40000000);
+      block.usable[group] = usable;
+      unscaled |= std::uint64_t{usable & ~sign_mask(scaled)} << (8 * group);
+      for (int k = 0; k < 3; ++k) {
+        positive[k] |= usable & ~block.negative[k][group];
+        negative[k] |= usable & block.negative[k][group];
+      }
     }
-    FloatQuad half[2][3];
-    load_directions(of[0], half[0]);
-    load_directions(of[1], half[1]);
-    IntLanes largest = {};  // of each ray's magnitudes: as bits, in the order of floats
-    for (int k = 0; k < 3; ++k) {
-      const FloatLanes d = __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
-      block.direction[k][group] = d;
-      block.negative[k][group] = sign_mask(d < 0.0f);
-      const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;
-      largest = size > largest ? size : largest;
+    block.octants = 0;
+    for (int octant = 0; octant < 8; ++octant) {
+      bool possible = true;
+      for (int k = 0; k < 3; ++k) {
+        possible = possible && ((octant >> k & 1) != 0 ? negative[k] : positive[k]) != 0;
+      }
+      if (possible) block.octants |= 1u << octant;
     }
-    const LaneMask usable =
-        ((1u << count) - 1) & ~sign_mask((largest >= 0x7F800000) | (largest == 0));
-    const IntLanes scaled = (largest >= 0x3F800000) & (largest < 0x40000000);
-    block.usable[group] = usable;
-    unscaled |= std::uint64_t{usable & ~sign_mask(scaled)} << (8 * group);
-    for (int k = 0; k < 3; ++k) {
-      positive[k] |= usable & ~block.negative[k][group];
-      negative[k] |= usable & block.negative[k][group];
-    }
-  }
-  block.octants = 0;
-  for (int octant = 0; octant < 8; ++octant) {
-    bool possible = true;
-    for (int k = 0; k < 3; ++k) {
-      possible = possible && ((octant >> k & 1) != 0 ? negative[k] : positive[k]) != 0;
-    }
-    if (possible) block.octants |= 1u << octant;
-  }
-  return unscaled;
+    return unscaled;
+  });
 }
 
-RAYGATE_LANES void make_cones(const RayBlock& block, const glm::vec3& origin, int octant,
-                              Cones& cones) {
-  // Each rounding of what follows is off by a factor 1 + 2^-24 at most. Components over a pace are
-  // below 8, so that two roundings have them off by less than kPaceError.
-  constexpr float kPaceError = 0x1p-20f;
-  constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
-  cones.groups = 0;
-  FloatLanes off[3][kGroups];
-  const int axis = pace_axis(block, cones.active);
-  for (int g = 0; g < kGroups; ++g) {
-    const LaneMask active = cones.active[g];
-    if (active == 0) {
-      for (int k = 0; k < 3; ++k) {
-        cones.center[k][g] = 0.0f;
-        off[k][g] = FloatLanes{};
+void make_cones(const RayBlock& block, const glm::vec3& origin, int octant, Cones& cones) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    // Each rounding of what follows is off by a factor 1 + 2^-24 at most. Components over a pace
+    // are below 8, so that two roundings have them off by less than kPaceError.
+    constexpr float kPaceError = 0x1p-20f;
+    constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
+    cones.groups = 0;
+    FloatLanes off[3][kGroups];
+    const int axis = pace_axis(block, cones.active);
+    for (int g = 0; g < kGroups; ++g) {
+      const LaneMask active = cones.active[g];
+      if (active == 0) {
+        for (int k = 0; k < 3; ++k) {
+          cones.center[k][g] = 0.0f;
+          off[k][g] = FloatLanes{};
+        }
+        continue;
       }
-      continue;
+      cones.groups |= 1u << g;
+      const int low = std::countr_zero(active), high = 31 - std::countl_zero(active);
+      IntLanes taken;
+      lanes_of(active, taken);
+      FloatLanes pace = FloatLanes{} + 1.0f;
+      if (axis >= 0) {
+        FloatLanes size;
+        magnitude(block.direction[axis][g], size);
+        pace = taken ? size : pace;
+      }
+      cones.pace[g] = pace;
+      const FloatLanes inverse = 1.0f / pace;
+      for (int k = 0; k < 3; ++k) {
+        const FloatLanes d = block.direction[k][g] * inverse;
+        const float middle = 0.5f * (d[low] + d[high]);
+        cones.center[k][g] = middle;
+        FloatLanes distance;
+        magnitude(d - middle, distance);
+        off[k][g] = taken ? distance : FloatLanes{};
+      }
     }
-    cones.groups |= 1u << g;
-    const int low = std::countr_zero(active), high = 31 - std::countl_zero(active);
-    IntLanes taken;
-    lanes_of(active, taken);
-    FloatLanes pace = FloatLanes{} + 1.0f;
-    if (axis >= 0) {
-      FloatLanes size;
-      magnitude(block.direction[axis][g], size);
-      pace = taken ? size : pace;
-    }
-    cones.pace[g] = pace;
-    const FloatLanes inverse = 1.0f / pace;
+    cones.whole.octant = octant;
+    IntLanes present;
+    lanes_of(cones.groups, present);
     for (int k = 0; k < 3; ++k) {
-      const FloatLanes d = block.direction[k][g] * inverse;
-      const float middle = 0.5f * (d[low] + d[high]);
-      cones.center[k][g] = middle;
-      FloatLanes distance;
-      magnitude(d - middle, distance);
-      off[k][g] = taken ? distance : FloatLanes{};
+      FloatLanes size;
+      largest_of_each(off[k], size);
+      cones.radius[k] = present ? kUp * size + kPaceError : FloatLanes{};
+      magnitude(cones.center[k], size);
+      const FloatLanes largest = (size + cones.radius[k]) * kUp;
+      FloatLanes smallest = (size - cones.radius[k]) * kDown;
+      smallest = smallest > 0.0f ? smallest : FloatLanes{};
+      cones.beams.set(k, octant, smallest, largest);
+      // The inverse of the largest is the smallest, and the other way round.
+      const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
+      const FloatLanes never = FloatLanes{} - std::numeric_limits<float>::infinity();
+      const FloatLanes near = present ? -sign * cones.beams.inverse_near[k] : never;
+      const FloatLanes far = present ? sign * cones.beams.inverse_far[k] : never;
+      cones.whole.origin[k] = origin[k];
+      cones.whole.inverse_near[k] = -sign * largest_of(near);
+      cones.whole.inverse_far[k] = sign * largest_of(far);
     }
-  }
-  cones.whole.octant = octant;
-  IntLanes present;
-  lanes_of(cones.groups, present);
-  for (int k = 0; k < 3; ++k) {
-    FloatLanes size;
-    largest_of_each(off[k], size);
-    cones.radius[k] = present ? kUp * size + kPaceError : FloatLanes{};
-    magnitude(cones.center[k], size);
-    const FloatLanes largest = (size + cones.radius[k]) * kUp;
-    FloatLanes smallest = (size - cones.radius[k]) * kDown;
-    smallest = smallest > 0.0f ? smallest : FloatLanes{};
-    cones.beams.set(k, octant, smallest, largest);
-    // The inverse of the largest is the smallest, and the other way round.
-    const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
-    const FloatLanes never = FloatLanes{} - std::numeric_limits<float>::infinity();
-    const FloatLanes near = present ? -sign * cones.beams.inverse_near[k] : never;
-    const FloatLanes far = present ? sign * cones.beams.inverse_far[k] : never;
-    cones.whole.origin[k] = origin[k];
-    cones.whole.inverse_near[k] = -sign * largest_of(near);
-    cones.whole.inverse_far[k] = sign * largest_of(far);
-  }
+  });
 }
 
 }  // namespace raygate

@@ -10,35 +10,37 @@ namespace raygate {
 
 /// Hands the nearest hits over, with their P where that is asked for: triangle by triangle, as rays
 /// that hit one share its plane.
-RAYGATE_LANES void finish(ConeSearch& search, const ConeWalk& walk) {
-  const bool with_points = search.search_.ignored.empty() && search.search_.enough_before.empty();
-  if (!search.search_.work.empty()) search.put_work(walk);
-  std::uint64_t left = 0;
-  for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
-    const int g = std::countr_zero(groups);
-    left |= std::uint64_t{0xFF & ~sign_mask(walk.slot[g])} << (8 * g);
-  }
-  ConeSearch::Seen seen[kPlanes];
-  int count = 0;
-  while (left != 0) {
-    const int first = std::countr_zero(left);
-    const std::int32_t slot = walk.slot[first / kLanes][first % kLanes];
-    std::uint64_t same = 0;
-    for (LaneMask groups = groups_of(left); groups != 0; groups &= groups - 1) {
+void finish(ConeSearch& search, const ConeWalk& walk) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    const bool with_points = search.search_.ignored.empty() && search.search_.enough_before.empty();
+    if (!search.search_.work.empty()) search.put_work(walk);
+    std::uint64_t left = 0;
+    for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
-      same |= std::uint64_t{sign_mask(walk.slot[g] == slot)} << (8 * g);
+      left |= std::uint64_t{0xFF & ~sign_mask(walk.slot[g])} << (8 * g);
     }
-    same &= left;
-    left &= ~same;
-    seen[count++] = {static_cast<std::uint32_t>(slot), same};
-    if (count < kPlanes && left != 0) continue;
-    if (with_points) {
-      search.put_with_points(walk, std::span(seen, static_cast<std::size_t>(count)));
-    } else {
-      for (int i = 0; i < count; ++i) search.put(walk, seen[i]);
+    ConeSearch::Seen seen[kPlanes];
+    int count = 0;
+    while (left != 0) {
+      const int first = std::countr_zero(left);
+      const std::int32_t slot = walk.slot[first / kLanes][first % kLanes];
+      std::uint64_t same = 0;
+      for (LaneMask groups = groups_of(left); groups != 0; groups &= groups - 1) {
+        const int g = std::countr_zero(groups);
+        same |= std::uint64_t{sign_mask(walk.slot[g] == slot)} << (8 * g);
+      }
+      same &= left;
+      left &= ~same;
+      seen[count++] = {static_cast<std::uint32_t>(slot), same};
+      if (count < kPlanes && left != 0) continue;
+      if (with_points) {
+        search.put_with_points(walk, std::span(seen, static_cast<std::size_t>(count)));
+      } else {
+        for (int i = 0; i < count; ++i) search.put(walk, seen[i]);
+      }
+      count = 0;
     }
-    count = 0;
-  }
+  });
 }
 
 void ConeSearch::put_work(const ConeWalk& walk) {

@@ -39,35 +39,37 @@ void count_work(RayWork (&work)[kLanes], LaneMask tested, LaneMask doubts) {
 }  // namespace
 
 /// Everything of a walk but its cones and where it begins.
-RAYGATE_LANES void set_out(const ConeSearch& search, ConeWalk& walk) {
-  const std::span limits = search.search_.limits, enough = search.search_.enough_before;
-  const std::span ignored = search.search_.ignored;
-  slack_of(walk.cones.radius, walk.slack);
-  walk.split = 0;
-  walk.going = 0;
-  walk.cones.beams.cutoff = FloatLanes{} - 1.0f;
-  for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
-    const int g = std::countr_zero(left);
-    walk.slot[g] = IntLanes{} - 1;
-    IntLanes end = IntLanes{} + kFarthest;
-    const std::uint32_t first = walk.number(g, 0);
-    if (!limits.empty()) {
-      load_group(limits, first, end);
-      end = end < kFarthest ? end : IntLanes{} + kFarthest;
+void set_out(const ConeSearch& search, ConeWalk& walk) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    const std::span limits = search.search_.limits, enough = search.search_.enough_before;
+    const std::span ignored = search.search_.ignored;
+    slack_of(walk.cones.radius, walk.slack);
+    walk.split = 0;
+    walk.going = 0;
+    walk.cones.beams.cutoff = FloatLanes{} - 1.0f;
+    for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
+      const int g = std::countr_zero(left);
+      walk.slot[g] = IntLanes{} - 1;
+      IntLanes end = IntLanes{} + kFarthest;
+      const std::uint32_t first = walk.number(g, 0);
+      if (!limits.empty()) {
+        load_group(limits, first, end);
+        end = end < kFarthest ? end : IntLanes{} + kFarthest;
+      }
+      walk.low[g] = walk.high[g] = end;
+      if (!enough.empty()) load_group(enough, first, walk.enough[g]);
+      if (!ignored.empty()) load_group(ignored, first, walk.ignored[g]);
+      walk.going |= std::uint64_t{walk.cones.active[g]} << (8 * g);
+      shorten(walk, g);
     }
-    walk.low[g] = walk.high[g] = end;
-    if (!enough.empty()) load_group(enough, first, walk.enough[g]);
-    if (!ignored.empty()) load_group(ignored, first, walk.ignored[g]);
-    walk.going |= std::uint64_t{walk.cones.active[g]} << (8 * g);
-    shorten(walk, g);
-  }
-  walk.cutoff = largest_of(walk.cones.beams.cutoff);
-  if (!search.search_.work.empty()) {
-    std::memset(walk.work, 0, sizeof walk.work);
-    std::memcpy(walk.started, walk.cones.active, sizeof walk.started);
-  }
-  walk.depth = 0;
-  walk.stack[walk.depth++] = {{0, 0}, 0.0f, walk.going};
+    walk.cutoff = largest_of(walk.cones.beams.cutoff);
+    if (!search.search_.work.empty()) {
+      std::memset(walk.work, 0, sizeof walk.work);
+      std::memcpy(walk.started, walk.cones.active, sizeof walk.started);
+    }
+    walk.depth = 0;
+    walk.stack[walk.depth++] = {{0, 0}, 0.0f, walk.going};
+  });
 }
 
 /// Tests a leaf's triangles that are there against the rays, a triangle and a group at a time. Sets
@@ -154,44 +156,46 @@ RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& reco
 }
 
 /// Walks the tree, near before far, and tests what is there.
-RAYGATE_LANES void walk_tree(ConeSearch& search, ConeWalk& walk) {
-  const Bvh& tree = search.bvh_;
-  const bool ending = !search.search_.enough_before.empty();
-  Cones& cones = walk.cones;
-  while (walk.depth > 0 && walk.going != 0) {
-    const ConeWalk::Waiting item = walk.stack[--walk.depth];
-    if (item.entry > walk.cutoff) continue;
-    const std::uint64_t rays =
-        item.rays & walk.going & 0xFF * ones_of(sign_mask(cones.beams.cutoff >= item.entry));
-    if (rays == 0) continue;
-    const LaneMask groups = groups_of(rays);
-    if (item.child.count == 0) {
-      step_through(walk, tree, item.child.first, rays, groups);
-      continue;
-    }
-    QuadRecord record;
-    make_quad_record(cones.whole.origin, tree.corners_of(item.child), item.child.count, record);
-    LaneMask there = (1u << item.child.count) - 1;
-    if (record.unsure != 0) search.settle_sides(item.child, record, there);
-    LaneMask changed = 0;
-    if (is_sparse(rays, groups, item.child.count)) {
-      search.test_rays(walk, record, item.child, there, rays, changed);
-    } else {
-      search.test_groups(walk, record, item.child, there, rays, changed);
-    }
-    if (changed == 0) continue;
-    for (; changed != 0; changed &= changed - 1) {
-      const int g = std::countr_zero(changed);
-      if (ending) {
-        const LaneMask ended =
-            cones.active[g] & ~sign_mask(walk.slot[g]) & sign_mask(walk.high[g] < walk.enough[g]);
-        cones.active[g] &= ~ended;
-        search.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
+void walk_tree(ConeSearch& search, ConeWalk& walk) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    const Bvh& tree = search.bvh_;
+    const bool ending = !search.search_.enough_before.empty();
+    Cones& cones = walk.cones;
+    while (walk.depth > 0 && walk.going != 0) {
+      const ConeWalk::Waiting item = walk.stack[--walk.depth];
+      if (item.entry > walk.cutoff) continue;
+      const std::uint64_t rays =
+          item.rays & walk.going & 0xFF * ones_of(sign_mask(cones.beams.cutoff >= item.entry));
+      if (rays == 0) continue;
+      const LaneMask groups = groups_of(rays);
+      if (item.child.count == 0) {
+        step_through(walk, tree, item.child.first, rays, groups);
+        continue;
       }
-      shorten(walk, g);
+      QuadRecord record;
+      make_quad_record(cones.whole.origin, tree.corners_of(item.child), item.child.count, record);
+      LaneMask there = (1u << item.child.count) - 1;
+      if (record.unsure != 0) search.settle_sides(item.child, record, there);
+      LaneMask changed = 0;
+      if (is_sparse(rays, groups, item.child.count)) {
+        search.test_rays(walk, record, item.child, there, rays, changed);
+      } else {
+        search.test_groups(walk, record, item.child, there, rays, changed);
+      }
+      if (changed == 0) continue;
+      for (; changed != 0; changed &= changed - 1) {
+        const int g = std::countr_zero(changed);
+        if (ending) {
+          const LaneMask ended =
+              cones.active[g] & ~sign_mask(walk.slot[g]) & sign_mask(walk.high[g] < walk.enough[g]);
+          cones.active[g] &= ~ended;
+          search.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
+        }
+        shorten(walk, g);
+      }
+      walk.cutoff = largest_of(cones.beams.cutoff);
     }
-    walk.cutoff = largest_of(cones.beams.cutoff);
-  }
+  });
 }
 
 void ConeSearch::trace(std::span<const Ray> rays, const Search& search,

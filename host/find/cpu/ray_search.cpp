@@ -97,20 +97,23 @@ RAYGATE_INLINE bool RaySearch::test_leaf(Walk& walk, const Bvh::Child& leaf) {
 }
 
 /// Walks the tree, near before far, and tests what is there.
-RAYGATE_LANES void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
-  const RayVisitor visitor{walk};
-  WalkStack<Whole> stack({});
-  Waiting<Whole> leaf;
-  while (next_leaf(search.bvh_, visitor, stack, leaf) && search.test_leaf(walk, leaf.child)) {
-  }
+void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    const RayVisitor visitor{walk};
+    WalkStack<Whole> stack({});
+    Waiting<Whole> leaf;
+    while (next_leaf(search.bvh_, visitor, stack, leaf) && search.test_leaf(walk, leaf.child)) {
+    }
+  });
 }
 
 /// Tests everything.
-RAYGATE_LANES void visit_all(RaySearch& search, RaySearch::Walk& walk,
-                             std::span<const Bvh::Child> leaves) {
-  for (const Bvh::Child& leaf : leaves) {
-    if (!search.test_leaf(walk, leaf)) return;
-  }
+void visit_all(RaySearch& search, RaySearch::Walk& walk, std::span<const Bvh::Child> leaves) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    for (const Bvh::Child& leaf : leaves) {
+      if (!search.test_leaf(walk, leaf)) return;
+    }
+  });
 }
 
 /// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,

@@ -123,61 +123,64 @@ RAYGATE_INLINE LaneMask mask_of(const Longs& lanes) {
 }  // namespace
 
 /// Four words of 16 each, and bit i of the result where record i is right.
-RAYGATE_LANES LaneMask make_four(const glm::vec3& origin, const Corners* const (&triangles)[kBatch],
-                                 float (&words)[kBatch][16]) {
-  Points t[3], from_o[3];
-  load_corners(triangles, t);
-  const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
-  for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
-  Longs good = Longs{} - 1;
-  Points normal, size;
-  Doubles d;
-  find_planes(t, from_o[0], normal, d, good);
-  Floats n[3], edges[3][3], bounds[3];
-  to_floats(normal, n);
+LaneMask make_four(const glm::vec3& origin, const Corners* const (&triangles)[kBatch],
+                   float (&words)[kBatch][16]) {
+  return in_vectors([&](auto) RAYGATE_BODY {
+    Points t[3], from_o[3];
+    load_corners(triangles, t);
+    const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
+    for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
+    Longs good = Longs{} - 1;
+    Points normal, size;
+    Doubles d;
+    find_planes(t, from_o[0], normal, d, good);
+    Floats n[3], edges[3][3], bounds[3];
+    to_floats(normal, n);
 
-  for (int k = 0; k < 3; ++k) {
-    const Points &p = t[k], &q = t[(k + 1) % 3];
-    const Longs lower =
-        (p[0] < q[0]) | ((p[0] == q[0]) & ((p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]))));
-    const Points &pf = from_o[k], &qf = from_o[(k + 1) % 3];
-    Points start, way, edge;
-    for (int i = 0; i < 3; ++i) {
-      start[i] = lower ? pf[i] : qf[i];
-      way[i] = lower ? q[i] - p[i] : p[i] - q[i];
+    for (int k = 0; k < 3; ++k) {
+      const Points &p = t[k], &q = t[(k + 1) % 3];
+      const Longs lower =
+          (p[0] < q[0]) | ((p[0] == q[0]) & ((p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]))));
+      const Points &pf = from_o[k], &qf = from_o[(k + 1) % 3];
+      Points start, way, edge;
+      for (int i = 0; i < 3; ++i) {
+        start[i] = lower ? pf[i] : qf[i];
+        way[i] = lower ? q[i] - p[i] : p[i] - q[i];
+      }
+      accurate_cross(start, way, edge, size, good);
+      for (int i = 0; i < 3; ++i) edge[i] = lower ? edge[i] : -edge[i];
+      to_floats(edge, edges[k]);
+      edge_bound(edges[k], bounds[k]);
     }
-    accurate_cross(start, way, edge, size, good);
-    for (int i = 0; i < 3; ++i) edge[i] = lower ? edge[i] : -edge[i];
-    to_floats(edge, edges[k]);
-    edge_bound(edges[k], bounds[k]);
-  }
-  store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
-  store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], words, 4);
-  store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], words, 8);
-  store_words(edges[2][2], bounds[0], bounds[1], bounds[2], words, 12);
-  return mask_of(good);
+    store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+    store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], words, 4);
+    store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], words, 8);
+    store_words(edges[2][2], bounds[0], bounds[1], bounds[2], words, 12);
+    return mask_of(good);
+  });
 }
 
 /// Four words of four planes, and bit i of the result where plane i is right.
-RAYGATE_LANES LaneMask make_four_planes(const std::array<PlaneView, kBatch>& views,
-                                        float (&words)[kBatch][4]) {
-  const Corners* triangles[kBatch];
-  alignas(16) float origins[3][kBatch];
-  for (int i = 0; i < kBatch; ++i) {
-    triangles[i] = views[i].triangle;
-    for (int k = 0; k < 3; ++k) origins[k][i] = (*views[i].origin)[k];
-  }
-  Floats o[3], n[3];
-  std::memcpy(o, origins, sizeof o);
-  Points t[3], a, normal;
-  load_corners(triangles, t);
-  for (int k = 0; k < 3; ++k) a[k] = t[0][k] - __builtin_convertvector(o[k], Doubles);
-  Longs good = Longs{} - 1;
-  Doubles d;
-  find_planes(t, a, normal, d, good);
-  to_floats(normal, n);
-  store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
-  return mask_of(good);
+LaneMask make_four_planes(const std::array<PlaneView, kBatch>& views, float (&words)[kBatch][4]) {
+  return in_vectors([&](auto) RAYGATE_BODY {
+    const Corners* triangles[kBatch];
+    alignas(16) float origins[3][kBatch];
+    for (int i = 0; i < kBatch; ++i) {
+      triangles[i] = views[i].triangle;
+      for (int k = 0; k < 3; ++k) origins[k][i] = (*views[i].origin)[k];
+    }
+    Floats o[3], n[3];
+    std::memcpy(o, origins, sizeof o);
+    Points t[3], a, normal;
+    load_corners(triangles, t);
+    for (int k = 0; k < 3; ++k) a[k] = t[0][k] - __builtin_convertvector(o[k], Doubles);
+    Longs good = Longs{} - 1;
+    Doubles d;
+    find_planes(t, a, normal, d, good);
+    to_floats(normal, n);
+    store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+    return mask_of(good);
+  });
 }
 
 void make_planes(const std::array<PlaneView, kPlanes>& views,

@@ -162,7 +162,7 @@ bool same_bytes(const Bvh& a, const Bvh& b) {
   return std::memcmp(a.nodes().data(), b.nodes().data(), a.nodes().size_bytes()) == 0;
 }
 
-TEST(Bvh, IsTheSameWhateverTheNumberOfThreads) {
+TEST(Bvh, IsTheSameWhateverTheThreadsAndVectors) {
   Random random;
   const Corners one = {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
   for (const auto& mesh :
@@ -170,6 +170,10 @@ TEST(Bvh, IsTheSameWhateverTheNumberOfThreads) {
     const Scene scene = test::scene_of(mesh);
     const Bvh bvh(scene);
     for (const int threads : {2, 3, 8}) EXPECT_TRUE(same_bytes(bvh, Bvh(scene, threads)));
+    for (const Vectors vectors : machine_vectors()) {
+      const UsingVectors in_use(vectors);
+      EXPECT_TRUE(same_bytes(bvh, Bvh(scene))) << name_of(vectors);
+    }
     const Scene other = test::scene_of({mesh.begin() + 1, mesh.end()});
     EXPECT_FALSE(same_bytes(bvh, Bvh(other)));
   }

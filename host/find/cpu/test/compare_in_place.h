@@ -12,6 +12,7 @@
 #include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/unit_finder.h"
+#include "host/vectors.h"
 
 namespace raygate::test {
 
@@ -26,7 +27,34 @@ struct InPlace {
   HitCounters counters;
 };
 
-/// Expects what both find to be the same, P's bits included; and each ray's counts to add up.
+/// Expects the same of every vector code that the machine has: hits, bit by bit, and work.
+inline void compare_vectors(const Bvh& bvh, std::span<const Ray> rays, Search search,
+                            std::span<const NearestHit> expected) {
+  for (const Vectors vectors : machine_vectors()) {
+    const UsingVectors in_use(vectors);
+    std::vector<RayWork> work(rays.size());
+    std::vector<NearestHit> found(rays.size());
+    CpuFinder finder(bvh);
+    const std::span<const RayWork> expected_work = search.work;
+    Search again = search;
+    again.work = work;
+    finder.find(rays, again, found);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(found[i].slot, expected[i].slot) << i << ", " << name_of(vectors);
+      EXPECT_EQ(work[i].tests, expected_work[i].tests) << i << ", " << name_of(vectors);
+      EXPECT_EQ(work[i].doubts, expected_work[i].doubts) << i << ", " << name_of(vectors);
+      if (found[i].slot == NearestHit::kNone) continue;
+      EXPECT_EQ(found[i].t.low, expected[i].t.low) << i << ", " << name_of(vectors);
+      EXPECT_EQ(found[i].t.high, expected[i].t.high) << i << ", " << name_of(vectors);
+      if (!search.ignored.empty() || !search.enough_before.empty()) continue;
+      EXPECT_EQ(std::memcmp(&found[i].point, &expected[i].point, sizeof found[i].point), 0)
+          << i << ", " << name_of(vectors);
+    }
+  }
+}
+
+/// Expects what both find to be the same, P's bits included, whatever vectors are used; and each
+/// ray's counts to add up.
 inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, Search search) {
   CpuFinder in_place(bvh);
   std::vector<NearestHit> found(rays.size()), expected(rays.size());
@@ -34,6 +62,7 @@ inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, Searc
   std::vector<RayWork> work(rays.size());
   search.work = work;
   in_place.find(rays, search, found);
+  compare_vectors(bvh, rays, search, found);
   InPlace done;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const NearestHit &a = found[i], &b = expected[i];

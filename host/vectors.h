@@ -1,0 +1,138 @@
+// Which vector code runs: one source, compiled once for each kind of machine.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace raygate {
+
+/// Kinds of vector code, narrowest first. Each gives the same bits: no kind fuses multiply and add.
+enum class Vectors { kBaseline, kAvx2, kAvx512 };
+
+inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "avx2", "avx512"};
+
+[[nodiscard]] constexpr std::string_view name_of(Vectors vectors) {
+  return kVectorNames[static_cast<std::size_t>(vectors)];
+}
+
+/// What the body of in_vectors is given: which code it is, as a constant.
+template <Vectors kVectors>
+using VectorCode = std::integral_constant<Vectors, kVectors>;
+
+#define RAYGATE_INLINE inline __attribute__((always_inline))
+#define RAYGATE_BODY __attribute__((always_inline))
+
+// Clang refuses the built-in functions of wider vectors in code that is merely inlined into theirs.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"
+#define RAYGATE_AVX512 RAYGATE_AVX2 ",avx512f,avx512cd,avx512bw,avx512dq,avx512vl"
+#endif
+
+/// The widest that this machine has.
+[[nodiscard]] inline Vectors widest_vectors() {
+#ifdef RAYGATE_AVX2
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl");
+  return avx2 && avx512 ? Vectors::kAvx512 : avx2 ? Vectors::kAvx2 : Vectors::kBaseline;
+#else
+  return Vectors::kBaseline;
+#endif
+}
+
+/// All that this machine has, narrowest first: what tests go through.
+[[nodiscard]] inline std::span<const Vectors> machine_vectors() {
+  static constexpr Vectors kAll[] = {Vectors::kBaseline, Vectors::kAvx2, Vectors::kAvx512};
+  return std::span(kAll).first(static_cast<std::size_t>(widest_vectors()) + 1);
+}
+
+/// What the environment variable RAYGATE_VECTORS asks for, or else the widest. Throws
+/// std::runtime_error, one line, for a name that is none, and for what this machine does not have.
+[[nodiscard]] inline Vectors wanted_vectors() {
+  const char* const text = std::getenv("RAYGATE_VECTORS");
+  if (text == nullptr || *text == '\0') return widest_vectors();
+  std::string expected;
+  for (const Vectors vectors : machine_vectors()) {
+    if (text == name_of(vectors)) return vectors;
+    expected += (expected.empty() ? "" : ", ") + std::string(name_of(vectors));
+  }
+  throw std::runtime_error("RAYGATE_VECTORS: found " + std::string(text) +
+                           ", expected one that this machine has: " + expected);
+}
+
+namespace detail {
+inline std::atomic<int> vectors_in_use{-1};
+}  // namespace detail
+
+/// From now on all threads run this code. For tests; the machine must have it.
+inline void use_vectors(Vectors vectors) { detail::vectors_in_use = static_cast<int>(vectors); }
+
+/// What runs. First asked, it asks wanted_vectors.
+[[nodiscard]] inline Vectors vectors_in_use() {
+  const int vectors = detail::vectors_in_use.load(std::memory_order_relaxed);
+  if (vectors >= 0) [[likely]]
+    return static_cast<Vectors>(vectors);
+  use_vectors(wanted_vectors());
+  return vectors_in_use();
+}
+
+/// This code, as long as this object lives.
+class UsingVectors {
+ public:
+  explicit UsingVectors(Vectors vectors) : before_(vectors_in_use()) { use_vectors(vectors); }
+  UsingVectors(const UsingVectors&) = delete;
+  UsingVectors& operator=(const UsingVectors&) = delete;
+  ~UsingVectors() { use_vectors(before_); }
+
+ private:
+  Vectors before_;
+};
+
+namespace detail {
+
+template <class Body>
+[[gnu::noinline]] auto in_baseline(const Body& body) {
+  return body(VectorCode<Vectors::kBaseline>{});
+}
+#ifdef RAYGATE_AVX2
+template <class Body>
+[[gnu::noinline, gnu::target(RAYGATE_AVX2)]] auto in_avx2(const Body& body) {
+  return body(VectorCode<Vectors::kAvx2>{});
+}
+template <class Body>
+[[gnu::noinline, gnu::target(RAYGATE_AVX512)]] auto in_avx512(const Body& body) {
+  return body(VectorCode<Vectors::kAvx512>{});
+}
+#endif
+
+}  // namespace detail
+
+/// Calls body(code), compiled for what runs, and gives what it returns. The body is
+///   [&](auto code) RAYGATE_BODY { ... }
+/// where code() is a constant of type Vectors. Only what is inlined into the body is compiled for
+/// the vectors: what it calls should be RAYGATE_INLINE. No vector may be returned or
+/// passed by value to anything that is not inlined.
+template <class Body>
+auto in_vectors(const Body& body) {
+#ifdef RAYGATE_AVX2
+  switch (vectors_in_use()) {
+    case Vectors::kAvx512:
+      return detail::in_avx512(body);
+    case Vectors::kAvx2:
+      return detail::in_avx2(body);
+    case Vectors::kBaseline:
+      break;
+  }
+#endif
+  return detail::in_baseline(body);
+}
+
+}  // namespace raygate
