@@ -21,8 +21,8 @@ endef
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
-verilate: ## build ./render, with the simulated hardware in it, and ./compare
-	$(call build,build,render compare scenes)
+verilate: ## build ./render, with the simulated hardware in it, ./trace and ./compare
+	$(call build,build,render trace compare scenes)
 
 example: ## the paper's worked example, its words and its waveform for GTKWave
 	$(call build,build,worked_example)
@@ -81,7 +81,7 @@ format: ## lay all sources out as lint wants them
 	@.ci/lint format --fix
 
 clean: ## remove what was built (scenes and pictures stay)
-	rm -rf build render compare
+	rm -rf build render trace compare
 
 .PHONY: everything
 everything: configure += -DBUILD_TESTING=ON

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/cli/command_line.h"
 #include "host/cli/option_text.h"
 #include "host/cli/process.h"
-#include "host/cli/version.h"
 #include "host/film/compare.h"
 #include "host/film/false_color.h"
 #include "host/film/pending_file.h"
@@ -173,26 +173,20 @@ int compare_files(const CompareOptions& options) {
 int run(int argc, char** argv) {
   CompareOptions options;
   CLI::App app("", "compare");
-  app.add_option("PICTURE", options.picture)->required();
-  app.add_option("REFERENCE", options.reference)->required();
+  app.add_option("PICTURE", options.picture);
+  app.add_option("REFERENCE", options.reference);
   app.add_option("--threshold", options.thresholds)->allow_extra_args(false);
   app.add_option("--difference", options.difference);
   app.add_option("--scale", options.scale)->check(CLI::PositiveNumber);
   app.add_option("--channels", options.channels);
   app.add_flag("--json", options.json);
-  app.set_help_flag("-h,--help");
-  app.set_version_flag("--version", std::string(kSoftware));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    print(kHelp);
+  const std::string information =
+      read_command_line(app, {argv + 1, argv + argc}, kHelp, "a third picture; two are compared");
+  if (!information.empty()) {
+    print(information);
     return 0;
-  } catch (const CLI::CallForVersion&) {
-    print(std::string(kSoftware) + "\n");
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(std::string(error.what()) + " (see --help)");
   }
+  if (options.reference.empty()) throw InputError("expected PICTURE and REFERENCE (see --help)");
   return compare_files(options);
 }
 

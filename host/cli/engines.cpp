@@ -14,28 +14,33 @@
 #include "sim/rtl_plane_unit.h"
 
 namespace raygate {
+namespace {
 
-std::unique_ptr<HitTester> make_tester(const Options& options) {
+/// The unit of an engine that has one, with what its host does around it: rtl's, or its model.
+std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips& skips) {
   const bool simulated = options.engine != Engine::kModel;
   if (options.unit == "serial") {
     std::unique_ptr<PlaneUnit> unit = std::make_unique<ReferencePlaneUnit>();
     if (simulated) unit = std::make_unique<RtlPlaneUnit>(options.arith);
     return std::make_unique<SerialHitTester>(
-        std::move(unit), options.light.skips.divisions ? SerialHitTester::Order::kEdgesFirst
-                                                       : SerialHitTester::Order::kPlanesFirst);
+        std::move(unit), skips.divisions ? SerialHitTester::Order::kEdgesFirst
+                                         : SerialHitTester::Order::kPlanesFirst);
   }
   std::unique_ptr<BurstUnit> unit = std::make_unique<ReferenceBurstUnit>();
   if (simulated) unit = std::make_unique<RtlBurstUnit>(options.lanes, options.arith);
   return std::make_unique<PipelineHitTester>(std::move(unit));
 }
 
-FinderFactory make_finder_factory(const Options& options, const Bvh& bvh) {
+}  // namespace
+
+FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh,
+                                  const Skips& skips) {
   if (options.engine == Engine::kCpu) {
     return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
   }
-  const auto caches = std::make_shared<RecordCaches>(bvh, options.light.skips.records);
-  return [options, &bvh, caches]() -> std::unique_ptr<Finder> {
-    auto unit = std::make_unique<UnitFinder>(bvh, make_tester(options), caches);
+  const auto caches = std::make_shared<RecordCaches>(bvh, skips.records);
+  return [options, &bvh, skips, caches]() -> std::unique_ptr<Finder> {
+    auto unit = std::make_unique<UnitFinder>(bvh, make_tester(options, skips), caches);
     if (options.engine != Engine::kCheck) return unit;
     return std::make_unique<CheckFinder>(bvh, std::move(unit), std::make_unique<CpuFinder>(bvh));
   };

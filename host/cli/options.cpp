@@ -2,10 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <thread>
 
+#include "host/cli/command_line.h"
 #include "host/cli/values.h"
-#include "host/cli/version.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
@@ -76,20 +75,12 @@ line, the scene or an output cannot be used; 130 interrupted (partial pictures).
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
-  std::string scene, size, engine, unit, arith, lanes, threads, camera, crop, seed;
+  std::string scene, size, camera, crop, seed;
+  RawEngineOptions engine;
   RawOutputOptions output;
   RawLightOptions light;
   bool no_scene_file = false;
 };
-
-/// What `unknown` may have been meant to be: ", did you mean --size?", or nothing.
-std::string meant_option(const CLI::App& app, const std::string& unknown) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return did_you_mean(unknown.substr(0, unknown.find('=')), names);
-}
 
 /// Every name must be in kHelp.
 void declare(CLI::App& app, RawValues& raw, Options& options) {
@@ -105,54 +96,21 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   value("--camera", raw.camera);
   declare_output_options(app, raw.output);
   declare_light_options(app, raw.light);
-  value("--engine", raw.engine);
-  value("--unit", raw.unit);
-  value("--arith", raw.arith);
-  value("--lanes", raw.lanes);
-  value("--threads", raw.threads);
+  declare_engine_options(app, raw.engine);
   value("--seed", raw.seed);
   flag("--skip-degenerate", options.skip_degenerate);
   flag("--no-scene-file", raw.no_scene_file);
   flag("-q,--quiet", options.quiet);
   flag("-v,--verbose", options.verbose);
-  app.set_help_flag("-h,--help");
-  app.set_version_flag("--version", std::string(kSoftware));
 }
 
-/// Reads a command line; CLI11's complaints in our words, one line each. Flags go to `options`.
+/// Flags go to `options`.
 RawValues read_line(const std::vector<std::string>& words, Options& options) {
   RawValues raw;
   CLI::App app("", "render");
   declare(app, raw, options);
-  app.allow_extras();  // so that an unknown option can be answered with a known one
-  try {
-    std::vector<std::string> reversed(words.rbegin(), words.rend());  // as the library wants them
-    app.parse(reversed);
-  } catch (const CLI::CallForHelp&) {
-    options.information = kHelp;
-  } catch (const CLI::CallForVersion&) {
-    options.information = std::string(kSoftware) + "\n";
-  } catch (const CLI::ArgumentMismatch& error) {  // "--size: 1 required TEXT missing"
-    const std::string what = error.what();
-    throw InputError(what.substr(0, what.find(':')) + ": expected a value (see --help)");
-  } catch (const CLI::ParseError& error) {
-    throw InputError(std::string(error.what()) + " (see --help)");
-  }
-  if (!options.information.empty()) return raw;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& text : option->results()) {
-      if (text.empty()) throw InputError(option->get_name() + ": expected a value, got ''");
-    }
-  }
-  const std::vector<std::string> extras = app.remaining();
-  for (const std::string& extra : extras) {
-    if (extra.size() > 1 && extra[0] == '-') {
-      throw InputError(extra + ": unknown option" + meant_option(app, extra) + " (see --help)");
-    }
-  }
-  if (!extras.empty()) {
-    throw InputError(extras[0] + ": a second scene; one run renders one scene");
-  }
+  options.information =
+      read_command_line(app, words, kHelp, "a second scene; one run renders one scene");
   return raw;
 }
 
@@ -168,15 +126,7 @@ void check_values(const RawValues& raw, Options& options) {
     options.camera = parse_camera(raw.camera);
     options.path.clear();
   }
-  if (!raw.engine.empty()) options.engine = parse_engine(raw.engine);
-  if (!raw.unit.empty()) options.unit = parse_unit(raw.unit);
-  if (!raw.arith.empty()) options.arith = parse_arith(raw.arith);
-  if (!raw.lanes.empty()) options.lanes = parse_lanes(raw.lanes);
-  if (options.unit == "serial" && options.lanes != 1) {
-    throw InputError("--lanes: expected 1 with --unit serial, got " + raw.lanes);
-  }
-  options.threads = raw.threads.empty() ? std::max(1u, std::thread::hardware_concurrency())
-                                        : parse_threads(raw.threads);
+  static_cast<EngineOptions&>(options) = parse_engine_options(raw.engine);
   if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);
 }
 
@@ -236,24 +186,6 @@ void require_distinct(const Options& options) {
 }
 
 }  // namespace
-
-std::string to_string(Engine engine) {
-  switch (engine) {
-    case Engine::kRtl:
-      return "rtl";
-    case Engine::kModel:
-      return "model";
-    case Engine::kCpu:
-      return "cpu";
-    case Engine::kCheck:
-      return "check";
-  }
-  return "";
-}
-
-std::string to_string(Arith arith) {
-  return arith == Arith::kStructural ? "structural" : "behavioural";
-}
 
 Options parse_options(int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);

@@ -7,38 +7,25 @@
 #include <string>
 #include <vector>
 
+#include "host/cli/engine_options.h"
 #include "host/cli/light_options.h"
 #include "host/cli/output_options.h"
 #include "host/film/film.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/scene_file.h"
-#include "sim/arith.h"
 
 namespace raygate {
 
-/// Who tests rays against polygons.
-enum class Engine {
-  kRtl,    ///< the simulated hardware
-  kModel,  ///< its reference model in C++, in the hardware's place
-  kCpu,    ///< no unit: tests in place
-  kCheck,  ///< rtl and cpu, compared ray by ray
-};
-
 /// Checked options: every value is possible. Whether files can be read or written is not checked.
-struct Options {
+struct Options : EngineOptions {
   /// Text that --help or --version asked for; if not empty nothing else here is of use.
   std::string information;
 
   std::filesystem::path scene;          ///< as it was named: an OBJ or a scene file
   std::optional<SceneFile> scene_file;  ///< named, or found beside the OBJ
   OutputOptions output;
-  int width = 640, height = 480;  ///< of the whole frame, in pixels
-  PixelRect window;               ///< to be rendered: the frame or --crop
-  Engine engine = Engine::kRtl;
-  std::string unit = "pipeline";  ///< or "serial"
-  Arith arith = Arith::kStructural;
-  int lanes = 1;  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
-  unsigned threads = 1;
+  int width = 640, height = 480;        ///< of the whole frame, in pixels
+  PixelRect window;                     ///< to be rendered: the frame or --crop
   std::optional<CameraSetting> camera;  ///< in the OBJ's coordinates; none: framed on the scene
   std::vector<CameraSetting> path;      ///< of --frames; empty: once round the target
   LightOptions light;
@@ -55,11 +42,5 @@ struct Options {
 /// command line has the last word. Throws InputError, one line that names the option (or the file
 /// and the line), what was given and what is allowed.
 [[nodiscard]] Options parse_options(int argc, const char* const* argv);
-
-/// "rtl", "model", "cpu" or "check".
-[[nodiscard]] std::string to_string(Engine engine);
-
-/// "structural" or "behavioural".
-[[nodiscard]] std::string to_string(Arith arith);
 
 }  // namespace raygate

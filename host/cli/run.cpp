@@ -170,13 +170,14 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
     bar.erase();
     std::_Exit(run_guarded([&]() -> int { end_interrupted(outputs, film, metadata); }, 1));
   };
-  Film film = render(scene, bvh, camera, render_options, make_finder_factory(options, bvh), stats,
-                     [&](double fraction) {
-                       // Before there is something to save, a signal simply ends the program.
-                       if (interruption() == 0) note_interruptions();
-                       bar.update(fraction);
-                       return interruption() == 0;
-                     });
+  Film film =
+      render(scene, bvh, camera, render_options,
+             make_finder_factory(options, bvh, options.light.skips), stats, [&](double fraction) {
+               // Before there is something to save, a signal simply ends the program.
+               if (interruption() == 0) note_interruptions();
+               bar.update(fraction);
+               return interruption() == 0;
+             });
   bar.erase();
   if (stats.missing_threads > 0) {
     print_warning("only " + std::to_string(options.threads - stats.missing_threads) + " of " +

@@ -34,39 +34,6 @@ Size parse_size(const std::string& text) {
   return {static_cast<int>(*width), static_cast<int>(*height)};
 }
 
-Engine parse_engine(const std::string& text) {
-  return choose<Engine>("--engine", text,
-                        {{"rtl", Engine::kRtl},
-                         {"model", Engine::kModel},
-                         {"cpu", Engine::kCpu},
-                         {"check", Engine::kCheck}});
-}
-
-std::string parse_unit(const std::string& text) {
-  return choose<std::string>("--unit", text, {{"pipeline", "pipeline"}, {"serial", "serial"}});
-}
-
-Arith parse_arith(const std::string& text) {
-  return choose<Arith>("--arith", text,
-                       {{"structural", Arith::kStructural}, {"behavioural", Arith::kBehavioural}});
-}
-
-int parse_lanes(const std::string& text) {
-  const auto lanes = parse_number<int>(text);
-  if (!lanes || (*lanes != 1 && *lanes != 2 && *lanes != 4 && *lanes != 8)) {
-    fail_value("--lanes", text, "1, 2, 4 or 8");
-  }
-  return *lanes;
-}
-
-unsigned parse_threads(const std::string& text) {
-  const auto threads = parse_number<unsigned>(text);
-  if (!threads || *threads < 1 || *threads > 1024) {
-    fail_value("--threads", text, "a whole number from 1 to 1024");
-  }
-  return *threads;
-}
-
 CameraSetting parse_camera(const std::string& text) {
   const auto numbers = parse_list<double>(text);
   if (!numbers || (numbers->size() != 6 && numbers->size() != 7)) {

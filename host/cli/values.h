@@ -19,13 +19,8 @@ inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 struct Size {
   int width, height;
 };
-[[nodiscard]] Size parse_size(const std::string& text);             ///< "640x480"
-[[nodiscard]] Engine parse_engine(const std::string& text);         ///< "rtl", "cpu", "check"
-[[nodiscard]] Arith parse_arith(const std::string& text);           ///< "structural", "behavioural"
-[[nodiscard]] std::string parse_unit(const std::string& text);      ///< "pipeline", "serial"
-[[nodiscard]] int parse_lanes(const std::string& text);             ///< "1", "2", "4", "8"
-[[nodiscard]] unsigned parse_threads(const std::string& text);      ///< "1" to "1024"
-[[nodiscard]] CameraSetting parse_camera(const std::string& text);  ///< "1,2,3,0,0,0,40"
+[[nodiscard]] Size parse_size(const std::string& text);                  ///< "640x480"
+[[nodiscard]] CameraSetting parse_camera(const std::string& text);       ///< "1,2,3,0,0,0,40"
 [[nodiscard]] PixelRect parse_crop(const std::string& text, Size size);  ///< "10,10,20,20"
 [[nodiscard]] std::uint64_t parse_seed(const std::string& text);         ///< "7"
 

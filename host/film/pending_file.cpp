@@ -85,42 +85,60 @@ int write_all(int fd, std::string_view bytes) {
   return 0;
 }
 
-/// Writes, brings to disk and closes; some file systems tell of a full disk only then.
-int write_and_close(int fd, std::string_view bytes, const Target& target) {
-  int error = write_all(fd, bytes);
-  if (error == 0 && target.permissions && ::fchmod(fd, *target.permissions) != 0) error = errno;
-  if (error == 0 && !target.is_stream && ::fsync(fd) != 0) error = errno;
-  if (::close(fd) != 0 && error == 0) error = errno;
-  return error;
-}
-
 }  // namespace
 
-PendingFile::PendingFile(const fs::path& path, std::string_view bytes) : name_(path) {
+PendingFile::PendingFile(const fs::path& path) : name_(path) {
   Target target = inspect(path);
   target_ = std::move(target.path);
-  int fd = -1;
+  permissions_ = target.permissions;
   if (target.is_stream) {
-    fd = open_stream(name_);
+    descriptor_ = open_stream(name_);
   } else {
-    std::tie(temporary_, fd) = create_beside(target_, name_);
+    std::tie(temporary_, descriptor_) = create_beside(target_, name_);
   }
-  if (const int error = write_and_close(fd, bytes, target)) {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
-    fail(name_, error);
-  }
+}
+
+PendingFile::PendingFile(const fs::path& path, std::string_view bytes) : PendingFile(path) {
+  append(bytes);
+  finish();
 }
 
 PendingFile::PendingFile(PendingFile&& other) noexcept
     : name_(std::move(other.name_)),
       target_(std::move(other.target_)),
-      temporary_(std::exchange(other.temporary_, {})) {}
+      temporary_(std::exchange(other.temporary_, {})),
+      permissions_(other.permissions_),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 PendingFile::~PendingFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
+void PendingFile::fail_if(int error) {
+  if (error != 0) fail(name_, error);
+}
+
+void PendingFile::append(std::string_view bytes) { fail_if(write_all(descriptor_, bytes)); }
+
+void PendingFile::replace_start(std::string_view bytes) {
+  if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail(name_, errno);
+  append(bytes);
+  if (::lseek(descriptor_, 0, SEEK_END) < 0) fail(name_, errno);
+}
+
+void PendingFile::finish() {
+  if (descriptor_ < 0) return;
+  int error = 0;
+  if (permissions_ && ::fchmod(descriptor_, *permissions_) != 0) error = errno;
+  // Some file systems tell of a full disk only now.
+  if (error == 0 && !is_stream() && ::fsync(descriptor_) != 0) error = errno;
+  if (::close(std::exchange(descriptor_, -1)) != 0 && error == 0) error = errno;
+  fail_if(error);
+}
+
 void PendingFile::commit() {
+  finish();
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(name_, errno);
   temporary_.clear();

@@ -1,7 +1,10 @@
 // Files that are there whole or not at all.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -17,19 +20,33 @@ namespace raygate {
 /// reads the pipe. All errors are InputError, "path: cannot write: reason".
 class PendingFile {
  public:
-  /// Writes `bytes`, for `path`.
+  /// Begins a file for `path`, to be written bit by bit.
+  explicit PendingFile(const std::filesystem::path& path);
+  /// Writes `bytes`, all of the file, for `path`.
   PendingFile(const std::filesystem::path& path, std::string_view bytes);
   PendingFile(PendingFile&& other) noexcept;
   PendingFile& operator=(PendingFile&&) = delete;
   ~PendingFile();  ///< removes the temporary file if commit() did not use it
 
-  /// Makes the target the new file. At most once.
+  /// Adds `bytes` at the end.
+  void append(std::string_view bytes);
+  /// Puts `bytes` over the first ones: a header that counts what came after it. Not in a stream.
+  void replace_start(std::string_view bytes);
+  /// Brings all of it to the disk; nothing can be added then.
+  void finish();
+  /// Makes the target the new file, finished. At most once.
   void commit();
+  /// Whether it goes to a device, a pipe or standard output.
+  [[nodiscard]] bool is_stream() const { return temporary_.empty(); }
 
  private:
-  std::filesystem::path name_;       ///< as the user wrote it, for messages
-  std::filesystem::path target_;     ///< symbolic links resolved
-  std::filesystem::path temporary_;  ///< empty: none
+  void fail_if(int error);
+
+  std::filesystem::path name_;         ///< as the user wrote it, for messages
+  std::filesystem::path target_;       ///< symbolic links resolved
+  std::filesystem::path temporary_;    ///< empty: none
+  std::optional<mode_t> permissions_;  ///< of the file that is there
+  int descriptor_ = -1;                ///< -1: closed
 };
 
 /// Throws InputError where one of `outputs` is, under whatever name, one of `inputs`: "a.png: would

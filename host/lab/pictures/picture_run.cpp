@@ -47,9 +47,9 @@ constexpr std::pair<const char*, IntegratorKind> kIntegrators[] = {
 /// Binary32 as it stands: what the renderer's own engines are.
 bool is_plain(const Variant& variant) { return variant.math == Arithmetic{} && variant.doubts; }
 
-Options options_of(const PictureRun& run, const Variant& variant) {
+EngineOptions options_of(const PictureRun& run, const Variant& variant) {
   const bool serial = variant.unit == Variant::Unit::kSerial;
-  Options options;
+  EngineOptions options;
   options.engine = run.engine == "rtl" ? Engine::kRtl : serial ? Engine::kModel : Engine::kCpu;
   options.unit = serial ? "serial" : "pipeline";
   options.lanes = run.lanes;

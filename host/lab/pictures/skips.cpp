@@ -41,7 +41,7 @@ Run timed(const Stage& stage, const Options& options) {
   for (int i = 0; i < 3; ++i) {
     Run run;
     run.film = render(stage.scene, stage.bvh, stage.camera(kWidth, kHeight), render_options,
-                      make_finder_factory(options, stage.bvh), run.stats);
+                      make_finder_factory(options, stage.bvh, options.light.skips), run.stats);
     if (i == 0 || run.stats.wall_seconds < best.stats.wall_seconds) best = std::move(run);
     if (best.stats.wall_seconds > 5.0) break;
   }

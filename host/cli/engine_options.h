@@ -1,0 +1,48 @@
+// The options that say what finds the hits.
+#pragma once
+
+#include <string>
+
+#include "sim/arith.h"
+
+namespace CLI {
+class App;
+}
+
+namespace raygate {
+
+/// Who tests rays against polygons.
+enum class Engine {
+  kRtl,    ///< the simulated hardware
+  kModel,  ///< its reference model in C++, in the hardware's place
+  kCpu,    ///< no unit: tests in place
+  kCheck,  ///< rtl and cpu, compared ray by ray
+};
+
+/// Every value is possible.
+struct EngineOptions {
+  Engine engine = Engine::kRtl;
+  std::string unit = "pipeline";  ///< or "serial"
+  Arith arith = Arith::kStructural;
+  int lanes = 1;  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
+  unsigned threads = 1;
+};
+
+/// As they were typed; empty where they were not given.
+struct RawEngineOptions {
+  std::string engine, unit, arith, lanes, threads;
+};
+
+void declare_engine_options(CLI::App& app, RawEngineOptions& raw);
+
+/// What is not given is as in `defaults`; threads one per processor. Throws InputError, one line.
+[[nodiscard]] EngineOptions parse_engine_options(const RawEngineOptions& raw,
+                                                 EngineOptions defaults = {});
+
+/// "rtl", "model", "cpu" or "check".
+[[nodiscard]] std::string to_string(Engine engine);
+
+/// "structural" or "behavioural".
+[[nodiscard]] std::string to_string(Arith arith);
+
+}  // namespace raygate

@@ -1,0 +1,116 @@
+// The program `trace` as its users run it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+#include "host/cli/test/program.h"
+
+namespace raygate {
+namespace {
+
+class TraceRays : public testing::Test {
+ protected:
+  void SetUp() override {
+    // Two unit squares across the z axis, at z = 0 and z = -2, in objects of their own.
+    folder_.write("sheets.obj",
+                  "o front\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
+                  "o back\nv -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\nf 5 6 7 8\n");
+    folder_.write("rays.csv", "0.5,0.25,1,0,0,-2\n0,0,1,0,0,1\n0.5,0.25,1,0,0,-2,0.5\n");
+  }
+  [[nodiscard]] Outcome trace(std::vector<std::string> arguments) const {
+    return run_program({.arguments = std::move(arguments), .folder = folder_.path()});
+  }
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& line) const {
+    const Outcome outcome = trace(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.err.substr(0, 7 + line.size()), "error: " + line);
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(TraceRays, SaysWhatIsNearest) {
+  const Outcome outcome = trace({"sheets.obj", "rays.csv"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out,
+            "ray,hit,triangle,object,t,x,y,z,u,v,nx,ny,nz,doubts\n"
+            "0,1,0,0,0.5,0.5,0.25,0,0.125,0.625,0,0,1,0\n"
+            "1,0,-1,-1,inf,nan,nan,nan,nan,nan,nan,nan,nan,0\n"
+            "2,0,-1,-1,inf,nan,nan,nan,nan,nan,nan,nan,nan,0\n");
+  EXPECT_EQ(outcome.err.substr(0, 15), "3 rays, 1 hits,");
+}
+
+TEST_F(TraceRays, SaysTheSameByEveryEngine) {
+  const std::vector<std::string> common = {"sheets.obj", "rays.csv", "-q", "--columns",
+                                           "ray,triangle,t,point,unit-point,unit-error"};
+  const std::string expected = trace(common).out;
+  EXPECT_EQ(std::count(expected.begin(), expected.end(), '\n'), 4);
+  const std::vector<std::vector<std::string>> engines = {
+      {"--engine", "rtl"},
+      {"--engine", "check", "--lanes", "2"},
+      {"--engine", "model"},
+      {"--engine", "rtl", "--arith", "behavioural"},
+      {"--engine", "rtl", "--unit", "serial"}};
+  for (const std::vector<std::string>& engine : engines) {
+    std::vector<std::string> arguments = common;
+    arguments.insert(arguments.end(), engine.begin(), engine.end());
+    const Outcome outcome = trace(arguments);
+    EXPECT_EQ(outcome.out, expected) << engine[1] << outcome.err;
+  }
+}
+
+TEST_F(TraceRays, SaysAllAndWhetherAny) {
+  EXPECT_EQ(trace({"sheets.obj", "rays.csv", "--hits", "all", "--columns", "ray,triangle,t"}).out,
+            "ray,triangle,t\n0,0,0.5\n0,2,1.5\n");
+  EXPECT_EQ(trace({"sheets.obj", "rays.csv", "--hits", "any"}).out, "ray,hit\n0,1\n1,0\n2,0\n");
+}
+
+TEST_F(TraceRays, WritesArrays) {
+  EXPECT_EQ(trace({"sheets.obj", "rays.csv", "-o", "hits.npy", "--columns", "ray,t"}).status, 0);
+  const std::string bytes = folder_.read("hits.npy");
+  ASSERT_EQ(bytes.size() % 64, 3u * 16);
+  const std::size_t start = bytes.size() - 48;
+  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
+  EXPECT_NE(bytes.find("'descr': [('ray', '<i8'), ('t', '<f8')], 'fortran_order': False, "
+                       "'shape': (3,), }"),
+            std::string::npos);
+  EXPECT_EQ(bytes[start - 1], '\n');
+  double t = 0.0;
+  std::memcpy(&t, bytes.data() + start + 8, 8);
+  EXPECT_EQ(t, 0.5);
+}
+
+TEST_F(TraceRays, LosesNothing) {
+  folder_.write("hits.csv", "old");
+  folder_.write("bad.csv", "0,0,1,0,0,1\n0,0,1,0\n");
+  expect_refused({"sheets.obj", "bad.csv", "-o", "hits.csv"}, "bad.csv:2: found 4 numbers");
+  EXPECT_EQ(folder_.read("hits.csv"), "old");
+  expect_refused({"sheets.obj", "rays.csv", "-o", "rays.csv"},
+                 "rays.csv: would overwrite rays.csv");
+  EXPECT_EQ(folder_.list(),
+            (std::vector<std::string>{"bad.csv", "hits.csv", "rays.csv", "sheets.obj"}));
+}
+
+TEST_F(TraceRays, RefusesWhatItCannotDo) {
+  expect_refused({"sheets.obj"}, "expected SCENE and RAYS");
+  expect_refused({"sheets.obj", "none.csv"}, "none.csv: cannot read: No such file");
+  expect_refused({"none.obj", "rays.csv"}, "none.obj: cannot be opened");
+  expect_refused({"sheets.obj", "rays.csv", "-o", "hits.txt"},
+                 "--output: expected FILE.csv, FILE.npy or -, got 'hits.txt'");
+  expect_refused({"sheets.obj", "rays.csv", "--hits", "nearst"},
+                 "--hits: expected nearest, any or all, got 'nearst'; did you mean nearest?");
+  expect_refused({"sheets.obj", "rays.csv", "--colums", "t"},
+                 "--colums: unknown option; did you mean --columns?");
+  expect_refused({"sheets.obj", "rays.csv", "--columns", "ray,tt"}, "--columns: expected some of");
+  expect_refused({"sheets.obj", "rays.csv", "--hits", "any", "--columns", "t"},
+                 "--columns: expected ray, hit or doubts with --hits any");
+  expect_refused({"sheets.obj", "rays.csv", "--hits", "all", "--engine", "rtl"},
+                 "--engine: expected cpu with --hits all");
+  expect_refused({"sheets.obj", "rays.csv", "more"}, "more: a third file");
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,237 @@
+// The program `trace`: what rays hit, exactly.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/cli/command_line.h"
+#include "host/cli/engine_options.h"
+#include "host/cli/engines.h"
+#include "host/cli/format.h"
+#include "host/cli/option_text.h"
+#include "host/cli/process.h"
+#include "host/exact/ieee_floats.h"
+#include "host/film/pending_file.h"
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_file.h"
+#include "host/trace/answers.h"
+#include "host/trace/rays_in.h"
+#include "host/trace/tracer.h"
+#include "host/tree/bvh.h"
+
+namespace raygate {
+namespace {
+
+constexpr const char* kHelp =
+    R"(Usage: ./trace SCENE RAYS [options]
+
+Says what rays hit in a scene (OBJ, or a scene file), exactly: which triangle,
+where, and whether binary32 had left it open. RAYS is a CSV table or a NumPy
+array (float32 or float64), or - for standard input, of any length. Its columns
+are the origin, the direction and, where wanted, a limit:
+
+  OX,OY,OZ,DX,DY,DZ[,LIMIT]        hits P = O + t D have 0 < t < LIMIT
+
+  ./trace scenes/cornell.obj rays.csv
+  ./trace scenes/teapot.obj rays.npy -o hits.npy --hits all
+  echo 0,1,5,0,0,-1 | ./trace scenes/cornell.obj - --columns triangle,t
+
+  -o, --output FILE          .csv or .npy; - is standard output, as CSV (default)
+  --hits nearest|any|all     nearest: a row for each ray (default); any: whether
+                             there is a hit, sooner; all: a row for each hit of
+                             each ray, near before far
+  --columns NAMES            ray,hit,triangle,object,material,t,point,uv,normal,
+                             doubts,unit-point,unit-error (all but material and
+                             the last two; of any: ray,hit)
+  --engine NAME              cpu (default), rtl, model or check: as in ./render
+  --unit, --arith, --lanes, --threads     as in ./render
+  --skip-degenerate          leave out faces without area, with a warning
+  -q, --quiet                print no summary (on standard error)
+  -h, --help; --version
+
+Numbers count from 0. A ray that hits nothing has triangle -1, t inf, the rest
+nan. Positions become binary32 relative to the scene's middle; the summary says
+how many rays that changed.
+
+Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
+line, the scene, the rays or the output cannot be used; 130 interrupted.
+)";
+
+struct TraceOptions {
+  std::string information;
+  std::filesystem::path scene, rays, output = "-";
+  Hits hits = Hits::kNearest;
+  std::vector<Answer> columns;
+  EngineOptions engine;
+  bool skip_degenerate = false, quiet = false;
+
+  [[nodiscard]] bool is_to_standard_output() const { return output == "-"; }
+  [[nodiscard]] AnswerFormat format() const {
+    return output.extension() == ".npy" ? AnswerFormat::kNpy : AnswerFormat::kCsv;
+  }
+};
+
+std::vector<Answer> parse_columns(const std::string& text, Hits hits) {
+  using enum Answer;
+  if (text.empty()) {
+    if (hits == Hits::kAny) return {kRay, kHit};
+    return {kRay, kHit, kTriangle, kObject, kT, kPoint, kUv, kNormal, kDoubts};
+  }
+  const std::vector<std::string> known(std::begin(kAnswerNames), std::end(kAnswerNames));
+  std::vector<Answer> columns;
+  for (const std::string& name : split_at_commas(text)) {
+    const auto at = std::ranges::find(known, name);
+    if (at == known.end()) {
+      std::string list;
+      for (const std::string& word : known) list += (list.empty() ? "" : ", ") + word;
+      fail_value("--columns", text, "some of " + list, did_you_mean(name, known));
+    }
+    const auto answer = static_cast<Answer>(at - known.begin());
+    if (std::ranges::find(columns, answer) != columns.end()) {
+      fail_value("--columns", text, "each name once");
+    }
+    // Which hit is found first is the engine's affair; that there is one is not.
+    if (hits == Hits::kAny && answer != kRay && answer != kHit && answer != kDoubts) {
+      fail_value("--columns", text, "ray, hit or doubts with --hits any");
+    }
+    if (hits == Hits::kAll && (answer == kUnitPoint || answer == kUnitError)) {
+      fail_value("--columns", text, "none of the unit's with --hits all");
+    }
+    columns.push_back(answer);
+  }
+  return columns;
+}
+
+TraceOptions parse(const std::vector<std::string>& words) {
+  TraceOptions options;
+  std::string scene, rays, output, hits, columns;
+  RawEngineOptions engine;
+  CLI::App app("", "trace");
+  app.add_option("scene", scene);
+  app.add_option("rays", rays);
+  app.add_option("-o,--output", output)->take_last();
+  app.add_option("--hits", hits)->take_last();
+  app.add_option("--columns", columns)->take_last();
+  declare_engine_options(app, engine);
+  app.add_flag("--skip-degenerate", options.skip_degenerate)->disable_flag_override();
+  app.add_flag("-q,--quiet", options.quiet)->disable_flag_override();
+  options.information =
+      read_command_line(app, words, kHelp, "a third file; expected SCENE and RAYS");
+  if (!options.information.empty()) return options;
+  if (rays.empty()) throw InputError("expected SCENE and RAYS (see --help)");
+  options.scene = scene;
+  options.rays = rays;
+  if (!output.empty()) options.output = output;
+  const auto extension = options.output.extension();
+  if (!options.is_to_standard_output() && extension != ".csv" && extension != ".npy") {
+    fail_value("--output", output, "FILE.csv, FILE.npy or -");
+  }
+  if (!hits.empty()) {
+    options.hits = choose<Hits>(
+        "--hits", hits, {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
+  }
+  options.columns = parse_columns(columns, options.hits);
+  options.engine = parse_engine_options(engine, {.engine = Engine::kCpu});
+  if (options.hits == Hits::kAll && options.engine.engine != Engine::kCpu) {
+    throw InputError("--engine: expected cpu with --hits all, as units keep nearest hits alone");
+  }
+  return options;
+}
+
+/// Where the rows go.
+class Table {
+ public:
+  Table(const TraceOptions& options, const Answers& answers) : answers_(answers) {
+    if (!options.is_to_standard_output()) file_.emplace(options.output);
+    if (file_ && file_->is_stream() && options.format() == AnswerFormat::kNpy) {
+      throw InputError(options.output.string() + ": found a stream, expected a file for NPY");
+    }
+    write(answers.header(0));
+  }
+  void write(std::string_view bytes) {
+    if (file_) {
+      file_->append(bytes);
+    } else {
+      std::fwrite(bytes.data(), 1, bytes.size(), stdout);
+      flush_standard_output();
+    }
+  }
+  /// Now that they are counted.
+  void finish(std::uint64_t rows, AnswerFormat format) {
+    if (!file_) return;
+    if (format == AnswerFormat::kNpy) file_->replace_start(answers_.header(rows));
+    file_->commit();
+  }
+
+ private:
+  const Answers& answers_;
+  std::optional<PendingFile> file_;
+};
+
+std::string summary(const TraceOptions& options, const TraceCounts& counts, std::uint64_t rounded,
+                    double seconds) {
+  std::string text = format_count(counts.rays) + " rays, " + format_count(counts.hits) + " hits, " +
+                     format_duration(seconds);
+  if (seconds > 0.0) {
+    text += ", " +
+            format_count(static_cast<std::uint64_t>(static_cast<double>(counts.rays) / seconds)) +
+            " rays/s";
+  }
+  text += ", engine " + to_string(options.engine.engine) + "\n";
+  if (rounded > 0) text += format_count(rounded) + " rays were rounded to binary32\n";
+  return text;
+}
+
+int run(const TraceOptions& options) {
+  if (!options.is_to_standard_output()) require_writable(options.output);
+  std::optional<SceneFile> scene_file;
+  if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
+  const Scene scene = load_obj(scene_file ? scene_file->obj : options.scene,
+                               {.skip_degenerate = options.skip_degenerate});
+  for (const std::string& warning : scene.warnings) print_warning(warning);
+  const auto threads = static_cast<int>(options.engine.threads);
+  const Bvh bvh(scene, threads);
+  if (!options.is_to_standard_output()) {
+    std::vector<std::filesystem::path> inputs = scene.files;
+    inputs.push_back(options.scene);
+    inputs.push_back(options.rays);
+    const std::filesystem::path outputs[] = {options.output};
+    require_others(outputs, inputs);
+  }
+  RaysIn rays(options.rays, scene.origin);
+  const Answers answers(scene, bvh, options.columns, options.format());
+  Table table(options, answers);
+  note_interruptions();
+  const auto start = std::chrono::steady_clock::now();
+  const TraceCounts counts = trace(
+      rays, options.hits, bvh, answers, make_finder_factory(options.engine, bvh),
+      options.engine.threads, [&](std::string_view rows) { table.write(rows); },
+      [] { return interruption() == 0; });
+  if (interruption() != 0) {
+    throw Interrupted(interruption(), options.is_to_standard_output() ? "the table is not whole"
+                                                                      : "no file was changed");
+  }
+  table.finish(counts.rows, options.format());
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  if (!options.quiet) print(summary(options, counts, rays.rounded(), took.count()), stderr);
+  return 0;
+}
+
+}  // namespace
+}  // namespace raygate
+
+int main(int argc, char** argv) {
+  return raygate::run_guarded(
+      [&] {
+        raygate::require_ieee_floats();
+        const raygate::TraceOptions options = raygate::parse({argv + 1, argv + argc});
+        if (options.information.empty()) return raygate::run(options);
+        raygate::print(options.information);
+        return 0;
+      },
+      1);
+}

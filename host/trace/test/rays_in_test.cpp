@@ -1,0 +1,174 @@
+// Tables of rays: what is read, and what is said of those that cannot be.
+#include "host/trace/rays_in.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+class Table : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("rays-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
+
+  RayBlock read_all(const std::string& bytes, const glm::dvec3& origin = glm::dvec3(0.0)) {
+    write(bytes);
+    RaysIn rays(path_, origin);
+    RayBlock all, block;
+    while (rays.read(3, block)) {
+      EXPECT_EQ(block.first, all.rays.size());
+      EXPECT_LE(block.rays.size(), 3u);
+      all.rays.insert(all.rays.end(), block.rays.begin(), block.rays.end());
+      all.limits.insert(all.limits.end(), block.limits.begin(), block.limits.end());
+      all.exponents.insert(all.exponents.end(), block.exponents.begin(), block.exponents.end());
+    }
+    rounded_ = rays.rounded();
+    return all;
+  }
+
+  /// What comes after the file's name.
+  std::string refusal(const std::string& bytes) {
+    try {
+      read_all(bytes);
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      EXPECT_EQ(what.substr(0, path_.string().size()), path_.string());
+      return what.substr(path_.string().size());
+    }
+    return "nothing refused";
+  }
+
+  static std::string npy(const std::string& type, const std::string& shape,
+                         const std::string& elements, char version = 1) {
+    std::string header =
+        "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
+    header += std::string(54, ' ') + "\n";
+    std::string bytes = std::string("\x93NUMPY") + version + '\0';
+    for (int i = 0; i < (version == 1 ? 2 : 4); ++i) {
+      bytes += static_cast<char>(header.size() >> (8 * i));
+    }
+    return bytes + header + elements;
+  }
+  template <class T>
+  static std::string raw(std::initializer_list<T> values) {
+    std::string bytes;
+    for (const T value : values) {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    return bytes;
+  }
+
+  std::filesystem::path path_;
+  std::uint64_t rounded_ = 0;
+};
+
+TEST_F(Table, OfText) {
+  const RayBlock rays = read_all(
+      "ox,oy,oz,dx,dy,dz,limit\n# a comment\n\n1,2,3,0,0,-1\r\n +4 , 5e0,6, 3,0,0, 2\n"
+      "0,0,0,1,1,0.25,inf\n7,8,9,0,0,0\n0.5,0,0,0,-0.125,0,1e-3");
+  ASSERT_EQ(rays.rays.size(), 5u);
+  EXPECT_EQ(rays.rays[0].origin, glm::vec3(1.0f, 2.0f, 3.0f));
+  EXPECT_EQ(rays.rays[0].direction, glm::vec3(0.0f, 0.0f, -1.0f));
+  EXPECT_EQ(rays.limits[0], kInfinity);
+  // 3 = 1.5 * 2: t of the scaled ray is twice the file's.
+  EXPECT_EQ(rays.rays[1].direction, glm::vec3(1.5f, 0.0f, 0.0f));
+  EXPECT_EQ(rays.exponents[1], -1);
+  EXPECT_EQ(rays.limits[1], 4.0f);
+  EXPECT_EQ(rays.rays[3].direction, glm::vec3(0.0f));
+  EXPECT_EQ(rays.exponents[4], 3);
+  EXPECT_EQ(rounded_, 1u);  // the limit 1e-3
+}
+
+TEST_F(Table, OfTextWithoutAHeader) { EXPECT_EQ(read_all("1,2,3,4,5,6\n").rays.size(), 1u); }
+
+TEST_F(Table, OfNoRays) {
+  EXPECT_EQ(read_all("").rays.size(), 0u);
+  EXPECT_EQ(read_all("ox,oy,oz,dx,dy,dz").rays.size(), 0u);
+  EXPECT_EQ(read_all(npy("<f4", "(0, 6)", "")).rays.size(), 0u);
+}
+
+TEST_F(Table, SaysWhichLineIsWrong) {
+  const std::string wanted = ", expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,LIMIT";
+  EXPECT_EQ(refusal("1,2,3,4,5,6\n1,2,3,4,5\n"), ":2: found 5 numbers" + wanted);
+  EXPECT_EQ(refusal("1,2,3,4,5,6\n1,2,3,4,5,6,7,8\n"), ":2: found 8 numbers" + wanted);
+  EXPECT_EQ(refusal("\n\n1,2,x,4,5,6\n"), ":3: found 'x', expected a number");
+  EXPECT_EQ(refusal("a,b\nc,d\n"), ":2: found 'c', expected a number");
+  EXPECT_EQ(refusal("1,2,3,4,5,6,\n"), ":1: found '', expected a number");
+  EXPECT_EQ(refusal("1,2,3,4,5,1e999\n"), ":1: found '1e999', expected a number");
+  EXPECT_EQ(refusal("1,2,nan,4,5,6\n"),
+            ":1: found inf or nan in origin or direction, expected finite numbers");
+  EXPECT_EQ(refusal("1,2,3,4,5,6,0\n"),
+            ":1: found a limit that is not above 0, expected one, or inf");
+  EXPECT_EQ(refusal("1e39,2,3,4,5,6\n"),
+            ":1: found an origin farther than 2^126 from the scene, expected a nearer one");
+  EXPECT_EQ(refusal("1,2,3,4,5,6\n" + std::string(2000000, '7')),
+            ":2: found a line of over 1,000,000 bytes" + wanted);
+}
+
+TEST_F(Table, OfNumbersOfEitherWidth) {
+  const RayBlock narrow =
+      read_all(npy("<f4", "(2, 6)", raw<float>({1, 2, 3, 0, 0, 2, 4, 5, 6, 0, 1, 0})));
+  ASSERT_EQ(narrow.rays.size(), 2u);
+  EXPECT_EQ(narrow.rays[1].origin, glm::vec3(4.0f, 5.0f, 6.0f));
+  EXPECT_EQ(narrow.exponents[0], -1);
+  EXPECT_EQ(rounded_, 0u);
+  for (const char version : {1, 2, 3}) {
+    const RayBlock wide =
+        read_all(npy("<f8", "(1, 7)", raw<double>({0.1, 2, 3, 0, 0, 1, 5}), version));
+    ASSERT_EQ(wide.rays.size(), 1u);
+    EXPECT_EQ(wide.rays[0].origin.x, 0.1f);
+    EXPECT_EQ(wide.limits[0], 5.0f);
+    EXPECT_EQ(rounded_, 1u);
+  }
+}
+
+TEST_F(Table, SaysWhatIsWrongWithAnArray) {
+  const std::string row = raw<float>({1, 2, 3, 4, 5, 6});
+  EXPECT_EQ(refusal(npy("<f4", "(2, 6)", row)), ": found the end in row 1, expected 2 rows");
+  EXPECT_EQ(refusal(npy("<f4", "(1, 6)", row + "x")),
+            ": found more bytes after its 1 rows, expected the end");
+  EXPECT_EQ(refusal(npy("<i8", "(1, 6)", row)),
+            ": found elements of type '<i8', expected '<f4' or '<f8' (float32 or float64)");
+  EXPECT_EQ(refusal(npy("<f4", "(6,)", row)).substr(0, 33), ": found an array of shape '(6,)',");
+  EXPECT_EQ(refusal(npy("<f4", "(1, 2, 3)", row)).substr(0, 38),
+            ": found an array of shape '(1, 2, 3)',");
+  EXPECT_EQ(refusal("\x93NUMPY\x01"), ": found a damaged header, expected one of a NumPy array");
+  EXPECT_EQ(refusal(npy("<f4", "(1, 6)", row).substr(0, 40)),
+            ": found a damaged header, expected one of a NumPy array");
+  EXPECT_EQ(refusal(npy("<f4", "(1, 6)", raw<float>({1, 2, kInfinity, 4, 5, 6}))),
+            ": row 0: found inf or nan in origin or direction, expected finite numbers");
+}
+
+TEST_F(Table, IsSeenFromTheScenesOrigin) {
+  const RayBlock rays = read_all("1000000.25,0,0,1,0,0\n", glm::dvec3(1e6, 1.0, 0.0));
+  EXPECT_EQ(rays.rays.at(0).origin, glm::vec3(0.25f, -1.0f, 0.0f));
+  EXPECT_EQ(rounded_, 0u);
+}
+
+TEST_F(Table, ScalesWhatRoundsUpToTheNextPowerOfTwo) {
+  const RayBlock rays = read_all("0,0,0,1.9999999999,0,0,1\n0,0,0,0,5e-324,0\n0,0,0,0,0,1e308\n");
+  EXPECT_EQ(rays.rays.at(0).direction.x, 1.0f);
+  EXPECT_EQ(rays.exponents[0], -1);
+  EXPECT_EQ(rays.limits[0], 2.0f);
+  EXPECT_EQ(rays.rays[1].direction.y, 1.0f);
+  EXPECT_EQ(rays.exponents[1], 1074);
+  EXPECT_EQ(std::ldexp(rays.rays[2].direction.z, -rays.exponents[2] - 1000),
+            std::ldexp(static_cast<float>(0x1p-1000 * 1e308), 0));
+}
+
+}  // namespace
+}  // namespace raygate

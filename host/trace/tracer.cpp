@@ -1,0 +1,85 @@
+#include "host/trace/tracer.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/find/cpu/all_hits.h"
+#include "host/threads.h"
+
+namespace raygate {
+namespace {
+
+/// What one thread works with.
+struct Desk {
+  std::unique_ptr<Finder> finder;  ///< none where all hits are asked for
+  RayBlock block;
+  std::vector<NearestHit> nearest;
+  std::vector<RayWork> work;
+  std::vector<RayHit> found;
+  std::string rows;
+};
+
+/// One row for each ray: its nearest hit, or some hit.
+void find_one(Desk& desk, Hits asked) {
+  const std::size_t count = desk.block.rays.size();
+  desk.nearest.assign(count, {});
+  desk.work.assign(count, {});
+  Search search{.limits = desk.block.limits, .work = desk.work};
+  if (asked == Hits::kAny) search.enough_before = desk.block.limits;
+  desk.finder->find(desk.block.rays, search, desk.nearest);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    desk.found.push_back({i, desk.nearest[i], desk.work[i].doubts});
+  }
+}
+
+void find_all(Desk& desk, const Bvh& bvh) {
+  for (std::uint32_t i = 0; i < desk.block.rays.size(); ++i) {
+    RayWork work;
+    all_hits(bvh, desk.block.rays[i], desk.block.limits[i], desk.nearest, work);
+    for (const NearestHit& hit : desk.nearest) desk.found.push_back({i, hit, work.doubts});
+  }
+}
+
+}  // namespace
+
+TraceCounts trace(RaysIn& rays, Hits asked, const Bvh& bvh, const Answers& answers,
+                  const FinderFactory& make_finder, unsigned threads,
+                  const std::function<void(std::string_view)>& write,
+                  const std::function<bool()>& keep_going) {
+  constexpr std::size_t kBlock = std::size_t{1} << 14;
+  TraceCounts counts;
+  std::vector<Desk> desks(threads);
+  while (keep_going()) {
+    std::size_t busy = 0;
+    while (busy < desks.size() && rays.read(kBlock, desks[busy].block)) ++busy;
+    if (busy == 0) break;
+    for_each_on_threads(static_cast<int>(threads), busy, [&](std::size_t i) {
+      Desk& desk = desks[i];
+      desk.found.clear();
+      desk.rows.clear();
+      if (asked == Hits::kAll) {
+        find_all(desk, bvh);
+      } else {
+        if (!desk.finder) desk.finder = make_finder();
+        find_one(desk, asked);
+      }
+      answers.append(desk.block, desk.found, desk.rows);
+    });
+    for (std::size_t i = 0; i < busy; ++i) {
+      const Desk& desk = desks[i];
+      write(desk.rows);
+      counts.rays += desk.block.rays.size();
+      counts.rows += desk.found.size();
+      counts.hits += static_cast<std::uint64_t>(std::ranges::count_if(
+          desk.found, [](const RayHit& found) { return found.hit.slot != NearestHit::kNone; }));
+    }
+  }
+  for (const Desk& desk : desks) {
+    if (desk.finder) counts.find += desk.finder->counters();
+  }
+  return counts;
+}
+
+}  // namespace raygate

@@ -1,0 +1,36 @@
+// Rays in, answers out, in their order, on all threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+#include "host/find/finder.h"
+#include "host/trace/answers.h"
+#include "host/trace/rays_in.h"
+#include "host/tree/bvh.h"
+
+namespace raygate {
+
+/// Which hits of a ray are asked for.
+enum class Hits {
+  kNearest,  ///< one row a ray
+  kAny,      ///< one row a ray: whether there is a hit; the search ends at the first one found
+  kAll,  ///< a row for each hit, near before far, in exact order; none for a ray that hits nothing
+};
+
+/// What was done.
+struct TraceCounts {
+  std::uint64_t rays = 0, rows = 0, hits = 0;
+  FindCounters find;
+};
+
+/// Reads all of `rays` and gives the rows to `write`, block by block in the order of the rays. At
+/// most `threads` blocks are in memory at a time. What `rays` and `write` throw ends it.
+/// `keep_going` is asked between blocks.
+[[nodiscard]] TraceCounts trace(RaysIn& rays, Hits asked, const Bvh& bvh, const Answers& answers,
+                                const FinderFactory& make_finder, unsigned threads,
+                                const std::function<void(std::string_view)>& write,
+                                const std::function<bool()>& keep_going);
+
+}  // namespace raygate
