@@ -228,6 +228,7 @@ int main(int argc, char** argv) {
   return raygate::run_guarded(
       [&] {
         raygate::require_ieee_floats();
+        raygate::choose_vectors();
         const raygate::TraceOptions options = raygate::parse({argv + 1, argv + argc});
         if (options.information.empty()) return raygate::run(options);
         raygate::print(options.information);

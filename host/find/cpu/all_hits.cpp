@@ -43,23 +43,20 @@ RAYGATE_INLINE void test_leaf(const Bvh& bvh, const Ray& ray, const ShearedRay& 
 
 }  // namespace
 
-RAYGATE_LANES void collect(const Bvh& bvh, const Ray& ray, float limit,
-                           std::vector<NearestHit>& hits, RayWork& work) {
-  const ShearedRay sheared(ray);
-  LineVisitor visitor{Beam(ray.origin, ray.direction), cutoff_beyond(limit)};
-  WalkStack<Whole> stack({});
-  Waiting<Whole> leaf;
-  while (next_leaf(bvh, visitor, stack, leaf)) {
-    test_leaf(bvh, ray, sheared, leaf.child, hits, work);
-  }
-}
-
 void all_hits(const Bvh& bvh, const Ray& ray, float limit, std::vector<NearestHit>& hits,
               RayWork& work) {
   hits.clear();
   if (!is_usable(ray.direction)) return;
   if (!is_scaled(ray.direction)) refuse_unscaled(ray);
-  collect(bvh, ray, limit, hits, work);
+  in_vectors([&](auto) RAYGATE_BODY {
+    const ShearedRay sheared(ray);
+    const LineVisitor visitor{Beam(ray.origin, ray.direction), cutoff_beyond(limit)};
+    WalkStack<Whole> stack({});
+    Waiting<Whole> leaf;
+    while (next_leaf(bvh, visitor, stack, leaf)) {
+      test_leaf(bvh, ray, sheared, leaf.child, hits, work);
+    }
+  });
   std::erase_if(hits, [&](const NearestHit& hit) { return !is_before(bvh, ray, hit, limit); });
   std::ranges::sort(hits, [&](const NearestHit& a, const NearestHit& b) {
     return a.slot != b.slot && is_nearer(bvh, ray, a, b);
