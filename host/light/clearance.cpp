@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "host/tree/box_query.h"
@@ -19,8 +21,14 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kMostNeighbours = 4096;  // of a triangle that is looked at
-constexpr double kFarthest = 0x1p-6;           // to look, in parts of the largest coordinate
+constexpr std::size_t kMostLeaves = 4096;  // that a look may take
+constexpr std::size_t kMostCrowd = 128;
+constexpr double kFarthest = 0x1p-6;      // to look, in parts of the largest coordinate,
+constexpr double kShareOfHeight = 0.5;    // and of the least height
+constexpr double kShareOfCrowd = 0x1p-4;  // of that: what is nearer belongs to the crowd
+
+using DoubleQuad = double __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
+using LongQuad = std::int64_t __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
 
 /// A triangle and the planes that its neighbours are likely to be behind.
 class Subject {
@@ -41,6 +49,34 @@ class Subject {
   }
 
   [[nodiscard]] double height() const { return height_; }
+
+  /// The triangles of a leaf that are surely behind one of the planes through an edge, at right
+  /// angles to the triangle: bit i for number i. They leave c as large as a height, but for slack.
+  [[nodiscard]] RAYGATE_INLINE LaneMask behind_an_edge(const float* leaf,
+                                                       std::uint32_t count) const {
+    DoubleQuad y[3][3];
+    for (std::uint32_t v = 0; v < 3; ++v) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        FloatQuad coordinate;
+        load_quad(leaf + (3 * v + k) * count, coordinate);
+        y[v][k] = __builtin_convertvector(coordinate, DoubleQuad) - from_[static_cast<int>(k)];
+      }
+    }
+    LongQuad behind = {};
+    for (int i = 0; i < 3; ++i) {
+      const glm::dvec3& axis = inward_[i];
+      const double edge =
+          std::min(glm::dot(axis, vertex_[i]), glm::dot(axis, vertex_[(i + 1) % 3]));
+      LongQuad all = LongQuad{} - 1;
+      for (const DoubleQuad(&point)[3] : y) {
+        all &= axis.x * point[0] + axis.y * point[1] + axis.z * point[2] <= edge + slack_;
+      }
+      behind |= all;
+    }
+    LaneMask mask = 0;
+    for (std::uint32_t i = 0; i < count; ++i) mask |= static_cast<LaneMask>(behind[i] & 1) << i;
+    return mask;
+  }
 
   /// c as far as `other` is concerned, or at least `enough`.
   [[nodiscard]] double clearance(const Corners& other, double enough) const {
@@ -111,30 +147,67 @@ bool lies_beyond(const Corners& other, const Corners& hit, int side) {
       other, [&](const glm::vec3& vertex) { return plane_side(vertex, hit) != side; });
 }
 
+void Crowd::add(const Corners& triangle) {
+  const auto lane = static_cast<int>(size_++ % kLanes);
+  if (lane == 0) {
+    Boxes& empty = boxes_.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      std::ranges::fill(empty.low[k], std::numeric_limits<float>::infinity());
+      std::ranges::fill(empty.high[k], -std::numeric_limits<float>::infinity());
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    boxes_.back().low[k][lane] = std::min({triangle[0][k], triangle[1][k], triangle[2][k]});
+    boxes_.back().high[k][lane] = std::max({triangle[0][k], triangle[1][k], triangle[2][k]});
+  }
+}
+
+bool Crowd::is_near(const glm::vec3& point, float reach) const {
+  const glm::vec3 from = point - reach, to = point + reach;
+  return in_vectors([&](auto) RAYGATE_BODY {
+    IntLanes near = {};
+    for (const Boxes& eight : boxes_) {
+      IntLanes touches = IntLanes{} - 1;
+      for (int k = 0; k < 3; ++k) {
+        FloatLanes low, high;
+        load_lanes(eight.low[k], low);
+        load_lanes(eight.high[k], high);
+        touches &= (low <= to[k]) & (high >= from[k]);
+      }
+      near |= touches;
+    }
+    return sign_mask(near) != 0;
+  });
+}
+
 // A coordinate along a unit vector, of a difference of two points, is off by less than 2^-49 times
 // their largest coordinate.
 Clearances::Clearances(const Bvh& bvh)
     : bvh_(bvh),
       margin_(0x1p-45f * largest_coordinate(bvh)),
       slack_(0x1p-47 * largest_coordinate(bvh)),
-      known_(std::make_unique_for_overwrite<std::atomic<Sides>[]>(bvh.slot_count())) {
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    known_[slot].store({-1.0f, -1.0f}, std::memory_order_relaxed);
+      known_(std::make_unique<Known[]>(bvh.slot_count())) {}
+
+Clearances::Clearance Clearances::find(std::uint32_t slot) const {
+  Crowd crowd;
+  const Lengths lengths = look(slot, crowd);
+  const Crowd* kept = nullptr;
+  if (crowd.size() != 0) {
+    const std::lock_guard lock(mutex_);
+    kept = &crowds_.emplace_back(std::move(crowd));
   }
+  known_[slot].crowd.store(kept, std::memory_order_relaxed);
+  known_[slot].lengths.store(lengths, std::memory_order_release);
+  return {{lengths.behind, lengths.before}, kept};
 }
 
-Clearances::Sides Clearances::look(std::uint32_t slot) const {
-  const Sides sides = found(slot);
-  known_[slot].store(sides, std::memory_order_relaxed);
-  return sides;
-}
-
-Clearances::Sides Clearances::found(std::uint32_t slot) const {
+Clearances::Lengths Clearances::look(std::uint32_t slot, Crowd& crowd) const {
+  constexpr Lengths kUnknown = {0.0f, 0.0f};
   const Corners& corners = bvh_.corners_of(slot);
   const Subject subject(corners, slack_);
   const double size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
-  const double farthest = std::min(subject.height(), kFarthest * size) * (1.0 - 0x1p-20);
-  if (!(farthest > 0.0)) return {0.0f, 0.0f};
+  const double farthest = std::min(kShareOfHeight * subject.height(), kFarthest * size);
+  if (!(farthest > 4.0 * slack_)) return kUnknown;
   const glm::dvec3 low = glm::min(glm::min(corners[0], corners[1]), corners[2]);
   const glm::dvec3 high = glm::max(glm::max(corners[0], corners[1]), corners[2]);
   glm::vec3 from, to;
@@ -142,21 +215,34 @@ Clearances::Sides Clearances::found(std::uint32_t slot) const {
     from[k] = float_below(low[k] - farthest);
     to[k] = float_above(high[k] + farthest);
   }
-  std::vector<std::uint32_t> near;
-  slots_near(bvh_, from, to, near);
-  if (near.size() > kMostNeighbours) return {0.0f, 0.0f};
-  double clear[2] = {farthest, farthest};
-  for (const std::uint32_t other_slot : near) {
-    if (other_slot == slot) continue;
-    const Corners& other = bvh_.corners_of(other_slot);
-    const double apart =
-        (1.0 - 0x1p-20) * subject.clearance(other, std::max(clear[0], clear[1]) * (1.0 + 0x1p-19));
-    for (const int side : {1, -1}) {
-      double& least = clear[side == 1 ? 0 : 1];
-      if (apart < least && !lies_beyond(other, corners, side)) least = apart;
+  std::vector<Bvh::Child> leaves;
+  leaves_near(bvh_, from, to, leaves);
+  if (leaves.size() > kMostLeaves) return kUnknown;
+  double length[2] = {farthest, farthest};
+  for (const Bvh::Child& leaf : leaves) {
+    const LaneMask behind = in_vectors([&](auto) RAYGATE_BODY {
+      return subject.behind_an_edge(bvh_.corners_of(leaf), leaf.count);
+    });
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t other_slot = leaf.first + i;
+      if ((behind >> i & 1) != 0 || other_slot == slot) continue;
+      const Corners& other = bvh_.corners_of(other_slot);
+      const double apart = subject.clearance(other, std::max(length[0], length[1]));
+      bool crowds = false;
+      for (const int side : {1, -1}) {
+        double& least = length[side == 1 ? 0 : 1];
+        if (apart >= least || lies_beyond(other, corners, side)) continue;
+        if (apart < kShareOfCrowd * farthest && crowd.size() < kMostCrowd) {
+          crowds = true;
+        } else {
+          least = apart;
+        }
+      }
+      if (crowds) crowd.add(other);
     }
   }
-  return {float_below(clear[0]), float_below(clear[1])};
+  for (double& each : length) each *= 1.0 - 0x1p-20;  // for the roundings of unit vectors
+  return {float_below(length[0]), float_below(length[1])};
 }
 
 }  // namespace raygate

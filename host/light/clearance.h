@@ -2,10 +2,15 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "host/exact/exact.h"
+#include "host/lanes.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
@@ -15,10 +20,30 @@ namespace raygate {
 /// not matter, however flat the ridge.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
-/// For each triangle and each side of it a length c, such that every other triangle that has points
-/// on that side is farther than c w - margin() from a point of the triangle, w being the least of
-/// that point's three barycentric weights. Most triangles meet others at their edges and corners
-/// alone, and then c is some part of their least height.
+/// Triangles that come close to one triangle inside its borders: what stands on it, or cuts it.
+class Crowd {
+ public:
+  void add(const Corners& triangle);
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// Whether a triangle's box may be within `reach` of the point on each axis.
+  [[nodiscard]] bool is_near(const glm::vec3& point, float reach) const;
+
+ private:
+  /// Eight boxes; those that are not there are empty.
+  struct Boxes {
+    float low[3][kLanes], high[3][kLanes];
+  };
+
+  std::vector<Boxes> boxes_;
+  std::size_t size_ = 0;
+};
+
+/// For each triangle and each side of it a length c and a crowd, such that every other triangle
+/// that has points on that side is either of the crowd or at least c w - margin() away from each
+/// point of the triangle, w being the least of that point's three barycentric weights. Most
+/// triangles meet others at their edges and corners alone: they have no crowd, and c is some part
+/// of their least height.
 ///
 /// Threads may ask at the same time: whoever asks first finds out, and all find the same.
 class Clearances {
@@ -29,24 +54,39 @@ class Clearances {
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
   [[nodiscard]] float margin() const { return margin_; }
 
-  /// c on the two sides of a triangle; 0 where nothing is known. Not above the least height.
-  struct Sides {
-    float behind;  ///< the side of which plane_side is 1
-    float before;  ///< that of -1
+  struct Clearance {
+    /// c on the side where plane_side is 1, and on the other; 0 where nothing is known. Not above
+    /// the least height.
+    float length[2];
+    const Crowd* crowd;  ///< or nullptr
   };
-  [[nodiscard]] Sides of(std::uint32_t slot) const {
-    const Sides sides = known_[slot].load(std::memory_order_relaxed);
-    return sides.behind >= 0.0f ? sides : look(slot);
+  [[nodiscard]] Clearance of(std::uint32_t slot) const {
+    const Known& known = known_[slot];
+    const Lengths lengths = known.lengths.load(std::memory_order_acquire);
+    if (lengths.behind < 0.0f) return find(slot);
+    return {{lengths.behind, lengths.before}, known.crowd.load(std::memory_order_relaxed)};
   }
 
  private:
-  [[nodiscard]] Sides look(std::uint32_t slot) const;
-  [[nodiscard]] Sides found(std::uint32_t slot) const;
+  struct Lengths {
+    float behind, before;
+  };
+  /// Of a slot.
+  struct Known {
+    std::atomic<Lengths> lengths{{-1.0f, -1.0f}};  // negative: nobody has asked yet
+    std::atomic<const Crowd*> crowd{nullptr};
+  };
+
+  /// Finds out, and keeps it.
+  [[nodiscard]] Clearance find(std::uint32_t slot) const;
+  [[nodiscard]] Lengths look(std::uint32_t slot, Crowd& crowd) const;
 
   const Bvh& bvh_;
   float margin_;
   double slack_;  // how far a computed coordinate along a unit vector may be off
-  std::unique_ptr<std::atomic<Sides>[]> known_;  // of the slots; negative: not asked for yet
+  std::unique_ptr<Known[]> known_;
+  mutable std::mutex mutex_;
+  mutable std::deque<Crowd> crowds_;
 };
 
 }  // namespace raygate

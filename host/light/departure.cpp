@@ -80,11 +80,11 @@ int wanted_side(const Ray& ray, const Corners& hit, const Corners& other, Depart
 
 /// Hits word by word, as PlainHits has them.
 template <int kWidth>
-struct Words {
-  alignas(4 * kWidth) float words[18][kWidth];
+struct PlainWords {
+  float words[18][kWidth];
 
   void put(int i, const Ray& ray, const Corners& corners, Departure way,
-           const Clearances::Sides& clearance) {
+           const Clearances::Clearance& clearance) {
     int next = 0;
     const auto add = [&](const glm::vec3& v) {
       for (int k = 0; k < 3; ++k) words[next++][i] = v[k];
@@ -92,28 +92,72 @@ struct Words {
     for (const glm::vec3& vertex : corners) add(vertex);
     add(ray.origin);
     add(ray.direction);
-    add({way == Departure::kBefore ? -1.0f : 1.0f, clearance.behind, clearance.before});
-  }
-  template <class Single>
-  void get(PlainHits<Single>& hits) const {
-    static_assert(sizeof hits == sizeof words);
-    std::memcpy(&hits, words, sizeof hits);
+    add({way == Departure::kBefore ? -1.0f : 1.0f, clearance.length[0], clearance.length[1]});
   }
 };
+
+/// Four points, and how near a crowd must not be; bit i of the result where point i is good.
+LaneMask depart_four(const PlainWords<kQuad>& words, float margin, float (&points)[3][kQuad],
+                     float (&reach)[kQuad]) {
+  return in_vectors([&](auto) RAYGATE_BODY {
+    PlainHits<kQuad> hits;
+    static_assert(sizeof hits == sizeof words.words);
+    std::memcpy(&hits, words.words, sizeof hits);
+    FloatQuad point[3], far;
+    LongQuad sure;
+    IntQuad clear;
+    depart_plainly(hits, margin, point, far, sure, clear);
+    std::memcpy(points, point, sizeof points);
+    std::memcpy(reach, &far, sizeof reach);
+    return sign_mask(__builtin_convertvector(sure, IntQuad) & clear);
+  });
+}
 
 }  // namespace
 
 std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot, Departure way) {
-  Words<1> words;
-  words.put(0, ray, bvh_.corners_of(slot), way, clearances_.of(slot));
-  PlainHits<float> hits;
-  words.get(hits);
-  float point[3];
-  int sure;
+  const Clearances::Clearance clearance = clearances_.of(slot);
+  PlainWords<1> words;
+  words.put(0, ray, bvh_.corners_of(slot), way, clearance);
+  PlainHits<1> hits;
+  static_assert(sizeof hits == sizeof words.words);
+  std::memcpy(&hits, words.words, sizeof hits);
+  float point[3], reach;
+  int sure = 0;
   bool clear = false;
-  depart_plainly<double>(hits, clearances_.margin(), point, sure, clear);
-  if (sure != 0 && clear) return glm::vec3(point[0], point[1], point[2]);
+  depart_plainly(hits, clearances_.margin(), point, reach, sure, clear);
+  const glm::vec3 plain(point[0], point[1], point[2]);
+  if (sure != 0 && clear && !(clearance.crowd && clearance.crowd->is_near(plain, reach))) {
+    return plain;
+  }
   return search(ray, slot, way);
+}
+
+void DeparturePoint::find(std::span<const DepartureQuestion> questions,
+                          std::span<std::optional<glm::vec3>> origins) {
+  for (std::size_t first = 0; first < questions.size(); first += kQuad) {
+    const auto four =
+        questions.subspan(first, std::min<std::size_t>(kQuad, questions.size() - first));
+    PlainWords<kQuad> words;
+    const Crowd* crowds[kQuad];
+    for (std::size_t i = 0; i < kQuad; ++i) {
+      const DepartureQuestion& question = four[std::min(i, four.size() - 1)];
+      const Clearances::Clearance clearance = clearances_.of(question.slot);
+      crowds[i] = clearance.crowd;
+      words.put(static_cast<int>(i), *question.ray, bvh_.corners_of(question.slot), question.way,
+                clearance);
+    }
+    float points[3][kQuad], reach[kQuad];
+    const LaneMask good = depart_four(words, clearances_.margin(), points, reach);
+    for (std::size_t i = 0; i < four.size(); ++i) {
+      const glm::vec3 plain(points[0][i], points[1][i], points[2][i]);
+      if ((good >> i & 1) != 0 && !(crowds[i] && crowds[i]->is_near(plain, reach[i]))) {
+        origins[first + i] = plain;
+      } else {
+        origins[first + i] = search(*four[i].ray, four[i].slot, four[i].way);
+      }
+    }
+  }
 }
 
 std::optional<glm::vec3> DeparturePoint::search(const Ray& ray, std::uint32_t slot, Departure way) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "host/exact/exact.h"
@@ -16,6 +17,13 @@ namespace raygate {
 enum class Departure {
   kBefore,  ///< the side the ray came from: reflection, shadow rays
   kAfter,   ///< the other side: refraction
+};
+
+/// A ray that is to go on, whose nearest hit is the triangle in `slot`.
+struct DepartureQuestion {
+  const Ray* ray = nullptr;
+  std::uint32_t slot = 0;
+  Departure way = Departure::kBefore;
 };
 
 /// Finds origins for secondary rays without an epsilon.
@@ -47,6 +55,10 @@ class DeparturePoint {
   /// O' for `ray`, whose nearest hit is the triangle in `slot`. The triangles in whose plane the
   /// ray runs have no say.
   [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t slot, Departure way);
+
+  /// origins[i] becomes O' for questions[i]: what find() gives, four at a time and so much sooner.
+  void find(std::span<const DepartureQuestion> questions,
+            std::span<std::optional<glm::vec3>> origins);
 
   /// Whether `direction` goes away from the triangle that `ray` hit, to the side where O' is.
   /// Shading normals and rounding may give directions that do not.

@@ -11,23 +11,45 @@
 //
 // X, u and candidate 0 are departure.cpp's. Of the exact X let w be the least of the three weights
 // of the vertices, and c the triangle's clearance: all other triangles that matter are at least
-// c w - margin away (see Clearances). What could make candidate 0 no good is within 11 u of the
-// exact X: the box around it and X as double has it, and 2 u more on every side. As double has it,
-// X is off by u at most on each axis, and c is at most the triangle's least height, so that the
-// weights computed of it give c w within 2 u. They are computed in float, as triple products of
-// differences, of components up to l, and a normal m whose largest component is 1: each is off by
-// less than 2^-17 l^2, and they add up to m . N, which is at least |N|, the least height times a
-// side longer than l. That makes c w less than 2^-17 l wrong, so nothing is near where
-//   c w > 16 u + 2^-16 l + margin.
+// c w - margin away, or of the triangle's crowd (see Clearances). What could make candidate 0 no
+// good is within 11 u of the exact X, and within 5 u of the candidate on each axis: the box around
+// it and X as double has it, and 2 u more on every side. As double has it, X is off by u at most on
+// each axis, and c is at most the triangle's least height, so that the weights computed of it give
+// c w within 2 u. They are computed in float, as triple products of differences, of components up
+// to l, and a normal m whose largest component is 1: each is off by less than 2^-17 l^2, and they
+// add up to m . N, which is at least |N|, the least height times a side longer than l. That makes
+// c w less than 2^-17 l wrong, so nothing is near where
+//   c w > 16 u + 2^-16 l + margin
+// and no box of the crowd is within 16 u of the candidate.
 
 namespace raygate {
 
 using DoubleQuad = double __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
 using LongQuad = std::int64_t __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
 
-/// Hits to depart from, `Single` being float or FloatQuad.
-template <class Single>
+/// What numbers are, one or four at a time, and what comparing them gives.
+template <int kWidth>
+struct PlainNumbers;
+template <>
+struct PlainNumbers<1> {
+  using Single = float;
+  using Real = double;
+  using SingleMask = bool;
+  using RealMask = int;
+};
+template <>
+struct PlainNumbers<kQuad> {
+  using Single = FloatQuad;
+  using Real = DoubleQuad;
+  using SingleMask = IntQuad;
+  using RealMask = LongQuad;
+};
+
+/// Hits to depart from, so many at a time.
+template <int kWidth>
 struct PlainHits {
+  using Single = PlainNumbers<kWidth>::Single;
+
   Single corner[3][3];  ///< [vertex][axis]
   Single origin[3], direction[3];
   Single way;           ///< -1: to the side the ray came from; 1: to the other
@@ -92,10 +114,15 @@ RAYGATE_INLINE void triple(const T (&u)[3], const T (&v)[3], const T (&w)[3], T&
 }  // namespace plain
 
 /// Makes `point` candidate 0 of each hit. It is where the ray goes on from if both `sure` and
-/// `clear` become true, or -1 in a lane.
-template <class Real, class Single, class RealMask, class SingleMask>
-RAYGATE_INLINE void depart_plainly(const PlainHits<Single>& hits, float margin, Single (&point)[3],
-                                   RealMask& sure, SingleMask& clear) {
+/// `clear` become true, or -1 in a lane, and no triangle of the crowd is within `reach` of it.
+template <int kWidth>
+RAYGATE_INLINE void depart_plainly(const PlainHits<kWidth>& hits, float margin,
+                                   typename PlainNumbers<kWidth>::Single (&point)[3],
+                                   typename PlainNumbers<kWidth>::Single& reach,
+                                   typename PlainNumbers<kWidth>::RealMask& sure,
+                                   typename PlainNumbers<kWidth>::SingleMask& clear) {
+  using Single = PlainNumbers<kWidth>::Single;
+  using Real = PlainNumbers<kWidth>::Real;
   constexpr double kU = 0x1p-53;
   Real corner[3][3], origin[3], direction[3], way;
   for (int v = 0; v < 3; ++v) plain::convert(hits.corner[v], corner[v]);
@@ -157,7 +184,7 @@ RAYGATE_INLINE void depart_plainly(const PlainHits<Single>& hits, float margin, 
   Real unit[3], from_corner[3];
   for (int k = 0; k < 3; ++k) unit[k] = normal[k] * scale;
   plain::subtract(x, corner[0], from_corner);
-  Single b[3], c[3], p[3], m[3], whole, second, third, least, length, other_length, far, turn;
+  Single b[3], c[3], p[3], m[3], whole, second, third, least, length, other_length, turn;
   plain::convert(to_b, b);
   plain::convert(to_c, c);
   plain::convert(from_corner, p);
@@ -171,10 +198,10 @@ RAYGATE_INLINE void depart_plainly(const PlainHits<Single>& hits, float margin, 
   plain::largest(b, length);
   plain::largest(c, other_length);
   plain::larger(length, other_length, length);
-  plain::convert(16.0 * step, far);
+  plain::convert(16.0 * step, reach);
   plain::convert(along, turn);
   const Single clearance = turn < 0.0f ? hits.clearance[0] : hits.clearance[1];
-  clear = clearance * least > (far + 0x1p-16f * length + margin) * whole;
+  clear = clearance * least > (reach + 0x1p-16f * length + margin) * whole;
 }
 
 }  // namespace raygate

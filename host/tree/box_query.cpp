@@ -30,6 +30,17 @@ struct BoxVisitor {
 
 }  // namespace
 
+void leaves_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                 std::vector<Bvh::Child>& leaves) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    leaves.clear();
+    BoxVisitor visitor{low, high};
+    WalkStack<Whole> stack({});
+    Waiting<Whole> leaf;
+    while (next_leaf(bvh, visitor, stack, leaf)) leaves.push_back(leaf.child);
+  });
+}
+
 void slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                 std::vector<std::uint32_t>& slots) {
   in_vectors([&](auto) RAYGATE_BODY {

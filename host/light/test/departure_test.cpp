@@ -162,6 +162,36 @@ TEST(Departure, NoRayEndsOnARidge) {
   EXPECT_GT(hits, 500);
 }
 
+// Between two balls, one of which touches a floor: asked one by one or all at once.
+TEST(Departure, ManyAtOnceAreTheSame) {
+  Random random;
+  std::vector<Corners> mesh = test::sphere(3);
+  for (const Corners& t : test::sphere(2, 0.5f, glm::vec3(1.2f, 0.0f, 0.0f))) mesh.push_back(t);
+  for (const Corners& t : test::box(glm::vec3(-3, -2, -3), glm::vec3(3, -1, 3))) mesh.push_back(t);
+  const Bvh bvh(test::scene_of(mesh));
+  const Clearances clearances(bvh);
+  DeparturePoint departure(clearances);
+  std::vector<Ray> rays;
+  std::vector<DepartureQuestion> questions;
+  for (int i = 0; i < 2003; ++i) {
+    const glm::vec3 eye = 4.0f * glm::normalize(random.point() + 1e-3f);
+    rays.push_back({eye, scaled_direction(glm::dvec3(random.point(1.5f) - eye))});
+  }
+  for (const Ray& ray : rays) {
+    const auto slot = nearest(bvh, ray);
+    if (!slot) continue;
+    questions.push_back(
+        {&ray, *slot, questions.size() % 3 == 0 ? Departure::kAfter : Departure::kBefore});
+  }
+  ASSERT_GT(questions.size(), 1000u);
+  std::vector<std::optional<glm::vec3>> origins(questions.size());
+  departure.find(questions, origins);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const DepartureQuestion& q = questions[i];
+    ASSERT_EQ(origins[i], departure.find(*q.ray, q.slot, q.way)) << i;
+  }
+}
+
 // Away from other triangles the distance is what departure.h says, whatever the angle.
 TEST(Departure, StaysWithinTheBoundOnBothSides) {
   Random random;
