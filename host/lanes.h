@@ -43,8 +43,14 @@ RAYGATE_INLINE std::uint32_t mask_of(const IntLanes& first, const IntLanes& seco
   return static_cast<std::uint32_t>(bits[0]);
 }
 
-/// The lanes whose sign bit is set.
+/// The lanes whose sign bit is set; the fitting code is the one it is inlined into.
+template <Vectors kCode = Vectors::kBaseline>
 RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
+#ifdef RAYGATE_AVX2
+  if constexpr (kCode != Vectors::kBaseline) {
+    return static_cast<LaneMask>(__builtin_ia32_movmskps256(reinterpret_cast<FloatLanes>(lanes)));
+  }
+#endif
 #if defined(__SSE__)
   const auto low = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
   const auto high = __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);

@@ -92,19 +92,30 @@ struct QuadVerdict {
   FloatQuad low, high;
 };
 
-/// Tests 1 to 4 triangles. Coordinate k of corner v of triangle i is corners[(3 v + k) count + i];
-/// whatever comes after the last one must be readable up to corners[8 count + 3].
-RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
-                              QuadVerdict& verdict) {
+/// What the first half of a test leaves for the second one.
+struct QuadSides {
+  FloatQuad z[3], across[3];
+  FloatQuad lowest, highest;  ///< of `across`
+  FloatQuad farthest, m, bound;
+  IntQuad bounded;
+};
+
+/// Which of 1 to 4 triangles the ray does not surely miss, as far as the edges say. Coordinate k of
+/// corner v of triangle i is corners[(3 v + k) count + i]; whatever comes after the last one must
+/// be readable up to corners[8 count + 3].
+[[nodiscard]] RAYGATE_INLINE LaneMask find_sides(const ShearedRay& ray, const float* corners,
+                                                 std::uint32_t count, QuadSides& sides) {
   constexpr float kBoundOfSum = 8.5f * 0x1p-24f, kBoundOfSize = 0x1p-41f;
   constexpr float kSmallest = 0x1p-20f, kLargest = 0x1p40f;
   const std::ptrdiff_t stride = count;
-  FloatQuad x[3], y[3], z[3];
+  const float* const along[3] = {corners + stride * ray.axes[0], corners + stride * ray.axes[1],
+                                 corners + stride * ray.axes[2]};
+  FloatQuad x[3], y[3], (&z)[3] = sides.z;
   FloatQuad sum = {}, farthest = {};
   for (int v = 0; v < 3; ++v) {
-    load_quad(corners + stride * (3 * v + ray.axes[0]), x[v]);
-    load_quad(corners + stride * (3 * v + ray.axes[1]), y[v]);
-    load_quad(corners + stride * (3 * v + ray.axes[2]), z[v]);
+    load_quad(along[0] + 3 * v * stride, x[v]);
+    load_quad(along[1] + 3 * v * stride, y[v]);
+    load_quad(along[2] + 3 * v * stride, z[v]);
     z[v] = z[v] - ray.origin[2];
     x[v] = (x[v] - ray.origin[0]) - ray.shear[0] * z[v];
     y[v] = (y[v] - ray.origin[1]) - ray.shear[1] * z[v];
@@ -125,12 +136,25 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
   lowest = lowest < across[2] ? lowest : across[2];
   highest = highest > across[2] ? highest : across[2];
   const IntQuad miss = bounded & (lowest < -bound) & (highest > bound);
-  const LaneMask open = ~sign_mask(miss) & ((1u << count) - 1);
-  verdict.hit = verdict.level = verdict.doubt = 0;
-  if (open == 0) return;
+  for (int i = 0; i < 3; ++i) sides.across[i] = across[i];
+  sides.lowest = lowest;
+  sides.highest = highest;
+  sides.farthest = farthest;
+  sides.m = m;
+  sides.bound = bound;
+  sides.bounded = bounded;
+  return ~sign_mask(miss) & ((1u << count) - 1);
+}
 
-  for (FloatQuad& ahead : z) {
-    ahead = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(ahead) ^ ray.back);
+/// The second half: what is sure about the triangles that are open.
+RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, LaneMask open,
+                                QuadVerdict& verdict) {
+  const FloatQuad(&across)[3] = sides.across;
+  const FloatQuad &lowest = sides.lowest, &highest = sides.highest, &farthest = sides.farthest;
+  const FloatQuad &m = sides.m, &bound = sides.bound;
+  FloatQuad z[3];
+  for (int v = 0; v < 3; ++v) {
+    z[v] = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(sides.z[v]) ^ ray.back);
   }
   FloatQuad near = z[0] < z[1] ? z[0] : z[1], far = z[0] > z[1] ? z[0] : z[1];
   near = near < z[2] ? near : z[2];
@@ -140,7 +164,8 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
   FloatQuad sure_whole;
   magnitude(whole, sure_whole);
   sure_whole -= 3.2f * bound;
-  const IntQuad through = bounded & ((lowest > bound) | (highest < -bound)) & (sure_whole > 0.0f);
+  const IntQuad through =
+      sides.bounded & ((lowest > bound) | (highest < -bound)) & (sure_whole > 0.0f);
   const FloatQuad rounding = (16.0f * 0x1p-24f) * farthest, room = rounding + 0x1p-45f * m;
   const FloatQuad width = (6.5f * bound / sure_whole) * (far - near) + room;
   near -= rounding;
@@ -152,6 +177,14 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
   verdict.hit = inside & sign_mask(verdict.low > 0.0f);
   verdict.level = inside & ~verdict.hit & ~sign_mask(verdict.high < 0.0f);
   verdict.doubt = open & ~inside;
+}
+
+/// Both halves.
+RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
+                              QuadVerdict& verdict) {
+  QuadSides sides;
+  const LaneMask open = find_sides(ray, corners, count, sides);
+  judge_sides(ray, sides, open, verdict);
 }
 
 }  // namespace raygate

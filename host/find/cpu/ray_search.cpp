@@ -3,71 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
-#include <utility>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "host/find/cpu/quad_test.h"
+#include "host/find/cpu/ray_walk.h"
 #include "host/find/unit/record_batch.h"
 #include "host/find/unit/reference_burst_unit.h"
-#include "host/tree/beam.h"
-#include "host/tree/walk.h"
 
 namespace raygate {
 
-/// One ray on its way. Depths are distances along its longest axis.
-struct RaySearch::Walk {
-  const Ray& ray;
-  std::uint32_t number;
-  Beam beam;
-  ShearedRay sheared;
-  double pace;                                ///< depth is t times that, exactly
-  std::uint32_t ignored = NearestHit::kNone;  ///< a slot
-  float enough = -1.0f;                       ///< a hit whose depth is surely less is enough
-  std::uint32_t slot = NearestHit::kNone;     ///< of the nearest hit
-  float low, high;                            ///< its depth's bounds; without one, the limit's
-  float cutoff;                               ///< boxes that are entered beyond do not matter
-  RayWork work;
-
-  Walk(const Ray& its_ray, std::uint32_t its_number)
-      : ray(its_ray),
-        number(its_number),
-        beam(its_ray.origin, its_ray.direction),
-        sheared(its_ray),
-        pace(std::abs(its_ray.direction[sheared.axes[2]])) {}
-
-  /// The nearest hit, or the limit, is at a t within these bounds.
-  void end_at(const Interval& t) { end_at(float_below(t.low * pace), float_above(t.high * pace)); }
-  void end_at(float lowest, float highest) {
-    low = lowest;
-    high = highest;
-    cutoff = cutoff_beyond(high / pace);
-  }
-  [[nodiscard]] Interval t() const { return {low / pace, high / pace}; }
-};
-
-namespace {
-
-/// What the tree asks (see next_leaf).
-struct RayVisitor {
-  const RaySearch::Walk& walk;
-
-  RAYGATE_INLINE bool goes_on(float entry, Whole) const { return entry <= walk.cutoff; }
-  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, Whole, FloatLanes& entry) const {
-    return meet_children(walk.beam, node, walk.cutoff, entry);
-  }
-  RAYGATE_INLINE static Whole rays_at(int) { return {}; }
-};
-
-}  // namespace
-
-/// Tests a leaf's triangles. False where the ray need not go on.
-RAYGATE_INLINE bool RaySearch::test_leaf(Walk& walk, const Bvh::Child& leaf) {
+/// The second half of a leaf's tests. False where the ray need not go on.
+RAYGATE_INLINE bool RaySearch::judge(RayWalk& walk, const Bvh::Child& leaf, const QuadSides& sides,
+                                     LaneMask open) {
   QuadVerdict verdict;
-  test_quad(walk.sheared, bvh_.corners_of(leaf), leaf.count, verdict);
-  walk.work.tests += leaf.count;
-  LaneMask open = verdict.hit | verdict.level | verdict.doubt;
-  if (open == 0) return true;
+  judge_sides(walk.sheared, sides, open, verdict);
+  open = verdict.hit | verdict.level | verdict.doubt;
   HitCounters& counters = counters_.hit;
   counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
   walk.work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
@@ -96,29 +47,9 @@ RAYGATE_INLINE bool RaySearch::test_leaf(Walk& walk, const Bvh::Child& leaf) {
   return true;
 }
 
-/// Walks the tree, near before far, and tests what is there.
-void walk_ray(RaySearch& search, RaySearch::Walk& walk) {
-  in_vectors([&](auto) RAYGATE_BODY {
-    const RayVisitor visitor{walk};
-    WalkStack<Whole> stack({});
-    Waiting<Whole> leaf;
-    while (next_leaf(search.bvh_, visitor, stack, leaf) && search.test_leaf(walk, leaf.child)) {
-    }
-  });
-}
-
-/// Tests everything.
-void visit_all(RaySearch& search, RaySearch::Walk& walk, std::span<const Bvh::Child> leaves) {
-  in_vectors([&](auto) RAYGATE_BODY {
-    for (const Bvh::Child& leaf : leaves) {
-      if (!search.test_leaf(walk, leaf)) return;
-    }
-  });
-}
-
 /// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,
 /// does hit. True where that is the nearest hit now.
-bool RaySearch::settle(Walk& walk, std::uint32_t slot, bool sure) {
+bool RaySearch::settle(RayWalk& walk, std::uint32_t slot, bool sure) {
   const Ray& ray = walk.ray;
   NearestHit best;
   if (walk.slot != NearestHit::kNone) {
@@ -140,6 +71,15 @@ bool RaySearch::settle(Walk& walk, std::uint32_t slot, bool sure) {
 
 namespace {
 
+/// As is_scaled: NaNs and infinities have larger bits.
+RAYGATE_INLINE bool is_scaled_inline(const glm::vec3& direction) {
+  std::int32_t largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    largest = std::max(largest, std::bit_cast<std::int32_t>(direction[k]) & 0x7FFFFFFF);
+  }
+  return largest >= 0x3F800000 && largest < 0x40000000;
+}
+
 std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
   std::vector<Bvh::Child> leaves;
   for (const Bvh::Node& node : tree.nodes()) {
@@ -152,37 +92,107 @@ std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
 
 }  // namespace
 
+/// Makes ready for the next ray that can hit anything; false where there is none.
+RAYGATE_INLINE bool RaySearch::set_out(RayWalk& walk) {
+  for (; next_ < rays_.size(); ++next_) {
+    const Ray& ray = rays_[next_];
+    if (!is_scaled_inline(ray.direction)) {
+      if (!is_usable(ray.direction)) continue;
+      refuse_unscaled(ray);
+    }
+    const auto number = static_cast<std::uint32_t>(next_++);
+    walk.set_out(ray, number, search_.limit(number));
+    if (!search_.ignored.empty()) walk.ignored = search_.ignored[number];
+    if (!search_.enough_before.empty()) {
+      walk.enough = float_below(search_.enough_before[number] * walk.pace);
+    }
+    return true;
+  }
+  return false;
+}
+
+/// A ray's way is at its end.
+RAYGATE_INLINE void RaySearch::arrive(const RayWalk& walk) {
+  HitCounters& counters = counters_.hit;
+  counters.tests += walk.work.tests;
+  counters.edge_doubts += walk.work.doubts;
+  if (!search_.work.empty()) search_.work[walk.number] = walk.work;
+  if (walk.slot == NearestHit::kNone) return;
+  hits_[walk.number].slot = walk.slot;
+  hits_[walk.number].t = walk.t();
+  if (search_.enough_before.empty()) add_point(walk.number);
+}
+
+/// Each ray tests everything.
+void RaySearch::visit_all() {
+  const std::vector<Bvh::Child> leaves = all_leaves(bvh_);
+  const auto walk = std::make_unique_for_overwrite<RayWalk>();
+  while (set_out(*walk)) {
+    for (const Bvh::Child& leaf : leaves) {
+      QuadSides sides;
+      const LaneMask open = find_sides(walk->sheared, bvh_.corners_of(leaf), leaf.count, sides);
+      walk->work.tests += leaf.count;
+      if (open != 0 && !judge(*walk, leaf, sides, open)) break;
+    }
+    arrive(*walk);
+  }
+}
+
+/// All rays walk the tree, near before far, and test what is there: kAtOnce of them take turns, so
+/// that none waits for memory, and what one guesses wrongly costs the others little.
+void RaySearch::walk_all() {
+  constexpr int kAtOnce = 16;
+  const auto walks = std::make_unique_for_overwrite<RayWalk[]>(kAtOnce);
+  in_vectors([&](auto code) RAYGATE_BODY {
+    QuadSides sides[kAtOnce];
+    LaneMask open[kAtOnce];
+    int inside[2 * kAtOnce], leaves[kAtOnce];  // walks, by where they are
+    int inside_count = 0, leaf_count = 0;
+    for (; inside_count < kAtOnce && set_out(walks[inside_count]); ++inside_count) {
+      inside[inside_count] = inside_count;
+    }
+    while (inside_count + leaf_count > 0) {
+      for (int i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, walks[inside[i]]);
+      for (int i = 0; i < leaf_count; ++i) {
+        RayWalk& walk = walks[leaves[i]];
+        walk.work.tests += walk.at.count;
+        open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at), walk.at.count, sides[i]);
+      }
+      for (int i = 0; i < leaf_count; ++i) {
+        RayWalk& walk = walks[leaves[i]];
+        if (open[i] != 0 && !judge(walk, walk.at, sides[i], open[i])) walk.depth = 0;
+        inside[inside_count + i] = leaves[i];
+      }
+      const int count = inside_count + leaf_count;
+      inside_count = leaf_count = 0;
+      for (int i = 0; i < count; ++i) {
+        const int number = inside[i];
+        RayWalk& walk = walks[number];
+        if (!go_on(bvh_, walk)) {
+          arrive(walk);
+          if (!set_out(walk)) continue;
+        }
+        const bool is_leaf = walk.at.count != 0;
+        inside[inside_count] = number;
+        leaves[leaf_count] = number;
+        inside_count += is_leaf ? 0 : 1;
+        leaf_count += is_leaf ? 1 : 0;
+      }
+    }
+  });
+}
+
 void RaySearch::trace(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits) {
   rays_ = rays;
   search_ = search;
   hits_ = hits;
-  const std::vector<Bvh::Child> leaves =
-      search.culling ? std::vector<Bvh::Child>{} : all_leaves(bvh_);
+  next_ = 0;
   HitCounters& counters = counters_.hit;
   const HitCounters before = counters;
-  for (std::uint32_t number = 0; number < rays.size(); ++number) {
-    const Ray& ray = rays[number];
-    if (!is_usable(ray.direction)) continue;
-    Walk walk(ray, number);
-    if (!(walk.pace >= 1.0 && walk.pace < 2.0)) refuse_unscaled(ray);
-    const double limit = search.limit(number);
-    walk.end_at({limit, limit});
-    if (!search.ignored.empty()) walk.ignored = search.ignored[number];
-    if (!search.enough_before.empty()) {
-      walk.enough = float_below(search.enough_before[number] * walk.pace);
-    }
-    if (search.culling) {
-      walk_ray(*this, walk);
-    } else {
-      visit_all(*this, walk, leaves);
-    }
-    counters.tests += walk.work.tests;
-    counters.edge_doubts += walk.work.doubts;
-    if (!search.work.empty()) search.work[number] = walk.work;
-    if (walk.slot == NearestHit::kNone) continue;
-    hits[number].slot = walk.slot;
-    hits[number].t = walk.t();
-    if (search.enough_before.empty()) add_point(number);
+  if (search.culling) {
+    walk_all();
+  } else {
+    visit_all();
   }
   add_points();
   counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -

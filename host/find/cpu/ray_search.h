@@ -5,14 +5,15 @@
 #include <cstdint>
 #include <span>
 
+#include "host/find/cpu/ray_walk.h"
 #include "host/find/finder.h"
 #include "host/find/unit/record_batch.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
 
-/// A part of CpuFinder, for rays that share nothing. A leaf's triangles are tested straight from
-/// their corners by test_quad; what float32 leaves open, and which hit is nearest, exact arithmetic
+/// A part of CpuFinder, for rays that share nothing. Several walk the tree at once, in turns. A
+/// leaf's triangles are tested straight from their corners by quad_test; what float32 leaves open, and which hit is nearest, exact arithmetic
 /// settles: decisions are the same, whatever decides first.
 class RaySearch {
  public:
@@ -21,14 +22,13 @@ class RaySearch {
   /// As Finder::find. `hits` are empty.
   void trace(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits);
 
-  struct Walk;  ///< a ray on its way
-
  private:
-  friend void walk_ray(RaySearch& search, Walk& walk);
-  friend void visit_all(RaySearch& search, Walk& walk, std::span<const Bvh::Child> leaves);
-
-  bool test_leaf(Walk& walk, const Bvh::Child& leaf);
-  bool settle(Walk& walk, std::uint32_t slot, bool sure);
+  bool set_out(RayWalk& walk);
+  void arrive(const RayWalk& walk);
+  void walk_all();
+  void visit_all();
+  bool judge(RayWalk& walk, const Bvh::Child& leaf, const QuadSides& sides, LaneMask open);
+  bool settle(RayWalk& walk, std::uint32_t slot, bool sure);
   void add_point(std::uint32_t number);
   void add_points();
 
@@ -37,6 +37,7 @@ class RaySearch {
   std::span<const Ray> rays_;
   Search search_;
   std::span<NearestHit> hits_;
+  std::size_t next_ = 0;                          // ray to set out
   std::array<std::uint32_t, kPlanes> pointless_;  // rays whose P is still to be found
   int pointless_count_ = 0;
 };

@@ -1,0 +1,153 @@
+// A ray on its way through the tree, alone, and its steps: many such rays take turns.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "host/exact/exact.h"
+#include "host/find/cpu/quad_test.h"
+#include "host/find/finder.h"
+#include "host/lanes.h"
+#include "host/tree/beam.h"
+#include "host/tree/bvh.h"
+
+// Why no true hit is culled
+//
+// Distances are measured along the ray's longest axis: they are t times the pace p, which is the
+// magnitude of the direction's largest component and in [1, 2). What packet_traversal.cpp says of t
+// and 1 / I holds of p t and p / I: t I = x - O is (p t) (I / p), p / I is one quotient, rounded
+// once; p / |I| >= 1 > 1/2, where the underflow of a product is paid for; |I| < 2^-100 has 2^100 <=
+// p / |I|; and along the longest axis p t = |x - O| <= 2^127.
+
+namespace raygate {
+
+/// One ray on its way.
+struct RayWalk {
+  // Against boxes: cutoff_beyond the nearest hit, and where a node has the planes that the ray
+  // comes to first, on each axis.
+  float origin[3], inverse_near[3], inverse_far[3];
+  float cutoff;
+  std::int32_t near_row[3];
+
+  std::uint32_t number;   ///< of the ray
+  ShearedRay sheared;     ///< against triangles
+  float low, high;        ///< bounds of the nearest hit's depth; without one, the limit's
+  float enough;           ///< a hit whose depth is surely less is enough
+  std::uint32_t slot;     ///< of the nearest hit
+  std::uint32_t ignored;  ///< a slot
+  RayWork work;
+  Ray ray;
+  double pace;
+
+  Bvh::Child at;  ///< what is visited next
+  // What waits: children of nodes, the nearest last, as far as one node knows. A key is where the
+  // ray enters a child's box, a little less at most, with the child's number in the last bits.
+  std::int32_t depth;
+  std::int32_t keys[Bvh::kStackSize + Bvh::kWidth];
+  std::uint32_t nodes[Bvh::kStackSize + Bvh::kWidth];
+
+  /// Sets out along a ray that is scaled, towards a limit.
+  RAYGATE_INLINE void set_out(const Ray& its_ray, std::uint32_t its_number, float limit);
+
+  /// The nearest hit, or the limit, is at a t, or at a depth, within these bounds.
+  RAYGATE_INLINE void end_at(const Interval& t) {
+    end_at(float_below(t.low * pace), float_above(t.high * pace));
+  }
+  RAYGATE_INLINE void end_at(float lowest, float highest) {
+    low = lowest;
+    high = highest;
+    cutoff = cutoff_beyond(highest);
+  }
+  [[nodiscard]] Interval t() const { return {low / pace, high / pace}; }
+};
+
+RAYGATE_INLINE void RayWalk::set_out(const Ray& its_ray, std::uint32_t its_number, float limit) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  ray = its_ray;
+  number = its_number;
+  sheared = ShearedRay(ray);
+  const glm::vec3& d = ray.direction;
+  const float longest = std::abs(d[sheared.axes[2]]);
+  pace = longest;
+  for (int k = 0; k < 3; ++k) {
+    const bool small = std::abs(d[k]) < kSmallestComponent;
+    const float inverse = longest / (small ? std::copysign(kSmallestComponent, d[k]) : d[k]);
+    origin[k] = ray.origin[k];
+    inverse_near[k] = small ? std::copysign(1.0f / kSmallestComponent, inverse) : inverse;
+    inverse_far[k] = small ? std::copysign(kInfinity, inverse) : kExitGrowth * inverse;
+    near_row[k] = d[k] < 0.0f ? 3 + k : k;
+  }
+  slot = ignored = NearestHit::kNone;
+  enough = -1.0f;
+  work = {};
+  depth = 0;
+  at = {0, 0};
+  end_at(Interval{limit, limit});
+}
+
+/// Puts eight keys in order, the largest first: Batcher's bitonic network.
+RAYGATE_INLINE void sort_falling(IntLanes& keys) {
+  const auto layer = [&](const IntLanes& partner, const IntLanes& first)
+      __attribute__((always_inline)) {
+    const IntLanes larger = keys > partner ? keys : partner;
+    const IntLanes smaller = keys > partner ? partner : keys;
+    keys = first ? larger : smaller;
+  };
+  constexpr IntLanes kOnes = {-1, 0, -1, 0, -1, 0, -1, 0};
+  constexpr IntLanes kTwos = {-1, -1, 0, 0, -1, -1, 0, 0};
+  constexpr IntLanes kFours = {-1, -1, -1, -1, 0, 0, 0, 0};
+  layer(__builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6), kOnes);
+  layer(__builtin_shufflevector(keys, keys, 3, 2, 1, 0, 7, 6, 5, 4), kTwos);
+  layer(__builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6), kOnes);
+  layer(__builtin_shufflevector(keys, keys, 7, 6, 5, 4, 3, 2, 1, 0), kFours);
+  layer(__builtin_shufflevector(keys, keys, 2, 3, 0, 1, 6, 7, 4, 5), kTwos);
+  layer(__builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6), kOnes);
+}
+
+/// Puts the children of the inner node where the ray is onto its stack, those whose boxes it meets.
+/// Without a branch, as which these are nobody can foretell.
+template <Vectors kCode>
+RAYGATE_INLINE void step_inside(const Bvh& tree, RayWalk& walk) {
+  constexpr std::int32_t kNumber = Bvh::kWidth - 1;
+  constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Bvh::Node& node = tree.nodes()[walk.at.first];
+  const float(*const rows)[Bvh::kWidth] = node.bounds[0];
+  FloatLanes enter = {}, leave = FloatLanes{} + walk.cutoff;
+  for (int k = 0; k < 3; ++k) {
+    const int near_row = walk.near_row[k], far_row = 3 + 2 * k - near_row;
+    FloatLanes near, far;
+    load_lanes(rows[near_row], near);
+    load_lanes(rows[far_row], far);
+    const FloatLanes t_near = (near - walk.origin[k]) * walk.inverse_near[k];
+    const FloatLanes t_far = (far - walk.origin[k]) * walk.inverse_far[k];
+    enter = t_near > enter ? t_near : enter;
+    leave = t_far < leave ? t_far : leave;
+  }
+  const IntLanes met = enter <= leave;
+  IntLanes keys = met ? (reinterpret_cast<IntLanes>(enter) & ~kNumber) | kNumbers : IntLanes{} - 1;
+  sort_falling(keys);
+  const IntLanes nodes = IntLanes{} + static_cast<std::int32_t>(walk.at.first);
+  std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
+  std::memcpy(walk.nodes + walk.depth, &nodes, sizeof nodes);
+  walk.depth += std::popcount(sign_mask<kCode>(met));
+}
+
+/// Goes on to what waits last and still matters; false where nothing does.
+RAYGATE_INLINE bool go_on(const Bvh& tree, RayWalk& walk) {
+  constexpr std::int32_t kNumber = Bvh::kWidth - 1;
+  const auto cutoff = std::bit_cast<std::int32_t>(walk.cutoff);  // floats from 0 on: in order
+  while (walk.depth > 0) {
+    const std::int32_t key = walk.keys[--walk.depth];
+    if ((key & ~kNumber) > cutoff) continue;
+    walk.at = tree.nodes()[walk.nodes[walk.depth]].child[key & kNumber];
+    tree.prefetch(walk.at);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace raygate
