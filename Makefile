@@ -16,7 +16,7 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help verilate example render gallery frames test check soak mutate fuzz lint analyze format clean
+.PHONY: help verilate example render gallery frames test python check soak mutate fuzz lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -43,6 +43,12 @@ frames: verilate ## the paper's frame at 10 MHz: clocks, frames a second, bytes 
 
 test: everything ## build and run all tests
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
+
+python: ## install the Python module into build/python, and test it there
+	@$(SETUP) python
+	@test -e build/python/bin/pip || python3 -m venv build/python
+	@build/python/bin/pip install --quiet .
+	@build/python/bin/python host/python/test/raygate_test.py
 
 check: everything ## clang-tidy, and the host's tests under the sanitizers
 	@$(SETUP) check

@@ -172,8 +172,7 @@ class Table {
   std::optional<PendingFile> file_;
 };
 
-std::string summary(const TraceOptions& options, const TraceCounts& counts, std::uint64_t rounded,
-                    double seconds) {
+std::string summary(const TraceOptions& options, const TraceCounts& counts, double seconds) {
   std::string text = format_count(counts.rays) + " rays, " + format_count(counts.hits) + " hits, " +
                      format_duration(seconds);
   if (seconds > 0.0) {
@@ -182,7 +181,7 @@ std::string summary(const TraceOptions& options, const TraceCounts& counts, std:
             " rays/s";
   }
   text += ", engine " + to_string(options.engine.engine) + "\n";
-  if (rounded > 0) text += format_count(rounded) + " rays were rounded to binary32\n";
+  if (counts.rounded > 0) text += format_count(counts.rounded) + " rays were rounded to binary32\n";
   return text;
 }
 
@@ -207,17 +206,17 @@ int run(const TraceOptions& options) {
   Table table(options, answers);
   note_interruptions();
   const auto start = std::chrono::steady_clock::now();
-  const TraceCounts counts = trace(
-      rays, options.hits, bvh, answers, make_finder_factory(options.engine, bvh),
-      options.engine.threads, [&](std::string_view rows) { table.write(rows); },
-      [] { return interruption() == 0; });
+  const TraceCounts counts =
+      trace([&](std::size_t most, RayBlock& block) { return rays.read(most, block); }, options.hits,
+            bvh, answers, make_finder_factory(options.engine, bvh), options.engine.threads,
+            [&](std::string_view rows) { table.write(rows); }, [] { return interruption() == 0; });
   if (interruption() != 0) {
     throw Interrupted(interruption(), options.is_to_standard_output() ? "the table is not whole"
                                                                       : "no file was changed");
   }
   table.finish(counts.rows, options.format());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  if (!options.quiet) print(summary(options, counts, rays.rounded(), took.count()), stderr);
+  if (!options.quiet) print(summary(options, counts, took.count()), stderr);
   return 0;
 }
 

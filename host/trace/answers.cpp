@@ -88,18 +88,28 @@ Answers::Answers(const Scene& scene, const Bvh& bvh, std::vector<Answer> columns
                  AnswerFormat format)
     : scene_(scene), bvh_(bvh), columns_(std::move(columns)), format_(format) {}
 
+std::vector<std::pair<std::string, std::string>> Answers::fields() const {
+  std::vector<std::pair<std::string, std::string>> fields;
+  for (const Answer answer : columns_) {
+    for (const Field& field : kFields) {
+      if (field.answer == answer) fields.emplace_back(field.name, field.is_integer ? "<i8" : "<f8");
+    }
+  }
+  return fields;
+}
+
 /// NPY: version 1.0, padded so that any number of rows fits and the rows begin at a multiple of 64.
 std::string Answers::header(std::uint64_t rows) const {
   std::string text;
-  for (const Answer answer : columns_) {
-    for (const Field& field : kFields) {
-      if (field.answer != answer) continue;
-      if (!text.empty()) text += format_ == AnswerFormat::kCsv ? "," : ", ";
-      if (format_ == AnswerFormat::kCsv) {
-        text += field.name;
-      } else {
-        text.append("('").append(field.name).append(field.is_integer ? "', '<i8')" : "', '<f8')");
-      }
+  for (const auto& [name, type] : fields()) {
+    if (format_ == AnswerFormat::kCsv) {
+      text.append(text.empty() ? "" : ",").append(name);
+    } else {
+      text.append(text.empty() ? "('" : ", ('")
+          .append(name)
+          .append("', '")
+          .append(type)
+          .append("')");
     }
   }
   if (format_ == AnswerFormat::kCsv) return text + "\n";

@@ -6,11 +6,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "host/find/finder.h"
 #include "host/scene/scene.h"
-#include "host/trace/rays_in.h"
+#include "host/trace/ray_block.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
@@ -56,6 +57,9 @@ class Answers {
   /// What comes before the rows; of an NPY file, where `rows` are to come. Its length does not
   /// depend on `rows`.
   [[nodiscard]] std::string header(std::uint64_t rows) const;
+
+  /// The fields of a row, their names and NumPy's types: {"t", "<f8"}.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> fields() const;
 
   /// Appends the rows of `hits` of `block` to `bytes`.
   void append(const RayBlock& block, std::span<const RayHit> hits, std::string& bytes) const;

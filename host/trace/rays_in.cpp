@@ -4,8 +4,6 @@
 #include <bit>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -280,52 +278,18 @@ RaysIn::RaysIn(const std::filesystem::path& file, const glm::dvec3& scene_origin
 RaysIn::~RaysIn() = default;
 
 bool RaysIn::read(std::size_t most, RayBlock& block) {
-  block.first = number_;
-  block.rays.clear();
-  block.limits.clear();
-  block.exponents.clear();
+  block.clear(number_);
   double numbers[kMostNumbers];
   while (block.rays.size() < most) {
     const int count = source_->next(numbers);
     if (count == 0) break;
-    add(numbers, count, block);
+    const char* const wrong =
+        block.add({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]},
+                  count > 6 ? numbers[6] : std::numeric_limits<double>::infinity(), scene_origin_);
+    if (wrong != nullptr) source_->fail(wrong);
   }
   number_ += block.rays.size();
   return !block.rays.empty();
-}
-
-void RaysIn::add(const double* numbers, int count, RayBlock& block) {
-  constexpr double kFarthest = 0x1p126;  // see Ray
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  if (!std::all_of(numbers, numbers + 6, [](double x) { return std::isfinite(x); })) {
-    source_->fail("found inf or nan in origin or direction, expected finite numbers");
-  }
-  const double limit = count > 6 ? numbers[6] : std::numeric_limits<double>::infinity();
-  if (!(limit > 0.0)) source_->fail("found a limit that is not above 0, expected one, or inf");
-  const glm::dvec3 origin = glm::dvec3(numbers[0], numbers[1], numbers[2]) - scene_origin_;
-  const glm::dvec3 direction(numbers[3], numbers[4], numbers[5]);
-  if (largest(origin) > kFarthest) {
-    source_->fail("found an origin farther than 2^126 from the scene, expected a nearer one");
-  }
-  Ray ray{.origin = glm::vec3(origin)};
-  int exponent = 0;
-  if (direction != glm::dvec3(0.0)) {
-    ray.direction = scaled_direction(direction);
-    // A power of two, but for the rounding of the direction.
-    exponent = static_cast<int>(
-        std::lround(std::log2(largest(glm::dvec3(ray.direction))) - std::log2(largest(direction))));
-  }
-  const double scaled_limit = std::ldexp(limit, -exponent);
-  const float float_limit =
-      std::max(static_cast<float>(scaled_limit), std::numeric_limits<float>::denorm_min());
-  const auto scaled_back = [&](double x) { return std::ldexp(x, -exponent); };
-  const glm::dvec3 kept(scaled_back(ray.direction.x), scaled_back(ray.direction.y),
-                        scaled_back(ray.direction.z));
-  rounded_ += glm::dvec3(ray.origin) != origin || kept != direction ||
-              (double{float_limit} != scaled_limit && float_limit != kInfinity);
-  block.rays.push_back(ray);
-  block.limits.push_back(float_limit);
-  block.exponents.push_back(exponent);
 }
 
 }  // namespace raygate

@@ -44,7 +44,7 @@ void find_all(Desk& desk, const Bvh& bvh) {
 
 }  // namespace
 
-TraceCounts trace(RaysIn& rays, Hits asked, const Bvh& bvh, const Answers& answers,
+TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const Answers& answers,
                   const FinderFactory& make_finder, unsigned threads,
                   const std::function<void(std::string_view)>& write,
                   const std::function<bool()>& keep_going) {
@@ -53,7 +53,7 @@ TraceCounts trace(RaysIn& rays, Hits asked, const Bvh& bvh, const Answers& answe
   std::vector<Desk> desks(threads);
   while (keep_going()) {
     std::size_t busy = 0;
-    while (busy < desks.size() && rays.read(kBlock, desks[busy].block)) ++busy;
+    while (busy < desks.size() && read(kBlock, desks[busy].block)) ++busy;
     if (busy == 0) break;
     for_each_on_threads(static_cast<int>(threads), busy, [&](std::size_t i) {
       Desk& desk = desks[i];
@@ -72,6 +72,7 @@ TraceCounts trace(RaysIn& rays, Hits asked, const Bvh& bvh, const Answers& answe
       write(desk.rows);
       counts.rays += desk.block.rays.size();
       counts.rows += desk.found.size();
+      counts.rounded += desk.block.rounded;
       counts.hits += static_cast<std::uint64_t>(std::ranges::count_if(
           desk.found, [](const RayHit& found) { return found.hit.slot != NearestHit::kNone; }));
     }

@@ -7,7 +7,7 @@
 
 #include "host/find/finder.h"
 #include "host/trace/answers.h"
-#include "host/trace/rays_in.h"
+#include "host/trace/ray_block.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
@@ -22,14 +22,19 @@ enum class Hits {
 /// What was done.
 struct TraceCounts {
   std::uint64_t rays = 0, rows = 0, hits = 0;
+  std::uint64_t rounded = 0;  ///< rays that binary32 does not hold as they were given
   FindCounters find;
 };
 
-/// Reads all of `rays` and gives the rows to `write`, block by block in the order of the rays. At
-/// most `threads` blocks are in memory at a time. What `rays` and `write` throw ends it.
-/// `keep_going` is asked between blocks.
-[[nodiscard]] TraceCounts trace(RaysIn& rays, Hits asked, const Bvh& bvh, const Answers& answers,
-                                const FinderFactory& make_finder, unsigned threads,
+/// Replaces a block by the next rays, at most so many; false where there are none.
+using ReadRays = std::function<bool(std::size_t, RayBlock&)>;
+
+/// Reads all rays and gives the rows to `write`, block by block in the order of the rays. At most
+/// `threads` blocks are in memory at a time. What `read` and `write` throw ends it. `keep_going` is
+/// asked between blocks.
+[[nodiscard]] TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh,
+                                const Answers& answers, const FinderFactory& make_finder,
+                                unsigned threads,
                                 const std::function<void(std::string_view)>& write,
                                 const std::function<bool()>& keep_going);
 

@@ -29,14 +29,15 @@ class Table : public testing::Test {
     write(bytes);
     RaysIn rays(path_, origin);
     RayBlock all, block;
+    rounded_ = 0;
     while (rays.read(3, block)) {
       EXPECT_EQ(block.first, all.rays.size());
       EXPECT_LE(block.rays.size(), 3u);
+      rounded_ += block.rounded;
       all.rays.insert(all.rays.end(), block.rays.begin(), block.rays.end());
       all.limits.insert(all.limits.end(), block.limits.begin(), block.limits.end());
       all.exponents.insert(all.exponents.end(), block.exponents.begin(), block.exponents.end());
     }
-    rounded_ = rays.rounded();
     return all;
   }
 

@@ -1,0 +1,288 @@
+// The Python module `raygate`, its C++ half: scenes, rays, pictures as NumPy arrays.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "host/exact/ieee_floats.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "host/find/unit/pipeline_hit_tester.h"
+#include "host/find/unit/record_cache.h"
+#include "host/find/unit/reference_burst_unit.h"
+#include "host/find/unit/unit_finder.h"
+#include "host/light/lights.h"
+#include "host/picture/renderer.h"
+#include "host/scene/camera.h"
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_file.h"
+#include "host/trace/answers.h"
+#include "host/trace/ray_block.h"
+#include "host/trace/tracer.h"
+#include "host/tree/bvh.h"
+
+namespace nb = nanobind;
+
+namespace raygate {
+namespace {
+
+using Vectors3 = nb::ndarray<nb::ro, nb::shape<-1, 3>, nb::device::cpu, nb::c_contig>;
+using Numbers = nb::ndarray<nb::ro, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
+using Three = std::array<double, 3>;
+
+template <class Value, std::size_t kCount>
+Value choose(const char* what, const std::string& found,
+             const std::pair<const char*, Value> (&choices)[kCount]) {
+  std::string expected;
+  for (const auto& [name, value] : choices) {
+    if (found == name) return value;
+    expected.append(expected.empty() ? "" : ", ").append(name);
+  }
+  throw InputError(std::string(what) + ": found '" + found + "', expected one of " + expected);
+}
+
+int threads_of(std::optional<int> threads) {
+  if (threads && *threads < 1) throw InputError("threads: expected 1 or more");
+  return threads ? *threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// Elements of an array of float32 or float64, as they lie there.
+class Elements {
+ public:
+  template <class Array>
+  Elements(const char* name, const Array& array) : data_(array.data()) {
+    is_double_ = array.dtype() == nb::dtype<double>();
+    if (!is_double_ && array.dtype() != nb::dtype<float>()) {
+      throw InputError(std::string(name) + ": expected an array of float32 or float64");
+    }
+  }
+  double operator[](std::size_t i) const {
+    return is_double_ ? static_cast<const double*>(data_)[i]
+                      : double{static_cast<const float*>(data_)[i]};
+  }
+  [[nodiscard]] glm::dvec3 vector(std::size_t i) const {
+    return {(*this)[3 * i], (*this)[3 * i + 1], (*this)[3 * i + 2]};
+  }
+
+ private:
+  const void* data_;
+  bool is_double_ = false;
+};
+
+/// False where Python has a signal to handle: the exception that it raised is thrown on.
+bool keep_going() {
+  const nb::gil_scoped_acquire gil;
+  if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  return true;
+}
+
+/// An array of what `owner` holds.
+template <class T>
+nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
+                    std::initializer_list<std::size_t> shape) {
+  auto* const kept = new std::shared_ptr<Film>(owner);
+  const nb::capsule capsule(
+      kept, [](void* p) noexcept { delete static_cast<std::shared_ptr<Film>*>(p); });
+  return nb::cast(
+      nb::ndarray<nb::numpy, T>(const_cast<T*>(static_cast<const T*>(data)), shape, capsule));
+}
+
+/// A scene and the tree around it.
+class PythonScene {
+ public:
+  PythonScene(const std::string& file, bool skip_degenerate, std::optional<int> threads) {
+    const std::filesystem::path path = file;
+    if (path.extension() == ".json") file_ = read_scene_file(path);
+    const nb::gil_scoped_release release;
+    scene_ = load_obj(file_ ? file_->obj : path, {.skip_degenerate = skip_degenerate});
+    if (file_) add_lights(*file_, scene_);
+    bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
+  }
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] std::vector<std::string> material_names() const {
+    std::vector<std::string> names;
+    for (const Material& material : scene_.materials) names.push_back(material.name);
+    return names;
+  }
+
+  /// The rows of Answers as bytes, and what their fields are.
+  nb::object trace_rays(const Vectors3& origins, const Vectors3& directions,
+                        const std::optional<Numbers>& limits, const std::string& hits,
+                        const std::vector<std::string>& columns, const std::string& engine,
+                        std::optional<int> threads) const {
+    const std::size_t count = origins.shape(0);
+    if (directions.shape(0) != count || (limits && limits->shape(0) != count)) {
+      throw InputError("trace: expected as many directions and limits as origins");
+    }
+    const Hits asked = choose<Hits>(
+        "hits", hits, {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
+    const Elements from("origins", origins), way("directions", directions);
+    std::optional<Elements> limit;
+    if (limits) limit.emplace("limits", *limits);
+    const Answers answers(scene_, *bvh_, answers_of(columns), AnswerFormat::kNpy);
+    const auto read = [&, next = std::size_t{0}](std::size_t most, RayBlock& block) mutable {
+      block.clear(next);
+      for (; block.rays.size() < most && next < count; ++next) {
+        const char* const wrong = block.add(
+            from.vector(next), way.vector(next),
+            limit ? (*limit)[next] : std::numeric_limits<double>::infinity(), scene_.origin);
+        if (wrong != nullptr) throw InputError("ray " + std::to_string(next) + ": " + wrong);
+      }
+      return !block.rays.empty();
+    };
+    auto rows = std::make_unique<std::string>();
+    rows->reserve(count * answers.fields().size() * 8);
+    {
+      const nb::gil_scoped_release release;
+      (void)trace(
+          read, asked, *bvh_, answers, finders(engine), static_cast<unsigned>(threads_of(threads)),
+          [&](std::string_view bytes) { rows->append(bytes); }, keep_going);
+    }
+    std::string* const kept = rows.release();
+    const nb::capsule capsule(kept, [](void* p) noexcept { delete static_cast<std::string*>(p); });
+    return nb::make_tuple(
+        nb::ndarray<nb::numpy, std::uint8_t>(kept->data(), {kept->size()}, capsule),
+        answers.fields());
+  }
+
+  /// The film's channels by name.
+  nb::dict render_film(int width, int height, int spp, const std::string& integrator,
+                       const std::optional<Three>& eye, const std::optional<Three>& target,
+                       const std::optional<Three>& up, std::optional<double> fov,
+                       std::optional<int> depth, std::uint64_t seed, const std::string& filter,
+                       const std::string& engine, std::optional<int> threads) {
+    if (width < 1 || height < 1 || std::int64_t{width} * height > (std::int64_t{1} << 26)) {
+      throw InputError("width, height: expected 1 or more, and at most 67,108,864 pixels");
+    }
+    if (spp < 1) throw InputError("spp: expected 1 or more");
+    if (depth && *depth < 0) throw InputError("depth: expected 0 or more");
+    RenderOptions options{.width = width,
+                          .height = height,
+                          .threads = threads_of(threads),
+                          .samples = spp,
+                          .seed = seed};
+    options.window = {0, 0, width, height};
+    options.channels = {.position = true, .albedo = true, .object = true};
+    options.integrator = choose<IntegratorKind>("integrator", integrator,
+                                                {{"primary", IntegratorKind::kPrimary},
+                                                 {"whitted", IntegratorKind::kWhitted},
+                                                 {"path", IntegratorKind::kPath}});
+    options.filter = choose<PixelFilter>("filter", filter,
+                                         {{"box", PixelFilter::kBox},
+                                          {"tent", PixelFilter::kTent},
+                                          {"gauss", PixelFilter::kGauss},
+                                          {"blackman-harris", PixelFilter::kBlackmanHarris}});
+    options.max_depth = depth.value_or(options.integrator == IntegratorKind::kPath ? 64 : 4);
+    const Camera camera = camera_of(eye, target, up, fov, static_cast<double>(width) / height);
+    // A lamp for a dark scene depends on the camera: it is there for this picture alone.
+    const auto lights = scene_.lights;
+    const glm::vec3 background = scene_.background;
+    light_if_dark(scene_, camera);
+    const auto film = std::make_shared<Film>();
+    {
+      const nb::gil_scoped_release release;
+      RenderStats stats;
+      *film = render(scene_, *bvh_, camera, options, finders(engine), stats,
+                     [](double) { return keep_going(); });
+    }
+    scene_.lights = lights;
+    scene_.background = background;
+    const auto h = static_cast<std::size_t>(height), w = static_cast<std::size_t>(width);
+    nb::dict channels;
+    channels["color"] = array_of<float>(film, film->color.data(), {h, w, 4});
+    channels["depth"] = array_of<float>(film, film->depth.data(), {h, w});
+    channels["normal"] = array_of<float>(film, film->normal.data(), {h, w, 3});
+    channels["point"] = array_of<float>(film, film->position.data(), {h, w, 3});
+    channels["albedo"] = array_of<float>(film, film->albedo.data(), {h, w, 3});
+    channels["triangle"] = array_of<std::uint32_t>(film, film->primitive.data(), {h, w});
+    channels["object"] = array_of<std::uint32_t>(film, film->object.data(), {h, w});
+    return channels;
+  }
+
+ private:
+  static std::vector<Answer> answers_of(const std::vector<std::string>& columns) {
+    std::vector<Answer> answers;
+    for (const std::string& column : columns) {
+      const auto* const at = std::ranges::find(kAnswerNames, column);
+      if (at == std::end(kAnswerNames)) {
+        throw InputError("columns: found '" + column + "', which is none of them");
+      }
+      answers.push_back(static_cast<Answer>(at - std::begin(kAnswerNames)));
+    }
+    return answers;
+  }
+
+  [[nodiscard]] FinderFactory finders(const std::string& engine) const {
+    if (choose<bool>("engine", engine, {{"cpu", false}, {"model", true}})) {
+      return [this, caches = std::make_shared<RecordCaches>(*bvh_)] {
+        return std::make_unique<UnitFinder>(
+            *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()),
+            caches);
+      };
+    }
+    return [this] { return std::make_unique<CpuFinder>(*bvh_); };
+  }
+
+  [[nodiscard]] Camera camera_of(const std::optional<Three>& eye,
+                                 const std::optional<Three>& target, const std::optional<Three>& up,
+                                 std::optional<double> fov, double aspect) const {
+    CameraSetting setting = framing(scene_, aspect, fov.value_or(Camera::kDefaultFov));
+    if (file_ && file_->camera) {
+      setting = *file_->camera;
+      setting.eye -= scene_.origin;
+      setting.target -= scene_.origin;
+    }
+    const auto vector = [](const Three& v) { return glm::dvec3(v[0], v[1], v[2]); };
+    if (eye) setting.eye = vector(*eye) - scene_.origin;
+    if (target) setting.target = vector(*target) - scene_.origin;
+    if (up) setting.up = vector(*up);
+    if (fov) setting.fov = fov;
+    return Camera::look_at(setting, aspect);
+  }
+
+  std::optional<SceneFile> file_;
+  Scene scene_;
+  std::unique_ptr<Bvh> bvh_;
+};
+
+}  // namespace
+}  // namespace raygate
+
+NB_MODULE(_raygate, m) {
+  using namespace nb::literals;
+  using raygate::PythonScene;
+  raygate::require_ieee_floats();
+  nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
+  nb::class_<PythonScene>(m, "Scene")
+      .def(nb::init<const std::string&, bool, std::optional<int>>(), "file"_a, "skip_degenerate"_a,
+           "threads"_a.none())
+      .def_prop_ro("triangle_count",
+                   [](const PythonScene& s) { return s.scene().triangles.size(); })
+      .def_prop_ro("objects", [](const PythonScene& s) { return s.scene().objects; })
+      .def_prop_ro("materials", &PythonScene::material_names)
+      .def_prop_ro("warnings", [](const PythonScene& s) { return s.scene().warnings; })
+      .def_prop_ro("origin",
+                   [](const PythonScene& s) {
+                     const glm::dvec3& o = s.scene().origin;
+                     return raygate::Three{o.x, o.y, o.z};
+                   })
+      .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
+           "hits"_a, "columns"_a, "engine"_a, "threads"_a.none())
+      .def("render", &PythonScene::render_film, "width"_a, "height"_a, "spp"_a, "integrator"_a,
+           "eye"_a.none(), "target"_a.none(), "up"_a.none(), "fov"_a.none(), "depth"_a.none(),
+           "seed"_a, "filter"_a, "engine"_a, "threads"_a.none());
+}

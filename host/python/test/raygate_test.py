@@ -1,0 +1,92 @@
+"""The Python module as its users have it: installed by `pip install .`."""
+
+import pathlib
+import unittest
+
+import numpy as np
+
+import raygate
+
+SCENES = pathlib.Path(__file__).parents[3] / "scenes"
+
+
+class Trace(unittest.TestCase):
+    def setUp(self):
+        self.scene = raygate.Scene(SCENES / "teapot.obj")
+        random = np.random.default_rng(1)
+        self.origins = random.normal(size=(2000, 3)) * 3 + [0, 1, 0]
+        self.directions = [0, 1, 0] - self.origins + random.normal(size=(2000, 3))
+
+    def test_hits_lie_where_they_say(self):
+        hits = self.scene.trace(self.origins, self.directions)
+        self.assertEqual(len(hits), 2000)
+        hit = hits["hit"] == 1
+        self.assertGreater(hit.sum(), 500)
+        self.assertTrue((hits["triangle"][~hit] == -1).all() and np.isinf(hits["t"][~hit]).all())
+        point = self.origins + hits["t"][:, None] * self.directions
+        for axis, name in enumerate("xyz"):
+            np.testing.assert_allclose(point[hit, axis], hits[name][hit], atol=1e-5)
+        self.assertTrue((hits["u"][hit] >= 0).all() and (hits["u"] + hits["v"])[hit].max() <= 1)
+
+    def test_all_hits_begin_with_the_nearest(self):
+        nearest = self.scene.trace(self.origins, self.directions)
+        every = self.scene.trace(self.origins, self.directions, hits="all")
+        rays, first = np.unique(every["ray"], return_index=True)
+        np.testing.assert_array_equal(rays, nearest["ray"][nearest["hit"] == 1])
+        np.testing.assert_array_equal(every["triangle"][first],
+                                      nearest["triangle"][nearest["hit"] == 1])
+        same = np.diff(every["ray"]) == 0
+        self.assertTrue((np.diff(every["t"])[same] >= 0).all())
+
+    def test_limits_and_any(self):
+        nearest = self.scene.trace(self.origins, self.directions)
+        limits = np.full(2000, 0.9)
+        any_hit = self.scene.trace(self.origins, self.directions, limits, hits="any")
+        np.testing.assert_array_equal(any_hit["hit"] == 1, nearest["t"] < limits)
+
+    def test_the_model_of_the_unit_says_the_same(self):
+        columns = ["triangle", "unit-point", "unit-error"]
+        ours = self.scene.trace(self.origins, self.directions, columns=columns)
+        units = self.scene.trace(self.origins, self.directions, columns=columns, engine="model")
+        self.assertEqual(ours.tobytes(), units.tobytes())
+
+    def test_takes_float32_and_refuses_what_it_cannot_use(self):
+        narrow = self.scene.trace(self.origins.astype(np.float32),
+                                  self.directions.astype(np.float32), columns=["triangle"])
+        self.assertEqual(narrow.dtype.names, ("triangle",))
+        with self.assertRaisesRegex(raygate.InputError, r"shape \(3,\), expected \(N, 3\)"):
+            self.scene.trace([0, 0, 0], [1, 0, 0])
+        with self.assertRaisesRegex(ValueError, "ray 1: found inf or nan"):
+            self.scene.trace(np.zeros((2, 3)), [[1, 0, 0], [np.nan, 0, 0]])
+        with self.assertRaisesRegex(raygate.InputError, "as many directions"):
+            self.scene.trace(np.zeros((2, 3)), np.ones((3, 3)))
+        with self.assertRaisesRegex(raygate.InputError, "hits: found 'some'"):
+            self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), hits="some")
+
+    def test_no_rays(self):
+        self.assertEqual(len(self.scene.trace(np.zeros((0, 3)), np.zeros((0, 3)))), 0)
+
+
+class Render(unittest.TestCase):
+    def test_a_picture(self):
+        scene = raygate.Scene(SCENES / "cornell.obj")
+        picture = scene.render(40, 30, threads=2)
+        self.assertEqual(picture["color"].shape, (30, 40, 4))
+        self.assertEqual(picture["color"].dtype, np.float32)
+        self.assertGreater(picture["color"][..., :3].max(), 0.1)
+        np.testing.assert_array_equal(picture["color"][..., 3] == 1,
+                                      picture["triangle"] != 0xFFFFFFFF)
+        again = scene.render(40, 30, engine="model", threads=1)
+        for name, channel in picture.items():
+            self.assertEqual(channel.tobytes(), again[name].tobytes(), name)
+
+    def test_says_what_is_wrong(self):
+        with self.assertRaisesRegex(raygate.InputError, "none.obj: cannot be opened"):
+            raygate.Scene("none.obj")
+        scene = raygate.Scene(SCENES / "cornell.obj")
+        with self.assertRaisesRegex(raygate.InputError, "width"):
+            scene.render(0, 10)
+
+
+if __name__ == "__main__":
+    unittest.main()
