@@ -262,9 +262,9 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
                        text + "(assert assumed)\n(assert (not claimed))\n", tuple(wires))
         if answer["answer"] != "unsat":
             raise tools.ToolFailed(f"{one.name}: {answer['answer']}: {answer['values']}")
-        return {"holds": True, "seconds": answer["seconds"], "megabytes": answer["megabytes"]}
+        return {"holds": True}
 
-    return store.cached(folder, wanted, work)
+    return store.cached(folder, wanted, tools.measured(work))
 
 
 SPECIFICATIONS = [FloatProof(operation, name)
@@ -316,7 +316,6 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
         tools.run(["g++", "-std=c++20", "-O2", "-I", tools.ROOT, program, *oracle, "-lmpfr",
                    "-lgmp", "-o", maker], folder / "build.log")
         exp, frac, *_ = FORMATS[one.format]
-        seconds, megabytes = 0.0, 0
         asked = ASKED[one.operation]
         for op, second in asked.items():
             lines = tools.run([str(maker), exp, frac, op, count // len(asked)],
@@ -326,14 +325,12 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
             if evaluate([case(wrong, second)])["answer"] != "sat":
                 raise tools.ToolFailed(f"{one.name}: a wrong result passes: {folder}/cases.smt2")
             for start in range(0, len(lines), BATCH):
-                answer = evaluate([case(line, second) for line in lines[start:start + BATCH]])
-                if answer["answer"] != "unsat":
+                cases = [case(line, second) for line in lines[start:start + BATCH]]
+                if evaluate(cases)["answer"] != "unsat":
                     raise tools.ToolFailed(f"{one.name}: differs from MPFR: {folder}/cases.smt2")
-                seconds += answer["seconds"]
-                megabytes = max(megabytes, answer["megabytes"])
-        return {"holds": True, "seconds": round(seconds, 1), "megabytes": megabytes}
+        return {"holds": True}
 
-    return store.cached(folder, wanted, work)
+    return store.cached(folder, wanted, tools.measured(work))
 
 
 def lemma(name: str) -> tuple[dict, bool]:
@@ -348,7 +345,7 @@ def lemma(name: str) -> tuple[dict, bool]:
             raise tools.ToolFailed(f"{file}: {' '.join(answers)}")
         return {"holds": True}
 
-    return store.cached(folder, store.key([file], tools.version("z3")), work)
+    return store.cached(folder, store.key([file], tools.version("z3")), tools.measured(work))
 
 
 LEMMAS = {"multiplication": "what claims/multiply.smt2 assumes of a product",

@@ -17,7 +17,8 @@ def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[di
              PROOFS / "netlist_cells.tcl", pathlib.Path(__file__), *mapping.scripts()]
     wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.facts,
                        library, flow, vectors)
-    return store.cached(folder, wanted, lambda: _agree(design, library, flow, vectors, folder))
+    return store.cached(folder, wanted, tools.measured(
+        lambda: _agree(design, library, flow, vectors, folder)))
 
 
 def _agree(design: Design, library: Library, flow: str, vectors: int,

@@ -9,7 +9,7 @@ import pathlib
 import sys
 from collections.abc import Callable
 
-from synth import catalogue, float_proofs, mapping, netlists, runner, store, tables, tools
+from synth import catalogue, cores, float_proofs, induction, mapping, netlists, runner, store, tables, tools
 from synth.catalogue import LIBRARIES, Design
 
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
@@ -32,21 +32,23 @@ def _files(folder: str) -> list[pathlib.Path]:
     return catalogue.Design("", "", folder).sources()
 
 
-def holds(top: str, method: str = "sat", sources: list[pathlib.Path] | None = None,
+def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
           prepare: str = "", parameters: tuple[tuple[str, object], ...] = (),
-          steps: int = 0, prepared: str = "", name: str = "") -> tuple[dict, bool]:
-    """Proves the assertions of proofs/<top>.sv; raises ToolFailed where one does not hold.
+          steps: int = 0, reach: int = 0, prepared: str = "", name: str = "") -> tuple[dict, bool]:
+    """Proves the assertions of proofs/<top>.sv; raises ToolFailed where one does not hold, where there
+    is none, and where what is assumed leaves a `cover` out of reach.
 
-    `method`: "sat" (Yosys's) or "z3". `sources`: what is read besides, all of hw/arith unless said.
-    `prepare`, `prepared`: a Tcl file that makes a module of hw/arith first, with these parameters.
-    `steps`: 0 for combinational ones; else proven for that many clocks from reset, and by induction.
+    `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, all of hw/arith unless said.
+    `prepare`, `prepared`: a Tcl file that makes a module of it first, and what of.
+    `steps`: 0 for combinational ones; else proven for that many clocks from reset and, where they
+    held for so many, for the next one. `reach`: clocks to reach covers in, `steps` unless said.
     """
     folder = store.OUT / "proofs" / (name or top)
-    rtl = _files("arith")
-    read = [*(rtl if sources is None else sources), PROOFS / f"{top}.sv"]
-    scripts = [PROOFS / "prove.tcl", *([PROOFS / prepare] if prepare else [])]
+    rtl = _files("arith") if sources is None else sources
+    read = [*([] if prepare else rtl), PROOFS / f"{top}.sv"]
+    scripts = [PROOFS / "prove.tcl", pathlib.Path(induction.__file__), *([PROOFS / prepare] if prepare else [])]
     wanted = store.key([*rtl, *read, *scripts], tools.version("yosys"), method, parameters, steps,
-                       prepared)
+                       reach, prepared)
 
     def work() -> dict:
         smt2 = folder / "model.smt2"
@@ -54,22 +56,32 @@ def holds(top: str, method: str = "sat", sources: list[pathlib.Path] | None = No
             "SOURCES": " ".join(map(str, read)), "TOP": top,
             "PARAMETERS": " ".join(f"{key} {value}" for key, value in parameters),
             "PREPARE": str(PROOFS / prepare) if prepare else "",
-            "RTL": " ".join(map(str, rtl)), "ASSEMBLY": prepared,
-            "SMT2": str(smt2) if method == "z3" else ""})
-        if method == "z3":
-            tools.find("z3")
-            solve = ["yosys-smtbmc", "-s", "z3"]
-            tools.run([*solve, "-t", steps or 1, smt2], folder / "bounded.log")
-            if steps:
-                tools.run([*solve, "-i", "-t", steps, smt2], folder / "induction.log")
+            "RTL": " ".join(map(str, rtl)), "PREPARED": prepared,
+            "SMT2": str(smt2) if method == "Bitwuzla" else ""})
+        if method == "Bitwuzla":
+            induction.holds(top, smt2, steps, reach or steps)
         return {"holds": True}
 
-    return store.cached(folder, wanted, work)
+    return store.cached(folder, wanted, tools.measured(work))
 
 
 def adds(design: Design) -> tuple[dict, bool]:
     """An adder of any kind and grouping adds, by SAT."""
     return holds("adder_adds", parameters=design.parameters, name=f"adds.{design.name}")
+
+
+def fifo_keeps_order(depth: int, reserve: int) -> tuple[dict, bool]:
+    """A FIFO of this size keeps its promises, by induction."""
+    parameters = f"-chparam Width 2 -chparam Depth {depth} -chparam Reserve {reserve}"
+    return holds("fifo_keeps_order", "Bitwuzla", [catalogue.HW / "common" / "fifo.sv"], "open.tcl",
+                 (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6,
+                 prepared=f"fifo {{{parameters}}} *_q {{words {depth} 2}}", name=f"fifo_{depth}")
+
+
+def nearest_is_kept(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """nearest_hit keeps the nearest hit, by induction."""
+    return holds("nearest_hit_keeps_nearest", "Bitwuzla", cores.files("hit_test"), steps=1, reach=5,
+                 parameters=(("ExpWidth", exp), ("FracWidth", frac)), name=f"nearest.{name}")
 
 
 def every_product(width: int) -> tuple[dict, bool]:
@@ -86,7 +98,7 @@ def every_product(width: int) -> tuple[dict, bool]:
         tools.run([str(folder / "obj" / "exhaustive")], folder / "run.log")
         return {"holds": True}
 
-    return store.cached(folder, wanted, work)
+    return store.cached(folder, wanted, tools.measured(work))
 
 
 def all_proofs() -> list[Proof]:
@@ -108,18 +120,18 @@ def all_proofs() -> list[Proof]:
         Proof("booth.row", "step 2: a row is its digit times a", "SAT",
               lambda: holds("booth_row_multiple")),
         Proof("booth.assembly", "step 3: the tree's 13 words are the rows, constants cancel", "SAT",
-              lambda: holds("booth_assembly_sums", sources=[], prepare="booth_assembly.tcl",
+              lambda: holds("booth_assembly_sums", prepare="booth_assembly.tcl",
                             prepared="-chparam Width 24")),
         Proof("booth.assembly_14", "step 3, with the paper's 14th row", "SAT",
-              lambda: holds("booth_assembly_sums", sources=[], prepare="booth_assembly.tcl",
+              lambda: holds("booth_assembly_sums", prepare="booth_assembly.tcl",
                             parameters=(("Words", 14),), name="booth_assembly_14",
                             prepared="-chparam Width 24 -chparam ConstantRow 1'b1")),
         Proof("booth.carry_save", "step 4: a carry-save adder preserves the sum, 48 bits", "SAT",
               lambda: holds("carry_save_preserves")),
-        Proof("booth.tree", "step 5: a tree of such adders adds up its 13 rows", "z3",
-              lambda: holds("carry_save_tree_adds", "z3", tree)),
-        Proof("booth.tree_14", "step 5, with the paper's 14 rows", "z3",
-              lambda: holds("carry_save_tree_adds", "z3", tree, parameters=(("Rows", 14),),
+        Proof("booth.tree", "step 5: a tree of such adders adds up its 13 rows", "Bitwuzla",
+              lambda: holds("carry_save_tree_adds", "Bitwuzla", tree)),
+        Proof("booth.tree_14", "step 5, with the paper's 14 rows", "Bitwuzla",
+              lambda: holds("carry_save_tree_adds", "Bitwuzla", tree, parameters=(("Rows", 14),),
                             name="carry_save_tree_14")),
         Proof("booth.all_of_6_bits", "6 x 6 bits: the product, in one piece", "SAT",
               lambda: holds("booth_multiplies", parameters=(("Width", 6),), name="booth_6")),
@@ -128,8 +140,15 @@ def all_proofs() -> list[Proof]:
         *(Proof(f"booth.every_product_{width}", f"{width} x {width} bits: every product",
                 "simulation", functools.partial(every_product, width), width <= 10)
           for width in (9, 10, 11, 12, 13, 14)),
-        Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "z3",
-              lambda: holds("timetable", "z3", unit, steps=30)),
+        *(Proof(f"unit.fifo_{depth}", f"a FIFO of {depth} words, {reserve} kept back: order, counts, stability",
+                "Bitwuzla", functools.partial(fifo_keeps_order, depth, reserve))
+          for depth, reserve in ((2, 0), (5, 2), (36, 33), (48, 45))),
+        *(Proof(f"unit.nearest.{name}", "a burst's nearest hit is kept, and near ties reported",
+                "Bitwuzla", functools.partial(nearest_is_kept, name, exp, frac))
+          for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+        Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "Bitwuzla",
+              lambda: holds("timetable", "Bitwuzla", unit, "open.tcl", steps=20,
+                            prepared="hit_test_unit {} {word step clear accumulate load_d divide}")),
     ]
     proofs += [Proof(f"float.{one.name}", one.says, "Bitwuzla",
                      functools.partial(float_proofs.proven, one), False, one.long)

@@ -6,6 +6,8 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
+from collections.abc import Callable
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FLOWS = pathlib.Path(__file__).resolve().parent / "flows"
@@ -61,19 +63,35 @@ def version(tool: str) -> str:
     return match.group(0).rstrip(".,)") if match else line
 
 
-def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None,
-        timeout: float | None = None) -> str:
+_costs = threading.local()  # .list: (processor seconds, megabytes) of each command of this thread
+
+
+def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None) -> str:
     """Runs `command` from the repository's root, writes its output to `log` and returns it."""
     command = [find(command[0]), *map(str, command[1:])]
     environment = {**os.environ, "LC_ALL": "C", **(env or {})}
     log.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        done = subprocess.run(command, cwd=ROOT, env=environment, timeout=timeout, check=False,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    except subprocess.TimeoutExpired as error:
-        raise ToolFailed(f"{command[0]} did not end within {timeout} s") from error
-    log.write_text(done.stdout)
-    if done.returncode != 0:
-        tail = "\n".join(done.stdout.strip().splitlines()[-8:])
+    with log.open("w") as out:
+        process = subprocess.Popen(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL,
+                                   stdout=out, stderr=subprocess.STDOUT)
+        _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    costs = _costs.__dict__.setdefault("list", [])
+    costs.append((usage.ru_utime + usage.ru_stime, usage.ru_maxrss // 1024))
+    text = log.read_text(errors="replace")
+    if process.returncode != 0:
+        tail = "\n".join(text.strip().splitlines()[-8:])
         raise ToolFailed(f"{pathlib.Path(command[0]).name} failed (log: {log}):\n{tail}")
-    return done.stdout
+    return text
+
+
+def measured(work: Callable[[], dict]) -> Callable[[], dict]:
+    """`work`, its result with what its commands cost: processor seconds in all, megabytes at most."""
+
+    def with_costs() -> dict:
+        _costs.list = []
+        result = work()
+        return {**result, "seconds": round(sum(seconds for seconds, _ in _costs.list), 1),
+                "megabytes": max((most for _, most in _costs.list), default=0)}
+
+    return with_costs

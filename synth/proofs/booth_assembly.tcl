@@ -1,8 +1,8 @@
 # Makes the module "assembly" of booth_multiplier: what it does between the recoded digits and the
 # tree. The digits' signs and the rows become inputs, the words for the tree an output.
-#   RTL, ASSEMBLY  the sources of the multiplier and its parameters
+#   RTL, PREPARED  the sources of the multiplier and its parameters
 yosys read_verilog -sv -defer {*}$::env(RTL)
-yosys hierarchy -check -top booth_multiplier {*}$::env(ASSEMBLY)
+yosys hierarchy -check -top booth_multiplier {*}$::env(PREPARED)
 yosys proc
 yosys rename -top assembly
 yosys expose -input assembly/w:negative assembly/w:gen_row*.row

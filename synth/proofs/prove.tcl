@@ -1,4 +1,4 @@
-# Proves the assertions of TOP for all inputs; a TOP without any is refused.
+# Proves the assertions of TOP for all inputs. A TOP without any is refused.
 #   SOURCES, TOP, PARAMETERS  as for elaborate.tcl
 #   PREPARE                   a Tcl file that makes what TOP instantiates, or ""
 #   SMT2                      "": by Yosys's SAT solver, here; else the file to write for an SMT one
@@ -15,7 +15,8 @@ yosys select -assert-min 1 t:\$assert
 if {$::env(SMT2) ne ""} {
   yosys async2sync
   yosys dffunmap
-  yosys write_smt2 -wires $::env(SMT2)
+  yosys write_smt2 -stbv -wires $::env(SMT2)
 } else {
+  yosys select -assert-none t:\$assume
   yosys sat -verify -prove-asserts -show-inputs -set-def-inputs
 }

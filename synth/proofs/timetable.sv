@@ -1,7 +1,7 @@
 // The paper's unit keeps its timetable (figure 9), whenever tests come and whenever it is reset:
 // a test taken k clocks ago has its word k on the bus (k = 1 to 6) or is at its division k - 6
 // (k = 7 to 9); a component is on the output exactly 8, 9 and 10 clocks after; a new test may start
-// exactly when none was taken in the last 6 clocks.
+// exactly when none was taken in the last 6 clocks. The registers' enables come in their clocks.
 module timetable (
   input logic        clk,
   input logic        reset_n,
@@ -11,32 +11,24 @@ module timetable (
 
   logic ready, output_valid;
   logic [31:0] out;
-
-  hit_test_unit dut (
-    .clk_i  (clk),
-    .rst_ni (reset_n),
-    .valid_i(valid),
-    .ready_o(ready),
-    .bus_i  (bus),
-    .bus_o  (out),
-    .valid_o(output_valid)
-  );
-
-  // The same control once more, to see its counters
-  logic control_ready;
   logic [2:0] word;
   logic [1:0] step;
+  logic clear, accumulate, load_d, divide;
 
-  hit_test_control #(
-    .NumWords(7),
-    .NumSteps(3)
-  ) control (
-    .clk_i  (clk),
-    .rst_ni (reset_n),
+  opened_hit_test_unit dut (  // with the unit's own counters and enables as outputs
+    .clk_i(clk),
+    .rst_ni(reset_n),
     .valid_i(valid),
-    .ready_o(control_ready),
-    .word_o (word),
-    .step_o (step)
+    .ready_o(ready),
+    .bus_i(bus),
+    .bus_o(out),
+    .valid_o(output_valid),
+    .word(word),
+    .step(step),
+    .clear(clear),
+    .accumulate(accumulate),
+    .load_d(load_d),
+    .divide(divide)
   );
 
   // taken[k]: a test was taken k clocks ago
@@ -67,10 +59,14 @@ module timetable (
   always_comb begin
     if (reset_n && !first) begin
       assert (ready == (taken[6:1] == '0));
-      assert (control_ready == ready);
       assert (word == expected_word);
       assert (step == expected_step);
+      assert (clear == taken[3]);
+      assert (accumulate == (taken[6:4] != '0));
+      assert (load_d == taken[6]);
+      assert (divide == (taken[9:7] != '0));
       assert (output_valid == (taken[10:8] != '0));
+      cover (output_valid && taken[10] && taken[3]);
     end
   end
 

@@ -1,0 +1,80 @@
+"""What a module asserts, held against all that can come in: by induction over clocks, with Bitwuzla.
+
+The module is SMT-LIB as Yosys's `write_smt2 -stbv` writes it: a state, what may be its first one and its
+next one, and what of a state is assumed, asserted and covered.
+"""
+
+import dataclasses
+import pathlib
+import re
+
+from synth import float_proofs, tools
+
+
+@dataclasses.dataclass(frozen=True)
+class Model:
+    """A module of that kind, as text."""
+
+    top: str
+    text: str
+
+    def listed(self, what: str) -> list[tuple[str, str]]:
+        """The numbers and names of its "assert" or "cover" statements; names and widths of "input"."""
+        return re.findall(rf"^; yosys-smt2-{what} (\S+) (.*)$", self.text, re.M)
+
+    def clocks(self, count: int) -> str:
+        """So many states, each the next of the one before; every assumption holds in each."""
+        lines = ["(set-logic QF_BV)", self.text]
+        for k in range(count):
+            lines.append(f"(declare-const s{k} |{self.top}_s|)")
+            lines.append(f"(assert (and (|{self.top}_u| s{k}) (|{self.top}_h| s{k})))")
+            if k:
+                lines.append(f"(assert (|{self.top}_t| s{k - 1} s{k}))")
+        return "\n".join(lines) + "\n"
+
+    def first(self) -> str:
+        """The state is one after power-up."""
+        return f"(assert (|{self.top}_i| s0))\n"
+
+    def always(self, clocks: range) -> str:
+        """All assertions hold in these states."""
+        return "(and true " + " ".join(f"(|{self.top}_a| s{k})" for k in clocks) + ")"
+
+
+def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
+    """Raises ToolFailed, with what breaks and the inputs, unless no state of `clocks` breaks an assertion."""
+    asserts, inputs = model.listed("assert"), model.listed("input")
+    last = clocks[-1]
+    terms = [f"(|{model.top}_a {number}| s{last})" for number, _ in asserts]
+    terms += [f"(|{model.top}_n {name}| s{k})" for k in range(last + 1) for name, _ in inputs]
+    answer = float_proofs.solve(file, f"{text}(assert (not {model.always(clocks)}))\n", tuple(terms))
+    if answer["answer"] == "unsat":
+        return
+    values = answer["values"]
+    broken = [place for (_, place), term in zip(asserts, terms) if values.get(term) == "0"]
+    shown = " ".join(f"{term}={value}" for term, value in values.items() if "_n " in term)
+    raise tools.ToolFailed(f"{file}: {answer['answer']}: {'; '.join(broken)}: {shown}")
+
+
+def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
+    """Raises ToolFailed unless every assertion holds: in `steps` clocks from power-up on, and after any
+    so many in which they held; and unless each `cover` is reached within `reach` clocks. A module that
+    assumes something must cover something: what contradicts itself would hold of everything.
+    `steps` = 0: it has no registers."""
+    model = Model(top, smt2.read_text())
+    if not model.listed("assert"):
+        raise tools.ToolFailed(f"{top}: found no assertion, expected one or more")
+    covers = model.listed("cover")
+    if model.listed("assume") and not covers:
+        raise tools.ToolFailed(f"{top}: it assumes something and covers nothing")
+    from_start = model.clocks(max(steps, 1)) + (model.first() if steps else "")
+    _refuse(model, smt2.with_name("from_start.smt2"), from_start, range(max(steps, 1)))
+    if steps:
+        onwards = model.clocks(steps + 1) + f"(assert {model.always(range(steps))})\n"
+        _refuse(model, smt2.with_name("onwards.smt2"), onwards, range(steps, steps + 1))
+    within = model.clocks(max(reach, 1)) + (model.first() if steps else "")
+    for number, place in covers:
+        reached = " ".join(f"(|{top}_c {number}| s{k})" for k in range(max(reach, 1)))
+        if float_proofs.solve(smt2.with_name(f"cover_{number}.smt2"),
+                              f"{within}(assert (or false {reached}))\n")["answer"] != "sat":
+            raise tools.ToolFailed(f"{place}: not reached in {reach} clocks: {smt2.parent}")

@@ -1,0 +1,23 @@
+# Makes the module opened_NAME of module NAME: the same, flat, with inner wires as outputs. For
+# invariants, which speak of what is inside.
+#   RTL       the sources
+#   PREPARED  NAME, its parameters as arguments of `hierarchy`, the wires, in Yosys's patterns, and memories,
+#             each as its name, depth and width: all words are one output, word 0 lowest
+lassign $::env(PREPARED) name parameters wires memories
+yosys read_verilog -formal -sv -defer {*}$::env(RTL)
+yosys hierarchy -check -top $name {*}$parameters
+yosys proc
+yosys flatten
+yosys rename -top opened_$name
+yosys cd opened_$name
+foreach wire $wires { yosys expose w:$wire }
+yosys memory
+yosys opt_clean
+foreach {memory depth width} $memories {
+  set words {}
+  for {set n 0} {$n < $depth} {incr n} { set words [linsert $words 0 \\${memory}\[$n\]] }
+  set port [string map {. _} $memory]
+  yosys add -output $port [expr {$depth * $width}]
+  yosys connect -set $port [join $words ,]
+}
+yosys cd ..
