@@ -96,23 +96,6 @@ struct PlainWords {
   }
 };
 
-/// Four points, and how near a crowd must not be; bit i of the result where point i is good.
-LaneMask depart_four(const PlainWords<kQuad>& words, float margin, float (&points)[3][kQuad],
-                     float (&reach)[kQuad]) {
-  return in_vectors([&](auto) RAYGATE_BODY {
-    PlainHits<kQuad> hits;
-    static_assert(sizeof hits == sizeof words.words);
-    std::memcpy(&hits, words.words, sizeof hits);
-    FloatQuad point[3], far;
-    LongQuad sure;
-    IntQuad clear;
-    depart_plainly(hits, margin, point, far, sure, clear);
-    std::memcpy(points, point, sizeof points);
-    std::memcpy(reach, &far, sizeof reach);
-    return sign_mask(__builtin_convertvector(sure, IntQuad) & clear);
-  });
-}
-
 }  // namespace
 
 std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot, Departure way) {
@@ -133,31 +116,50 @@ std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot
   return search(ray, slot, way);
 }
 
-void DeparturePoint::find(std::span<const DepartureQuestion> questions,
-                          std::span<std::optional<glm::vec3>> origins) {
-  for (std::size_t first = 0; first < questions.size(); first += kQuad) {
-    const auto four =
-        questions.subspan(first, std::min<std::size_t>(kQuad, questions.size() - first));
-    PlainWords<kQuad> words;
-    const Crowd* crowds[kQuad];
-    for (std::size_t i = 0; i < kQuad; ++i) {
-      const DepartureQuestion& question = four[std::min(i, four.size() - 1)];
-      const Clearances::Clearance clearance = clearances_.of(question.slot);
-      crowds[i] = clearance.crowd;
-      words.put(static_cast<int>(i), *question.ray, bvh_.corners_of(question.slot), question.way,
-                clearance);
-    }
-    float points[3][kQuad], reach[kQuad];
-    const LaneMask good = depart_four(words, clearances_.margin(), points, reach);
-    for (std::size_t i = 0; i < four.size(); ++i) {
-      const glm::vec3 plain(points[0][i], points[1][i], points[2][i]);
-      if ((good >> i & 1) != 0 && !(crowds[i] && crowds[i]->is_near(plain, reach[i]))) {
-        origins[first + i] = plain;
-      } else {
-        origins[first + i] = search(*four[i].ray, four[i].slot, four[i].way);
-      }
+/// As many as a vector has room for, or fewer.
+template <int kWidth>
+RAYGATE_INLINE void DeparturePoint::find_some(std::span<const DepartureQuestion> questions,
+                                              std::span<std::optional<glm::vec3>> origins) {
+  PlainWords<kWidth> words;
+  const Crowd* crowds[kWidth];
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    const DepartureQuestion& question = questions[std::min(i, questions.size() - 1)];
+    const Clearances::Clearance clearance = clearances_.of(question.slot);
+    crowds[i] = clearance.crowd;
+    words.put(static_cast<int>(i), *question.ray, bvh_.corners_of(question.slot), question.way,
+              clearance);
+  }
+  PlainHits<kWidth> hits;
+  static_assert(sizeof hits == sizeof words.words);
+  std::memcpy(&hits, words.words, sizeof hits);
+  typename PlainNumbers<kWidth>::Single point[3], reach;
+  typename PlainNumbers<kWidth>::RealMask sure;
+  typename PlainNumbers<kWidth>::SingleMask clear;
+  depart_plainly(hits, clearances_.margin(), point, reach, sure, clear);
+  clear &= __builtin_convertvector(sure, typename PlainNumbers<kWidth>::SingleMask);
+  const LaneMask good = sign_mask(clear);
+  float points[3][kWidth], reaches[kWidth];
+  std::memcpy(points, point, sizeof points);
+  std::memcpy(reaches, &reach, sizeof reaches);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const glm::vec3 plain(points[0][i], points[1][i], points[2][i]);
+    if ((good >> i & 1) != 0 && !(crowds[i] && crowds[i]->is_near(plain, reaches[i]))) {
+      origins[i] = plain;
+    } else {
+      origins[i] = search(*questions[i].ray, questions[i].slot, questions[i].way);
     }
   }
+}
+
+void DeparturePoint::find(std::span<const DepartureQuestion> questions,
+                          std::span<std::optional<glm::vec3>> origins) {
+  in_vectors([&](auto code) RAYGATE_BODY {
+    constexpr int kWidth = code() == Vectors::kAvx512 ? kLanes : kQuad;
+    for (std::size_t first = 0; first < questions.size(); first += kWidth) {
+      const std::size_t count = std::min<std::size_t>(kWidth, questions.size() - first);
+      find_some<kWidth>(questions.subspan(first, count), origins.subspan(first, count));
+    }
+  });
 }
 
 std::optional<glm::vec3> DeparturePoint::search(const Ray& ray, std::uint32_t slot, Departure way) {

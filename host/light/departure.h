@@ -10,6 +10,7 @@
 #include "host/exact/exact.h"
 #include "host/light/clearance.h"
 #include "host/tree/bvh.h"
+#include "host/vectors.h"
 
 namespace raygate {
 
@@ -56,7 +57,8 @@ class DeparturePoint {
   /// ray runs have no say.
   [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t slot, Departure way);
 
-  /// origins[i] becomes O' for questions[i]: what find() gives, four at a time and so much sooner.
+  /// origins[i] becomes O' for questions[i]: what find() gives, several at a time and so much
+  /// sooner.
   void find(std::span<const DepartureQuestion> questions,
             std::span<std::optional<glm::vec3>> origins);
 
@@ -66,6 +68,10 @@ class DeparturePoint {
                             const glm::vec3& direction) const;
 
  private:
+  template <int kWidth>
+  RAYGATE_INLINE void find_some(std::span<const DepartureQuestion> questions,
+                                std::span<std::optional<glm::vec3>> origins);
+
   /// As find(), looking at what is near.
   [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, Departure way);
 
