@@ -6,8 +6,8 @@
 
 #include "host/film/pixel_filter.h"
 #include "host/light/integrator_kind.h"
+#include "host/light/point_error.h"
 #include "host/light/skips.h"
-#include "host/light/surface.h"
 
 namespace CLI {
 class App;

@@ -1,9 +1,12 @@
 // What a material does with light: the MTL illumination models, as lobes that make no energy.
 #pragma once
 
-#include <glm/glm.hpp>
-#include <optional>
-
+#include "host/light/around.h"
+#include "host/light/elementary.h"
+#include "host/light/finish.h"
+#include "host/light/fresnel.h"
+#include "host/light/lane_math.h"
+#include "host/light/sampler.h"
 #include "host/light/surface.h"
 
 namespace raygate {
@@ -32,55 +35,205 @@ namespace raygate {
 /// change. "The rest" is what the mirror leaves. A mirror cannot show a point
 /// light, which has no size: there it has a highlight with exponent Ns instead, unless that is 1
 /// (what it is where the file does not say) or less.
+///
+/// T is float or FloatLanes: hits of one kind, each with a material of its own.
+template <class T>
 class Bsdf {
  public:
-  explicit Bsdf(const Surface& surface);
+  Bsdf() = default;
+  RAYGATE_INLINE Bsdf(const Surface<T>& surface, HitKind kind,
+                      const Finish* const (&finishes)[LanesOf<T>::kCount]);
 
-  [[nodiscard]] const glm::dvec3& diffuse() const { return diffuse_; }
-  [[nodiscard]] const glm::dvec3& glossy() const { return glossy_; }
-  [[nodiscard]] const glm::dvec3& mirror() const { return mirror_; }
-  [[nodiscard]] const glm::dvec3& through() const { return through_; }
-  [[nodiscard]] bool mirror_is_traced() const { return mirror_is_traced_; }
-  [[nodiscard]] bool is_refracting() const { return is_refracting_; }
+  [[nodiscard]] RAYGATE_INLINE const Triple<T>& diffuse() const { return diffuse_; }
+  [[nodiscard]] RAYGATE_INLINE const Triple<T>& glossy() const { return glossy_; }
+  [[nodiscard]] RAYGATE_INLINE const Triple<T>& mirror() const { return mirror_; }
+  [[nodiscard]] RAYGATE_INLINE const Triple<T>& through() const { return through_; }
+  [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& mirror_is_traced() const {
+    return mirror_is_traced_;
+  }
+  [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& is_refracting() const { return is_refracting_; }
+  /// The index of refraction beyond the border over that before it.
+  [[nodiscard]] RAYGATE_INLINE const T& eta() const { return eta_; }
   /// Radiance that the surface sends along the view by itself, as a lamp does (Ke).
-  [[nodiscard]] const glm::dvec3& emission() const { return emission_; }
+  [[nodiscard]] RAYGATE_INLINE const Triple<T>& emission() const { return emission_; }
   /// Radiance that is only there to be seen: illum 0.
-  [[nodiscard]] const glm::dvec3& unlit() const { return unlit_; }
+  [[nodiscard]] RAYGATE_INLINE const Triple<T>& unlit() const { return unlit_; }
   /// Whether light from a direction of its own is scattered: diffuse or glossy.
-  [[nodiscard]] bool scatters() const;
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
+    return largest(diffuse_ + glossy_) > 0.0f;
+  }
 
   /// Diffuse and glossy reflection, per steradian and without the cosine, from unit direction
   /// `light`; 0 from behind.
-  [[nodiscard]] glm::dvec3 scattered(const glm::dvec3& light) const;
+  [[nodiscard]] RAYGATE_INLINE Triple<T> scattered(const Triple<T>& light) const {
+    return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * lobe(light)
+                                               : diffuse_ * per_pi());
+  }
   /// The same with the mirror as a highlight, for point lights.
-  [[nodiscard]] glm::dvec3 scattered_from_point(const glm::dvec3& light) const;
+  [[nodiscard]] RAYGATE_INLINE Triple<T> scattered_from_point(const Triple<T>& light) const {
+    if ((kind_ & (kGlossy | kMirrors)) == 0) return scattered(light);
+    const Triple<T> shown = choose(exponent_ > 1.0f, mirror_, zero<T>());
+    return above(light, diffuse_ * per_pi() + (glossy_ + shown) * lobe(light));
+  }
 
   /// A direction for diffuse or glossy reflection, chosen for a point of the unit square, nearly
   /// in proportion to what it brings. May point behind the surface: it brings nothing then.
-  [[nodiscard]] glm::dvec3 sample(const glm::dvec2& u) const;
+  [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
   /// The density of sample() per steradian.
-  [[nodiscard]] double density(const glm::dvec3& light) const;
-
-  [[nodiscard]] glm::dvec3 mirror_direction() const;
-  /// Bent, at a surface of this normal, or straight; nothing at total reflection.
-  [[nodiscard]] std::optional<glm::dvec3> through_direction(const glm::dvec3& normal) const;
+  [[nodiscard]] RAYGATE_INLINE T density(const Triple<T>& light) const {
+    const T diffuse = at_least(dot(normal_, light), 0.0f) * kPerPi;
+    if ((kind_ & kGlossy) == 0) return diffuse;
+    const T share = glossy_share();
+    return (1.0f - share) * diffuse +
+           share * (lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
+  }
 
  private:
-  [[nodiscard]] double glossy_share() const;
-  [[nodiscard]] double lobe(const glm::dvec3& light) const;
+  static constexpr float kPerPi = 0.318309886183790671537767526745f;
 
-  glm::dvec3 view_, normal_;
-  double eta_ = 1.0, exponent_ = 0.0;
-  glm::dvec3 diffuse_{0.0}, glossy_{0.0}, mirror_{0.0}, through_{0.0}, emission_{0.0}, unlit_{0.0};
-  bool mirror_is_traced_ = true, is_refracting_ = false;
+  [[nodiscard]] RAYGATE_INLINE static T per_pi() { return spread<T>(kPerPi); }
+  [[nodiscard]] RAYGATE_INLINE Triple<T> above(const Triple<T>& light,
+                                               const Triple<T>& value) const {
+    return choose(dot(normal_, light) > 0.0f, value, zero<T>());
+  }
+  [[nodiscard]] RAYGATE_INLINE T glossy_share() const {
+    const T glossy = largest(glossy_), sum = glossy + largest(diffuse_);
+    return choose(glossy > 0.0f, glossy / sum, T{});
+  }
+
+  /// Phong's lobe around the mirrored view, so high that it reflects no more than what arrives
+  /// (Lafortune and Willems 1994). The cosine comes from the distance of the two directions, and
+  /// its power is taken in double: next to 1, where lobes of a large exponent are, float cosines
+  /// are too far apart.
+  [[nodiscard]] RAYGATE_INLINE T lobe(const Triple<T>& light) const {
+    const Triple<T> apart = mirrored(view_, normal_) - light;
+    const T squared = dot(apart, apart);
+    const auto cosine = 1.0 - 0.5 * wide(at_most(squared, 1.99999f));
+    const T height = (exponent_ + 2.0f) * (0.5f * kPerPi);
+    return choose(squared < 1.99999f, height * narrow(power(cosine, wide(exponent_))), T{});
+  }
+
+  HitKind kind_;
+  Triple<T> view_, normal_;
+  T eta_, exponent_;
+  Triple<T> diffuse_, glossy_, mirror_, through_, emission_, unlit_;
+  MaskOf<T> mirror_is_traced_, is_refracting_;
 };
 
-/// The share of light that goes through a material straight on, as far as shadows are concerned:
-/// `refracting` surfaces let none through, or, where `bent` says so, as much as if they did not
-/// bend it (caustics are then where the shadow is).
-[[nodiscard]] glm::dvec3 shadow_transmittance(const Surface& surface, bool bent);
+template <class T>
+RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
+                             const Finish* const (&finishes)[LanesOf<T>::kCount])
+    : kind_(kind),
+      view_(surface.view),
+      normal_(surface.normal),
+      eta_(spread<T>(1.0f)),
+      exponent_(T{}),
+      glossy_(zero<T>()),
+      mirror_(zero<T>()),
+      through_(zero<T>()),
+      emission_(zero<T>()),
+      unlit_(zero<T>()) {
+  constexpr int kCount = LanesOf<T>::kCount;
+  enum : std::uint8_t { kDiffuse, kOpacity = 3, kPlain = 4 };
+  Gathered<T, kPlain> plain;
+  for (int k = 0; k < kCount; ++k) {
+    plain.put(kDiffuse, k, finishes[k]->diffuse);
+    plain.values[kOpacity][k] = finishes[k]->opacity;
+  }
+  const Triple<T>& colour = surface.colour;
+  const Triple<T> limited = {at_most(at_least(colour.x, 0.0f), 1.0f),
+                             at_most(at_least(colour.y, 0.0f), 1.0f),
+                             at_most(at_least(colour.z, 0.0f), 1.0f)};
+  diffuse_ = limited * plain.triple(kDiffuse);
+  const T opacity = plain.one(kOpacity), one = spread<T>(1.0f);
+  mirror_is_traced_ = one > 0.0f;
+  is_refracting_ = one < 0.0f;
+  if ((kind & kEmits) != 0) {
+    Gathered<T, 6> lamps;
+    for (int k = 0; k < kCount; ++k) {
+      lamps.put(0, k, finishes[k]->emission);
+      lamps.put(3, k, finishes[k]->unlit);
+    }
+    emission_ = lamps.triple(0);
+    unlit_ = colour * lamps.triple(3);
+  }
+  if ((kind & (kGlossy | kMirrors)) != 0) {
+    Gathered<T, 4> shiny;
+    for (int k = 0; k < kCount; ++k) {
+      shiny.put(0, k, finishes[k]->glossy);
+      shiny.values[3][k] = finishes[k]->exponent;
+    }
+    glossy_ = shiny.triple(0);
+    exponent_ = shiny.one(3);
+  }
+  auto is_glass = is_refracting_;
+  if ((kind & (kMirrors | kLetsThrough)) != 0) {
+    enum : std::uint8_t {
+      kMirror,
+      kGrazing = 3,
+      kThrough = 6,
+      kIndex = 9,
+      kGlass,
+      kRefracts,
+      kFresnel,
+      kTraced,
+      kClear
+    };
+    Gathered<T, kClear> clear;
+    for (int k = 0; k < kCount; ++k) {
+      const Finish& finish = *finishes[k];
+      clear.put(kMirror, k, finish.mirror);
+      clear.put(kGrazing, k, finish.grazing);
+      clear.put(kThrough, k, finish.through);
+      clear.values[kIndex][k] = finish.index;
+      clear.values[kGlass][k] = finish.is_glass ? 1.0f : 0.0f;
+      clear.values[kRefracts][k] = finish.refracts ? 1.0f : 0.0f;
+      clear.values[kFresnel][k] = finish.is_fresnel ? 1.0f : 0.0f;
+      clear.values[kTraced][k] = finish.mirror_is_traced ? 1.0f : 0.0f;
+    }
+    is_glass = clear.one(kGlass) > 0.0f;
+    is_refracting_ = clear.one(kRefracts) > 0.0f;
+    mirror_is_traced_ = clear.one(kTraced) > 0.0f;
+    const T index = clear.one(kIndex);
+    eta_ = choose(is_refracting_, choose(surface.outside, index, 1.0f / index), one);
+    const T cosine = at_most(at_least(dot(normal_, view_), 0.0f), 1.0f);
+    mirror_ = clear.triple(kMirror) + clear.triple(kGrazing) * schlick_share(cosine);
+    const T reflectance = fresnel_reflectance(cosine, eta_);
+    const auto is_fresnel = is_refracting_ & ((clear.one(kFresnel) > 0.0f) | (reflectance >= 1.0f));
+    mirror_ = choose(is_fresnel, Triple<T>{reflectance, reflectance, reflectance}, mirror_);
+    // What the mirror of glass takes is gone for all that lies under it.
+    const Triple<T> rest =
+        choose(is_glass, Triple<T>{one, one, one} - mirror_, Triple<T>{one, one, one});
+    diffuse_ = diffuse_ * rest;
+    through_ = clear.triple(kThrough) * rest;
+  }
+  if ((kind & (kGlossy | kMirrors)) != 0) {
+    const T sum = largest(diffuse_ + glossy_ + mirror_);
+    const T scale = choose((sum > opacity) & !is_glass, opacity / sum, one);
+    diffuse_ = diffuse_ * scale;
+    glossy_ = glossy_ * scale;
+    mirror_ = mirror_ * scale;
+  }
+}
 
-/// Whether any light goes through.
-[[nodiscard]] bool is_clear(const Material& material);
+template <class T>
+RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u) const {
+  const auto turn = sine_cosine(wide(u.y));
+  const T turned_x = narrow(turn.cosine), turned_y = narrow(turn.sine);
+  if ((kind_ & kGlossy) == 0) {
+    return around(normal_, root(1.0f - u.x), root(u.x), turned_x, turned_y);
+  }
+  const T share = glossy_share(), left = 1.0f - share;
+  const auto is_glossy = u.x < share;
+  // What is left of u.x says how far from the axis.
+  const T glossy_rest = 1.0f - u.x / choose(share > 0.0f, share, spread<T>(1.0f));
+  const T diffuse_rest = (u.x - share) / choose(left > 0.0f, left, spread<T>(1.0f));
+  const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
+  const auto cosine = power(wide(at_least(rest, 0x1p-24f)), 1.0 / (wide(exponent_) + 1.0));
+  const T sine = narrow(root(1.0 - cosine * cosine));
+  const Triple<T> axis = choose(is_glossy, mirrored(view_, normal_), normal_);
+  return around(axis, choose(is_glossy, narrow(cosine), root(1.0f - rest)),
+                choose(is_glossy, sine, root(rest)), turned_x, turned_y);
+}
 
 }  // namespace raygate

@@ -1,123 +1,165 @@
 #include "host/light/integrator.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
-#include "host/light/fresnel.h"
 #include "host/light/path.h"
+#include "host/light/primary.h"
 #include "host/light/whitted.h"
 
 namespace raygate {
+namespace {
 
-const std::optional<glm::vec3>& Integrator::departure(Hit& hit, Departure way) {
-  auto& point = way == Departure::kBefore ? hit.before : hit.after;
-  if (!point) point = departure_.find(hit.ray.ray, hit.surface.slot, way);
-  return *point;
+constexpr std::size_t kMostHits = 2048;          // of a block: its lists stay in the cache
+constexpr std::size_t kMostQuestions = 1 << 16;  // of a block: 3 MB
+
+}  // namespace
+
+Integrator::Integrator(const Scene& scene, const Clearances& clearances, const Lights& lights,
+                       const Skips& skips, const IntegratorOptions& options,
+                       std::size_t questions_each, std::size_t ways_each)
+    : shading_{.scene = scene,
+               .bvh = clearances.bvh(),
+               .lights = lights,
+               .ambient = glm::vec3(options.ambient),
+               .max_depth = options.max_depth,
+               .threshold = static_cast<float>(options.threshold),
+               .single_sample = options.single_sample,
+               .skips_weightless = skips.weightless},
+      departure_(clearances),
+      skips_(skips),
+      point_error_(options.point_error),
+      block_size_(std::clamp<std::size_t>(kMostQuestions / std::max<std::size_t>(1, questions_each),
+                                          1, kMostHits)),
+      finishes_(finishes_of(scene)) {
+  block_.places.resize(block_size_);
+  block_.finishes.resize(block_size_);
+  block_.radiance.resize(block_size_);
+  block_.questions_each = questions_each;
+  block_.ways_each = ways_each;
+  kinds_.resize(block_size_);
 }
 
-void Integrator::ask(Hit& hit, ShadowRay shadow, WaveOutput& output) {
-  if (shadow.light == glm::dvec3(0.0) && skips_.light_behind) {
-    ++skipped_.lights_behind;
-    return;
+void Integrator::shade(const Wave& wave, std::span<const NearestHit> hits, std::size_t begin,
+                       std::size_t end, WaveOutput& output) {
+  const std::size_t count = end - begin;
+  block_.wave = &wave;
+  block_.begin = begin;
+  block_.first_surfaces = wave.depth == 0 ? output.first_surface.data() : nullptr;
+  block_.questions.assign(count * block_.questions_each, {});
+  block_.ways.assign(count * block_.ways_each, {});
+  sort(hits, count, output);
+  for (HitKind kind = 0; kind < kHitKinds; ++kind) {
+    const std::span<const std::uint32_t> at(order_.data() + first_[kind],
+                                            first_[kind + 1] - first_[kind]);
+    if (!at.empty()) shade_kind(block_, kind, at);
   }
-  const auto& origin = departure(hit, Departure::kBefore);
-  if (!origin) return;
-  shadow.sample = hit.ray.sample;
-  shadow.surface = *origin;
-  shadow.surface_slot = hit.surface.slot;
-  output.shadows.push_back(shadow);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (kinds_[i] != kHitKinds) hand_on(i, output);
+  }
 }
 
-void Integrator::light_from_point(Hit& hit, std::size_t light, double chance, WaveOutput& output) {
-  const PointLight& lamp = lights_.points()[light];
-  const glm::dvec3 way = glm::dvec3(lamp.position) - hit.surface.point;
-  const double squared = glm::dot(way, way);
-  ShadowRay shadow;
-  shadow.point_light = static_cast<std::uint32_t>(light);
-  if (squared > 0.0) {
-    const glm::dvec3 direction = way / std::sqrt(squared);
-    if (glm::dot(hit.surface.flat_normal, direction) > 0.0) {
-      shadow.light = hit.ray.weight * hit.bsdf.scattered_from_point(direction) * lamp.intensity *
-                     (std::max(0.0, glm::dot(hit.surface.normal, direction)) / (squared * chance));
+/// Lists the hits of the block, kind by kind. What hits nothing is done with.
+void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveOutput& output) {
+  const Scene& scene = shading_.scene;
+  first_.assign(kHitKinds + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const NearestHit& hit = hits[block_.begin + i];
+    kinds_[i] = kHitKinds;
+    if (hit.slot == NearestHit::kNone) {
+      const Burden& burden = block_.burden(i);
+      output.radiance[burden.sample] += burden.weight * background();
+      continue;
+    }
+    const bool is_doubtful = is_point_doubt(hit, point_error_);
+    point_doubts_ += is_doubtful ? 1 : 0;
+    const Triangle& face = scene.triangles[shading_.bvh.triangle_of(hit.slot)];
+    block_.places[i] = {&block_.wave->rays[block_.begin + i], hit.slot, &face,
+                        is_doubtful ? nullptr : &hit.point};
+    block_.finishes[i] = &finishes_[face.material];
+    kinds_[i] = finishes_[face.material].kind | weights_needed(block_.places[i]);
+    ++first_[kinds_[i] + 1];
+  }
+  for (HitKind kind = 0; kind < kHitKinds; ++kind) first_[kind + 1] += first_[kind];
+  order_.resize(first_[kHitKinds]);
+  for (std::size_t i = count; i-- > 0;) {
+    if (kinds_[i] != kHitKinds) {
+      order_[--first_[kinds_[i] + 1]] = static_cast<std::uint32_t>(i);
     }
   }
-  ask(hit, shadow, output);
+  first_.erase(first_.begin());
+  first_.push_back(static_cast<std::uint32_t>(order_.size()));
 }
 
-void Integrator::light_from_area(Hit& hit, const LightPoint& point, const glm::dvec3& weighted,
-                                 WaveOutput& output) {
-  const glm::dvec3 way = point.position - hit.surface.point;
-  const double squared = glm::dot(way, way);
-  ShadowRay shadow;
-  shadow.lamp = glm::vec3(point.position);
-  shadow.lamp_slot = point.slot;
-  if (squared > 0.0) {
-    const glm::dvec3 direction = way / std::sqrt(squared);
-    if (glm::dot(hit.surface.flat_normal, direction) > 0.0) {
-      const double cosines = std::max(0.0, glm::dot(hit.surface.normal, direction)) *
-                             std::abs(glm::dot(point.normal, direction));
-      shadow.light =
-          hit.ray.weight * hit.bsdf.scattered(direction) * weighted * (cosines / squared);
-    }
-  }
-  ask(hit, shadow, output);
-}
-
-void Integrator::go_on(Hit& hit, Departure way, const glm::dvec3& direction,
-                       const std::optional<glm::dvec3>& flat, LightRay next, WaveOutput& output) {
-  if (next.weight == glm::dvec3(0.0) && skips_.weightless) {
-    ++skipped_.weightless;
-    return;
-  }
-  const Ray& ray = hit.ray.ray;
-  const auto leaves = [&](const glm::vec3& scaled) {
-    return departure_.leaves(ray, hit.surface.slot, way, scaled);
+/// What the hit at place i gives, once it is known where rays go on from.
+void Integrator::hand_on(std::size_t i, WaveOutput& output) {
+  const Burden& burden = block_.burden(i);
+  const HitPlace& place = block_.places[i];
+  output.radiance[burden.sample] += block_.radiance[i];
+  std::optional<std::optional<glm::vec3>> points[2];
+  const auto departure = [&](Departure side) -> const std::optional<glm::vec3>& {
+    auto& point = points[side == Departure::kBefore ? 0 : 1];
+    if (!point) point = departure_.find(*place.ray, place.slot, side);
+    return *point;
   };
-  next.ray.direction = scaled_direction(direction);
-  if (!leaves(next.ray.direction)) {
-    if (!flat) return;
-    next.ray.direction = scaled_direction(*flat);
-    if (!leaves(next.ray.direction)) return;
+  for (std::size_t number = 0; number < block_.questions_each; ++number) {
+    const LightQuestion& question = block_.question(i, number);
+    if (question.state == LightQuestion::kNotAsked) continue;
+    if (question.state == LightQuestion::kBehind && skips_.light_behind) {
+      ++skipped_.lights_behind;
+      continue;
+    }
+    const auto& origin = departure(Departure::kBefore);
+    if (!origin) continue;
+    ShadowRay& shadow = output.shadows.emplace_back();
+    shadow.sample = burden.sample;
+    shadow.light = question.light;
+    shadow.surface = *origin;
+    shadow.surface_slot = place.slot;
+    if (question.lamp < shading_.lights.points().size()) {
+      shadow.point_light = question.lamp;
+    } else {
+      shadow.lamp = question.place;
+      shadow.lamp_slot = question.slot;
+    }
   }
-  const auto& origin = departure(hit, way);
-  if (!origin) return;
-  next.ray.origin = *origin;
-  next.sample = hit.ray.sample;
-  next.depth = hit.ray.depth + 1;
-  output.next.push_back(next);
+  for (std::size_t number = 0; number < block_.ways_each; ++number) {
+    const WayOn& way = block_.way(i, number);
+    if (!way.is_wanted) continue;
+    if (way.burden.weight == glm::vec3(0.0f) && skips_.weightless) {
+      ++skipped_.weightless;
+      continue;
+    }
+    const auto leaves = [&](const glm::vec3& scaled) {
+      return departure_.leaves(*place.ray, place.slot, way.side, scaled);
+    };
+    glm::vec3 direction = scaled_direction(glm::dvec3(way.direction));
+    if (!leaves(direction)) {
+      if (!way.has_flat) continue;
+      direction = scaled_direction(glm::dvec3(way.flat));
+      if (!leaves(direction)) continue;
+    }
+    const auto& origin = departure(way.side);
+    if (!origin) continue;
+    output.next.rays.push_back({*origin, direction});
+    Burden& next = output.next.burdens.emplace_back(way.burden);
+    next.sample = burden.sample;
+    next.index = burden.index;
+  }
 }
 
-void Integrator::go_on_mirrored(Hit& hit, const glm::dvec3& weight, std::uint32_t branch,
-                                WaveOutput& output) {
-  LightRay next;
-  next.weight = weight;
-  next.stream = mixed(hit.ray.stream, branch);
-  go_on(hit, Departure::kBefore, hit.bsdf.mirror_direction(),
-        reflected(-hit.surface.view, hit.surface.flat_normal), next, output);
-}
-
-void Integrator::go_on_through(Hit& hit, const glm::dvec3& weight, std::uint32_t branch,
-                               WaveOutput& output) {
-  const auto direction = hit.bsdf.through_direction(hit.surface.normal);
-  if (!direction) return;
-  LightRay next;
-  next.weight = weight;
-  next.stream = mixed(hit.ray.stream, branch);
-  if (!hit.bsdf.is_refracting()) {
-    next.density = hit.ray.density;  // as if there were nothing
-    next.scattered_at = hit.ray.scattered_at;
+std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Scene& scene,
+                                            const Clearances& clearances, const Lights& lights,
+                                            const Skips& skips, const IntegratorOptions& options) {
+  switch (kind) {
+    case IntegratorKind::kPrimary:
+      return std::make_unique<Primary>(scene, clearances, lights, skips, options);
+    case IntegratorKind::kPath:
+      return std::make_unique<Path>(scene, clearances, lights, skips, options);
+    case IntegratorKind::kWhitted:
+      break;
   }
-  go_on(hit, Departure::kAfter, *direction, hit.bsdf.through_direction(hit.surface.flat_normal),
-        next, output);
-}
-
-std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Clearances& clearances,
-                                            const Lights& lights, const Skips& skips,
-                                            const IntegratorOptions& options) {
-  if (kind == IntegratorKind::kPath) {
-    return std::make_unique<Path>(clearances, lights, skips, options);
-  }
-  return std::make_unique<Whitted>(clearances, lights, skips, options);
+  return std::make_unique<Whitted>(scene, clearances, lights, skips, options);
 }
 
 }  // namespace raygate

@@ -4,118 +4,85 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
-#include "host/light/bsdf.h"
+#include "host/find/nearest_hit.h"
 #include "host/light/departure.h"
+#include "host/light/finish.h"
+#include "host/light/hits.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/lights.h"
-#include "host/light/sampler.h"
-#include "host/light/shadow_rays.h"
+#include "host/light/point_error.h"
 #include "host/light/skips.h"
-#include "host/light/surface.h"
+#include "host/light/wave.h"
 
 namespace raygate {
 
-/// A ray on its way, and what its light counts for.
-struct LightRay {
-  Ray ray;
-  std::uint32_t sample = 0;  ///< of a pixel: whose radiance it adds to
-  std::uint32_t stream = 0;  ///< of random numbers, its own in the sample
-  int depth = 0;             ///< surfaces behind it; 0: from the camera
-  glm::dvec3 weight{1.0};
-  /// Where a surface scattered it: how likely that was to give this direction, per steradian;
-  /// 0 where there was no choice (camera, mirror, glass).
-  double density = 0.0;
-  glm::dvec3 scattered_at{0.0};  ///< and where
-};
-
-/// The random numbers of one ray.
-class RandomNumbers {
- public:
-  RandomNumbers(const Sampler& sampler, std::uint32_t index, std::uint32_t stream)
-      : sampler_(sampler), index_(index), stream_(stream) {}
-  [[nodiscard]] glm::dvec2 operator()(std::uint32_t purpose) const {
-    return sampler_(index_, mixed(stream_, purpose));
-  }
-
- private:
-  const Sampler& sampler_;
-  std::uint32_t index_, stream_;
-};
-
-/// What the surfaces of a wave of rays give.
-struct WaveOutput {
-  std::vector<glm::dvec3> radiance;  ///< by sample
-  std::vector<ShadowRay> shadows;    ///< light still to arrive
-  std::vector<LightRay> next;        ///< the rays that go on
-};
-
 struct IntegratorOptions {
-  int max_depth = 4;               ///< rays of this depth are the last
-  double threshold = 1.0 / 256.0;  ///< Whitted: rays that count for less are not traced
-  glm::dvec3 ambient{0.0};         ///< Whitted: radiance from all sides that reaches everything
-  bool single_sample = false;      ///< one sample a pixel: no chance where there is a middle
+  int max_depth = 4;                ///< rays of this depth are the last
+  double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced
+  glm::dvec3 ambient{0.0};          ///< Whitted: radiance from all sides that reaches everything
+  bool single_sample = false;       ///< one sample a pixel: no chance where there is a middle
+  float point_error = kPointError;  ///< the host finds P where the unit's is off by more of itself
 };
 
-/// Shades hits. Not for use by two threads at once.
+/// Shades the hits of waves. Not for use by two threads at once.
+///
+/// Hits of one kind are shaded together, as many at a time as the machine has lanes; where each
+/// goes, and in which order lights and rays are added to their lists, follows from the order of the
+/// wave alone. So what a sample gets depends on nothing but its own rays.
 class Integrator {
  public:
-  /// The references must outlive this.
-  Integrator(const Clearances& clearances, const Lights& lights, const Skips& skips,
-             const IntegratorOptions& options)
-      : lights_(lights), departure_(clearances), skips_(skips), options_(options) {}
+  /// `each`: of a hit, so many questions for light and ways on, at most. The references must
+  /// outlive this.
+  Integrator(const Scene& scene, const Clearances& clearances, const Lights& lights,
+             const Skips& skips, const IntegratorOptions& options, std::size_t questions_each,
+             std::size_t ways_each);
   virtual ~Integrator() = default;
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
 
-  /// Adds what the hit of `ray` gives.
-  virtual void shade(const LightRay& ray, const Surface& surface, const RandomNumbers& random,
-                     WaveOutput& output) = 0;
+  /// So many rays are shaded at a time, at most.
+  [[nodiscard]] std::size_t block_size() const { return block_size_; }
+
+  /// Adds what the hits begin .. end of the wave give, at most block_size() of them.
+  void shade(const Wave& wave, std::span<const NearestHit> hits, std::size_t begin, std::size_t end,
+             WaveOutput& output);
+
+  /// Radiance along rays that hit nothing.
+  [[nodiscard]] virtual glm::vec3 background() const { return shading_.lights.background(); }
   /// Whether shadows are cast as if glass did not bend light.
-  [[nodiscard]] virtual bool shadows_through_refraction() const = 0;
+  [[nodiscard]] virtual bool shadows_through_refraction() const { return true; }
 
   [[nodiscard]] const SkipCounters& skipped() const { return skipped_; }
+  /// Hits whose P the host found.
+  [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  protected:
-  /// A hit, and the points beside it from which rays go on, found when needed.
-  struct Hit {
-    const LightRay& ray;
-    const Surface& surface;
-    Bsdf bsdf;
-    std::optional<std::optional<glm::vec3>> before, after;
-  };
+  /// Shades hits of one kind: those at `at` in the block.
+  virtual void shade_kind(HitBlock& block, HitKind kind, std::span<const std::uint32_t> at) = 0;
 
-  /// The departure point of a hit; nothing where there is none.
-  const std::optional<glm::vec3>& departure(Hit& hit, Departure way);
-
-  /// Asks for the light of a point light that the surface scatters, divided by `chance`.
-  void light_from_point(Hit& hit, std::size_t light, double chance, WaveOutput& output);
-  /// Asks for the light of a lamp's point; `weighted` is radiance over the density of the point,
-  /// per area, and whatever else it is to be multiplied with.
-  void light_from_area(Hit& hit, const LightPoint& point, const glm::dvec3& weighted,
-                       WaveOutput& output);
-
-  /// Sends a ray on. `flat` is the direction if `direction`, made with an interpolated normal,
-  /// leads to the wrong side; nothing goes on if it does, too.
-  void go_on(Hit& hit, Departure way, const glm::dvec3& direction,
-             const std::optional<glm::dvec3>& flat, LightRay next, WaveOutput& output);
-  /// The mirror's ray; its weight is `weight`.
-  void go_on_mirrored(Hit& hit, const glm::dvec3& weight, std::uint32_t branch, WaveOutput& output);
-  /// The ray through the surface.
-  void go_on_through(Hit& hit, const glm::dvec3& weight, std::uint32_t branch, WaveOutput& output);
-
-  const Lights& lights_;
-  DeparturePoint departure_;
-  Skips skips_;
-  IntegratorOptions options_;
+  ShadingScene shading_;
   SkipCounters skipped_;
 
  private:
-  void ask(Hit& hit, ShadowRay shadow, WaveOutput& output);
+  void sort(std::span<const NearestHit> hits, std::size_t count, WaveOutput& output);
+  void hand_on(std::size_t i, WaveOutput& output);
+
+  DeparturePoint departure_;
+  Skips skips_;
+  float point_error_;
+  std::uint64_t point_doubts_ = 0;
+  std::size_t block_size_;
+  std::vector<Finish> finishes_;  // of the materials
+  HitBlock block_;
+  std::vector<HitKind> kinds_;        // by place in the block; kHitKinds: nothing is hit
+  std::vector<std::uint32_t> order_;  // places, kind by kind
+  std::vector<std::uint32_t> first_;  // of each kind in it
 };
 
-/// Not for kPrimary, which has none.
-[[nodiscard]] std::unique_ptr<Integrator> make_integrator(IntegratorKind kind,
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Scene& scene,
                                                           const Clearances& clearances,
                                                           const Lights& lights, const Skips& skips,
                                                           const IntegratorOptions& options);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "host/exact/exact.h"
@@ -74,6 +76,45 @@ glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lam
   return flux * mean / (1.0 - mean) / (std::numbers::pi * area);
 }
 
+/// No infinity.
+float bounded(double x) {
+  return static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
+}
+glm::vec3 bounded(const glm::dvec3& x) { return {bounded(x.x), bounded(x.y), bounded(x.z)}; }
+
+/// A power of two about as long as the scene, its lights included.
+double unit_of(const Scene& scene) {
+  float size = 0.0f;
+  for (const glm::vec3& position : scene.positions) size = std::max(size, largest(position));
+  for (const PointLight& light : scene.lights) size = std::max(size, largest(light.position));
+  constexpr int kMostExponent = 126;  // the inverse is a float, too
+  return size > 0.0f ? std::ldexp(1.0, std::clamp(std::ilogb(size), -kMostExponent, kMostExponent))
+                     : 1.0;
+}
+
+/// The corner of a parallelogram and its two sides. Its diagonal from that corner parts the
+/// triangles: the first one has more of u than of v.
+struct Parallelogram {
+  glm::vec3 corner, u, v;
+};
+
+/// The parallelogram that two triangles make, both facing the same way.
+std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& second) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    // The edge from `first`'s corner k + 2 to k is shared, and runs the other way in `second`.
+    const glm::vec3 &corner = first[k], &side = first[(k + 1) % 3], &end = first[(k + 2) % 3];
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (second[j] != corner || second[(j + 1) % 3] != end) continue;
+      const glm::dvec3 u = glm::dvec3(side) - glm::dvec3(corner);
+      const glm::dvec3 v = glm::dvec3(end) - glm::dvec3(side);
+      const glm::dvec3 other = glm::dvec3(second[(j + 2) % 3]) - glm::dvec3(corner);
+      if (largest(other - v) > 0x1p-20 * std::max(largest(u), largest(v))) return std::nullopt;
+      return Parallelogram{corner, glm::vec3(u), glm::vec3(other)};
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void light_if_dark(Scene& scene, const Camera& camera) {
@@ -107,63 +148,81 @@ Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
   for (const std::uint32_t slot : emitting_slots(scene, bvh)) {
     const Triangle& face = scene.triangles[bvh.triangle_of(slot)];
     const Material& material = scene.materials[face.material];
-    if (area_of_slot_.empty()) area_of_slot_.assign(bvh.slot_count(), kNoIndex);
+    if (lamp_of_slot_.empty()) lamp_of_slot_.assign(bvh.slot_count(), kNoIndex);
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
       areas_.emplace_back();
       areas_.back().radiance = glm::dvec3(material.emission);
     }
-    area_of_slot_[slot] = static_cast<std::uint32_t>(at->second);
+    lamp_of_slot_[slot] = static_cast<std::uint32_t>(points().size() + at->second);
     AreaLight& light = areas_[at->second];
     const double area = 0.5 * glm::length(triangle_normal(bvh.corners_of(slot)));
     light.area_up_to.push_back((light.slots.empty() ? 0.0 : light.area()) + area);
     light.slots.push_back(slot);
   }
+  const double unit = unit_of(scene);
+  per_unit_ = static_cast<float>(1.0 / unit);
+  std::vector<double> power_up_to;
   double power = 0.0;
   for (const PointLight& light : scene.lights) {
+    Lamp& lamp = lamps_.emplace_back();
+    lamp.light = bounded(light.intensity / unit / unit);
+    lamp.position = light.position;
     power += 4.0 * std::numbers::pi * mean(light.intensity);
-    power_up_to_.push_back(power);
+    power_up_to.push_back(power);
   }
   for (AreaLight& light : areas_) {
     find_middle(bvh, light);
+    Lamp& lamp = lamps_.emplace_back();
+    lamp.light = bounded(light.radiance);
+    lamp.area = bounded(light.area() / unit / unit);
+    add_patches(light, lamp);
     power += 2.0 * std::numbers::pi * light.area() * mean(light.radiance);
-    power_up_to_.push_back(power);
+    power_up_to.push_back(power);
   }
-  ambient_ = background() != glm::dvec3(0.0) ? background() : guessed_ambient(scene, areas_);
+  any_power_ = power > 0.0;
+  for (std::size_t i = 0; any_power_ && i < lamps_.size(); ++i) {
+    const double chance = (power_up_to[i] - (i == 0 ? 0.0 : power_up_to[i - 1])) / power;
+    lamps_[i].chance = static_cast<float>(chance);
+    if (lamps_[i].patches != 0) {
+      lamps_[i].chance_of_place =
+          bounded(chance / areas_[i - points().size()].area() * unit * unit);
+    }
+    chance_up_to_.push_back(static_cast<float>(power_up_to[i] / power));
+  }
+  ambient_ = scene.background != glm::vec3(0.0f) ? glm::dvec3(scene.background)
+                                                 : guessed_ambient(scene, areas_);
 }
 
-LightPoint Lights::sample(const AreaLight& light, const glm::dvec2& u) const {
-  const double wanted = u.x * light.area();
-  const auto above = std::upper_bound(light.area_up_to.begin(), light.area_up_to.end() - 1, wanted);
-  const auto index = static_cast<std::size_t>(above - light.area_up_to.begin());
-  const double before = index == 0 ? 0.0 : light.area_up_to[index - 1];
-  const double rest = std::clamp((wanted - before) / (*above - before), 0.0, 1.0);
-  // The square onto the triangle: sqrt keeps areas.
-  const double root = std::sqrt(rest);
-  const Corners& t = bvh_.corners_of(light.slots[index]);
-  const glm::dvec3 a(t[0]), b(t[1]), c(t[2]);
-  return {(1.0 - root) * a + root * ((1.0 - u.y) * b + u.y * c), glm::normalize(triangle_normal(t)),
-          light.slots[index]};
-}
-
-LightPoint Lights::middle(const AreaLight& light) {
-  return {light.middle, light.middle_normal, light.slots[0]};
-}
-
-const AreaLight* Lights::area_of(std::uint32_t slot) const {
-  if (area_of_slot_.empty() || area_of_slot_[slot] == kNoIndex) return nullptr;
-  return &areas_[area_of_slot_[slot]];
-}
-
-std::size_t Lights::choose(double u) const {
-  const auto above =
-      std::upper_bound(power_up_to_.begin(), power_up_to_.end() - 1, u * power_up_to_.back());
-  return static_cast<std::size_t>(above - power_up_to_.begin());
-}
-
-double Lights::chance(std::size_t light) const {
-  const double before = light == 0 ? 0.0 : power_up_to_[light - 1];
-  return (power_up_to_[light] - before) / power_up_to_.back();
+/// Two triangles in a row that share an edge and are opposite corners' halves of a parallelogram
+/// are one patch: points of the square are spread over it without a bend.
+void Lights::add_patches(const AreaLight& light, Lamp& lamp) {
+  lamp.first_patch = static_cast<std::uint32_t>(patches_.size());
+  for (std::size_t i = 0; i < light.slots.size(); ++i) {
+    const Corners t = bvh_.corners_of(light.slots[i]);
+    Patch patch;
+    patch.slot = patch.slot_beyond = light.slots[i];
+    patch.begin = i == 0 ? 0.0f : static_cast<float>(light.area_up_to[i - 1] / light.area());
+    patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
+    patch.corner = t[0];
+    patch.u = t[1] - t[0];
+    patch.v = t[2] - t[0];
+    if (i + 1 < light.slots.size()) {
+      const auto sides = parallelogram(t, bvh_.corners_of(light.slots[i + 1]));
+      if (sides) {
+        ++i;
+        patch.is_triangle = false;
+        patch.corner = sides->corner;
+        patch.u = sides->u;
+        patch.v = sides->v;
+        patch.slot_beyond = light.slots[i];
+      }
+    }
+    patch.end = static_cast<float>(light.area_up_to[i] / light.area());
+    patches_.push_back(patch);
+    patch_ends_.push_back(patch.end);
+    ++lamp.patches;
+  }
 }
 
 }  // namespace raygate

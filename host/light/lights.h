@@ -1,11 +1,14 @@
 // Where light comes from.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "host/light/lane_math.h"
+#include "host/light/sampler.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -30,13 +33,15 @@ struct AreaLight {
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };
 
-/// A point of a lamp.
+/// Points of lamps, one a lane.
+template <class T>
 struct LightPoint {
-  glm::dvec3 position{0.0}, normal{0.0};  ///< the normal to one of both sides
-  std::uint32_t slot = 0;
+  Triple<T> position, normal;  ///< the normal to one of both sides
+  WordOf<T> slot;
 };
 
-/// All lights of a scene, ready for use.
+/// All lights of a scene, ready for use. Lengths in what is asked of a surface (areas, distances)
+/// are in units of `unit()`: floats have room for their squares then.
 class Lights {
  public:
   /// The references must outlive this.
@@ -44,41 +49,122 @@ class Lights {
 
   [[nodiscard]] std::span<const PointLight> points() const { return scene_.lights; }
   [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
-  [[nodiscard]] glm::dvec3 background() const { return glm::dvec3(scene_.background); }
+  [[nodiscard]] glm::vec3 background() const { return scene_.background; }
   /// Radiance from all sides that may stand for light that goes from surface to surface: the
   /// background's or, where that is black, what the lamps' flux would come to after many
   /// reflections if it were spread evenly over all surfaces ("A progressive refinement approach to
   /// fast radiosity image generation", Cohen, Chen, Wallace and Greenberg 1988, has such a term).
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
   /// Points first, then areas.
-  [[nodiscard]] std::size_t count() const { return points().size() + areas_.size(); }
+  [[nodiscard]] std::size_t count() const { return lamps_.size(); }
 
-  /// A point of an area light, uniform in area, for a point of the unit square.
-  [[nodiscard]] LightPoint sample(const AreaLight& light, const glm::dvec2& u) const;
+  /// The inverse of a power of two about as long as the scene.
+  [[nodiscard]] float per_unit() const { return per_unit_; }
+
+  /// What shading reads of a light, by its index as in count().
+  struct Lamp {
+    /// Of a point light its intensity, in square units; of an area light radiance.
+    glm::vec3 light{0.0f};
+    glm::vec3 position{0.0f};      ///< of a point light
+    float area = 0.0f;             ///< in square units
+    float chance = 0.0f;           ///< how likely choose() is to give it
+    float chance_of_place = 0.0f;  ///< chance over area: of a point, per square unit
+    std::uint32_t first_patch = 0, patches = 0;
+  };
+  [[nodiscard]] const Lamp& lamp(std::size_t index) const { return lamps_[index]; }
+
+  /// Points of area lights, uniform in area, for points of the unit square.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(
+      const std::uint32_t (&lamps)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
   /// The middle of a flat light, or very near, as a sample. Its slot is one of the light's.
-  [[nodiscard]] static LightPoint middle(const AreaLight& light);
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
+    return {spread<T>(glm::vec3(light.middle)), spread<T>(glm::vec3(light.middle_normal)),
+            spread<WordOf<T>>(light.slots[0])};
+  }
 
-  /// Which area light a slot belongs to; nullptr for none.
-  [[nodiscard]] const AreaLight* area_of(std::uint32_t slot) const;
+  /// Which light a slot belongs to, as in count(); kNoIndex for none.
+  [[nodiscard]] std::uint32_t lamp_of(std::uint32_t slot) const {
+    return lamp_of_slot_.empty() ? kNoIndex : lamp_of_slot_[slot];
+  }
 
   /// Whether there is a light, and not all are dark.
-  [[nodiscard]] bool any_power() const { return !power_up_to_.empty() && power_up_to_.back() > 0; }
-  /// One light, chosen by its power: index as in count(). Only where any_power().
-  [[nodiscard]] std::size_t choose(double u) const;
-  /// How likely choose() is to give that one.
-  [[nodiscard]] double chance(std::size_t light) const;
-  /// The same of an area light of areas().
-  [[nodiscard]] double chance(const AreaLight& light) const {
-    return chance(points().size() + static_cast<std::size_t>(&light - areas_.data()));
+  [[nodiscard]] bool any_power() const { return any_power_; }
+  /// One light, chosen by its power. Only where any_power().
+  [[nodiscard]] std::uint32_t choose(float u) const {
+    return static_cast<std::uint32_t>(
+        std::upper_bound(chance_up_to_.begin(), chance_up_to_.end() - 1, u) -
+        chance_up_to_.begin());
   }
 
  private:
+  /// A part of a lamp: a triangle, or two that make a parallelogram.
+  struct Patch {
+    glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
+    std::uint32_t slot = 0, slot_beyond = 0;  ///< with more of u than of v, and the other way round
+    float begin = 0.0f, end = 0.0f;           ///< its part of the lamp's area, in [0, 1]
+    bool is_triangle = true;
+  };
+
+  void add_patches(const AreaLight& light, Lamp& lamp);
+
   const Scene& scene_;
   const Bvh& bvh_;
   std::vector<AreaLight> areas_;
-  std::vector<std::uint32_t> area_of_slot_;  // index into areas_, or kNoIndex; empty: none at all
-  std::vector<double> power_up_to_;          // each light included
+  std::vector<Lamp> lamps_;
+  std::vector<Patch> patches_;
+  std::vector<float> patch_ends_;            // of the patches, for searching
+  std::vector<std::uint32_t> lamp_of_slot_;  // or kNoIndex; empty: none at all
+  std::vector<float> chance_up_to_;          // each light included
+  bool any_power_ = false;
+  float per_unit_ = 1.0f;
   glm::dvec3 ambient_{0.0};
 };
+
+template <class T>
+RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&lamps)[LanesOf<T>::kCount],
+                                            const SquarePoint<T>& u) const {
+  constexpr int kCount = LanesOf<T>::kCount;
+  enum : std::uint8_t {
+    kCorner,
+    kU = 3,
+    kV = 6,
+    kNormal = 9,
+    kBegin = 12,
+    kEnd,
+    kTriangle,
+    kFields
+  };
+  Gathered<T, kFields> in;
+  Gathered<T, 2, std::uint32_t> slots;
+  float wanted[kCount];
+  lanes_to(wanted, u.x);
+  for (int k = 0; k < kCount; ++k) {
+    const Lamp& lamp = lamps_[lamps[k]];
+    const auto first = patch_ends_.begin() + lamp.first_patch;
+    const auto found = std::upper_bound(first, first + lamp.patches - 1, wanted[k]);
+    const Patch& patch = patches_[static_cast<std::size_t>(found - patch_ends_.begin())];
+    in.put(kCorner, k, patch.corner);
+    in.put(kU, k, patch.u);
+    in.put(kV, k, patch.v);
+    in.put(kNormal, k, patch.normal);
+    in.values[kBegin][k] = patch.begin;
+    in.values[kEnd][k] = patch.end;
+    in.values[kTriangle][k] = patch.is_triangle ? 1.0f : 0.0f;
+    slots.values[0][k] = patch.slot;
+    slots.values[1][k] = patch.slot_beyond;
+  }
+  const T begin = in.one(kBegin), size = in.one(kEnd) - begin;
+  const T x = at_most(at_least((u.x - begin) / size, 0.0f), 1.0f);
+  // The square onto the triangle: sqrt keeps areas.
+  const auto is_triangle = in.one(kTriangle) > 0.0f;
+  const T far = root(x);
+  const T along_u = raygate::choose(is_triangle, far * (1.0f - u.y), x);
+  const T along_v = raygate::choose(is_triangle, far * u.y, u.y);
+  return {in.triple(kCorner) + in.triple(kU) * along_u + in.triple(kV) * along_v,
+          in.triple(kNormal),
+          raygate::choose(is_triangle | (along_u > along_v), slots.one(0), slots.one(1))};
+}
 
 }  // namespace raygate

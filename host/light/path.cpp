@@ -1,7 +1,6 @@
 #include "host/light/path.h"
 
-#include <algorithm>
-#include <cmath>
+#include "host/light/in_lanes.h"
 
 namespace raygate {
 namespace {
@@ -9,105 +8,177 @@ namespace {
 // What random numbers and branches are for.
 constexpr std::uint32_t kGoOn = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                         kDirection = 5;
-constexpr int kSureSurfaces = 3;  // before chance decides whether a ray lives on
-
-/// A lamp's density per area, seen from `point`, per steradian; 0 where the lamp is seen edge-on.
-double per_steradian(double per_area, const glm::dvec3& point, const glm::dvec3& lamp,
-                     const glm::dvec3& lamp_normal) {
-  const glm::dvec3 way = lamp - point;
-  const double squared = glm::dot(way, way);
-  const double cosine = std::abs(glm::dot(lamp_normal, way)) / std::sqrt(squared);
-  return cosine > 0.0 ? per_area * squared / cosine : 0.0;
-}
+constexpr int kSureSurfaces = 3;         // before chance decides whether a ray lives on
+constexpr float kLeastDensity = 1e-20f;  // of a direction: floats have room for the inverse
 
 /// How likely each way on is, in proportion to what it brings.
+template <class T>
 struct LobeChances {
-  double mirror, through, scatter, sum;
+  T mirror, through, scatter, sum;
 
-  explicit LobeChances(const Bsdf& bsdf)
+  RAYGATE_INLINE explicit LobeChances(const Bsdf<T>& bsdf)
       : mirror(largest(bsdf.mirror())),
         through(largest(bsdf.through())),
         scatter(largest(bsdf.diffuse() + bsdf.glossy())),
         sum(mirror + through + scatter) {}
+
+  /// Of scattering; 0 where there is no way on at all.
+  [[nodiscard]] RAYGATE_INLINE T share_of_scatter() const {
+    return choose(sum > 0.0f, scatter / sum, T{});
+  }
 };
+
+/// a / (a + b), where a may be infinite.
+template <class T>
+RAYGATE_INLINE T share_of(const T& a, const T& b) {
+  return 1.0f / (1.0f + b / a);
+}
+
+/// What the surfaces emit. Lamps that a scattered ray has found count for the share of that way of
+/// finding them.
+template <class T>
+RAYGATE_INLINE Triple<T> emitted(const ShadingScene& shading, const Hits<T>& hits) {
+  const Lights& lights = shading.lights;
+  Gathered<T, 1> places;
+  for (int k = 0; k < Hits<T>::kCount; ++k) {
+    const std::uint32_t lamp = lights.lamp_of(hits.block.places[hits.place[k]].slot);
+    places.values[0][k] = lamp == kNoIndex ? 0.0f : lights.lamp(lamp).chance_of_place;
+  }
+  const Triple<T> way = (hits.surface.point - hits.scattered_at) * spread<T>(lights.per_unit());
+  const T squared = dot(way, way);
+  const T cosine = absolute(dot(hits.surface.flat_normal, way)) / root(squared);
+  const T asked = choose(cosine > 0.0f, places.one(0) * squared / cosine, T{});
+  const T share = choose((places.one(0) > 0.0f) & (hits.density > 0.0f),
+                         share_of(hits.density, asked), spread<T>(1.0f));
+  return hits.weight * (hits.bsdf.emission() * share + hits.bsdf.unlit());
+}
+
+template <class T>
+RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
+  constexpr int kCount = Hits<T>::kCount;
+  const Lights& lights = shading.lights;
+  float chosen[kCount];
+  lanes_to(chosen, hits.random(kChooseLight).x);
+  enum : std::uint8_t { kLight, kPosition = 3, kIsPoint = 6, kChance, kPlace, kFields };
+  Gathered<T, kFields> in;
+  std::uint32_t lamps[kCount];
+  bool any_point = false, any_area = false;
+  for (int k = 0; k < kCount; ++k) {
+    lamps[k] = lights.choose(chosen[k]);
+    const Lights::Lamp& lamp = lights.lamp(lamps[k]);
+    const bool is_point = lamp.patches == 0;
+    in.put(kLight, k, lamp.light);
+    in.put(kPosition, k, lamp.position);
+    in.values[kIsPoint][k] = is_point ? 1.0f : 0.0f;
+    in.values[kChance][k] = lamp.chance;
+    in.values[kPlace][k] = lamp.chance_of_place;
+    any_point = any_point || is_point;
+    any_area = any_area || !is_point;
+  }
+  const auto is_point = in.one(kIsPoint) > 0.0f;
+  if (any_point) {
+    const LightPoint<T> point = {in.triple(kPosition), zero<T>(), WordOf<T>{}};
+    const Triple<T> light =
+        light_from_point(hits, lights, point.position, in.triple(kLight), in.one(kChance));
+    ask<T>(hits, 0, is_point, light, lamps, point);
+  }
+  if (!any_area) return;
+  for (int k = 0; k < kCount; ++k) {
+    // A lane without an area light samples one nevertheless, and nothing comes of it.
+    if (lights.lamp(lamps[k]).patches == 0)
+      lamps[k] = static_cast<std::uint32_t>(lights.points().size());
+  }
+  const LightPoint<T> point = lights.sample<T>(lamps, hits.random(kLightPoint));
+  const WayToLight<T> way(lights, hits.surface, point.position);
+  const T place = in.one(kPlace), cosine = absolute(dot(point.normal, way.direction));
+  const T asked = place * way.squared / cosine;
+  const T scattered =
+      hits.bsdf.density(way.direction) * LobeChances<T>(hits.bsdf).share_of_scatter();
+  const Triple<T> weighted = in.triple(kLight) * (share_of(asked, scattered) / place);
+  ask<T>(hits, 0, (!is_point) & hits.bsdf.scatters() & (cosine > 0.0f),
+         light_from_area(hits, way, point, weighted), lamps, point);
+}
+
+template <class T>
+RAYGATE_INLINE void go_on_by_chance(const ShadingScene& shading, Hits<T>& hits,
+                                    Triple<T>& radiance) {
+  const Surface<T>& surface = hits.surface;
+  const Bsdf<T>& bsdf = hits.bsdf;
+  const LobeChances<T> chances(bsdf);
+  const SquarePoint<T> choice = hits.random(kChooseLobe);
+  Triple<T> weight = hits.weight;
+  WaysOn<T> ways;
+  ways.is_wanted = chances.sum > 0.0f;
+  // Chance decides before the lobe is looked at, so that no work is lost on rays that end.
+  if (hits.block.wave->depth >= kSureSurfaces) {
+    const T survival = at_most(largest(weight) * chances.sum, 1.0f);
+    ways.is_wanted = ways.is_wanted & (choice.y < survival);
+    weight = choose(ways.is_wanted, weight * (1.0f / survival), weight);
+  }
+  if (!any(ways.is_wanted)) return;
+  const T u = choice.x * chances.sum;
+  const auto is_mirrored = u < chances.mirror;
+  ways.is_through = (!is_mirrored) & (u < chances.mirror + chances.through);
+  ways.has_flat = is_mirrored | ways.is_through;
+  ways.stream = mixed(hits.stream, kGoOn);
+
+  ways.direction = bsdf.sample(hits.random(kDirection));
+  ways.flat = ways.direction;
+  ways.density = bsdf.density(ways.direction) * chances.share_of_scatter();
+  ways.scattered_at = surface.point;
+  const T cosine = at_least(dot(surface.normal, ways.direction), 0.0f);
+  const auto brings =
+      (ways.density > kLeastDensity) & (dot(surface.flat_normal, ways.direction) > 0.0f);
+  ways.weight =
+      choose(brings, bounded(weight * bsdf.scattered(ways.direction) * (cosine / ways.density)),
+             zero<T>());
+  if ((hits.kind & kMirrors) != 0) {
+    const Triple<T> mirrored_weight = weight * bsdf.mirror() * (chances.sum / chances.mirror);
+    ways.direction = choose(is_mirrored, mirrored(surface.view, surface.normal), ways.direction);
+    ways.flat = choose(is_mirrored, mirrored(surface.view, surface.flat_normal), ways.flat);
+    ways.weight = choose(is_mirrored, mirrored_weight, ways.weight);
+    ways.density = choose(is_mirrored, T{}, ways.density);
+    const auto shows_background = ways.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
+    radiance =
+        choose(shows_background,
+               radiance + mirrored_weight * spread<T>(shading.lights.background()), radiance);
+    ways.is_wanted = ways.is_wanted & !shows_background;
+  }
+  if ((hits.kind & kLetsThrough) != 0) {
+    const auto is_bent = ways.is_through & bsdf.is_refracting();
+    const auto is_straight = ways.is_through & !bsdf.is_refracting();
+    const Refraction<T> bent(surface.view, surface.normal, bsdf.eta());
+    const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
+    ways.direction = choose(is_bent, bent.direction, ways.direction);
+    ways.flat = choose(is_bent, flat.direction, ways.flat);
+    ways.has_flat = ways.has_flat & ((!is_bent) | flat.exists);
+    ways.is_wanted = ways.is_wanted & ((!is_bent) | bent.exists);
+    ways.weight = choose(ways.is_through, weight * bsdf.through() * (chances.sum / chances.through),
+                         ways.weight);
+    ways.density = choose(is_bent, T{}, ways.density);
+    // Straight on as if there were nothing.
+    ways.direction = choose(is_straight, -surface.view, ways.direction);
+    ways.flat = choose(is_straight, -surface.view, ways.flat);
+    ways.density = choose(is_straight, hits.density, ways.density);
+    ways.scattered_at = choose(is_straight, hits.scattered_at, ways.scattered_at);
+  }
+  ways.send(hits, 0);
+}
 
 }  // namespace
 
-glm::dvec3 Path::emitted(const LightRay& ray, const Surface& surface, const Bsdf& bsdf) const {
-  const AreaLight* light = lights_.area_of(surface.slot);
-  if (light == nullptr || ray.density == 0.0) return bsdf.emission() + bsdf.unlit();
-  const double asked = per_steradian(lights_.chance(*light) / light->area(), ray.scattered_at,
-                                     surface.point, surface.flat_normal);
-  return bsdf.emission() * (ray.density / (ray.density + asked)) + bsdf.unlit();
-}
-
-void Path::ask_one_light(Hit& hit, const RandomNumbers& random, WaveOutput& output) {
-  if (!lights_.any_power()) return;
-  const std::size_t index = lights_.choose(random(kChooseLight).x);
-  const double chance = lights_.chance(index);
-  if (index < lights_.points().size()) {
-    light_from_point(hit, index, chance, output);
-    return;
-  }
-  if (!hit.bsdf.scatters()) return;
-  const AreaLight& light = lights_.areas()[index - lights_.points().size()];
-  const LightPoint point = lights_.sample(light, random(kLightPoint));
-  const double per_area = chance / light.area();
-  const double asked = per_steradian(per_area, hit.surface.point, point.position, point.normal);
-  if (asked == 0.0) return;
-  const LobeChances chances(hit.bsdf);
-  const double scattered = hit.bsdf.density(glm::normalize(point.position - hit.surface.point)) *
-                           chances.scatter / chances.sum;
-  light_from_area(hit, point, light.radiance * (asked / (asked + scattered) / per_area), output);
-}
-
-void Path::go_on_by_chance(Hit& hit, const RandomNumbers& random, WaveOutput& output) {
-  const Bsdf& bsdf = hit.bsdf;
-  const LobeChances chances(bsdf);
-  if (chances.sum == 0.0) return;
-  const glm::dvec2 choice = random(kChooseLobe);
-  glm::dvec3 weight = hit.ray.weight;
-  // Chance decides before the lobe is looked at, so that no work is lost on rays that end.
-  if (hit.ray.depth >= kSureSurfaces) {
-    const double survival = std::min(1.0, largest(weight) * chances.sum);
-    if (choice.y >= survival) return;
-    weight /= survival;
-  }
-  const double u = choice.x * chances.sum;
-  if (u < chances.mirror) {
-    weight *= bsdf.mirror() * (chances.sum / chances.mirror);
-    if (bsdf.mirror_is_traced()) {
-      go_on_mirrored(hit, weight, kGoOn, output);
-    } else {
-      output.radiance[hit.ray.sample] += weight * lights_.background();
+void Path::shade_kind(HitBlock& block, HitKind kind, std::span<const std::uint32_t> at) {
+  const ShadingScene& shading = shading_;
+  in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
+    using T = std::remove_cvref_t<decltype(hits.density)>;
+    Triple<T> radiance = zero<T>();
+    if ((kind & kEmits) != 0) radiance = emitted(shading, hits);
+    if (block.wave->depth <= shading.max_depth) {
+      if (shading.lights.any_power()) ask_one_light(shading, hits);
+      go_on_by_chance(shading, hits, radiance);
     }
-    return;
-  }
-  if (u < chances.mirror + chances.through) {
-    go_on_through(hit, weight * bsdf.through() * (chances.sum / chances.through), kGoOn, output);
-    return;
-  }
-  const glm::dvec3 direction = bsdf.sample(random(kDirection));
-  const double density = bsdf.density(direction) * chances.scatter / chances.sum;
-  LightRay next;
-  next.weight = glm::dvec3(0.0);
-  if (density > 0.0 && glm::dot(hit.surface.flat_normal, direction) > 0.0) {
-    next.weight = weight * bsdf.scattered(direction) *
-                  (std::max(0.0, glm::dot(hit.surface.normal, direction)) / density);
-  }
-  next.stream = mixed(hit.ray.stream, kGoOn);
-  next.density = density;
-  next.scattered_at = hit.surface.point;
-  go_on(hit, Departure::kBefore, direction, std::nullopt, next, output);
-}
-
-void Path::shade(const LightRay& ray, const Surface& surface, const RandomNumbers& random,
-                 WaveOutput& output) {
-  Hit hit{ray, surface, Bsdf(surface), {}, {}};
-  output.radiance[ray.sample] += ray.weight * emitted(ray, surface, hit.bsdf);
-  if (ray.depth > options_.max_depth) return;
-  ask_one_light(hit, random, output);
-  go_on_by_chance(hit, random, output);
+    hits.set_radiance(radiance);
+  });
 }
 
 }  // namespace raygate

@@ -12,17 +12,14 @@ namespace raygate {
 /// deeper than the depth chosen, see what emits and nothing else.
 class Path final : public Integrator {
  public:
-  using Integrator::Integrator;
+  Path(const Scene& scene, const Clearances& clearances, const Lights& lights, const Skips& skips,
+       const IntegratorOptions& options)
+      : Integrator(scene, clearances, lights, skips, options, 1, 1) {}
 
-  void shade(const LightRay& ray, const Surface& surface, const RandomNumbers& random,
-             WaveOutput& output) override;
   [[nodiscard]] bool shadows_through_refraction() const override { return false; }
 
  private:
-  [[nodiscard]] glm::dvec3 emitted(const LightRay& ray, const Surface& surface,
-                                   const Bsdf& bsdf) const;
-  void ask_one_light(Hit& hit, const RandomNumbers& random, WaveOutput& output);
-  void go_on_by_chance(Hit& hit, const RandomNumbers& random, WaveOutput& output);
+  void shade_kind(HitBlock& block, HitKind kind, std::span<const std::uint32_t> at) override;
 };
 
 }  // namespace raygate

@@ -4,21 +4,85 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "host/light/lane_math.h"
+
 namespace raygate {
 
-/// A thorough mix of two words: every bit of the result depends on every bit of both.
-[[nodiscard]] inline std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
-  std::uint64_t x = (std::uint64_t{a} << 32 | b) + 0x9E3779B97F4A7C15u;  // splitmix64's finish
-  x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ x >> 27) * 0x94D049BB133111EBu;
-  return static_cast<std::uint32_t>((x ^ x >> 31) >> 32);
+/// A thorough mix of a word: every bit of the result depends on every bit. One to one. The factors
+/// are Wellons' ("Prospecting for hash functions", 2018).
+template <class W>
+RAYGATE_INLINE W mixed(W x) {
+  x ^= x >> 16;
+  x *= 0x7FEB352Du;
+  x ^= x >> 15;
+  x *= 0x846CA68Bu;
+  return x ^ x >> 16;
 }
 
-/// Points of the first two Sobol dimensions, a (0,2)-sequence: of any 2^k successive points from a
-/// multiple of 2^k on, each elementary interval of area 2^-k holds one. Every stream has its own
-/// Owen scrambling of both coordinates and of the order, so that streams are independent of each
-/// other ("Practical Hash-based Owen Scrambling", Burley 2020, with the permutation of Laine and
-/// Karras 2011). A point depends on nothing but stream and index.
+/// The same of two words.
+template <class W>
+RAYGATE_INLINE W mixed(const W& a, const W& b) {
+  return mixed<W>(mixed<W>(a + 0x9E3779B9u) ^ b);
+}
+template <class W>
+RAYGATE_INLINE W mixed(const W& a, std::uint32_t b) requires(!std::is_same_v<W, std::uint32_t>) {
+  return mixed<W>(mixed<W>(a + 0x9E3779B9u) ^ b);
+}
+
+template <class W>
+RAYGATE_INLINE W reversed_bits(W x) {
+  x = x >> 16 | x << 16;
+  x = (x >> 8 & 0x00FF00FFu) | (x & 0x00FF00FFu) << 8;
+  x = (x >> 4 & 0x0F0F0F0Fu) | (x & 0x0F0F0F0Fu) << 4;
+  x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+  return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+}
+
+/// Owen's nested uniform scrambling of a word whose bits are in reverse: whether a bit is flipped
+/// depends on the bits that count for more, here the lower ones.
+template <class W>
+RAYGATE_INLINE W scrambled(W x, const W& key) {
+  x += key;
+  x ^= x * 0x6C50B47Cu;  // even factors: a bit is changed by lower ones, never by itself
+  x *= key | 1u;
+  x ^= x * 0xB82F1E52u;
+  x ^= x * 0xC7AFE638u;
+  return x ^ x * 0x8D22F6E6u;
+}
+
+/// The second Sobol dimension in reverse: digit j is the sum, modulo 2, of the index's digits i
+/// times binomial(i, j). That is odd just where j's bits are among i's: five steps, one for each
+/// bit.
+template <class W>
+RAYGATE_INLINE W second_sobol(W index) {
+  index ^= index >> 1 & 0x55555555u;
+  index ^= index >> 2 & 0x33333333u;
+  index ^= index >> 4 & 0x0F0F0F0Fu;
+  index ^= index >> 8 & 0x00FF00FFu;
+  return index ^ (index >> 16 & 0x0000FFFFu);
+}
+
+/// A point of the unit square.
+template <class T>
+struct SquarePoint {
+  T x, y;  ///< in [0, 1)
+};
+
+/// Point `index` of the stream `key`: of the first two Sobol dimensions, a (0,2)-sequence. Of any
+/// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k holds
+/// one. Every stream has its own Owen scrambling of both coordinates and of the order, so that
+/// streams are independent of each other ("Practical Hash-based Owen Scrambling", Burley 2020, with
+/// the permutation of Laine and Karras 2011).
+template <class T>
+RAYGATE_INLINE SquarePoint<T> square_point(const WordOf<T>& index, const WordOf<T>& key) {
+  using Word = WordOf<T>;
+  const Word shuffled = reversed_bits<Word>(scrambled<Word>(reversed_bits<Word>(index), key));
+  const Word x = scrambled<Word>(shuffled, mixed<Word>(key + 1u));
+  const Word y = scrambled<Word>(second_sobol<Word>(shuffled), mixed<Word>(key + 2u));
+  return {unit_interval(reversed_bits<Word>(x)), unit_interval(reversed_bits<Word>(y))};
+}
+
+/// The points of a pixel. A point depends on nothing but seed, pixel, stream and index.
 class Sampler {
  public:
   /// `seed` of the whole picture; `pixel` names a pixel of the whole frame.
@@ -26,47 +90,15 @@ class Sampler {
       : key_(mixed(mixed(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
                    mixed(pixel_x, pixel_y))) {}
 
+  /// What streams are derived from.
+  [[nodiscard]] std::uint32_t key() const { return key_; }
+
   /// Point `index` of the stream `dimension`, in [0, 1)^2.
-  [[nodiscard]] glm::dvec2 operator()(std::uint32_t index, std::uint32_t dimension) const {
-    const std::uint32_t key = mixed(key_, dimension);
-    const std::uint32_t shuffled = scrambled(index, key);
-    return {scrambled(reversed(shuffled), mixed(key, 1)) * 0x1p-32,
-            scrambled(second_sobol(shuffled), mixed(key, 2)) * 0x1p-32};
+  [[nodiscard]] SquarePoint<float> operator()(std::uint32_t index, std::uint32_t dimension) const {
+    return square_point<float>(index, mixed(key_, dimension));
   }
 
  private:
-  static std::uint32_t reversed(std::uint32_t x) {
-    x = x >> 16 | x << 16;
-    x = (x >> 8 & 0x00FF00FFu) | (x & 0x00FF00FFu) << 8;
-    x = (x >> 4 & 0x0F0F0F0Fu) | (x & 0x0F0F0F0Fu) << 4;
-    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
-    return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
-  }
-
-  /// The second Sobol dimension: digit j is the sum, modulo 2, of the index's digits i times
-  /// binomial(i, j). That is odd just where j's bits are among i's: five steps, one for each bit.
-  static std::uint32_t second_sobol(std::uint32_t index) {
-    index ^= index >> 1 & 0x55555555u;
-    index ^= index >> 2 & 0x33333333u;
-    index ^= index >> 4 & 0x0F0F0F0Fu;
-    index ^= index >> 8 & 0x00FF00FFu;
-    index ^= index >> 16 & 0x0000FFFFu;
-    return reversed(index);
-  }
-
-  /// Owen's nested uniform scrambling: whether a bit is flipped depends on the bits above it.
-  /// From the lowest bit upwards, each step below lets bits depend on lower ones only.
-  static std::uint32_t scrambled(std::uint32_t x, std::uint32_t key) {
-    x = reversed(x);
-    x += key;
-    x ^= x * 0x6C50B47Cu;  // even factors: a bit is changed by lower ones, never by itself
-    x *= key | 1u;
-    x ^= x * 0xB82F1E52u;
-    x ^= x * 0xC7AFE638u;
-    x ^= x * 0x8D22F6E6u;
-    return reversed(x);
-  }
-
   std::uint32_t key_;
 };
 

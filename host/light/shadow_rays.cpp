@@ -1,7 +1,8 @@
 #include "host/light/shadow_rays.h"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdint>
 
 #include "host/light/bsdf.h"
 #include "host/light/surface.h"
@@ -9,31 +10,55 @@
 namespace raygate {
 namespace {
 
-constexpr double kWholeWay = 1.0;
-constexpr double kSureOfLight = 1.0 - 0x1p-10;  // hits of a ray from a light that surely count
-constexpr double kBeforeAreaLight = 1.0 - 0x1p-16;
+constexpr float kWholeWay = 1.0f;
+constexpr float kSureOfLight = 1.0f - 0x1p-10f;  // hits of a ray from a light that surely count
+constexpr float kBeforeAreaLight = 1.0f - 0x1p-16f;
 
-/// The t at which a ray in the scaled direction of `way` has gone all of it, times `share`.
-float scaled_way(const glm::dvec3& way, double share) {
-  const double size = largest(way);
-  const int exponent = std::ilogb(size);
-  // As in scaled_direction: 1.99999999 becomes 2 as a float, and then 1.
-  const bool carries = static_cast<float>(std::scalbn(size, -exponent)) >= 2.0f;
-  return static_cast<float>(std::ldexp(share, exponent + (carries ? 1 : 0)));
+/// The share of light that goes through a hit surface straight on, as far as shadows are concerned:
+/// refracting surfaces let none through, or, where `bent` says so, as much as if they did not bend
+/// it (caustics are then where the shadow is).
+glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const HitPlace& place,
+                               const Finish& finish, bool bent) {
+  if (finish.refracts && !bent) return glm::vec3(0.0f);
+  const HitKind kind = finish.kind | weights_needed(place);
+  const HitPlace places[] = {place};
+  const Finish* const finishes[] = {&finish};
+  const Triple<float> through =
+      Bsdf<float>(surface_at<float>(scene, bvh, kind, places), kind, finishes).through();
+  return {through.x, through.y, through.z};
 }
+
+/// From a point to another one: a scaled direction, and the t that leads there.
+struct Aim {
+  glm::vec3 direction{0.0f};  // hits nothing
+  float whole_way = 1.0f;
+
+  Aim(const glm::vec3& from, const glm::vec3& to) {
+    const glm::vec3 way = to - from;
+    const double size = largest(way);
+    if (size == 0.0) return;
+    // By a power of two, which rounds nothing.
+    constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
+    const std::uint64_t exponent = std::bit_cast<std::uint64_t>(size) & kExponent;
+    direction = glm::vec3(glm::dvec3(way) * std::bit_cast<double>(2 * kOne - exponent));
+    whole_way = static_cast<float>(std::bit_cast<double>(exponent));
+  }
+};
 
 }  // namespace
 
 ShadowRays::ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights,
                        Finder& finder, const Skips& skips, bool through_refraction)
     : scene_(scene),
+      finishes_(finishes_of(scene)),
       bvh_(clearances.bvh()),
       lights_(lights),
       finder_(finder),
       departure_(clearances),
       culling_(skips.culling),
       through_refraction_(through_refraction),
-      any_clear_(std::ranges::any_of(scene.materials, is_clear)) {
+      any_clear_(std::ranges::any_of(
+          finishes_, [](const Finish& finish) { return (finish.kind & kLetsThrough) != 0; })) {
   // The first occluder may be a clear one: then the nearest one must be known.
   first_occluder_ = skips.first_occluder && !any_clear_;
 }
@@ -75,8 +100,8 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
     if (hit.slot == NearestHit::kNone) continue;
     ShadowRay& ray = rays[segments_[i].index];
     const bool is_sure = is_before(bvh_, wave_[i], hit, enough_[i]);
-    if (is_sure && (!any_clear_ || transmittance(i) == glm::dvec3(0.0))) {
-      ray.light = glm::dvec3(0.0);
+    if (is_sure && (!any_clear_ || transmittance(i) == glm::vec3(0.0f))) {
+      ray.light = glm::vec3(0.0f);
     } else {
       next_.push_back(from_surface(lights_, ray, segments_[i].index));
     }
@@ -92,11 +117,11 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
     if (hit.slot == NearestHit::kNone) continue;
     Segment segment = segments_[i];
     ShadowRay& ray = rays[segment.index];
-    ray.light *= any_clear_ ? transmittance(i) : glm::dvec3(0.0);
-    if (ray.light == glm::dvec3(0.0)) continue;
+    ray.light *= any_clear_ ? transmittance(i) : glm::vec3(0.0f);
+    if (ray.light == glm::vec3(0.0f)) continue;
     const auto beyond = departure_.find(wave_[i], hit.slot, Departure::kAfter);
     if (!beyond) {
-      ray.light = glm::dvec3(0.0);
+      ray.light = glm::vec3(0.0f);
       continue;
     }
     segment.from = *beyond;
@@ -105,22 +130,16 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
 }
 
 /// Of all segments. Searches may end at hits before the share `enough` of the way.
-void ShadowRays::trace(bool from_light, double enough) {
+void ShadowRays::trace(bool from_light, float enough) {
   wave_.clear();
   limits_.clear();
   enough_.clear();
   ignored_.clear();
   for (const Segment& segment : segments_) {
-    const glm::dvec3 way = glm::dvec3(segment.to) - glm::dvec3(segment.from);
-    if (way == glm::dvec3(0.0)) {
-      wave_.push_back({segment.from, glm::vec3(0.0f)});  // hits nothing
-      limits_.push_back(1.0f);
-      enough_.push_back(1.0f);
-    } else {
-      wave_.push_back({segment.from, scaled_direction(way)});
-      limits_.push_back(scaled_way(way, segment.share));
-      enough_.push_back(scaled_way(way, std::min(enough, segment.share)));
-    }
+    const Aim aim(segment.from, segment.to);
+    wave_.push_back({segment.from, aim.direction});
+    limits_.push_back(aim.whole_way * segment.share);
+    enough_.push_back(aim.whole_way * std::min(enough, segment.share));
     ignored_.push_back(segment.ignored);
   }
   Search search{
@@ -134,11 +153,12 @@ void ShadowRays::trace(bool from_light, double enough) {
   for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }
 
-glm::dvec3 ShadowRays::transmittance(std::size_t number) const {
+glm::vec3 ShadowRays::transmittance(std::size_t number) const {
   const std::uint32_t slot = hits_[number].slot;
-  const Material& material = scene_.materials[scene_.triangles[bvh_.triangle_of(slot)].material];
-  if (!is_clear(material)) return glm::dvec3(0.0);
-  return shadow_transmittance(Surface(scene_, bvh_, wave_[number], slot, nullptr),
+  const Triangle& face = scene_.triangles[bvh_.triangle_of(slot)];
+  const Finish& finish = finishes_[face.material];
+  if ((finish.kind & kLetsThrough) == 0) return glm::vec3(0.0f);
+  return shadow_transmittance(scene_, bvh_, {&wave_[number], slot, &face, nullptr}, finish,
                               through_refraction_);
 }
 

@@ -9,6 +9,7 @@
 
 #include "host/find/finder.h"
 #include "host/light/departure.h"
+#include "host/light/finish.h"
 #include "host/light/lights.h"
 #include "host/light/skips.h"
 
@@ -19,7 +20,7 @@ struct ShadowRay {
   static constexpr std::uint32_t kNoPoint = NearestHit::kNone;
 
   std::uint32_t sample = 0;  ///< whose light it is: for the caller
-  glm::dvec3 light{0.0};     ///< what arrives if nothing is between; what does arrive
+  glm::vec3 light{0.0f};     ///< what arrives if nothing is between; what does arrive
   glm::vec3 surface{0.0f};   ///< a DeparturePoint of the surface
   std::uint32_t surface_slot = 0;
   std::uint32_t point_light = kNoPoint;  ///< index; or else the lamp is an area's:
@@ -56,18 +57,19 @@ class ShadowRays {
     std::uint32_t index;  // of the shadow ray that it is a part of
     glm::vec3 from, to;
     std::uint32_t ignored;  // slot
-    double share;           // of the way in which hits count
+    float share;            // of the way in which hits count
   };
 
   void trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light);
   void trace_from_surface(std::span<ShadowRay> rays);
-  void trace(bool from_light, double enough);
+  void trace(bool from_light, float enough);
   [[nodiscard]] static Segment from_surface(const Lights& lights, const ShadowRay& ray,
                                             std::uint32_t index);
   /// What is left after the surface that ray `number` of the wave has hit.
-  [[nodiscard]] glm::dvec3 transmittance(std::size_t number) const;
+  [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 
   const Scene& scene_;
+  std::vector<Finish> finishes_;  // of the materials
   const Bvh& bvh_;
   const Lights& lights_;
   Finder& finder_;

@@ -1,46 +1,179 @@
-// The surface where a ray hits it: point, normals, and which side was hit.
+// The surface where rays hit it: point, normals, colour, and which side was hit.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 
 #include "host/exact/exact.h"
+#include "host/light/finish.h"
+#include "host/light/lane_math.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
 
-/// How far off, of itself, the unit's P may be before the host computes the point, where nobody
-/// says otherwise: rays that meet a surface at a flat angle are the host's.
-inline constexpr float kPointError = 0x1p-16f;
+/// A hit, as the finder gives it.
+struct HitPlace {
+  const Ray* ray = nullptr;
+  std::uint32_t slot = 0;
+  const Triangle* face = nullptr;    ///< of the slot
+  const glm::vec3* point = nullptr;  ///< P as the hit-test unit has it, seen from the ray's origin;
+                                     ///< none: it is for the host to find
+};
 
-/// The weights of the vertices where `ray` hits; they sum to 1, none is negative.
-[[nodiscard]] glm::dvec3 barycentric(const Corners& corners, const Ray& ray);
+/// Whether the weights of the vertices at the hit matter.
+[[nodiscard]] inline HitKind weights_needed(const HitPlace& place) {
+  const auto& normals = place.face->normals;
+  const bool has_normals =
+      normals[0] != kNoIndex && normals[1] != kNoIndex && normals[2] != kNoIndex;
+  return place.point == nullptr || has_normals ? kHasWeights : 0;
+}
 
-/// The normals of the file at the hit, or the triangle's own; of no particular length or side. A
-/// triangle that is hit has an area, so its own normal is never 0.
-[[nodiscard]] glm::dvec3 file_normal(const Scene& scene, const Triangle& triangle,
-                                     const Corners& corners, const glm::dvec3& weights);
-
-/// What shading needs to know of a hit. In double: decided exactly is only what was hit.
+/// What shading needs to know of hits, one a lane. T is float or FloatLanes. In float, but for what
+/// comes of differences of corners: in slender triangles those cancel, and double has room for it.
+template <class T>
 struct Surface {
-  std::uint32_t slot = 0, triangle = 0;
-  const Material* material = nullptr;
-  glm::dvec3 diffuse{0.0};      ///< the material's diffuse colour here
-  glm::dvec3 point{0.0};        ///< in the scene's coordinates
-  glm::dvec3 view{0.0};         ///< unit vector back along the ray
-  glm::dvec3 flat_normal{0.0};  ///< unit normal of the triangle, to the side of the ray
+  Triple<T> point;        ///< in the scene's coordinates
+  Triple<T> view;         ///< unit vector back along the ray
+  Triple<T> flat_normal;  ///< unit normal of the triangle, to the side of the ray
   /// Unit normal, interpolated where the file has normals, to the same side; where that would not
   /// be seen from the ray, tilted until it is at right angles to the ray.
-  glm::dvec3 normal{0.0};
+  Triple<T> normal;
+  Triple<T> colour;  ///< Kd, times the texture
   /// The ray comes from outside: from where the file's normals point or, without, from where the
   /// vertices run counter-clockwise.
-  bool outside = true;
-
-  /// `unit_point`: P as the hit-test unit has it, which the surface's point is made of; nullptr: it
-  /// is found from the corners, in double.
-  Surface(const Scene& scene, const Bvh& bvh, const Ray& ray, std::uint32_t slot,
-          const glm::vec3* unit_point);
+  MaskOf<T> outside;
 };
+
+/// The colour of a hit whose vertices have these weights.
+[[nodiscard]] glm::vec3 textured(const Scene& scene, const Triangle& face,
+                                 const glm::vec3& weights);
+
+/// The weights of the vertices, up to a common factor: I . (B x C), I . (C x A), I . (A x B), all
+/// of one sign but for rounding.
+template <class D>
+RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<D>& direction,
+                                          const Triple<D> (&corners)[3]) {
+  D weights[3];
+  for (int k = 0; k < 3; ++k) {
+    const Triple<D>&from = corners[(k + 1) % 3], &to = corners[(k + 2) % 3];
+    const Triple<D> u = from - origin, v = to - from;
+    const Triple<D> normal = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+    weights[k] = dot(direction, normal);
+  }
+  return {weights[0], weights[1], weights[2]};
+}
+
+/// The surfaces at hits of one kind.
+template <class T>
+RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind kind,
+                                     const HitPlace (&places)[LanesOf<T>::kCount]) {
+  using Wide = WideOf<T>;
+  constexpr int kCount = LanesOf<T>::kCount;
+  enum : std::uint8_t {
+    kOrigin,
+    kDirection = 3,
+    kPoint = 6,
+    kColour = 9,
+    kCorners = 12,
+    kFields = 21
+  };
+  Gathered<T, kFields> in;
+  for (int k = 0; k < kCount; ++k) {
+    const HitPlace& place = places[k];
+    const Corners corners = bvh.corners_of(place.slot);
+    in.put(kOrigin, k, place.ray->origin);
+    in.put(kDirection, k, place.ray->direction);
+    in.put(kPoint, k, place.point != nullptr ? *place.point : glm::vec3(0.0f));
+    in.put(kColour, k, scene.materials[place.face->material].diffuse);
+    for (int c = 0; c < 3; ++c) in.put(kCorners + 3 * c, k, corners[c]);
+  }
+  const Triple<T> direction = in.triple(kDirection);
+  Surface<T> surface;
+  surface.point = in.triple(kOrigin) + in.triple(kPoint);
+  surface.view = -normalized(direction);
+  surface.colour = in.triple(kColour);
+
+  const Triple<Wide> corners[3] = {wide(in.triple(kCorners)), wide(in.triple(kCorners + 3)),
+                                   wide(in.triple(kCorners + 6))};
+  const Triple<Wide> u = corners[1] - corners[0], v = corners[2] - corners[0];
+  const Wide from[3] = {u.x, u.y, u.z}, to[3] = {v.x, v.y, v.z};
+  Wide value[3], size[3];
+  cross(from, to, value, size);
+  const Triple<Wide> normal = {value[0], value[1], value[2]};
+  surface.flat_normal = narrow(normal * (1.0 / root(dot(normal, normal))));
+
+  // Which side was hit: double says it with room to spare, or exact arithmetic does.
+  const Triple<Wide> way = wide(direction);
+  const Wide slope = dot(way, normal);
+  Triple<Wide> reach = {absolute(way.x), absolute(way.y), absolute(way.z)};
+  const Wide margin =
+      absolute(slope) - 0x1p-49 * (reach.x * size[0] + reach.y * size[1] + reach.z * size[2]);
+  Gathered<T, 2> side;
+  lanes_to(side.values[0], narrow(slope));
+  lanes_to(side.values[1], narrow(margin));
+  for (int k = 0; k < kCount; ++k) {
+    if (side.values[1][k] > 0.0f && side.values[0][k] != 0.0f) continue;
+    side.values[0][k] = static_cast<float>(
+        direction_side(places[k].ray->direction, bvh.corners_of(places[k].slot)));
+  }
+  const auto towards = side.one(0) < 0.0f;  // against the triangle's own normal
+
+  surface.normal = surface.flat_normal;
+  auto along = surface.normal.x == surface.normal.x;
+  if ((kind & kHasWeights) != 0) {
+    const Triple<Wide> unscaled = unscaled_weights(wide(in.triple(kOrigin)), way, corners);
+    const Wide inverse = 1.0 / (unscaled.x + unscaled.y + unscaled.z);
+    Triple<T> weights = narrow(unscaled * inverse);
+    const T third = spread<T>(1.0f / 3.0f);  // where nothing is left of the triangle
+    const auto is_number = weights.x + weights.y + weights.z == weights.x + weights.y + weights.z;
+    weights = {choose(is_number, at_least(weights.x, 0.0f), third),
+               choose(is_number, at_least(weights.y, 0.0f), third),
+               choose(is_number, at_least(weights.z, 0.0f), third)};
+    enum : std::uint8_t { kNormals, kHasNormals = 9, kHasPoint = 10, kTextured = 11, kMore = 14 };
+    Gathered<T, kMore> more;
+    Gathered<T, 3> weight;
+    lanes_to(weight.values[0], weights.x);
+    lanes_to(weight.values[1], weights.y);
+    lanes_to(weight.values[2], weights.z);
+    for (int k = 0; k < kCount; ++k) {
+      const Triangle& face = *places[k].face;
+      more.values[kHasNormals][k] = 1.0f;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t index = face.normals[c];
+        if (index == kNoIndex) more.values[kHasNormals][k] = 0.0f;
+        more.put(kNormals + 3 * static_cast<int>(c), k,
+                 index == kNoIndex ? glm::vec3(0.0f) : scene.normals[index]);
+      }
+      more.values[kHasPoint][k] = places[k].point != nullptr ? 1.0f : 0.0f;
+      more.put(
+          kTextured, k,
+          textured(scene, face, {weight.values[0][k], weight.values[1][k], weight.values[2][k]}));
+    }
+    surface.colour = more.triple(kTextured);
+    const Triple<T> own_point = narrow(corners[0] * wide(weights.x) + corners[1] * wide(weights.y) +
+                                       corners[2] * wide(weights.z));
+    surface.point = choose(more.one(kHasPoint) > 0.0f, surface.point, own_point);
+    const Triple<T> sum = more.triple(kNormals) * weights.x +
+                          more.triple(kNormals + 3) * weights.y +
+                          more.triple(kNormals + 6) * weights.z;
+    const T squared = dot(sum, sum);
+    const auto is_smooth = (more.one(kHasNormals) > 0.0f) & (squared > 0.0f);
+    surface.normal = choose(is_smooth, sum * (1.0f / root(squared)), surface.normal);
+    along = !(dot(surface.flat_normal, surface.normal) < 0.0f);
+    surface.flat_normal = choose(along, surface.flat_normal, -surface.flat_normal);
+  }
+  surface.outside = towards == along;
+  surface.flat_normal = choose(surface.outside, surface.flat_normal, -surface.flat_normal);
+  surface.normal = choose(surface.outside, surface.normal, -surface.normal);
+  const T facing = dot(surface.normal, surface.view);
+  const Triple<T> tilted = surface.normal - surface.view * facing;
+  const T tilted_size = dot(tilted, tilted);
+  surface.normal =
+      choose(facing < 0.0f,
+             choose(tilted_size > 0.0f, tilted * (1.0f / root(tilted_size)), surface.flat_normal),
+             surface.normal);
+  return surface;
+}
 
 }  // namespace raygate

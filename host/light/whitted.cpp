@@ -1,48 +1,113 @@
 #include "host/light/whitted.h"
 
+#include "host/light/in_lanes.h"
+
 namespace raygate {
 namespace {
 
 // What random numbers and branches are for.
 constexpr std::uint32_t kMirror = 1, kThrough = 2, kFirstAreaLight = 16;
 
-}  // namespace
-
-bool Whitted::is_worthwhile(const glm::dvec3& weight) {
-  const double size = largest(weight);
-  if (size == 0.0 && skips_.weightless) ++skipped_.weightless;
-  if (size == 0.0) return !skips_.weightless;
-  if (size < options_.threshold) ++skipped_.dim;
-  return size >= options_.threshold;
+template <class T>
+RAYGATE_INLINE void ask_all_lights(const ShadingScene& shading, Hits<T>& hits) {
+  const Lights& lights = shading.lights;
+  const T one = spread<T>(1.0f);
+  std::uint32_t lamps[Hits<T>::kCount];
+  const std::size_t points = lights.points().size();
+  for (std::uint32_t i = 0; i < lights.count(); ++i) {
+    const Lights::Lamp& lamp = lights.lamp(i);
+    for (std::uint32_t& number : lamps) number = i;
+    const Triple<T> light = spread<T>(lamp.light);
+    if (i < points) {
+      const LightPoint<T> point = {spread<T>(lamp.position), zero<T>(), WordOf<T>{}};
+      ask<T>(hits, i, one > 0.0f, light_from_point(hits, lights, point.position, light, one), lamps,
+             point);
+      continue;
+    }
+    const auto scatters = hits.bsdf.scatters();
+    if (!any(scatters)) return;
+    const AreaLight& area = lights.areas()[i - points];
+    const auto number = static_cast<std::uint32_t>(i - points);
+    const LightPoint<T> point =
+        shading.single_sample && area.is_flat
+            ? Lights::middle<T>(area)
+            : lights.sample<T>(lamps, hits.random(kFirstAreaLight + number));
+    const WayToLight<T> way(lights, hits.surface, point.position);
+    ask<T>(hits, i, scatters, light_from_area(hits, way, point, light * spread<T>(lamp.area)),
+           lamps, point);
+  }
 }
 
-void Whitted::shade(const LightRay& ray, const Surface& surface, const RandomNumbers& random,
-                    WaveOutput& output) {
-  Hit hit{ray, surface, Bsdf(surface), {}, {}};
-  const Bsdf& bsdf = hit.bsdf;
-  glm::dvec3& radiance = output.radiance[ray.sample];
-  radiance += ray.weight * (bsdf.emission() + bsdf.unlit());
-  radiance += ray.weight * (bsdf.diffuse() + bsdf.glossy()) * options_.ambient;
-
-  for (std::size_t i = 0; i < lights_.points().size(); ++i) light_from_point(hit, i, 1.0, output);
-  if (bsdf.scatters()) {
-    for (std::size_t i = 0; i < lights_.areas().size(); ++i) {
-      const AreaLight& light = lights_.areas()[i];
-      const LightPoint point =
-          options_.single_sample && light.is_flat
-              ? Lights::middle(light)
-              : lights_.sample(light, random(kFirstAreaLight + static_cast<std::uint32_t>(i)));
-      light_from_area(hit, point, light.radiance * light.area(), output);
+/// The lanes in which a ray of this weight is worth tracing; counts the others.
+template <class T>
+RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& hits,
+                                    const Triple<T>& weight, SkipCounters& skipped) {
+  const T size = largest(weight);
+  float sizes[Hits<T>::kCount];
+  lanes_to(sizes, size);
+  for (int k = 0; k < hits.count; ++k) {
+    if (sizes[k] == 0.0f) {
+      skipped.weightless += shading.skips_weightless ? 1 : 0;
+    } else if (sizes[k] < shading.threshold) {
+      ++skipped.dim;
     }
   }
+  const auto is_bright = (size > 0.0f) & !(size < shading.threshold);
+  return shading.skips_weightless ? MaskOf<T>(is_bright) : MaskOf<T>(is_bright | (size == 0.0f));
+}
 
-  const glm::dvec3 mirrored = ray.weight * bsdf.mirror(), through = ray.weight * bsdf.through();
-  if (!bsdf.mirror_is_traced()) radiance += mirrored * lights_.background();
-  if (ray.depth >= options_.max_depth) return;
-  if (bsdf.mirror_is_traced() && is_worthwhile(mirrored)) {
-    go_on_mirrored(hit, mirrored, kMirror, output);
+template <class T>
+RAYGATE_INLINE void go_on(const ShadingScene& shading, Hits<T>& hits, SkipCounters& skipped) {
+  const Surface<T>& surface = hits.surface;
+  const Bsdf<T>& bsdf = hits.bsdf;
+  WaysOn<T> ways;
+  ways.density = T{};
+  ways.scattered_at = zero<T>();
+  ways.weight = hits.weight * bsdf.mirror();
+  ways.is_wanted = bsdf.mirror_is_traced();
+  if (any(ways.is_wanted)) {
+    ways.is_wanted = ways.is_wanted & worthwhile(shading, hits, ways.weight, skipped);
   }
-  if (is_worthwhile(through)) go_on_through(hit, through, kThrough, output);
+  if (any(ways.is_wanted)) {
+    ways.direction = mirrored(surface.view, surface.normal);
+    ways.flat = mirrored(surface.view, surface.flat_normal);
+    ways.has_flat = ways.is_wanted;
+    ways.is_through = ways.is_wanted & !ways.is_wanted;
+    ways.stream = mixed(hits.stream, kMirror);
+    ways.send(hits, 0);
+  }
+  ways.weight = hits.weight * bsdf.through();
+  ways.is_wanted = worthwhile(shading, hits, ways.weight, skipped);
+  if (any(ways.is_wanted)) {
+    const Refraction<T> bent(surface.view, surface.normal, bsdf.eta());
+    const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
+    const MaskOf<T>& is_bent = bsdf.is_refracting();
+    ways.direction = choose(is_bent, bent.direction, -surface.view);
+    ways.flat = choose(is_bent, flat.direction, -surface.view);
+    ways.has_flat = (!is_bent) | flat.exists;
+    ways.is_wanted = ways.is_wanted & ((!is_bent) | bent.exists);
+    ways.is_through = ways.is_wanted;
+    ways.stream = mixed(hits.stream, kThrough);
+    ways.send(hits, 1);
+  }
+}
+
+}  // namespace
+
+void Whitted::shade_kind(HitBlock& block, HitKind kind, std::span<const std::uint32_t> at) {
+  const ShadingScene& shading = shading_;
+  SkipCounters& skipped = skipped_;
+  in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
+    using T = std::remove_cvref_t<decltype(hits.density)>;
+    const Bsdf<T>& bsdf = hits.bsdf;
+    const Triple<T> shown = bsdf.emission() + bsdf.unlit() +
+                            (bsdf.diffuse() + bsdf.glossy()) * spread<T>(shading.ambient);
+    const Triple<T> background = bsdf.mirror() * spread<T>(shading.lights.background());
+    hits.set_radiance(hits.weight *
+                      (shown + choose(bsdf.mirror_is_traced(), zero<T>(), background)));
+    ask_all_lights(shading, hits);
+    if (block.wave->depth < shading.max_depth) go_on(shading, hits, skipped);
+  });
 }
 
 }  // namespace raygate

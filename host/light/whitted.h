@@ -13,15 +13,12 @@ namespace raygate {
 /// lights are sampled in their middle: no noise, hard shadows.
 class Whitted final : public Integrator {
  public:
-  using Integrator::Integrator;
-
-  void shade(const LightRay& ray, const Surface& surface, const RandomNumbers& random,
-             WaveOutput& output) override;
-  [[nodiscard]] bool shadows_through_refraction() const override { return true; }
+  Whitted(const Scene& scene, const Clearances& clearances, const Lights& lights,
+          const Skips& skips, const IntegratorOptions& options)
+      : Integrator(scene, clearances, lights, skips, options, lights.count(), 2) {}
 
  private:
-  /// Whether a ray of this weight is worth tracing; counts those that are not.
-  [[nodiscard]] bool is_worthwhile(const glm::dvec3& weight);
+  void shade_kind(HitBlock& block, HitKind kind, std::span<const std::uint32_t> at) override;
 };
 
 }  // namespace raygate

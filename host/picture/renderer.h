@@ -9,8 +9,8 @@
 #include "host/film/pixel_filter.h"
 #include "host/find/finder.h"
 #include "host/light/integrator_kind.h"
+#include "host/light/point_error.h"
 #include "host/light/skips.h"
-#include "host/light/surface.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "host/picture/view_pyramid.h"
 #include "host/stopwatch.h"
@@ -28,6 +29,17 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
   }
 }
 
+std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
+  const RenderOptions& options = job.options;
+  return make_integrator(
+      options.integrator, job.scene, job.clearances, job.lights, options.skips,
+      {.max_depth = options.integrator == IntegratorKind::kPrimary ? 0 : options.max_depth,
+       .threshold = options.threshold,
+       .ambient = options.ambient ? glm::dvec3(*options.ambient) : job.lights.ambient(),
+       .single_sample = options.samples == 1,
+       .point_error = options.point_error});
+}
+
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film, FilmSums& sums)
@@ -35,19 +47,10 @@ TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film, Fil
       finder_(finder),
       film_(film),
       sums_(sums),
-      is_counting_(!film.tests.empty() || !film.doubts.empty()) {
-  const RenderOptions& options = job.options;
-  if (options.integrator == IntegratorKind::kPrimary) return;
-  integrator_ = make_integrator(
-      options.integrator, job.clearances, job.lights, options.skips,
-      {.max_depth = options.max_depth,
-       .threshold = options.threshold,
-       .ambient = options.ambient ? glm::dvec3(*options.ambient) : job.lights.ambient(),
-       .single_sample = options.samples == 1});
-  shadow_rays_ =
-      std::make_unique<ShadowRays>(job.scene, job.clearances, job.lights, finder_, options.skips,
-                                   integrator_->shadows_through_refraction());
-}
+      integrator_(integrator_of(job)),
+      shadow_rays_(job.scene, job.clearances, job.lights, finder, job.options.skips,
+                   integrator_->shadows_through_refraction()),
+      is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
 /// Square by square, and in them block by block: finders' packets are blocks, their cones squares.
 void TileRenderer::list_pixels(const PixelRect& tile) {
@@ -67,20 +70,23 @@ void TileRenderer::list_pixels(const PixelRect& tile) {
 void TileRenderer::make_camera_rays() {
   const RenderOptions& options = job_.options;
   wave_.clear();
-  samplers_.clear();
+  wave_.depth = 0;
   for (const Pixel& pixel : pixels_) {
-    samplers_.emplace_back(options.seed, pixel.x, pixel.y);
+    const Sampler sampler(options.seed, pixel.x, pixel.y);
     for (int i = 0; i < count_; ++i) {
+      const auto index = static_cast<std::uint32_t>(first_sample_ + i);
       glm::dvec2 offset(0.0);
       if (options.samples > 1) {
-        offset = filter_offset(options.filter, samplers_.back()(first_sample_ + i, kFilterStream));
+        const SquarePoint<float> u = sampler(index, kFilterStream);
+        offset = filter_offset(options.filter, {u.x, u.y});
       }
-      LightRay ray;
-      ray.ray = {job_.camera.eye(),
-                 job_.camera.direction((pixel.x + 0.5 + offset.x) / film_.width,
-                                       (pixel.y + 0.5 + offset.y) / film_.height)};
-      ray.sample = static_cast<std::uint32_t>(wave_.size());
-      wave_.push_back(ray);
+      Burden& burden = wave_.burdens.emplace_back();
+      burden.sample = static_cast<std::uint32_t>(wave_.rays.size());
+      burden.stream = sampler.key();
+      burden.index = index;
+      wave_.rays.push_back(
+          {job_.camera.eye(), job_.camera.direction((pixel.x + 0.5 + offset.x) / film_.width,
+                                                    (pixel.y + 0.5 + offset.y) / film_.height)});
     }
   }
 }
@@ -93,13 +99,14 @@ bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
   list_pixels(tile);
   const std::size_t samples = pixels_.size() * static_cast<std::size_t>(count);
   seen_.assign(samples, {});
-  output_.radiance.assign(samples, glm::dvec3(0.0));
+  output_.radiance.assign(samples, glm::vec3(0.0f));
+  output_.first_surface.assign(samples, {});
   output_.shadows.clear();
-  from_lamps_.assign(samples, glm::dvec3(0.0));
+  from_lamps_.assign(samples, glm::vec3(0.0f));
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
   if (job_.options.skips.empty_tiles &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
-    if (integrator_) output_.radiance.assign(samples, job_.lights.background());
+    output_.radiance.assign(samples, integrator_->background());
     stats_.skipped.empty_tile_rays += samples;
     stats_.shade_seconds += watch.lap();
     return true;
@@ -107,7 +114,7 @@ bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
   make_camera_rays();
   stats_.camera_rays += samples;
   stats_.shade_seconds += watch.lap();
-  while (!wave_.empty()) {
+  while (!wave_.rays.empty()) {
     if (!keep_going()) return false;
     trace_wave();
   }
@@ -119,69 +126,52 @@ bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
 /// a sample's sums does not depend on the waves.
 void TileRenderer::trace_wave() {
   Stopwatch watch;
-  const bool is_first = wave_[0].depth == 0;
-  rays_.clear();
-  for (const LightRay& ray : wave_) rays_.push_back(ray.ray);
-  stats_.rays += rays_.size();
-  stats_.shade_seconds += watch.lap();
-  hits_.resize(rays_.size());
-  work_.resize(is_counting_ ? rays_.size() : 0);
-  finder_.find(rays_,
-               {.common_origin = is_first, .culling = job_.options.skips.culling, .work = work_},
-               hits_);
+  const std::vector<Ray>& rays = wave_.rays;
+  stats_.rays += rays.size();
+  hits_.resize(rays.size());
+  work_.resize(is_counting_ ? rays.size() : 0);
+  finder_.find(
+      rays,
+      {.common_origin = wave_.depth == 0, .culling = job_.options.skips.culling, .work = work_},
+      hits_);
   watch.lap();
   output_.next.clear();
-  for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], wave_[i].sample);
-  for (std::size_t i = 0; i < wave_.size(); ++i) {
-    shade(wave_[i], hits_[i]);
-    if (output_.shadows.size() < kManyShadowRays && i + 1 < wave_.size()) continue;
+  output_.next.depth = wave_.depth + 1;
+  for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], wave_.burdens[i].sample);
+  if (wave_.depth == 0) see();
+  for (std::size_t i = 0; i < rays.size();) {
+    const std::size_t end = std::min(rays.size(), i + integrator_->block_size());
+    integrator_->shade(wave_, hits_, i, end, output_);
+    i = end;
+    if (output_.shadows.size() < kManyShadowRays && i < rays.size()) continue;
     stats_.shade_seconds += watch.lap();
     trace_shadows();
     watch.lap();
   }
-  wave_.swap(output_.next);
+  std::swap(wave_, output_.next);
   stats_.shade_seconds += watch.lap();
 }
 
 void TileRenderer::trace_shadows() {
-  if (!shadow_rays_) return;
   const auto traced = [this](const RayWork& work, std::size_t shadow) {
     count_work(work, output_.shadows[shadow].sample);
   };
-  shadow_rays_->resolve(output_.shadows,
-                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
+  shadow_rays_.resolve(output_.shadows,
+                       is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
   for (const ShadowRay& shadow : output_.shadows) from_lamps_[shadow.sample] += shadow.light;
   output_.shadows.clear();
 }
 
-void TileRenderer::shade(const LightRay& ray, const NearestHit& hit) {
-  if (hit.slot == NearestHit::kNone) {
-    if (integrator_) output_.radiance[ray.sample] += ray.weight * job_.lights.background();
-    return;
+/// Notes what the camera's rays hit.
+void TileRenderer::see() {
+  for (std::size_t i = 0; i < hits_.size(); ++i) {
+    const NearestHit& hit = hits_[i];
+    seen_[i].slot = hit.slot;
+    if (hit.slot == NearestHit::kNone || first_sample_ != 0) continue;
+    seen_[i].point = is_point_doubt(hit, job_.options.point_error)
+                         ? precise_hit(wave_.rays[i], job_.bvh.corners_of(hit.slot)).point
+                         : hit.point;
   }
-  const bool doubtful = is_point_doubt(hit, job_.options.point_error);
-  stats_.point_doubts += doubtful;
-  const Surface surface(job_.scene, job_.bvh, ray.ray, hit.slot, doubtful ? nullptr : &hit.point);
-  if (ray.depth == 0) {
-    Seen& seen = seen_[ray.sample];
-    seen.slot = hit.slot;
-    seen.normal = surface.normal;
-    seen.albedo = surface.diffuse;
-    if (first_sample_ == 0) {
-      seen.point = doubtful ? precise_hit(ray.ray, job_.bvh.corners_of(hit.slot)).point : hit.point;
-    }
-  }
-  if (!integrator_) {
-    output_.radiance[ray.sample] =
-        surface.diffuse * std::max(0.0, glm::dot(surface.normal, surface.view)) +
-        glm::dvec3(surface.material->emission);
-    return;
-  }
-  const auto count = static_cast<std::uint32_t>(count_);
-  const RandomNumbers random(samplers_[ray.sample / count],
-                             static_cast<std::uint32_t>(first_sample_) + ray.sample % count,
-                             ray.stream);
-  integrator_->shade(ray, surface, random, output_);
 }
 
 void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
@@ -198,9 +188,9 @@ void TileRenderer::write() {
     glm::dvec3 albedo = sums_.albedo.empty() ? glm::dvec3(0.0) : sums_.albedo[pixel];
     for (std::size_t i = p * count_; i < (p + 1) * count_; ++i) {
       const Seen& seen = seen_[i];
-      color += glm::dvec4(output_.radiance[i] + from_lamps_[i],
+      color += glm::dvec4(glm::dvec3(output_.radiance[i]) + glm::dvec3(from_lamps_[i]),
                           seen.slot == NearestHit::kNone ? 0.0 : 1.0);
-      albedo += seen.albedo;
+      albedo += glm::dvec3(output_.first_surface[i].albedo);
       if (!film_.tests.empty()) film_.tests[pixel] += seen.work.tests;
       if (!film_.doubts.empty()) film_.doubts[pixel] += seen.work.doubts;
     }
@@ -208,18 +198,19 @@ void TileRenderer::write() {
     if (!film_.albedo.empty()) film_.albedo[pixel] = glm::vec3(albedo / samples_so_far);
     if (!sums_.color.empty()) sums_.color[pixel] = color;
     if (!sums_.albedo.empty()) sums_.albedo[pixel] = albedo;
-    if (first_sample_ == 0) write_channels(pixel, seen_[p * count_]);
+    if (first_sample_ == 0) write_channels(pixel, p * count_);
   }
   stats_.shade_seconds += watch.lap();
 }
 
 /// Those that are the first sample's.
-void TileRenderer::write_channels(std::size_t pixel, const Seen& seen) {
+void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
+  const Seen& seen = seen_[sample];
   if (seen.slot == NearestHit::kNone) return;
   const std::uint32_t triangle = job_.bvh.triangle_of(seen.slot);
   const glm::dvec3 point(seen.point);
   film_.depth[pixel] = static_cast<float>(glm::dot(point, job_.camera.forward()));
-  film_.normal[pixel] = glm::vec3(seen.normal);
+  film_.normal[pixel] = output_.first_surface[sample].normal;
   film_.primitive[pixel] = triangle;
   if (!film_.position.empty()) {
     film_.position[pixel] = glm::vec3(job_.scene.origin + glm::dvec3(job_.camera.eye()) + point);
@@ -228,14 +219,14 @@ void TileRenderer::write_channels(std::size_t pixel, const Seen& seen) {
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {
-  const std::uint64_t shadow_rays = shadow_rays_ ? shadow_rays_->rays() : 0;
+  const std::uint64_t shadow_rays = shadow_rays_.rays();
   stats.rays += stats_.rays + shadow_rays;
   stats.camera_rays += stats_.camera_rays;
   stats.shadow_rays += shadow_rays;
-  stats.point_doubts += stats_.point_doubts;
+  stats.point_doubts += integrator_->point_doubts();
   stats.find += finder_.counters();
   stats.skipped += stats_.skipped;
-  if (integrator_) stats.skipped += integrator_->skipped();
+  stats.skipped += integrator_->skipped();
   stats.skipped.first_occluders += finder_.counters().ended_early;
   stats.shade_seconds += stats_.shade_seconds;
 }

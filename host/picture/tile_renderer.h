@@ -11,6 +11,7 @@
 #include "host/find/finder.h"
 #include "host/light/integrator.h"
 #include "host/light/shadow_rays.h"
+#include "host/light/wave.h"
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 
@@ -53,7 +54,6 @@ class TileRenderer {
   /// What a camera ray saw.
   struct Seen {
     std::uint32_t slot = NearestHit::kNone;
-    glm::dvec3 normal{0.0}, albedo{0.0};
     glm::vec3 point{0.0f};  // relative to the eye
     RayWork work;           // of all rays of the sample
   };
@@ -62,16 +62,16 @@ class TileRenderer {
   void make_camera_rays();
   void trace_wave();
   void trace_shadows();
-  void shade(const LightRay& ray, const NearestHit& hit);
+  void see();
   void count_work(const RayWork& work, std::uint32_t sample);
-  void write_channels(std::size_t pixel, const Seen& seen);
+  void write_channels(std::size_t pixel, std::size_t sample);
 
   RenderJob job_;
   Finder& finder_;
   Film& film_;
   FilmSums& sums_;
-  std::unique_ptr<Integrator> integrator_;  // none for kPrimary
-  std::unique_ptr<ShadowRays> shadow_rays_;
+  std::unique_ptr<Integrator> integrator_;
+  ShadowRays shadow_rays_;
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.
   struct Pixel {
@@ -79,14 +79,12 @@ class TileRenderer {
     std::size_t index;  // in the film
   };
   std::vector<Pixel> pixels_;
-  std::vector<Sampler> samplers_;  // by pixel
-  std::vector<Seen> seen_;         // by sample
+  std::vector<Seen> seen_;  // by sample
   int first_sample_ = 0, count_ = 0;
   bool is_counting_;
   WaveOutput output_;
-  std::vector<glm::dvec3> from_lamps_;  // by sample: what shadow rays have brought
-  std::vector<LightRay> wave_;
-  std::vector<Ray> rays_;
+  std::vector<glm::vec3> from_lamps_;  // by sample: what shadow rays have brought
+  Wave wave_;
   std::vector<NearestHit> hits_;  // of the wave
   std::vector<RayWork> work_;     // of the wave, if it is counted
 };

@@ -21,25 +21,29 @@ TEST(Fresnel, IsTheFormulaInAngles) {
   for (const double eta : {1.5, 1.0 / 1.5, 1.33, 2.4, 1.0 / 2.4}) {
     for (double angle = 0.01; angle < kPi / 2; angle += 0.01) {
       const double sine = std::sin(angle) / eta;
-      const double reflectance = fresnel_reflectance(std::cos(angle), eta);
-      if (sine >= 1.0) {
-        ASSERT_EQ(reflectance, 1.0);
+      const float reflectance = fresnel_reflectance(float(std::cos(angle)), float(eta));
+      if (std::abs(sine - 1.0) < 1e-6) continue;  // the border of total reflection
+      if (sine > 1.0) {
+        ASSERT_EQ(reflectance, 1.0f);
         continue;
       }
       const double beyond = std::asin(sine);
       const double across = std::sin(angle - beyond) / std::sin(angle + beyond);
       const double parallel = std::tan(angle - beyond) / std::tan(angle + beyond);
-      ASSERT_NEAR(reflectance, 0.5 * (across * across + parallel * parallel), 1e-12)
+      ASSERT_NEAR(reflectance, 0.5 * (across * across + parallel * parallel), 5e-5)
           << eta << " " << angle;
     }
-    EXPECT_NEAR(fresnel_reflectance(1.0, eta), std::pow((eta - 1) / (eta + 1), 2), 1e-15);
-    EXPECT_NEAR(fresnel_reflectance(0.0, eta), 1.0, 1e-15);
+    EXPECT_NEAR(fresnel_reflectance(1.0f, float(eta)), std::pow((eta - 1) / (eta + 1), 2), 1e-7);
+    EXPECT_NEAR(fresnel_reflectance(0.0f, float(eta)), 1.0, 1e-7);
   }
   // At Brewster's angle nothing of one polarisation is reflected.
   const double brewster = std::atan(1.5), beyond = std::asin(std::sin(brewster) / 1.5);
-  EXPECT_NEAR(fresnel_reflectance(std::cos(brewster), 1.5),
-              0.5 * std::pow(std::sin(brewster - beyond) / std::sin(brewster + beyond), 2), 1e-14);
+  EXPECT_NEAR(fresnel_reflectance(float(std::cos(brewster)), 1.5f),
+              0.5 * std::pow(std::sin(brewster - beyond) / std::sin(brewster + beyond), 2), 1e-6);
 }
+
+Triple<float> triple(const glm::dvec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
+glm::dvec3 vector(const Triple<float>& v) { return {v.x, v.y, v.z}; }
 
 TEST(Fresnel, RefractionIsSnellsLaw) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, -0.5));
@@ -47,35 +51,32 @@ TEST(Fresnel, RefractionIsSnellsLaw) {
   for (const double eta : {1.5, 1.0 / 1.5, 1.0}) {
     for (double angle = 0.0; angle < kPi / 2; angle += 0.05) {
       const glm::dvec3 in = std::sin(angle) * tangent - std::cos(angle) * normal;
-      const auto out = refracted(in, normal, eta);
-      ASSERT_EQ(out.has_value(), std::sin(angle) < eta) << eta << " " << angle;
-      if (!out) continue;
-      EXPECT_NEAR(glm::length(*out), 1.0, 1e-14);
-      EXPECT_NEAR(glm::length(glm::cross(*out, normal)), std::sin(angle) / eta, 1e-14);
-      EXPECT_LT(glm::dot(*out, normal), 0.0);
-      EXPECT_GE(glm::dot(*out, tangent), 0.0) << "on in the same direction";
-      EXPECT_NEAR(glm::dot(*out, glm::cross(normal, tangent)), 0.0, 1e-14) << "out of the plane";
+      const Refraction<float> refraction(triple(-in), triple(normal), float(eta));
+      ASSERT_EQ(refraction.exists, std::sin(angle) < eta) << eta << " " << angle;
+      if (!refraction.exists) continue;
+      const glm::dvec3 out = vector(refraction.direction);
+      EXPECT_NEAR(glm::length(out), 1.0, 1e-5);
+      EXPECT_NEAR(glm::length(glm::cross(out, normal)), std::sin(angle) / eta, 1e-6);
+      EXPECT_LT(glm::dot(out, normal), 0.0);
+      EXPECT_GE(glm::dot(out, tangent), 0.0) << "on in the same direction";
+      EXPECT_NEAR(glm::dot(out, glm::cross(normal, tangent)), 0.0, 1e-6) << "out of the plane";
     }
   }
 }
 
 /// A triangle of this material seen at an angle to its normal, +z.
-class Seen {
- public:
-  Seen(const Material& material, double angle)
-      : scene_(test::scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}})),
-        bvh_(scene_) {
-    scene_.materials[0] = material;
-    const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
-    surface_.emplace(scene_, bvh_, Ray{eye, -eye}, 0, nullptr);
-  }
-  [[nodiscard]] const Surface& surface() const { return *surface_; }
-
- private:
-  Scene scene_;
-  Bvh bvh_;
-  std::optional<Surface> surface_;
-};
+Bsdf<float> seen(const Material& material, double angle) {
+  Scene scene = test::scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}});
+  scene.materials[0] = material;
+  const Bvh bvh(scene);
+  const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
+  const Ray ray = {eye, scaled_direction(glm::dvec3(-eye))};
+  const HitPlace places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
+  const Finish finish(material);
+  const Finish* const finishes[] = {&finish};
+  const HitKind kind = finish.kind | weights_needed(places[0]);
+  return {surface_at<float>(scene, bvh, kind, places), kind, finishes};
+}
 
 Material material(int model, float diffuse, float specular, float opacity) {
   Material m;
@@ -94,21 +95,20 @@ Material material(int model, float diffuse, float specular, float opacity) {
 TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
   for (const float specular : {0.0f, 0.3f}) {
     for (const double angle : {0.0, 0.7, 1.3}) {
-      const Seen seen(material(2, 0.5f, specular, 1.0f), angle);
-      const Bsdf bsdf(seen.surface());
+      const Bsdf<float> bsdf = seen(material(2, 0.5f, specular, 1.0f), angle);
       const Sampler sampler(1, 2, 3);
       // The mean of f cos / p over samples against a plain integral of f cos over the hemisphere.
       constexpr int kCount = 1 << 16;
       double sampled = 0.0, integral = 0.0, density = 0.0, above = 0.0;
       for (int i = 0; i < kCount; ++i) {
-        const glm::dvec3 way = bsdf.sample(sampler(i, 0));
-        EXPECT_NEAR(glm::length(way), 1.0, 1e-12);
-        above += way.z > 0.0;
-        if (way.z > 0.0) sampled += bsdf.scattered(way).x * way.z / bsdf.density(way);
-        const glm::dvec2 u = sampler(i, 1);
-        const double sine = std::sqrt(1.0 - u.x * u.x);
-        const glm::dvec3 uniform(sine * std::cos(2 * kPi * u.y), sine * std::sin(2 * kPi * u.y),
-                                 u.x);
+        const Triple<float> way = bsdf.sample(sampler(i, 0));
+        EXPECT_NEAR(dot(way, way), 1.0f, 2e-6f);
+        above += way.z > 0.0f;
+        if (way.z > 0.0f) sampled += bsdf.scattered(way).x * way.z / bsdf.density(way);
+        const SquarePoint<float> u = sampler(i, 1);
+        const double sine = std::sqrt(1.0 - double(u.x) * u.x);
+        const Triple<float> uniform = {float(sine * std::cos(2 * kPi * u.y)),
+                                       float(sine * std::sin(2 * kPi * u.y)), u.x};
         integral += bsdf.scattered(uniform).x * uniform.z * 2 * kPi;
         density += bsdf.density(uniform) * 2 * kPi;
       }
@@ -119,17 +119,36 @@ TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
   }
 }
 
+// A lobe as narrow as can be still has the height that it is to have, and is sampled within it.
+TEST(Bsdf, NarrowLobesKeepTheirShape) {
+  Material polished = material(2, 0.0f, 1.0f, 1.0f);
+  for (const float exponent : {1e3f, 1e5f, 1e6f}) {
+    polished.shininess = exponent;
+    const Bsdf<float> bsdf = seen(polished, 0.6);
+    for (const double angle : {0.0, 1e-4, 3e-4, 1e-3}) {
+      const double away = 0.6 + angle;
+      const Triple<float> light = triple({-std::sin(away), 0.0, std::cos(away)});
+      const double expected = (exponent + 2) / (2 * kPi) * std::pow(std::cos(angle), exponent);
+      EXPECT_NEAR(bsdf.scattered(light).x, expected, 2e-2 * expected + 1e-30) << angle;
+    }
+    for (int i = 0; i < 1000; ++i) {
+      const Triple<float> light = bsdf.sample(Sampler(4, 5, 6)(i, 0));
+      const glm::dvec3 mirror(-std::sin(0.6), 0.0, std::cos(0.6));
+      ASSERT_LT(glm::length(vector(light) - mirror), 6.0 / std::sqrt(exponent));
+    }
+  }
+}
+
 // Whatever the material says, all shares together are at most what arrives.
 TEST(Bsdf, NoMaterialMakesEnergy) {
   for (int model = 1; model <= 10; ++model) {
     for (const float colour : {0.0f, 0.4f, 1.0f, 3.0f}) {
       for (const float opacity : {0.0f, 0.5f, 1.0f}) {
         for (const double angle : {0.0, 0.8, 1.5}) {
-          const Seen seen(material(model, colour, colour, opacity), angle);
-          const Bsdf bsdf(seen.surface());
-          const glm::dvec3 sum = bsdf.diffuse() + bsdf.glossy() + bsdf.mirror() + bsdf.through();
-          EXPECT_LE(std::max({sum.x, sum.y, sum.z}), 1.0 + 1e-12) << model << " " << colour;
-          EXPECT_GE(std::min({bsdf.through().x, bsdf.diffuse().x, bsdf.mirror().x}), 0.0);
+          const Bsdf<float> bsdf = seen(material(model, colour, colour, opacity), angle);
+          const Triple<float> sum = bsdf.diffuse() + bsdf.glossy() + bsdf.mirror() + bsdf.through();
+          EXPECT_LE(largest(sum), 1.0f + 1e-6f) << model << " " << colour;
+          EXPECT_GE(std::min({bsdf.through().x, bsdf.diffuse().x, bsdf.mirror().x}), 0.0f);
         }
       }
     }
@@ -138,13 +157,13 @@ TEST(Bsdf, NoMaterialMakesEnergy) {
 
 TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
   const auto of = [](int model, float opacity) {
-    return Bsdf(Seen(material(model, 0.4f, 0.2f, opacity), 0.6).surface());
+    return seen(material(model, 0.4f, 0.2f, opacity), 0.6);
   };
-  const double fresnel = fresnel_reflectance(std::cos(0.6), 1.5);
-  EXPECT_EQ(of(0, 1).diffuse(), glm::dvec3(0.0));
+  const double fresnel = fresnel_reflectance(float(std::cos(0.6)), 1.5f);
+  EXPECT_EQ(of(0, 1).diffuse().x, 0.0f);
   EXPECT_NEAR(of(0, 1).unlit().x, 0.4, 1e-7);
   EXPECT_NEAR(of(1, 1).diffuse().x, 0.4, 1e-7);
-  EXPECT_EQ(of(1, 1).glossy(), glm::dvec3(0.0));
+  EXPECT_EQ(of(1, 1).glossy().x, 0.0f);
   EXPECT_NEAR(of(1, 0.25f).diffuse().x, 0.1, 1e-7);
   EXPECT_NEAR(of(1, 0.25f).through().z, 0.75, 1e-7) << "straight, and not tinted";
   EXPECT_NEAR(of(2, 1).glossy().x, 0.2, 1e-7);
@@ -154,9 +173,10 @@ TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
   EXPECT_NEAR(of(5, 1).mirror().x, 0.2 + 0.8 * std::pow(1 - std::cos(0.6), 5), 1e-7);
   EXPECT_TRUE(of(6, 0).is_refracting());
   EXPECT_NEAR(of(6, 0).through().x, 0.9 * 0.8, 1e-7);
-  EXPECT_NEAR(of(7, 0).mirror().x, fresnel, 1e-7);
-  EXPECT_NEAR(of(7, 0).through().x, (1 - fresnel) * 0.9, 1e-7);
-  EXPECT_EQ(of(7, 1).through(), of(7, 0).through()) << "d 1 of a glass is left there by exporters";
+  EXPECT_NEAR(of(7, 0).mirror().x, fresnel, 1e-6);
+  EXPECT_NEAR(of(7, 0).through().x, (1 - fresnel) * 0.9, 1e-6);
+  EXPECT_EQ(of(7, 1).through().x, of(7, 0).through().x)
+      << "d 1 of a glass is left there by exporters";
   EXPECT_FALSE(of(8, 1).mirror_is_traced());
   EXPECT_FALSE(of(9, 1).mirror_is_traced());
   EXPECT_NEAR(of(10, 1).diffuse().x, 0.4, 1e-7);

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/reference_plane_unit.h"
 #include "host/find/unit/serial_hit_tester.h"
 #include "host/light/test/light_scenes.h"
+#include "host/vectors.h"
 
 namespace raygate {
 namespace {
@@ -65,6 +67,20 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
   EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), serial, stats)));
   const FinderFactory cpu = [&] { return std::make_unique<CpuFinder>(bvh_); };
   EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), cpu, stats)));
+}
+
+// The baseline shades one hit at a time, the others as many as they have lanes.
+TEST_P(EveryIntegrator, VectorsChangeNoByte) {
+  RenderOptions all = options(80, 60);
+  all.channels.albedo = true;
+  std::optional<Film> expected;
+  for (const Vectors vectors : machine_vectors()) {
+    const UsingVectors in_use(vectors);
+    Film found = film(all);
+    if (!expected) expected = found;
+    EXPECT_TRUE(same(*expected, found)) << name_of(vectors);
+    EXPECT_TRUE(same_bytes(expected->albedo, found.albedo)) << name_of(vectors);
+  }
 }
 
 // The unit's P in place of the host's: another picture, but not one that can be told from it.

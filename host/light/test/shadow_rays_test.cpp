@@ -8,7 +8,6 @@
 #include <iostream>
 #include <optional>
 
-#include "host/light/surface.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -45,22 +44,23 @@ class ShadowRaysTest : public testing::Test {
       const auto origin = departure.find(rays[i], slot, Departure::kBefore);
       if (!origin) continue;
       ShadowRay ray;
-      ray.light = glm::dvec3(1.0);
+      ray.light = glm::vec3(1.0f);
       ray.surface = *origin;
       ray.surface_slot = slot;
-      const Surface surface(scene_, bvh_, rays[i], slot, &hits[i].point);
-      const auto ask = [&](const glm::dvec3& at) {
-        if (glm::dot(at - surface.point, surface.flat_normal) > 0.0) questions_.push_back(ray);
+      const int side = plane_side(eye, bvh_.corners_of(slot));
+      const auto ask = [&](const glm::vec3& at) {
+        if (plane_side(at, bvh_.corners_of(slot)) == side) questions_.push_back(ray);
       };
       for (ray.point_light = 0; ray.point_light < 2; ++ray.point_light) {
-        ask(glm::dvec3(scene_.lights[ray.point_light].position));
+        ask(scene_.lights[ray.point_light].position);
       }
       ray.point_light = ShadowRay::kNoPoint;
-      const LightPoint point =
-          lights_.sample(lights_.areas()[0], {random_.uniform(0, 1), random_.uniform(0, 1)});
-      ray.lamp = glm::vec3(point.position);
+      const std::uint32_t lamps[] = {2};
+      const LightPoint<float> point = lights_.sample<float>(
+          lamps, {float(random_.uniform(0, 1)), float(random_.uniform(0, 1))});
+      ray.lamp = {point.position.x, point.position.y, point.position.z};
       ray.lamp_slot = point.slot;
-      ask(point.position);
+      ask(ray.lamp);
     }
   }
 
@@ -101,7 +101,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   for (const ShadowRay& answer : questions_) {
     const bool blocked = is_blocked(answer);
     ++(blocked ? dark : lit);
-    different += blocked != (answer.light == glm::dvec3(0.0));
+    different += blocked != (answer.light == glm::vec3(0.0f));
   }
   EXPECT_GT(dark, 1000);
   EXPECT_GT(lit, 1000);

@@ -1,0 +1,73 @@
+// Sines, logarithms and powers with the same bits on every machine: additions, multiplications and
+// divisions of IEEE 754 in a written order, and no C library.
+#pragma once
+
+#include <cstdint>
+
+#include "host/light/lane_math.h"
+
+namespace raygate {
+
+/// Sine and cosine of an angle.
+template <class D>
+struct SineCosine {
+  D sine, cosine;
+};
+
+/// Of an angle in turns (1 is 360 degrees), |turns| < 1000; D is double or DoubleLanes. Off by
+/// less than 2^-52.
+template <class D>
+RAYGATE_INLINE SineCosine<D> sine_cosine(const D& turns) {
+  constexpr double kRadians = 6.283185307179586476925286766559;
+  // The nearest quarter, as float tells it, and what is left: up to an eighth and a hair.
+  const auto quarter = whole(narrow(turns) * 4.0f + 4096.5f) - 4096;
+  const D x = (turns - wide(quarter) * 0.25) * kRadians, y = x * x;
+  // Taylor's series; the first term left out is below 2^-54.
+  D sine = D{} + 1.0, cosine = D{} + 1.0;
+  for (int k = 16; k >= 2; k -= 2) {
+    sine = 1.0 - sine * (y * (1.0 / (k * (k + 1))));
+    cosine = 1.0 - cosine * (y * (1.0 / (k * (k - 1))));
+  }
+  sine = sine * x;
+  const auto is_odd = (quarter & 1) != 0;
+  const D sine_sign = wide(1 - (quarter & 2)), cosine_sign = wide(1 - ((quarter + 1) & 2));
+  return {choose(is_odd, cosine, sine) * sine_sign, choose(is_odd, sine, cosine) * cosine_sign};
+}
+
+/// The logarithm to the base 2 of x, which is positive and in the range of normal floats. Off by
+/// less than 2^-50 of itself or 2^-52, whichever is more.
+template <class D>
+RAYGATE_INLINE D binary_logarithm(const D& x) {
+  constexpr double kLog2OfE = 1.4426950408889634073599246810019;
+  // x = m 2^e with m about sqrt(1/2) .. sqrt(2), as float tells it.
+  constexpr std::int32_t kRootOfHalf = 0x3F3504F3;
+  const auto exponent = (bits_in(narrow(x)) - kRootOfHalf) >> 23;
+  const D m = x * wide(float_of((127 - exponent) << 23));
+  // log m = 2 artanh s for s = (m - 1) / (m + 1), |s| < 0.172: Taylor's series.
+  const D s = (m - 1.0) / (m + 1.0), y = s * s;
+  D sum = D{} + 1.0 / 23;
+  for (int k = 21; k >= 1; k -= 2) sum = sum * y + 1.0 / k;
+  return sum * s * (2.0 * kLog2OfE) + wide(exponent);
+}
+
+/// 2^x for x < 128; 0 below -126. Off by less than 2^-50 of itself.
+template <class D>
+RAYGATE_INLINE D binary_power(const D& x) {
+  constexpr double kLogOf2 = 0.69314718055994530941723212145818;
+  const auto rough = narrow(x);
+  const auto is_zero = rough < -126.0f;
+  const auto exponent = whole(at_least(rough, -126.0f) + 200.5f) - 200;
+  const D y = (x - wide(exponent)) * kLogOf2;
+  D sum = D{} + 1.0;
+  for (int k = 14; k >= 1; --k) sum = sum * (y * (1.0 / k)) + 1.0;  // Taylor's series
+  return choose(is_zero, D{}, sum * wide(float_of((exponent + 127) << 23)));
+}
+
+/// base^exponent, for a base as in binary_logarithm and an exponent for which the result is below
+/// 2^128.
+template <class D>
+RAYGATE_INLINE D power(const D& base, const D& exponent) {
+  return binary_power<D>(binary_logarithm(base) * exponent);
+}
+
+}  // namespace raygate

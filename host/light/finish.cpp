@@ -1,0 +1,48 @@
+#include "host/light/finish.h"
+
+#include <algorithm>
+
+namespace raygate {
+namespace {
+
+constexpr float kMostIndex = 0x1p20f;
+constexpr float kLeastIndex = 0x1p-20f;
+
+glm::vec3 limited(const glm::vec3& colour) {
+  return glm::clamp(colour, glm::vec3(0.0f), glm::vec3(1.0f));
+}
+
+bool is_any(const glm::vec3& colour) { return colour != glm::vec3(0.0f); }
+
+}  // namespace
+
+Finish::Finish(const Material& material) {
+  const int model = material.illumination_model;
+  is_glass = model == 4 || model == 6 || model == 7 || model == 9;
+  refracts = model == 6 || model == 7;
+  is_fresnel = model == 7;
+  mirror_is_traced = model != 8 && model != 9;
+  const float d = std::clamp(material.opacity, 0.0f, 1.0f);
+  opacity = is_glass && d == 1.0f ? 0.0f : d;
+  exponent = std::clamp(material.shininess, 0.0f, 1e6f);
+  index = std::clamp(material.refraction_index, kLeastIndex, kMostIndex);
+  const glm::vec3 ks = limited(material.specular);
+  (model == 0 ? unlit : diffuse) = glm::vec3(opacity);
+  if (model == 2) glossy = opacity * ks;
+  if (model == 3 || model == 5 || model == 8) mirror = opacity * ks;
+  if (model == 5) grazing = opacity * (1.0f - ks);
+  if (model == 4 || model == 6 || model == 9) mirror = ks;
+  through = (1.0f - opacity) * (is_glass ? limited(material.transmittance) : glm::vec3(1.0f));
+  emission = material.emission;
+  if (is_any(emission) || is_any(unlit)) kind |= kEmits;
+  if (is_any(glossy)) kind |= kGlossy;
+  if (is_any(mirror) || is_any(grazing) || refracts) kind |= kMirrors;
+  if (is_any(through)) kind |= kLetsThrough;
+  if (material.diffuse_texture != kNoIndex) kind |= kHasWeights;
+}
+
+std::vector<Finish> finishes_of(const Scene& scene) {
+  return {scene.materials.begin(), scene.materials.end()};
+}
+
+}  // namespace raygate

@@ -1,0 +1,46 @@
+// What a material's MTL statements come to: what shading reads of it.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// What there is to do at a hit: a set of these. Hits are shaded together with hits of the same
+/// set.
+using HitKind = std::uint32_t;
+inline constexpr HitKind kHasWeights = 1;    ///< something is interpolated between the vertices
+inline constexpr HitKind kEmits = 2;         ///< a lamp, or a colour that is only there to be seen
+inline constexpr HitKind kGlossy = 4;        ///< a highlight
+inline constexpr HitKind kMirrors = 8;       ///< a mirror
+inline constexpr HitKind kLetsThrough = 16;  ///< light passes
+inline constexpr HitKind kHitKinds = 32;     ///< sets are less than that
+
+/// The shares of a material before an angle is known: Bsdf has the table.
+struct Finish {
+  glm::vec3 diffuse{0.0f};  ///< of the texture's colour, limited to 1
+  glm::vec3 unlit{0.0f};    ///< of the same
+  glm::vec3 glossy{0.0f};
+  glm::vec3 mirror{0.0f};   ///< straight on, and
+  glm::vec3 grazing{0.0f};  ///< so much more at grazing angles
+  glm::vec3 through{0.0f};  ///< of what the mirror leaves
+  glm::vec3 emission{0.0f};
+  float opacity = 1.0f;  ///< d, or 0 where d does not count
+  float exponent = 0.0f;
+  float index = 1.0f;     ///< of refraction
+  bool is_glass = false;  ///< what the mirror takes is gone for all that lies under it
+  bool refracts = false;
+  bool is_fresnel = false;  ///< the mirror is Fresnel's
+  bool mirror_is_traced = true;
+  HitKind kind = 0;  ///< without what depends on the triangle
+
+  explicit Finish(const Material& material);
+};
+
+/// Of all materials of a scene, in its order.
+[[nodiscard]] std::vector<Finish> finishes_of(const Scene& scene);
+
+}  // namespace raygate

@@ -1,0 +1,111 @@
+// Elementary functions against MPFR, over many arguments and at the ends of their ranges.
+#include "host/light/elementary.h"
+
+#include <gtest/gtest.h>
+#include <mpfr.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <vector>
+
+namespace raygate {
+namespace {
+
+/// A number of 200 bits.
+class Exact {
+ public:
+  explicit Exact(double x) {
+    mpfr_init2(value_, 200);
+    mpfr_set_d(value_, x, MPFR_RNDN);
+  }
+  Exact(const Exact&) = delete;
+  Exact& operator=(const Exact&) = delete;
+  ~Exact() { mpfr_clear(value_); }
+  mpfr_ptr get() { return value_; }
+  /// x minus this.
+  double error_of(double x) {
+    mpfr_d_sub(value_, x, value_, MPFR_RNDN);
+    return std::abs(mpfr_get_d(value_, MPFR_RNDN));
+  }
+  [[nodiscard]] double rounded() const { return mpfr_get_d(value_, MPFR_RNDN); }
+
+ private:
+  mpfr_t value_;
+};
+
+class Elementary : public testing::Test {
+ protected:
+  /// Evenly spread, and crowded around `around`.
+  std::vector<double> numbers(double low, double high, double around) {
+    std::vector<double> all = {low, high, around};
+    std::uniform_real_distribution<double> uniform(low, high), exponent(-60.0, 0.0);
+    for (int i = 0; i < 200000; ++i) {
+      all.push_back(uniform(engine_));
+      const double near = around + std::copysign(std::exp2(exponent(engine_)), uniform(engine_));
+      if (near >= low && near <= high) all.push_back(near);
+    }
+    return all;
+  }
+
+  std::mt19937_64 engine_{7};
+};
+
+TEST_F(Elementary, SinesAndCosines) {
+  double worst = 0.0;
+  for (const double turns : numbers(-900.0, 900.0, 0.0)) {
+    const SineCosine<double> found = sine_cosine(turns);
+    Exact sine(turns), cosine(turns);
+    Exact pi(0.0);
+    mpfr_const_pi(pi.get(), MPFR_RNDN);
+    mpfr_mul_ui(pi.get(), pi.get(), 2, MPFR_RNDN);
+    mpfr_mul(sine.get(), sine.get(), pi.get(), MPFR_RNDN);
+    mpfr_sin_cos(sine.get(), cosine.get(), sine.get(), MPFR_RNDN);
+    worst = std::max({worst, sine.error_of(found.sine), cosine.error_of(found.cosine)});
+  }
+  std::cout << "largest error " << worst * 0x1p52 << " 2^-52\n";
+  EXPECT_LT(worst, 0x1p-52);
+  // Quarters of a turn are exact.
+  for (int quarter = -8; quarter <= 8; ++quarter) {
+    const SineCosine<double> found = sine_cosine(0.25 * quarter);
+    EXPECT_EQ(found.sine, std::round(std::sin(quarter * std::acos(0.0))));
+    EXPECT_EQ(found.cosine, std::round(std::cos(quarter * std::acos(0.0))));
+  }
+}
+
+TEST_F(Elementary, Logarithms) {
+  double worst = 0.0;
+  std::vector<double> all = numbers(0x1p-30, 4.0, 1.0);
+  for (const double x : numbers(-125.9, 125.9, 0.0)) all.push_back(std::exp2(x));
+  for (const double x : all) {
+    const double found = binary_logarithm(x);
+    Exact exact(x);
+    mpfr_log2(exact.get(), exact.get(), MPFR_RNDN);
+    const double unit = std::max(0x1p-52, 0x1p-50 * std::abs(exact.rounded()));
+    worst = std::max(worst, exact.error_of(found) / unit);
+  }
+  std::cout << "largest error " << worst << " of what is promised\n";
+  EXPECT_LT(worst, 1.0);
+  for (int exponent = -125; exponent <= 125; ++exponent) {
+    EXPECT_EQ(binary_logarithm(std::ldexp(1.0, exponent)), exponent);
+  }
+}
+
+TEST_F(Elementary, PowersOfTwo) {
+  double worst = 0.0;
+  for (const double x : numbers(-125.9, 127.4, 0.0)) {
+    const double found = binary_power(x);
+    Exact exact(x);
+    mpfr_exp2(exact.get(), exact.get(), MPFR_RNDN);
+    const double value = exact.rounded();
+    worst = std::max(worst, exact.error_of(found) / value);
+  }
+  std::cout << "largest error " << worst * 0x1p52 << " 2^-52 of itself\n";
+  EXPECT_LT(worst, 0x1p-50);
+  for (const double x : {-126.01, -1e3, -1e9, -1e30}) EXPECT_EQ(binary_power(x), 0.0) << x;
+  EXPECT_EQ(binary_power(0.0), 1.0);
+  EXPECT_EQ(binary_power(-3.0), 0.125);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,153 @@
+// What lanes compute against the same text at one lane: bit by bit, special numbers among others.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "host/light/around.h"
+#include "host/light/elementary.h"
+#include "host/light/fresnel.h"
+#include "host/light/lane_math.h"
+#include "host/light/sampler.h"
+#include "host/vectors.h"
+
+namespace raygate {
+namespace {
+
+constexpr int kInputs = 6, kOutputs = 4, kRounds = 20000;
+
+/// kLanes inputs each for functions of up to six numbers, and what they give.
+struct Case {
+  alignas(64) float in[kInputs][kLanes];
+  alignas(64) float out[kOutputs][kLanes];
+};
+
+/// Numbers of every size, in [-1, 1] and [0, 1], and the odd ones: zeros, subnormals, infinities,
+/// what is no number.
+class Inputs {
+ public:
+  void fill(Case& c) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kOdd[] = {
+        0.0f,  -0.0f,  1.0f,      -1.0f,      0x1p-149f, 0x1p-126f,
+        1e30f, -1e30f, kInfinity, -kInfinity, 0.5f,      std::numeric_limits<float>::quiet_NaN()};
+    for (auto& input : c.in) {
+      for (float& x : input) {
+        const std::uint32_t choice = engine_() % 8;
+        x = choice == 0   ? kOdd[engine_() % std::size(kOdd)]
+            : choice == 1 ? std::bit_cast<float>(static_cast<std::uint32_t>(engine_()))
+            : choice < 5  ? std::uniform_real_distribution<float>(-1.0f, 1.0f)(engine_)
+                          : std::uniform_real_distribution<float>(0.0f, 1.0f)(engine_);
+      }
+    }
+  }
+
+ private:
+  std::mt19937 engine_{3};
+};
+
+/// f(in, out) over all lanes at once, and lane by lane; for each kind of vectors that is there.
+/// The bits are the same, but for which of the many that are no number it is.
+template <class Function>
+void compare(const Function& f) {
+  for (const Vectors vectors : machine_vectors()) {
+    const UsingVectors in_use(vectors);
+    Inputs inputs;
+    for (int round = 0; round < kRounds; ++round) {
+      Case c{}, expected{};
+      inputs.fill(c);
+      expected = c;
+      in_vectors([&](auto) RAYGATE_BODY {
+        FloatLanes in[kInputs], out[kOutputs] = {};
+        for (int i = 0; i < kInputs; ++i) in[i] = lanes_from<FloatLanes>(c.in[i]);
+        f(in, out);
+        for (int i = 0; i < kOutputs; ++i) lanes_to(c.out[i], out[i]);
+      });
+      for (int k = 0; k < kLanes; ++k) {
+        float in[kInputs], out[kOutputs] = {};
+        for (int i = 0; i < kInputs; ++i) in[i] = c.in[i][k];
+        f(in, out);
+        for (int i = 0; i < kOutputs; ++i) expected.out[i][k] = out[i];
+      }
+      for (int i = 0; i < kOutputs; ++i) {
+        for (int k = 0; k < kLanes; ++k) {
+          const float a = c.out[i][k], b = expected.out[i][k];
+          ASSERT_TRUE((std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof a) == 0)
+              << a << " instead of " << b << ", " << name_of(vectors) << ", lane " << k;
+        }
+      }
+    }
+  }
+}
+
+template <class T>
+RAYGATE_INLINE Triple<T> triple(const T* in) {
+  return {in[0], in[1], in[2]};
+}
+template <class T>
+RAYGATE_INLINE void put(const Triple<T>& value, T* out) {
+  out[0] = value.x;
+  out[1] = value.y;
+  out[2] = value.z;
+}
+
+TEST(Lanes, ArithmeticIsTheScalars) {
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    out[0] = root(in[0]);
+    out[1] = choose(in[1] < in[2], in[3], in[4]);
+    out[2] = narrow(wide(in[1]) * wide(in[2]) / root(wide(in[3])));
+    out[3] = maximum(at_most(at_least(in[0], 0.25f), 0.75f), minimum(in[1], absolute(in[2])));
+  });
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    put(normalized(triple(in)), out);
+    out[3] = dot(triple(in), triple(in + 3));
+  });
+}
+
+TEST(Lanes, DirectionsAreTheScalars) {
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    put(around(normalized(triple(in)), in[3], in[4], in[5], in[3]), out);
+  });
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    using T = std::remove_cvref_t<decltype(in[0])>;
+    const Triple<T> normal = normalized(triple(in)), view = normalized(triple(in + 3));
+    const Refraction<T> refraction(view, normal, 1.0f + absolute(in[0]));
+    put(refraction.direction, out);
+    out[3] = choose(refraction.exists, in[0], in[1]);
+  });
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    out[0] = fresnel_reflectance(in[0], in[1]);
+    out[1] = schlick_share(in[2]);
+    put(mirrored(triple(in), triple(in + 3)), out + 1);
+  });
+}
+
+TEST(Lanes, ElementaryFunctionsAreTheScalars) {
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    const auto turns = at_most(at_least(in[0] * 100.0f, -900.0f), 900.0f);
+    const auto found = sine_cosine(wide(turns));
+    out[0] = narrow(found.sine);
+    out[1] = narrow(found.cosine);
+    const auto base = wide(at_most(at_least(in[1], 0x1p-100f), 1.0f));
+    const auto exponent = wide(at_most(at_least(in[2] * 1e4f, 0.0f), 1e6f));
+    out[2] = narrow(power(base, exponent));
+    out[3] = narrow(binary_logarithm(base));
+  });
+}
+
+TEST(Lanes, RandomNumbersAreTheScalars) {
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    using T = std::remove_cvref_t<decltype(in[0])>;
+    WordOf<T> index, key;
+    std::memcpy(&index, &in[0], sizeof index);
+    std::memcpy(&key, &in[1], sizeof key);
+    const auto point = square_point<T>(index, mixed(key, 5u));
+    out[0] = point.x;
+    out[1] = point.y;
+  });
+}
+
+}  // namespace
+}  // namespace raygate
