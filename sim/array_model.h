@@ -7,6 +7,8 @@
 #include <cstring>
 #include <random>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "sim/model.h"
@@ -100,7 +102,9 @@ enum Count {
   kOutputStalls
 };
 
-/// The array `Top` (a class that Verilator made), with so many lanes.
+/// The array `Top` (a class that Verilator made), with so many lanes. Hardware that is broken is
+/// told by std::runtime_error: nothing goes in or comes out for kPatience clocks, or a result that
+/// nobody waits for.
 template <class Top, int kHardwareLanes, class Numbers = Binary32Numbers>
 class ArrayModel : public BurstModel {
  public:
@@ -144,6 +148,7 @@ class ArrayModel : public BurstModel {
  private:
   static constexpr unsigned kAllLanes = (1u << kHardwareLanes) - 1;
   static constexpr unsigned kMostBatches = 2;
+  static constexpr unsigned kPatience = 100'000;
 
   /// A batch on its way.
   struct Work {
@@ -180,9 +185,16 @@ class ArrayModel : public BurstModel {
     model_->valid_i = valid;
     model_->ready_i = ready;
     const unsigned taken = valid & model_->ready_o;
+    quiet_ = taken != 0 ? 0 : quiet_ + 1;
+    if (quiet_ > kPatience)
+      broken("nothing in or out for " + std::to_string(kPatience) + " clocks");
     model_.clock();
     offered_ = valid & ~taken;
     for (unsigned left = taken; left != 0; left &= left - 1) next_test(std::countr_zero(left));
+  }
+
+  [[noreturn]] static void broken(const std::string& what) {
+    throw std::runtime_error("hit_test_array: " + what);
   }
 
   bool chance(int of_256) { return static_cast<int>(random_() & 0xFF) < of_256; }
@@ -238,15 +250,19 @@ class ArrayModel : public BurstModel {
   }
 
   void take_result(int n) {
-    if (LaneShare* const share = awaited(n, &LaneShare::all_closed)) {
+    quiet_ = 0;
+    const unsigned kind = model_->report_o >> (2 * n) & 3;
+    const bool closed = model_->closed_o >> n & 1;
+    if (kind != 0 || closed) {
+      LaneShare* const share = awaited(n, &LaneShare::all_closed);
+      if (share == nullptr) broken("a result for no burst, lane " + std::to_string(n));
       const auto& [bundle, bundle_lane] = share->bursts[share->closed];
-      const unsigned kind = model_->report_o >> (2 * n) & 3;
       if (kind != 0) {
         share->results.reports.push_back({bundle, bundle_lane,
                                           read_slot<std::uint32_t>(model_->report_tag_o, n),
                                           static_cast<TestReport::Kind>(kind)});
       }
-      if (model_->closed_o >> n & 1) {
+      if (closed) {
         if (model_->found_o >> n & 1) {
           BurstHit& hit = share->results.hits.emplace_back();
           hit = {bundle, bundle_lane, read_slot<std::uint32_t>(model_->tag_o, n)};
@@ -257,8 +273,9 @@ class ArrayModel : public BurstModel {
       }
     }
     if (model_->point_valid_o >> n & 1) {
-      LaneShare& share = *awaited(n, &LaneShare::all_pointed);
-      numbers_.read(model_->point_o, n, &share.results.hits[share.pointed++].point.x, 3);
+      LaneShare* const share = awaited(n, &LaneShare::all_pointed);
+      if (share == nullptr) broken("a point for no hit, lane " + std::to_string(n));
+      numbers_.read(model_->point_o, n, &share->results.hits[share->pointed++].point.x, 3);
     }
   }
 
@@ -282,6 +299,7 @@ class ArrayModel : public BurstModel {
   Numbers numbers_;
   LaneInput inputs_[kHardwareLanes];
   unsigned offered_ = 0;  // lanes whose slot holds a test that was not taken yet
+  unsigned quiet_ = 0;    // clocks since something was taken, on either side
   Work works_[kMostBatches];
   unsigned oldest_ = 0, in_flight_ = 0;
   BurstStalls stalls_;

@@ -2,8 +2,11 @@
 //
 // Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is
 // the sign) and Width - 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in
-// and comes out. The digit is positive_o - negative_o, one of which is 0. While valid_i is low there is
-// none, and the outputs mean nothing.
+// and comes out. The digit is positive_o - negative_o, one of which is 0.
+//
+// While valid_i is low the digit is 0 and no multiple of the divisor is formed, whatever the residual:
+// operand isolation. In a divider without cuts, where a change of the operands runs through all rows and
+// each makes more of it, the rows then keep still in clocks without a division.
 module srt_row #(
   parameter int unsigned Width = 25,
   parameter int unsigned Arith = arith_pkg::Structural,
@@ -55,8 +58,8 @@ module srt_row #(
   assign eighth = {divisor_i[Width-3-:3], 3'b000};
 
   always_comb begin
-    from = 'x;
-    multiple = 'x;
+    from = 4'b0011;
+    multiple = '0;
     if (valid_i) begin
       from[0] = y >= MMinus1[eighth+:EstimateWidth];
       from[1] = y >= M0[eighth+:EstimateWidth];

@@ -200,27 +200,17 @@ module fp_adder_stages #(
   // ---- Far path: exponent for the rounder, less one for a sum and less two for a difference
 
   logic [ExpWidth-1:0] far_exp;
+  logic [ExpWidth-2:0] far_exp_high_n;  // complements count downwards
 
-  logic [ExpWidth-1:0] exp_plus_1_n, exp_plus_2_n;  // complements count downwards
-
-  incrementer #(
-    .Width(ExpWidth),
-    .Arith(Arith)
-  ) u_exp_less_1 (
-    .a_i(~big_exp_1),
-    .carry_i(1'b1),
-    .sum_o(exp_plus_1_n)
-  );
   incrementer #(
     .Width(ExpWidth - 1),
     .Arith(Arith)
-  ) u_exp_less_2 (
+  ) u_far_exp (
     .a_i(~big_exp_1[ExpWidth-1:1]),
-    .carry_i(1'b1),
-    .sum_o(exp_plus_2_n[ExpWidth-1:1])
+    .carry_i(subtract_1 | ~big_exp_1[0]),
+    .sum_o(far_exp_high_n)
   );
-  assign exp_plus_2_n[0] = ~big_exp_1[0];
-  assign far_exp = ~(subtract_1 ? exp_plus_2_n : exp_plus_1_n);
+  assign far_exp = {~far_exp_high_n, big_exp_1[0] ~^ subtract_1};
 
   // ---- Near path: subtract, the distance known from the exponents' lowest bits
 

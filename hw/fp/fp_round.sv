@@ -16,6 +16,8 @@
 // rounded value. Any of the three inputs silences overflow, underflow and inexact; invalid_i and
 // divide_by_zero_i go straight to the flags. sign_i is the sign of every result but NaN.
 //
+// rounding_mode_i: fp_pkg::rounding_mode_e; the reserved values 5, 6 and 7 round towards zero.
+//
 // Tininess is detected after rounding with tininess_after_i = 1 (the value rounded with unbounded
 // exponent is below 2**(1-bias)), else before; underflow is tininess with inexactness.
 //

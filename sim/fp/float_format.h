@@ -47,6 +47,11 @@ enum class RoundingMode : std::uint8_t {
   kNearestMaxMagnitude = 4
 };
 
+/// What rounding_mode_i = `encoding` (0 to 7) does: 5 to 7, reserved, round towards zero.
+constexpr RoundingMode rounding_of(int encoding) {
+  return encoding <= 4 ? static_cast<RoundingMode>(encoding) : RoundingMode::kTowardZero;
+}
+
 enum class Tininess : std::uint8_t { kBeforeRounding = 0, kAfterRounding = 1 };
 
 /// Exception flags, OR-ed; the order of RISC-V and TestFloat, equal to fp_pkg::flags_t.
