@@ -2,8 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 
 namespace raygate {
+
+/// Processor time of all threads so far: what other programs take does not count.
+inline double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Each lap ends one part and begins the next.
 class Stopwatch {

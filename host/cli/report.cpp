@@ -261,6 +261,7 @@ std::string to_json(const Report& report) {
        {{"load", report.load_seconds},
         {"tree", report.tree_seconds},
         {"render", render.wall_seconds},
+        {"processor", render.processor_seconds},
         {"write", report.write_seconds},
         {"total", report.total_seconds}}},
       {"thread_seconds",

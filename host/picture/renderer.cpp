@@ -223,6 +223,7 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
             const ProgressFunction& progress) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
+  const double busy = processor_seconds();
   stats = {};
   Film film = empty_film(options);
   auto first_finder = make_finder();
@@ -243,6 +244,7 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
   const std::uint64_t every_test = stats.rays * bvh.slot_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);
   stats.wall_seconds = wall.lap();
+  stats.processor_seconds = processor_seconds() - busy;
   return film;
 }
 

@@ -45,7 +45,8 @@ struct RenderOptions {
 };
 
 /// What a render did. Seconds of the parts are summed over the threads (two threads busy for a
-/// second make two seconds); `wall_seconds` is what a clock on the wall shows.
+/// second make two seconds); `wall_seconds` is what a clock on the wall shows, `processor_seconds`
+/// what all threads of the program were given of the processors meanwhile.
 struct RenderStats {
   std::uint64_t rays = 0;          ///< of all kinds; the others are reflected or refracted
   std::uint64_t camera_rays = 0;   ///< of these, from the camera
@@ -55,6 +56,7 @@ struct RenderStats {
   FindCounters find;           ///< summed over the threads' finders
   double shade_seconds = 0.0;  ///< making the rays and shading them
   double wall_seconds = 0.0;
+  double processor_seconds = 0.0;
   int missing_threads = 0;  ///< that could not be started; the others did their work
   bool cancelled = false;   ///< the progress function said stop: the film has what there was
 };

@@ -125,16 +125,14 @@ class Performance {
         .max_depth = run_.depth,
         .point_error = run_.point_error < 0.0 ? std::numeric_limits<float>::max()
                                               : static_cast<float>(run_.point_error)};
-    const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const Film film = render(stage_.scene, stage_.bvh, camera_, options,
                              factory_of(run_, variant_, stage_.bvh), stats_);
-    const double busy = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     if (film_ && !same_picture(*film_, film)) {
       throw std::logic_error("two pictures of one run differ: " + row_of(run_).dump());
     }
     if (film_ || run_.repeats == 1) {
       seconds_.push_back(stats_.wall_seconds);
-      processor_seconds_.push_back(busy);
+      processor_seconds_.push_back(stats_.processor_seconds);
       yardstick_seconds_.push_back(time_yardstick());
     }
     if (!film_) film_ = film;

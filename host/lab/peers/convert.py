@@ -1,0 +1,137 @@
+"""Writes a scene twice into one folder: OBJ, MTL and JSON for raygate; PLY and `mitsuba.json` for Mitsuba.
+
+`mitsuba.json` is the dictionary that mitsuba.load_dict takes, but for what JSON cannot say, which `mitsuba_worker`
+puts in: a place for a camera ("look_at"), a texture times a colour ("times").
+"""
+
+import json
+import pathlib
+import shutil
+
+import numpy
+
+from host.lab.peers.scene import Material, Mesh, Scene, colour
+
+# Mitsuba's samplers; the first is its default.
+SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
+# Rays that chance may end begin after this many surfaces, and a path has at most so many: raygate's path does the same.
+SURE_SURFACES = 3
+DEPTH = 64
+
+
+def rgb(values: object) -> dict:
+    """A colour."""
+    return {"type": "rgb", "value": [float(value) for value in values]}
+
+
+def write_raygate(scene: Scene, folder: pathlib.Path) -> None:
+    """scene.json, beside the OBJ and an MTL of what both renderers have."""
+    shutil.copyfile(scene.obj, folder / scene.obj.name)
+    lines = []
+    for material in {mesh.material.name: mesh.material for mesh in scene.meshes}.values():
+        lines += [f"newmtl {material.name}"]
+        for statement, values in (("Kd", material.diffuse), ("Ks", material.mirror), ("Ke", material.emission),
+                                  ("Tf", material.transmittance)):
+            lines += [" ".join([statement, *(f"{value:.9g}" for value in values)])]
+        if material.texture:
+            shutil.copyfile(material.texture, folder / material.texture.name)
+            lines += ["map_Kd -s {:g} {:g} {}".format(*material.texture_scale, material.texture.name)]
+        lines += [f"Ni {material.index:g}", "Ns 1",
+                  f"illum {7 if material.is_glass else 3 if max(material.mirror) else 1}", ""]
+    (folder / scene.mtl.name).write_text("\n".join(lines))
+    (folder / "scene.json").write_text(json.dumps(
+        {"obj": scene.obj.name, "camera": scene.camera, "point_lights": scene.point_lights,
+         "area_lights": scene.area_lights, "background": list(scene.background)}, indent=1))
+
+
+def write_ply(mesh: Mesh, file: pathlib.Path) -> None:
+    """Binary; texture coordinates with v downwards, and scaled, as the picture is looked up."""
+    columns = [("x", mesh.positions[:, 0]), ("y", mesh.positions[:, 1]), ("z", mesh.positions[:, 2])]
+    if mesh.normals is not None:
+        columns += [(f"n{axis}", mesh.normals[:, i]) for i, axis in enumerate("xyz")]
+    if mesh.texcoords is not None:
+        u, v = (mesh.texcoords[:, i] * mesh.material.texture_scale[i] for i in range(2))
+        columns += [("u", u), ("v", 1.0 - v)]
+    head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(mesh.positions)}",
+            *(f"property float {name}" for name, _ in columns), f"element face {len(mesh.faces)}",
+            "property list uchar int vertex_indices", "end_header", ""]
+    faces = numpy.empty(len(mesh.faces), dtype=[("n", "u1"), ("corners", "<i4", 3)])
+    faces["n"], faces["corners"] = 3, mesh.faces
+    with file.open("wb") as out:
+        out.write("\n".join(head).encode())
+        out.write(numpy.stack([values for _, values in columns], axis=1).astype("<f4").tobytes())
+        out.write(faces.tobytes())
+
+
+def bsdf(material: Material) -> dict:
+    """A material of Mitsuba."""
+    if material.is_glass:
+        return {"type": "dielectric", "int_ior": material.index, "ext_ior": 1.0,
+                "specular_transmittance": rgb(material.transmittance)}
+    if max(material.mirror) > 0.0:
+        inside = {"type": "conductor", "material": "none", "specular_reflectance": rgb(material.mirror)}
+    else:
+        inside = {"type": "diffuse", "reflectance": rgb(material.diffuse) if material.texture is None else
+                  {"type": "bitmap", "filename": material.texture.name, "times": list(material.diffuse)}}
+    return {"type": "twosided", "inside": inside}
+
+
+def lamp_sides(corners: numpy.ndarray, normal: numpy.ndarray, everything: numpy.ndarray) -> list[bool]:
+    """The sides of a flat lamp on which there is anything to be lit: True is the one that its normal points to."""
+    heights = (everything - corners[0]) @ normal
+    flat = 1e-5 * float(numpy.ptp(everything, axis=0).max())
+    return [side for side, lit in ((True, heights.max() > flat), (False, heights.min() < -flat)) if lit]
+
+
+def lamp_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
+    """Mitsuba's lamps shine to the front, raygate's to both sides: the lamp as it must face, twice if it lights
+    both sides, the two then apart by a hundred-thousandth of the scene."""
+    a, b, c = mesh.positions[mesh.faces[0]]
+    normal = numpy.cross(b - a, c - a)
+    normal /= numpy.linalg.norm(normal)
+    sides = lamp_sides(mesh.positions[mesh.faces[0]], normal, everything)
+    apart = 1e-5 * float(numpy.ptp(everything, axis=0).max()) if len(sides) == 2 else 0.0
+    return [Mesh(mesh.material, mesh.positions + (apart if front else -apart) * normal, None, mesh.texcoords,
+                 mesh.faces if front else mesh.faces[:, ::-1]) for front in sides]
+
+
+def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
+    """mitsuba.json, a PLY file for each mesh, and a camera for each sampler."""
+    everything = numpy.concatenate([mesh.positions for mesh in scene.meshes])
+    found: dict = {"type": "scene", "integrator": {"type": "path", "rr_depth": SURE_SURFACES + 1,
+                                                   "max_depth": DEPTH + 2}}
+    for sampler in SAMPLERS:
+        found[f"camera_{sampler}"] = {
+            "type": "perspective", "fov_axis": "y", "fov": scene.camera["fov"],
+            "look_at": {"origin": scene.camera["eye"], "target": scene.camera["target"], "up": scene.camera["up"]},
+            "film": {"type": "hdrfilm", "rfilter": {"type": "box"}, "pixel_format": "rgb",
+                     "component_format": "float32"},
+            "sampler": {"type": sampler}}
+    meshes = list(scene.meshes)
+    for number, light in enumerate(scene.area_lights):
+        corner, (along, across) = numpy.array(light["corner"], float), numpy.array(light["edges"], float)
+        lamp = Material(f"light {number}", diffuse=(0.0, 0.0, 0.0), emission=colour(light["radiance"]))
+        meshes.append(Mesh(lamp, numpy.array([corner, corner + along, corner + along + across, corner + across]),
+                           None, None, numpy.array([[0, 1, 2], [0, 2, 3]])))
+    for mesh in meshes:
+        shines = max(mesh.material.emission) > 0.0
+        for part in lamp_meshes(mesh, everything) if shines else [mesh]:
+            name = f"mesh_{sum(key.startswith('mesh_') for key in found)}"
+            write_ply(part, folder / f"{name}.ply")
+            found[name] = {"type": "ply", "filename": f"{name}.ply", "face_normals": part.normals is None,
+                           "bsdf": bsdf(part.material)}
+            if shines:
+                found[name]["emitter"] = {"type": "area", "radiance": rgb(part.material.emission)}
+    for number, light in enumerate(scene.point_lights):
+        found[f"point_{number}"] = {"type": "point", "position": light["position"],
+                                    "intensity": rgb(colour(light["intensity"]))}
+    if max(scene.background) > 0.0:
+        found["background"] = {"type": "constant", "radiance": rgb(scene.background)}
+    (folder / "mitsuba.json").write_text(json.dumps(found, indent=1))
+
+
+def write(scene: Scene, folder: pathlib.Path) -> None:
+    """Both."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_raygate(scene, folder)
+    write_mitsuba(scene, folder)

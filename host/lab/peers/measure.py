@@ -1,0 +1,125 @@
+"""Renders, times and judges: rows for the report."""
+
+import pathlib
+import statistics
+import sys
+
+import numpy
+
+from host.lab.peers import convert, scene as scenes
+from host.lab.report.machine import processors
+from host.lab.report.rows import ROOT
+
+# Scene -> width of its picture; the height is the same.
+SCENES = {"cornell": 128, "cornell_spheres": 128, "paper_room": 128, "still_life": 128, "columns": 128,
+          "teapot": 128, "sphereflake": 128, "landscape": 128}
+VARIANTS = ("scalar_rgb", "llvm_ad_rgb")
+# Of Mitsuba's samplers those that come out best: they are also timed with other numbers of samples.
+BEST = ("multijitter", "orthogonal")
+COUNT = 32  # samples per pixel of the tables; samplers that cannot have it take the next they can
+REFERENCE_SEED = 1000
+
+
+def scene_file(name: str) -> pathlib.Path:
+    """Beside this file, or one of the gallery's."""
+    mine = pathlib.Path(__file__).parent / "scenes" / f"{name}.json"
+    return mine if mine.exists() else ROOT / "scenes" / f"{name}.json"
+
+
+def mse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
+    """Over pixels and colours, scene-linear."""
+    return float(numpy.mean((picture.astype(float) - reference) ** 2))
+
+
+def reference(renderer: object, sampler: str, samples: int, size: dict) -> tuple[numpy.ndarray, float]:
+    """The mean of two long runs, and the MSE that their difference shows it still to have."""
+    first, second = (renderer.render(sampler, samples, REFERENCE_SEED + i, **size)[1] for i in range(2))
+    return (first.astype(float) + second) / 2.0, mse(first, second) / 4.0
+
+
+class Measurement:
+    """One scene."""
+
+    def __init__(self, name: str, quick: bool, program: pathlib.Path) -> None:
+        self.name, self.quick, self.program = name, quick, program
+        side = SCENES[name] // (2 if quick else 1)
+        self.size = {"width": side, "height": side}
+        self.folder = ROOT / "build" / "peers" / name
+        found = scenes.read(scene_file(name))
+        convert.write(found, self.folder)
+        self.left_out = found.left_out
+        self.references: dict[str, numpy.ndarray] = {}
+
+    def progress(self, text: str) -> None:
+        """On standard error."""
+        print(f"{self.name}: {text}", file=sys.stderr)
+
+    def references_row(self, samples: int) -> dict:
+        """Do the two renderers compute the same picture?"""
+        from host.lab.peers.renderers import Mitsuba, Raygate  # need Mitsuba, which the tests do without
+        found = {}
+        for renderer, sampler in ((Raygate(self.folder, processors(), self.program), ""),
+                                  (Mitsuba(self.folder, processors(), "llvm_ad_rgb"), "multijitter")):
+            self.progress(f"{2 * samples} samples by {renderer.name}")
+            found[renderer.name.split()[0]] = reference(renderer, sampler, samples, self.size)
+            renderer.close()
+        self.references = {name: picture for name, (picture, _) in found.items()}
+        (ours, our_noise), (theirs, their_noise) = found.values()
+        self.write_side_by_side(ours, theirs)
+        return {"table": "references", "scene": self.name, "samples": 2 * samples, "left_out": self.left_out,
+                "mean_raygate": float(ours.mean()), "mean_mitsuba": float(theirs.mean()),
+                "rmse": mse(ours, theirs) ** 0.5, "noise": (our_noise + their_noise) ** 0.5}
+
+    def write_side_by_side(self, ours: numpy.ndarray, theirs: numpy.ndarray) -> None:
+        """references.png: raygate, Mitsuba, and their difference ten times as bright."""
+        import mitsuba
+        strip = numpy.concatenate([ours, theirs, 10.0 * abs(ours - theirs)], axis=1)
+        mitsuba.util.write_bitmap(str(self.folder / "references.png"), strip.astype(numpy.float32))
+
+    def plan(self, threads: int) -> list[tuple[object, str, int]]:
+        """Renderer, sampler, samples per pixel."""
+        from host.lab.peers.renderers import Mitsuba, Raygate
+        one_thread = threads == 1
+        counts = ([8, COUNT] if self.quick else [2, 8, COUNT, 128]) if one_thread else [COUNT]
+        raygate = Raygate(self.folder, threads, self.program)
+        found = [(raygate, "Owen-scrambled Sobol", count) for count in counts]
+        for variant in VARIANTS:
+            mitsuba = Mitsuba(self.folder, threads, variant)
+            found += [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
+                      if count == COUNT and one_thread or sampler in BEST]
+        return found
+
+    def rows(self, threads: int, repeats: int) -> list[dict]:
+        """A row for each of the plan; repeats are of other seeds, and interleaved."""
+        plan = self.plan(threads)
+        runs: list[list[dict]] = [[] for _ in plan]
+        for seed in range(repeats):
+            for (renderer, sampler, count), mine in zip(plan, runs, strict=True):
+                self.progress(f"{renderer.name} {sampler}, {count} samples, {threads} threads")
+                row, picture = renderer.render(sampler, count, seed, **self.size)
+                mine.append(row | {"mse": mse(picture, self.references[renderer.name.split()[0]])})
+        for renderer in {id(renderer): renderer for renderer, _, _ in plan}.values():
+            renderer.close()
+        return [self.row(threads, renderer.name, sampler, mine)
+                for (renderer, sampler, _), mine in zip(plan, runs, strict=True)]
+
+    def row(self, threads: int, renderer: str, sampler: str, runs: list[dict]) -> dict:
+        """Of one thread the processor's seconds count, which other programs do not stretch."""
+        key = "processor_seconds" if threads == 1 else "seconds"
+        seconds = statistics.median(run[key] for run in runs)
+        error = statistics.fmean(run["mse"] for run in runs)
+        return {"table": "peers", "scene": self.name, **self.size, "threads": threads, "renderer": renderer,
+                "sampler": sampler, "samples": runs[0]["samples"], "seconds": [run["seconds"] for run in runs],
+                "processor_seconds": [run["processor_seconds"] for run in runs], "median_seconds": seconds,
+                "mse": error, "time_mse": seconds * error, "rays": runs[0].get("rays")}
+
+
+def measure(names: list[str], quick: bool, repeats: int, samples: int, program: pathlib.Path) -> list[dict]:
+    """All rows."""
+    found = []
+    for name in names:
+        mine = Measurement(name, quick, program)
+        found.append(mine.references_row(samples))
+        for threads in {1: 0, processors(): 0}:
+            found += mine.rows(threads, repeats)
+    return found

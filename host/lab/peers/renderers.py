@@ -1,0 +1,82 @@
+"""Who renders: raygate's program and Mitsuba's worker, asked alike."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import mitsuba
+import numpy
+
+from host.lab.peers.convert import DEPTH
+from host.lab.report.rows import ROOT
+
+mitsuba.set_variant("scalar_rgb")  # to read EXR files
+
+
+def light_of(picture: mitsuba.Bitmap) -> numpy.ndarray:
+    """Red, green and blue, wherever they are among the channels."""
+    names = [field.name for field in picture.struct_()]
+    return numpy.array(picture)[..., [names.index(channel) for channel in "RGB"]]
+
+
+class Raygate:
+    """./render, the cpu engine."""
+
+    name = "raygate"
+
+    def __init__(self, folder: pathlib.Path, threads: int, program: pathlib.Path) -> None:
+        self._words = [program, folder / "scene.json", "--engine", "cpu", "--quiet", "--integrator", "path",
+                       "--filter", "box", "--depth", str(DEPTH), "--threads", str(threads)]
+
+    def render(self, sampler: str, samples: int, seed: int, width: int, height: int) -> tuple[dict, numpy.ndarray]:
+        """What it took, and the picture. It has one sampler."""
+        with tempfile.TemporaryDirectory() as name:
+            picture, stats = pathlib.Path(name) / "picture.exr", pathlib.Path(name) / "stats.json"
+            subprocess.run([*self._words, "--size", f"{width}x{height}", "--spp", str(samples), "--seed", str(seed),
+                            "--output", picture, "--stats", stats], check=True, cwd=ROOT)
+            found = json.loads(stats.read_text())
+            pixels = mitsuba.Bitmap(str(picture))
+        seconds = found["seconds"]
+        return {"seconds": seconds["render"], "processor_seconds": seconds.get("processor", seconds["render"]),
+                "samples": samples, "rays": found["rays"]}, light_of(pixels)
+
+    def close(self) -> None:
+        """Nothing goes on."""
+
+
+class Mitsuba:
+    """A worker process, which loads the scene once and warms up for each new kind of picture."""
+
+    def __init__(self, folder: pathlib.Path, threads: int, variant: str) -> None:
+        self.name = f"Mitsuba {variant}"
+        self._warm: set[tuple] = set()
+        self._process = subprocess.Popen(
+            [sys.executable, "-B", "-m", "host.lab.peers.mitsuba_worker", folder, variant, str(threads)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT)
+
+    def _ask(self, **asked: object) -> dict:
+        self._process.stdin.write(json.dumps(asked) + "\n")
+        self._process.stdin.flush()
+        answer = self._process.stdout.readline()
+        if not answer:
+            raise ValueError(f"{self.name} ended, expected a picture")
+        return json.loads(answer)
+
+    def render(self, sampler: str, samples: int, seed: int, width: int, height: int) -> tuple[dict, numpy.ndarray]:
+        """What it took, and the picture."""
+        asked = {"sampler": sampler, "samples": samples, "width": width, "height": height}
+        # LLVM compiles a kernel for each; without LLVM one picture, and a small one, warms up.
+        kind = tuple(asked.values()) if "llvm" in self.name else (width, height)
+        if kind not in self._warm:
+            self._ask(**asked | ({} if "llvm" in self.name else {"samples": 1}), seed=seed + 1)
+            self._warm.add(kind)
+        with tempfile.NamedTemporaryFile(suffix=".npy") as picture:
+            row = self._ask(**asked, seed=seed, picture=picture.name)
+            return row, numpy.load(picture.name)
+
+    def close(self) -> None:
+        """Lets it end."""
+        self._process.stdin.close()
+        self._process.wait()

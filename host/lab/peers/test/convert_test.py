@@ -1,0 +1,124 @@
+"""A small room: what becomes of its faces, materials and lamps for either renderer."""
+
+import json
+import pathlib
+import tempfile
+import unittest
+
+import numpy
+
+from host.lab.peers import convert, measure, scene
+
+OBJ = """\
+mtllib room.mtl
+v 0 0 0
+v 1 0 0
+v 1 0 1
+v 0 0 1
+vn 0 1 0
+o floor
+usemtl matte
+f 1//1 2//1 3//1 4//1
+v 0 1 0
+v 1 1 0
+v 1 1 1
+o lamp
+usemtl lamp
+f -3 -2 -1
+"""
+MTL = """\
+newmtl matte
+Kd 0.5 0.25 0.125
+illum 1
+newmtl lamp
+Kd 0 0 0
+Ke 3 2 1
+illum 1
+"""
+JSON = {"obj": "room.obj", "camera": {"eye": [0.5, 0.5, 3], "target": [0.5, 0.5, 0]}, "background": 0.25,
+        "area_lights": [{"corner": [0, 0.5, 0], "edges": [[1, 0, 0], [0, 0, 1]], "radiance": [4, 5, 6]}]}
+
+
+def made(folder: pathlib.Path, mtl: str = MTL, **more: object) -> scene.Scene:
+    """The room, read back from its files."""
+    (folder / "room.obj").write_text(OBJ)
+    (folder / "room.mtl").write_text(mtl)
+    (folder / "room.json").write_text(json.dumps(JSON | more))
+    return scene.read(folder / "room.json")
+
+
+class Peers(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def converted(self, **more):
+        convert.write(made(self.folder, **more), self.folder / "out")
+        return json.loads((self.folder / "out" / "mitsuba.json").read_text())
+
+    def test_faces_become_fans_of_welded_corners(self):
+        floor, lamp = made(self.folder).meshes
+        self.assertEqual((floor.material.name, len(floor.positions), len(floor.faces)), ("matte", 4, 2))
+        self.assertEqual(floor.positions[floor.faces].tolist(),
+                         [[[0, 0, 0], [1, 0, 0], [1, 0, 1]], [[0, 0, 0], [1, 0, 1], [0, 0, 1]]])
+        self.assertEqual(floor.normals.tolist(), [[0, 1, 0]] * 4)
+        self.assertEqual(lamp.positions[lamp.faces[0]].tolist(), [[0, 1, 0], [1, 1, 0], [1, 1, 1]])
+        self.assertIsNone(lamp.normals)
+
+    def test_materials_that_only_one_has_are_simplified_or_refused(self):
+        def read(statements):
+            left_out = []
+            return scene.material("m", self.folder, {line.split()[0]: line.split()[1:] for line in statements},
+                                  left_out), left_out
+
+        glossy, said = read(["Kd 0.5", "Ks 0.1", "illum 2"])
+        self.assertEqual((glossy.diffuse, glossy.mirror, len(said)), ((0.5,) * 3, (0.0,) * 3, 1))
+        mirror, said = read(["Kd 0.1", "Ks 0.9", "illum 3"])
+        self.assertEqual((mirror.diffuse, mirror.mirror, len(said)), ((0.0,) * 3, (0.9,) * 3, 1))
+        matte, said = read(["Kd 0.6", "Ks 0.1", "illum 3"])
+        self.assertEqual((matte.diffuse, matte.mirror, len(said)), ((0.6,) * 3, (0.0,) * 3, 1))
+        glass, said = read(["Kd 0", "Tf 0.5 1 1", "Ni 1.5", "d 0.5", "illum 7"])
+        self.assertEqual((glass.transmittance, glass.index, said), ((0.25, 0.5, 0.5), 1.5, []))
+        for statements in (["illum 0"], ["illum 4"], ["illum 1", "d 0.5"], ["Kd 0.5", "illum 7"]):
+            with self.assertRaisesRegex(ValueError, "m: illum . with d .*: Mitsuba has no such material"):
+                read(statements)
+
+    def test_both_get_the_same_light_and_rules(self):
+        found = self.converted()
+        self.assertEqual(found["integrator"], {"type": "path", "rr_depth": 4, "max_depth": 66})
+        self.assertEqual(found["background"]["radiance"]["value"], [0.25] * 3)
+        mine = json.loads((self.folder / "out" / "scene.json").read_text())
+        self.assertEqual((mine["background"], mine["area_lights"]), ([0.25] * 3, JSON["area_lights"]))
+        again = scene.read(self.folder / "out" / "scene.json")
+        self.assertEqual([mesh.material for mesh in again.meshes], [mesh.material for mesh in made(self.folder).meshes])
+
+    def test_lamps_face_what_they_light(self):
+        found = self.converted()
+        lamps = [part for part in found.values() if isinstance(part, dict) and "emitter" in part]
+        # The lamp of the file has everything below it; that of the scene file has something on both sides.
+        self.assertEqual([lamp["emitter"]["radiance"]["value"] for lamp in lamps], [[3, 2, 1], [4, 5, 6], [4, 5, 6]])
+        heights = []
+        for lamp in lamps:
+            data = (self.folder / "out" / lamp["filename"]).read_bytes()
+            head, body = data.split(b"end_header\n")
+            count = int(head.split(b"element vertex ")[1].split()[0])
+            corners = numpy.frombuffer(body[:12 * count], "<f4").reshape(-1, 3)
+            face = numpy.frombuffer(body[12 * count:12 * count + 13], [("n", "u1"), ("at", "<i4", 3)])["at"][0]
+            a, b, c = corners[face].astype(float)
+            heights.append((round(float(a[1]), 3), float(numpy.sign(numpy.cross(b - a, c - a)[1]))))
+        self.assertEqual(heights[0], (1.0, -1.0))
+        self.assertEqual(sorted(heights[1:]), [(0.5, -1.0), (0.5, 1.0)])
+
+    def test_noise_of_a_reference(self):
+        class Coin:
+            def render(self, sampler, samples, seed, **size):
+                return {}, numpy.random.default_rng(seed).normal(1.0, 1.0, (200, 200, 3))
+
+        mean, noise = measure.reference(Coin(), "", 1, {})
+        self.assertAlmostEqual(measure.mse(mean, numpy.ones_like(mean)), noise, delta=0.02)
+        self.assertAlmostEqual(noise, 0.5, delta=0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()
