@@ -58,8 +58,9 @@ def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
 
 def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
     """Raises ToolFailed unless every assertion holds: in `steps` clocks from power-up on, and after any
-    so many in which they held; and unless each `cover` is reached within `reach` clocks. A module that
-    assumes something must cover something: what contradicts itself would hold of everything.
+    so many in which they held; and unless there are such clocks at all, and each `cover` is reached within
+    `reach` of them. A module that assumes something must cover something: what contradicts itself would
+    hold of everything.
     `steps` = 0: it has no registers."""
     model = Model(top, smt2.read_text())
     if not model.listed("assert"):
@@ -69,6 +70,8 @@ def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
         raise tools.ToolFailed(f"{top}: it assumes something and covers nothing")
     from_start = model.clocks(max(steps, 1)) + (model.first() if steps else "")
     _refuse(model, smt2.with_name("from_start.smt2"), from_start, range(max(steps, 1)))
+    if float_proofs.solve(smt2.with_name("possible.smt2"), from_start)["answer"] != "sat":
+        raise tools.ToolFailed(f"{top}: no run is possible: {smt2.parent}")
     if steps:
         onwards = model.clocks(steps + 1) + f"(assert {model.always(range(steps))})\n"
         _refuse(model, smt2.with_name("onwards.smt2"), onwards, range(steps, steps + 1))

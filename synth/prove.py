@@ -6,6 +6,7 @@ import collections
 import dataclasses
 import functools
 import pathlib
+import re
 import sys
 from collections.abc import Callable
 
@@ -84,6 +85,51 @@ def nearest_is_kept(name: str, exp: int, frac: int) -> tuple[dict, bool]:
                  parameters=(("ExpWidth", exp), ("FracWidth", frac)), name=f"nearest.{name}")
 
 
+def _pipeline() -> list[pathlib.Path]:
+    """The pipelined unit, around arithmetic that may give anything."""
+    contracts = PROOFS / "contracts" / "hit_test_arithmetic.sv"
+    stands_for = re.findall(r"^module (\w+)", contracts.read_text(), re.M)
+    rtl = [file for file in cores.files("hit_test") if file.stem not in stands_for]
+    return [*cores.used("hit_test_pipeline", rtl), contracts]
+
+
+def keeps_credits(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """The pipelined unit never overfills its queue, and holds what it offers, by induction."""
+    inner = ("test_q decided_q dividing_q report closed u_point.valid_q u_results.push_i "
+             "u_results.count_q u_results.read_q u_results.write_q")
+    return holds("pipeline_keeps_credits", "Bitwuzla", _pipeline(), "open.tcl",
+                 (("ExpWidth", exp), ("FracWidth", frac)), steps=1,
+                 prepared=_opened(exp, frac, 1, inner), name=f"credits.{name}")
+
+
+def keeps_tags(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """Tests come to their distances in order, with their tags, by induction."""
+    inner = "u_nearest.valid_i u_nearest.first_i u_nearest.last_i u_nearest.tag_i"
+    latency = frac // 2 + 16
+    return holds("pipeline_keeps_tags", "Bitwuzla", _pipeline(), "open.tcl",
+                 (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
+                 prepared=_opened(exp, frac, 2, inner), name=f"tags.{name}")
+
+
+def decision(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """hit_decision denies no exact edge product."""
+    return holds("decision_follows_edges", "Bitwuzla", cores.files("hit_test"),
+                 parameters=(("ExpWidth", exp), ("FracWidth", frac)), name=f"decision.{name}")
+
+
+def edge_sign(frac: int) -> tuple[dict, bool]:
+    """An edge product beyond its bound has the exact one's sign, in a format of this fraction width."""
+    u = 2.0 ** -(frac + 1)
+    most = int(1024 * (2 + 6 / (1 - 3 * u)))
+    return holds("edge_sign_is_exact", "Bitwuzla", cores.files("fp"), name=f"edge_sign.{frac}",
+                 parameters=(("ExpWidth", 4), ("FracWidth", frac), ("C1024", most)))
+
+
+def _opened(exp: int, frac: int, tag: int, inner: str) -> str:
+    return (f"hit_test_pipeline {{-chparam ExpWidth {exp} -chparam FracWidth {frac} "
+            f"-chparam TagWidth {tag}}} {{{inner}}}")
+
+
 def every_product(width: int) -> tuple[dict, bool]:
     """Every product of the Verilated multiplier."""
     folder = store.OUT / "proofs" / f"every_product_{width}"
@@ -146,6 +192,19 @@ def all_proofs() -> list[Proof]:
         *(Proof(f"unit.nearest.{name}", "a burst's nearest hit is kept, and near ties reported",
                 "Bitwuzla", functools.partial(nearest_is_kept, name, exp, frac))
           for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+        *(Proof(f"unit.credits.{name}", "the pipelined unit's queue has room for all that comes; what it "
+                "offers stays until taken", "Bitwuzla",
+                functools.partial(keeps_credits, name, exp, frac), False)
+          for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+        *(Proof(f"unit.tags.{name}", "the pipelined unit keeps the order, tags and bursts of its tests",
+                "Bitwuzla", functools.partial(keeps_tags, name, exp, frac), False)
+          for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+        *(Proof(f"unit.decision.{name}", "no verdict denies exact edge products, if bounds hold", "Bitwuzla",
+                functools.partial(decision, name, exp, frac))
+          for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+        *(Proof(f"unit.edge_sign.{frac}", f"{frac} bits of fraction: beyond its bound an edge product has "
+                "the exact one's sign", "Bitwuzla", functools.partial(edge_sign, frac), False)
+          for frac in (3, 4, 5, 6, 7)),
         Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "Bitwuzla",
               lambda: holds("timetable", "Bitwuzla", unit, "open.tcl", steps=20,
                             prepared="hit_test_unit {} {word step clear accumulate load_d divide}")),
