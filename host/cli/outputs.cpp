@@ -11,13 +11,13 @@
 namespace raygate {
 
 ReadyPictures make_ready(const OutputOptions& options, const Film& film,
-                         const ExrMetadata& metadata) {
+                         const ExrMetadata& metadata, int threads) {
   ReadyPictures ready;
   const auto add = [&](const std::filesystem::path& path, const std::string& bytes) {
     ready.files.emplace_back(path, bytes);
     ready.paths.push_back(path);
   };
-  if (options.exr) add(*options.exr, encode_exr(film, metadata));
+  if (options.exr) add(*options.exr, encode_exr(film, metadata, threads));
   const auto add_png = [&](const std::filesystem::path& path, Picture8 picture) {
     if (metadata.partial) picture.texts.emplace_back("Comment", kPartial);
     add(path, encode_png(picture));

@@ -22,6 +22,6 @@ struct ReadyPictures {
 /// Encodes and writes; all or nothing. A picture of which only a part was rendered says so in its
 /// metadata (see ExrMetadata::partial). Throws InputError as PendingFile does.
 [[nodiscard]] ReadyPictures make_ready(const OutputOptions& options, const Film& film,
-                                       const ExrMetadata& metadata);
+                                       const ExrMetadata& metadata, int threads = 1);
 
 }  // namespace raygate

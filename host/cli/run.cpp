@@ -195,7 +195,7 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
 
   // All files are made ready before the first takes its name: a full disk changes none of them.
   const Clock::time_point write_start = Clock::now();
-  ReadyPictures ready = make_ready(outputs, film, metadata);
+  ReadyPictures ready = make_ready(outputs, film, metadata, static_cast<int>(options.threads));
   report.pictures = ready.paths;
   report.legends = ready.legends;
   report.write_seconds = seconds_since(write_start);

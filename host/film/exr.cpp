@@ -10,9 +10,13 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "host/film/channels.h"
+#include "host/threads.h"
 
 namespace raygate {
 namespace {
@@ -26,45 +30,84 @@ Imath::M44f to_imath(const glm::mat4& m) {
   return result;
 }
 
-Imf::Header make_header(const Film& film, const ExrMetadata& metadata) {
-  const PixelRect& window = film.window;
+/// A file of `window`, the film's or a part of it.
+Imf::Header make_header(const Film& film, const PixelRect& window, const ExrMetadata& metadata) {
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
                      Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}));
   header.screenWindowWidth() = metadata.screen_window_width;
   header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 2;  // 1 to 3 % larger than by 4, in three quarters of the time
   header.insert("software", Imf::StringAttribute(metadata.software));
   header.insert("scene", Imf::StringAttribute(metadata.scene));
   header.insert("seed", Imf::StringAttribute(std::to_string(metadata.seed)));
   if (metadata.partial) header.insert("partial", Imf::StringAttribute(kPartial));
   Imf::addWorldToCamera(header, to_imath(metadata.world_to_camera));
+  for (const Channel& channel : channels_of(film)) {
+    const auto type = channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
+    header.channels().insert(channel.name, Imf::Channel(type));
+  }
   return header;
+}
+
+/// The file of `window`, with all of its rows or, as yet, with none.
+std::string encode_window(const Film& film, const PixelRect& window, const ExrMetadata& metadata,
+                          bool with_rows) {
+  Imf::FrameBuffer buffer;
+  for (const Channel& channel : channels_of(film)) {
+    const auto type = channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
+    // The library's slices start at pixel (0, 0), which may lie outside the window.
+    const std::size_t row = channel.stride * static_cast<std::size_t>(film.window.width());
+    char* base = static_cast<char*>(const_cast<void*>(channel.first)) -
+                 static_cast<std::ptrdiff_t>(channel.stride) * film.window.x0 -
+                 static_cast<std::ptrdiff_t>(row) * film.window.y0;
+    buffer.insert(channel.name, Imf::Slice(type, base, channel.stride, row));
+  }
+  Imf::StdOSStream stream;
+  {
+    // None of the library's threads; the destructor completes the file.
+    Imf::OutputFile file(stream, make_header(film, window, metadata), 0);
+    file.setFrameBuffer(buffer);
+    if (with_rows) file.writePixels(window.height());
+  }
+  return stream.str();
+}
+
+/// The number of bytes from `at` on, as the file has it: the lowest byte first.
+template <class Number>
+void put(std::string& bytes, std::size_t at, Number number) {
+  for (std::size_t i = 0; i < sizeof number; ++i) {
+    bytes[at + i] = static_cast<char>(number >> (8 * i) & 0xFF);
+  }
+}
+
+constexpr int kBlockRows = 16;      // that ZIP compresses at once
+constexpr std::size_t kOffset = 8;  // bytes of a block's offset
+
+std::size_t block_count(int rows) {
+  return static_cast<std::size_t>((rows + kBlockRows - 1) / kBlockRows);
 }
 
 }  // namespace
 
-std::string encode_exr(const Film& film, const ExrMetadata& metadata) {
-  Imf::Header header = make_header(film, metadata);
-  Imf::FrameBuffer buffer;
+// A file is a header, the offsets of its blocks, and the blocks, each of which says which rows it
+// has. So blocks that were compressed as files of their own make up the whole one.
+std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
   const PixelRect& window = film.window;
-  for (const Channel& channel : channels_of(film)) {
-    const auto type = channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
-    header.channels().insert(channel.name, Imf::Channel(type));
-    // The library's slices start at pixel (0, 0), which may lie outside the window.
-    const std::size_t row = channel.stride * static_cast<std::size_t>(window.width());
-    char* base = static_cast<char*>(const_cast<void*>(channel.first)) -
-                 static_cast<std::ptrdiff_t>(channel.stride) * window.x0 -
-                 static_cast<std::ptrdiff_t>(row) * window.y0;
-    buffer.insert(channel.name, Imf::Slice(type, base, channel.stride, row));
+  std::string bytes = encode_window(film, window, metadata, false);
+  const std::size_t blocks = block_count(window.height());
+  const std::size_t header = bytes.size() - kOffset * blocks;
+  std::vector<std::string> parts(blocks);
+  for_each_on_threads(threads, blocks, [&](std::size_t i) {
+    PixelRect rows = window;
+    rows.y0 += static_cast<int>(i) * kBlockRows;
+    rows.y1 = std::min(rows.y0 + kBlockRows, window.y1);
+    parts[i] = encode_window(film, rows, metadata, true).substr(header + kOffset);
+  });
+  for (std::size_t i = 0; i < blocks; ++i) {
+    put(bytes, header + kOffset * i, std::uint64_t{bytes.size()});
+    bytes += parts[i];
   }
-
-  Imf::StdOSStream stream;
-  {
-    // No threads: they would change no byte, and the destructor completes the file.
-    Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(buffer);
-    file.writePixels(window.height());
-  }
-  return stream.str();
+  return bytes;
 }
 
 }  // namespace raygate

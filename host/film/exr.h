@@ -39,7 +39,9 @@ inline constexpr const char* kPartial = "not finished when it was saved";
 ///   objectId       uint    object index, 4294967295 for a miss
 ///   tests doubts   uint    counts
 /// The display window is the frame, the data window the film's window within it. Equal arguments
-/// give equal bytes. Throws std::runtime_error if the library fails.
-[[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata);
+/// give equal bytes, whatever the number of threads. Throws std::runtime_error if the library
+/// fails.
+[[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
+                                     int threads = 1);
 
 }  // namespace raygate

@@ -120,5 +120,12 @@ TEST(Exr, EqualFilmsGiveEqualBytes) {
   EXPECT_NE(first, encode_exr(film, {}));
 }
 
+TEST(Exr, ThreadsChangeNoByte) {
+  for (const PixelRect window : {PixelRect{0, 0, 50, 100}, PixelRect{7, 3, 9, 36}}) {
+    const Film film = make_sample_film(50, 100, window);
+    EXPECT_EQ(encode_exr(film, {}), encode_exr(film, {}, 3));
+  }
+}
+
 }  // namespace
 }  // namespace raygate
