@@ -87,6 +87,18 @@ RAYGATE_INLINE void load_quad(const float* from, FloatQuad& to) {
   std::memcpy(&to, from, sizeof to);
 }
 
+/// Element i of row k becomes element k of row i.
+RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {
+  const FloatQuad ab_low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+  const FloatQuad ab_high = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+  const FloatQuad cd_low = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+  const FloatQuad cd_high = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+  rows[0] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  rows[2] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
 /// The elements whose sign bit is set.
 RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
 #if defined(__SSE__)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 
 #include "host/exact/exact.h"
 #include "host/lanes.h"
@@ -61,6 +63,14 @@
 
 namespace raygate {
 
+/// A ray's origin and direction in lanes 0 to 2; lane 3 is any number of the ray's.
+RAYGATE_INLINE void load_ray(const Ray& ray, FloatQuad& origin, FloatQuad& direction) {
+  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
+  load_quad(reinterpret_cast<const float*>(&ray), origin);
+  load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, direction);
+  direction = __builtin_shufflevector(direction, direction, 1, 2, 3, 3);
+}
+
 /// A ray, made ready to be tested against triangles one quad after the other.
 struct ShearedRay {
   int axes[3];        ///< x, y, z of the shear: the ray goes farthest along the last one
@@ -71,15 +81,26 @@ struct ShearedRay {
   ShearedRay() = default;
   /// The direction usable (see is_usable).
   RAYGATE_INLINE explicit ShearedRay(const Ray& ray) {
-    const glm::vec3& d = ray.direction;
-    const float x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
+    FloatQuad o, d;
+    load_ray(ray, o, d);
+    const float x = std::abs(d[0]), y = std::abs(d[1]), z = std::abs(d[2]);
     const int farthest = z >= x && z >= y ? 2 : (y >= x ? 1 : 0);
+    *this = ShearedRay(o, d, farthest);
+  }
+  /// Its origin and direction as load_ray has them, and the axis along which it goes farthest.
+  RAYGATE_INLINE ShearedRay(const FloatQuad& o, const FloatQuad& d, int farthest) {
+    constexpr int kAxes[3][3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
+    float from[kQuad], way[kQuad], ratio[kQuad];  // to be picked from
+    std::memcpy(from, &o, sizeof from);
+    std::memcpy(way, &d, sizeof way);
+    const FloatQuad ratios = d / way[farthest];
+    std::memcpy(ratio, &ratios, sizeof ratio);
     for (int k = 0; k < 3; ++k) {
-      axes[k] = (farthest + 1 + k) % 3;
-      origin[k] = ray.origin[axes[k]];
+      axes[k] = kAxes[farthest][k];
+      origin[k] = from[axes[k]];
     }
-    for (int k = 0; k < 2; ++k) shear[k] = d[axes[k]] / d[farthest];
-    back = d[farthest] < 0.0f ? static_cast<std::int32_t>(0x80000000u) : 0;
+    for (int k = 0; k < 2; ++k) shear[k] = ratio[axes[k]];
+    back = way[farthest] < 0.0f ? std::numeric_limits<std::int32_t>::min() : 0;
   }
 };
 

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <vector>
 
 #include "host/find/cpu/ray_walk.h"
+#include "host/find/unit/point_error.h"
 #include "host/find/unit/record_batch.h"
-#include "host/find/unit/reference_burst_unit.h"
 
 namespace raygate {
 
@@ -28,7 +30,7 @@ RAYGATE_INLINE bool RaySearch::judge(RayWalk& walk, const Bvh::Child& leaf, cons
     const float low = verdict.low[i], high = verdict.high[i];
     if (low > walk.high || slot == walk.ignored) continue;
     if ((verdict.level >> i & 1) != 0) {
-      if (!is_ahead(walk.ray, bvh_.corners_of(slot))) continue;
+      if (!is_ahead(rays_[walk.number], bvh_.corners_of(slot))) continue;
       ++counters.hits;
     }
     if ((verdict.doubt >> i & 1) != 0) {
@@ -50,7 +52,7 @@ RAYGATE_INLINE bool RaySearch::judge(RayWalk& walk, const Bvh::Child& leaf, cons
 /// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,
 /// does hit. True where that is the nearest hit now.
 bool RaySearch::settle(RayWalk& walk, std::uint32_t slot, bool sure) {
-  const Ray& ray = walk.ray;
+  const Ray& ray = rays_[walk.number];
   NearestHit best;
   if (walk.slot != NearestHit::kNone) {
     best.slot = walk.slot;
@@ -200,29 +202,52 @@ void RaySearch::trace(std::span<const Ray> rays, const Search& search, std::span
 }
 
 /// P, which the search did without: four at a time.
-void RaySearch::add_point(std::uint32_t number) {
+RAYGATE_INLINE void RaySearch::add_point(std::uint32_t number) {
   pointless_[pointless_count_++] = number;
   if (pointless_count_ == kPlanes) add_points();
 }
 
+/// P has the bits of plane_point.
 void RaySearch::add_points() {
   if (pointless_count_ == 0) return;
   std::array<Corners, kPlanes> corners;
   std::array<PlaneView, kPlanes> views;
+  std::array<NearestHit*, kPlanes> hits;
+  FloatQuad origin, d[kQuad], n[kQuad];  // n[3]: d of the plane
+  static_assert(kPlanes == kQuad);
   for (int i = 0; i < kPlanes; ++i) {
     const std::uint32_t number = pointless_[std::min(i, pointless_count_ - 1)];
-    corners[i] = bvh_.corners_of(hits_[number].slot);
+    hits[i] = &hits_[number];
+    corners[i] = bvh_.corners_of(hits[i]->slot);
     views[i] = {&rays_[number].origin, &corners[i]};
+    load_ray(rays_[number], origin, d[i]);
   }
   std::array<PolygonRecord, kPlanes> planes;
   make_planes(views, planes);
-  for (int i = 0; i < pointless_count_; ++i) {
-    NearestHit& hit = hits_[pointless_[i]];
-    const UnitPoint found = plane_point(planes[i], rays_[pointless_[i]].direction);
-    hit.point = found.point;
-    hit.point_error = found.error;
-    ++counters_.hit.plane_tests;
-  }
+  for (int i = 0; i < kPlanes; ++i) load_quad(&planes[i].normal.x, n[i]);
+  in_vectors([&](auto) RAYGATE_BODY {
+    transpose(d);
+    transpose(n);
+    const FloatQuad v = 0.0f + ((n[0] * d[0] + n[1] * d[1]) + n[2] * d[2]);
+    IntQuad fields[3], grazing, error;
+    for (int k = 0; k < 3; ++k) fields[k] = reinterpret_cast<IntQuad>(n[k]) >> 23 & 0xFF;
+    IntQuad largest = fields[0] > fields[1] ? fields[0] : fields[1];
+    largest = largest > fields[2] ? largest : fields[2];
+    grazing_of(largest, reinterpret_cast<IntQuad>(v), grazing);
+    point_error_of(reinterpret_cast<IntQuad>(n[3]), reinterpret_cast<IntQuad>(v), grazing, error);
+    FloatQuad rows[kQuad];
+    for (int k = 0; k < 3; ++k) {
+      const FloatQuad p = n[3] * d[k] / v;
+      const IntQuad nan = IntQuad{} + 0x7FC00000;
+      rows[k] = p == p ? p : reinterpret_cast<FloatQuad>(nan);
+    }
+    rows[3] = reinterpret_cast<FloatQuad>(error);
+    transpose(rows);
+    static_assert(offsetof(NearestHit, point_error) ==
+                  offsetof(NearestHit, point) + 3 * sizeof(float));
+    for (int i = 0; i < pointless_count_; ++i) std::memcpy(&hits[i]->point, &rows[i], 16);
+  });
+  counters_.hit.plane_tests += static_cast<std::uint64_t>(pointless_count_);
   pointless_count_ = 0;
 }
 

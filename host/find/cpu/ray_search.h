@@ -13,8 +13,9 @@
 namespace raygate {
 
 /// A part of CpuFinder, for rays that share nothing. Several walk the tree at once, in turns. A
-/// leaf's triangles are tested straight from their corners by quad_test; what float32 leaves open, and which hit is nearest, exact arithmetic
-/// settles: decisions are the same, whatever decides first.
+/// leaf's triangles are tested straight from their corners by quad_test; what float32 leaves open,
+/// and which hit is nearest, exact arithmetic settles: decisions are the same, whatever decides
+/// first.
 class RaySearch {
  public:
   RaySearch(const Bvh& bvh, FindCounters& counters) : bvh_(bvh), counters_(counters) {}

@@ -21,17 +21,17 @@
 // magnitude of the direction's largest component and in [1, 2). What packet_traversal.cpp says of t
 // and 1 / I holds of p t and p / I: t I = x - O is (p t) (I / p), p / I is one quotient, rounded
 // once; p / |I| >= 1 > 1/2, where the underflow of a product is paid for; |I| < 2^-100 has 2^100 <=
-// p / |I|; and along the longest axis p t = |x - O| <= 2^127.
+// p / |I|, so that p 2^100, exactly, does for inverse_near; and along the longest axis p t = |x -
+// O| <= 2^127.
 
 namespace raygate {
 
 /// One ray on its way.
 struct RayWalk {
-  // Against boxes: cutoff_beyond the nearest hit, and where a node has the planes that the ray
-  // comes to first, on each axis.
-  float origin[3], inverse_near[3], inverse_far[3];
-  float cutoff;
-  std::int32_t near_row[3];
+  // Against boxes, by axis: see Beam. A node's row has the planes to which the ray comes first.
+  FloatQuad origin, inverse_near, inverse_far;
+  IntQuad near_row;
+  float cutoff;  ///< cutoff_beyond the nearest hit
 
   std::uint32_t number;   ///< of the ray
   ShearedRay sheared;     ///< against triangles
@@ -40,7 +40,6 @@ struct RayWalk {
   std::uint32_t slot;     ///< of the nearest hit
   std::uint32_t ignored;  ///< a slot
   RayWork work;
-  Ray ray;
   double pace;
 
   Bvh::Child at;  ///< what is visited next
@@ -51,7 +50,7 @@ struct RayWalk {
   std::uint32_t nodes[Bvh::kStackSize + Bvh::kWidth];
 
   /// Sets out along a ray that is scaled, towards a limit.
-  RAYGATE_INLINE void set_out(const Ray& its_ray, std::uint32_t its_number, float limit);
+  RAYGATE_INLINE void set_out(const Ray& ray, std::uint32_t its_number, float limit);
 
   /// The nearest hit, or the limit, is at a t, or at a depth, within these bounds.
   RAYGATE_INLINE void end_at(const Interval& t) {
@@ -65,22 +64,21 @@ struct RayWalk {
   [[nodiscard]] Interval t() const { return {low / pace, high / pace}; }
 };
 
-RAYGATE_INLINE void RayWalk::set_out(const Ray& its_ray, std::uint32_t its_number, float limit) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  ray = its_ray;
+RAYGATE_INLINE void RayWalk::set_out(const Ray& ray, std::uint32_t its_number, float limit) {
+  FloatQuad d, size;
+  load_ray(ray, origin, d);
+  magnitude(d, size);
+  const int farthest = size[2] >= size[0] && size[2] >= size[1] ? 2 : (size[1] >= size[0] ? 1 : 0);
+  const float longest = std::max(std::max(size[0], size[1]), size[2]);
+  sheared = ShearedRay(origin, d, farthest);
+  const IntQuad small = size < kSmallestComponent, back = d < 0.0f;
+  const FloatQuad one = {1.0f, 1.0f, 1.0f, 1.0f}, sign = back ? -one : one;
+  inverse_near = longest / (small ? sign * kSmallestComponent : d);
+  inverse_far =
+      kExitGrowth * (small ? sign * std::numeric_limits<float>::infinity() : inverse_near);
+  near_row = IntQuad{0, 1, 2, 0} + (back & 3);
   number = its_number;
-  sheared = ShearedRay(ray);
-  const glm::vec3& d = ray.direction;
-  const float longest = std::abs(d[sheared.axes[2]]);
   pace = longest;
-  for (int k = 0; k < 3; ++k) {
-    const bool small = std::abs(d[k]) < kSmallestComponent;
-    const float inverse = longest / (small ? std::copysign(kSmallestComponent, d[k]) : d[k]);
-    origin[k] = ray.origin[k];
-    inverse_near[k] = small ? std::copysign(1.0f / kSmallestComponent, inverse) : inverse;
-    inverse_far[k] = small ? std::copysign(kInfinity, inverse) : kExitGrowth * inverse;
-    near_row[k] = d[k] < 0.0f ? 3 + k : k;
-  }
   slot = ignored = NearestHit::kNone;
   enough = -1.0f;
   work = {};

@@ -20,30 +20,39 @@
 
 namespace raygate {
 
-/// The grazing that the unit reports with a hit (BurstHit::t_error), from V's bits; V is finite.
-/// `Bits`: std::int32_t, or IntLanes for eight V at once.
+/// The grazing that the unit reports with a hit (BurstHit::t_error), from the largest exponent
+/// field of N's words and V's bits; V is finite. `Bits`: std::int32_t, or a vector of them.
 template <class Bits>
-RAYGATE_INLINE void grazing_of(const PolygonRecord& plane, const Bits& v, Bits& grazing) {
-  const auto field = [](float x) { return std::bit_cast<std::int32_t>(x) >> 23 & 0xFF; };
-  const std::int32_t largest =
-      std::max({field(plane.normal.x), field(plane.normal.y), field(plane.normal.z)});
+RAYGATE_INLINE void grazing_of(const Bits& largest, const Bits& v, Bits& grazing) {
   grazing = largest - (v >> 23 & 0xFF);
   grazing = grazing > 0 ? grazing : Bits{};
 }
 
+/// The same, of one plane.
+template <class Bits>
+RAYGATE_INLINE void grazing_of(const PolygonRecord& plane, const Bits& v, Bits& grazing) {
+  const auto field = [](float x) { return std::bit_cast<std::int32_t>(x) >> 23 & 0xFF; };
+  const glm::vec3& n = plane.normal;
+  grazing_of(Bits{} + std::max({field(n.x), field(n.y), field(n.z)}), v, grazing);
+}
+
 /// The bits of NearestHit::point_error: 2^(grazing - 18), or +infinity where the unit says nothing
-/// about V, or calls it too small.
+/// about V, or calls it too small; from the bits of the plane's d and of V.
+template <class Bits>
+RAYGATE_INLINE void point_error_of(const Bits& d, const Bits& v, const Bits& grazing, Bits& error) {
+  constexpr std::int32_t kBias = 127, kMaxGrazing = 12, kRange = 102;
+  const Bits d_field = d >> 23 & 0xFF, v_field = v >> 23 & 0xFF, apart = d_field - v_field;
+  const Bits in_range = (d_field >= kBias - kRange) & (d_field <= kBias + kRange) & (v_field > 0) &
+                        (v_field < 0xFF) & ((v ^ d) >= 0) & (grazing <= kMaxGrazing) &
+                        (apart <= kRange) & (apart >= -kRange);
+  error = in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
+}
+
+/// The same, of one plane.
 template <class Bits>
 RAYGATE_INLINE void point_error_of(const PolygonRecord& plane, const Bits& v, const Bits& grazing,
                                    Bits& error) {
-  constexpr std::int32_t kBias = 127, kMaxGrazing = 12, kRange = 102;
-  const auto d = std::bit_cast<std::int32_t>(plane.d);
-  const std::int32_t d_field = d >> 23 & 0xFF;
-  const Bits v_field = v >> 23 & 0xFF, apart = d_field - v_field;
-  const Bits known = Bits{} + (std::abs(d_field - kBias) <= kRange ? -1 : 0);
-  const Bits in_range = (known < 0) & (v_field > 0) & (v_field < 0xFF) & ((v ^ d) >= 0) &
-                        (grazing <= kMaxGrazing) & (apart <= kRange) & (apart >= -kRange);
-  error = in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
+  point_error_of(Bits{} + std::bit_cast<std::int32_t>(plane.d), v, grazing, error);
 }
 
 }  // namespace raygate

@@ -34,6 +34,10 @@ class RaySearchTest : public testing::Test {
       if (random_.below(32) == 0) way[random_.below(3)] *= 1e-40;
       if (way == glm::dvec3(0.0)) way = glm::dvec3(1.0, 0.0, 0.0);
       rays.push_back({origin, scaled_direction(way)});
+      for (int k = 0; k < 3; ++k) {  // zeros of either sign
+        float& component = rays.back().direction[k];
+        if (component == 0.0f && random_.below(2) == 0) component = -0.0f;
+      }
     }
     const float infinity = std::numeric_limits<float>::infinity();
     rays.push_back({glm::vec3(0.0f), glm::vec3(0.0f)});
