@@ -2,11 +2,12 @@
 LAB := build/lab
 LAB_ROWS := build/results
 LAB_REPORT := $(PYTHON) -m host.lab.report
+GALLERY := scenes/cornell.obj scenes/teapot.obj $(wildcard scenes/*_*.json) scenes/columns.json scenes/sphereflake.json
 LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers rays skips predicates doubts claims
+.PHONY: stress bench peers rays skips predicates shares claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -44,9 +45,9 @@ predicates: ## what an exact decision costs, beside rationals and __float128
 	$(call build,build,lab)
 	@$(LAB) --results $(LAB_ROWS)/predicates.jsonl predicates
 
-doubts: ## doubts and their share of the time, scene by scene
+shares: ## what a path-traced picture spends on hit tests, departures, shading and doubts, scene by scene
 	$(call build,lab,render scenes)
-	@$(LAB_REPORT) doubts scenes/*.obj build/scenes/*.obj
+	@$(LAB_REPORT) shares $(GALLERY) build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)')
 
 claims: everything ## check the figures of host/lab/CLAIMS.md by their commands: make claims [ONLY=frame_rates]
 	@python3 -B host/lab/claims.py --only '$(ONLY)'

@@ -1,11 +1,11 @@
-"""`python3 -m host.lab.report`: what `make bench`, `make stress` and `make doubts` run."""
+"""`python3 -m host.lab.report`: what `make bench`, `make stress` and `make shares` run."""
 
 import argparse
 import pathlib
 import shutil
 import sys
 
-from host.lab.report import bench, bench_report, compare, document, doubts, stress_report
+from host.lab.report import bench, bench_report, compare, document, shares, stress_report
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
 
@@ -29,10 +29,11 @@ def arguments() -> argparse.Namespace:
     for publishing in (command, stress):
         publishing.add_argument("--publish", action="store_true",
                                 help="write the report into host/lab/results/ as well")
-    command = commands.add_parser("doubts", help="what doubts cost in pictures by ./render")
+    command = commands.add_parser("shares", help="hit tests, departures and shading in pictures by ./render")
     command.add_argument("scenes", nargs="+")
-    command.add_argument("--repeats", type=int, default=3)
-    command.add_argument("--size", default="640x480")
+    command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
+    command.add_argument("--size", default="160x120")
+    command.add_argument("--spp", default="8")
     return parser.parse_args()
 
 
@@ -86,22 +87,23 @@ def run_stress(given: argparse.Namespace) -> int:
     return 0
 
 
-def run_doubts(given: argparse.Namespace) -> int:
+def run_shares(given: argparse.Namespace) -> int:
     """Prints the table and keeps its rows."""
-    rows = [doubts.row(scene, given.repeats, ["--size", given.size]) for scene in given.scenes]
-    kept.write(KEPT / "doubts.jsonl", rows)
+    light = ["--integrator", "path", "--size", given.size, "--spp", given.spp]
+    rows = [shares.row(given.render.resolve(), scene, light) for scene in given.scenes]
+    kept.write(KEPT / "shares.jsonl", rows)
     print(document.table(
-        {"scene": "", "triangles": ",", "rays": ",", "reflected, refracted": ",", "tests": ",",
-         "doubts about edges": ",", "of the tests, %": ".4f", "about depth": ",",
-         "time on doubts, %": ".2f", "on rays' origins, %": ".2f"},
-        [[kept.scene_name(row), *list(row.values())[2:]] for row in rows]))
+        {"scene": "", "triangles": ",", "rays": ",", "instructions per ray": ",.0f", "hit tests, %": ".1f",
+         "departures, %": ".1f", "shading, %": ".1f", "exact decisions, %": ".2f", "doubts, % of tests": ".4f"},
+        [[kept.scene_name(row), row["triangles"], row["rays"], row["instructions_per_ray"], row["hit_tests"],
+          row["departures"], row["shading"], row["doubts"], row["edge_doubts_percent"]] for row in rows]))
     return 0
 
 
 def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
-    commands = {"bench": run_bench, "stress": run_stress, "doubts": run_doubts}
+    commands = {"bench": run_bench, "stress": run_stress, "shares": run_shares}
     try:
         return commands[given.command](given)
     except (OSError, ValueError) as error:

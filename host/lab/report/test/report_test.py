@@ -5,7 +5,7 @@ import pathlib
 import tempfile
 import unittest
 
-from host.lab.report import bench, claims, costs, document, rows, statistics
+from host.lab.report import bench, claims, costs, document, rows, shares, statistics
 
 VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "exponent_bits": 8,
            "digits": 24, "rounding": "nearest-even", "flush": False, "quotient_digits": 0, "fused": False,
@@ -35,6 +35,28 @@ class Document(unittest.TestCase):
                            "data:image/png;base64,PHBuZy8+"):
                 self.assertIn(wanted, page)
             self.assertNotIn(name, page)
+
+
+PROFILE = """\
+fn=(1) render
+cfn=(2) raygate::DeparturePoint::find(...)
+calls=3 0
+10 100
+fn=(2)
+5 60
+cfn=(3) raygate::DeparturePoint::search(...)
+calls=1 0
+7 40
+fn=(4) other
+cfn=(3)
+calls=1 0
+8 15
+"""
+
+
+class Shares(unittest.TestCase):
+    def test_a_part_that_calls_itself_counts_once(self):
+        self.assertEqual(shares.inside(shares.calls(PROFILE), shares.PARTS["departures"]), 115)
 
 
 class Rows(unittest.TestCase):
