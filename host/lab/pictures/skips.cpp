@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "host/cli/engines.h"
-#include "host/cli/light_options.h"
+#include "host/cli/options.h"
 #include "host/lab/commands.h"
 #include "host/lab/pictures/stage.h"
 #include "host/lab/results.h"
