@@ -148,35 +148,33 @@ void RaySearch::walk_all() {
   in_vectors([&](auto code) RAYGATE_BODY {
     QuadSides sides[kAtOnce];
     LaneMask open[kAtOnce];
-    int inside[2 * kAtOnce], leaves[kAtOnce];  // walks, by where they are
+    RayWalk *inside[2 * kAtOnce], *leaves[kAtOnce];  // by where they are
     int inside_count = 0, leaf_count = 0;
     for (; inside_count < kAtOnce && set_out(walks[inside_count]); ++inside_count) {
-      inside[inside_count] = inside_count;
+      inside[inside_count] = &walks[inside_count];
     }
     while (inside_count + leaf_count > 0) {
-      for (int i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, walks[inside[i]]);
+      for (int i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, *inside[i]);
       for (int i = 0; i < leaf_count; ++i) {
-        RayWalk& walk = walks[leaves[i]];
+        RayWalk& walk = *leaves[i];
         walk.work.tests += walk.at.count;
         open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at), walk.at.count, sides[i]);
       }
       for (int i = 0; i < leaf_count; ++i) {
-        RayWalk& walk = walks[leaves[i]];
+        RayWalk& walk = *leaves[i];
         if (open[i] != 0 && !judge(walk, walk.at, sides[i], open[i])) walk.depth = 0;
-        inside[inside_count + i] = leaves[i];
+        inside[inside_count + i] = &walk;
       }
       const int count = inside_count + leaf_count;
       inside_count = leaf_count = 0;
       for (int i = 0; i < count; ++i) {
-        const int number = inside[i];
-        RayWalk& walk = walks[number];
+        RayWalk& walk = *inside[i];
         if (!go_on(bvh_, walk)) {
           arrive(walk);
           if (!set_out(walk)) continue;
         }
         const bool is_leaf = walk.at.count != 0;
-        inside[inside_count] = number;
-        leaves[leaf_count] = number;
+        inside[inside_count] = leaves[leaf_count] = &walk;
         inside_count += is_leaf ? 0 : 1;
         leaf_count += is_leaf ? 1 : 0;
       }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -26,11 +27,14 @@
 
 namespace raygate {
 
+using UnsignedQuad = std::uint32_t __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
+
 /// One ray on its way.
 struct RayWalk {
-  // Against boxes, by axis: see Beam. A node's row has the planes to which the ray comes first.
+  // Against boxes, by axis: see Beam. A node has the planes to which the ray comes first, and last,
+  // so many bytes from its beginning.
   FloatQuad origin, inverse_near, inverse_far;
-  IntQuad near_row;
+  UnsignedQuad near_at, far_at;
   float cutoff;  ///< cutoff_beyond the nearest hit
 
   std::uint32_t number;   ///< of the ray
@@ -65,6 +69,8 @@ struct RayWalk {
 };
 
 RAYGATE_INLINE void RayWalk::set_out(const Ray& ray, std::uint32_t its_number, float limit) {
+  constexpr std::int32_t kRow = sizeof(Bvh::Node::bounds[0][0]);
+  static_assert(offsetof(Bvh::Node, bounds) == 0);
   FloatQuad d, size;
   load_ray(ray, origin, d);
   magnitude(d, size);
@@ -76,7 +82,9 @@ RAYGATE_INLINE void RayWalk::set_out(const Ray& ray, std::uint32_t its_number, f
   inverse_near = longest / (small ? sign * kSmallestComponent : d);
   inverse_far =
       kExitGrowth * (small ? sign * std::numeric_limits<float>::infinity() : inverse_near);
-  near_row = IntQuad{0, 1, 2, 0} + (back & 3);
+  constexpr IntQuad kLows = {0, kRow, 2 * kRow, 0}, kHighs = kLows + 3 * kRow;
+  near_at = reinterpret_cast<UnsignedQuad>(back ? kHighs : kLows);
+  far_at = reinterpret_cast<UnsignedQuad>(back ? kLows : kHighs);
   number = its_number;
   pace = longest;
   slot = ignored = NearestHit::kNone;
@@ -89,49 +97,65 @@ RAYGATE_INLINE void RayWalk::set_out(const Ray& ray, std::uint32_t its_number, f
 
 /// Puts eight keys in order, the largest first: Batcher's bitonic network.
 RAYGATE_INLINE void sort_falling(IntLanes& keys) {
-  const auto layer = [&](const IntLanes& partner, const IntLanes& first)
-      __attribute__((always_inline)) {
-    const IntLanes larger = keys > partner ? keys : partner;
-    const IntLanes smaller = keys > partner ? partner : keys;
-    keys = first ? larger : smaller;
+  IntLanes other, larger, smaller;
+  const auto compare = [&]() __attribute__((always_inline)) {
+    larger = keys > other ? keys : other;
+    smaller = keys > other ? other : keys;
   };
-  constexpr IntLanes kOnes = {-1, 0, -1, 0, -1, 0, -1, 0};
-  constexpr IntLanes kTwos = {-1, -1, 0, 0, -1, -1, 0, 0};
-  constexpr IntLanes kFours = {-1, -1, -1, -1, 0, 0, 0, 0};
-  layer(__builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6), kOnes);
-  layer(__builtin_shufflevector(keys, keys, 3, 2, 1, 0, 7, 6, 5, 4), kTwos);
-  layer(__builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6), kOnes);
-  layer(__builtin_shufflevector(keys, keys, 7, 6, 5, 4, 3, 2, 1, 0), kFours);
-  layer(__builtin_shufflevector(keys, keys, 2, 3, 0, 1, 6, 7, 4, 5), kTwos);
-  layer(__builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6), kOnes);
+  const auto of_pairs = [&]() __attribute__((always_inline)) {
+    other = __builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6);
+    compare();
+    keys = __builtin_shufflevector(larger, smaller, 0, 9, 2, 11, 4, 13, 6, 15);
+  };
+  of_pairs();
+  other = __builtin_shufflevector(keys, keys, 3, 2, 1, 0, 7, 6, 5, 4);
+  compare();
+  keys = __builtin_shufflevector(larger, smaller, 0, 1, 10, 11, 4, 5, 14, 15);
+  of_pairs();
+  other = __builtin_shufflevector(keys, keys, 7, 6, 5, 4, 3, 2, 1, 0);
+  compare();
+  keys = __builtin_shufflevector(larger, smaller, 0, 1, 2, 3, 12, 13, 14, 15);
+  other = __builtin_shufflevector(keys, keys, 2, 3, 0, 1, 6, 7, 4, 5);
+  compare();
+  keys = __builtin_shufflevector(larger, smaller, 0, 1, 10, 11, 4, 5, 14, 15);
+  of_pairs();
 }
 
 /// Puts the children of the inner node where the ray is onto its stack, those whose boxes it meets.
-/// Without a branch, as which these are nobody can foretell.
+/// Without a branch but for three or more, as which these are nobody can foretell.
 template <Vectors kCode>
 RAYGATE_INLINE void step_inside(const Bvh& tree, RayWalk& walk) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;
   constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
   const Bvh::Node& node = tree.nodes()[walk.at.first];
-  const float(*const rows)[Bvh::kWidth] = node.bounds[0];
-  FloatLanes enter = {}, leave = FloatLanes{} + walk.cutoff;
+  const char* const bounds = reinterpret_cast<const char*>(&node);
+  FloatLanes enter = {}, leave = walk.cutoff - FloatLanes{};
   for (int k = 0; k < 3; ++k) {
-    const int near_row = walk.near_row[k], far_row = 3 + 2 * k - near_row;
     FloatLanes near, far;
-    load_lanes(rows[near_row], near);
-    load_lanes(rows[far_row], far);
+    std::memcpy(&near, bounds + walk.near_at[k], sizeof near);
+    std::memcpy(&far, bounds + walk.far_at[k], sizeof far);
     const FloatLanes t_near = (near - walk.origin[k]) * walk.inverse_near[k];
     const FloatLanes t_far = (far - walk.origin[k]) * walk.inverse_far[k];
     enter = t_near > enter ? t_near : enter;
     leave = t_far < leave ? t_far : leave;
   }
   const IntLanes met = enter <= leave;
-  IntLanes keys = met ? (reinterpret_cast<IntLanes>(enter) & ~kNumber) | kNumbers : IntLanes{} - 1;
-  sort_falling(keys);
-  const IntLanes nodes = IntLanes{} + static_cast<std::int32_t>(walk.at.first);
-  std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
+  const LaneMask mask = sign_mask<kCode>(met);
+  const int count = std::popcount(mask);
+  IntLanes keys = (reinterpret_cast<IntLanes>(enter) & ~kNumber) | kNumbers;
+  if (count > 2) {
+    keys = met ? keys : IntLanes{} - 1;
+    sort_falling(keys);
+    std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
+  } else {
+    const std::int32_t first = keys[std::countr_zero(mask | 0x100) & kNumber];
+    const std::int32_t second = keys[31 - std::countl_zero(mask | 1)];
+    walk.keys[walk.depth] = std::max(first, second);
+    walk.keys[walk.depth + 1] = std::min(first, second);
+  }
+  const IntLanes nodes = static_cast<std::int32_t>(walk.at.first) - IntLanes{};
   std::memcpy(walk.nodes + walk.depth, &nodes, sizeof nodes);
-  walk.depth += std::popcount(sign_mask<kCode>(met));
+  walk.depth += count;
 }
 
 /// Goes on to what waits last and still matters; false where nothing does.
