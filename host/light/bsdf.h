@@ -1,11 +1,11 @@
 // What a material does with light: the MTL illumination models, as lobes that make no energy.
 #pragma once
 
+#include "host/elementary.h"
+#include "host/lane_math.h"
 #include "host/light/around.h"
-#include "host/light/elementary.h"
 #include "host/light/finish.h"
 #include "host/light/fresnel.h"
-#include "host/light/lane_math.h"
 #include "host/light/sampler.h"
 #include "host/light/surface.h"
 

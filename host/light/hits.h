@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "host/lane_math.h"
 #include "host/light/bsdf.h"
 #include "host/light/departure.h"
 #include "host/light/finish.h"
-#include "host/light/lane_math.h"
 #include "host/light/lights.h"
 #include "host/light/sampler.h"
 #include "host/light/surface.h"
@@ -34,10 +34,11 @@ struct LightQuestion {
 /// A ray that may go on.
 struct WayOn {
   bool is_wanted = false;
+  bool surely_leaves = false;  ///< the triangle, to that side; or else exact arithmetic decides
   bool has_flat = false;
   Departure side = Departure::kBefore;
-  glm::vec3 direction{0.0f};  ///< unit vector
-  /// Where the direction, made with an interpolated normal, may lead to the wrong side: that of the
+  glm::vec3 direction{0.0f};  ///< scaled
+  /// Where the direction, made with an interpolated normal, leads to the wrong side: that of the
   /// flat normal.
   glm::vec3 flat{0.0f};
   Burden burden;  ///< but for sample and index, which stay
@@ -245,10 +246,15 @@ struct WaysOn {
   MaskOf<T> is_wanted, has_flat, is_through;
 
   RAYGATE_INLINE void send(Hits<T>& hits, std::size_t number) const {
-    const auto wanted = Hits<T>::spread_out(is_wanted), flats = Hits<T>::spread_out(has_flat),
-               through = Hits<T>::spread_out(is_through);
-    const auto directions = Hits<T>::spread_out(direction), flat_ones = Hits<T>::spread_out(flat),
-               weights = Hits<T>::spread_out(weight), places = Hits<T>::spread_out(scattered_at);
+    const Triple<T> ahead = scaled(direction);
+    const auto leaving = hits.surface.leaving(ahead, is_through);
+    const auto wanted =
+        Hits<T>::spread_out(is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat));
+    const auto sure = Hits<T>::spread_out(leaving.leaves & leaving.is_sure),
+               flats = Hits<T>::spread_out(has_flat), through = Hits<T>::spread_out(is_through);
+    const auto directions = Hits<T>::spread_out(ahead),
+               flat_ones = Hits<T>::spread_out(scaled(flat)), weights = Hits<T>::spread_out(weight),
+               places = Hits<T>::spread_out(scattered_at);
     float densities[LanesOf<T>::kCount];
     std::uint32_t streams[LanesOf<T>::kCount];
     lanes_to(densities, density);
@@ -257,6 +263,7 @@ struct WaysOn {
       if (wanted.values[0][k] == 0.0f) continue;
       WayOn& way = hits.block.way(hits.place[k], number);
       way.is_wanted = true;
+      way.surely_leaves = sure.values[0][k] != 0.0f;
       way.has_flat = flats.values[0][k] != 0.0f;
       way.side = through.values[0][k] != 0.0f ? Departure::kAfter : Departure::kBefore;
       way.direction = Hits<T>::triple_of(directions, k);

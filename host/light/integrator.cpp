@@ -1,7 +1,6 @@
 #include "host/light/integrator.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "host/light/path.h"
 #include "host/light/primary.h"
@@ -46,16 +45,25 @@ void Integrator::shade(const Wave& wave, std::span<const NearestHit> hits, std::
   block_.wave = &wave;
   block_.begin = begin;
   block_.first_surfaces = wave.depth == 0 ? output.first_surface.data() : nullptr;
-  block_.questions.assign(count * block_.questions_each, {});
-  block_.ways.assign(count * block_.ways_each, {});
+  block_.questions.resize(count * block_.questions_each);
+  block_.ways.resize(count * block_.ways_each);
+  for (LightQuestion& question : block_.questions) question.state = LightQuestion::kNotAsked;
+  for (WayOn& way : block_.ways) way.is_wanted = false;
   sort(hits, count, output);
   for (HitKind kind = 0; kind < kHitKinds; ++kind) {
     const std::span<const std::uint32_t> at(order_.data() + first_[kind],
                                             first_[kind + 1] - first_[kind]);
     if (!at.empty()) shade_kind(block_, kind, at);
   }
+  departures_.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    if (kinds_[i] != kHitKinds) hand_on(i, output);
+    if (kinds_[i] != kHitKinds) choose_departures(i);
+  }
+  origins_.resize(departures_.size());
+  departure_.find(departures_, origins_);
+  const std::optional<glm::vec3>* origins = origins_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (kinds_[i] != kHitKinds) hand_on(i, origins, output);
   }
 }
 
@@ -91,24 +99,62 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
   first_.push_back(static_cast<std::uint32_t>(order_.size()));
 }
 
-/// What the hit at place i gives, once it is known where rays go on from.
-void Integrator::hand_on(std::size_t i, WaveOutput& output) {
+/// Forgets what is not worth asking, and notes on which sides of the hit at place i rays begin.
+void Integrator::choose_departures(std::size_t i) {
+  const HitPlace& place = block_.places[i];
+  bool is_before = false, is_after = false;
+  for (std::size_t number = 0; number < block_.questions_each; ++number) {
+    LightQuestion& question = block_.question(i, number);
+    if (question.state == LightQuestion::kBehind && skips_.light_behind) {
+      ++skipped_.lights_behind;
+      question.state = LightQuestion::kNotAsked;
+    }
+    is_before = is_before || question.state != LightQuestion::kNotAsked;
+  }
+  for (std::size_t number = 0; number < block_.ways_each; ++number) {
+    WayOn& way = block_.way(i, number);
+    if (!way.is_wanted) continue;
+    if (way.burden.weight == glm::vec3(0.0f) && skips_.weightless) {
+      ++skipped_.weightless;
+      way.is_wanted = false;
+      continue;
+    }
+    way.is_wanted = leaves(place, way);
+    (way.side == Departure::kBefore ? is_before : is_after) |= way.is_wanted;
+  }
+  if (is_before) departures_.push_back({place.ray, place.slot, Departure::kBefore});
+  if (is_after) departures_.push_back({place.ray, place.slot, Departure::kAfter});
+}
+
+/// Whether a way leads away from its triangle, if need be along the flat normal's direction.
+bool Integrator::leaves(const HitPlace& place, WayOn& way) const {
+  const auto leaves = [&](const glm::vec3& direction) {
+    return departure_.leaves(*place.ray, place.slot, way.side, direction);
+  };
+  if (way.surely_leaves || leaves(way.direction)) return true;
+  way.direction = way.flat;
+  return way.has_flat && leaves(way.flat);
+}
+
+/// What the hit at place i gives, now that it is known where rays go on from: `origins` of its
+/// departures and those of the hits after it. A hit without one on a side sends nothing there.
+void Integrator::hand_on(std::size_t i, const std::optional<glm::vec3>*& origins,
+                         WaveOutput& output) {
   const Burden& burden = block_.burden(i);
   const HitPlace& place = block_.places[i];
   output.radiance[burden.sample] += block_.radiance[i];
-  std::optional<std::optional<glm::vec3>> points[2];
+  const std::optional<glm::vec3>* points[2] = {nullptr, nullptr};
   const auto departure = [&](Departure side) -> const std::optional<glm::vec3>& {
-    auto& point = points[side == Departure::kBefore ? 0 : 1];
-    if (!point) point = departure_.find(*place.ray, place.slot, side);
-    return *point;
+    return *points[side == Departure::kBefore ? 0 : 1];
   };
+  const auto* const end = departures_.data() + departures_.size();
+  for (const auto* asked = departures_.data() + (origins - origins_.data());
+       asked != end && asked->ray == place.ray; ++asked) {
+    points[asked->way == Departure::kBefore ? 0 : 1] = origins++;
+  }
   for (std::size_t number = 0; number < block_.questions_each; ++number) {
     const LightQuestion& question = block_.question(i, number);
     if (question.state == LightQuestion::kNotAsked) continue;
-    if (question.state == LightQuestion::kBehind && skips_.light_behind) {
-      ++skipped_.lights_behind;
-      continue;
-    }
     const auto& origin = departure(Departure::kBefore);
     if (!origin) continue;
     ShadowRay& shadow = output.shadows.emplace_back();
@@ -126,22 +172,9 @@ void Integrator::hand_on(std::size_t i, WaveOutput& output) {
   for (std::size_t number = 0; number < block_.ways_each; ++number) {
     const WayOn& way = block_.way(i, number);
     if (!way.is_wanted) continue;
-    if (way.burden.weight == glm::vec3(0.0f) && skips_.weightless) {
-      ++skipped_.weightless;
-      continue;
-    }
-    const auto leaves = [&](const glm::vec3& scaled) {
-      return departure_.leaves(*place.ray, place.slot, way.side, scaled);
-    };
-    glm::vec3 direction = scaled_direction(glm::dvec3(way.direction));
-    if (!leaves(direction)) {
-      if (!way.has_flat) continue;
-      direction = scaled_direction(glm::dvec3(way.flat));
-      if (!leaves(direction)) continue;
-    }
     const auto& origin = departure(way.side);
     if (!origin) continue;
-    output.next.rays.push_back({*origin, direction});
+    output.next.rays.push_back({*origin, way.direction});
     Burden& next = output.next.burdens.emplace_back(way.burden);
     next.sample = burden.sample;
     next.index = burden.index;

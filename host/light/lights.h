@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/light/lane_math.h"
+#include "host/lane_math.h"
 #include "host/light/sampler.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"

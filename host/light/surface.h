@@ -5,8 +5,8 @@
 #include <glm/glm.hpp>
 
 #include "host/exact/exact.h"
+#include "host/lane_math.h"
 #include "host/light/finish.h"
-#include "host/light/lane_math.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -43,6 +43,37 @@ struct Surface {
   /// The ray comes from outside: from where the file's normals point or, without, from where the
   /// vertices run counter-clockwise.
   MaskOf<T> outside;
+
+  /// Which directions lead away from the triangle, to the ray's side of it or, `through`, to the
+  /// other: exactly, where it is sure.
+  struct Leaving {
+    MaskOf<T> leaves, is_sure;
+  };
+  [[nodiscard]] RAYGATE_INLINE Leaving leaving(const Triple<T>& direction,
+                                               const MaskOf<T>& through) const {
+    const Slope slope(*this, direction);
+    return {((slope.value < 0.0f) == (side < 0.0f)) == through, slope.is_sure};
+  }
+
+  /// I . N of directions and the triangle's own normal. Double has room to spare: where the value
+  /// is not surely off 0, the exact one has any sign.
+  struct Slope {
+    T value;
+    MaskOf<T> is_sure;
+
+    RAYGATE_INLINE Slope(const Surface& surface, const Triple<T>& direction) {
+      const Triple<WideOf<T>> way = wide(direction);
+      const WideOf<T> product = dot(way, surface.own_normal);
+      const WideOf<T> size = absolute(way.x) * surface.own_size.x +
+                             absolute(way.y) * surface.own_size.y +
+                             absolute(way.z) * surface.own_size.z;
+      value = narrow(product);
+      is_sure = (narrow(absolute(product) - 0x1p-49 * size) > 0.0f) & (absolute(value) > 0.0f);
+    }
+  };
+  Triple<WideOf<T>> own_normal;  ///< as the vertices say, of any length,
+  Triple<WideOf<T>> own_size;    ///< and the sum of magnitudes that each component comes from
+  T side;                        ///< the exact sign of I . N, of the ray
 };
 
 /// The colour of a hit whose vertices have these weights.
@@ -103,26 +134,27 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   const Triple<Wide> normal = {value[0], value[1], value[2]};
   surface.flat_normal = narrow(normal * (1.0 / root(dot(normal, normal))));
 
-  // Which side was hit: double says it with room to spare, or exact arithmetic does.
-  const Triple<Wide> way = wide(direction);
-  const Wide slope = dot(way, normal);
-  Triple<Wide> reach = {absolute(way.x), absolute(way.y), absolute(way.z)};
-  const Wide margin =
-      absolute(slope) - 0x1p-49 * (reach.x * size[0] + reach.y * size[1] + reach.z * size[2]);
+  surface.own_normal = normal;
+  surface.own_size = {size[0], size[1], size[2]};
+
+  // Which side was hit: double says it, or exact arithmetic does.
+  const typename Surface<T>::Slope slope(surface, direction);
   Gathered<T, 2> side;
-  lanes_to(side.values[0], narrow(slope));
-  lanes_to(side.values[1], narrow(margin));
+  lanes_to(side.values[0], slope.value);
+  lanes_to(side.values[1], choose(slope.is_sure, spread<T>(1.0f), T{}));
   for (int k = 0; k < kCount; ++k) {
-    if (side.values[1][k] > 0.0f && side.values[0][k] != 0.0f) continue;
+    if (side.values[1][k] != 0.0f) continue;
     side.values[0][k] = static_cast<float>(
         direction_side(places[k].ray->direction, bvh.corners_of(places[k].slot)));
   }
-  const auto towards = side.one(0) < 0.0f;  // against the triangle's own normal
+  surface.side = side.one(0);
+  const auto towards = surface.side < 0.0f;  // against the triangle's own normal
 
   surface.normal = surface.flat_normal;
   auto along = surface.normal.x == surface.normal.x;
   if ((kind & kHasWeights) != 0) {
-    const Triple<Wide> unscaled = unscaled_weights(wide(in.triple(kOrigin)), way, corners);
+    const Triple<Wide> unscaled =
+        unscaled_weights(wide(in.triple(kOrigin)), wide(direction), corners);
     const Wide inverse = 1.0 / (unscaled.x + unscaled.y + unscaled.z);
     Triple<T> weights = narrow(unscaled * inverse);
     const T third = spread<T>(1.0f / 3.0f);  // where nothing is left of the triangle

@@ -6,10 +6,10 @@
 #include <random>
 #include <vector>
 
+#include "host/elementary.h"
+#include "host/lane_math.h"
 #include "host/light/around.h"
-#include "host/light/elementary.h"
 #include "host/light/fresnel.h"
-#include "host/light/lane_math.h"
 #include "host/light/sampler.h"
 #include "host/vectors.h"
 

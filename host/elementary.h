@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "host/light/lane_math.h"
+#include "host/lane_math.h"
 
 namespace raygate {
 

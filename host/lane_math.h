@@ -209,6 +209,14 @@ template <class T>
 RAYGATE_INLINE Triple<T> normalized(const Triple<T>& a) {
   return a * (1.0f / root(dot(a, a)));
 }
+/// A direction scaled as is_scaled wants it: by a power of two, which rounds nothing. Its largest
+/// component is to be a normal number below 2^126.
+template <class T>
+RAYGATE_INLINE Triple<T> scaled(const Triple<T>& a) {
+  constexpr std::int32_t kExponent = 0x7F800000, kOne = 0x3F800000;
+  const T size = maximum(maximum(absolute(a.x), absolute(a.y)), absolute(a.z));
+  return a * float_of(2 * kOne - (bits_in(size) & kExponent));
+}
 template <class D>
 RAYGATE_INLINE auto narrow(const Triple<D>& a) {
   using T = decltype(narrow(a.x));
