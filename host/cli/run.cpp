@@ -237,7 +237,8 @@ void run(const Options& options) {
   Report report;
   report.options = options;
 
-  Scene scene = load_obj(options.obj(), {.skip_degenerate = options.skip_degenerate});
+  Scene scene = load_obj(options.obj(), {.skip_degenerate = options.skip_degenerate,
+                                         .threads = static_cast<int>(options.threads)});
   if (options.scene_file) add_lights(*options.scene_file, scene);
   report.load_seconds = seconds_since(start);
   report.triangles = scene.triangles.size();

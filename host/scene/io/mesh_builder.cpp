@@ -64,14 +64,40 @@ std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count, const 
   return static_cast<std::uint32_t>(count - back);
 }
 
-void MeshBuilder::add_face(std::span<const FileCorner> corners, std::uint32_t material,
-                           std::uint32_t object, std::size_t line) {
+void MeshBuilder::add_face(std::span<const FileCorner> corners, std::size_t line) {
   for (const FileCorner& corner : corners) {
-    corners_.push_back({resolve(corner.position, positions_.size(), "vertex", line),
-                        resolve(corner.texcoord, texcoords_.size(), "texture coordinate", line),
-                        resolve(corner.normal, normals_.size(), "normal", line)});
+    corners_.push_back(
+        {resolve(corner.position, earlier_.positions + positions_.size(), "vertex", line),
+         resolve(corner.texcoord, earlier_.texcoords + texcoords_.size(), "texture coordinate",
+                 line),
+         resolve(corner.normal, earlier_.normals + normals_.size(), "normal", line)});
   }
-  faces_.push_back({corners_.size(), line, material, object});
+  faces_.push_back({corners_.size(), line});
+}
+
+void MeshBuilder::assign_faces(std::size_t begin, std::size_t end, std::uint32_t material,
+                               std::uint32_t object) {
+  for (std::size_t i = begin; i < end; ++i) {
+    faces_[i].material = material;
+    faces_[i].object = object;
+  }
+}
+
+void MeshBuilder::append(MeshBuilder&& part) {
+  const auto add = [](auto& all, auto& more) {
+    if (all.empty()) {
+      all = std::move(more);
+    } else {
+      all.insert(all.end(), more.begin(), more.end());
+    }
+  };
+  const std::size_t corners = corners_.size();
+  for (Face& face : part.faces_) face.end += corners;
+  add(positions_, part.positions_);
+  add(normals_, part.normals_);
+  add(texcoords_, part.texcoords_);
+  add(corners_, part.corners_);
+  add(faces_, part.faces_);
 }
 
 void MeshBuilder::check_indices() const {

@@ -30,8 +30,27 @@ class MeshBuilder {
   void add_normal(const glm::dvec3& normal);
 
   /// At least three corners. `line` is for messages.
-  void add_face(std::span<const FileCorner> corners, std::uint32_t material, std::uint32_t object,
-                std::size_t line);
+  void add_face(std::span<const FileCorner> corners, std::size_t line);
+  [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
+  /// Gives faces by number, from `begin` to `end`, their material and object; 0 before.
+  void assign_faces(std::size_t begin, std::size_t end, std::uint32_t material,
+                    std::uint32_t object);
+
+  /// What a file has of vertices.
+  struct Counts {
+    std::size_t positions = 0, texcoords = 0, normals = 0;
+
+    Counts& operator+=(const Counts& other) {
+      positions += other.positions;
+      texcoords += other.texcoords;
+      normals += other.normals;
+      return *this;
+    }
+  };
+  /// Where the file's earlier parts, which have so many, go to other builders: before all else.
+  void begin_after(const Counts& earlier) { earlier_ = earlier; }
+  /// Adds what the file's next part gave, whose builder began after this one's counts.
+  void append(MeshBuilder&& part);
 
   /// Fills positions, normals, texcoords, triangles and origin, and appends to the warnings.
   /// Throws InputError: an index of nothing, a face without area, no face at all.
@@ -44,7 +63,7 @@ class MeshBuilder {
   struct Face {
     std::size_t end;  // of its corners; they begin where the last face's end
     std::size_t line;
-    std::uint32_t material, object;
+    std::uint32_t material = 0, object = 0;
   };
   class Warner;
 
@@ -55,6 +74,7 @@ class MeshBuilder {
   void cut_faces(const LoadOptions& options, Scene& scene) const;
 
   std::string file_name_;
+  Counts earlier_;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> normals_;
   std::vector<glm::vec2> texcoords_;

@@ -39,7 +39,7 @@ Scene load_obj(const std::filesystem::path& file, const LoadOptions& options) {
   Scene scene;
   MeshBuilder mesh(file.string());
   ObjReader obj(file, mesh, scene.warnings);
-  obj.read();
+  obj.read(options);
   mesh.build(options, scene);
   scene.objects = obj.objects();
   scene.files = {obj.mtl().files().begin(), obj.mtl().files().end()};

@@ -1,6 +1,7 @@
 // Wavefront OBJ and MTL files into a Scene: every valid file right, every other one refused.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 
 #include "host/scene/scene.h"
@@ -11,6 +12,8 @@ struct LoadOptions {
   /// A face of exactly zero area (after rounding to float) is an error; true: it is dropped and
   /// counted in a warning.
   bool skip_degenerate = false;
+  int threads = 1;                   ///< that read the file; they change nothing of the scene
+  std::size_t part_size = 1u << 18;  ///< bytes of the file that are worth a thread's while
 };
 
 /// Loads `file`, the MTL files that it names (relative to its own folder), and their textures.

@@ -1,16 +1,16 @@
 // The statements of an OBJ file, each checked and handed on.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/mtl_loader.h"
+#include "host/scene/io/obj_part.h"
 #include "host/scene/io/statement_reader.h"
 #include "host/scene/scene.h"
 
@@ -31,8 +31,8 @@ class NameTable {
   std::vector<std::string> names_;
 };
 
-/// Reads v, vt, vn, f, g, o, usemtl and mtllib: the right count of finite numbers, corners of one
-/// form without index 0. Points, lines and free-form curves and surfaces are left out with a
+/// Reads v, vt, vn, f, g, o, usemtl and mtllib; vertices and faces part by part (see ObjPart), on
+/// several threads. Points, lines and free-form curves and surfaces are left out with a
 /// warning, what only concerns a modeller without one; all else is an InputError. (B. Wavefront's
 /// "Object Files", version 3.0, is the source of the statements.)
 class ObjReader final : public StatementReader {
@@ -42,7 +42,7 @@ class ObjReader final : public StatementReader {
       : StatementReader(file, warnings), mesh_(mesh), mtl_(file.parent_path(), lines(), warnings) {}
 
   /// All statements. Faces go to the mesh with numbers for their material and object.
-  void read();
+  void read(const LoadOptions& options);
 
   [[nodiscard]] const MtlLoader& mtl() const { return mtl_; }
   [[nodiscard]] const std::vector<std::string>& objects() const { return objects_.names(); }
@@ -51,10 +51,9 @@ class ObjReader final : public StatementReader {
   [[nodiscard]] const std::vector<std::string>& material_places() const { return places_; }
 
  private:
+  void take(ObjPart& part);
+  void assign_faces(std::size_t begin, std::size_t end);
   void read_statement(std::string_view statement);
-  std::span<const double> read_numbers(std::string_view keyword, std::string_view words);
-  void read_face(std::string_view corners);
-  FileCorner read_corner(std::string_view corner, int& form) const;
   void use_material(const std::string& name);
   void set_group(std::string_view names);
 
@@ -66,8 +65,6 @@ class ObjReader final : public StatementReader {
   std::uint32_t object_number_ = 0;
   bool object_is_known_ = false;
   std::uint32_t material_number_ = kNoIndex;
-  std::array<double, 7> numbers_{};  // of one statement
-  std::vector<FileCorner> corners_;  // of one face
 };
 
 }  // namespace raygate

@@ -52,13 +52,15 @@ bool has_comment(std::string_view line) {
 }  // namespace
 
 TextLines::TextLines(const std::filesystem::path& file)
-    : name_(file.string()), text_(read_all(file)) {
+    : name_(file.string()),
+      bytes_(std::make_shared<const std::string>(read_all(file))),
+      text_(*bytes_) {
   if (text_.empty()) throw InputError(name_ + ": the file is empty");
   if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
     throw InputError(name_, 1, "UTF-16 text, expected ASCII or UTF-8");
   }
   if (text_.starts_with("\xEF\xBB\xBF")) position_ = 3;
-  if (const std::size_t nul = text_.find('\0'); nul != std::string::npos) {
+  if (const std::size_t nul = text_.find('\0'); nul != std::string_view::npos) {
     while (position_ <= nul) take_line();
     throw InputError(name_, lines_taken_, "a byte of value 0: not a text file");
   }
@@ -67,7 +69,7 @@ TextLines::TextLines(const std::filesystem::path& file)
 // One line without its end; text_ must not be exhausted.
 std::string_view TextLines::take_line() {
   // Looked for only once each, lest a file whose lines end in CR alone be searched again and again.
-  if (newline_ < position_ || lines_taken_ == 0) {
+  if (newline_ == kNotLooked || newline_ < position_) {
     newline_ = std::min(text_.find('\n', position_), text_.size());
   }
   const std::string_view to_newline(text_.data() + position_, newline_ - position_);
@@ -99,6 +101,27 @@ std::optional<std::string_view> TextLines::next() {
     return statement;
   }
   return std::nullopt;
+}
+
+// Parts begin behind a LF, but not where a backslash may join the lines.
+std::vector<TextLines> TextLines::split(std::size_t most, std::size_t size) const {
+  std::vector<TextLines> parts;
+  const std::size_t step = std::max(size, (text_.size() - position_) / most + 1);
+  std::size_t begin = position_;
+  while (begin < text_.size()) {
+    std::size_t end = begin + std::min(step, text_.size() - begin) - 1;
+    const auto joins = [&] {
+      const std::size_t before = end > begin && text_[end - 1] == '\r' ? end - 1 : end;
+      return before > begin && text_[before - 1] == '\\';
+    };
+    do {
+      end = std::min(text_.find('\n', end), text_.size() - 1);
+    } while (joins() && ++end < text_.size());
+    end = std::min(end + 1, text_.size());
+    parts.push_back(TextLines(*this, begin, end));
+    begin = end;
+  }
+  return parts;
 }
 
 std::string TextLines::place() const {

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace raygate {
 
@@ -23,6 +25,15 @@ class TextLines {
   /// the file. Valid until the next call.
   [[nodiscard]] std::optional<std::string_view> next();
 
+  /// Cuts what has not been read into parts, at most so many and of about `size` bytes at least,
+  /// that have the same statements one after the other. Their lines are counted from 1 again.
+  [[nodiscard]] std::vector<TextLines> split(std::size_t most, std::size_t size) const;
+  /// Lines are counted on from there; before the first next().
+  void begin_after(std::size_t lines) { lines_taken_ = lines; }
+  [[nodiscard]] std::size_t lines_taken() const { return lines_taken_; }
+
+  /// Makes line() and all that names it that of a statement given earlier.
+  void go_to(std::size_t line) { statement_line_ = line; }
   /// The line (from 1) on which the statement begins that next() gave last.
   [[nodiscard]] std::size_t line() const { return statement_line_; }
   [[nodiscard]] const std::string& file_name() const { return name_; }
@@ -34,13 +45,19 @@ class TextLines {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
+  static constexpr std::size_t kNotLooked = std::string_view::npos;
+
   std::string_view take_line();
 
+  TextLines(const TextLines& whole, std::size_t begin, std::size_t end)
+      : name_(whole.name_), bytes_(whole.bytes_), text_(whole.text_.substr(begin, end - begin)) {}
+
   std::string name_;
-  std::string text_;
-  std::string joined_;  // a statement of several lines
+  std::shared_ptr<const std::string> bytes_;  // of the file
+  std::string_view text_;                     // all of them, or a part
+  std::string joined_;                        // a statement of several lines
   std::size_t position_ = 0;
-  std::size_t newline_ = 0;  // the first LF at or after position_, once take_line has looked
+  std::size_t newline_ = kNotLooked;  // the first LF at or after position_, or the end
   std::size_t lines_taken_ = 0;
   std::size_t statement_line_ = 0;
 };

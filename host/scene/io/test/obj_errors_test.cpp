@@ -4,6 +4,7 @@
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/obj_reader.h"
+#include "host/scene/io/test/in_parts.h"
 #include "host/scene/test/temp_folder.h"
 
 namespace raygate {
@@ -15,6 +16,7 @@ constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 std::string error_of(std::string_view text) {
   const TempFolder folder;
   const std::filesystem::path file = folder.write("bad.obj", text);
+  EXPECT_EQ(test::outcome(file, {}), test::outcome_in_parts(file, {}));
   try {
     (void)load_obj(file);
   } catch (const InputError& error) {

@@ -6,6 +6,7 @@
 #include <clocale>
 
 #include "host/scene/io/input_error.h"
+#include "host/scene/io/test/in_parts.h"
 #include "host/scene/test/temp_folder.h"
 
 namespace raygate {
@@ -18,7 +19,9 @@ constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 Scene load(std::string_view text, const LoadOptions& options = {}) {
   const TempFolder folder;
-  return load_obj(folder.write("scene.obj", text), options);
+  const std::filesystem::path file = folder.write("scene.obj", text);
+  EXPECT_EQ(test::outcome(file, options), test::outcome_in_parts(file, options));
+  return load_obj(file, options);
 }
 
 Scene load_square(std::string_view more) { return load(std::string(kSquare) + std::string(more)); }

@@ -1,0 +1,69 @@
+// A part of an OBJ file, read by itself: its vertices and faces, and what else it says.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/scene/io/mesh_builder.h"
+#include "host/scene/io/text_lines.h"
+
+namespace raygate {
+
+/// Parts can be read at the same time, on several threads. What a part says of materials, groups
+/// and other files hangs on the parts before it: such statements are kept for ObjReader.
+class ObjPart {
+ public:
+  /// A statement that is neither of a vertex nor of a face.
+  struct Rest {
+    std::string statement;
+    std::size_t line;
+    std::size_t faces;  ///< of the part, that come before it
+  };
+
+  explicit ObjPart(TextLines lines) : lines_(std::move(lines)), mesh_(lines_.file_name()) {}
+
+  /// What the part has of lines and vertices: it reads all, but understands little.
+  struct Counts {
+    std::size_t lines = 0;
+    MeshBuilder::Counts mesh;
+  };
+  [[nodiscard]] Counts count() const;
+  /// What the parts before it have; before read().
+  void begin_after(const Counts& counts);
+
+  /// Reads v, vt, vn and f: the right count of finite numbers, corners of one form without index
+  /// 0. Stops at a statement that is wrong.
+  void read();
+
+  [[nodiscard]] MeshBuilder& mesh() { return mesh_; }
+  [[nodiscard]] const std::vector<Rest>& rest() const { return rest_; }
+  /// Throws the InputError at which read() stopped, if it did.
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  void read_statement(std::string_view statement);
+  std::span<const double> read_numbers(std::string_view keyword, std::string_view words);
+  void read_face(std::string_view corners);
+  FileCorner read_corner(std::string_view corner, int& form) const;
+  void keep(std::string_view statement);
+  void keep_once(std::string_view keyword);
+
+  TextLines lines_;
+  MeshBuilder mesh_;
+  std::vector<Rest> rest_;
+  std::set<std::string, std::less<>> kept_;  // by keep_once
+  std::exception_ptr error_;
+  std::array<double, 7> numbers_{};  // of one statement
+  std::vector<FileCorner> corners_;  // of one face
+};
+
+}  // namespace raygate
