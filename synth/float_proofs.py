@@ -53,6 +53,7 @@ OPERATIONS = {
     "divide": Operation(
         "fp_divider", "the quotient, all modes and flags, around any quotient of significands",
         ("format", "multiply", "divide"), ("srt_divider_stages",)),
+    "divide_whole": Operation("fp_divider", "the quotient", ("format", "multiply", "divide")),
     "divide_cut": Operation(
         "fp_divider", "the quotient cut off after 21 bits, around any of significands",
         ("format", "multiply", "divide"), ("srt_divider_stages",),
@@ -199,10 +200,43 @@ PROOFS = [
 ]
 
 
-def ports(model: str, top: str, suffix: str = "") -> tuple[str, list[str]]:
-    """Names for a module's ports and for what contracts leave free ("free_..."; with the number of
-    its row, where it is in one), and those names without `suffix`, which each gets."""
-    text = [f"(declare-const state{suffix} |{top}_s|)"]
+def state(model: str, top: str, name: str, before: str = "",
+          given: dict[str, str] | None = None) -> str:
+    """Declares a state of a module: one that follows `before`, or any. Registers are terms of the state
+    before, inputs in `given` the terms there, and no equations: what two states compute alike is then
+    one term to the solver."""
+    width = int(re.search(rf"\(define-sort \|{re.escape(top)}_s\| \(\) \(_ BitVec (\d+)\)\)", model)[1])
+    fields = re.findall(r"^\(define-fun \|(\S+#\d+)\| .*\(\(_ extract (\d+) (\d+)\) state\).* ; (.*)$",
+                        model, re.M)
+    following = re.findall(r"^  \(= (.*) \(\|(\S+#\d+)\| next_state\)\)", model, re.M)
+    next_of = {field: re.sub(r"\bstate\b", before, term) for term, field in following if before}
+    known = []
+    for field, high, low, called in fields:
+        wire = re.fullmatch(r"(?:.*[.\\])?(\w+)(?: \[(\d+)(?::(\d+))?\])?", called)
+        if field in next_of:
+            known.append((int(high), int(low), next_of[field]))
+        elif given and wire and wire[1] in given:
+            bits = f"(_ extract {wire[2]} {wire[3] or wire[2]})" if wire[2] else ""
+            known.append((int(high), int(low), f"({bits} {given[wire[1]]})" if bits else given[wire[1]]))
+    parts, top_bit = [], width - 1
+    for high, low, term in sorted(known, reverse=True):
+        if high < top_bit:
+            parts.append(f"((_ extract {top_bit} {high + 1}) any_{name})")
+        parts.append(term)
+        top_bit = low - 1
+    if top_bit >= 0:
+        parts.append(f"((_ extract {top_bit} 0) any_{name})")
+    word = functools.reduce(lambda upper, lower: f"(concat {upper} {lower})", parts)
+    return (f"(declare-const any_{name} |{top}_s|)\n"
+            f"(define-fun {name} () |{top}_s| {word})\n")
+
+
+def ports(model: str, top: str, suffix: str = "", before: str = "",
+          given: dict[str, str] | None = None) -> tuple[str, list[str]]:
+    """A state (see `state`), names for a module's ports in it and for what contracts leave free
+    ("free_..."; with the number of its row, where it is in one), and those names without `suffix`, which
+    each gets."""
+    text = [state(model, top, f"state{suffix}", before, given)]
     names = []
     pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
                          r"(\([^)]*\)|Bool)")

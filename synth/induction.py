@@ -26,10 +26,8 @@ class Model:
         """So many states, each the next of the one before; every assumption holds in each."""
         lines = ["(set-logic QF_BV)", self.text]
         for k in range(count):
-            lines.append(f"(declare-const s{k} |{self.top}_s|)")
+            lines.append(float_proofs.state(self.text, self.top, f"s{k}", f"s{k - 1}" if k else ""))
             lines.append(f"(assert (and (|{self.top}_u| s{k}) (|{self.top}_h| s{k})))")
-            if k:
-                lines.append(f"(assert (|{self.top}_t| s{k - 1} s{k}))")
         return "\n".join(lines) + "\n"
 
     def first(self) -> str:

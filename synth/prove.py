@@ -10,10 +10,13 @@ import re
 import sys
 from collections.abc import Callable
 
-from synth import catalogue, cores, float_proofs, induction, mapping, netlists, runner, store, tables, tools
+from synth import catalogue, cores, float_cuts, float_proofs, induction, mapping, netlists, runner, store, tables, tools
 from synth.catalogue import LIBRARIES, Design
 
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
+
+
+NETLIST_FLOWS = ("fast", "area")  # whose netlists are compared without LONG
 
 
 @dataclasses.dataclass(frozen=True)
@@ -212,6 +215,9 @@ def all_proofs() -> list[Proof]:
     proofs += [Proof(f"float.{one.name}", one.says, "Bitwuzla",
                      functools.partial(float_proofs.proven, one), False, one.long)
                for one in float_proofs.PROOFS]
+    proofs += [Proof(f"float.cuts.{cut.name}.{name}.{kind}", "with all its registers the same, only later",
+                     "Bitwuzla", functools.partial(float_cuts.agree, cut, name, kind), False)
+               for cut in float_cuts.CUTS for name in cut.latency for kind in ("graded", "behavioural")]
     proofs += [Proof(f"float.lemma.{name}", says, "z3",
                      functools.partial(float_proofs.lemma, name), False)
                for name, says in float_proofs.LEMMAS.items()]
@@ -223,16 +229,17 @@ def all_proofs() -> list[Proof]:
     narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)
     rows = [row for row in catalogue.report_rows() if row.design.top != narrow.top]
     for row in [*rows, catalogue.Row("units", narrow, {"osu035": ("parts",)})]:
-        design = row.design
         for library in LIBRARIES:
             for flow in row.flows.get(library.name, ()):
-                small = row.section == "48-bit adders"
-                proofs.append(Proof(
-                    f"netlist.{design.name}.{library.name}.{flow}", "the netlist and its RTL agree",
-                    "simulation", functools.partial(netlists.agree, design, library, flow,
-                                                    100000 if small else 20000),
-                    library.name == "osu035" and flow == "fast"
-                    and design.name in ("adder-graded", "booth-graded")))
+                name = f"netlist.{row.design.name}.{library.name}.{flow}"
+                quick = name in ("netlist.adder-graded.osu035.fast", "netlist.booth-graded.osu035.fast")
+                proofs.append(
+                    Proof(name, "the netlist and its RTL agree", "simulation", functools.partial(
+                        netlists.agree, row.design, library, flow, 20000), False, True)
+                    if row.section == "units" else
+                    Proof(name, "the netlist computes what its RTL does", "ABC", functools.partial(
+                        netlists.equal, row.design, library, flow), quick,
+                          not quick and (library.name != "osu035" or flow not in NETLIST_FLOWS)))
     return proofs
 
 
@@ -248,7 +255,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
     parser.add_argument("names", nargs="*", help="beginnings of proofs' names; all if none")
     parser.add_argument("--quick", action="store_true", help="those alone that `make test` runs")
-    parser.add_argument("--long", action="store_true", help="those too that take an hour")
+    parser.add_argument("--long", action="store_true", help="those too that take hours")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     given = parser.parse_args()
     try:

