@@ -14,8 +14,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="peers", description=__doc__)
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(measure.SCENES)} (all)")
     parser.add_argument("--quick", action="store_true", help="half the size, fewer samples and repeats")
-    parser.add_argument("--repeats", type=int, metavar="N", help="other seeds, of which times are medians (5)")
-    parser.add_argument("--reference", type=int, metavar="N", help="samples of each of two long runs (1024)")
+    parser.add_argument("--repeats", type=int, metavar="N", help="other seeds, of which times are medians (3)")
+    parser.add_argument("--reference", type=int, metavar="N", help="samples of each of two long runs (512)")
     parser.add_argument("--render", type=pathlib.Path, metavar="PROGRAM", default=kept.ROOT / "render",
                         help="raygate's (./render)")
     parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results/ as well")
@@ -26,8 +26,8 @@ def main() -> int:
         return 2
     names = given.scenes or (["cornell", "cornell_spheres"] if given.quick else list(measure.SCENES))
     found = [{**machine.describe(kept.ROOT), "quick": given.quick},
-             *measure.measure(names, given.quick, given.repeats or (2 if given.quick else 5),
-                              given.reference or (128 if given.quick else 1024),
+             *measure.measure(names, given.quick, given.repeats or (2 if given.quick else 3),
+                              given.reference or (128 if given.quick else 512),
                               given.render.resolve())]
     kept.write(kept.KEPT / "peers.jsonl", found)
     print(peers_report.tables(found))

@@ -80,7 +80,7 @@ class Measurement:
         """Renderer, sampler, samples per pixel."""
         from host.lab.peers.renderers import Mitsuba, Raygate
         one_thread = threads == 1
-        counts = ([8, COUNT] if self.quick else [2, 8, COUNT, 128]) if one_thread else [COUNT]
+        counts = ([8, COUNT] if self.quick else [2, 8, COUNT]) if one_thread else [COUNT]
         raygate = Raygate(self.folder, threads, self.program)
         found = [(raygate, "Owen-scrambled Sobol", count) for count in counts]
         for variant in VARIANTS:

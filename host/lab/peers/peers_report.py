@@ -4,7 +4,7 @@ import pathlib
 
 from host.lab.report import plots, rows as kept
 from host.lab.report.document import render, table
-from host.lab.peers.measure import BEST, COUNT
+from host.lab.peers.measure import BEST, COUNT, VARIANTS
 
 
 def name(row: dict) -> str:
@@ -41,9 +41,22 @@ def references_table(rows: list[dict]) -> str:
                   for row in kept.of(rows, "references")])
 
 
+def summary_table(rows: list[dict]) -> str:
+    """raygate's product of time and MSE over that of each Mitsuba's best sampler, one thread: below 1 is better."""
+    cells = []
+    for reference in kept.of(rows, "references"):
+        mine = at_count(kept.of(rows, "peers", scene=reference["scene"], threads=1))
+        (ours,) = (row for row in mine if row["renderer"] == "raygate")
+        ratios = [ours["time_mse"] / min(row["time_mse"] for row in mine if row["renderer"] == f"Mitsuba {variant}")
+                  for variant in VARIANTS]
+        cells.append([reference["scene"], ours["median_seconds"], ours["mse"] ** 0.5, *ratios])
+    return table({"scene": "", "seconds": ".3f", "RMSE": ".5f",
+                  **{f"time x MSE over {variant}'s": ".2f" for variant in VARIANTS}}, cells)
+
+
 def tables(rows: list[dict]) -> str:
     """Everything, to be printed."""
-    parts = [references_table(rows)]
+    parts = [references_table(rows), summary_table(rows)]
     for reference in kept.of(rows, "references"):
         parts += [reference["scene"], scene_table(kept.of(rows, "peers", scene=reference["scene"]))]
     return "\n".join(parts)
@@ -65,4 +78,5 @@ def build(rows: list[dict], folder: pathlib.Path) -> str:
                                 reference["scene"], folder / f"peers-{reference['scene']}.png")
         scenes.append({"reference": reference, "table": scene_table(mine), "plot": plot})
     return render("peers.md.j2", folder, machine=kept.of(rows, "machine")[0], references=references_table(rows),
+                  summary=summary_table(rows),
                   scenes=scenes)

@@ -32,8 +32,8 @@ def arguments() -> argparse.Namespace:
     command = commands.add_parser("shares", help="hit tests, departures and shading in pictures by ./render")
     command.add_argument("scenes", nargs="+")
     command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
-    command.add_argument("--size", default="160x120")
-    command.add_argument("--spp", default="8")
+    command.add_argument("--size", default="128x96")
+    command.add_argument("--spp", default="4")
     return parser.parse_args()
 
 

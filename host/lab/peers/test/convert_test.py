@@ -7,7 +7,7 @@ import unittest
 
 import numpy
 
-from host.lab.peers import convert, measure, scene
+from host.lab.peers import convert, measure, peers_report, scene
 
 OBJ = """\
 mtllib room.mtl
@@ -109,6 +109,18 @@ class Peers(unittest.TestCase):
             heights.append((round(float(a[1]), 3), float(numpy.sign(numpy.cross(b - a, c - a)[1]))))
         self.assertEqual(heights[0], (1.0, -1.0))
         self.assertEqual(sorted(heights[1:]), [(0.5, -1.0), (0.5, 1.0)])
+
+    def test_the_summary_takes_each_variant_at_its_best(self):
+        def row(renderer, sampler, time_mse, **more):
+            return {"table": "peers", "scene": "room", "threads": 1, "renderer": renderer, "sampler": sampler,
+                    "samples": 32, "median_seconds": 1.0, "mse": 0.04, "time_mse": time_mse} | more
+
+        rows = [{"table": "references", "scene": "room"}, row("raygate", "", 3.0),
+                row("raygate", "", 1.0, samples=8), row("raygate", "", 9.0, threads=2)]
+        rows += [row(f"Mitsuba {variant}", sampler, value) for variant, sampler, value in (
+            ("scalar_rgb", "independent", 8.0), ("scalar_rgb", "multijitter", 4.0), ("llvm_ad_rgb", "multijitter", 1.0))]
+        cells = [cell.strip() for cell in peers_report.summary_table(rows).splitlines()[2].split("|")[1:-1]]
+        self.assertEqual(cells, ["room", "1.000", "0.20000", "0.75", "3.00"])
 
     def test_noise_of_a_reference(self):
         class Coin:
