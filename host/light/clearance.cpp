@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kMostLeaves = 4096;  // that a look may take
 constexpr std::size_t kMostCrowd = 128;
-constexpr double kFarthest = 0x1p-6;      // to look, in parts of the largest coordinate,
+constexpr double kFarthest = 0x1p-4;      // to look, in parts of the largest coordinate,
 constexpr double kShareOfHeight = 0.5;    // and of the least height
 constexpr double kShareOfCrowd = 0x1p-4;  // of that: what is nearer belongs to the crowd
 
@@ -147,8 +147,9 @@ bool lies_beyond(const Corners& other, const Corners& hit, int side) {
       other, [&](const glm::vec3& vertex) { return plane_side(vertex, hit) != side; });
 }
 
-void Crowd::add(const Corners& triangle) {
-  const auto lane = static_cast<int>(size_++ % kLanes);
+void Crowd::add(std::uint32_t slot, const Corners& triangle) {
+  const auto lane = static_cast<int>(slots_.size() % kLanes);
+  slots_.push_back(slot);
   if (lane == 0) {
     Boxes& empty = boxes_.emplace_back();
     for (int k = 0; k < 3; ++k) {
@@ -162,21 +163,18 @@ void Crowd::add(const Corners& triangle) {
   }
 }
 
-bool Crowd::is_near(const glm::vec3& point, float reach) const {
+LaneMask Crowd::near_of_eight(std::size_t first, const glm::vec3& point, float reach) const {
+  const Boxes& boxes = boxes_[first / kLanes];
   const glm::vec3 from = point - reach, to = point + reach;
   return in_vectors([&](auto) RAYGATE_BODY {
-    IntLanes near = {};
-    for (const Boxes& eight : boxes_) {
-      IntLanes touches = IntLanes{} - 1;
-      for (int k = 0; k < 3; ++k) {
-        FloatLanes low, high;
-        load_lanes(eight.low[k], low);
-        load_lanes(eight.high[k], high);
-        touches &= (low <= to[k]) & (high >= from[k]);
-      }
-      near |= touches;
+    IntLanes touches = IntLanes{} - 1;
+    for (int k = 0; k < 3; ++k) {
+      FloatLanes low, high;
+      load_lanes(boxes.low[k], low);
+      load_lanes(boxes.high[k], high);
+      touches &= (low <= to[k]) & (high >= from[k]);
     }
-    return sign_mask(near) != 0;
+    return sign_mask(touches);
   });
 }
 
@@ -238,7 +236,7 @@ Clearances::Lengths Clearances::look(std::uint32_t slot, Crowd& crowd) const {
           least = apart;
         }
       }
-      if (crowds) crowd.add(other);
+      if (crowds) crowd.add(other_slot, other);
     }
   }
   for (double& each : length) each *= 1.0 - 0x1p-20;  // for the roundings of unit vectors

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -23,11 +24,20 @@ namespace raygate {
 /// Triangles that come close to one triangle inside its borders: what stands on it, or cuts it.
 class Crowd {
  public:
-  void add(const Corners& triangle);
-  [[nodiscard]] std::size_t size() const { return size_; }
+  void add(std::uint32_t slot, const Corners& triangle);
+  [[nodiscard]] std::size_t size() const { return slots_.size(); }
 
-  /// Whether a triangle's box may be within `reach` of the point on each axis.
-  [[nodiscard]] bool is_near(const glm::vec3& point, float reach) const;
+  /// Calls visit(slot) for the triangles whose boxes are within `reach` of the point on each axis,
+  /// until it says true; whether it did.
+  template <class Visit>
+  [[nodiscard]] bool any_near(const glm::vec3& point, float reach, const Visit& visit) const {
+    for (std::size_t first = 0; first < slots_.size(); first += kLanes) {
+      for (LaneMask near = near_of_eight(first, point, reach); near != 0; near &= near - 1) {
+        if (visit(slots_[first + static_cast<std::size_t>(std::countr_zero(near))])) return true;
+      }
+    }
+    return false;
+  }
 
  private:
   /// Eight boxes; those that are not there are empty.
@@ -35,8 +45,11 @@ class Crowd {
     float low[3][kLanes], high[3][kLanes];
   };
 
+  [[nodiscard]] LaneMask near_of_eight(std::size_t first, const glm::vec3& point,
+                                       float reach) const;
+
   std::vector<Boxes> boxes_;
-  std::size_t size_ = 0;
+  std::vector<std::uint32_t> slots_;
 };
 
 /// For each triangle and each side of it a length c and a crowd, such that every other triangle
@@ -56,7 +69,7 @@ class Clearances {
 
   struct Clearance {
     /// c on the side where plane_side is 1, and on the other; 0 where nothing is known. Not above
-    /// the least height.
+    /// half the least height.
     float length[2];
     const Crowd* crowd;  ///< or nullptr
   };

@@ -98,6 +98,12 @@ struct PlainWords {
 
 }  // namespace
 
+bool DeparturePoint::is_free(const Crowd& crowd, const glm::vec3& point, float reach) const {
+  return !crowd.any_near(point, reach, [&](std::uint32_t slot) {
+    return !surely_apart(point - reach, point + reach, bvh_.corners_of(slot));
+  });
+}
+
 std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot, Departure way) {
   const Clearances::Clearance clearance = clearances_.of(slot);
   PlainWords<1> words;
@@ -110,7 +116,7 @@ std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot
   bool clear = false;
   depart_plainly(hits, clearances_.margin(), point, reach, sure, clear);
   const glm::vec3 plain(point[0], point[1], point[2]);
-  if (sure != 0 && clear && !(clearance.crowd && clearance.crowd->is_near(plain, reach))) {
+  if (sure != 0 && clear && (!clearance.crowd || is_free(*clearance.crowd, plain, reach))) {
     return plain;
   }
   return search(ray, slot, way);
@@ -143,7 +149,7 @@ RAYGATE_INLINE void DeparturePoint::find_some(std::span<const DepartureQuestion>
   std::memcpy(reaches, &reach, sizeof reaches);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const glm::vec3 plain(points[0][i], points[1][i], points[2][i]);
-    if ((good >> i & 1) != 0 && !(crowds[i] && crowds[i]->is_near(plain, reaches[i]))) {
+    if ((good >> i & 1) != 0 && (!crowds[i] || is_free(*crowds[i], plain, reaches[i]))) {
       origins[i] = plain;
     } else {
       origins[i] = search(*questions[i].ray, questions[i].slot, questions[i].way);

@@ -72,6 +72,9 @@ class DeparturePoint {
   RAYGATE_INLINE void find_some(std::span<const DepartureQuestion> questions,
                                 std::span<std::optional<glm::vec3>> origins);
 
+  /// Whether nothing of the crowd is within `reach` of the point.
+  [[nodiscard]] bool is_free(const Crowd& crowd, const glm::vec3& point, float reach) const;
+
   /// As find(), looking at what is near.
   [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, Departure way);
 

@@ -35,10 +35,14 @@ double distance(const glm::dvec3& x, const Corners& t) {
   return above ? std::abs(glm::dot(normal, x - v[0])) : least;
 }
 
+bool is_near(const Crowd& crowd, const glm::vec3& point, float reach) {
+  return crowd.any_near(point, reach, [](std::uint32_t) { return true; });
+}
+
 /// A distance from x in which the crowd is not; 0 where there is none.
 double reach_beyond(const Crowd& crowd, const glm::dvec3& x) {
   float reach = 1.0f;
-  while (reach > 0.0f && crowd.is_near(glm::vec3(x), reach)) reach *= 0.5f;
+  while (reach > 0.0f && is_near(crowd, glm::vec3(x), reach)) reach *= 0.5f;
   return reach;
 }
 
@@ -118,8 +122,8 @@ TEST(Clearance, WhatStandsOnATriangleIsItsCrowd) {
   const auto clearance = clearances.of(floor);
   ASSERT_NE(clearance.crowd, nullptr);
   EXPECT_EQ(clearance.crowd->size(), 1u);
-  EXPECT_TRUE(clearance.crowd->is_near(glm::vec3(-0.01f, 0, 0), 0.01f));
-  EXPECT_FALSE(clearance.crowd->is_near(glm::vec3(-0.01f, 0, 0), 0.0099f));
+  EXPECT_TRUE(is_near(*clearance.crowd, glm::vec3(-0.01f, 0, 0), 0.01f));
+  EXPECT_FALSE(is_near(*clearance.crowd, glm::vec3(-0.01f, 0, 0), 0.0099f));
   EXPECT_GT(std::min(clearance.length[0], clearance.length[1]), 0.0f);
 }
 
