@@ -1,11 +1,12 @@
 """`python3 -m synth.float_faults [CORE ...]`: single faults in the binary16 cores, refuted.
 
 The solver finds operands that show the fault. What the faulty core gives for them goes, as a
-vector, to build/sim/check_vectors, whose simulated core has no fault: it must differ.
+vector, to build/sim/check_vectors, whose simulated core has no fault: it must differ. Which fault is
+shown first is the solver's choice; in the end it is asked whether those left change anything.
 """
 
 import argparse
-import concurrent.futures
+import collections
 import dataclasses
 import pathlib
 import subprocess
@@ -68,21 +69,27 @@ class Faulty:
     text: str  # the query, but for the number
     wires: tuple[str, ...]
 
-    def settle(self, number: int, limit: float) -> dict:
-        """What came of a fault: verdict, seconds, vector. Kept."""
-        text = self.text + f"(assert (= fault_i (_ bv{number} 8)))\n"
-        folder = self.folder / f"{number}"
+    def show(self, left: set[int], limit: float) -> dict:
+        """One of the faults `left`, whichever the solver comes upon: its number, the seconds, the vector
+        that shows it; or 0 and whether none of them changes anything. Kept."""
+        one_of = " ".join(f"(= fault_i (_ bv{number} 8))" for number in sorted(left))
+        text = f"{self.text}(assert (or false {one_of}))\n"
+        folder = self.folder / f"{len(left)}_left"
 
         def work() -> dict:
             for wanted in (SHOWN_BY_VECTORS.get(self.core, ""), ""):
                 answer = float_proofs.solve(folder / "query.smt2", text + wanted, self.wires, limit)
                 if answer["answer"] == "sat":
                     break
-            verdict, vector = {"unsat": "changes nothing"}.get(answer["answer"], "open"), ""
+            verdict, vector, number = "open", "", 0
+            if answer["answer"] == "unsat":
+                verdict = "changes nothing"
             if answer["answer"] == "sat":
                 vector, refused = differs(self.core, answer["values"])
                 verdict = "refuted" if refused else "refuted, but not by a vector"
-            return {"verdict": verdict, "seconds": answer["seconds"], "vector": vector}
+                number = int(answer["values"]["fault_i"], 2)
+            return {"fault": number, "verdict": verdict, "seconds": answer["seconds"],
+                    "vector": vector}
 
         return store.cached(folder, store.key([], text, limit), work)[0]
 
@@ -102,19 +109,19 @@ def put_faults(core: str, count: int, seed: int) -> Faulty:
     return Faulty(core, folder, text + "(assert assumed)\n(assert (not claimed))\n", tuple(wires))
 
 
-def refute(core: str, wanted: int, seed: int, limit: float, jobs: int) -> list[list[object]]:
-    """A row for each fault, until `wanted` of them are refuted."""
-    faulty = put_faults(core, MOST, seed)
+def refute(core: str, count: int, seed: int, limit: float) -> list[list[object]]:
+    """A row for each of `count` faults: each is refuted, or the solver says of those that are left that
+    they change nothing, or it does not come to an end."""
+    faulty = put_faults(core, count, seed)
+    left = set(range(1, count + 1))
     rows: list[list[object]] = []
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        for start in range(1, MOST + 1, jobs):
-            outcomes = pool.map(lambda number: faulty.settle(number, limit),
-                                range(start, min(start + jobs, MOST + 1)))
-            for number, outcome in enumerate(outcomes, start):
-                rows.append([core, number, *outcome.values()])
-                print(*rows[-1], file=sys.stderr, flush=True)
-            if sum(str(row[2]).startswith("refuted") for row in rows) >= wanted:
-                break
+    while left:
+        shown = faulty.show(left, limit)
+        found = [shown["fault"]] if shown["fault"] else sorted(left)
+        rows += [[core, number, shown["verdict"], shown["seconds"], shown["vector"]]
+                 for number in found]
+        left -= set(found)
+        print(*rows[-1], file=sys.stderr, flush=True)
     return rows
 
 
@@ -123,12 +130,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="synth.float_faults", description=__doc__)
     parser.add_argument("cores", nargs="*", metavar="CORE",
                         help=f"{', '.join(CLAIMS)}; all if none")
-    parser.add_argument("--count", type=int, default=50,
-                        help="so many refuted of each (%(default)s)")
+    parser.add_argument("--count", type=int, default=80, choices=range(1, MOST + 1),
+                        metavar="COUNT", help="so many in each core, at most 255 (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="chooses the faults (%(default)s)")
     parser.add_argument("--limit", type=float, default=120,
-                        help="processor seconds for a fault (%(default)s)")
-    parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
+                        help="processor seconds for a question (%(default)s)")
     given = parser.parse_args()
     for core in given.cores:
         if core not in CLAIMS:
@@ -137,14 +143,15 @@ def main() -> int:
         if not CHECK_VECTORS.exists():
             raise tools.MissingTool(f"{CHECK_VECTORS} is not built: make refute builds it")
         rows = [row for core in given.cores or CLAIMS
-                for row in refute(core, given.count, given.seed, given.limit, given.jobs)]
+                for row in refute(core, given.count, given.seed, given.limit)]
     except (tools.MissingTool, tools.ToolFailed) as error:
         print(f"synth: {error}", file=sys.stderr)
         return 2
     print(tables.markdown(["core", "fault", "verdict", "s", "vector"], rows))
-    verdicts = [row[2] for row in rows]
-    print(", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts)))
-    return 1 if "open" in verdicts else 0
+    for core in given.cores or CLAIMS:
+        verdicts = collections.Counter(row[2] for row in rows if row[0] == core)
+        print(f"{core}: " + ", ".join(f"{many} {verdict}" for verdict, many in verdicts.items()))
+    return 1 if any(row[2] == "open" for row in rows) else 0
 
 
 if __name__ == "__main__":

@@ -20,8 +20,13 @@ from synth import cores, store, tools
 
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
-# Exponent and fraction widths of a format, and of the next wider one that Bitwuzla knows.
+# Exponent and fraction widths of a format, and of a wider one that Bitwuzla knows: the next.
 FORMATS = {"binary16": (5, 10, 8, 23), "binary32": (8, 23, 11, 52)}
+# Formats that it does not know: their numbers are held in the format of this fraction width, and
+# NARROW_CLAIMS are read instead of the claims of that name.
+NARROW_FORMATS = {"bfloat16": (8, 7, 11, 52)}
+HELD_FRACTION = {"bfloat16": 23}
+NARROW_CLAIMS = ("add", "multiply", "divide")
 
 # What a core is made of, as its parameters.
 ARITHMETIC = {
@@ -105,7 +110,8 @@ class FloatProof:
 
     def numbers(self) -> dict[str, object]:
         """What the specifications' placeholders stand for."""
-        exp, frac, wide_exp, wide_frac = FORMATS[self.format]
+        exp, frac, wide_exp, wide_frac = (FORMATS | NARROW_FORMATS)[self.format]
+        held_frac = HELD_FRACTION.get(self.format, frac)
         width = 1 + exp + frac
         bias, wide_bias = 2 ** (exp - 1) - 1, 2 ** (wide_exp - 1) - 1
         infinity = (2 ** exp - 1) << frac
@@ -135,6 +141,9 @@ class FloatProof:
 
         return {
             # format
+            "FS": held_frac + 1, "NARROW_PAD": held_frac - frac - 1,
+            "HELD": "w" if held_frac == frac else f"(concat w (_ bv0 {held_frac - frac}))",
+            "INFINITY_PLACE": f"#b{infinity << 1:0{width}b}", "POWER": wide(1, bias + 1),
             "E": exp, "S": frac + 1, "F": frac, "W": width, "SIGN": width - 1, "QUIET": frac - 1,
             "WE": wide_exp, "WS": wide_frac + 1, "WF": wide_frac, "WW": 1 + wide_exp + wide_frac,
             "NAN": f"#b{infinity | 1 << (frac - 1):0{width}b}",
@@ -167,8 +176,15 @@ class FloatProof:
     def files(self) -> list[pathlib.Path]:
         """The specification, and behind it the claim."""
         parts = OPERATIONS[self.operation].specification
-        return [*(FLOAT / f"{part}.smt2" for part in parts),
-                FLOAT / "claims" / f"{self.operation}.smt2"]
+        claim = self.operation
+        if self.is_narrow:
+            parts, claim = (*parts, *(part for part in ("add", "narrow") if part not in parts)), f"{claim}_narrow"
+        return [*(FLOAT / f"{part}.smt2" for part in parts), FLOAT / "claims" / f"{claim}.smt2"]
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether the claim rounds to a format that the solver does not know."""
+        return self.format in NARROW_FORMATS and self.operation in NARROW_CLAIMS
 
     def texts(self) -> list[str]:
         """The contents of `files`, numbers in place of placeholders."""
@@ -186,8 +202,11 @@ _CORES = [FloatProof(operation, name, kind)
           for operation in ("add", "multiply", "divide") for name in FORMATS
           for kind in (*ADDERS, "behavioural")]
 PROOFS = [
+    *(FloatProof(operation, name, kind) for name in NARROW_FORMATS
+      for operation in (*NARROW_CLAIMS, "srt_row", "srt_ends") for kind in (*ADDERS, "behavioural")),
+    *(FloatProof(operation, name) for name in NARROW_FORMATS for operation in ("decode", "srt_first_row")),
     *(one for one in _CORES if (one.operation, one.format) != ("add", "binary32")),
-    *(FloatProof("compare", name, kind) for name in FORMATS
+    *(FloatProof("compare", name, kind) for name in FORMATS | NARROW_FORMATS
       for kind in ("structural", "behavioural")),
     *(FloatProof(part, name, kind) for part in ("srt_row", "srt_ends") for name in FORMATS
       for kind in (*ADDERS, "behavioural")),
@@ -303,6 +322,7 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
 
 SPECIFICATIONS = [FloatProof(operation, name)
                   for operation in ("add", "multiply", "divide", "compare") for name in FORMATS]
+SPECIFICATIONS.append(FloatProof("add", "bfloat16"))
 VECTORS = 125_000  # for each of these
 BATCH = 5000  # evaluated in one query
 
@@ -314,6 +334,8 @@ CODES = {"binary16": ("<H", "<e", "<f", "<I"), "binary32": ("<I", "<f", "<d", "<
 
 def wide_word(word: int, name: str) -> str:
     """The word of a number in the next wider format."""
+    if name == "bfloat16":
+        return wide_word(word << 16, "binary32")
     narrow, as_narrow, as_wide, wide = CODES[name]
     value = struct.unpack(as_narrow, struct.pack(narrow, word))[0]
     bits = struct.unpack(wide, struct.pack(as_wide, value))[0]
@@ -324,7 +346,7 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
     """Evaluates a specification, by the solver, on `count` operations of which MPFR gives the
     result; and sees that it refuses one of them with a bit of the result changed."""
     folder = store.OUT / "proofs" / f"float.specification.{one.name}"
-    vectors = FLOAT / "vectors" / f"{one.operation}.smt2"
+    vectors = FLOAT / "vectors" / f"{one.operation}{'_narrow' if one.is_narrow else ''}.smt2"
     numbers = one.numbers()
     width = numbers["W"]
     wide = "" if one.operation == "divide" else "(define-sort WideWord () (_ BitVec $WW))\n"
@@ -349,7 +371,7 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
         maker = folder / "mpfr_vectors"
         tools.run(["g++", "-std=c++20", "-O2", "-I", tools.ROOT, program, *oracle, "-lmpfr",
                    "-lgmp", "-o", maker], folder / "build.log")
-        exp, frac, *_ = FORMATS[one.format]
+        exp, frac, *_ = (FORMATS | NARROW_FORMATS)[one.format]
         asked = ASKED[one.operation]
         for op, second in asked.items():
             lines = tools.run([str(maker), exp, frac, op, count // len(asked)],

@@ -250,6 +250,37 @@ def outcome(proof: Proof, result: dict | None) -> str:
     return "simulated" if proof.how in ("simulation", "evaluation") else "proven"
 
 
+PAGE = PROOFS / "README.md"
+TIMES = re.compile(r"(?<=<!-- times: make prove RECORD=1 -->\n\n).*?(?=\n\n<!-- end of times -->)", re.S)
+
+
+def group(name: str) -> str:
+    """A proof's name without what its siblings differ in: adders, sizes, the netlist's design."""
+    if name.startswith("netlist."):
+        return "netlist.*"
+    return re.sub(r"^(adder)\..*|(?:\.(?:ripple|uniform|graded|prefix|structural|behavioural))(?=\.|$)",
+                  lambda match: f"{match[1]}.*" if match[1] else "", name)
+
+
+def record(proofs: list[Proof], results: list[dict | None]) -> None:
+    """Writes into the page what these proofs took; rows of others stay as they are."""
+    page = PAGE.read_text()
+    old = re.findall(r"^\| `(\S+)` *\| (.*) \|$", TIMES.search(page)[0], re.M)
+    rows = {name: [cell.strip() for cell in cells.split("|")] for name, cells in old}
+    groups: dict[str, list[tuple[Proof, dict]]] = {}
+    for proof, result in zip(proofs, results, strict=True):
+        if result and "seconds" in result:
+            groups.setdefault(group(proof.name), []).append((proof, result))
+    for name, members in groups.items():
+        rows[name] = [members[0][0].how, str(len(members)),
+                      str(max(result["seconds"] for _, result in members)),
+                      str(max(result["megabytes"] for _, result in members))]
+    order = list(dict.fromkeys(group(proof.name) for proof in all_proofs()))
+    table = tables.markdown(["proofs", "by", "number", "most s", "most MB"], [
+        [f"`{name}`", *rows[name]] for name in order if name in rows])
+    PAGE.write_text(TIMES.sub(lambda _: table.strip(), page))
+
+
 def main() -> int:
     """Runs the proofs asked for; 1 where one fails, 2 for what the user can mend."""
     parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
@@ -257,6 +288,8 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="those alone that `make test` runs")
     parser.add_argument("--long", action="store_true", help="those too that take hours")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
+    parser.add_argument("--record", action="store_true",
+                        help="write into the page of proofs what they took")
     given = parser.parse_args()
     try:
         chosen = [proof for proof in all_proofs()
@@ -275,6 +308,8 @@ def main() -> int:
         for proof, result in zip(chosen, results, strict=True)]))
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
+    if given.record:
+        record(chosen, results)
     counts = collections.Counter(map(outcome, chosen, results))
     print(f"\n{counts['proven']} proven, {counts['simulated']} simulated, {counts['FAILED']} failed")
     return 1 if failures else 0

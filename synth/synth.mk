@@ -13,14 +13,14 @@ synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=grad
 	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
 	  --jobs '$(SYNTH_JOBS)'
 
-prove: ## prove adders, multiplier, float cores, timetable: make prove [PROOFS='adder. float.add'] [LONG=1]
+prove: ## prove adders, multiplier, float cores, units, netlists: make prove [PROOFS='adder. float.add'] [LONG=1] [RECORD=1]
 	@$(SETUP) prove
-	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(PROOFS)
+	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(RECORD),--record) $(PROOFS)
 
-refute: ## faults in the float cores, refuted: make refute [CORES='add divide'] [FAULTS=50]
+refute: ## faults in the float cores, refuted: make refute [CORES='add divide'] [FAULTS=80]
 	@$(SETUP) prove
 	$(call build,test,check_vectors)
-	@$(PYTHON) -m synth.float_faults --count $(or $(FAULTS),50) --jobs '$(SYNTH_JOBS)' $(CORES)
+	@$(PYTHON) -m synth.float_faults --count $(or $(FAULTS),80) $(CORES)
 
 verilog: ## a module as one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5 FracWidth=10']
 	@$(SETUP) synth

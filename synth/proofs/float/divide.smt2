@@ -37,12 +37,12 @@
 ; `magnitude` is quotient-magnitude.
 (define-fun divide-result ((m RoundingMode) (a Word) (b Word) (magnitude Wide)) Float
   (let ((same (= (is-negative a) (is-negative b))))
-    (ite (or (fp.isNaN (number a)) (fp.isNaN (number b)) (divide-invalid a b)) (_ NaN $E $S)
+    (ite (or (fp.isNaN (number a)) (fp.isNaN (number b)) (divide-invalid a b)) (_ NaN $E $FS)
     (ite (or (fp.isInfinite (number a)) (fp.isZero (number b)))
-         (ite same (_ +oo $E $S) (_ -oo $E $S))
+         (ite same (_ +oo $E $FS) (_ -oo $E $FS))
     (ite (or (fp.isZero (number a)) (fp.isInfinite (number b)))
-         (ite same (_ +zero $E $S) (_ -zero $E $S))
-         ((_ to_fp $E $S) m (ite same magnitude (fp.neg magnitude))))))))
+         (ite same (_ +zero $E $FS) (_ -zero $E $FS))
+         ((_ to_fp $E $FS) m (ite same magnitude (fp.neg magnitude))))))))
 
 (define-fun divide-flags ((m RoundingMode) (after Bool) (a Word) (b Word) (magnitude Wide))
                          (_ BitVec 5)
@@ -52,5 +52,5 @@
       (by-zero a b)
       (is-quotient a b)
       m after
-      ((_ to_fp $E $S) RTN x) ((_ to_fp $E $S) RTP x)
+      ((_ to_fp $E $FS) RTN x) ((_ to_fp $E $FS) RTP x)
       x x)))

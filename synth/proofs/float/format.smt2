@@ -4,11 +4,11 @@
 ; the exponent and of the significand with its integer bit (binary16: 5, 11).
 
 (define-sort Word () (_ BitVec $W))
-(define-sort Float () (_ FloatingPoint $E $S))
+(define-sort Float () (_ FloatingPoint $E $FS))
 ; The next wider of IEEE's formats: thresholds between Floats, and products of two, are Wides.
 (define-sort Wide () (_ FloatingPoint $WE $WS))
 
-(define-fun number ((w Word)) Float ((_ to_fp $E $S) w))
+(define-fun number ((w Word)) Float ((_ to_fp $E $FS) $HELD))
 (define-fun wide ((w Word)) Wide ((_ to_fp $WE $WS) RNE (number w)))
 (define-fun is-negative ((w Word)) Bool (= ((_ extract $SIGN $SIGN) w) #b1))
 (define-fun is-finite ((w Word)) Bool

@@ -37,10 +37,10 @@
       (and (fp.isZero (number a)) (fp.isInfinite (number b)))))
 
 (define-fun multiply-result ((m RoundingMode) (a Word) (b Word) (product Product)) Float
-  (ite (or (fp.isNaN (number a)) (fp.isNaN (number b)) (multiply-invalid a b)) (_ NaN $E $S)
+  (ite (or (fp.isNaN (number a)) (fp.isNaN (number b)) (multiply-invalid a b)) (_ NaN $E $FS)
   (ite (or (fp.isInfinite (number a)) (fp.isInfinite (number b)))
-       (ite (= (is-negative a) (is-negative b)) (_ +oo $E $S) (_ -oo $E $S))
-       ((_ to_fp $E $S) m (exact-product a b product)))))
+       (ite (= (is-negative a) (is-negative b)) (_ +oo $E $FS) (_ -oo $E $FS))
+       ((_ to_fp $E $FS) m (exact-product a b product)))))
 
 (define-fun multiply-flags ((m RoundingMode) (after Bool) (a Word) (b Word) (product Product))
                            (_ BitVec 5)
@@ -50,5 +50,5 @@
       false
       (and (is-finite a) (is-finite b))
       m after
-      ((_ to_fp $E $S) RTN x) ((_ to_fp $E $S) RTP x)
+      ((_ to_fp $E $FS) RTN x) ((_ to_fp $E $FS) RTP x)
       x x)))

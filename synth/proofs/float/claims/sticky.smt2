@@ -11,13 +11,13 @@
 (define-fun half () Wide
   (fp.sub RNE (fp #b0 e (concat (_ bv0 $QPAD) quotient #b1)) (fp #b0 e (_ bv0 $WF))))
 (define-fun flags-of ((x Wide)) (_ BitVec 5)
-  (flags false false true (mode m) after ((_ to_fp $E $S) RTN x) ((_ to_fp $E $S) RTP x) x x))
+  (flags false false true (mode m) after ((_ to_fp $E $FS) RTN x) ((_ to_fp $E $FS) RTP x) x x))
 (define-fun assumed () Bool
   (and (possible-quotient quotient) (not (= more #x00))
        (bvuge e (_ bv$STICKY_FROM $WE)) (bvule e (_ bv$STICKY_TO $WE))))
 (define-fun claimed () Bool
-  (and (= ((_ to_fp $E $S) (mode m) eight-more) ((_ to_fp $E $S) (mode m) half))
-       (= ((_ to_fp $E $S) (mode m) (fp.neg eight-more))
-          ((_ to_fp $E $S) (mode m) (fp.neg half)))
+  (and (= ((_ to_fp $E $FS) (mode m) eight-more) ((_ to_fp $E $FS) (mode m) half))
+       (= ((_ to_fp $E $FS) (mode m) (fp.neg eight-more))
+          ((_ to_fp $E $FS) (mode m) (fp.neg half)))
        (= (flags-of eight-more) (flags-of half))
        (= (flags-of (fp.neg eight-more)) (flags-of (fp.neg half)))))
