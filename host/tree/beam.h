@@ -66,6 +66,7 @@ struct Beam {
 
 /// Sets bit i of the result where the beam meets the box of child i before `cutoff` (see
 /// PacketTraversal::set_cutoff), and entry[i] to where it enters it.
+template <Vectors kCode = Vectors::kBaseline>
 RAYGATE_INLINE LaneMask meet_children(const Beam& beam, const Bvh::Node& node, float cutoff,
                                       FloatLanes& entry) {
   FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
@@ -80,7 +81,7 @@ RAYGATE_INLINE LaneMask meet_children(const Beam& beam, const Bvh::Node& node, f
     leave = t_far < leave ? t_far : leave;
   }
   entry = enter;
-  return sign_mask(enter <= leave);
+  return sign_mask<kCode>(enter <= leave);
 }
 
 /// Eight beams of one origin and octant; an absent one has a negative cutoff.
@@ -111,6 +112,7 @@ RAYGATE_INLINE Beam one_of(const Beams& beams, int which, const Beam& like) {
 }
 
 /// The beams that meet the box of a node's child.
+template <Vectors kCode = Vectors::kBaseline>
 RAYGATE_INLINE LaneMask meet_beams(const Beams& beams, const glm::vec3& origin, int octant,
                                    const Bvh::Node& node, int child) {
   FloatLanes enter = {}, leave = beams.cutoff;
@@ -123,7 +125,7 @@ RAYGATE_INLINE LaneMask meet_beams(const Beams& beams, const glm::vec3& origin, 
     enter = t_near > enter ? t_near : enter;
     leave = t_far < leave ? t_far : leave;
   }
-  return sign_mask(enter <= leave);
+  return sign_mask<kCode>(enter <= leave);
 }
 
 }  // namespace raygate

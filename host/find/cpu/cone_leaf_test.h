@@ -47,13 +47,14 @@ RAYGATE_INLINE void slack_of(const FloatLanes (&radius)[3], FloatLanes& slack) {
 }
 
 /// The groups among these with rays that may hit the triangle.
+template <Vectors kCode>
 RAYGATE_INLINE LaneMask groups_near(const ConeWalk& walk, const QuadRecord& record, int triangle,
                                     LaneMask groups) {
   if (!several(groups)) return groups;
   const FloatLanes(&center)[3] = walk.cones.center;
   FloatLanes worst;
   worst_side_of(center[0], center[1], center[2], record, triangle, worst);
-  return groups & ~sign_mask(worst < -(record.bounds[triangle] * walk.slack));
+  return groups & ~sign_mask<kCode>(worst < -(record.bounds[triangle] * walk.slack));
 }
 
 /// From bounds of |d| and of I . N to those of t, which is their quotient. Both are positive,
@@ -78,6 +79,7 @@ struct GroupVerdict {
   IntLanes low, high;  ///< of sure hits: bounds of t, as the bits of floats
 };
 
+template <Vectors kCode>
 RAYGATE_INLINE void test_group(const ConeWalk& walk, const QuadRecord& record, int triangle,
                                int group, LaneMask tested, GroupVerdict& verdict) {
   const RayBlock& block = *walk.block;
@@ -86,10 +88,10 @@ RAYGATE_INLINE void test_group(const ConeWalk& walk, const QuadRecord& record, i
   FloatLanes worst;
   worst_side_of(x, y, z, record, triangle, worst);
   const float bound = record.bounds[triangle];
-  verdict.open = tested & ~sign_mask(worst < -bound);
+  verdict.open = tested & ~sign_mask<kCode>(worst < -bound);
   verdict.hit = 0;
   if (verdict.open == 0) return;
-  verdict.hit = verdict.open & sign_mask(worst > bound);
+  verdict.hit = verdict.open & sign_mask<kCode>(worst > bound);
   FloatLanes v, low = FloatLanes{} + record.low[triangle],
                 high = FloatLanes{} + record.high[triangle];
   side_of(x, y, z, record, QuadRecord::kNormal, triangle, v);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <limits>
 
 #include "host/find/cpu/cone_walk.h"
 #include "host/tree/beam.h"
@@ -23,18 +24,19 @@ RAYGATE_INLINE void split_group(ConeWalk& walk, int group) {
 }
 
 /// The children that any of the rays, which are of these groups, may meet; entry[i] is where.
+template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const Bvh::Node& node, std::uint64_t rays,
                                  LaneMask groups, FloatLanes& entry) {
   const Cones& cones = walk.cones;
-  if (several(groups)) return meet_children(cones.whole, node, walk.cutoff, entry);
+  if (several(groups)) return meet_children<kCode>(cones.whole, node, walk.cutoff, entry);
   const int only = std::countr_zero(groups);
   if (several(rays) || (walk.split >> only & 1) == 0) {
     const Beam beam = one_of(cones.beams, only, cones.whole);
-    return meet_children(beam, node, cones.beams.cutoff[only], entry);
+    return meet_children<kCode>(beam, node, cones.beams.cutoff[only], entry);
   }
   const int lane = std::countr_zero(rays_of(rays, only));
   const Beams& beams = walk.ray_beams[only];
-  return meet_children(one_of(beams, lane, cones.whole), node, beams.cutoff[lane], entry);
+  return meet_children<kCode>(one_of(beams, lane, cones.whole), node, beams.cutoff[lane], entry);
 }
 
 /// Puts what the rays meet of a node onto the stack. Where a beam meets several children,
@@ -43,6 +45,7 @@ RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const Bvh::Node& node, st
 /// Cones have a walk of their own beside next_leaf (host/tree/walk.h), which the others share: with
 /// a visitor for it, `build/lab rays landscape.obj` gave 0.88 as many shadow rays a second, and
 /// 0.93 as many camera rays.
+template <Vectors kCode>
 RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
   constexpr int kFew = 1;  // children
@@ -51,7 +54,7 @@ RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t 
   const Beam& whole = cones.whole;
   const glm::vec3 origin(whole.origin[0], whole.origin[1], whole.origin[2]);
   FloatLanes entry;
-  LaneMask met = meet_any(walk, node, rays, groups, entry);
+  LaneMask met = meet_any<kCode>(walk, node, rays, groups, entry);
   LaneMask in[Bvh::kWidth];
   const bool ask = several(groups) && std::popcount(met) > kFew;
   std::uint64_t counts = 0;  // byte g: how many children group g meets
@@ -59,7 +62,7 @@ RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t 
     const int i = std::countr_zero(left);
     in[i] = groups;
     if (ask || (several(groups) && node.child[i].count != 0)) {
-      in[i] &= meet_beams(cones.beams, origin, whole.octant, node, i);
+      in[i] &= meet_beams<kCode>(cones.beams, origin, whole.octant, node, i);
     }
     counts += ones_of(in[i]);
   }
@@ -79,7 +82,7 @@ RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t 
     for (LaneMask left = divided & in[i]; left != 0; left &= left - 1) {
       const int g = std::countr_zero(left);
       const std::uint64_t missed =
-          0xFF & ~meet_beams(walk.ray_beams[g], origin, whole.octant, node, i);
+          0xFF & ~meet_beams<kCode>(walk.ray_beams[g], origin, whole.octant, node, i);
       next.rays &= ~(missed << (8 * g));
     }
     if (next.rays == 0) continue;

@@ -74,6 +74,7 @@ void set_out(const ConeSearch& search, ConeWalk& walk) {
 
 /// Tests a leaf's triangles that are there against the rays, a triangle and a group at a time. Sets
 /// the bits of the groups whose nearest hits change.
+template <Vectors kCode>
 RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& record,
                                             const Bvh::Child& leaf, LaneMask there,
                                             std::uint64_t rays, LaneMask& changed) {
@@ -82,21 +83,21 @@ RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& re
   for (; there != 0; there &= there - 1) {
     const int i = std::countr_zero(there);
     const auto slot = static_cast<std::int32_t>(leaf.first) + i;
-    LaneMask left = groups_near(walk, record, i, groups_of(rays));
+    LaneMask left = groups_near<kCode>(walk, record, i, groups_of(rays));
     for (; left != 0; left &= left - 1) {
       const int g = std::countr_zero(left);
       const LaneMask tested = rays_of(rays, g);
       GroupVerdict verdict;
-      test_group(walk, record, i, g, tested, verdict);
+      test_group<kCode>(walk, record, i, g, tested, verdict);
       counters.tests += static_cast<std::uint64_t>(std::popcount(tested));
       if (counting) count_work(walk.work[g], tested, verdict.open & ~verdict.hit);
       if (verdict.open == 0) continue;
       counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
       counters.edge_doubts +=
           static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
-      if (ignoring) verdict.open &= ~sign_mask(walk.ignored[g] == slot);
+      if (ignoring) verdict.open &= ~sign_mask<kCode>(walk.ignored[g] == slot);
       const LaneMask sure = verdict.open & verdict.hit;
-      const LaneMask nearer = sure & sign_mask(verdict.high < walk.low[g]);
+      const LaneMask nearer = sure & sign_mask<kCode>(verdict.high < walk.low[g]);
       if (nearer != 0) {
         IntLanes take;
         lanes_of(nearer, take);
@@ -105,7 +106,8 @@ RAYGATE_INLINE void ConeSearch::test_groups(ConeWalk& walk, const QuadRecord& re
         walk.slot[g] = take ? IntLanes{} + slot : walk.slot[g];
         changed |= 1u << g;
       }
-      LaneMask open = verdict.open & ~nearer & ~(sure & sign_mask(verdict.low > walk.high[g]));
+      LaneMask open =
+          verdict.open & ~nearer & ~(sure & sign_mask<kCode>(verdict.low > walk.high[g]));
       for (; open != 0; open &= open - 1) {
         const int lane = std::countr_zero(open);
         const Interval t = {float_of(verdict.low[lane]), float_of(verdict.high[lane])};
@@ -157,7 +159,7 @@ RAYGATE_INLINE void ConeSearch::test_rays(ConeWalk& walk, const QuadRecord& reco
 
 /// Walks the tree, near before far, and tests what is there.
 void walk_tree(ConeSearch& search, ConeWalk& walk) {
-  in_vectors([&](auto) RAYGATE_BODY {
+  in_vectors([&](auto code) RAYGATE_BODY {
     const Bvh& tree = search.bvh_;
     const bool ending = !search.search_.enough_before.empty();
     Cones& cones = walk.cones;
@@ -165,11 +167,12 @@ void walk_tree(ConeSearch& search, ConeWalk& walk) {
       const ConeWalk::Waiting item = walk.stack[--walk.depth];
       if (item.entry > walk.cutoff) continue;
       const std::uint64_t rays =
-          item.rays & walk.going & 0xFF * ones_of(sign_mask(cones.beams.cutoff >= item.entry));
+          item.rays & walk.going &
+          0xFF * ones_of(sign_mask<code()>(cones.beams.cutoff >= item.entry));
       if (rays == 0) continue;
       const LaneMask groups = groups_of(rays);
       if (item.child.count == 0) {
-        step_through(walk, tree, item.child.first, rays, groups);
+        step_through<code()>(walk, tree, item.child.first, rays, groups);
         continue;
       }
       QuadRecord record;
@@ -180,14 +183,14 @@ void walk_tree(ConeSearch& search, ConeWalk& walk) {
       if (is_sparse(rays, groups, item.child.count)) {
         search.test_rays(walk, record, item.child, there, rays, changed);
       } else {
-        search.test_groups(walk, record, item.child, there, rays, changed);
+        search.template test_groups<code()>(walk, record, item.child, there, rays, changed);
       }
       if (changed == 0) continue;
       for (; changed != 0; changed &= changed - 1) {
         const int g = std::countr_zero(changed);
         if (ending) {
-          const LaneMask ended =
-              cones.active[g] & ~sign_mask(walk.slot[g]) & sign_mask(walk.high[g] < walk.enough[g]);
+          const LaneMask ended = cones.active[g] & ~sign_mask<code()>(walk.slot[g]) &
+                                 sign_mask<code()>(walk.high[g] < walk.enough[g]);
           cones.active[g] &= ~ended;
           search.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
         }

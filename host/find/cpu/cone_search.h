@@ -34,6 +34,7 @@ class ConeSearch {
   friend void walk_tree(ConeSearch& search, ConeWalk& walk);
   friend void finish(ConeSearch& search, const ConeWalk& walk);
 
+  template <Vectors kCode>
   void test_groups(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf, LaneMask there,
                    std::uint64_t rays, LaneMask& changed);
   void test_rays(ConeWalk& walk, const QuadRecord& record, const Bvh::Child& leaf, LaneMask there,
