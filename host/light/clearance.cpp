@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kMostLeaves = 4096;  // that a look may take
 constexpr std::size_t kMostCrowd = 128;
 constexpr double kFarthest = 0x1p-4;      // to look, in parts of the largest coordinate,
-constexpr double kShareOfHeight = 0.5;    // and of the least height
+constexpr double kShareOfHeight = 0.125;  // and of the least height
 constexpr double kShareOfCrowd = 0x1p-4;  // of that: what is nearer belongs to the crowd
 
 using DoubleQuad = double __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));

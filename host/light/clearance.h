@@ -69,7 +69,7 @@ class Clearances {
 
   struct Clearance {
     /// c on the side where plane_side is 1, and on the other; 0 where nothing is known. Not above
-    /// half the least height.
+    /// an eighth of the least height.
     float length[2];
     const Crowd* crowd;  ///< or nullptr
   };

@@ -21,12 +21,12 @@
 // crowd (see Clearances). What could make candidate 0 no good is within 8 u of the exact X, and
 // within 5 u of the candidate on each axis: the box around it and X as double has it, and 2 u more
 // on every side. Weights are computed from the candidate, which along the plane is less than u
-// from X; and c is at most half the triangle's least height, so that they give c w within u. They
-// are computed in float, as triple products of differences, of components up to l, and a normal m
-// whose largest component is 1: each is off by less than 2^-17 l^2, and they add up to m . N, which
-// is at least |N|, the least height times a side longer than l. That makes c w less than 2^-18 l
-// wrong, so nothing is near where
-//   c w > 16 u + 2^-17 l + margin
+// from X; and c is at most an eighth of the triangle's least height, so that they give c w within
+// u. They are computed in float, as triple products of differences, of components up to l, and a
+// normal m whose largest component is 1: each is off by less than 2^-17 l^2, and they add up to m .
+// N, which is at least |N|, the least height times a side longer than l. That makes c w less than
+// 2^-20 l wrong, so nothing is near where
+//   c w > 16 u + 2^-19 l + margin
 // and nothing of the crowd is within 16 u of the candidate.
 
 namespace raygate {
@@ -218,7 +218,7 @@ RAYGATE_INLINE void depart_plainly(const PlainHits<kWidth>& hits, float margin,
   reach = 16.0f * u;
   const Single clearance = turn < 0.0f ? hits.clearance[0] : hits.clearance[1];
   clear = (point_step <= u) &
-          (clearance * least > (reach + 0x1p-17f * length + margin) * (turn * whole));
+          (clearance * least > (reach + 0x1p-19f * length + margin) * (turn * whole));
 }
 
 }  // namespace raygate
