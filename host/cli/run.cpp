@@ -82,7 +82,7 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Came
     }
     world_to_camera[3][row] = static_cast<float>(-glm::dot(axes[row], eye));
   }
-  const double height = 2.0 * std::tan(glm::radians(camera.vertical_fov_degrees()) / 2.0);
+  const double height = 2.0 * camera.half_height();
   return {.software = kSoftware,
           .scene = options.obj().filename().string(),
           .seed = options.seed,

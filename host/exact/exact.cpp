@@ -1,7 +1,9 @@
 #include "host/exact/exact.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 
@@ -139,9 +141,16 @@ bool is_scaled(const glm::vec3& direction) {
 }
 
 glm::vec3 scaled_direction(const glm::dvec3& direction) {
-  const int exponent = std::ilogb(largest(direction));
-  glm::vec3 scaled(std::scalbn(direction.x, -exponent), std::scalbn(direction.y, -exponent),
-                   std::scalbn(direction.z, -exponent));
+  // By a power of two, which rounds nothing: from the bits, or in steps where they have no room.
+  constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
+  const double size = largest(direction);
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(size) & kExponent;
+  const bool has_room = bits != 0 && bits < 2 * kOne;
+  const int exponent = has_room ? 0 : std::ilogb(size);
+  glm::vec3 scaled =
+      has_room ? glm::vec3(direction * std::bit_cast<double>(2 * kOne - bits))
+               : glm::vec3(std::scalbn(direction.x, -exponent), std::scalbn(direction.y, -exponent),
+                           std::scalbn(direction.z, -exponent));
   // Rounding to float may have carried 1.99999999 to 2.
   if (largest(scaled) >= 2.0f) scaled *= 0.5f;
   return scaled;

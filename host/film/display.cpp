@@ -1,7 +1,9 @@
 #include "host/film/display.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "host/elementary.h"
 #include "host/scene/srgb.h"
 
 namespace raygate {
@@ -17,7 +19,7 @@ float toned(float light, Tone tone) {
 Picture8 to_display(const Film& film, const DisplayOptions& options) {
   Picture8 picture{film.width, film.height, film.window, {}, {}};
   picture.pixels.reserve(film.color.size());
-  const auto gain = static_cast<float>(std::exp2(options.exposure));
+  const auto gain = static_cast<float>(binary_power(std::clamp(options.exposure, -126.0, 127.0)));
   for (const glm::vec4& color : film.color) {
     Rgb8& codes = picture.pixels.emplace_back();
     for (int k = 0; k < 3; ++k) {

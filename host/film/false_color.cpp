@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "host/elementary.h"
+
 namespace raygate {
 namespace {
 
@@ -52,8 +54,7 @@ Rgb8 label_color(std::uint32_t label) {
   const double light = 0.45 + 0.5 * std::fmod(label * kGolden * kGolden, 1.0);
   Rgb8 color;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double wave =
-        0.5 + 0.5 * std::cos(6.283185307179586 * (hue - static_cast<double>(k) / 3));
+    const double wave = 0.5 + 0.5 * sine_cosine(hue - static_cast<double>(k) / 3).cosine;
     color[k] = static_cast<std::uint8_t>(std::lround(255 * light * (0.25 + 0.75 * wave)));
   }
   return color;

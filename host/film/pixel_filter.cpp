@@ -5,18 +5,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/elementary.h"
+
 namespace raygate {
 namespace {
 
 constexpr double kRadius = 1.5;  // of Gauss and Blackman-Harris
 
-double gauss(double x) { return std::exp(-2.0 * x * x); }
+double gauss(double x) { return binary_power(-2.0 * std::numbers::log2e * x * x); }
 
 /// The minimum 4-term window (Harris 1978, "On the use of windows for harmonic analysis").
 double blackman_harris(double x) {
-  const double turn = std::numbers::pi * (x / kRadius + 1.0);
-  return 0.35875 - 0.48829 * std::cos(turn) + 0.14128 * std::cos(2.0 * turn) -
-         0.01168 * std::cos(3.0 * turn);
+  const double turns = 0.5 * (x / kRadius + 1.0);
+  return 0.35875 - 0.48829 * sine_cosine(turns).cosine + 0.14128 * sine_cosine(2.0 * turns).cosine -
+         0.01168 * sine_cosine(3.0 * turns).cosine;
 }
 
 /// The inverse of a filter's cumulative weight, by table.

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "host/elementary.h"
 #include "host/exact/exact.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+/// The tangent of half an angle in degrees.
+double half_tangent(double degrees) {
+  const SineCosine<double> half = sine_cosine(degrees / 720.0);
+  return half.sine / half.cosine;
+}
 
 bool is_finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -77,7 +81,7 @@ Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const gl
     throw InputError("camera: eye " + text(eye) + " is beyond the range of float");
   }
   camera.vertical_fov_degrees_ = vertical_fov_degrees;
-  camera.half_height_ = std::tan(vertical_fov_degrees * 0.5 * kRadiansPerDegree);
+  camera.half_height_ = half_tangent(vertical_fov_degrees);
   camera.half_width_ = camera.half_height_ * aspect;
   return camera;
 }
@@ -101,15 +105,15 @@ CameraSetting framing(const Scene& scene, double aspect, double fov) {
 
   // A tall scene (or the inside of a box) is seen nearly level, a flat one from higher up.
   const double flatness = 1.0 - std::min(1.0, half.y / std::max(half.x, half.z));
-  const double raised = (3.0 + 27.0 * flatness) * kRadiansPerDegree;
-  const glm::dvec3 towards_eye(0.0, std::sin(raised), std::cos(raised));
+  const SineCosine<double> raised = sine_cosine((3.0 + 27.0 * flatness) / 360.0);
+  const glm::dvec3 towards_eye(0.0, raised.sine, raised.cosine);
   const glm::dvec3 y_axis(0.0, 1.0, 0.0);
   const Camera at_centre =
       Camera::look_at(centre + towards_eye * largest(half), centre, y_axis, fov, aspect);
 
   // The least distance at which the eight corners are within the four sides of the view.
   constexpr double kFilled = 0.96;
-  const double half_height = std::tan(fov * 0.5 * kRadiansPerDegree);
+  const double half_height = half_tangent(fov);
   const double half_width = half_height * aspect;
   double distance = 0.0;
   for (int corner = 0; corner < 8; ++corner) {

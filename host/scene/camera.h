@@ -52,6 +52,9 @@ class Camera {
   [[nodiscard]] const glm::dvec3& forward() const { return forward_; }  ///< unit length
   [[nodiscard]] double vertical_fov_degrees() const { return vertical_fov_degrees_; }
 
+  /// Of the picture, at distance 1 along forward().
+  [[nodiscard]] double half_height() const { return half_height_; }
+
   /// The direction of the ray through a point of the picture: x from 0 (left edge) to 1 (right),
   /// y from 0 (upper edge) to 1 (lower), so that pixel (i, j) has its centre at
   /// ((i + 0.5) / width, (j + 0.5) / height). Scaled as scaled_direction says.

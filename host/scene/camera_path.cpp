@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
+
+#include "host/elementary.h"
 
 namespace raygate {
 namespace {
@@ -45,8 +46,7 @@ CameraSetting camera_on_path(const std::vector<CameraSetting>& path, double time
 }
 
 CameraSetting turned(const CameraSetting& camera, double turn) {
-  const double angle = 2.0 * std::numbers::pi * turn;
-  const double c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = sine_cosine(turn);
   const auto rotated = [&](const glm::dvec3& v) {
     return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x);
   };

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "host/elementary.h"
+
 namespace raygate {
 namespace {
 
@@ -20,12 +22,12 @@ std::array<double, 255> make_thresholds() {
 
 double srgb_to_linear(double code) {
   const double value = code / 255.0;
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+  return value <= 0.04045 ? value / 12.92 : power((value + 0.055) / 1.055, 2.4);
 }
 
 double srgb_curve(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);
-  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * power(x, 1.0 / 2.4) - 0.055;
 }
 
 std::uint8_t linear_to_srgb(float linear) {

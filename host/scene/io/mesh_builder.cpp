@@ -32,7 +32,10 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   const glm::dvec3 half = 0.5 * high - 0.5 * low;
   const double radius = std::max({half.x, half.y, half.z});
   if (radius == 0.0) return low;
-  const double step = std::exp2(std::ceil(std::log2(4.0 * radius)));
+  // The least power of two that is not below 4 radius.
+  int exponent = 0;
+  const double part = std::frexp(4.0 * radius, &exponent);
+  const double step = std::ldexp(1.0, part == 0.5 ? exponent - 1 : exponent);
   const glm::dvec3 centre = 0.5 * high + 0.5 * low;
   glm::dvec3 origin;
   for (int axis = 0; axis < 3; ++axis) {
