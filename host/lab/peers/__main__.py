@@ -25,11 +25,11 @@ def main() -> int:
         print(f"error: {', '.join(sorted(unknown))}: expected {', '.join(measure.SCENES)}", file=sys.stderr)
         return 2
     names = given.scenes or (["cornell", "cornell_spheres"] if given.quick else list(measure.SCENES))
-    found = [{**machine.describe(kept.ROOT), "quick": given.quick},
-             *measure.measure(names, given.quick, given.repeats or (2 if given.quick else 3),
-                              given.reference or (128 if given.quick else 512),
-                              given.render.resolve())]
-    kept.write(kept.KEPT / "peers.jsonl", found)
+    found = [{**machine.describe(kept.ROOT), "quick": given.quick}]
+    for rows in measure.measure(names, given.quick, given.repeats or (2 if given.quick else 3),
+                                given.reference or (128 if given.quick else 512), given.render.resolve()):
+        found += rows
+        kept.write(kept.KEPT / "peers.jsonl", found)  # what there is, should it be interrupted
     print(peers_report.tables(found))
     write(found, peers_report.build, "peers", given.publish)
     return 0

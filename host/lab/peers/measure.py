@@ -3,6 +3,7 @@
 import pathlib
 import statistics
 import sys
+from collections.abc import Iterator
 
 import numpy
 
@@ -114,12 +115,9 @@ class Measurement:
                 "mse": error, "time_mse": seconds * error, "rays": runs[0].get("rays")}
 
 
-def measure(names: list[str], quick: bool, repeats: int, samples: int, program: pathlib.Path) -> list[dict]:
-    """All rows."""
-    found = []
+def measure(names: list[str], quick: bool, repeats: int, samples: int, program: pathlib.Path) -> Iterator[list[dict]]:
+    """The rows of one scene after another."""
     for name in names:
         mine = Measurement(name, quick, program)
-        found.append(mine.references_row(samples))
-        for threads in {1: 0, processors(): 0}:
-            found += mine.rows(threads, repeats)
-    return found
+        yield [mine.references_row(samples), *(row for threads in sorted({1, processors()})
+                                               for row in mine.rows(threads, repeats))]
