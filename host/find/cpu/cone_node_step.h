@@ -39,6 +39,51 @@ RAYGATE_INLINE LaneMask meet_any(const ConeWalk& walk, const Bvh::Node& node, st
   return meet_children<kCode>(one_of(beams, lane, cones.whole), node, beams.cutoff[lane], entry);
 }
 
+/// Puts a child of the node whose children are above `bottom` onto the stack, in its place.
+RAYGATE_INLINE void push(ConeWalk& walk, const Bvh& tree, int bottom,
+                         const ConeWalk::Waiting& next) {
+  tree.prefetch(next.child);
+  int place = walk.depth++;
+  for (; place > bottom && walk.stack[place - 1].entry < next.entry; --place) {
+    walk.stack[place] = walk.stack[place - 1];
+  }
+  walk.stack[place] = next;
+}
+
+/// Rays of several groups, no more than that, go through a node one by one. Without this `make
+/// rays` has 0.7 as many light rays a second on sphereflake, 0.85 on landscape.
+constexpr int kFewRays = 8;
+
+/// step_through for a few rays.
+template <Vectors kCode>
+RAYGATE_INLINE void step_one_by_one(ConeWalk& walk, const Bvh& tree, const Bvh::Node& node,
+                                    std::uint64_t rays) {
+  FloatLanes entry = FloatLanes{} + std::numeric_limits<float>::infinity();
+  LaneMask met[kFewRays] = {}, any = 0;
+  std::uint64_t ray[kFewRays] = {};
+  int count = 0;
+  for (; rays != 0; rays &= rays - 1) {
+    const int number = std::countr_zero(rays), g = number / kLanes, lane = number % kLanes;
+    if ((walk.split >> g & 1) == 0) split_group(walk, g);
+    const Beams& beams = walk.ray_beams[g];
+    FloatLanes its_entry;
+    IntLanes meets;
+    met[count] = meet_children<kCode>(one_of(beams, lane, walk.cones.whole), node,
+                                      beams.cutoff[lane], its_entry);
+    lanes_of(met[count], meets);
+    entry = (meets & (its_entry < entry)) ? its_entry : entry;
+    any |= met[count];
+    ray[count++] = rays & -rays;
+  }
+  const int bottom = walk.depth;
+  for (; any != 0; any &= any - 1) {
+    const int i = std::countr_zero(any);
+    std::uint64_t its_rays = 0;
+    for (int r = 0; r < kFewRays; ++r) its_rays |= (met[r] >> i & 1) != 0 ? ray[r] : 0;
+    push(walk, tree, bottom, {node.child[i], entry[i], its_rays});
+  }
+}
+
 /// Puts what the rays meet of a node onto the stack. Where a beam meets several children,
 /// those within it are asked one by one: first the groups, then their rays.
 ///
@@ -50,6 +95,10 @@ RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t 
                                  std::uint64_t rays, LaneMask groups) {
   constexpr int kFew = 1;  // children
   const Bvh::Node& node = tree.nodes()[index];
+  if (several(groups) && std::popcount(rays) <= kFewRays) {
+    step_one_by_one<kCode>(walk, tree, node, rays);
+    return;
+  }
   const Cones& cones = walk.cones;
   const Beam& whole = cones.whole;
   const glm::vec3 origin(whole.origin[0], whole.origin[1], whole.origin[2]);
@@ -86,12 +135,7 @@ RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t 
       next.rays &= ~(missed << (8 * g));
     }
     if (next.rays == 0) continue;
-    tree.prefetch(next.child);
-    int place = walk.depth++;
-    for (; place > bottom && walk.stack[place - 1].entry < next.entry; --place) {
-      walk.stack[place] = walk.stack[place - 1];
-    }
-    walk.stack[place] = next;
+    push(walk, tree, bottom, next);
   }
 }
 

@@ -143,7 +143,7 @@ void RaySearch::visit_all() {
 /// All rays walk the tree, near before far, and test what is there: kAtOnce of them take turns, so
 /// that none waits for memory, and what one guesses wrongly costs the others little.
 void RaySearch::walk_all() {
-  constexpr int kAtOnce = 16;
+  constexpr int kAtOnce = 32;
   const auto walks = std::make_unique_for_overwrite<RayWalk[]>(kAtOnce);
   in_vectors([&](auto code) RAYGATE_BODY {
     QuadSides sides[kAtOnce];
