@@ -288,6 +288,14 @@ def record(proofs: list[Proof], results: list[dict | None]) -> None:
     PAGE.write_text(TIMES.sub(lambda _: table.strip(), page))
 
 
+def is_kept(proof: Proof) -> bool:
+    """Whether an earlier run has left its result, of the RTL and the claims as they are."""
+    try:
+        return proof.work()[1]
+    except store.NotKept:
+        return False
+
+
 def main() -> int:
     """Runs the proofs asked for; 1 where one fails, 2 for what the user can mend."""
     parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
@@ -297,11 +305,16 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     parser.add_argument("--record", action="store_true",
                         help="write into the page of proofs what they took")
+    parser.add_argument("--kept", action="store_true",
+                        help="runs nothing: those alone that an earlier run has left")
     given = parser.parse_args()
+    store.only_kept = given.kept
     try:
         chosen = [proof for proof in all_proofs()
                   if (proof.quick or not given.quick) and (given.long or not proof.long)
                   and (not given.names or proof.name.startswith(tuple(given.names)))]
+        if given.kept:
+            chosen = [proof for proof in chosen if is_kept(proof)]
         if not chosen:
             raise ValueError(f"no proof's name begins with {' or '.join(given.names)}")
         results, failures = runner.run_all(

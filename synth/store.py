@@ -12,6 +12,13 @@ from synth import tools
 OUT = tools.ROOT / "build" / "synth"
 
 
+class NotKept(Exception):
+    """A result is wanted that no earlier run has left, and only such are."""
+
+
+only_kept = False
+
+
 @functools.cache
 def _digest(file: pathlib.Path) -> str:
     """Of the contents; RTL without its comments and blanks, which change no netlist."""
@@ -43,6 +50,8 @@ def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple
     there = kept(folder, wanted)
     if there is not None:
         return there, True
+    if only_kept:
+        raise NotKept(folder.name)
     file = folder / "result.json"
     file.unlink(missing_ok=True)  # a run that fails must not leave an older answer behind
     folder.mkdir(parents=True, exist_ok=True)

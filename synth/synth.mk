@@ -13,9 +13,9 @@ synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=grad
 	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
 	  --jobs '$(SYNTH_JOBS)'
 
-prove: ## prove adders, multiplier, float cores, units, netlists: make prove [PROOFS='adder. float.add'] [LONG=1] [RECORD=1]
+prove: ## prove adders, multiplier, float cores, units, netlists: make prove [PROOFS='adder. float.add'] [LONG=1] [KEPT=1] [RECORD=1]
 	@$(SETUP) prove
-	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(RECORD),--record) $(PROOFS)
+	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(RECORD),--record) $(if $(KEPT),--kept) $(PROOFS)
 
 refute: ## faults in the float cores, refuted: make refute [CORES='add divide'] [FAULTS=80]
 	@$(SETUP) prove
