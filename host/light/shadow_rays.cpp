@@ -111,22 +111,29 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
 void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   segments_.swap(next_);
   next_.clear();
+  departures_.clear();
   trace(false, kWholeWay);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const NearestHit& hit = hits_[i];
     if (hit.slot == NearestHit::kNone) continue;
-    Segment segment = segments_[i];
-    ShadowRay& ray = rays[segment.index];
+    ShadowRay& ray = rays[segments_[i].index];
     ray.light *= any_clear_ ? transmittance(i) : glm::vec3(0.0f);
     if (ray.light == glm::vec3(0.0f)) continue;
-    const auto beyond = departure_.find(wave_[i], hit.slot, Departure::kAfter);
-    if (!beyond) {
-      ray.light = glm::vec3(0.0f);
+    departures_.push_back({&wave_[i], hit.slot, Departure::kAfter});
+    next_.push_back(segments_[i]);
+  }
+  origins_.resize(departures_.size());
+  departure_.find(departures_, origins_);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < next_.size(); ++i) {
+    if (!origins_[i]) {
+      rays[next_[i].index].light = glm::vec3(0.0f);
       continue;
     }
-    segment.from = *beyond;
-    next_.push_back(segment);
+    next_[kept] = next_[i];
+    next_[kept++].from = *origins_[i];
   }
+  next_.resize(kept);
 }
 
 /// Of all segments. Searches may end at hits before the share `enough` of the way.

@@ -184,11 +184,14 @@ TEST(Departure, ManyAtOnceAreTheSame) {
         {&ray, *slot, questions.size() % 3 == 0 ? Departure::kAfter : Departure::kBefore});
   }
   ASSERT_GT(questions.size(), 1000u);
-  std::vector<std::optional<glm::vec3>> origins(questions.size());
-  departure.find(questions, origins);
-  for (std::size_t i = 0; i < questions.size(); ++i) {
-    const DepartureQuestion& q = questions[i];
-    ASSERT_EQ(origins[i], departure.find(*q.ray, q.slot, q.way)) << i;
+  for (const Vectors vectors : machine_vectors()) {
+    const UsingVectors using_vectors(vectors);
+    std::vector<std::optional<glm::vec3>> origins(questions.size());
+    departure.find(questions, origins);
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const DepartureQuestion& q = questions[i];
+      ASSERT_EQ(origins[i], departure.find(*q.ray, q.slot, q.way)) << name_of(vectors) << " " << i;
+    }
   }
 }
 
