@@ -148,7 +148,7 @@ class ArrayModel : public BurstModel {
  private:
   static constexpr unsigned kAllLanes = (1u << kHardwareLanes) - 1;
   static constexpr unsigned kMostBatches = 2;
-  static constexpr unsigned kPatience = 100'000;
+  static constexpr unsigned kPatience = 10'000;
 
   /// A batch on its way.
   struct Work {

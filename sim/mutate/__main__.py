@@ -1,7 +1,7 @@
 """`python3 -m sim.mutate BUILD`: how many single faults of the hardware the vectors of `make test` catch.
 
-For each core: a netlist with faults (netlist.py) runs the vectors with one fault after the other. A fault
-that survives is held against the sound netlist by ABC's equivalence check: one that changes no output
+For each core and the pipeline around them: a netlist with faults (netlist.py) runs the vectors with one
+fault after the other. A fault that survives is held against the sound netlist by ABC's equivalence check: one that changes no output
 for any input is no fault. What is left is listed, with its lines in hw/. `--one-in N`: only every N-th
 vector, which `make test` can spare the time for; the check is then that no more survive than
 `--at-most` percent."""
@@ -41,7 +41,9 @@ def run(command: list[object], **options: object) -> str:
 def equivalent(netlist: pathlib.Path, fault: str) -> bool:
     """Whether the module in NETLIST.il gives the same outputs with this fault as without, by ABC within
     20 s. False where that is not known."""
-    gates = "techmap; opt -fast; aigmap; opt_clean; write_aiger"
+    # Registers are cut open: their inputs must be the same functions too.
+    gates = ("memory_map; async2sync; dffunmap; expose -evert-dff; techmap; opt -fast; aigmap; opt_clean; "
+             "write_aiger")
     with tempfile.TemporaryDirectory() as folder:
         mutate = re.sub(r" -ctrl mutant \d+ \d+", "", fault)
         run(["yosys", "-q", "-p", f"read_rtlil {netlist}.il; {gates} {folder}/sound.aig; design -reset; "

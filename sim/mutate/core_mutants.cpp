@@ -22,6 +22,7 @@
 #include "Vfp_divider_mutants.h"
 #include "Vfp_multiplier_mutants.h"
 #include "sim/fp/vectors.h"
+#include "sim/mutate/array_mutants.h"
 #include "sim/mutate/faults.h"
 #include "sim/test/arith/cases.h"
 #include "sim/test/fp/oracle.h"
@@ -160,6 +161,7 @@ Numbers survivors(const std::string& core, const Numbers& faults, std::uint64_t 
   if (core == "adder_ripple") return adder_survivors<Vadder_ripple_mutants>(faults, one_in);
   if (core == "adder_uniform") return adder_survivors<Vadder_uniform_mutants>(faults, one_in);
   if (core == "adder_graded") return adder_survivors<Vadder_graded_mutants>(faults, one_in);
+  if (core == "hit_test_array") return array_survivors(faults, one_in);
   throw std::invalid_argument("no core " + core);
 }
 
