@@ -25,6 +25,10 @@ SHOWN_BY_VECTORS = {"compare": """(assert (or
   (and signaling_i (not (= less_o (fp.lt (number a_i) (number b_i)))))
   (not (= flags_o (compare-flags a_i b_i signaling_i)))))
 """}
+# Where the solver looks first: with b known there is no product or quotient of two unknowns.
+LOOK_FIRST = dict.fromkeys(("multiply", "divide"), [
+    f"(assert (= b_i #x{word}))\n"
+    for word in ("3BFF", "D555", "2AAA", "7801", "0400", "B6DB", "0333")])
 CHECK_VECTORS = tools.ROOT / "build" / "sim" / "check_vectors"
 
 
@@ -77,7 +81,7 @@ class Faulty:
         folder = self.folder / f"{len(left)}_left"
 
         def work() -> dict:
-            for wanted in (SHOWN_BY_VECTORS.get(self.core, ""), ""):
+            for wanted in (*LOOK_FIRST.get(self.core, ()), SHOWN_BY_VECTORS.get(self.core, ""), ""):
                 answer = float_proofs.solve(folder / "query.smt2", text + wanted, self.wires, limit)
                 if answer["answer"] == "sat":
                     break
