@@ -166,16 +166,14 @@ void Crowd::add(std::uint32_t slot, const Corners& triangle) {
 LaneMask Crowd::near_of_eight(std::size_t first, const glm::vec3& point, float reach) const {
   const Boxes& boxes = boxes_[first / kLanes];
   const glm::vec3 from = point - reach, to = point + reach;
-  return in_vectors([&](auto) RAYGATE_BODY {
-    IntLanes touches = IntLanes{} - 1;
-    for (int k = 0; k < 3; ++k) {
-      FloatLanes low, high;
-      load_lanes(boxes.low[k], low);
-      load_lanes(boxes.high[k], high);
-      touches &= (low <= to[k]) & (high >= from[k]);
-    }
-    return sign_mask(touches);
-  });
+  IntLanes touches = IntLanes{} - 1;  // too little work for in_vectors
+  for (int k = 0; k < 3; ++k) {
+    FloatLanes low, high;
+    load_lanes(boxes.low[k], low);
+    load_lanes(boxes.high[k], high);
+    touches &= (low <= to[k]) & (high >= from[k]);
+  }
+  return sign_mask(touches);
 }
 
 // A coordinate along a unit vector, of a difference of two points, is off by less than 2^-49 times
