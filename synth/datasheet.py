@@ -24,7 +24,7 @@ from synth import catalogue, cores, fpga, measure, store, tables, tools, wavefor
 
 README = cores.HW / "README.md"
 DIAGRAMS = cores.HW / "diagrams"
-MARK = re.compile(r"<!-- (\w+) ?(.*?) -->\n(.*?)<!-- end -->", re.S)
+MARK = re.compile(r"<!-- (\w+)((?: [^\n]*?)?) -->\n(.*?)<!-- end -->", re.S)
 
 
 def source(module: str) -> pathlib.Path:
@@ -119,7 +119,7 @@ MEASURED = {"figures": figures, "fpga": fpga.table}
 def filled(text: str, measured: bool = True) -> str:
     """The text with what its marks stand for; raises ValueError for what isn't there."""
     def fill(mark: re.Match) -> str:
-        kind, argument, old = mark.groups()
+        kind, argument, old = (part.strip(" ") for part in mark.groups())
         if kind in MEASURED:
             new = measured and MEASURED[kind]() or old
         elif kind in KINDS:
