@@ -103,7 +103,7 @@ enum Count {
 };
 
 /// The array `Top` (a class that Verilator made), with so many lanes. Hardware that is broken is
-/// told by std::runtime_error: nothing goes in or comes out for kPatience clocks, or a result that
+/// told by std::runtime_error: nothing goes in and nothing ends for kPatience clocks, or a result that
 /// nobody waits for.
 template <class Top, int kHardwareLanes, class Numbers = Binary32Numbers>
 class ArrayModel : public BurstModel {
@@ -187,7 +187,7 @@ class ArrayModel : public BurstModel {
     const unsigned taken = valid & model_->ready_o;
     quiet_ = taken != 0 ? 0 : quiet_ + 1;
     if (quiet_ > kPatience)
-      broken("nothing in or out for " + std::to_string(kPatience) + " clocks");
+      broken("nothing in and nothing ended for " + std::to_string(kPatience) + " clocks");
     model_.clock();
     offered_ = valid & ~taken;
     for (unsigned left = taken; left != 0; left &= left - 1) next_test(std::countr_zero(left));
@@ -249,8 +249,9 @@ class ArrayModel : public BurstModel {
     return nullptr;
   }
 
+  /// What ends nothing (a report, or no news at all) is no sign of life: broken hardware may say it
+  /// for ever.
   void take_result(int n) {
-    quiet_ = 0;
     const unsigned kind = model_->report_o >> (2 * n) & 3;
     const bool closed = model_->closed_o >> n & 1;
     if (kind != 0 || closed) {
@@ -270,12 +271,14 @@ class ArrayModel : public BurstModel {
           hit.t_error = static_cast<std::uint32_t>(model_->t_error_o >> (4 * n) & 15);
         }
         ++share->closed;
+        quiet_ = 0;
       }
     }
     if (model_->point_valid_o >> n & 1) {
       LaneShare* const share = awaited(n, &LaneShare::all_pointed);
       if (share == nullptr) broken("a point for no hit, lane " + std::to_string(n));
       numbers_.read(model_->point_o, n, &share->results.hits[share->pointed++].point.x, 3);
+      quiet_ = 0;
     }
   }
 
