@@ -103,8 +103,8 @@ enum Count {
 };
 
 /// The array `Top` (a class that Verilator made), with so many lanes. Hardware that is broken is
-/// told by std::runtime_error: nothing goes in and nothing ends for kPatience clocks, or a result that
-/// nobody waits for.
+/// told by std::runtime_error: nothing goes in and nothing ends for kPatience clocks, or a result
+/// that nobody waits for.
 template <class Top, int kHardwareLanes, class Numbers = Binary32Numbers>
 class ArrayModel : public BurstModel {
  public:

@@ -45,7 +45,10 @@ std::string read_command_line(CLI::App& app, const std::vector<std::string>& wor
   }
   for (const std::string& extra : app.remaining()) {
     if (extra.size() > 1 && extra[0] == '-') {
-      throw InputError(extra + ": unknown option" + meant_option(app, extra) + " (see --help)");
+      throw InputError(std::string(extra)
+                           .append(": unknown option")
+                           .append(meant_option(app, extra))
+                           .append(" (see --help)"));
     }
     throw InputError(extra + ": " + too_many);
   }

@@ -34,10 +34,7 @@ using LongQuad = std::int64_t __attribute__((vector_size(8 * kQuad), aligned(8 *
 class Subject {
  public:
   Subject(const Corners& corners, double slack)
-      : corners_(corners),
-        from_(corners[0]),
-        normal_(unit(triangle_normal(corners))),
-        slack_(slack) {
+      : from_(corners[0]), normal_(unit(triangle_normal(corners))), slack_(slack) {
     for (int k = 0; k < 3; ++k) vertex_[k] = glm::dvec3(corners[k]) - from_;
     double longest = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -58,7 +55,7 @@ class Subject {
     for (std::uint32_t v = 0; v < 3; ++v) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         FloatQuad coordinate;
-        load_quad(leaf + (3 * v + k) * count, coordinate);
+        load_quad(leaf + std::size_t{3 * v + k} * count, coordinate);
         y[v][k] = __builtin_convertvector(coordinate, DoubleQuad) - from_[static_cast<int>(k)];
       }
     }
@@ -124,7 +121,6 @@ class Subject {
     return sum;
   }
 
-  const Corners& corners_;
   glm::dvec3 from_;  // everything is relative to this
   glm::dvec3 vertex_[3], normal_, inward_[3];
   double height_, slack_;

@@ -68,7 +68,9 @@ struct Surface {
                              absolute(way.y) * surface.own_size.y +
                              absolute(way.z) * surface.own_size.z;
       value = narrow(product);
-      is_sure = (narrow(absolute(product) - 0x1p-49 * size) > 0.0f) & (absolute(value) > 0.0f);
+      const MaskOf<T> is_far = narrow(absolute(product) - 0x1p-49 * size) > 0.0f;
+      const MaskOf<T> is_some = absolute(value) > 0.0f;
+      is_sure = is_far & is_some;
     }
   };
   Triple<WideOf<T>> own_normal;  ///< as the vertices say, of any length,

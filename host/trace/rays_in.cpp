@@ -207,12 +207,10 @@ class RaysIn::NpySource : public RaysIn::Source {
   }
 
   [[nodiscard]] double element(std::string_view bytes, int i) const {
-    const int size = is_double_ ? 8 : 4;
+    const std::size_t size = is_double_ ? 8 : 4, start = static_cast<std::size_t>(i) * size;
     std::uint64_t word = 0;
-    for (int b = 0; b < size; ++b) {
-      word |=
-          std::uint64_t{static_cast<unsigned char>(bytes[static_cast<std::size_t>(i * size + b)])}
-          << (8 * b);
+    for (std::size_t b = 0; b < size; ++b) {
+      word |= std::uint64_t{static_cast<unsigned char>(bytes[start + b])} << (8 * b);
     }
     if (is_double_) return std::bit_cast<double>(word);
     return double{std::bit_cast<float>(static_cast<std::uint32_t>(word))};
@@ -222,7 +220,7 @@ class RaysIn::NpySource : public RaysIn::Source {
   std::string_view value_of(std::string_view header, std::string_view key) const {
     std::string quoted = "'";
     quoted += key;
-    quoted += "'";
+    quoted += '\'';
     std::size_t at = header.find(quoted);
     if (at == std::string_view::npos) damaged();
     at = header.find(':', at + quoted.size());

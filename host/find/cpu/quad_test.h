@@ -133,7 +133,7 @@ struct QuadSides {
                                  corners + stride * ray.axes[2]};
   FloatQuad x[3], y[3], (&z)[3] = sides.z;
   FloatQuad sum = {}, farthest = {};
-  for (int v = 0; v < 3; ++v) {
+  for (std::ptrdiff_t v = 0; v < 3; ++v) {
     load_quad(along[0] + 3 * v * stride, x[v]);
     load_quad(along[1] + 3 * v * stride, y[v]);
     load_quad(along[2] + 3 * v * stride, z[v]);
