@@ -43,12 +43,10 @@ std::string read_command_line(CLI::App& app, const std::vector<std::string>& wor
       if (text.empty()) throw InputError(option->get_name() + ": expected a value, got ''");
     }
   }
-  for (const std::string& extra : app.remaining()) {
+  if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
+    const std::string& extra = extras[0];
     if (extra.size() > 1 && extra[0] == '-') {
-      throw InputError(std::string(extra)
-                           .append(": unknown option")
-                           .append(meant_option(app, extra))
-                           .append(" (see --help)"));
+      throw InputError(extra + ": unknown option" + meant_option(app, extra) + " (see --help)");
     }
     throw InputError(extra + ": " + too_many);
   }
