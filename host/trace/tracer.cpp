@@ -77,9 +77,6 @@ TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const Answer
           desk.found, [](const RayHit& found) { return found.hit.slot != NearestHit::kNone; }));
     }
   }
-  for (const Desk& desk : desks) {
-    if (desk.finder) counts.find += desk.finder->counters();
-  }
   return counts;
 }
 

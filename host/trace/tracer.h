@@ -23,7 +23,6 @@ enum class Hits {
 struct TraceCounts {
   std::uint64_t rays = 0, rows = 0, hits = 0;
   std::uint64_t rounded = 0;  ///< rays that binary32 does not hold as they were given
-  FindCounters find;
 };
 
 /// Replaces a block by the next rays, at most so many; false where there are none.

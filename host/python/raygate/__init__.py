@@ -67,6 +67,10 @@ class Scene:
         in host/README.md. engine: "cpu", or "model", the hit-test unit's reference model."""
         if columns is None:
             columns = ["ray", "hit"] if hits == "any" else _COLUMNS
+        if hits == "any" and not set(columns) <= {"ray", "hit", "doubts"}:
+            raise InputError("columns: expected ray, hit or doubts with hits='any'")
+        if hits == "all" and (engine != "cpu" or {"unit-point", "unit-error"} & set(columns)):
+            raise InputError("hits='all': expected engine 'cpu' and no column of the unit's")
         rows, fields = self._scene.trace(
             _vectors(origins), _vectors(directions), None if limits is None else _numbers(limits),
             hits, list(columns), engine, threads)

@@ -63,6 +63,11 @@ class Trace(unittest.TestCase):
         with self.assertRaisesRegex(raygate.InputError, "hits: found 'some'"):
             self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), hits="some")
 
+        for wrong in ({"hits": "any", "columns": ["t"]}, {"hits": "all", "engine": "model"},
+                      {"hits": "all", "columns": ["unit-point"]}):
+            with self.assertRaises(raygate.InputError):
+                self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), **wrong)
+
     def test_no_rays(self):
         self.assertEqual(len(self.scene.trace(np.zeros((0, 3)), np.zeros((0, 3)))), 0)
 
