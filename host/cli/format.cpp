@@ -21,6 +21,10 @@ std::string format_count(std::uint64_t count) {
   return text;
 }
 
+std::string format_count(std::uint64_t count, const std::string& noun) {
+  return format_count(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string format_duration(double seconds) {
   if (!(seconds >= 0.0) || seconds > 1e9) return "?";
   if (seconds < 59.95) {

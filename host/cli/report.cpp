@@ -13,10 +13,6 @@ namespace {
 
 double ratio(double a, double b) { return b > 0.0 ? a / b : 0.0; }
 
-std::string plural(std::uint64_t count, const std::string& noun) {
-  return format_count(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 /// "rays     " and the like: the width of all names.
 std::string row(std::string name, const std::string& value) {
   name.resize(9, ' ');
@@ -32,8 +28,8 @@ std::string rate(std::uint64_t count, double seconds, const char* of_what) {
 std::string headline(const Report& report) {
   const Options& options = report.options;
   std::string line = options.obj().filename().string() + ": " +
-                     plural(report.triangles, "triangle") + ", " + std::to_string(options.width) +
-                     "x" + std::to_string(options.height);
+                     format_count(report.triangles, "triangle") + ", " +
+                     std::to_string(options.width) + "x" + std::to_string(options.height);
   if (options.window.width() != options.width || options.window.height() != options.height) {
     line += " cropped to " + std::to_string(options.window.width()) + "x" +
             std::to_string(options.window.height());
@@ -45,7 +41,7 @@ std::string headline(const Report& report) {
     if (options.lanes > 1) line += ", " + std::to_string(options.lanes) + " lanes";
     line += ')';
   }
-  return line + ", " + plural(options.threads, "thread") + "\n";
+  return line + ", " + format_count(options.threads, "thread") + "\n";
 }
 
 /// "hit tests 80 %, boxes 15 %, ...": of the time of all threads.
@@ -128,8 +124,9 @@ std::string skipped_line(const Report& report) {
   const SkipCounters& counts = report.render.skipped;
   const std::uint64_t rays =
       counts.lights_behind + counts.weightless + counts.dim + counts.empty_tile_rays;
-  return row("skipped", plural(counts.culled_tests, "test") + ", " + plural(rays, "ray") +
-                            ": about " + format_duration(seconds) + " (see --verbose)");
+  return row("skipped", format_count(counts.culled_tests, "test") + ", " +
+                            format_count(rays, "ray") + ": about " + format_duration(seconds) +
+                            " (see --verbose)");
 }
 
 std::string skipped_table(const Report& report) {
@@ -159,7 +156,8 @@ std::string details(const Report& report) {
   text += row("points",
               format_count(render.point_doubts) + " computed by the host, as --point-error says");
   if (hit.clocks > 0) {
-    text += row("unit", plural(hit.unit_tests, "test") + ", " + plural(hit.quotients, "division"));
+    text += row("unit", format_count(hit.unit_tests, "test") + ", " +
+                            format_count(hit.quotients, "division"));
     if (report.options.unit == "pipeline") text += row("lanes", lane_clocks(report));
   }
   text += row("times", "load " + format_duration(report.load_seconds) + ", tree " +

@@ -1,6 +1,5 @@
 // The program `trace`: what rays hit, exactly.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/scene_file.h"
 #include "host/trace/answers.h"
+#include "host/trace/question.h"
 #include "host/trace/rays_in.h"
 #include "host/trace/tracer.h"
 #include "host/tree/bvh.h"
@@ -75,37 +75,6 @@ struct TraceOptions {
   }
 };
 
-std::vector<Answer> parse_columns(const std::string& text, Hits hits) {
-  using enum Answer;
-  if (text.empty()) {
-    if (hits == Hits::kAny) return {kRay, kHit};
-    return {kRay, kHit, kTriangle, kObject, kT, kPoint, kUv, kNormal, kDoubts};
-  }
-  const std::vector<std::string> known(std::begin(kAnswerNames), std::end(kAnswerNames));
-  std::vector<Answer> columns;
-  for (const std::string& name : split_at_commas(text)) {
-    const auto at = std::ranges::find(known, name);
-    if (at == known.end()) {
-      std::string list;
-      for (const std::string& word : known) list += (list.empty() ? "" : ", ") + word;
-      fail_value("--columns", text, "some of " + list, did_you_mean(name, known));
-    }
-    const auto answer = static_cast<Answer>(at - known.begin());
-    if (std::ranges::find(columns, answer) != columns.end()) {
-      fail_value("--columns", text, "each name once");
-    }
-    // Which hit is found first is the engine's affair; that there is one is not.
-    if (hits == Hits::kAny && answer != kRay && answer != kHit && answer != kDoubts) {
-      fail_value("--columns", text, "ray, hit or doubts with --hits any");
-    }
-    if (hits == Hits::kAll && (answer == kUnitPoint || answer == kUnitError)) {
-      fail_value("--columns", text, "none of the unit's with --hits all");
-    }
-    columns.push_back(answer);
-  }
-  return columns;
-}
-
 TraceOptions parse(const std::vector<std::string>& words) {
   TraceOptions options;
   std::string scene, rays, output, hits, columns;
@@ -134,11 +103,9 @@ TraceOptions parse(const std::vector<std::string>& words) {
     options.hits = choose<Hits>(
         "--hits", hits, {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
   }
-  options.columns = parse_columns(columns, options.hits);
   options.engine = parse_engine_options(engine, {.engine = Engine::kCpu});
-  if (options.hits == Hits::kAll && options.engine.engine != Engine::kCpu) {
-    throw InputError("--engine: expected cpu with --hits all, as units keep nearest hits alone");
-  }
+  const auto names = columns.empty() ? std::vector<std::string>() : split_at_commas(columns);
+  options.columns = columns_of(names, options.hits, options.engine.engine == Engine::kCpu, "--");
   return options;
 }
 
@@ -173,15 +140,17 @@ class Table {
 };
 
 std::string summary(const TraceOptions& options, const TraceCounts& counts, double seconds) {
-  std::string text = format_count(counts.rays) + " rays, " + format_count(counts.hits) + " hits, " +
-                     format_duration(seconds);
+  std::string text = format_count(counts.rays, "ray") + ", " + format_count(counts.hits, "hit") +
+                     ", " + format_duration(seconds);
   if (seconds > 0.0) {
     text += ", " +
             format_count(static_cast<std::uint64_t>(static_cast<double>(counts.rays) / seconds)) +
             " rays/s";
   }
   text += ", engine " + to_string(options.engine.engine) + "\n";
-  if (counts.rounded > 0) text += format_count(counts.rounded) + " rays were rounded to binary32\n";
+  if (counts.rounded > 0) {
+    text += format_count(counts.rounded, "ray") + " rounded to binary32\n";
+  }
   return text;
 }
 

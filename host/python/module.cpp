@@ -30,6 +30,7 @@
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/scene_file.h"
 #include "host/trace/answers.h"
+#include "host/trace/question.h"
 #include "host/trace/ray_block.h"
 #include "host/trace/tracer.h"
 #include "host/tree/bvh.h"
@@ -133,7 +134,8 @@ class PythonScene {
     const Elements from("origins", origins), way("directions", directions);
     std::optional<Elements> limit;
     if (limits) limit.emplace("limits", *limits);
-    const Answers answers(scene_, *bvh_, answers_of(columns), AnswerFormat::kNpy);
+    const Answers answers(scene_, *bvh_, columns_of(columns, asked, engine == "cpu", ""),
+                          AnswerFormat::kNpy);
     const auto read = [&, next = std::size_t{0}](std::size_t most, RayBlock& block) mutable {
       block.clear(next);
       for (; block.rays.size() < most && next < count; ++next) {
@@ -214,18 +216,6 @@ class PythonScene {
   }
 
  private:
-  static std::vector<Answer> answers_of(const std::vector<std::string>& columns) {
-    std::vector<Answer> answers;
-    for (const std::string& column : columns) {
-      const auto* const at = std::ranges::find(kAnswerNames, column);
-      if (at == std::end(kAnswerNames)) {
-        throw InputError("columns: found '" + column + "', which is none of them");
-      }
-      answers.push_back(static_cast<Answer>(at - std::begin(kAnswerNames)));
-    }
-    return answers;
-  }
-
   [[nodiscard]] FinderFactory finders(const std::string& engine) const {
     if (choose<bool>("engine", engine, {{"cpu", false}, {"model", true}})) {
       return [this, caches = std::make_shared<RecordCaches>(*bvh_)] {

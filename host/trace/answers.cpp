@@ -1,5 +1,6 @@
 #include "host/trace/answers.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -70,7 +71,8 @@ class NpyRow {
   std::string& bytes_;
 };
 
-/// u and v: the shares of the second and the third corner.
+/// u and v: the shares of the second and the third corner. No corner's share is negative, whatever
+/// rounding does, nor -0.
 glm::dvec2 shares(const Ray& ray, const Corners& corners) {
   const glm::dvec3 direction(ray.direction);
   std::array<double, 3> weights{};
@@ -79,7 +81,11 @@ glm::dvec2 shares(const Ray& ray, const Corners& corners) {
         glm::dot(direction, edge_normal(ray.origin, corners[(k + 1) % 3], corners[(k + 2) % 3]));
   }
   const double sum = weights[0] + weights[1] + weights[2];
-  return {weights[1] / sum, weights[2] / sum};
+  const auto within = [](double share, double most) {
+    return std::max(0.0, std::min(share, most));
+  };
+  const double u = within(weights[1] / sum, 1.0);
+  return {u, within(weights[2] / sum, 1.0 - u)};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ enum class Answer {
   kMaterial,   ///< number of its material, from 0
   kT,          ///< P = O + t D
   kPoint,      ///< x, y, z: P in the file's coordinates
-  kUv,         ///< u, v: P = (1 - u - v) A + u B + v C
+  kUv,         ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
   kNormal,     ///< nx, ny, nz: (B - A) x (C - A) by its length; not turned towards the ray
   kDoubts,     ///< tests of this ray that binary32 left open: the engine's, and exact arithmetic
                ///< settled them

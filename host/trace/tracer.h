@@ -7,17 +7,11 @@
 
 #include "host/find/finder.h"
 #include "host/trace/answers.h"
+#include "host/trace/question.h"
 #include "host/trace/ray_block.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
-
-/// Which hits of a ray are asked for.
-enum class Hits {
-  kNearest,  ///< one row a ray
-  kAny,      ///< one row a ray: whether there is a hit; the search ends at the first one found
-  kAll,  ///< a row for each hit, near before far, in exact order; none for a ray that hits nothing
-};
 
 /// What was done.
 struct TraceCounts {

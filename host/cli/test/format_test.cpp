@@ -13,6 +13,9 @@ TEST(Format, Counts) {
   EXPECT_EQ(format_count(1000), "1,000");
   EXPECT_EQ(format_count(123456), "123,456");
   EXPECT_EQ(format_count(18446744073709551615u), "18,446,744,073,709,551,615");
+  EXPECT_EQ(format_count(0, "hit"), "0 hits");
+  EXPECT_EQ(format_count(1, "hit"), "1 hit");
+  EXPECT_EQ(format_count(2000, "hit"), "2,000 hits");
 }
 
 TEST(Format, Durations) {

@@ -40,7 +40,7 @@ TEST_F(TraceRays, SaysWhatIsNearest) {
             "0,1,0,0,0.5,0.5,0.25,0,0.125,0.625,0,0,1,0\n"
             "1,0,-1,-1,inf,nan,nan,nan,nan,nan,nan,nan,nan,0\n"
             "2,0,-1,-1,inf,nan,nan,nan,nan,nan,nan,nan,nan,0\n");
-  EXPECT_EQ(outcome.err.substr(0, 15), "3 rays, 1 hits,");
+  EXPECT_EQ(outcome.err.substr(0, 15), "3 rays, 1 hit, ");
 }
 
 TEST_F(TraceRays, SaysTheSameByEveryEngine) {
@@ -104,9 +104,14 @@ TEST_F(TraceRays, RefusesWhatItCannotDo) {
                  "--hits: expected nearest, any or all, got 'nearst'; did you mean nearest?");
   expect_refused({"sheets.obj", "rays.csv", "--colums", "t"},
                  "--colums: unknown option; did you mean --columns?");
-  expect_refused({"sheets.obj", "rays.csv", "--columns", "ray,tt"}, "--columns: expected some of");
+  expect_refused({"sheets.obj", "rays.csv", "--columns", "ray,tt"},
+                 "--columns: found 'tt', expected some of ray, hit, triangle");
+  expect_refused({"sheets.obj", "rays.csv", "--columns", "t,t"},
+                 "--columns: found 't', expected each name once");
+  expect_refused({"sheets.obj", "rays.csv", "--hits", "all", "--columns", "unit-error"},
+                 "--columns: found 'unit-error', expected none of the unit's with --hits all");
   expect_refused({"sheets.obj", "rays.csv", "--hits", "any", "--columns", "t"},
-                 "--columns: expected ray, hit or doubts with --hits any");
+                 "--columns: found 't', expected ray, hit or doubts with --hits any");
   expect_refused({"sheets.obj", "rays.csv", "--hits", "all", "--engine", "rtl"},
                  "--engine: expected cpu with --hits all");
   expect_refused({"sheets.obj", "rays.csv", "more"}, "more: a third file");

@@ -19,8 +19,6 @@ from ._raygate import InputError
 
 __all__ = ["InputError", "Scene"]
 
-_COLUMNS = ["ray", "hit", "triangle", "object", "t", "point", "uv", "normal", "doubts"]
-
 
 class Scene:
     """Triangles, materials, lights: an OBJ file, or a scene file (JSON) about one."""
@@ -65,15 +63,9 @@ class Scene:
         each hit of each ray, near before far. columns: ray, hit, triangle, object, material, t,
         point (x, y, z), uv, normal (nx, ny, nz), doubts, unit-point, unit-error; what each means is
         in host/README.md. engine: "cpu", or "model", the hit-test unit's reference model."""
-        if columns is None:
-            columns = ["ray", "hit"] if hits == "any" else _COLUMNS
-        if hits == "any" and not set(columns) <= {"ray", "hit", "doubts"}:
-            raise InputError("columns: expected ray, hit or doubts with hits='any'")
-        if hits == "all" and (engine != "cpu" or {"unit-point", "unit-error"} & set(columns)):
-            raise InputError("hits='all': expected engine 'cpu' and no column of the unit's")
         rows, fields = self._scene.trace(
             _vectors(origins), _vectors(directions), None if limits is None else _numbers(limits),
-            hits, list(columns), engine, threads)
+            hits, list(columns or []), engine, threads)
         return rows.view(np.dtype([tuple(field) for field in fields]))
 
     def render(self, width=640, height=480, *, spp=1, integrator="whitted", eye=None, target=None,
