@@ -10,8 +10,8 @@
 //
 // Cuts: registers behind the first digit (bit 0), each row (1 to Rows), the remainder (Rows + 1) and the
 // quotient (Rows + 2). As many clocks of latency as cuts, a division a clock. Registers load only what is
-// valid: valid_o is valid_i, as much later, and while it is low the outputs mean nothing. Nothing is
-// reset, so that valid_o means nothing at first.
+// valid: valid_o is valid_i, as much later, and while it is low the outputs of a cut divider mean nothing.
+// Nothing is reset, so that valid_o means nothing at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection
 // constants and why they hold in srt_pkg.
 module srt_divider_stages #(
@@ -80,7 +80,6 @@ module srt_divider_stages #(
         .Arith(Arith),
         .Adder(Adder)
       ) u_row (
-        .valid_i(valid),
         .sum_i(gen_row[r-1].sum_q),
         .carry_i(gen_row[r-1].carry_q),
         .divisor_i(divisor),

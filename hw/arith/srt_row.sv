@@ -3,16 +3,11 @@
 // Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is
 // the sign) and Width - 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in
 // and comes out. The digit is positive_o - negative_o, one of which is 0.
-//
-// While valid_i is low the digit is 0 and no multiple of the divisor is formed, whatever the residual:
-// operand isolation, for a divider without cuts; the carry-save adders still follow the operands. How
-// much switching that saves has not been measured. Cut dividers, whose registers hold, do not need it.
 module srt_row #(
   parameter int unsigned Width = 25,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
-  input  logic             valid_i,
   input  logic [Width-1:0] sum_i,
   input  logic [Width-1:0] carry_i,
   input  logic [Width-1:0] divisor_i,
@@ -57,18 +52,12 @@ module srt_row #(
   assign y = estimate ^ {1'b1, {(EstimateWidth - 1) {1'b0}}};
   assign eighth = {divisor_i[Width-3-:3], 3'b000};
 
-  always_comb begin
-    from = 4'b0011;
-    multiple = '0;
-    if (valid_i) begin
-      from[0] = y >= MMinus1[eighth+:EstimateWidth];
-      from[1] = y >= M0[eighth+:EstimateWidth];
-      from[2] = y >= M1[eighth+:EstimateWidth];
-      from[3] = y >= M2[eighth+:EstimateWidth];
-      multiple = {Width{from[2]}} ^ (({Width{from[0] ^ from[1] ^ from[2] ^ from[3]}} & divisor_i)
-                                   | ({Width{~from[0] | from[3]}} & (divisor_i << 1)));
-    end
-  end
+  assign from[0] = y >= MMinus1[eighth+:EstimateWidth];
+  assign from[1] = y >= M0[eighth+:EstimateWidth];
+  assign from[2] = y >= M1[eighth+:EstimateWidth];
+  assign from[3] = y >= M2[eighth+:EstimateWidth];
+  assign multiple = {Width{from[2]}} ^ (({Width{^from}} & divisor_i)
+                                      | ({Width{~from[0] | from[3]}} & (divisor_i << 1)));
   assign positive_o = {from[3], from[2] ^ from[3]};
   assign negative_o = {~from[0], from[0] ^ from[1]};
 

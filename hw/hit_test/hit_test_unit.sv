@@ -114,15 +114,13 @@ module hit_test_unit #(
     .flags_o         (adder_flags)
   );
 
-  fp_divider_stages #(
+  fp_divider #(
     .ExpWidth    (ExpWidth),
     .FracWidth   (FracWidth),
     .Arith       (Arith),
     .Adder       (Adder),
     .QuotientBits(QuotientBits)
   ) u_divider (
-    .clk_i,
-    .valid_i         (divide),  // no digits in other clocks
     .a_i             (product),
     .b_i             (divisor_q),
     .rounding_mode_i (RoundingMode),

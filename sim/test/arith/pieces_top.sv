@@ -9,7 +9,7 @@ module pieces_top (
   input  logic        carry_i,
   input  logic        spoil_i,
   output logic [15:0] wrong_o,
-  // srt_row: w = row_sum_i + row_carry_i, |w| <= 2/3 d; no digit without valid_i
+  // srt_row: w = row_sum_i + row_carry_i, |w| <= 2/3 d
   input  logic [24:0] row_sum_i,
   input  logic [24:0] row_carry_i,
   input  logic [24:0] row_divisor_i,
@@ -179,15 +179,14 @@ module pieces_top (
     logic signed [31:0] old_w, new_w, digit, d;
 
     srt_row #(.Width(25), .Arith(n)) u_row (
-      .valid_i, .sum_i(row_sum), .carry_i(row_carry), .divisor_i(row_divisor), .sum_o(sum),
+      .sum_i(row_sum), .carry_i(row_carry), .divisor_i(row_divisor), .sum_o(sum),
       .carry_o(carry_word), .positive_o(plus), .negative_o(minus));
     assign old_w = 32'(signed'(25'(row_sum + row_carry)));
     assign new_w = 32'(signed'(25'(sum + carry_word)));
     assign digit = 32'(plus) - 32'(minus);
     assign d = 32'(row_divisor);
-    assign row_wrong_o[n] = valid_i ? (new_w != 4 * old_w - digit * d) | (3 * new_w > 2 * d)
-                                    | (3 * new_w < -2 * d)
-                                    : (25'(new_w) != 25'(4 * old_w)) | ({plus, minus} != 4'd0);
+    assign row_wrong_o[n] = (new_w != 4 * old_w - digit * d) | (3 * new_w > 2 * d)
+                          | (3 * new_w < -2 * d);
   end
 
   // ---- The first row: 2 x - digit * d = w, digit in 1 .. 4

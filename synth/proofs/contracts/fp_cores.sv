@@ -35,15 +35,13 @@ module fp_adder #(
   assign {result_o, flags_o} = any;
 endmodule
 
-module fp_divider_stages #(
+module fp_divider #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0,
   parameter int unsigned QuotientBits = 0
 ) (
-  input  logic                        clk_i,
-  input  logic                        valid_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic [2:0]                  rounding_mode_i,

@@ -3,7 +3,7 @@
 (define-fun w () Exact (residual sum_i carry_i))
 (define-fun next () Exact (residual sum_o carry_o))
 (define-fun digit () Exact (bvsub (small positive_o) (small negative_o)))
-(define-fun assumed () Bool (and valid_i (is-divisor divisor_i) (is-remainder w divisor_i)))
+(define-fun assumed () Bool (and (is-divisor divisor_i) (is-remainder w divisor_i)))
 (define-fun claimed () Bool
   (and (bvule positive_o #b10) (bvule negative_o #b10) (or (= positive_o #b00) (= negative_o #b00))
        (= next (bvsub (twice (twice w)) (times digit divisor_i)))

@@ -4,7 +4,6 @@ module srt_row #(
   parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0
 ) (
-  input  logic             valid_i,
   input  logic [Width-1:0] sum_i,
   input  logic [Width-1:0] carry_i,
   input  logic [Width-1:0] divisor_i,
