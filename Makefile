@@ -67,12 +67,15 @@ mutate: ## single faults in cores and pipeline that the tests' vectors catch: ma
 	@python3 -m sim.mutate build/mutate --jobs $(JOBS)
 
 FUZZ_SECONDS ?= 60
-fuzz: ## run libFuzzer on the scene loader and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]
+fuzz: ## run libFuzzer on the readers of scenes and rays and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]
 	@$(SETUP) fuzz
 	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYGATE_FUZZ=ON
-	@cmake --build build/fuzz -j $(JOBS) --target obj_fuzz exact_fuzz
+	@cmake --build build/fuzz -j $(JOBS) --target obj_fuzz rays_fuzz exact_fuzz
 	@mkdir -p build/fuzz/scenes && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/scenes
 	@build/fuzz/obj_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/ build/fuzz/scenes
+	@mkdir -p build/fuzz/rays && cp -n host/trace/fuzz/rays/* build/fuzz/rays
+	@build/fuzz/rays_fuzz -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=512 -malloc_limit_mb=16 \
+	  -artifact_prefix=build/fuzz/ build/fuzz/rays
 	@build/fuzz/exact_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/
 
 lint: everything ## check layout and pitfalls of all sources, but for clang-tidy's (make check)

@@ -78,11 +78,14 @@ std::optional<double> number_of(std::string_view text) {
   return value;
 }
 
-/// As an error message shows it: not too long.
+/// As an error message shows it: not too long, and of one line.
 std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 40;
   std::string word = "'";
-  word += text.substr(0, kMost);
+  for (const char c : text.substr(0, kMost)) {
+    const auto byte = static_cast<unsigned char>(c);
+    word += byte < ' ' || byte == 0x7F ? '?' : c;
+  }
   word += text.size() > kMost ? "...'" : "'";
   return word;
 }
@@ -231,9 +234,12 @@ class RaysIn::NpySource : public RaysIn::Source {
   void understand(std::string_view header) {
     std::string_view type = value_of(header, "descr");
     type = type.substr(0, type.find(','));
-    is_double_ = type == "'<f8'";
-    if (!is_double_ && type != "'<f4'") {
-      throw InputError(bytes_->name() + ": found elements of type " + std::string(type) +
+    if (type.size() > 1 && type.front() == '\'' && type.back() == '\'') {
+      type = type.substr(1, type.size() - 2);
+    }
+    is_double_ = type == "<f8";
+    if (!is_double_ && type != "<f4") {
+      throw InputError(bytes_->name() + ": found elements of type " + shown(type) +
                        ", expected '<f4' or '<f8' (float32 or float64)");
     }
     std::string_view shape = value_of(header, "shape");

@@ -7,7 +7,7 @@ from host.lab.report.document import render, table
 from host.lab.report.rows import summary
 
 COUNTS = ("tests", "rays", "wrong", "wrong_ties", "leaks", "escapes", "double_hits",
-          "wrong_nearest", "wrong_tied_nearest", "doubts")
+          "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
 ERRORS = ("t_ulp", "t_relative", "point_ulp", "delivered_t_ulp", "delivered_point_ulp")
 QUANTILES = ("median", "p99", "max")
 DECADES = 8
@@ -37,12 +37,13 @@ def total(rows: list[dict]) -> dict:
 def subjects_table(totals: list[dict]) -> str:
     """What each subject did in all suites."""
     return table({"subject": "", "tests": ",", "wrong": ",", "wrong per million": ",", "leaks": ",",
-                  "of them escapes": ",", "double hits": ",", "wrong nearest": ",",
+                  "of them escapes": ",", "double hits": ",", "wrong nearest": ",", "wrong order": ",",
                   "doubts, %": ".2f", "largest t over bound": ".3f", "largest P over bound": ".3f",
                   "largest P over what the hit says": ".3f"},
                  [[t["subject"], t["tests"], wrong(t), rate(wrong(t), t["tests"]), t["leaks"],
                    t["escapes"], t["double_hits"],
                    t["wrong_nearest"] + t["exact"] * t["wrong_tied_nearest"],
+                   t["wrong_order"] if t["orders"] else None,
                    100 * t["doubts"] / max(t["tests"], 1), t["t_of_bound"] or None,
                    t["point_of_bound"] or None, t["point_of_said"] or None] for t in totals])
 

@@ -180,20 +180,20 @@ Truth find(const Shot& shot, int low, int direction_low) {
   truth.verdicts.reserve(shot.tests());
   std::vector<Target<Int>> targets;
   targets.reserve(shot.mesh->triangles.size());
+  std::vector<Depth<Int>> depths;  // of the ray's hits so far, in their order
   const Vector<Int> origin = whole<Int>(shot.origin, low);
   for (const Corners& corners : shot.mesh->triangles) targets.emplace_back(origin, corners, low);
   for (const glm::vec3& ray : shot.directions) {
-    std::optional<std::uint32_t> nearest;
-    Depth<Int> nearest_depth{};
+    std::vector<std::uint32_t>& order = truth.orders.emplace_back();
     bool tied = false;
     if (!usable(ray)) {
       truth.verdicts.resize(truth.verdicts.size() + targets.size());
-      truth.nearest.push_back(nearest);
       truth.nearest_tied.push_back(tied);
       continue;
     }
     const Vector<Int> direction = whole<Int>(ray, direction_low);
     const Scaled direction_length = length(direction);
+    depths.clear();
     for (std::uint32_t i = 0; i < targets.size(); ++i) {
       Verdict verdict = decide(targets[i], direction);
       tied = tied || verdict.tie;
@@ -203,16 +203,18 @@ Truth find(const Shot& shot, int low, int direction_low) {
         const Scaled normal = length(targets[i].normal);
         verdict.sine = quotient(scaled(depth.slope), {normal.value * direction_length.value,
                                                       normal.exponent + direction_length.exponent});
-        const int order = nearest ? compare(depth, nearest_depth) : -1;
-        tied = tied || order == 0;
-        if (order < 0) {
-          nearest = i;
-          nearest_depth = depth;
+        // Those as far as this one are already there, and their indices are lower.
+        std::size_t place = order.size();
+        for (; place > 0; --place) {
+          const int before = compare(depth, depths[place - 1]);
+          tied = tied || before == 0;
+          if (before >= 0) break;
         }
+        order.insert(order.begin() + static_cast<std::ptrdiff_t>(place), i);
+        depths.insert(depths.begin() + static_cast<std::ptrdiff_t>(place), depth);
       }
       truth.verdicts.push_back(verdict);
     }
-    truth.nearest.push_back(nearest);
     truth.nearest_tied.push_back(tied);
   }
   return truth;

@@ -19,9 +19,15 @@ struct Verdict {
 
 struct Truth {
   std::vector<Verdict> verdicts;  ///< ray by ray, triangle by triangle
-  /// For each ray the triangle it hits first, exactly; the lowest index of those equally far.
-  std::vector<std::optional<std::uint32_t>> nearest;
+  /// For each ray the triangles it hits, near before far, exactly; of those equally far the lower
+  /// index first.
+  std::vector<std::vector<std::uint32_t>> orders;
   std::vector<bool> nearest_tied;  ///< another is as far, or the tie-break had a say
+
+  /// The triangle that a ray hits first.
+  [[nodiscard]] std::optional<std::uint32_t> nearest(std::size_t ray) const {
+    return orders[ray].empty() ? std::nullopt : std::optional(orders[ray].front());
+  }
 };
 
 /// The definition: all coordinates are whole multiples of a power of two, so the determinants are

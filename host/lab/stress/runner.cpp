@@ -125,9 +125,10 @@ Verdicts sum_up(std::span<const Row> rows, std::uint64_t seed) {
                      " tests by the engines: " + sum({"wrong", "wrong_ties"}) + " wrong, " +
                      sum({"leaks"}) + " leaks, " + sum({"double_hits"}) + " double hits, " +
                      sum({"wrong_nearest", "wrong_tied_nearest"}) + " wrong nearest, " +
-                     std::to_string(broken_claims) + " broken claims, " + sum({"doubts"}) +
-                     " doubts; seed " + std::to_string(seed) + ", " +
-                     std::to_string(std::lround(seconds)) + " s of processor time";
+                     sum({"wrong_order"}) + " wrong orders, " + std::to_string(broken_claims) +
+                     " broken claims, " + sum({"doubts"}) + " doubts; seed " +
+                     std::to_string(seed) + ", " + std::to_string(std::lround(seconds)) +
+                     " s of processor time";
   return verdicts;
 }
 

@@ -98,8 +98,9 @@ void print_suite(std::span<const Row> rows) {
       bad += row[key].get<std::uint64_t>();
     }
     if (row["exact"]) {
-      bad +=
-          row["wrong_ties"].get<std::uint64_t>() + row["wrong_tied_nearest"].get<std::uint64_t>();
+      for (const char* key : {"wrong_ties", "wrong_tied_nearest", "wrong_order"}) {
+        bad += row[key].get<std::uint64_t>();
+      }
     }
     std::printf("  %s %llu", row["subject"].get<std::string>().c_str(),
                 static_cast<unsigned long long>(bad));

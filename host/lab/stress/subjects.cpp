@@ -6,7 +6,8 @@ namespace raygate::lab {
 
 std::vector<SubjectKind> all_subjects() {
   std::vector<SubjectKind> all;
-  for (auto part : {engine_subjects(), variant_subjects(), float_subjects(), embree_subjects()}) {
+  for (auto part : {engine_subjects(), trace_subjects(), variant_subjects(), float_subjects(),
+                    embree_subjects()}) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
   }
   return all;

@@ -33,6 +33,8 @@ struct Answer {
 struct Answers {
   std::vector<Answer> tests;                          ///< shot by shot, as Shot::tests says
   std::vector<std::optional<std::uint32_t>> nearest;  ///< shot by shot, ray by ray: its triangle
+  /// The same: all triangles that the ray hits, near before far. Empty: the subject gives no order.
+  std::vector<std::vector<std::uint32_t>> orders;
 };
 
 class Subject {
@@ -57,6 +59,7 @@ struct SubjectKind {
 
 /// The parts of that list.
 [[nodiscard]] std::vector<SubjectKind> engine_subjects();
+[[nodiscard]] std::vector<SubjectKind> trace_subjects();
 [[nodiscard]] std::vector<SubjectKind> variant_subjects();  ///< of variants.json
 [[nodiscard]] std::vector<SubjectKind> float_subjects();    ///< what ray tracers do in float32
 [[nodiscard]] std::vector<SubjectKind> embree_subjects();   ///< none without Embree

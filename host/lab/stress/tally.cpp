@@ -100,6 +100,8 @@ Row Tally::row() const {
           {"double_hits", double_hits},
           {"wrong_nearest", wrong_nearest},
           {"wrong_tied_nearest", wrong_tied_nearest},
+          {"orders", orders},
+          {"wrong_order", wrong_order},
           {"hits", hits},
           {"doubts", doubts},
           {"t_of_bound", t_of_bound},
@@ -150,7 +152,14 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
       tally.leaks += shot.inside && hits % 2 == 0;
       tally.escapes += shot.inside && hits == 0;
       tally.double_hits += shot.inside && hits > true_hits;
-      if (answers.nearest[ray_number] != truth.nearest[ray]) {
+      if (!answers.orders.empty()) {
+        ++tally.orders;
+        if (answers.orders[ray_number] != truth.orders[ray]) {
+          ++tally.wrong_order;
+          fails(shot, direction, triangles);
+        }
+      }
+      if (answers.nearest[ray_number] != truth.nearest(ray)) {
         const bool tied = truth.nearest_tied[ray];
         ++(tied ? tally.wrong_tied_nearest : tally.wrong_nearest);
         if (subject.exact || !tied) fails(shot, direction, triangles);

@@ -25,6 +25,8 @@ struct Tally {
   std::uint64_t double_hits = 0;    ///< rays from inside with more hits than there are
   std::uint64_t wrong_nearest = 0;  ///< rays whose first triangle is another, ties aside
   std::uint64_t wrong_tied_nearest = 0;  ///< the same among ties
+  std::uint64_t orders = 0;              ///< rays of which the subject gave all hits in order
+  std::uint64_t wrong_order = 0;         ///< of these, with another order or other hits
   std::uint64_t hits = 0, doubts = 0;
   /// Of hits that are hits, in ulp of the exact value: t, and the worst coordinate of P; and t's
   /// relative error.
@@ -41,9 +43,9 @@ struct Tally {
   double point_of_said = 0.0;
   std::vector<Case> failures;  ///< the first few, ties only of exact subjects
 
-  /// Hit or miss and nearest, those on ties for exact subjects alone.
+  /// Hit or miss, nearest and order, those on ties for exact subjects alone.
   [[nodiscard]] std::uint64_t wrong_decisions(bool exact) const {
-    return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest : 0);
+    return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest + wrong_order : 0);
   }
   /// What an exact subject must be: never wrong, and no farther off than is proven.
   [[nodiscard]] bool spotless() const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/lab/stress/subjects.h"
 #include "host/lab/stress/suites.h"
@@ -124,6 +125,21 @@ TEST_F(InPlace, BoundsThatDoNotHoldTAreSeen) {
     EXPECT_GT(hits, 0u);
     EXPECT_EQ(tally.wrong + tally.wrong_ties, hits) << kind.name;
   }
+}
+
+// As by a table that has two hits of a ray in the wrong order, or leaves the last one out.
+TEST_F(InPlace, OrdersThatAreWrongAreSeen) {
+  Answers answers;
+  trace_subjects()[0].make()->run(shots_, answers);
+  EXPECT_TRUE(judge(answers).spotless());
+  const auto several =
+      std::ranges::find_if(answers.orders, [](const auto& o) { return o.size() > 1; });
+  ASSERT_NE(several, answers.orders.end());
+  std::swap(several->front(), several->back());
+  EXPECT_EQ(judge(answers).wrong_order, 1u);
+  std::swap(several->front(), several->back());
+  several->pop_back();
+  EXPECT_FALSE(judge(answers).spotless());
 }
 
 }  // namespace

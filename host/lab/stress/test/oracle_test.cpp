@@ -4,6 +4,9 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "host/lab/stress/suites.h"
 
 namespace raygate::lab {
@@ -21,6 +24,12 @@ Rational3 cross(const Rational3& a, const Rational3& b) {
 }
 mpq_class dot(const Rational3& a, const Rational3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// The t of a hit: of triangles that the ray meets.
+mpq_class distance(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  const Rational3 a = minus(t[0], origin), normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  return dot(a, normal) / dot(minus(direction, glm::vec3(0.0f)), normal);
 }
 
 /// Whether the ray, its direction tilted by (e, e^2, e^3) for a very small e, meets the triangle.
@@ -49,11 +58,21 @@ TEST(Oracle, AgreesWithRationalsInEverySuite) {
       const Shot shot = generate(random);
       const Truth truth = find_truth(shot);
       auto verdict = truth.verdicts.begin();
-      for (const glm::vec3& direction : shot.directions) {
-        for (const Corners& t : shot.mesh->triangles) {
-          ASSERT_EQ(verdict->hit, hits(shot.origin, direction, t)) << suite.name;
-          met += (verdict++)->hit;
+      for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
+        const glm::vec3& direction = shot.directions[ray];
+        std::vector<std::pair<mpq_class, std::uint32_t>> met_here;
+        for (std::uint32_t i = 0; i < shot.mesh->triangles.size(); ++i) {
+          const Corners& t = shot.mesh->triangles[i];
+          const bool hit = hits(shot.origin, direction, t);
+          ASSERT_EQ((verdict++)->hit, hit) << suite.name;
+          if (hit) met_here.emplace_back(distance(shot.origin, direction, t), i);
           ++decided;
+        }
+        met += static_cast<int>(met_here.size());
+        std::ranges::sort(met_here);
+        ASSERT_EQ(truth.orders[ray].size(), met_here.size());
+        for (std::size_t k = 0; k < met_here.size(); ++k) {
+          ASSERT_EQ(truth.orders[ray][k], met_here[k].second) << suite.name;
         }
       }
     }
@@ -73,12 +92,13 @@ TEST(Oracle, TellsTheNearestAndItsTies) {
   shot.mesh = mesh;
   shot.directions = {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::vec3(1, 0, 0), glm::vec3(0)};
   const Truth truth = find_truth(shot);
-  EXPECT_EQ(truth.nearest[0], 1u);
+  EXPECT_EQ(truth.orders[0], (std::vector<std::uint32_t>{1, 2, 0}));
+  EXPECT_EQ(truth.nearest(0), 1u);
   EXPECT_TRUE(truth.nearest_tied[0]);
-  EXPECT_EQ(truth.nearest[1], 3u);
+  EXPECT_EQ(truth.nearest(1), 3u);
   EXPECT_FALSE(truth.nearest_tied[1]);
-  EXPECT_FALSE(truth.nearest[2]);
-  EXPECT_FALSE(truth.nearest[3]);
+  EXPECT_FALSE(truth.nearest(2));
+  EXPECT_FALSE(truth.nearest(3));
   EXPECT_EQ(truth.verdicts[0].t, 2.0);
 }
 

@@ -1,0 +1,141 @@
+// What `./trace` and the Python module say: all hits of each ray, by the tables that they give out.
+#include <cmath>
+#include <cstring>
+
+#include "host/exact/exact.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "host/lab/stress/subjects.h"
+#include "host/trace/tracer.h"
+#include "host/tree/bvh.h"
+
+namespace raygate::lab {
+namespace {
+
+class TraceSubject : public Subject {
+ public:
+  void run(std::span<const Shot> shots, Answers& answers) override {
+    answers.tests.clear();
+    answers.nearest.clear();
+    answers.orders.clear();
+    while (!shots.empty()) {
+      std::size_t together = 1;
+      while (together < shots.size() && shots[together].mesh == shots[0].mesh) ++together;
+      ask(shots.first(together), answers);
+      shots = shots.subspan(together);
+    }
+  }
+
+ private:
+  struct RowOfTable {
+    std::int64_t ray, triangle;
+    double t;
+    std::int64_t doubts;
+  };
+
+  /// A mesh as `trace` sees it.
+  struct Target {
+    explicit Target(const Mesh& mesh)
+        : scene(scene_of(mesh)),
+          bvh(scene),
+          table(scene, bvh,
+                {raygate::Answer::kRay, raygate::Answer::kTriangle, raygate::Answer::kT,
+                 raygate::Answer::kDoubts},
+                AnswerFormat::kNpy) {}
+    Target(const Target&) = delete;
+    Target& operator=(const Target&) = delete;
+
+    Scene scene;
+    Bvh bvh;
+    raygate::Answers table;
+  };
+
+  /// Directions are not scaled as finders want them, but by powers of two from 2^-20 to 2^20.
+  static int exponent(std::size_t ray) { return static_cast<int>(ray % 41) - 20; }
+
+  std::vector<RowOfTable> rows(std::span<const Shot> shots, Hits hits) const {
+    const auto read = [&, done = false](std::size_t, RayBlock& block) mutable {
+      if (std::exchange(done, true)) return false;
+      block.clear(0);
+      for (const Shot& shot : shots) {
+        for (const glm::vec3& direction : shot.directions) {
+          const double scale = std::ldexp(1.0, exponent(block.rays.size()));
+          const char* const wrong =
+              block.add(glm::dvec3(shot.origin),
+                        is_usable(direction) ? scale * glm::dvec3(direction) : glm::dvec3(0.0),
+                        std::numeric_limits<double>::infinity(), glm::dvec3(0.0));
+          if (wrong != nullptr) throw std::logic_error(wrong);
+        }
+      }
+      return true;
+    };
+    std::string bytes;
+    (void)trace(
+        read, hits, target_->bvh, target_->table,
+        [this] { return std::make_unique<CpuFinder>(target_->bvh); }, 1,
+        [&](std::string_view more) { bytes += more; }, [] { return true; });
+    std::vector<RowOfTable> rows(bytes.size() / sizeof(RowOfTable));
+    std::memcpy(rows.data(), bytes.data(), bytes.size());
+    return rows;
+  }
+
+  /// Adds the answers for shots at one mesh.
+  void ask(std::span<const Shot> shots, Answers& answers) {
+    if (shots[0].mesh != mesh_) {
+      mesh_ = shots[0].mesh;
+      target_ = std::make_unique<Target>(*mesh_);
+    }
+    const std::size_t triangles = mesh_->triangles.size(), first_ray = answers.orders.size(),
+                      first_test = answers.tests.size();
+    const std::vector<RowOfTable> nearest = rows(shots, Hits::kNearest),
+                                  any = rows(shots, Hits::kAny);
+    answers.orders.resize(first_ray + nearest.size());
+    answers.tests.resize(first_test + nearest.size() * triangles);
+    for (const RowOfTable& row : rows(shots, Hits::kAll)) {
+      const auto ray = static_cast<std::size_t>(row.ray);
+      const auto triangle = static_cast<std::uint32_t>(row.triangle);
+      answers.orders[first_ray + ray].push_back(triangle);
+      Answer& answer = answers.tests[first_test + ray * triangles + triangle];
+      answer.hit = true;
+      answer.doubt = row.doubts != 0;
+      answer.bounds = bounds(row, ray);
+    }
+    for (std::size_t ray = 0; ray < nearest.size(); ++ray) {
+      const RowOfTable& row = nearest[ray];
+      const bool is_hit = row.triangle >= 0;
+      const auto triangle = static_cast<std::uint32_t>(row.triangle);
+      // No triangle has the number of those that contradict each other.
+      const bool agree = is_hit == (any[ray].triangle >= 0) &&
+                         (!is_hit || holds_same(answers, first_test + ray * triangles + triangle,
+                                                bounds(row, ray)));
+      answers.nearest.push_back(!agree   ? std::optional(static_cast<std::uint32_t>(triangles))
+                                : is_hit ? std::optional(triangle)
+                                         : std::nullopt);
+    }
+  }
+
+  /// What the table promises of t, for the direction as the shot has it.
+  static Interval bounds(const RowOfTable& row, std::size_t ray) {
+    const double t = std::ldexp(row.t, exponent(ray));
+    return {t * (1.0 - 0x1p-33), t * (1.0 + 0x1p-33)};
+  }
+  static bool holds_same(const Answers& answers, std::size_t test, const Interval& bounds) {
+    const Interval& all = answers.tests[test].bounds;
+    return answers.tests[test].hit && all.low == bounds.low && all.high == bounds.high;
+  }
+
+  std::shared_ptr<const Mesh> mesh_;  // whose target this is
+  std::unique_ptr<Target> target_;
+};
+
+}  // namespace
+
+std::vector<SubjectKind> trace_subjects() {
+  return {
+      {.name = "trace",
+       .what = "./trace: all hits of a ray in their order, the nearest, and whether there is any",
+       .exact = true,
+       .share = 0.5,
+       .make = [] { return std::make_unique<TraceSubject>(); }}};
+}
+
+}  // namespace raygate::lab

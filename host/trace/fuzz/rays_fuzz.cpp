@@ -1,0 +1,32 @@
+// libFuzzer target: any bytes as a table of rays, CSV or NPY.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "host/scene/io/input_error.h"
+#include "host/trace/rays_in.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const int file = memfd_create("rays", 0);
+  static const std::string path = "/proc/self/fd/" + std::to_string(file);
+  if (file < 0 || ftruncate(file, 0) != 0 ||
+      pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) {
+    std::abort();
+  }
+  try {
+    raygate::RaysIn rays(path, glm::dvec3(1.0, -2.0, 1e6));
+    raygate::RayBlock block;
+    while (rays.read(7, block)) {
+      for (const raygate::Ray& ray : block.rays) {
+        // What finders refuse must not get to them.
+        if (raygate::is_usable(ray.direction) && !raygate::is_scaled(ray.direction)) std::abort();
+      }
+    }
+  } catch (const raygate::InputError&) {
+    // What a bad table deserves.
+  }
+  return 0;
+}

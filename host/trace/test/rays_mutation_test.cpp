@@ -1,0 +1,184 @@
+// Damaged tables of rays: what comes out can be traced, or one line says what is wrong; and no
+// table takes memory.
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <random>
+#include <string>
+
+#include "host/scene/io/input_error.h"
+#include "host/trace/rays_in.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::string_view kCsv =
+    "ox,oy,oz,dx,dy,dz,limit\n# a comment\n1,2,3,0,0,-1\r\n +4 , 5e0,6, 3,0,0, 2\n"
+    "0,0,0,1,1,0.25,inf\n\n7,8,9,0,0,0\n0.5,0,0,0,-0.125,0,1e-3\n";
+constexpr const char* kSplinters[] = {"nan",   "-inf",
+                                      "1e999", "1e-999",
+                                      "1e38",  "1e39",
+                                      "0",     "-0",
+                                      ",",     ",,",
+                                      "\n",    "\r",
+                                      "#",     " ",
+                                      "1.5e",  "--",
+                                      "+",     "0x10",
+                                      "\xFF",  "(",
+                                      ")",     "'",
+                                      "'<f8'", "False",
+                                      "True",  "99999999999999999999",
+                                      "{",     "}",
+                                      ":",     "shape"};
+
+std::string npy(bool is_double, int rows, int columns) {
+  std::string header = "{'descr': '<f" + std::string(is_double ? "8" : "4") +
+                       "', 'fortran_order': False, 'shape': (" + std::to_string(rows) + ", " +
+                       std::to_string(columns) + "), }";
+  header.resize(117, ' ');
+  std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
+  bytes += header + "\n";
+  for (int i = 0; i < rows * columns; ++i) {
+    const double wide = 0.375 * (i % 11) + 0.25;
+    const auto narrow = static_cast<float>(wide);
+    bytes.append(
+        is_double ? reinterpret_cast<const char*>(&wide) : reinterpret_cast<const char*>(&narrow),
+        is_double ? 8 : 4);
+  }
+  return bytes;
+}
+
+/// What reading a table ends in: its rays, or what is wrong.
+struct Outcome {
+  std::vector<Ray> rays;
+  std::vector<float> limits;
+  std::string error;
+};
+
+class DamagedRays : public testing::Test {
+ protected:
+  void TearDown() override { close(file_); }
+
+  void write(std::string_view bytes) const {
+    ASSERT_EQ(ftruncate(file_, 0), 0);
+    ASSERT_EQ(pwrite(file_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  }
+
+  Outcome read(std::size_t most) const {
+    Outcome outcome;
+    try {
+      RaysIn rays(path_, glm::dvec3(0.0));
+      for (RayBlock block; rays.read(most, block);) {
+        outcome.rays.insert(outcome.rays.end(), block.rays.begin(), block.rays.end());
+        outcome.limits.insert(outcome.limits.end(), block.limits.begin(), block.limits.end());
+      }
+    } catch (const InputError& error) {
+      outcome.error = error.what();
+    }
+    return outcome;
+  }
+
+  std::string mutate(std::string text) {
+    for (std::size_t times = 1 + below(4); times > 0 && !text.empty(); --times) {
+      // Half of the time at the start, where an array has its header.
+      const std::size_t at =
+          below(below(2) == 0 ? std::min<std::size_t>(text.size(), 90) : text.size());
+      switch (below(5)) {
+        case 0:
+          text[at] = static_cast<char>(below(256));
+          break;
+        case 1:
+          text[at] = static_cast<char>(text[at] ^ (1 << below(8)));
+          break;
+        case 2:
+          text.insert(at, kSplinters[below(std::size(kSplinters))]);
+          break;
+        case 3:
+          text.erase(at, 1 + below(8));
+          break;
+        case 4:
+          text.resize(at);
+          break;
+      }
+    }
+    return text;
+  }
+  std::size_t below(std::size_t limit) { return random_() % limit; }
+
+  int file_ = memfd_create("rays", 0);  // of no disk: thousands are written
+  std::filesystem::path path_ = "/proc/self/fd/" + std::to_string(file_);
+  std::mt19937_64 random_{20261122};
+};
+
+TEST_F(DamagedRays, CanBeTracedOrAreRefused) {
+  const std::string seeds[] = {std::string(kCsv), npy(false, 5, 6), npy(true, 4, 7)};
+  int usable = 0, refused = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const std::string bytes = mutate(seeds[round % std::size(seeds)]);
+    write(bytes);
+    const Outcome outcome = read(3);
+    for (const Ray& ray : outcome.rays) {
+      ASSERT_TRUE(std::isfinite(ray.origin.x) && std::isfinite(ray.origin.y) &&
+                  std::isfinite(ray.origin.z));
+      ASSERT_TRUE(!is_usable(ray.direction) || is_scaled(ray.direction)) << "round " << round;
+    }
+    for (const float limit : outcome.limits) ASSERT_GT(limit, 0.0f) << "round " << round;
+    ++(outcome.error.empty() ? usable : refused);
+    if (!outcome.error.empty()) {
+      ASSERT_TRUE(outcome.error.starts_with(path_.string() + ":")) << outcome.error;
+      ASSERT_TRUE(
+          std::ranges::none_of(outcome.error, [](unsigned char c) { return c < ' ' || c == 0x7F; }))
+          << "round " << round << ": " << outcome.error;
+    }
+    if (round % 8 != 0) continue;
+    const Outcome whole = read(1000);
+    ASSERT_EQ(whole.error, outcome.error);
+    ASSERT_TRUE(!whole.error.empty() || whole.rays.size() == outcome.rays.size());
+  }
+  EXPECT_GT(usable, 2000);
+  EXPECT_GT(refused, 2000);
+}
+
+/// What this process has held at once so far, in bytes.
+long most_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss * 1024;
+}
+
+TEST_F(DamagedRays, LargeOnesTakeNoMemory) {
+  constexpr off_t kLarge = off_t{1} << 27;
+  constexpr long kAllowed = 1 << 24;
+  write("0,0,0,0,0,1\n");
+  (void)read(1 << 14);
+  const long before = most_memory();
+  // Zeros without an end of line, then as rows of an array.
+  ASSERT_EQ(ftruncate(file_, kLarge), 0);
+  EXPECT_NE(read(1 << 14).error.find(":2: found a line of over 1,000,000 bytes"),
+            std::string::npos);
+  std::string start = npy(false, 1, 6).substr(0, 128);
+  start.replace(start.find("(1, 6), }      "), 15, "(4000000, 6), }");
+  write(start);
+  ASSERT_EQ(ftruncate(file_, 128 + 4000000 * 24), 0);
+  RaysIn rays(path_, glm::dvec3(0.0));
+  RayBlock block;
+  std::size_t count = 0;
+  while (rays.read(1 << 14, block)) count += block.rays.size();
+  EXPECT_EQ(count, 4000000u);
+  // An array that says it is larger than all memory.
+  std::string boast = npy(true, 1, 6);
+  boast.replace(boast.find("(1, 6), }            "), 24, "(1000000000000000, 6), }");
+  write(boast);
+  EXPECT_NE(read(1 << 14).error.find("found the end in row 1, expected 1000000000000000 rows"),
+            std::string::npos);
+  EXPECT_LT(most_memory() - before, kAllowed);
+}
+
+}  // namespace
+}  // namespace raygate
