@@ -1,11 +1,11 @@
 #include "host/trace/answers.h"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "host/trace/hit_place.h"
 
 namespace raygate {
 namespace {
@@ -71,23 +71,6 @@ class NpyRow {
   std::string& bytes_;
 };
 
-/// u and v: the shares of the second and the third corner. No corner's share is negative, whatever
-/// rounding does, nor -0.
-glm::dvec2 shares(const Ray& ray, const Corners& corners) {
-  const glm::dvec3 direction(ray.direction);
-  std::array<double, 3> weights{};
-  for (int k = 0; k < 3; ++k) {
-    weights[k] =
-        glm::dot(direction, edge_normal(ray.origin, corners[(k + 1) % 3], corners[(k + 2) % 3]));
-  }
-  const double sum = weights[0] + weights[1] + weights[2];
-  const auto within = [](double share, double most) {
-    return std::max(0.0, std::min(share, most));
-  };
-  const double u = within(weights[1] / sum, 1.0);
-  return {u, within(weights[2] / sum, 1.0 - u)};
-}
-
 }  // namespace
 
 Answers::Answers(const Scene& scene, const Bvh& bvh, std::vector<Answer> columns,
@@ -139,13 +122,12 @@ void Answers::write(const RayBlock& block, const RayHit& found, Row& row) const 
   Corners corners{};
   std::int64_t number = -1;
   const Triangle* triangle = nullptr;
-  double t = std::numeric_limits<double>::infinity();  // of the scaled ray
+  HitPlace place{std::numeric_limits<double>::infinity(), kNan, kNan};  // t of the scaled ray
   if (is_hit) {
     corners = bvh_.corners_of(hit.slot);
     number = bvh_.triangle_of(hit.slot);
     triangle = &scene_.triangles[static_cast<std::size_t>(number)];
-    const Interval exact = hit_distance(ray, corners);
-    t = 0.5 * (exact.low + exact.high);
+    place = place_of_hit(ray, corners);
   }
   const auto vector = [&](const glm::dvec3& v) {
     for (int k = 0; k < 3; ++k) row.number(is_hit ? v[k] : kNan);
@@ -171,17 +153,15 @@ void Answers::write(const RayBlock& block, const RayHit& found, Row& row) const 
         row.integer(is_hit ? std::int64_t{triangle->material} : -1);
         break;
       case Answer::kT:
-        row.number(std::ldexp(t, block.exponents[found.ray]));
+        row.number(std::ldexp(place.t, block.exponents[found.ray]));
         break;
       case Answer::kPoint:
-        from_origin(t * glm::dvec3(ray.direction));
+        from_origin(place.t * glm::dvec3(ray.direction));
         break;
-      case Answer::kUv: {
-        const glm::dvec2 uv = is_hit ? shares(ray, corners) : glm::dvec2(kNan);
-        row.number(uv.x);
-        row.number(uv.y);
+      case Answer::kUv:
+        row.number(place.u);
+        row.number(place.v);
         break;
-      }
       case Answer::kNormal:
         vector(glm::normalize(triangle_normal(corners)));
         break;

@@ -1,0 +1,125 @@
+#include "host/package/raygate.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "host/exact/ieee_floats.h"
+#include "host/find/cpu/all_hits.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "host/scene/scene.h"
+#include "host/trace/hit_place.h"
+#include "host/trace/ray_block.h"
+#include "host/tree/bvh.h"
+
+namespace raygate {
+namespace {
+
+glm::vec3 vector(const Tracer::Point& p) { return {p[0], p[1], p[2]}; }
+
+/// What the tree is built from, and not kept.
+Scene scene_of(std::span<const Tracer::Triangle> triangles) {
+  constexpr float kFarthest = 0x1p126f;
+  Scene scene;
+  scene.positions.reserve(3 * triangles.size());
+  scene.triangles.resize(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const glm::vec3 position = vector(triangles[i][k]);
+      if (!(std::abs(position.x) <= kFarthest && std::abs(position.y) <= kFarthest &&
+            std::abs(position.z) <= kFarthest)) {
+        throw std::invalid_argument("triangle " + std::to_string(i) +
+                                    ": found a corner that is not finite or beyond 2^126, "
+                                    "expected coordinates of magnitude at most 2^126");
+      }
+      scene.triangles[i].vertices[k] = static_cast<std::uint32_t>(scene.positions.size());
+      scene.positions.push_back(position);
+    }
+  }
+  return scene;
+}
+
+RayBlock block_of(std::span<const Tracer::Ray> rays) {
+  RayBlock block;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const char* const wrong =
+        block.add(glm::dvec3(vector(rays[i].origin)), glm::dvec3(vector(rays[i].direction)),
+                  rays[i].limit, glm::dvec3(0.0));
+    if (wrong != nullptr) {
+      throw std::invalid_argument("ray " + std::to_string(i) + ": " + wrong);
+    }
+  }
+  return block;
+}
+
+void require_room(std::size_t rays, std::size_t room) {
+  if (rays != room) throw std::invalid_argument("expected room for as many answers as rays");
+}
+
+constexpr std::size_t kMostTriangles = (std::size_t{1} << 31) - 1;
+
+std::span<const Tracer::Triangle> checked(std::span<const Tracer::Triangle> triangles) {
+  require_ieee_floats();
+  if (triangles.size() > kMostTriangles / 3) {
+    throw std::invalid_argument("found " + std::to_string(triangles.size()) +
+                                " triangles, expected at most 715,827,882");
+  }
+  return triangles;
+}
+
+}  // namespace
+
+struct Tracer::Tree {
+  Tree(std::span<const Triangle> triangles, int threads)
+      : bvh(scene_of(checked(triangles)), threads) {}
+
+  [[nodiscard]] Hit answer(const RayBlock& block, std::size_t i, const NearestHit& hit) const {
+    if (hit.slot == NearestHit::kNone) return {};
+    const HitPlace place = place_of_hit(block.rays[i], bvh.corners_of(hit.slot));
+    return {bvh.triangle_of(hit.slot), std::ldexp(place.t, block.exponents[i]), place.u, place.v};
+  }
+
+  [[nodiscard]] std::vector<NearestHit> find(const RayBlock& block, bool any) const {
+    std::vector<NearestHit> hits(block.rays.size());
+    Search search{.limits = block.limits};
+    if (any) search.enough_before = block.limits;
+    CpuFinder(bvh).find(block.rays, search, hits);
+    return hits;
+  }
+
+  Bvh bvh;
+};
+
+Tracer::Tracer(std::span<const Triangle> triangles, int threads)
+    : tree_(std::make_unique<const Tree>(triangles, threads)) {}
+Tracer::~Tracer() = default;
+Tracer::Tracer(Tracer&&) noexcept = default;
+Tracer& Tracer::operator=(Tracer&&) noexcept = default;
+
+void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
+  require_room(rays.size(), hits.size());
+  const RayBlock block = block_of(rays);
+  const std::vector<NearestHit> found = tree_->find(block, false);
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = tree_->answer(block, i, found[i]);
+}
+
+void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) const {
+  require_room(rays.size(), is_hit.size());
+  const std::vector<NearestHit> found = tree_->find(block_of(rays), true);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    is_hit[i] = found[i].slot == NearestHit::kNone ? 0 : 1;
+  }
+}
+
+std::vector<Tracer::Hit> Tracer::all(const Ray& ray) const {
+  const RayBlock block = block_of({&ray, 1});
+  std::vector<NearestHit> found;
+  RayWork work;
+  all_hits(tree_->bvh, block.rays[0], block.limits[0], found, work);
+  std::vector<Hit> hits;
+  hits.reserve(found.size());
+  for (const NearestHit& hit : found) hits.push_back(tree_->answer(block, 0, hit));
+  return hits;
+}
+
+}  // namespace raygate

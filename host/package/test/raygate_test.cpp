@@ -1,0 +1,147 @@
+// The installed header's promises, against rationals.
+#include "host/package/raygate.h"
+
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+namespace raygate {
+namespace {
+
+using Point = Tracer::Point;
+
+/// A cube of 12 triangles whose corners are at 1 and -1.
+std::vector<Tracer::Triangle> cube() {
+  std::vector<Tracer::Triangle> triangles;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0f, 1.0f}) {
+      const auto corner = [&](float a, float b) {
+        Point p{};
+        p[axis] = side;
+        p[(axis + 1) % 3] = a;
+        p[(axis + 2) % 3] = b;
+        return p;
+      };
+      triangles.push_back({corner(-1, -1), corner(1, -1), corner(1, 1)});
+      triangles.push_back({corner(-1, -1), corner(1, 1), corner(-1, 1)});
+    }
+  }
+  return triangles;
+}
+
+using Rational3 = std::array<mpq_class, 3>;
+
+Rational3 minus(const Point& a, const Point& b) {
+  return {mpq_class(a[0]) - mpq_class(b[0]), mpq_class(a[1]) - mpq_class(b[1]),
+          mpq_class(a[2]) - mpq_class(b[2])};
+}
+mpq_class volume(const Rational3& a, const Rational3& b, const Rational3& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+/// The t of a hit of the ray whose direction is tilted by (e, e^2, e^3), e very small.
+std::optional<mpq_class> rational_hit(const Tracer::Ray& ray, const Tracer::Triangle& triangle) {
+  const Rational3 a = minus(triangle[0], ray.origin), b = minus(triangle[1], ray.origin),
+                  c = minus(triangle[2], ray.origin), way = minus(ray.direction, Point{});
+  Rational3 tilted = way;
+  mpq_class e(1), power(1);
+  e >>= 200;
+  for (mpq_class& component : tilted) component += (power *= e);
+  const mpq_class all = volume(a, b, c);
+  const int side = sgn(all);
+  if (side == 0 || sgn(volume(tilted, a, b)) != side || sgn(volume(tilted, b, c)) != side ||
+      sgn(volume(tilted, c, a)) != side) {
+    return std::nullopt;
+  }
+  return all / (volume(way, a, b) + volume(way, b, c) + volume(way, c, a));
+}
+
+TEST(Tracer, SaysWhatRationalsSay) {
+  const std::vector<Tracer::Triangle> triangles = cube();
+  const Tracer tracer(triangles, 2);
+  std::mt19937_64 random(1);
+  const auto whole = [&](int from, int to) {
+    return static_cast<float>(std::uniform_int_distribution<int>(from, to)(random));
+  };
+  std::vector<Tracer::Ray> rays;
+  for (int i = 0; i < 3000; ++i) {  // on a coarse grid: through edges, corners, along faces
+    Tracer::Ray ray{{whole(-4, 4) / 2, whole(-4, 4) / 2, whole(-4, 4) / 2},
+                    {whole(-2, 2), whole(-2, 2), whole(-2, 2)}};
+    if (i % 3 == 0) ray.limit = whole(1, 8) / 4;
+    rays.push_back(ray);
+  }
+  std::vector<Tracer::Hit> nearest(rays.size());
+  std::vector<std::uint8_t> any(rays.size());
+  tracer.nearest(rays, nearest);
+  tracer.any(rays, any);
+  std::size_t hit_rays = 0, limited = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    std::vector<std::pair<mpq_class, std::uint32_t>> expected;
+    for (std::uint32_t k = 0; k < triangles.size() && rays[i].direction != Point{}; ++k) {
+      const auto t = rational_hit(rays[i], triangles[k]);
+      if (!t) continue;
+      const bool near = std::isinf(rays[i].limit) || *t < mpq_class(rays[i].limit);
+      if (near) expected.emplace_back(*t, k);
+      limited += !near;
+    }
+    std::ranges::sort(expected);
+    const std::vector<Tracer::Hit> all = tracer.all(rays[i]);
+    ASSERT_EQ(all.size(), expected.size()) << "ray " << i;
+    EXPECT_EQ(any[i], expected.empty() ? 0 : 1);
+    EXPECT_EQ(nearest[i].triangle, expected.empty() ? Tracer::kNone : expected[0].second);
+    hit_rays += !expected.empty();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      EXPECT_EQ(all[k].triangle, expected[k].second) << "ray " << i;
+      EXPECT_LE(abs(mpq_class(all[k].t) - expected[k].first) * (1L << 33), expected[k].first);
+      EXPECT_GE(1.0 - all[k].u - all[k].v, 0.0);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Tracer::Triangle& t = triangles[all[k].triangle];
+        const double p = (1.0 - all[k].u - all[k].v) * t[0][axis] + all[k].u * t[1][axis] +
+                         all[k].v * t[2][axis];
+        EXPECT_NEAR(p, rays[i].origin[axis] + all[k].t * rays[i].direction[axis], 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(hit_rays, 500u);
+  EXPECT_GT(limited, 50u);
+}
+
+TEST(Tracer, SaysWhatItCannotUse) {
+  const auto refusal = [](const auto& what) -> std::string {
+    try {
+      what();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "nothing refused";
+  };
+  std::vector<Tracer::Triangle> triangles = cube();
+  const Tracer tracer(triangles);
+  EXPECT_EQ(refusal([&] {
+              (void)tracer.all({{0, 0, 0}, {NAN, 0, 0}});
+            }),
+            "ray 0: found inf or nan in origin or direction, expected finite numbers");
+  EXPECT_EQ(refusal([&] {
+              (void)tracer.all({{0, 0, 0}, {1, 0, 0}, 0.0f});
+            }),
+            "ray 0: found a limit that is not above 0, expected one, or inf");
+  const Tracer::Ray ray;
+  EXPECT_EQ(refusal([&] {
+              tracer.nearest({&ray, 1}, {});
+            }),
+            "expected room for as many answers as rays");
+  triangles[3][1][2] = INFINITY;
+  EXPECT_EQ(refusal([&] { const Tracer wrong(triangles); }).substr(0, 31),
+            "triangle 3: found a corner that");
+  EXPECT_TRUE(Tracer({}).all({{0, 0, 0}, {1, 0, 0}}).empty());
+}
+
+}  // namespace
+}  // namespace raygate
