@@ -42,4 +42,10 @@ std::string format_duration(double seconds) {
   return text + std::to_string(small) + (minutes ? " s" : " min");
 }
 
+std::string format_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.7g", value);
+  return text;
+}
+
 }  // namespace raygate

@@ -19,4 +19,7 @@ namespace raygate {
 /// `value` with `digits` decimals: "7.00".
 [[nodiscard]] std::string format_fixed(double value, int digits);
 
+/// `value` with at most seven digits that count: "35", "-0.125".
+[[nodiscard]] std::string format_number(double value);
+
 }  // namespace raygate

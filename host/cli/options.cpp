@@ -42,6 +42,10 @@ Picture
   --crop X0,Y0,X1,Y1         only this part of it; X1 and Y1 are not included
   --camera EX,EY,EZ,TX,TY,TZ[,FOV]   eye, target, vertical field of view (35);
                              default: the scene file's, or the whole scene
+  --view NAME|AZ,EL          the whole scene: front, back, left, right, top,
+                             bottom, iso, or azimuth and elevation (33,24)
+  --up AXIS                  upwards: x, -x, y ... (a guess: y or z)
+  --fov DEGREES              vertical field of view of any camera (35)
   --exposure STOPS           exposure of the PNG in stops: +1 is twice as bright
   --tone clip|filmic         tone curve of the PNG (clip)
   --channels NAMES           more of the EXR: P,Albedo,objectId,tests,doubts
@@ -64,7 +68,7 @@ Light
 Run
   --save-every SECONDS       save the unfinished pictures now and then
   --stats FILE.json          all statistics as JSON; - prints them
-  --skip-degenerate          leave out faces without area, with a warning
+  --strict                   refuse faces without area, which are left out
   --no-scene-file            do not read the .json beside an OBJ
   -q, --quiet; -v, --verbose print no statistics and no progress; or all of them
   -h, --help; --version
@@ -75,7 +79,7 @@ line, the scene or an output cannot be used; 130 interrupted (partial pictures).
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
-  std::string scene, size, camera, crop, seed;
+  std::string scene, size, camera, view, up, fov, crop, seed;
   RawEngineOptions engine;
   RawOutputOptions output;
   RawLightOptions light;
@@ -94,11 +98,14 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   value("--size", raw.size);
   value("--crop", raw.crop);
   value("--camera", raw.camera);
+  value("--view", raw.view);
+  value("--up", raw.up);
+  value("--fov", raw.fov);
   declare_output_options(app, raw.output);
   declare_light_options(app, raw.light);
   declare_engine_options(app, raw.engine);
   value("--seed", raw.seed);
-  flag("--skip-degenerate", options.skip_degenerate);
+  flag("--strict", options.strict);
   flag("--no-scene-file", raw.no_scene_file);
   flag("-q,--quiet", options.quiet);
   flag("-v,--verbose", options.verbose);
@@ -122,10 +129,17 @@ void check_values(const RawValues& raw, Options& options) {
   options.width = size.width;
   options.height = size.height;
   options.window = parse_crop(raw.crop, size);
-  if (!raw.camera.empty()) {
-    options.camera = parse_camera(raw.camera);
+  if (!raw.camera.empty() && !raw.view.empty()) {
+    throw InputError("--view: expected no --camera beside it");
+  }
+  if (!raw.camera.empty() || !raw.view.empty()) {
+    options.camera.reset();
     options.path.clear();
   }
+  if (!raw.camera.empty()) options.camera = parse_camera(raw.camera);
+  if (!raw.view.empty()) options.view.angles = parse_view(raw.view);
+  if (!raw.up.empty()) options.view.up = parse_axis(raw.up);
+  if (!raw.fov.empty()) options.view.fov = parse_fov(raw.fov);
   static_cast<EngineOptions&>(options) = parse_engine_options(raw.engine);
   if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);
 }
@@ -141,6 +155,8 @@ std::optional<SceneFile> find_scene_file(const RawValues& raw) {
   std::error_code ignored;
   if (raw.no_scene_file || !std::filesystem::is_regular_file(beside, ignored)) return std::nullopt;
   SceneFile file = read_scene_file(beside);
+  // A scene that is made, somewhere else, goes by the name of its scene file.
+  if (!std::filesystem::exists(scene, ignored)) return file;
   if (file.obj.lexically_normal() != scene.lexically_normal()) {
     throw InputError(beside.string() + ": is about " + file.obj.string() + ", not " + raw.scene +
                      "; --no-scene-file leaves it alone");
@@ -202,6 +218,10 @@ Options parse_options(int argc, const char* const* argv) {
     raw = read_line(words, options);
     options.camera = options.scene_file->camera;
     options.path = options.scene_file->path;
+    if (!options.camera) {
+      options.view.up = options.scene_file->up;
+      options.view.fov = options.scene_file->fov;
+    }
   }
   check_values(raw, options);
   require_distinct(options);

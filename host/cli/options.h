@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/cli/engine_options.h"
@@ -16,6 +17,14 @@
 
 namespace raygate {
 
+/// From where the whole scene is seen, and what changes a camera that is given.
+struct ViewOptions {
+  /// Azimuth and elevation in degrees: the scene from there, whatever cameras there are.
+  std::optional<std::pair<double, double>> angles;
+  std::optional<glm::dvec3> up;
+  std::optional<double> fov;
+};
+
 /// Checked options: every value is possible. Whether files can be read or written is not checked.
 struct Options : EngineOptions {
   /// Text that --help or --version asked for; if not empty nothing else here is of use.
@@ -26,12 +35,13 @@ struct Options : EngineOptions {
   OutputOptions output;
   int width = 640, height = 480;        ///< of the whole frame, in pixels
   PixelRect window;                     ///< to be rendered: the frame or --crop
-  std::optional<CameraSetting> camera;  ///< in the OBJ's coordinates; none: framed on the scene
+  std::optional<CameraSetting> camera;  ///< in the file's coordinates; none: its own, or a view
+  ViewOptions view;                     ///< what changes it, or the view
   std::vector<CameraSetting> path;      ///< of --frames; empty: once round the target
   LightOptions light;
   std::uint64_t seed = 0;
   bool quiet = false, verbose = false;
-  bool skip_degenerate = false;
+  bool strict = false;  ///< faces without area are refused
 
   [[nodiscard]] const std::filesystem::path& obj() const {
     return scene_file ? scene_file->obj : scene;

@@ -197,6 +197,7 @@ std::string to_text(const Report& report) {
     pictures += (pictures.empty() ? "" : ", ") + path.string();
   }
   text += row("wrote", pictures + " in " + format_duration(report.total_seconds));
+  if (!report.view.empty()) text += row("view", report.view);
   for (const std::string& legend : report.legends) text += row("scale", legend);
   return report.options.verbose ? text + details(report) : text;
 }

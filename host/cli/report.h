@@ -21,13 +21,14 @@ struct Report {
   double write_seconds = 0.0;  ///< encoding the pictures and bringing them to disk
   double total_seconds = 0.0;
   std::vector<std::filesystem::path> pictures;
+  std::string view;                  ///< what to type for the view, where none was asked for
   std::vector<std::string> legends;  ///< what the colours of false-colour pictures mean
 };
 
 /// Simulated clocks for each test that the unit did; 0 where nothing is simulated.
 [[nodiscard]] double clocks_per_test(const HitCounters& counters);
 
-/// The summary at the end of a run: five lines, one more for each legend, and with --verbose all
+/// The summary at the end of a run: five lines, one more for each legend and for a view, and with --verbose all
 /// there is to say. Every line is ended.
 [[nodiscard]] std::string to_text(const Report& report);
 

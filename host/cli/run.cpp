@@ -16,12 +16,14 @@
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
 #include "host/cli/version.h"
+#include "host/exact/exact.h"
 #include "host/light/lights.h"
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/camera_path.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/scene_file.h"
+#include "host/scene/view.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
@@ -58,19 +60,91 @@ CameraSetting recentred(CameraSetting camera, const Scene& scene) {
   return camera;
 }
 
+/// In the scene's coordinates, with what the command line says of every camera.
+CameraSetting completed(const CameraSetting& camera, const Options& options, const Scene& scene) {
+  CameraSetting result = recentred(camera, scene);
+  if (options.view.up) result.up = options.view.up;
+  if (options.view.fov) result.fov = options.view.fov;
+  return result;
+}
+
+/// The camera that somebody chose: on the command line, in the scene file, in the scene itself.
+std::optional<CameraSetting> given_camera(const Options& options, const Scene& scene) {
+  if (options.camera) return options.camera;
+  return options.view.angles ? std::nullopt : scene.camera;
+}
+
+/// The view where nobody gave a camera.
+View chosen_view(const Options& options, const Scene& scene) {
+  const glm::dvec3 up = options.view.up ? *options.view.up : guessed_up(scene);
+  if (!options.view.angles) return first_view(scene, up);
+  return {options.view.angles->first, options.view.angles->second, up};
+}
+
+double aspect_of(const Options& options) {
+  return static_cast<double>(options.width) / options.height;
+}
+
 /// The camera of a picture, or of frame `frame` of a film, from 1.
-Camera make_camera(const Options& options, const Scene& scene, int frame) {
-  const double aspect = static_cast<double>(options.width) / options.height;
+CameraSetting camera_setting(const Options& options, const Scene& scene, int frame) {
   const int frames = options.output.frames;
   if (frames > 1 && !options.path.empty()) {
     const double time = (frame - 1.0) / (frames - 1.0);
-    const CameraSetting camera = camera_on_path(options.path, time, Camera::kDefaultFov);
-    return Camera::look_at(recentred(camera, scene), aspect);
+    return completed(camera_on_path(options.path, time, Camera::kDefaultFov), options, scene);
   }
-  const CameraSetting still = options.camera ? recentred(*options.camera, scene)
-                                             : framing(scene, aspect, Camera::kDefaultFov);
-  return Camera::look_at(frames > 1 ? turned(still, (frame - 1.0) / frames) : still, aspect);
+  const double turn = frames > 1 ? (frame - 1.0) / frames : 0.0;
+  if (const auto given = given_camera(options, scene)) {
+    const CameraSetting still = completed(*given, options, scene);
+    return frames > 1 ? turned(still, turn) : still;
+  }
+  View view = chosen_view(options, scene);
+  view.azimuth += 360.0 * turn;
+  return framing(scene, aspect_of(options), options.view.fov.value_or(Camera::kDefaultFov), view,
+                 frames > 1 ? Filling::kCylinder : Filling::kVertices);
 }
+
+/// What to type for the view that was chosen, and for its camera; nothing if a camera was given.
+std::string view_text(const Options& options, const Scene& scene) {
+  if (given_camera(options, scene)) return "";
+  const View view = chosen_view(options, scene);
+  const CameraSetting camera = camera_setting(options, scene, 1);
+  const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
+  std::string text = "--view " + format_number(view.azimuth) + "," + format_number(view.elevation);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(view.up[axis]) < largest(view.up)) continue;
+    text += std::string(" --up ") + (view.up[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+  }
+  if (!options.view.up) text += scene.up ? " (of the format)" : " (a guess)";
+  text += "; --camera ";
+  for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";
+  for (int axis = 0; axis < 3; ++axis) text += format_number(target[axis]) + ",";
+  return text + format_number(*camera.fov);
+}
+
+Camera make_camera(const Options& options, const Scene& scene, int frame) {
+  return Camera::look_at(camera_setting(options, scene, frame), aspect_of(options));
+}
+
+/// Lamps go with the camera, so that a film of a scene that has none does not end in its shadow.
+class Lighting {
+ public:
+  explicit Lighting(const Scene& scene) : lights_(scene.lights), background_(scene.background) {}
+
+  /// As the scene is, and lamps for this camera if it is dark.
+  void set(const Options& options, Scene& scene, const Camera& camera) const {
+    scene.lights = lights_;
+    scene.background = background_;
+    if (given_camera(options, scene)) {
+      light_if_dark(scene, camera);
+    } else {
+      light_first_look(scene, camera);
+    }
+  }
+
+ private:
+  std::vector<PointLight> lights_;
+  glm::vec3 background_;
+};
 
 ExrMetadata make_metadata(const Options& options, const Scene& scene, const Camera& camera) {
   const glm::dvec3 eye = scene.origin + glm::dvec3(camera.eye());
@@ -205,13 +279,15 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
 }
 
 /// One picture after the other; a line for each.
-void render_film_of_frames(const Options& options, const Scene& scene, const Bvh& bvh,
-                           Report& report, std::FILE* console) {
+void render_film_of_frames(const Options& options, Scene& scene, const Bvh& bvh, Report& report,
+                           std::FILE* console) {
   const int frames = options.output.frames;
+  const Lighting lighting(scene);
   for (int frame = 1; frame <= frames; ++frame) {
     const Clock::time_point start = Clock::now();
-    render_picture(options, options.output.numbered(frame), scene, bvh,
-                   make_camera(options, scene, frame), start, report);
+    const Camera camera = make_camera(options, scene, frame);
+    lighting.set(options, scene, camera);
+    render_picture(options, options.output.numbered(frame), scene, bvh, camera, start, report);
     if (options.quiet) continue;
     print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
               format_duration(report.total_seconds) + ", wrote " + listed(report.pictures) + "\n",
@@ -237,8 +313,8 @@ void run(const Options& options) {
   Report report;
   report.options = options;
 
-  Scene scene = load_obj(options.obj(), {.skip_degenerate = options.skip_degenerate,
-                                         .threads = static_cast<int>(options.threads)});
+  Scene scene = load_obj(options.obj(),
+                         {.strict = options.strict, .threads = static_cast<int>(options.threads)});
   if (options.scene_file) add_lights(*options.scene_file, scene);
   report.load_seconds = seconds_since(start);
   report.triangles = scene.triangles.size();
@@ -249,12 +325,13 @@ void run(const Options& options) {
   const Bvh bvh(scene, static_cast<int>(options.threads));
   report.tree_seconds = seconds_since(tree_start);
 
-  light_if_dark(scene, make_camera(options, scene, 1));
+  report.view = view_text(options, scene);
   if (frames > 0) {
     render_film_of_frames(options, scene, bvh, report, console);
   } else {
-    render_picture(options, options.output, scene, bvh, make_camera(options, scene, 1), start,
-                   report);
+    const Camera camera = make_camera(options, scene, 1);
+    Lighting(scene).set(options, scene, camera);
+    render_picture(options, options.output, scene, bvh, camera, start, report);
     if (!options.quiet) print(to_text(report), console);
   }
 }

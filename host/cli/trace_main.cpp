@@ -49,7 +49,7 @@ are the origin, the direction and, where wanted, a limit:
                              the last two; of any: ray,hit)
   --engine NAME              cpu (default), rtl, model or check: as in ./render
   --unit, --arith, --lanes, --threads     as in ./render
-  --skip-degenerate          leave out faces without area, with a warning
+  --strict                   refuse faces without area (they are left out)
   -q, --quiet                print no summary (on standard error)
   -h, --help; --version
 
@@ -67,7 +67,7 @@ struct TraceOptions {
   Hits hits = Hits::kNearest;
   std::vector<Answer> columns;
   EngineOptions engine;
-  bool skip_degenerate = false, quiet = false;
+  bool strict = false, quiet = false;
 
   [[nodiscard]] bool is_to_standard_output() const { return output == "-"; }
   [[nodiscard]] AnswerFormat format() const {
@@ -86,7 +86,7 @@ TraceOptions parse(const std::vector<std::string>& words) {
   app.add_option("--hits", hits)->take_last();
   app.add_option("--columns", columns)->take_last();
   declare_engine_options(app, engine);
-  app.add_flag("--skip-degenerate", options.skip_degenerate)->disable_flag_override();
+  app.add_flag("--strict", options.strict)->disable_flag_override();
   app.add_flag("-q,--quiet", options.quiet)->disable_flag_override();
   options.information =
       read_command_line(app, words, kHelp, "a third file; expected SCENE and RAYS");
@@ -159,7 +159,7 @@ int run(const TraceOptions& options) {
   std::optional<SceneFile> scene_file;
   if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
   const Scene scene = load_obj(scene_file ? scene_file->obj : options.scene,
-                               {.skip_degenerate = options.skip_degenerate});
+                               {.strict = options.strict});
   for (const std::string& warning : scene.warnings) print_warning(warning);
   const auto threads = static_cast<int>(options.engine.threads);
   const Bvh bvh(scene, threads);

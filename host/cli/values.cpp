@@ -55,6 +55,42 @@ CameraSetting parse_camera(const std::string& text) {
   return camera;
 }
 
+std::pair<double, double> parse_view(const std::string& text) {
+  constexpr double kIso = 35.264389682754654;  // all three axes look equally long
+  constexpr std::pair<const char*, std::pair<double, double>> kNames[] = {
+      {"front", {0, 0}}, {"back", {180, 0}},  {"left", {-90, 0}},  {"right", {90, 0}},
+      {"top", {0, 90}},  {"iso", {45, kIso}}, {"bottom", {0, -90}}};
+  for (const auto& [name, angles] : kNames) {
+    if (text == name) return angles;
+  }
+  const auto angles = parse_list<double>(text);
+  if (!angles || angles->size() != 2 || !(std::abs((*angles)[0]) <= 360.0) ||
+      !(std::abs((*angles)[1]) <= 90.0)) {
+    fail_value("--view", text,
+               "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees (from "
+               "-360 to 360, and from -90 to 90)");
+  }
+  return {(*angles)[0], (*angles)[1]};
+}
+
+glm::dvec3 parse_axis(const std::string& text) {
+  return choose<glm::dvec3>("--up", text,
+                            {{"x", {1, 0, 0}},
+                             {"y", {0, 1, 0}},
+                             {"z", {0, 0, 1}},
+                             {"-x", {-1, 0, 0}},
+                             {"-y", {0, -1, 0}},
+                             {"-z", {0, 0, -1}}});
+}
+
+double parse_fov(const std::string& text) {
+  const auto fov = parse_number<double>(text);
+  if (!fov || !(*fov > 0.0 && *fov < 180.0)) {
+    fail_value("--fov", text, "degrees above 0 and below 180");
+  }
+  return *fov;
+}
+
 PixelRect parse_crop(const std::string& text, Size size) {
   const std::string frame = std::to_string(size.width) + "x" + std::to_string(size.height);
   PixelRect window{0, 0, size.width, size.height};

@@ -115,32 +115,74 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   return std::nullopt;
 }
 
+/// Lamps stand still while the camera is looked through: they are found from it.
+class Studio {
+ public:
+  Studio(const Scene& scene, const Camera& camera) : camera_(camera) {
+    glm::dvec3 low(scene.positions[0]), high = low;
+    for (const glm::vec3& position : scene.positions) {
+      low = glm::min(low, glm::dvec3(position));
+      high = glm::max(high, glm::dvec3(position));
+    }
+    const glm::dvec3 eye(camera.eye());
+    middle_ = 0.5 * (low + high);
+    size_ = glm::length(high - low);
+    is_inside_ = glm::all(glm::lessThanEqual(low, eye)) && glm::all(glm::lessThanEqual(eye, high));
+  }
+
+  [[nodiscard]] bool is_inside() const { return is_inside_; }
+
+  /// From the upper left of the camera, or from the camera.
+  [[nodiscard]] PointLight key() const {
+    // In the middle of the scene a white wall that faces the lamp has radiance 0.8 from it.
+    if (is_inside_) return lamp(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
+    const glm::dvec3 at = place(-0.8, 1.2);
+    return lamp(at, glm::length(at - middle_), 0.8);
+  }
+  /// From the right of the camera.
+  [[nodiscard]] PointLight fill() const {
+    const glm::dvec3 at = place(1.4, 0.3);
+    return lamp(at, glm::length(at - middle_), 0.25);
+  }
+
+ private:
+  [[nodiscard]] glm::dvec3 place(double right, double up) const {
+    return middle_ +
+           size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
+  }
+  [[nodiscard]] static PointLight lamp(const glm::dvec3& at, double distance, double radiance) {
+    return {glm::vec3(at), glm::dvec3(radiance * std::numbers::pi * distance * distance)};
+  }
+
+  const Camera& camera_;
+  glm::dvec3 middle_;
+  double size_;
+  bool is_inside_;
+};
+
+/// Neither lights nor faces that emit.
+bool has_no_lamp(const Scene& scene) {
+  return scene.lights.empty() && std::ranges::none_of(scene.triangles, [&](const Triangle& face) {
+           return emits(scene.materials[face.material]);
+         });
+}
+
+constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
+
 }  // namespace
 
 void light_if_dark(Scene& scene, const Camera& camera) {
-  if (!scene.lights.empty() || scene.background != glm::vec3(0.0f)) return;
-  if (scene.positions.empty()) return;
-  for (const Triangle& triangle : scene.triangles) {
-    if (emits(scene.materials[triangle.material])) return;
-  }
-  glm::dvec3 low(scene.positions[0]), high = low;
-  for (const glm::vec3& position : scene.positions) {
-    low = glm::min(low, glm::dvec3(position));
-    high = glm::max(high, glm::dvec3(position));
-  }
-  const glm::dvec3 eye(camera.eye()), middle = 0.5 * (low + high);
-  const double size = glm::length(high - low);
-  const bool is_inside =
-      glm::all(glm::lessThanEqual(low, eye)) && glm::all(glm::lessThanEqual(eye, high));
-  const glm::dvec3 lamp =
-      is_inside
-          ? eye
-          : middle + size * (1.2 * camera.up() - 0.8 * camera.right() - 1.3 * camera.forward());
-  // In the middle of the scene a white wall that faces the lamp has radiance 0.8 from it.
-  const double distance = is_inside ? 0.35 * size : glm::length(lamp - middle);
-  const double intensity = 0.8 * std::numbers::pi * distance * distance;
-  scene.lights.push_back({glm::vec3(lamp), glm::dvec3(intensity)});
-  scene.background = glm::vec3(0.18f, 0.2f, 0.24f);
+  if (scene.positions.empty() || scene.background != glm::vec3(0.0f) || !has_no_lamp(scene)) return;
+  scene.lights.push_back(Studio(scene, camera).key());
+  scene.background = kDimSky;
+}
+
+void light_first_look(Scene& scene, const Camera& camera) {
+  if (scene.positions.empty() || !has_no_lamp(scene)) return;
+  const Studio studio(scene, camera);
+  scene.lights.push_back(studio.key());
+  if (!studio.is_inside()) scene.lights.push_back(studio.fill());
+  if (scene.background == glm::vec3(0.0f)) scene.background = kDimSky;
 }
 
 Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {

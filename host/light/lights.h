@@ -21,6 +21,10 @@ class Camera;
 /// sky.
 void light_if_dark(Scene& scene, const Camera& camera);
 
+/// The same for a first look, whose camera nobody chose: with a second, weaker lamp from the right,
+/// and also where a background is all the light there is.
+void light_first_look(Scene& scene, const Camera& camera);
+
 /// The emitting faces of one object and material: one lamp, which shines to both sides of each
 /// face. Each part of its area is as likely to be sampled as any other.
 struct AreaLight {

@@ -29,6 +29,7 @@
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/scene_file.h"
+#include "host/scene/view.h"
 #include "host/trace/answers.h"
 #include "host/trace/question.h"
 #include "host/trace/ray_block.h"
@@ -104,11 +105,11 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
 /// A scene and the tree around it.
 class PythonScene {
  public:
-  PythonScene(const std::string& file, bool skip_degenerate, std::optional<int> threads) {
+  PythonScene(const std::string& file, bool strict, std::optional<int> threads) {
     const std::filesystem::path path = file;
     if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
-    scene_ = load_obj(file_ ? file_->obj : path, {.skip_degenerate = skip_degenerate});
+    scene_ = load_obj(file_ ? file_->obj : path, {.strict = strict});
     if (file_) add_lights(*file_, scene_);
     bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
   }
@@ -193,7 +194,11 @@ class PythonScene {
     // A lamp for a dark scene depends on the camera: it is there for this picture alone.
     const auto lights = scene_.lights;
     const glm::vec3 background = scene_.background;
-    light_if_dark(scene_, camera);
+    if (eye || given_camera()) {
+      light_if_dark(scene_, camera);
+    } else {
+      light_first_look(scene_, camera);
+    }
     const auto film = std::make_shared<Film>();
     {
       const nb::gil_scoped_release release;
@@ -227,14 +232,21 @@ class PythonScene {
     return [this] { return std::make_unique<CpuFinder>(*bvh_); };
   }
 
+  [[nodiscard]] std::optional<CameraSetting> given_camera() const {
+    return file_ && file_->camera ? file_->camera : scene_.camera;
+  }
+
   [[nodiscard]] Camera camera_of(const std::optional<Three>& eye,
                                  const std::optional<Three>& target, const std::optional<Three>& up,
                                  std::optional<double> fov, double aspect) const {
-    CameraSetting setting = framing(scene_, aspect, fov.value_or(Camera::kDefaultFov));
-    if (file_ && file_->camera) {
-      setting = *file_->camera;
+    CameraSetting setting;
+    if (const auto given = given_camera()) {
+      setting = *given;
       setting.eye -= scene_.origin;
       setting.target -= scene_.origin;
+    } else {
+      setting = framing(scene_, aspect, fov.value_or(Camera::kDefaultFov),
+                        first_view(scene_, guessed_up(scene_)));
     }
     const auto vector = [](const Three& v) { return glm::dvec3(v[0], v[1], v[2]); };
     if (eye) setting.eye = vector(*eye) - scene_.origin;
@@ -258,7 +270,7 @@ NB_MODULE(_raygate, m) {
   raygate::require_ieee_floats();
   nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
   nb::class_<PythonScene>(m, "Scene")
-      .def(nb::init<const std::string&, bool, std::optional<int>>(), "file"_a, "skip_degenerate"_a,
+      .def(nb::init<const std::string&, bool, std::optional<int>>(), "file"_a, "strict"_a,
            "threads"_a.none())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })

@@ -1,12 +1,12 @@
 #include "host/scene/camera.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "host/elementary.h"
 #include "host/exact/exact.h"
 #include "host/scene/io/input_error.h"
+#include "host/scene/view.h"
 
 namespace raygate {
 namespace {
@@ -26,24 +26,6 @@ glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
 
 std::string text(const glm::dvec3& v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
-}
-
-struct Box {
-  glm::dvec3 low, high;
-};
-
-Box bounding_box(const Scene& scene) {
-  if (scene.triangles.empty()) throw InputError("cannot frame a scene without faces");
-  const glm::dvec3 first(scene.positions[scene.triangles[0].vertices[0]]);
-  Box box{first, first};
-  for (const Triangle& triangle : scene.triangles) {
-    for (const std::uint32_t vertex : triangle.vertices) {
-      const glm::dvec3 position(scene.positions[vertex]);
-      box.low = glm::min(box.low, position);
-      box.high = glm::max(box.high, position);
-    }
-  }
-  return box;
 }
 
 }  // namespace
@@ -95,36 +77,8 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
 }
 
 Camera Camera::frame(const Scene& scene, double aspect, double vertical_fov_degrees) {
-  return look_at(framing(scene, aspect, vertical_fov_degrees), aspect);
-}
-
-CameraSetting framing(const Scene& scene, double aspect, double fov) {
-  const Box box = bounding_box(scene);
-  const glm::dvec3 centre = 0.5 * (box.low + box.high);
-  const glm::dvec3 half = 0.5 * (box.high - box.low);
-
-  // A tall scene (or the inside of a box) is seen nearly level, a flat one from higher up.
-  const double flatness = 1.0 - std::min(1.0, half.y / std::max(half.x, half.z));
-  const SineCosine<double> raised = sine_cosine((3.0 + 27.0 * flatness) / 360.0);
-  const glm::dvec3 towards_eye(0.0, raised.sine, raised.cosine);
-  const glm::dvec3 y_axis(0.0, 1.0, 0.0);
-  const Camera at_centre =
-      Camera::look_at(centre + towards_eye * largest(half), centre, y_axis, fov, aspect);
-
-  // The least distance at which the eight corners are within the four sides of the view.
-  constexpr double kFilled = 0.96;
-  const double half_height = half_tangent(fov);
-  const double half_width = half_height * aspect;
-  double distance = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 offset =
-        half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    const double nearer = -glm::dot(offset, at_centre.forward());
-    const double across = std::abs(glm::dot(offset, at_centre.right())) / half_width;
-    const double upwards = std::abs(glm::dot(offset, at_centre.up())) / half_height;
-    distance = std::max(distance, std::max(across, upwards) / kFilled + nearer);
-  }
-  return {centre + distance * towards_eye, centre, y_axis, fov};
+  return look_at(framing(scene, aspect, vertical_fov_degrees, front_view(scene), Filling::kBox),
+                 aspect);
 }
 
 glm::vec3 Camera::direction(double x, double y) const {

@@ -2,24 +2,11 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <optional>
 
+#include "host/scene/camera_setting.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
-
-/// Where a camera stands and looks. What is left out has a default.
-struct CameraSetting {
-  glm::dvec3 eye{0.0}, target{0.0};  ///< not the same point
-  std::optional<glm::dvec3> up;      ///< upwards in the picture; not zero and not along the view
-  std::optional<double> fov;         ///< from the lower to the upper edge in degrees, in (0, 180)
-};
-
-/// A setting that shows all of `scene` from the front, in the scene's coordinates: along -z, raised
-/// a little, the more the flatter the scene is. The box around the scene fills the picture but for
-/// a margin of 4 %; its middle is the target. `aspect` is width / height of the picture.
-/// Throws InputError for a scene without triangles or one too large for float.
-[[nodiscard]] CameraSetting framing(const Scene& scene, double aspect, double fov);
 
 /// Coordinates are the scene's (a world point minus Scene::origin). Right-handed: seen from the
 /// eye, `right` is +x and `up` is +y of the picture, and the view goes along `forward`.
@@ -41,7 +28,7 @@ class Camera {
   /// map has there, -z. Without `fov` it is kDefaultFov. Throws as above.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
 
-  /// Looks as framing() says.
+  /// Looks at all of a scene from the front: see front_view().
   [[nodiscard]] static Camera frame(const Scene& scene, double aspect,
                                     double vertical_fov_degrees = kDefaultFov);
 

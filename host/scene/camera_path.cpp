@@ -46,9 +46,15 @@ CameraSetting camera_on_path(const std::vector<CameraSetting>& path, double time
 }
 
 CameraSetting turned(const CameraSetting& camera, double turn) {
-  const auto [s, c] = sine_cosine(turn);
+  const glm::dvec3 up = camera.up.value_or(glm::dvec3(0.0, 1.0, 0.0)), size = glm::abs(up);
+  const int axis = size.y >= size.x && size.y >= size.z ? 1 : size.z >= size.x ? 2 : 0;
+  const int from = (axis + 1) % 3, to = (axis + 2) % 3;
+  const auto [s, c] = sine_cosine(up[axis] < 0.0 ? -turn : turn);
   const auto rotated = [&](const glm::dvec3& v) {
-    return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x);
+    glm::dvec3 result = v;
+    result[from] = c * v[from] - s * v[to];
+    result[to] = c * v[to] + s * v[from];
+    return result;
   };
   CameraSetting result = camera;
   result.eye = camera.target + rotated(camera.eye - camera.target);

@@ -15,7 +15,7 @@ namespace raygate {
                                            double default_fov);
 
 /// `camera` after `turn` (1 is all the way round) around the vertical axis through its target,
-/// counter-clockwise seen from above.
+/// counter-clockwise seen from above. Vertical is the coordinate axis nearest to its up, or y.
 [[nodiscard]] CameraSetting turned(const CameraSetting& camera, double turn);
 
 }  // namespace raygate

@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "host/scene/camera_setting.h"
 #include "host/scene/texture.h"
 
 namespace raygate {
@@ -70,6 +72,8 @@ struct Scene {
   std::vector<PointLight> lights;
   glm::vec3 background{0.0f};  ///< radiance from where no geometry is, scene-linear RGB
   glm::dvec3 origin{0.0};      ///< world = origin + position
+  std::optional<CameraSetting> camera;  ///< the file's first one, in world coordinates
+  std::optional<glm::dvec3> up;         ///< upwards, where the file's format says so
   std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures
   std::vector<std::string> warnings;         ///< "file:line: ...": of statements, then of faces
 };

@@ -134,13 +134,9 @@ TEST_F(BadInput, NumbersThatAreNone) {
 }
 
 TEST_F(BadInput, FacesWithoutArea) {
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n", 5);
-  expect_refused_scene("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", 4);
-}
-
-TEST_F(BadInput, FacesWithoutAreaCanBeLeftOut) {
-  folder_.write("scene.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n");
-  const Outcome outcome = render({"scene.obj", "--skip-degenerate", "-o", "new"});
+  folder_.write("scene.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\nf 3 3 1\n");
+  expect_refused(render({"scene.obj", "--strict"}), "scene\\.obj:5: face of zero area [^\n]+");
+  const Outcome outcome = render({"scene.obj", "-o", "new"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(std::regex_match(outcome.err, std::regex("warning: scene\\.obj[^\n]+\n")))
       << outcome.err;

@@ -71,6 +71,36 @@ TEST_F(Render, ExposureChangesThePngAlone) {
   }
 }
 
+TEST_F(Render, AViewSaysWhatToTypeForIt) {
+  folder_.write("box.obj",
+                "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 1 .5 3\n"
+                "f 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+  const auto picture = [&](std::vector<std::string> more, const std::string& name) {
+    more.insert(more.end(), {"box.obj", "--size", "40x30", "--engine", "cpu", "-o", name});
+    return render(more).out;
+  };
+  const std::string said = picture({}, "a.png");
+  EXPECT_NE(said.find("\nview     --view 33,24 --up z (a guess); --camera "), std::string::npos)
+      << said;
+  EXPECT_EQ(picture({"--view", "33,24", "--up", "z"}, "b.png").find("guess"), std::string::npos);
+  EXPECT_TRUE(folder_.read("a.png") == folder_.read("b.png"));
+  EXPECT_EQ(picture({"--camera", "9,9,9,0,0,0"}, "c.png").find("\nview "), std::string::npos);
+}
+
+TEST_F(Render, LampsGoRoundWithTheCamera) {
+  folder_.write("ball.obj",
+                "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+                "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
+  render({"ball.obj", "--size", "20x20", "--engine", "cpu", "--frames", "4", "-o", "a.png"});
+  // The ball looks the same from all four sides: what comes from behind is as bright.
+  const std::vector<std::uint8_t> front = decode_png(folder_.read("a-0001.png"));
+  for (const char* name : {"a-0002.png", "a-0003.png", "a-0004.png"}) {
+    const std::vector<std::uint8_t> side = decode_png(folder_.read(name));
+    ASSERT_EQ(side.size(), front.size());
+    for (std::size_t i = 0; i < side.size(); ++i) ASSERT_NEAR(side[i], front[i], 1) << name;
+  }
+}
+
 TEST_F(Render, CameraIsTakenInTheFilesCoordinates) {
   // A square at z = -5, far from the world's origin, seen from 10 in front of it.
   folder_.write("square.obj",

@@ -17,7 +17,7 @@ struct Stage {
   Bvh bvh;
 
   explicit Stage(const std::filesystem::path& file)
-      : name(file.stem().string()), scene(load_obj(file, {.skip_degenerate = true})), bvh(scene) {
+      : name(file.stem().string()), scene(load_obj(file)), bvh(scene) {
     light_if_dark(scene, Camera::frame(scene, 4.0 / 3.0));
   }
 

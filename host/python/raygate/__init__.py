@@ -23,11 +23,11 @@ __all__ = ["InputError", "Scene"]
 class Scene:
     """Triangles, materials, lights: an OBJ file, or a scene file (JSON) about one."""
 
-    def __init__(self, file, *, skip_degenerate=False, threads=None):
+    def __init__(self, file, *, strict=False, threads=None):
         """Reads `file` and builds its tree. InputError, a ValueError, says with file and line what
-        cannot be used. `skip_degenerate`: leave out faces without area. `threads`: one per
+        cannot be used. `strict`: refuse faces without area. `threads`: one per
         processor if None, here as everywhere."""
-        self._scene = _raygate.Scene(os.fspath(file), skip_degenerate, threads)
+        self._scene = _raygate.Scene(os.fspath(file), strict, threads)
 
     @property
     def triangle_count(self):

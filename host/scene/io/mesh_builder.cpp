@@ -166,10 +166,10 @@ void MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
       kind = PolygonKind::kZeroArea;
     }
     if (kind == PolygonKind::kZeroArea) {
-      if (!options.skip_degenerate) {
+      if (options.strict) {
         throw InputError(file_name_, face.line,
                          "face of zero area (its corners are on one line, or cancel out), "
-                         "expected one with an area, or --skip-degenerate");
+                         "expected one with an area, as --strict asks");
       }
       dropped.note(face.line);
       continue;
@@ -195,7 +195,7 @@ void MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
       }
     }
   }
-  dropped.report(file_name_, "face of zero area, dropped", scene);
+  dropped.report(file_name_, "face of zero area, left out", scene);
   touching.report(file_name_, "polygon crosses or touches itself, cut as well as can be", scene);
   no_direction.report(file_name_, "normal of length 0, the face is taken as flat", scene);
 }

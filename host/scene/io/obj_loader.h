@@ -9,9 +9,9 @@
 namespace raygate {
 
 struct LoadOptions {
-  /// A face of exactly zero area (after rounding to float) is an error; true: it is dropped and
-  /// counted in a warning.
-  bool skip_degenerate = false;
+  /// A face of exactly zero area (after rounding to float) is an error; false: it is left out, and
+  /// one warning counts them.
+  bool strict = false;
   int threads = 1;                   ///< that read the file; they change nothing of the scene
   std::size_t part_size = 1u << 18;  ///< bytes of the file that are worth a thread's while
 };
@@ -24,7 +24,7 @@ struct LoadOptions {
 /// double.
 ///
 /// Throws InputError with file and line: what cannot be read, what is not OBJ, an index that no
-/// vertex answers to, a number that is not finite, a face of no area, a file with no face,
+/// vertex answers to, a number that is not finite, no face with an area,
 /// a texture that is damaged.
 /// Warns (Scene::warnings) and goes on: a missing MTL file, material or texture, statements that
 /// say nothing to a ray tracer of polygons (points, lines, curves).

@@ -103,6 +103,26 @@ class Reader {
   std::string file_;
 };
 
+std::optional<glm::dvec3> read_up(const Reader& reader, const JsonValue& camera,
+                                  const std::string& name) {
+  const JsonValue* const value = Reader::find(camera, "up");
+  if (value == nullptr) return std::nullopt;
+  const glm::dvec3 up = reader.vector(*value, name + ".up");
+  if (up == glm::dvec3(0.0)) reader.fail(*value, name + ".up", "a direction across the view");
+  return up;
+}
+
+std::optional<double> read_fov(const Reader& reader, const JsonValue& camera,
+                               const std::string& name) {
+  const JsonValue* const value = Reader::find(camera, "fov");
+  if (value == nullptr) return std::nullopt;
+  const double fov = reader.number(*value, name + ".fov");
+  if (!(fov > 0.0 && fov < 180.0)) {
+    reader.fail(*value, name + ".fov", "degrees above 0 and below 180");
+  }
+  return fov;
+}
+
 CameraSetting read_camera(const Reader& reader, const JsonValue& value, const std::string& name) {
   CameraSetting camera;
   const JsonValue& target = reader.need(value, name, "target");
@@ -111,20 +131,15 @@ CameraSetting read_camera(const Reader& reader, const JsonValue& value, const st
   if (camera.eye == camera.target) {
     reader.fail(target, name + ".target", "another point than the eye");
   }
-  if (const JsonValue* up = Reader::find(value, "up")) {
-    camera.up = reader.vector(*up, name + ".up");
+  camera.up = read_up(reader, value, name);
+  if (camera.up) {
     const glm::dvec3 view = camera.target - camera.eye;
     const double sine_times_lengths = glm::length(glm::cross(view, *camera.up));
     if (!(sine_times_lengths > 1e-9 * glm::length(view) * glm::length(*camera.up))) {
-      reader.fail(*up, name + ".up", "a direction across the view");
+      reader.fail(*Reader::find(value, "up"), name + ".up", "a direction across the view");
     }
   }
-  if (const JsonValue* fov = Reader::find(value, "fov")) {
-    camera.fov = reader.number(*fov, name + ".fov");
-    if (!(*camera.fov > 0.0 && *camera.fov < 180.0)) {
-      reader.fail(*fov, name + ".fov", "degrees above 0 and below 180");
-    }
-  }
+  camera.fov = read_fov(reader, value, name);
   return camera;
 }
 
@@ -132,15 +147,22 @@ void read_cameras(const Reader& reader, const JsonValue& value, SceneFile& scene
   constexpr const char* kKeys[] = {"eye", "target", "up", "fov", "path"};
   reader.require_object(value, "camera", kKeys);
   const JsonValue* const path = Reader::find(value, "path");
-  if (path == nullptr || value.keys().size() > 1) {
+  if (Reader::find(value, "eye") != nullptr || Reader::find(value, "target") != nullptr) {
     scene.camera = read_camera(reader, value, "camera");
   }
+  scene.up = read_up(reader, value, "camera");
+  scene.fov = read_fov(reader, value, "camera");
   if (path == nullptr) return;
   for (const JsonValue& place : reader.array(path, "camera.path")) {
     constexpr const char* kPlaceKeys[] = {"eye", "target", "up", "fov"};
     const std::string name = "camera.path[" + std::to_string(scene.path.size()) + "]";
     reader.require_object(place, name, kPlaceKeys);
     scene.path.push_back(read_camera(reader, place, name));
+  }
+  for (CameraSetting& place : scene.path) {
+    if (scene.camera) break;
+    if (!place.up) place.up = scene.up;
+    if (!place.fov) place.fov = scene.fov;
   }
   if (scene.path.size() < 2) reader.fail(*path, "camera.path", "at least two places");
   if (!scene.camera) scene.camera = scene.path.front();

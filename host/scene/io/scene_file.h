@@ -37,6 +37,8 @@ struct SceneFile {
   std::filesystem::path file;
   std::filesystem::path obj;
   std::optional<CameraSetting> camera;
+  std::optional<glm::dvec3> up;     ///< "camera.up", also without a camera: of views
+  std::optional<double> fov;        ///< the same of "camera.fov"
   std::vector<CameraSetting> path;  ///< what the camera passes, in order; at least two, or none
   std::vector<PointLightSetting> point_lights;
   std::vector<AreaLightSetting> area_lights;

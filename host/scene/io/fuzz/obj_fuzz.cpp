@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     // In parts of a line or a few.
     (void)raygate::load_obj(folder / "s.obj",
-                            {.skip_degenerate = true, .threads = 2, .part_size = 1});
+                            {.threads = 2, .part_size = 1});
   } catch (const raygate::InputError&) {
     // What a bad file deserves.
   }

@@ -16,9 +16,10 @@ constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 std::string error_of(std::string_view text) {
   const TempFolder folder;
   const std::filesystem::path file = folder.write("bad.obj", text);
-  EXPECT_EQ(test::outcome(file, {}), test::outcome_in_parts(file, {}));
+  const LoadOptions strict = {.strict = true};
+  EXPECT_EQ(test::outcome(file, strict), test::outcome_in_parts(file, strict));
   try {
-    (void)load_obj(file);
+    (void)load_obj(file, strict);
   } catch (const InputError& error) {
     const std::string what = error.what();
     EXPECT_TRUE(what.starts_with(file.string() + ":")) << what;
@@ -113,14 +114,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "4: face with 2 corners, expected at least 3"},
         BadFile{"RepeatedCorner", after_triangle("f 1 2 2\n"),
                 "4: face of zero area (its corners are on one line, or cancel out), expected one "
-                "with an area, or --skip-degenerate"},
+                "with an area, as --strict asks"},
         BadFile{"Collinear", "v 0 0 0\nv 1 1 1\nv 3 3 3\nv 7 7 7\nf 1 2 \\\n 3 4\n",
                 "5: face of zero area (its corners are on one line, or cancel out), expected one "
-                "with an area, or --skip-degenerate"},
+                "with an area, as --strict asks"},
         // Distinct as doubles, one point as floats.
         BadFile{"CollapsesInFloat", "v 0 0 0\nv 1 0 0\nv 1 1e-60 0\nf 1 2 3\n",
                 "4: face of zero area (its corners are on one line, or cancel out), expected one "
-                "with an area, or --skip-degenerate"},
+                "with an area, as --strict asks"},
         BadFile{"AfterContinuation", after_triangle("f 1 \\\n2 \\\n3\nf 1 2 9\n"),
                 "7: vertex index 9 in a face, but the file has 3"},
         BadFile{"AfterCrLf", "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n\r\nf 1 2 9\r\n",

@@ -201,15 +201,14 @@ TEST(LoadObj, WhatIsNoPolygonIsIgnoredWithOneWarningEach) {
       "scene.obj:7: p statements are ignored: only polygons are rendered"));
 }
 
-TEST(LoadObj, DegenerateFacesCanBeSkipped) {
+TEST(LoadObj, FacesWithoutAreaAreLeftOut) {
   const std::string text = std::string(kSquare) + "f 1 1 2\nf 1 2 3 4\nf 1 2 1 2\n";
-  EXPECT_THROW((void)load(text), InputError);
-  const Scene scene = load(text, {.skip_degenerate = true});
+  EXPECT_THROW((void)load(text, {.strict = true}), InputError);
+  const Scene scene = load(text);
   EXPECT_EQ(vertices_of(scene), kTwoTriangles);
   EXPECT_EQ(only_warning(scene),
-            "scene.obj:5: face of zero area, dropped, here and in 1 later face");
-  EXPECT_THROW((void)load(std::string(kSquare) + "f 1 1 2\n", {.skip_degenerate = true}),
-               InputError);
+            "scene.obj:5: face of zero area, left out, here and in 1 later face");
+  EXPECT_THROW((void)load(std::string(kSquare) + "f 1 1 2\n"), InputError) << "nothing is left";
 }
 
 TEST(LoadObj, ARepeatedCornerOfAPolygonIsLeftOut) {

@@ -151,7 +151,7 @@ TEST(DamagedObj, LoadsSoundlyOrIsRefused) {
     damaged = mutator.mutate(damaged);
     folder.write("m.mtl", mtl);
     const std::filesystem::path file = folder.write("s.obj", obj);
-    const LoadOptions options = {.skip_degenerate = mutator.below(2) == 0};
+    const LoadOptions options = {.strict = mutator.below(2) == 0};
     if (round % 8 == 1) {
       ASSERT_EQ(test::outcome(file, options), test::outcome_in_parts(file, options)) << obj;
     }

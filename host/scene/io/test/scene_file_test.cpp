@@ -92,6 +92,21 @@ TEST_F(ReadSceneFile, APathAloneBeginsWithItsFirstPlace) {
   EXPECT_EQ(scene.camera->eye, glm::dvec3(0, 0, 1));
 }
 
+TEST_F(ReadSceneFile, UpAndFieldOfViewAreKnownWithoutACamera) {
+  const SceneFile scene = read(R"({"camera": {"up": [0, 0, 1], "fov": 50}})");
+  EXPECT_FALSE(scene.camera);
+  EXPECT_EQ(scene.up, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(scene.fov, 50.0);
+  const SceneFile film = read(R"({"camera": {"up": [0, 0, 1], "path": [
+      {"eye": [1, 0, 0], "target": [0, 0, 0]}, {"eye": [2, 0, 0], "target": [0, 0, 0], "up": [0, 1, 0]}]}})");
+  EXPECT_EQ(film.path[0].up, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(film.path[1].up, glm::dvec3(0, 1, 0)) << "its own counts";
+  EXPECT_EQ(error(R"({"camera": {"up": [0, 0, 0]}})"),
+            "s.json:1: camera.up: an array of 3, expected a direction across the view");
+  EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1], "up": [0, 1, 0]}})"),
+            "s.json:1: camera: 'target' is missing");
+}
+
 TEST_F(ReadSceneFile, WhatIsNoJson) {
   EXPECT_EQ(error(""), "s.json: the file is empty");
   EXPECT_TRUE(error("{\n  \"obj\" \"a\"\n}").starts_with("s.json:2: not JSON: "))

@@ -1,0 +1,47 @@
+// The whole of a scene from one side: the camera where nobody gives one.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "host/scene/camera_setting.h"
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// From which side a scene is seen, in degrees. The front is towards +z; where z is up, towards -y,
+/// as modellers have it.
+struct View {
+  double azimuth = 0.0;          ///< 0 from the front, 90 from the right, counter-clockwise
+  double elevation = 0.0;        ///< 0 level, 90 from straight above
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< upwards in the scene; not zero
+};
+
+/// A view that shows what most models are: from the right of the front and from above.
+inline constexpr double kFirstAzimuth = 33.0, kFirstElevation = 24.0;
+
+/// From the front: level for a tall scene (or the inside of a box), the higher the flatter it is.
+[[nodiscard]] View front_view(const Scene& scene, const glm::dvec3& up = {0.0, 1.0, 0.0});
+
+/// The view of a first look: kFirstAzimuth and kFirstElevation; or front_view() of a room, most of
+/// whose faces look inwards: its walls would be in the way.
+[[nodiscard]] View first_view(const Scene& scene, const glm::dvec3& up);
+
+/// +y or +z: the file's format says which (Scene::up), or on what the scene seems to stand. +z
+/// where faces that lie flat cover clearly more of its lower z end than of its lower y end.
+[[nodiscard]] glm::dvec3 guessed_up(const Scene& scene);
+
+/// What fills the picture.
+enum class Filling {
+  kVertices,  ///< of the scene
+  kBox,       ///< around them
+  kCylinder,  ///< upright around the box, so that the camera may go round it
+};
+
+/// A camera that shows all of `scene` from one side, in the scene's coordinates: `filling` fills
+/// the picture but for a margin of 4 %, and the box's middle is the target. `aspect` is width /
+/// height of the picture. Throws InputError for a scene without triangles or one too large for
+/// float.
+[[nodiscard]] CameraSetting framing(const Scene& scene, double aspect, double fov, const View& view,
+                                    Filling filling = Filling::kVertices);
+
+}  // namespace raygate
