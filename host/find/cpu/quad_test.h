@@ -1,10 +1,11 @@
 // One ray against up to four triangles in float32: what it is sure of, straight from the corners.
 #pragma once
 
-#include <cmath>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "host/exact/exact.h"
@@ -63,46 +64,57 @@
 
 namespace raygate {
 
-/// A ray's origin and direction in lanes 0 to 2; lane 3 is any number of the ray's.
-RAYGATE_INLINE void load_ray(const Ray& ray, FloatQuad& origin, FloatQuad& direction) {
-  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
-  load_quad(reinterpret_cast<const float*>(&ray), origin);
-  load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, direction);
-  direction = __builtin_shufflevector(direction, direction, 1, 2, 3, 3);
-}
-
 /// A ray, made ready to be tested against triangles one quad after the other.
 struct ShearedRay {
-  int axes[3];        ///< x, y, z of the shear: the ray goes farthest along the last one
-  float origin[3];    ///< along these axes
-  float shear[2];     ///< s_x, s_y
-  std::int32_t back;  ///< the sign bit of I_z
+  std::int32_t axes[3];  ///< x, y, z of the shear: the ray goes farthest along the last one
+  float origin[3];       ///< along these axes
+  float shear[2];        ///< s_x, s_y
+  float way;             ///< I_z
 
   ShearedRay() = default;
   /// The direction usable (see is_usable).
-  RAYGATE_INLINE explicit ShearedRay(const Ray& ray) {
-    FloatQuad o, d;
-    load_ray(ray, o, d);
-    const float x = std::abs(d[0]), y = std::abs(d[1]), z = std::abs(d[2]);
-    const int farthest = z >= x && z >= y ? 2 : (y >= x ? 1 : 0);
-    *this = ShearedRay(o, d, farthest);
-  }
-  /// Its origin and direction as load_ray has them, and the axis along which it goes farthest.
-  RAYGATE_INLINE ShearedRay(const FloatQuad& o, const FloatQuad& d, int farthest) {
-    constexpr int kAxes[3][3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
-    float from[kQuad], way[kQuad], ratio[kQuad];  // to be picked from
-    std::memcpy(from, &o, sizeof from);
-    std::memcpy(way, &d, sizeof way);
-    const FloatQuad ratios = d / way[farthest];
-    std::memcpy(ratio, &ratios, sizeof ratio);
-    for (int k = 0; k < 3; ++k) {
-      axes[k] = kAxes[farthest][k];
-      origin[k] = from[axes[k]];
-    }
-    for (int k = 0; k < 2; ++k) shear[k] = ratio[axes[k]];
-    back = way[farthest] < 0.0f ? std::numeric_limits<std::int32_t>::min() : 0;
+  RAYGATE_INLINE explicit ShearedRay(const Ray& ray);
+
+  /// The sign bit of I_z.
+  [[nodiscard]] RAYGATE_INLINE std::int32_t back() const {
+    return std::bit_cast<std::int32_t>(way) & std::numeric_limits<std::int32_t>::min();
   }
 };
+
+/// The words of four ShearedRays, lane by lane, from origins and directions by axis.
+RAYGATE_INLINE void shear(const FloatQuad (&o)[3], const FloatQuad (&d)[3],
+                          FloatQuad (&words)[sizeof(ShearedRay) / sizeof(float)]) {
+  FloatQuad size[3];
+  for (int k = 0; k < 3; ++k) magnitude(d[k], size[k]);
+  const IntQuad z_is_z = (size[2] >= size[0]) & (size[2] >= size[1]), z_is_y = size[1] >= size[0];
+  const auto pick = [&](const auto& z, const auto& y, const auto& x)
+      __attribute__((always_inline)) {
+    return z_is_z ? z : (z_is_y ? y : x);
+  };
+  constexpr IntQuad kAxis[3] = {{0, 0, 0, 0}, {1, 1, 1, 1}, {2, 2, 2, 2}};
+  FloatQuad way[3];
+  for (int k = 0; k < 3; ++k) {
+    const int of_y = (k + 2) % 3, of_x = (k + 1) % 3;
+    words[k] = reinterpret_cast<FloatQuad>(pick(kAxis[k], kAxis[of_y], kAxis[of_x]));
+    words[3 + k] = pick(o[k], o[of_y], o[of_x]);
+    way[k] = pick(d[k], d[of_y], d[of_x]);
+  }
+  words[6] = way[0] / way[2];
+  words[7] = way[1] / way[2];
+  words[8] = way[2];
+}
+
+RAYGATE_INLINE ShearedRay::ShearedRay(const Ray& ray) {
+  FloatQuad o[3], d[3], words[sizeof(ShearedRay) / sizeof(float)];
+  for (int k = 0; k < 3; ++k) {
+    o[k] = ray.origin[k] - FloatQuad{};
+    d[k] = ray.direction[k] - FloatQuad{};
+  }
+  raygate::shear(o, d, words);
+  float first[sizeof(ShearedRay) / sizeof(float)];
+  for (std::size_t i = 0; i < std::size(first); ++i) first[i] = words[i][0];
+  std::memcpy(this, first, sizeof first);
+}
 
 /// Bit i of the masks, and lane i, stand for triangle i.
 struct QuadVerdict {
@@ -175,7 +187,7 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
   const FloatQuad &m = sides.m, &bound = sides.bound;
   FloatQuad z[3];
   for (int v = 0; v < 3; ++v) {
-    z[v] = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(sides.z[v]) ^ ray.back);
+    z[v] = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(sides.z[v]) ^ ray.back());
   }
   FloatQuad near = z[0] < z[1] ? z[0] : z[1], far = z[0] > z[1] ? z[0] : z[1];
   near = near < z[2] ? near : z[2];

@@ -73,13 +73,12 @@ bool RaySearch::settle(RayWalk& walk, std::uint32_t slot, bool sure) {
 
 namespace {
 
-/// As is_scaled: NaNs and infinities have larger bits.
-RAYGATE_INLINE bool is_scaled_inline(const glm::vec3& direction) {
-  std::int32_t largest = 0;
-  for (int k = 0; k < 3; ++k) {
-    largest = std::max(largest, std::bit_cast<std::int32_t>(direction[k]) & 0x7FFFFFFF);
-  }
-  return largest >= 0x3F800000 && largest < 0x40000000;
+/// A ray's origin and direction in lanes 0 to 2; lane 3 is any number of the ray's.
+RAYGATE_INLINE void load_ray(const Ray& ray, FloatQuad& origin, FloatQuad& direction) {
+  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
+  load_quad(reinterpret_cast<const float*>(&ray), origin);
+  load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, direction);
+  direction = __builtin_shufflevector(direction, direction, 1, 2, 3, 3);
 }
 
 std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
@@ -94,23 +93,30 @@ std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
 
 }  // namespace
 
-/// Makes ready for the next ray that can hit anything; false where there is none.
-RAYGATE_INLINE bool RaySearch::set_out(RayWalk& walk) {
-  for (; next_ < rays_.size(); ++next_) {
-    const Ray& ray = rays_[next_];
-    if (!is_scaled_inline(ray.direction)) {
-      if (!is_usable(ray.direction)) continue;
-      refuse_unscaled(ray);
+/// Sends the next rays on their ways, with these walks; bit i of the result where walk i is on one.
+RAYGATE_INLINE LaneMask RaySearch::set_out(RayWalk* const (&walks)[kQuad]) {
+  const auto first = static_cast<std::uint32_t>(next_);
+  const std::size_t count = std::min<std::size_t>(kQuad, rays_.size() - next_);
+  const Ray* rays[kQuad];
+  for (std::size_t i = 0; i < kQuad; ++i) rays[i] = &rays_[next_ + std::min(i, count - 1)];
+  next_ += count;
+  const LaneMask all = (1u << count) - 1, scaled = raygate::set_out(rays, walks) & all;
+  for (LaneMask left = all & ~scaled; left != 0; left &= left - 1) {
+    const Ray& ray = *rays[std::countr_zero(left)];
+    if (is_usable(ray.direction)) refuse_unscaled(ray);
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    RayWalk& walk = *walks[i];
+    const std::uint32_t number = walk.number = first + i;
+    if (!search_.limits.empty()) {
+      walk.end_at(Interval{search_.limits[number], search_.limits[number]});
     }
-    const auto number = static_cast<std::uint32_t>(next_++);
-    walk.set_out(ray, number, search_.limit(number));
     if (!search_.ignored.empty()) walk.ignored = search_.ignored[number];
     if (!search_.enough_before.empty()) {
-      walk.enough = float_below(search_.enough_before[number] * walk.pace);
+      walk.enough = float_below(search_.enough_before[number] * walk.pace());
     }
-    return true;
   }
-  return false;
+  return scaled;
 }
 
 /// A ray's way is at its end.
@@ -119,65 +125,88 @@ RAYGATE_INLINE void RaySearch::arrive(const RayWalk& walk) {
   counters.tests += walk.work.tests;
   counters.edge_doubts += walk.work.doubts;
   if (!search_.work.empty()) search_.work[walk.number] = walk.work;
-  if (walk.slot == NearestHit::kNone) return;
   hits_[walk.number].slot = walk.slot;
   hits_[walk.number].t = walk.t();
-  if (search_.enough_before.empty()) add_point(walk.number);
+  pointless_[pointless_count_] = walk.number;
+  pointless_count_ += walk.slot != NearestHit::kNone ? 1 : 0;
 }
 
 /// Each ray tests everything.
 void RaySearch::visit_all() {
   const std::vector<Bvh::Child> leaves = all_leaves(bvh_);
-  const auto walk = std::make_unique_for_overwrite<RayWalk>();
-  while (set_out(*walk)) {
-    for (const Bvh::Child& leaf : leaves) {
-      QuadSides sides;
-      const LaneMask open = find_sides(walk->sheared, bvh_.corners_of(leaf), leaf.count, sides);
-      walk->work.tests += leaf.count;
-      if (open != 0 && !judge(*walk, leaf, sides, open)) break;
+  const auto walks = std::make_unique<RayWalk[]>(kQuad);
+  while (next_ < rays_.size()) {
+    LaneMask open = set_out({&walks[0], &walks[1], &walks[2], &walks[3]});
+    for (; open != 0; open &= open - 1) {
+      RayWalk& walk = walks[std::countr_zero(open)];
+      for (const Bvh::Child& leaf : leaves) {
+        QuadSides sides;
+        const LaneMask near = find_sides(walk.sheared, bvh_.corners_of(leaf), leaf.count, sides);
+        walk.work.tests += leaf.count;
+        if (near != 0 && !judge(walk, leaf, sides, near)) break;
+      }
+      arrive(walk);
     }
-    arrive(*walk);
+    add_points(kPlanes);
   }
 }
 
 /// All rays walk the tree, near before far, and test what is there: kAtOnce of them take turns, so
-/// that none waits for memory, and what one guesses wrongly costs the others little.
+/// that none waits for memory. What depends on where a ray goes chooses between numbers, not
+/// between branches: a branch would be guessed wrongly as often as not.
 void RaySearch::walk_all() {
-  constexpr int kAtOnce = 32;
-  const auto walks = std::make_unique_for_overwrite<RayWalk[]>(kAtOnce);
+  const auto walks = std::make_unique<RayWalk[]>(kAtOnce);
   in_vectors([&](auto code) RAYGATE_BODY {
     QuadSides sides[kAtOnce];
     LaneMask open[kAtOnce];
-    RayWalk *inside[2 * kAtOnce], *leaves[kAtOnce];  // by where they are
-    int inside_count = 0, leaf_count = 0;
-    for (; inside_count < kAtOnce && set_out(walks[inside_count]); ++inside_count) {
-      inside[inside_count] = &walks[inside_count];
-    }
-    while (inside_count + leaf_count > 0) {
+    int near[kAtOnce];
+    RayWalk *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];  // by where they are
+    int inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+    for (int i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
+    for (;;) {
+      while (idle_count >= kQuad && next_ < rays_.size()) {
+        idle_count -= kQuad;
+        RayWalk* four[kQuad];
+        std::copy_n(idle + idle_count, kQuad, four);
+        const LaneMask started = set_out(four);
+        for (int i = 0; i < kQuad; ++i) {
+          const bool on_its_way = (started >> i & 1) != 0;
+          inside[inside_count] = idle[idle_count] = four[i];
+          inside_count += on_its_way ? 1 : 0;
+          idle_count += on_its_way ? 0 : 1;
+        }
+      }
+      if (inside_count + leaf_count == 0) return;
       for (int i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, *inside[i]);
       for (int i = 0; i < leaf_count; ++i) {
         RayWalk& walk = *leaves[i];
         walk.work.tests += walk.at.count;
         open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at), walk.at.count, sides[i]);
       }
+      int open_count = 0;
       for (int i = 0; i < leaf_count; ++i) {
-        RayWalk& walk = *leaves[i];
-        if (open[i] != 0 && !judge(walk, walk.at, sides[i], open[i])) walk.depth = 0;
-        inside[inside_count + i] = &walk;
+        inside[inside_count + i] = leaves[i];
+        near[open_count] = i;
+        open_count += open[i] != 0 ? 1 : 0;
       }
-      const int count = inside_count + leaf_count;
+      for (int k = 0; k < open_count; ++k) {
+        const int i = near[k];
+        RayWalk& walk = *leaves[i];
+        if (!judge(walk, walk.at, sides[i], open[i])) walk.end();
+      }
+      const int count = inside_count + leaf_count, were_idle = idle_count;
       inside_count = leaf_count = 0;
       for (int i = 0; i < count; ++i) {
         RayWalk& walk = *inside[i];
-        if (!go_on(bvh_, walk)) {
-          arrive(walk);
-          if (!set_out(walk)) continue;
-        }
-        const bool is_leaf = walk.at.count != 0;
-        inside[inside_count] = leaves[leaf_count] = &walk;
-        inside_count += is_leaf ? 0 : 1;
-        leaf_count += is_leaf ? 1 : 0;
+        go_on<code()>(bvh_, walk);
+        const int ended = walk.has_ended() ? 1 : 0, in_leaf = walk.at.count != 0 ? 1 : 0;
+        inside[inside_count] = leaves[leaf_count] = idle[idle_count] = &walk;
+        inside_count += (ended | in_leaf) ^ 1;
+        leaf_count += in_leaf & ~ended;
+        idle_count += ended;
       }
+      for (int i = were_idle; i < idle_count; ++i) arrive(*idle[i]);
+      add_points(kPlanes);
     }
   });
 }
@@ -194,27 +223,30 @@ void RaySearch::trace(std::span<const Ray> rays, const Search& search, std::span
   } else {
     visit_all();
   }
-  add_points();
+  add_points(1);
   counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
                      (counters.edge_doubts - before.edge_doubts);
 }
 
-/// P, which the search did without: four at a time.
-RAYGATE_INLINE void RaySearch::add_point(std::uint32_t number) {
-  pointless_[pointless_count_++] = number;
-  if (pointless_count_ == kPlanes) add_points();
+/// P, which the search did without: four at a time, until fewer than `enough` rays wait for theirs.
+void RaySearch::add_points(int enough) {
+  if (!search_.enough_before.empty()) pointless_count_ = 0;
+  while (pointless_count_ >= enough) {
+    const int count = std::min(pointless_count_, kPlanes);
+    pointless_count_ -= count;
+    add_points(std::span<const std::uint32_t>(pointless_).subspan(pointless_count_, count));
+  }
 }
 
-/// P has the bits of plane_point.
-void RaySearch::add_points() {
-  if (pointless_count_ == 0) return;
+/// Of these rays, up to four, with the bits of plane_point.
+void RaySearch::add_points(std::span<const std::uint32_t> numbers) {
   std::array<Corners, kPlanes> corners;
   std::array<PlaneView, kPlanes> views;
   std::array<NearestHit*, kPlanes> hits;
   FloatQuad origin, d[kQuad], n[kQuad];  // n[3]: d of the plane
   static_assert(kPlanes == kQuad);
   for (int i = 0; i < kPlanes; ++i) {
-    const std::uint32_t number = pointless_[std::min(i, pointless_count_ - 1)];
+    const std::uint32_t number = numbers[std::min<std::size_t>(i, numbers.size() - 1)];
     hits[i] = &hits_[number];
     corners[i] = bvh_.corners_of(hits[i]->slot);
     views[i] = {&rays_[number].origin, &corners[i]};
@@ -243,10 +275,9 @@ void RaySearch::add_points() {
     transpose(rows);
     static_assert(offsetof(NearestHit, point_error) ==
                   offsetof(NearestHit, point) + 3 * sizeof(float));
-    for (int i = 0; i < pointless_count_; ++i) std::memcpy(&hits[i]->point, &rows[i], 16);
+    for (std::size_t i = 0; i < numbers.size(); ++i) std::memcpy(&hits[i]->point, &rows[i], 16);
   });
-  counters_.hit.plane_tests += static_cast<std::uint64_t>(pointless_count_);
-  pointless_count_ = 0;
+  counters_.hit.plane_tests += numbers.size();
 }
 
 }  // namespace raygate

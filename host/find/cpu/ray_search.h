@@ -24,22 +24,24 @@ class RaySearch {
   void trace(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits);
 
  private:
-  bool set_out(RayWalk& walk);
+  LaneMask set_out(RayWalk* const (&walks)[kQuad]);
   void arrive(const RayWalk& walk);
   void walk_all();
   void visit_all();
   bool judge(RayWalk& walk, const Bvh::Child& leaf, const QuadSides& sides, LaneMask open);
   bool settle(RayWalk& walk, std::uint32_t slot, bool sure);
-  void add_point(std::uint32_t number);
-  void add_points();
+  void add_points(int enough);
+  void add_points(std::span<const std::uint32_t> numbers);
+
+  static constexpr int kAtOnce = 32;  // rays that take turns
 
   const Bvh& bvh_;
   FindCounters& counters_;
   std::span<const Ray> rays_;
   Search search_;
   std::span<NearestHit> hits_;
-  std::size_t next_ = 0;                          // ray to set out
-  std::array<std::uint32_t, kPlanes> pointless_;  // rays whose P is still to be found
+  std::size_t next_ = 0;                                    // ray to set out
+  std::array<std::uint32_t, kAtOnce + kPlanes> pointless_;  // rays whose P is still to be found
   int pointless_count_ = 0;
 };
 

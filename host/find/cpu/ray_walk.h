@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "host/exact/exact.h"
@@ -27,72 +28,110 @@
 
 namespace raygate {
 
-using UnsignedQuad = std::uint32_t __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
-
 /// One ray on its way.
 struct RayWalk {
   // Against boxes, by axis: see Beam. A node has the planes to which the ray comes first, and last,
   // so many bytes from its beginning.
-  FloatQuad origin, inverse_near, inverse_far;
-  UnsignedQuad near_at, far_at;
-  float cutoff;  ///< cutoff_beyond the nearest hit
+  float origin[3], inverse_near[3], inverse_far[3];
+  std::uint32_t near_at[3], far_at[3];
+  ShearedRay sheared;  ///< against triangles
 
   std::uint32_t number;   ///< of the ray
-  ShearedRay sheared;     ///< against triangles
+  float cutoff;           ///< cutoff_beyond the nearest hit
   float low, high;        ///< bounds of the nearest hit's depth; without one, the limit's
   float enough;           ///< a hit whose depth is surely less is enough
   std::uint32_t slot;     ///< of the nearest hit
   std::uint32_t ignored;  ///< a slot
   RayWork work;
-  double pace;
 
   Bvh::Child at;  ///< what is visited next
   // What waits: children of nodes, the nearest last, as far as one node knows. A key is where the
-  // ray enters a child's box, a little less at most, with the child's number in the last bits.
+  // ray enters a child's box, a little less at most, with the child's number in the last bits. At
+  // the bottom is one that always matters: there the way ends.
+  static constexpr std::int32_t kBottom = Bvh::kWidth - 1;
   std::int32_t depth;
-  std::int32_t keys[Bvh::kStackSize + Bvh::kWidth];
-  std::uint32_t nodes[Bvh::kStackSize + Bvh::kWidth];
+  std::int32_t keys[Bvh::kWidth + Bvh::kStackSize + Bvh::kWidth];
+  std::uint32_t nodes[Bvh::kWidth + Bvh::kStackSize + Bvh::kWidth];
 
-  /// Sets out along a ray that is scaled, towards a limit.
-  RAYGATE_INLINE void set_out(const Ray& ray, std::uint32_t its_number, float limit);
+  RayWalk() {
+    std::fill_n(keys, Bvh::kWidth, std::numeric_limits<std::int32_t>::min());
+    nodes[kBottom] = 0;
+  }
 
+  [[nodiscard]] double pace() const { return std::abs(sheared.way); }
   /// The nearest hit, or the limit, is at a t, or at a depth, within these bounds.
   RAYGATE_INLINE void end_at(const Interval& t) {
-    end_at(float_below(t.low * pace), float_above(t.high * pace));
+    end_at(float_below(t.low * pace()), float_above(t.high * pace()));
   }
   RAYGATE_INLINE void end_at(float lowest, float highest) {
     low = lowest;
     high = highest;
     cutoff = cutoff_beyond(highest);
   }
-  [[nodiscard]] Interval t() const { return {low / pace, high / pace}; }
+  [[nodiscard]] Interval t() const { return {low / pace(), high / pace()}; }
+  /// Nothing that waits matters any more.
+  void end() { depth = kBottom + 1; }
+  [[nodiscard]] bool has_ended() const { return depth == kBottom; }
 };
 
-RAYGATE_INLINE void RayWalk::set_out(const Ray& ray, std::uint32_t its_number, float limit) {
+/// Sends rays from the root on their ways, to no limit; bit i of the result where ray i is scaled,
+/// without which its walk means nothing.
+RAYGATE_INLINE LaneMask set_out(const Ray* const (&rays)[kQuad], RayWalk* const (&walks)[kQuad]) {
+  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
   constexpr std::int32_t kRow = sizeof(Bvh::Node::bounds[0][0]);
   static_assert(offsetof(Bvh::Node, bounds) == 0);
-  FloatQuad d, size;
-  load_ray(ray, origin, d);
-  magnitude(d, size);
-  const int farthest = size[2] >= size[0] && size[2] >= size[1] ? 2 : (size[1] >= size[0] ? 1 : 0);
-  const float longest = std::max(std::max(size[0], size[1]), size[2]);
-  sheared = ShearedRay(origin, d, farthest);
-  const IntQuad small = size < kSmallestComponent, back = d < 0.0f;
-  const FloatQuad one = {1.0f, 1.0f, 1.0f, 1.0f}, sign = back ? -one : one;
-  inverse_near = longest / (small ? sign * kSmallestComponent : d);
-  inverse_far =
-      kExitGrowth * (small ? sign * std::numeric_limits<float>::infinity() : inverse_near);
-  constexpr IntQuad kLows = {0, kRow, 2 * kRow, 0}, kHighs = kLows + 3 * kRow;
-  near_at = reinterpret_cast<UnsignedQuad>(back ? kHighs : kLows);
-  far_at = reinterpret_cast<UnsignedQuad>(back ? kLows : kHighs);
-  number = its_number;
-  pace = longest;
-  slot = ignored = NearestHit::kNone;
-  enough = -1.0f;
-  work = {};
-  depth = 0;
-  at = {0, 0};
-  end_at(Interval{limit, limit});
+  FloatQuad first[kQuad], last[kQuad];  // the rays' first four words, and their last four
+  for (int i = 0; i < kQuad; ++i) {
+    load_quad(reinterpret_cast<const float*>(rays[i]), first[i]);
+    load_quad(reinterpret_cast<const float*>(rays[i] + 1) - kQuad, last[i]);
+  }
+  transpose(first);
+  transpose(last);
+  const FloatQuad o[3] = {first[0], first[1], first[2]}, d[3] = {last[1], last[2], last[3]};
+  // A RayWalk's words, up to those of `sheared`.
+  constexpr std::size_t kBoxWords = 15, kWords = kBoxWords + sizeof(ShearedRay) / sizeof(float);
+  static_assert(offsetof(RayWalk, sheared) == 4 * kBoxWords && kWords % kQuad == 0);
+  FloatQuad words[kWords], sheared[kWords - kBoxWords], longest = {};
+  shear(o, d, sheared);
+  std::copy(std::begin(sheared), std::end(sheared), words + kBoxWords);
+  IntQuad largest = {};
+  for (const FloatQuad& component : d) {
+    FloatQuad size;
+    magnitude(component, size);
+    const IntQuad bits = reinterpret_cast<IntQuad>(size);
+    largest = bits > largest ? bits : largest;  // a NaN's are larger than any number's
+  }
+  longest = reinterpret_cast<FloatQuad>(largest);
+  for (int k = 0; k < 3; ++k) {
+    FloatQuad size;
+    magnitude(d[k], size);
+    const IntQuad small = size < kSmallestComponent, back = d[k] < 0.0f;
+    const FloatQuad one = {1.0f, 1.0f, 1.0f, 1.0f}, sign = back ? -one : one;
+    const FloatQuad inverse = longest / (small ? sign * kSmallestComponent : d[k]);
+    const IntQuad to_high = back & (3 * kRow), low_at = IntQuad{} + k * kRow;
+    words[k] = o[k];
+    words[3 + k] = inverse;
+    words[6 + k] = kExitGrowth * (small ? sign * std::numeric_limits<float>::infinity() : inverse);
+    words[9 + k] = reinterpret_cast<FloatQuad>(low_at + to_high);
+    words[12 + k] = reinterpret_cast<FloatQuad>(low_at + 3 * kRow - to_high);
+  }
+  for (std::size_t word = 0; word < kWords; word += kQuad) {
+    FloatQuad rows[kQuad] = {words[word], words[word + 1], words[word + 2], words[word + 3]};
+    transpose(rows);
+    for (int i = 0; i < kQuad; ++i) {
+      std::memcpy(reinterpret_cast<char*>(walks[i]) + 4 * word, &rows[i], sizeof rows[i]);
+    }
+  }
+  for (RayWalk* const walk : walks) {
+    walk->low = walk->high = std::numeric_limits<float>::infinity();
+    walk->cutoff = std::numeric_limits<float>::max();
+    walk->slot = walk->ignored = NearestHit::kNone;
+    walk->enough = -1.0f;
+    walk->work = {};
+    walk->at = {0, 0};
+    walk->end();
+  }
+  return sign_mask((largest >= 0x3F800000) & (largest < 0x40000000));
 }
 
 /// Puts eight keys in order, the largest first: Batcher's bitonic network.
@@ -150,26 +189,25 @@ RAYGATE_INLINE void step_inside(const Bvh& tree, RayWalk& walk) {
   } else {
     const std::int32_t first = keys[std::countr_zero(mask | 0x100) & kNumber];
     const std::int32_t second = keys[31 - std::countl_zero(mask | 1)];
-    walk.keys[walk.depth] = std::max(first, second);
-    walk.keys[walk.depth + 1] = std::min(first, second);
+    const std::int32_t to_smaller = std::int32_t{first > second} * (second - first);
+    walk.keys[walk.depth] = second - to_smaller;
+    walk.keys[walk.depth + 1] = first + to_smaller;
   }
   const IntLanes nodes = static_cast<std::int32_t>(walk.at.first) - IntLanes{};
   std::memcpy(walk.nodes + walk.depth, &nodes, sizeof nodes);
   walk.depth += count;
 }
 
-/// Goes on to what waits last and still matters; false where nothing does.
-RAYGATE_INLINE bool go_on(const Bvh& tree, RayWalk& walk) {
+/// Goes on to what waits last and still matters. Without a branch, as a rule.
+template <Vectors kCode>
+RAYGATE_INLINE void go_on(const Bvh& tree, RayWalk& walk) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;
-  const auto cutoff = std::bit_cast<std::int32_t>(walk.cutoff);  // floats from 0 on: in order
-  while (walk.depth > 0) {
-    const std::int32_t key = walk.keys[--walk.depth];
-    if ((key & ~kNumber) > cutoff) continue;
-    walk.at = tree.nodes()[walk.nodes[walk.depth]].child[key & kNumber];
-    tree.prefetch(walk.at);
-    return true;
+  // Floats from 0 on are in the order of their bits.
+  const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | kNumber;
+  while (walk.keys[--walk.depth] > last_key) {
   }
-  return false;
+  walk.at = tree.nodes()[walk.nodes[walk.depth]].child[walk.keys[walk.depth] & kNumber];
+  tree.prefetch(walk.at);
 }
 
 }  // namespace raygate
