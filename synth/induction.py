@@ -19,15 +19,33 @@ class Model:
     text: str
 
     def listed(self, what: str) -> list[tuple[str, str]]:
-        """The numbers and names of its "assert" or "cover" statements; names and widths of "input"."""
+        """The numbers and names of its "assert" or "cover" statements; names and widths of "input", "wire"."""
         return re.findall(rf"^; yosys-smt2-{what} (\S+) (.*)$", self.text, re.M)
+
+    def functions(self) -> tuple[list[str], list[str]]:
+        """Declarations of the functions that contracts/functions.sv speaks of, and what holds of every `state`:
+        wire X_result is the function X of wire X_operands."""
+        width = dict(self.listed("wire"))
+        declared, equal = {}, []
+        for result in width:
+            found = re.fullmatch(r"(?:.*\.)?(\w+)_result", result)
+            operands = result.removesuffix("result") + "operands"
+            if not found or operands not in width:
+                continue
+            declared[found[1]] = (f"(declare-fun {found[1]} ((_ BitVec {width[operands]})) "
+                                  f"(_ BitVec {width[result]}))")
+            equal.append(f"(= (|{self.top}_n {result}| state) "
+                         f"({found[1]} (|{self.top}_n {operands}| state)))")
+        return list(declared.values()), equal
 
     def clocks(self, count: int) -> str:
         """So many states, each the next of the one before; every assumption holds in each."""
-        lines = ["(set-logic QF_BV)", self.text]
+        declared, equal = self.functions()
+        lines = ["(set-logic QF_UFBV)", self.text, *declared,
+                 f"(define-fun functions ((state |{self.top}_s|)) Bool (and true true {' '.join(equal)}))"]
         for k in range(count):
             lines.append(float_proofs.state(self.text, self.top, f"s{k}", f"s{k - 1}" if k else ""))
-            lines.append(f"(assert (and (|{self.top}_u| s{k}) (|{self.top}_h| s{k})))")
+            lines.append(f"(assert (and (|{self.top}_u| s{k}) (|{self.top}_h| s{k}) (functions s{k})))")
         return "\n".join(lines) + "\n"
 
     def first(self) -> str:

@@ -41,20 +41,21 @@ def _used(top: str) -> list[pathlib.Path]:
 
 
 def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
-          prepare: str = "", parameters: tuple[tuple[str, object], ...] = (),
-          steps: int = 0, reach: int = 0, prepared: str = "", name: str = "") -> tuple[dict, bool]:
+          prepare: str = "", parameters: tuple[tuple[str, object], ...] = (), steps: int = 0,
+          reach: int = 0, prepared: str = "", beside: tuple[str, ...] = (), name: str = "") -> tuple[dict, bool]:
     """Proves the assertions of proofs/<top>.sv; raises ToolFailed where one does not hold, where there
     is none, and where what is assumed leaves a `cover` out of reach.
 
     `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, what is named of hw/arith unless said.
-    `prepare`, `prepared`: a Tcl file that makes a module of it first, and what of.
+    `prepare`, `prepared`: a Tcl file that makes a module of it first, and what of. `beside`: files of
+    `sources`, by name, whose modules the proof itself has beside that one.
     `steps`: 0 for combinational ones; else proven for that many clocks from reset and, where they
     held for so many, for the next one. `reach`: clocks to reach covers in, `steps` unless said.
     """
     folder = store.OUT / "proofs" / (name or top)
     own = PROOFS / f"{top}.sv"
     rtl = cores.used(top, [*_files("arith"), own])[:-1] if sources is None else sources
-    read = [*([] if prepare else rtl), own]
+    read = [*(file for file in rtl if not prepare or file.stem in beside), own]
     scripts = [PROOFS / "prove.tcl", pathlib.Path(induction.__file__), *([PROOFS / prepare] if prepare else [])]
     wanted = store.key([*rtl, *read, *scripts], tools.version("yosys"), method, parameters, steps,
                        reach, prepared)
@@ -93,19 +94,30 @@ def nearest_is_kept(name: str, exp: int, frac: int) -> tuple[dict, bool]:
                  parameters=(("ExpWidth", exp), ("FracWidth", frac)), name=f"nearest.{name}")
 
 
-def _pipeline() -> list[pathlib.Path]:
-    """The pipelined unit, around arithmetic that may give anything."""
-    contracts = PROOFS / "contracts" / "hit_test_arithmetic.sv"
+def _around(top: str, name: str) -> list[pathlib.Path]:
+    """A unit, with the modules of contracts/NAME.sv in place of its own."""
+    contracts = PROOFS / "contracts" / f"{name}.sv"
     stands_for = re.findall(r"^module (\w+)", contracts.read_text(), re.M)
     rtl = [file for file in cores.files("hit_test") if file.stem not in stands_for]
-    return [*cores.used("hit_test_pipeline", rtl), contracts]
+    return [*dict.fromkeys([*cores.used(top, rtl), *cores.used(name, [*rtl, contracts])])]
+
+
+def computes(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """The pipelined unit's words go through the cores that they should, by unrolling."""
+    inner = " ".join(f"u_nearest.{port}_i" for port in ("valid", "hit", "doubt", "t", "t_error", "payload"))
+    inner += " u_point.valid_i u_point.dividends_i u_point.v_i u_point.valid_o u_point.point_o"
+    latency = frac // 2 + 16
+    return holds("pipeline_computes", "Bitwuzla", _around("hit_test_pipeline", "functions"), "open.tcl",
+                 (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
+                 prepared=_opened(exp, frac, 1, inner), beside=("functions", "hit_decision", "delay_line"),
+                 name=f"computes.{name}")
 
 
 def keeps_credits(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     """The pipelined unit never overfills its queue, and holds what it offers, by induction."""
     inner = ("test_q decided_q dividing_q report closed u_point.valid_q u_results.push_i "
              "u_results.count_q u_results.read_q u_results.write_q")
-    return holds("pipeline_keeps_credits", "Bitwuzla", _pipeline(), "open.tcl",
+    return holds("pipeline_keeps_credits", "Bitwuzla", _around("hit_test_pipeline", "hit_test_arithmetic"), "open.tcl",
                  (("ExpWidth", exp), ("FracWidth", frac)), steps=1,
                  prepared=_opened(exp, frac, 1, inner), name=f"credits.{name}")
 
@@ -114,7 +126,7 @@ def keeps_tags(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     """Tests come to their distances in order, with their tags, by induction."""
     inner = "u_nearest.valid_i u_nearest.first_i u_nearest.last_i u_nearest.tag_i"
     latency = frac // 2 + 16
-    return holds("pipeline_keeps_tags", "Bitwuzla", _pipeline(), "open.tcl",
+    return holds("pipeline_keeps_tags", "Bitwuzla", _around("hit_test_pipeline", "hit_test_arithmetic"), "open.tcl",
                  (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
                  prepared=_opened(exp, frac, 2, inner), name=f"tags.{name}")
 
@@ -208,6 +220,9 @@ def all_proofs() -> list[Proof]:
         *(Proof(f"unit.tags.{name}", "the pipelined unit keeps the order, tags and bursts of its tests",
                 "Bitwuzla", functools.partial(keeps_tags, name, exp, frac), False)
           for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+        *(Proof(f"unit.computes.{name}", "the pipelined unit's words go through the operations that they should",
+                "Bitwuzla", functools.partial(computes, name, exp, frac), False)
+          for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
         *(Proof(f"unit.decision.{name}", "no verdict denies exact edge products, if bounds hold", "Bitwuzla",
                 functools.partial(decision, name, exp, frac))
           for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
@@ -217,6 +232,16 @@ def all_proofs() -> list[Proof]:
         Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "Bitwuzla",
               lambda: holds("timetable", "Bitwuzla", unit, "open.tcl", steps=20,
                             prepared="hit_test_unit {} {word step clear accumulate load_d divide}")),
+        Proof("unit.computes.serial", "the paper's unit makes P of its words, whatever it did before", "Bitwuzla",
+              lambda: holds("unit_computes", "Bitwuzla", _around("hit_test_unit", "functions"), steps=12), False),
+        Proof("unit.computes.general", "the general unit, likewise", "Bitwuzla",
+              lambda: holds("general_unit_computes", "Bitwuzla",
+                            _around("general_hit_test_unit", "functions"), steps=17), False),
+        Proof("unit.array", "an array is its lanes, and its counters are their sums", "Bitwuzla",
+              lambda: holds("array_is_its_lanes", "Bitwuzla", _around("hit_test_array", "lane"), "open.tcl",
+                            steps=1, reach=8, prepared="hit_test_array {-chparam Lanes 4 -chparam ExpWidth 5 "
+                            "-chparam FracWidth 10 -chparam TagWidth 2 -chparam CounterWidth 6} "
+                            "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")),
     ]
     proofs += [Proof(f"float.{one.name}", one.says, "Bitwuzla",
                      functools.partial(float_proofs.proven, one), False, one.long)

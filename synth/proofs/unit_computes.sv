@@ -1,0 +1,60 @@
+// What the paper's unit makes of a test's words, whatever functions its cores compute: whenever it takes
+// a test, and whatever it did before and is given after, the components that leave it 8, 9 and 10
+// clocks later are d I_k / (((0 + a Ix) + b Iy) + c Iz). That it takes tests when it should: timetable.
+module unit_computes #(
+  localparam int unsigned Width = 32
+) (
+  input logic             clk,
+  input logic             valid,
+  input logic [Width-1:0] bus
+);
+
+  logic [3:0] age;  // of the test that the first clock takes
+  initial age = '0;
+  always_ff @(posedge clk) if (age != '1) age <= age + 1'b1;
+
+  logic ready, output_valid;
+  logic [Width-1:0] out;
+
+  hit_test_unit dut (  // in any state, but for this: a test is there, and is taken
+    .clk_i(clk),
+    .rst_ni(1'b1),
+    .valid_i(valid),
+    .ready_o(ready),
+    .bus_i(bus),
+    .bus_o(out),
+    .valid_o(output_valid)
+  );
+  always_comb assume (age != '0 || valid && ready);
+
+  logic [7*Width-1:0] words;  // as they came: Ix Iy Iz, a b c, d
+  always_ff @(posedge clk) if (age < 4'd7) words[Width*age+:Width] <= bus;
+
+  // ---- The component that is due, from the words
+
+  logic [4*Width-1:0] sums;
+  logic [Width-1:0] numerator, quotient;
+
+  assign sums[0+:Width] = '0;
+  for (genvar k = 0; k < 3; k++) begin : gen_product
+    logic [Width-1:0] product;
+    fp_multiplier_stages #(.ConstantRow(1'b1)) u_multiply (
+      .clk_i(clk), .a_i(words[Width*(3+k)+:Width]), .b_i(words[Width*k+:Width]),
+      .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(product));
+    fp_adder_stages u_add (
+      .clk_i(clk), .a_i(sums[Width*k+:Width]), .b_i(product), .subtract_i(1'b0),
+      .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(sums[Width*(k+1)+:Width]));
+  end
+  fp_multiplier_stages #(.ConstantRow(1'b1)) u_numerator (
+    .clk_i(clk), .a_i(words[Width*6+:Width]), .b_i(words[Width*(age-8)+:Width]),
+    .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(numerator));
+  fp_divider_stages u_divide (
+    .clk_i(clk), .valid_i(1'b1), .a_i(numerator), .b_i(sums[3*Width+:Width]),
+    .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(quotient));
+
+  always_comb begin
+    if (age >= 4'd8 && age <= 4'd10) assert (output_valid && out == quotient);
+    cover (age == 4'd10);
+  end
+
+endmodule
