@@ -389,7 +389,7 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
 
     def work() -> dict:
         maker = folder / "mpfr_vectors"
-        tools.run(["g++", "-std=c++20", "-O2", "-I", tools.ROOT, program, *oracle, "-lmpfr",
+        tools.run(["g++", "-std=c++20", "-O2", "-iquote", tools.ROOT, program, *oracle, "-lmpfr",
                    "-lgmp", "-o", maker], folder / "build.log")
         exp, frac, *_ = (FORMATS | NARROW_FORMATS)[one.format]
         asked = ASKED[one.operation]

@@ -131,6 +131,14 @@ def keeps_tags(name: str, exp: int, frac: int) -> tuple[dict, bool]:
                  prepared=_opened(exp, frac, 2, inner), name=f"tags.{name}")
 
 
+def array() -> tuple[dict, bool]:
+    """An array of four lanes is its lanes, by induction."""
+    return holds("array_is_its_lanes", "Bitwuzla", _around("hit_test_array", "lane"), "open.tcl", steps=1,
+                 reach=8, prepared="hit_test_array {-chparam Lanes 4 -chparam ExpWidth 5 -chparam FracWidth 10 "
+                 "-chparam TagWidth 2 -chparam CounterWidth 6} "
+                 "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")
+
+
 def decision(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     """hit_decision denies no exact edge product."""
     return holds("decision_follows_edges", "Bitwuzla", cores.files("hit_test"),
@@ -238,10 +246,7 @@ def all_proofs() -> list[Proof]:
               lambda: holds("general_unit_computes", "Bitwuzla",
                             _around("general_hit_test_unit", "functions"), steps=17), False),
         Proof("unit.array", "an array is its lanes, and its counters are their sums", "Bitwuzla",
-              lambda: holds("array_is_its_lanes", "Bitwuzla", _around("hit_test_array", "lane"), "open.tcl",
-                            steps=1, reach=8, prepared="hit_test_array {-chparam Lanes 4 -chparam ExpWidth 5 "
-                            "-chparam FracWidth 10 -chparam TagWidth 2 -chparam CounterWidth 6} "
-                            "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")),
+              array),
     ]
     proofs += [Proof(f"float.{one.name}", one.says, "Bitwuzla",
                      functools.partial(float_proofs.proven, one), False, one.long)
