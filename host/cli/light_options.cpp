@@ -67,6 +67,20 @@ Skips parse_no_skip(const std::string& text) {
 
 }  // namespace
 
+std::string to_string(PixelFilter filter) {
+  switch (filter) {
+    case PixelFilter::kBox:
+      return "box";
+    case PixelFilter::kTent:
+      return "tent";
+    case PixelFilter::kGauss:
+      return "gauss";
+    case PixelFilter::kBlackmanHarris:
+      return "blackman-harris";
+  }
+  return "";
+}
+
 std::string to_string(IntegratorKind integrator) {
   switch (integrator) {
     case IntegratorKind::kPrimary:

@@ -42,6 +42,9 @@ void declare_light_options(CLI::App& app, RawLightOptions& raw);
 /// Throws InputError, one line.
 [[nodiscard]] LightOptions parse_light_options(const RawLightOptions& raw);
 
+/// "box", "tent", "gauss", "blackman-harris".
+[[nodiscard]] std::string to_string(PixelFilter filter);
+
 /// "primary", "whitted", "path".
 [[nodiscard]] std::string to_string(IntegratorKind integrator);
 

@@ -146,6 +146,41 @@ class Lighting {
   glm::vec3 background_;
 };
 
+/// What makes the same picture again of the same scene, by the names of the options.
+std::vector<std::pair<std::string, std::string>> picture_options(const Options& options,
+                                                                 const Scene& scene) {
+  const LightOptions& light = options.light;
+  std::vector<std::pair<std::string, std::string>> all = {
+      {"integrator", to_string(light.integrator)},
+      {"spp", std::to_string(light.samples)},
+      {"filter", to_string(light.filter)},
+      {"depth", std::to_string(light.max_depth())},
+      {"threshold", format_exactly(light.threshold)},
+      {"pointError", format_exactly(light.point_error)}};
+  if (light.ambient) all.emplace_back("ambient", format_exactly(*light.ambient));
+  const auto numbers = [](std::initializer_list<double> values) {
+    std::string text;
+    for (const double value : values)
+      text.append(text.empty() ? "" : ",").append(format_exactly(value));
+    return text;
+  };
+  std::optional<glm::dvec3> up = options.view.up;
+  if (const auto given = given_camera(options, scene)) {
+    all.emplace_back(
+        "camera", numbers({given->eye.x, given->eye.y, given->eye.z, given->target.x,
+                           given->target.y, given->target.z,
+                           options.view.fov.value_or(given->fov.value_or(Camera::kDefaultFov))}));
+    if (!up) up = given->up;
+  } else {
+    const View view = chosen_view(options, scene);
+    all.emplace_back("view", numbers({view.azimuth, view.elevation}));
+    all.emplace_back("fov", numbers({options.view.fov.value_or(Camera::kDefaultFov)}));
+    up = view.up;
+  }
+  if (up) all.emplace_back("up", numbers({up->x, up->y, up->z}));
+  return all;
+}
+
 ExrMetadata make_metadata(const Options& options, const Scene& scene, const Camera& camera) {
   const glm::dvec3 eye = scene.origin + glm::dvec3(camera.eye());
   glm::mat4 world_to_camera(1.0f);
@@ -160,6 +195,7 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Came
   return {.software = kSoftware,
           .scene = options.obj().filename().string(),
           .seed = options.seed,
+          .options = picture_options(options, scene),
           .world_to_camera = world_to_camera,
           .screen_window_width = static_cast<float>(height * options.width / options.height)};
 }

@@ -158,8 +158,8 @@ int run(const TraceOptions& options) {
   if (!options.is_to_standard_output()) require_writable(options.output);
   std::optional<SceneFile> scene_file;
   if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
-  const Scene scene = load_obj(scene_file ? scene_file->obj : options.scene,
-                               {.strict = options.strict});
+  const Scene scene =
+      load_obj(scene_file ? scene_file->obj : options.scene, {.strict = options.strict});
   for (const std::string& warning : scene.warnings) print_warning(warning);
   const auto threads = static_cast<int>(options.engine.threads);
   const Bvh bvh(scene, threads);

@@ -40,6 +40,9 @@ Imf::Header make_header(const Film& film, const PixelRect& window, const ExrMeta
   header.insert("software", Imf::StringAttribute(metadata.software));
   header.insert("scene", Imf::StringAttribute(metadata.scene));
   header.insert("seed", Imf::StringAttribute(std::to_string(metadata.seed)));
+  for (const auto& [name, value] : metadata.options) {
+    header.insert(name, Imf::StringAttribute(value));
+  }
   if (metadata.partial) header.insert("partial", Imf::StringAttribute(kPartial));
   Imf::addWorldToCamera(header, to_imath(metadata.world_to_camera));
   for (const Channel& channel : channels_of(film)) {

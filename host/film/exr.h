@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "host/film/film.h"
 
@@ -16,6 +18,8 @@ struct ExrMetadata {
   std::string software;    ///< attribute "software": name and version
   std::string scene;       ///< attribute "scene": file name without folders
   std::uint64_t seed = 0;  ///< attribute "seed", in decimal
+  /// More attributes, by name: the options of `render` that the picture depends on.
+  std::vector<std::pair<std::string, std::string>> options{};
   /// Attribute "worldToCamera", as OpenEXR defines it: +x to the right of the picture, +y up,
   /// +z along the view. Here for column vectors; the file has it for row vectors.
   glm::mat4 world_to_camera{1.0f};

@@ -87,11 +87,30 @@ TEST_F(Render, AViewSaysWhatToTypeForIt) {
   EXPECT_EQ(picture({"--camera", "9,9,9,0,0,0"}, "c.png").find("\nview "), std::string::npos);
 }
 
+TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
+  render({kCornell,  "--size", "24x20", "--engine",      "cpu",      "--spp", "3",
+          "--depth", "2",      "--fov", "41.1",          "--filter", "tent",  "--integrator",
+          "path",    "--seed", "11",    "--point-error", "0.001",    "-o",    "a.exr"});
+  const ExrReader reader(folder_.read("a.exr"));
+  std::vector<std::string> again = {
+      kCornell, "--no-scene-file", "--size", "24x20", "--engine", "cpu", "-o", "b.exr"};
+  for (const char* name : {"integrator", "spp", "filter", "depth", "threshold", "camera", "seed"}) {
+    again.insert(again.end(), {std::string("--") + name, reader.text(name)});
+  }
+  again.insert(again.end(), {"--point-error", reader.text("pointError")});
+  EXPECT_EQ(reader.text("spp"), "3");
+  render(again);
+  EXPECT_TRUE(folder_.read("a.exr") == folder_.read("b.exr"));
+}
+
 TEST_F(Render, LampsGoRoundWithTheCamera) {
   folder_.write("ball.obj",
                 "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
                 "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
-  render({"ball.obj", "--size", "20x20", "--engine", "cpu", "--frames", "4", "-o", "a.png"});
+  const Outcome outcome = run_program({.arguments = {"ball.obj", "--size", "20x20", "--engine",
+                                                     "cpu", "--frames", "4", "-o", "a.png"},
+                                       .folder = folder_.path()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
   // The ball looks the same from all four sides: what comes from behind is as bright.
   const std::vector<std::uint8_t> front = decode_png(folder_.read("a-0001.png"));
   for (const char* name : {"a-0002.png", "a-0003.png", "a-0004.png"}) {
