@@ -83,6 +83,10 @@ inline constexpr int kQuad = 4;
 using FloatQuad = float __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
 using IntQuad = std::int32_t __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
 
+/// Four doubles at a time: one AVX register.
+using DoubleQuad = double __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
+using LongQuad = std::int64_t __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
+
 RAYGATE_INLINE void load_quad(const float* from, FloatQuad& to) {
   std::memcpy(&to, from, sizeof to);
 }
@@ -97,6 +101,17 @@ RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {
   rows[1] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
   rows[2] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
   rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+RAYGATE_INLINE void transpose(DoubleQuad (&rows)[kQuad]) {
+  const DoubleQuad ab_even = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
+  const DoubleQuad ab_odd = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
+  const DoubleQuad cd_even = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6);
+  const DoubleQuad cd_odd = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+  rows[0] = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  rows[2] = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  rows[3] = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
 /// The elements whose sign bit is set.

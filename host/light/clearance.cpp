@@ -1,10 +1,10 @@
 #include "host/light/clearance.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "host/tree/box_query.h"
 
@@ -21,74 +21,192 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kMostLeaves = 4096;  // that a look may take
 constexpr std::size_t kMostCrowd = 128;
-constexpr double kFarthest = 0x1p-4;      // to look, in parts of the largest coordinate,
-constexpr double kShareOfHeight = 0.125;  // and of the least height
-constexpr double kShareOfCrowd = 0x1p-4;  // of that: what is nearer belongs to the crowd
+constexpr double kShareOfHeight = 0.125;         // that c may be
+constexpr double kShareOfCrowd = 0x1p-4;         // of that: what is nearer belongs to the crowd
+constexpr double kNormalError = 10.0 * 0x1p-53;  // of a normal's and a point's dot product
 
-using DoubleQuad = double __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
-using LongQuad = std::int64_t __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
+/// The corners of the triangles of a leaf: of each corner and axis, less those of a point.
+struct LeafCorners {
+  DoubleQuad y[3][3];
+  FloatQuad low[3], high[3];  // of the triangles' boxes
 
-/// A triangle and the planes that its neighbours are likely to be behind.
+  RAYGATE_INLINE LeafCorners(const Bvh& bvh, const Bvh::Child& leaf, const glm::dvec3& from) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      FloatQuad corner[3];
+      for (std::uint32_t v = 0; v < 3; ++v) {
+        load_quad(bvh.corners_of(leaf) + std::size_t{3 * v + k} * leaf.count, corner[v]);
+        y[v][k] = __builtin_convertvector(corner[v], DoubleQuad) - from[static_cast<int>(k)];
+      }
+      const FloatQuad least = corner[0] < corner[1] ? corner[0] : corner[1],
+                      most = corner[0] > corner[1] ? corner[0] : corner[1];
+      low[k] = least < corner[2] ? least : corner[2];
+      high[k] = most > corner[2] ? most : corner[2];
+    }
+  }
+
+  /// Bit i: the box of triangle i touches that box.
+  [[nodiscard]] RAYGATE_INLINE LaneMask touching(const glm::vec3& from, const glm::vec3& to) const {
+    IntQuad touches = IntQuad{} - 1;
+    for (int k = 0; k < 3; ++k) touches &= (low[k] <= to[k]) & (high[k] >= from[k]);
+    return sign_mask(touches);
+  }
+};
+
+/// A triangle, the planes that its neighbours are likely to be behind, and what is known of them.
 class Subject {
  public:
-  Subject(const Corners& corners, double slack)
-      : from_(corners[0]), normal_(unit(triangle_normal(corners))), slack_(slack) {
-    for (int k = 0; k < 3; ++k) vertex_[k] = glm::dvec3(corners[k]) - from_;
+  Subject(std::uint32_t slot, const Corners& corners, double slack)
+      : slot_(slot),
+        corners_(corners),
+        from_(corners[0]),
+        reach_(departure_reach(corners)),
+        slack_(slack) {
+    for (int k = 0; k < 3; ++k) {
+      vertex_[k] = glm::dvec3(corners[k]) - from_;
+      low_[k] = float_below(std::min({corners[0][k], corners[1][k], corners[2][k]}) - reach_);
+      high_[k] = float_above(std::max({corners[0][k], corners[1][k], corners[2][k]}) + reach_);
+    }
+    const glm::dvec3 &b = vertex_[1], &c = vertex_[2];
+    cross({b.x, b.y, b.z}, {c.x, c.y, c.z}, normal_, normal_sizes_);
+    const glm::dvec3 normal(normal_[0], normal_[1], normal_[2]);
+    const double area = glm::length(normal);
+    unit_normal_ = unit(normal);
     double longest = 0.0;
     for (int k = 0; k < 3; ++k) {
       const glm::dvec3 edge = vertex_[(k + 1) % 3] - vertex_[k];
-      inward_[k] = unit(glm::cross(normal_, edge));
-      longest = std::max(longest, glm::length(edge));
+      const double length = glm::length(edge);
+      inward_[k] = length > 0.0 ? glm::cross(unit_normal_, edge) / length : glm::dvec3(0.0);
+      edge_[k] =
+          std::min(glm::dot(inward_[k], vertex_[k]), glm::dot(inward_[k], vertex_[(k + 1) % 3])) +
+          slack_;
+      inverse_height_[k] = length / area;
+      longest = std::max(longest, length);
     }
-    height_ = glm::length(triangle_normal(corners)) / longest;
+    most_ = length_ = kShareOfHeight * area / longest;
+    if (!(most_ > 4.0 * slack_)) length_ = 0.0;
   }
 
-  [[nodiscard]] double height() const { return height_; }
+  /// Whether any c may come of it.
+  [[nodiscard]] bool has_hope() const { return length_ > 0.0; }
+  /// What coordinates are relative to.
+  [[nodiscard]] const glm::dvec3& from() const { return from_; }
+  /// What is outside this box does not matter.
+  [[nodiscard]] const glm::vec3& low() const { return low_; }
+  [[nodiscard]] const glm::vec3& high() const { return high_; }
 
-  /// The triangles of a leaf that are surely behind one of the planes through an edge, at right
-  /// angles to the triangle: bit i for number i. They leave c as large as a height, but for slack.
-  [[nodiscard]] RAYGATE_INLINE LaneMask behind_an_edge(const float* leaf,
-                                                       std::uint32_t count) const {
-    DoubleQuad y[3][3];
-    for (std::uint32_t v = 0; v < 3; ++v) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        FloatQuad coordinate;
-        load_quad(leaf + std::size_t{3 * v + k} * count, coordinate);
-        y[v][k] = __builtin_convertvector(coordinate, DoubleQuad) - from_[static_cast<int>(k)];
-      }
-    }
-    LongQuad behind = {};
-    for (int i = 0; i < 3; ++i) {
-      const glm::dvec3& axis = inward_[i];
-      const double edge =
-          std::min(glm::dot(axis, vertex_[i]), glm::dot(axis, vertex_[(i + 1) % 3]));
-      LongQuad all = LongQuad{} - 1;
-      for (const DoubleQuad(&point)[3] : y) {
-        all &= axis.x * point[0] + axis.y * point[1] + axis.z * point[2] <= edge + slack_;
-      }
-      behind |= all;
-    }
-    LaneMask mask = 0;
-    for (std::uint32_t i = 0; i < count; ++i) mask |= static_cast<LaneMask>(behind[i] & 1) << i;
+  /// The other triangles of a leaf whose boxes are near: bit i for number i.
+  [[nodiscard]] RAYGATE_INLINE LaneMask near(const LeafCorners& others,
+                                             const Bvh::Child& leaf) const {
+    if (!has_hope()) return 0;
+    LaneMask mask = others.touching(low_, high_) & ((LaneMask{1} << leaf.count) - 1);
+    if (slot_ - leaf.first < leaf.count) mask &= ~(LaneMask{1} << (slot_ - leaf.first));
     return mask;
   }
 
-  /// c as far as `other` is concerned, or at least `enough`.
-  [[nodiscard]] double clearance(const Corners& other, double enough) const {
+  /// The triangles of a leaf that are surely behind one of the planes through an edge, at right
+  /// angles to the triangle: bit i for number i. They leave c as large as a height, but for slack.
+  [[nodiscard]] RAYGATE_INLINE LaneMask behind_an_edge(const LeafCorners& leaf) const {
+    LongQuad behind = {};
+    for (int i = 0; i < 3; ++i) {
+      const glm::dvec3& axis = inward_[i];
+      LongQuad all = LongQuad{} - 1;
+      for (const DoubleQuad(&point)[3] : leaf.y) {
+        all &= axis.x * point[0] + axis.y * point[1] + axis.z * point[2] <= edge_[i];
+      }
+      behind |= all;
+    }
+    return sign_mask(__builtin_convertvector(behind, IntQuad));
+  }
+
+  /// The triangles of a leaf from which this one is far enough, beyond one of the planes through
+  /// an edge of theirs, at right angles to them.
+  [[nodiscard]] RAYGATE_INLINE LaneMask beyond_their_edge(const LeafCorners& leaf) const {
+    DoubleQuad to_b[3], to_c[3], normal[3], sizes[3];
+    for (int k = 0; k < 3; ++k) {
+      to_b[k] = leaf.y[1][k] - leaf.y[0][k];
+      to_c[k] = leaf.y[2][k] - leaf.y[0][k];
+    }
+    cross(to_b, to_c, normal, sizes);
+    LongQuad beyond = {};
+    for (int j = 0; j < 3; ++j) {
+      DoubleQuad edge[3], axis[3], along, highest, sum = {}, squared = {}, size = {};
+      for (int k = 0; k < 3; ++k) edge[k] = leaf.y[(j + 1) % 3][k] - leaf.y[j][k];
+      cross(edge, normal, axis, sizes);
+      for (int k = 0; k < 3; ++k) {
+        squared += axis[k] * axis[k];
+        size = size < axis[k] ? axis[k] : size;
+        size = size < -axis[k] ? -axis[k] : size;
+      }
+      for (int v = 0; v < 3; ++v) {
+        along = axis[0] * leaf.y[v][0] + axis[1] * leaf.y[v][1] + axis[2] * leaf.y[v][2];
+        highest = v == 0 || highest < along ? along : highest;
+      }
+      // Squares that neither overflow nor vanish.
+      const DoubleQuad enough = length_ * length_ * squared;
+      LongQuad all = (enough > 0x1p-900) & (enough < 0x1p900);
+      for (const glm::dvec3& v : vertex_) {
+        const DoubleQuad gap = axis[0] * v.x + axis[1] * v.y + axis[2] * v.z - highest;
+        all &= gap >= -slack_ * size;
+        sum += gap > 0.0 ? gap : DoubleQuad{};
+      }
+      beyond |= all & (sum * sum >= enough);
+    }
+    return sign_mask(__builtin_convertvector(beyond, IntQuad));
+  }
+
+  /// Takes another triangle into account that may not be behind an edge.
+  void consider(std::uint32_t slot, const Corners& other) {
+    const double apart = clearance(other);
+    if (apart >= length_ || (lies_beyond(other, corners_, 1) && lies_beyond(other, corners_, -1))) {
+      return;
+    }
+    if (apart < kShareOfCrowd * most_ && crowd_.size() < kMostCrowd) {
+      crowd_.add(slot, other);
+    } else {
+      length_ = apart;
+    }
+  }
+
+  /// All that has been found out.
+  [[nodiscard]] Clearance found() const {
+    Clearance result;
+    if (!has_hope()) return result;
+    const float length = float_below(length_ * (1.0 - 0x1p-20));  // for unit vectors' roundings
+    result.length = crowd_.size() != 0 ? -length : length;
+    int exponent;
+    std::frexp(kNormalError * (normal_sizes_[0] + normal_sizes_[1] + normal_sizes_[2]), &exponent);
+    for (int k = 0; k < 3; ++k) {
+      result.normal[k] = std::ldexp(normal_[k], -exponent);
+      result.corner[k] = corners_[0][k];
+      result.gradient[0][k] = static_cast<float>(length * inverse_height_[2] * inward_[2][k]);
+      result.gradient[1][k] = static_cast<float>(length * inverse_height_[0] * inward_[0][k]);
+    }
+    return result;
+  }
+  [[nodiscard]] Crowd& crowd() { return crowd_; }
+
+ private:
+  /// 0 where `v` is.
+  static glm::dvec3 unit(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0.0 ? v / length : glm::dvec3(0.0);
+  }
+
+  /// c as far as `other` is concerned, or at least what it is already.
+  [[nodiscard]] double clearance(const Corners& other) const {
     glm::dvec3 y[3];
     for (int k = 0; k < 3; ++k) y[k] = glm::dvec3(other[k]) - from_;
     double best = 0.0;
     const auto try_axis = [&](const glm::dvec3& axis) {
       best = std::max(best, std::max(apart(axis, y), apart(-axis, y)));
-      return best >= enough;
+      return best >= length_;
     };
     for (const glm::dvec3& axis : inward_) {
       best = std::max(best, apart(axis, y));
-      if (best >= enough) return best;
+      if (best >= length_) return best;
     }
-    if (try_axis(normal_)) return best;
+    if (try_axis(unit_normal_)) return best;
     const glm::dvec3 other_normal = unit(triangle_normal(other));
     if (try_axis(other_normal)) return best;
     for (int j = 0; j < 3; ++j) {
@@ -101,29 +219,30 @@ class Subject {
     return best;
   }
 
- private:
-  /// 0 where `v` is.
-  static glm::dvec3 unit(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0.0 ? v / length : glm::dvec3(0.0);
-  }
-
-  /// The sum of the g_i; 0 where one is negative.
+  /// The sum of the g_i; 0 where one is negative, infinite where they are all beyond reach.
   [[nodiscard]] double apart(const glm::dvec3& axis, const glm::dvec3 (&y)[3]) const {
     const double highest =
         std::max({glm::dot(axis, y[0]), glm::dot(axis, y[1]), glm::dot(axis, y[2])});
-    double sum = 0.0;
+    double sum = 0.0, least = std::numeric_limits<double>::infinity();
     for (const glm::dvec3& v : vertex_) {
       const double gap = glm::dot(axis, v) - highest;
       if (!(gap >= -slack_)) return 0.0;
       sum += std::max(gap, 0.0);
+      least = std::min(least, gap);
     }
-    return sum;
+    return least >= reach_ ? std::numeric_limits<double>::infinity() : sum;
   }
 
-  glm::dvec3 from_;  // everything is relative to this
-  glm::dvec3 vertex_[3], normal_, inward_[3];
-  double height_, slack_;
+  std::uint32_t slot_;
+  const Corners& corners_;
+  glm::dvec3 from_;
+  double reach_, slack_;
+  glm::vec3 low_, high_;
+  glm::dvec3 vertex_[3], unit_normal_, inward_[3];
+  double edge_[3], inverse_height_[3];
+  double normal_[3], normal_sizes_[3];
+  double most_, length_;  // c, at most and as it is found so far
+  Crowd crowd_;
 };
 
 /// The largest magnitude of a coordinate in the tree.
@@ -159,17 +278,10 @@ void Crowd::add(std::uint32_t slot, const Corners& triangle) {
   }
 }
 
-LaneMask Crowd::near_of_eight(std::size_t first, const glm::vec3& point, float reach) const {
-  const Boxes& boxes = boxes_[first / kLanes];
-  const glm::vec3 from = point - reach, to = point + reach;
-  IntLanes touches = IntLanes{} - 1;  // too little work for in_vectors
-  for (int k = 0; k < 3; ++k) {
-    FloatLanes low, high;
-    load_lanes(boxes.low[k], low);
-    load_lanes(boxes.high[k], high);
-    touches &= (low <= to[k]) & (high >= from[k]);
-  }
-  return sign_mask(touches);
+// A float's step is at most 2^-23 of it, or 2^-149.
+double departure_reach(const Corners& corners) {
+  const float size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
+  return std::max(0x1p-18 * size, 0x1p-144);
 }
 
 // A coordinate along a unit vector, of a difference of two points, is off by less than 2^-49 times
@@ -180,61 +292,33 @@ Clearances::Clearances(const Bvh& bvh)
       slack_(0x1p-47 * largest_coordinate(bvh)),
       known_(std::make_unique<Known[]>(bvh.slot_count())) {}
 
-Clearances::Clearance Clearances::find(std::uint32_t slot) const {
-  Crowd crowd;
-  const Lengths lengths = look(slot, crowd);
-  const Crowd* kept = nullptr;
-  if (crowd.size() != 0) {
-    const std::lock_guard lock(mutex_);
-    kept = &crowds_.emplace_back(std::move(crowd));
-  }
-  known_[slot].crowd.store(kept, std::memory_order_relaxed);
-  known_[slot].lengths.store(lengths, std::memory_order_release);
-  return {{lengths.behind, lengths.before}, kept};
-}
-
-Clearances::Lengths Clearances::look(std::uint32_t slot, Crowd& crowd) const {
-  constexpr Lengths kUnknown = {0.0f, 0.0f};
-  const Corners& corners = bvh_.corners_of(slot);
-  const Subject subject(corners, slack_);
-  const double size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
-  const double farthest = std::min(kShareOfHeight * subject.height(), kFarthest * size);
-  if (!(farthest > 4.0 * slack_)) return kUnknown;
-  const glm::dvec3 low = glm::min(glm::min(corners[0], corners[1]), corners[2]);
-  const glm::dvec3 high = glm::max(glm::max(corners[0], corners[1]), corners[2]);
-  glm::vec3 from, to;
-  for (int k = 0; k < 3; ++k) {
-    from[k] = float_below(low[k] - farthest);
-    to[k] = float_above(high[k] + farthest);
-  }
-  std::vector<Bvh::Child> leaves;
-  leaves_near(bvh_, from, to, leaves);
-  if (leaves.size() > kMostLeaves) return kUnknown;
-  double length[2] = {farthest, farthest};
-  for (const Bvh::Child& leaf : leaves) {
-    const LaneMask behind = in_vectors([&](auto) RAYGATE_BODY {
-      return subject.behind_an_edge(bvh_.corners_of(leaf), leaf.count);
-    });
-    for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      const std::uint32_t other_slot = leaf.first + i;
-      if ((behind >> i & 1) != 0 || other_slot == slot) continue;
-      const Corners& other = bvh_.corners_of(other_slot);
-      const double apart = subject.clearance(other, std::max(length[0], length[1]));
-      bool crowds = false;
-      for (const int side : {1, -1}) {
-        double& least = length[side == 1 ? 0 : 1];
-        if (apart >= least || lies_beyond(other, corners, side)) continue;
-        if (apart < kShareOfCrowd * farthest && crowd.size() < kMostCrowd) {
-          crowds = true;
-        } else {
-          least = apart;
+const Clearance& Clearances::find(std::uint32_t slot) const {
+  const Corners corners = bvh_.corners_of(slot);
+  Subject subject(slot, corners, slack_);
+  if (subject.has_hope()) {
+    in_vectors([&](auto code) RAYGATE_BODY {
+      const auto look = [&](const Bvh::Child& leaf) RAYGATE_BODY {
+        const LeafCorners others(bvh_, leaf, subject.from());
+        LaneMask rest = subject.near(others, leaf);
+        if (rest != 0) rest &= ~subject.behind_an_edge(others);
+        if (rest != 0) rest &= ~subject.beyond_their_edge(others);
+        for (; rest != 0; rest &= rest - 1) {
+          const std::uint32_t other =
+              leaf.first + static_cast<std::uint32_t>(std::countr_zero(rest));
+          subject.consider(other, bvh_.corners_of(other));
         }
-      }
-      if (crowds) crowd.add(other_slot, other);
-    }
+      };
+      for_leaves_near<code()>(bvh_, subject.low(), subject.high(), look);
+    });
   }
-  for (double& each : length) each *= 1.0 - 0x1p-20;  // for the roundings of unit vectors
-  return {float_below(length[0]), float_below(length[1])};
+  Known& known = known_[slot];
+  const std::lock_guard lock(mutex_);
+  const Clearance& found = clearances_.emplace_back(subject.found());
+  if (found.length < 0.0f) {
+    known.crowd.store(&crowds_.emplace_back(std::move(subject.crowd())), std::memory_order_relaxed);
+  }
+  known.clearance.store(&found, std::memory_order_release);
+  return found;
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// How far each triangle's surroundings are: found when first asked for, and kept.
+// How near other triangles come to each: found when first asked for, and kept.
 #pragma once
 
 #include <atomic>
@@ -13,6 +13,7 @@
 #include "host/exact/exact.h"
 #include "host/lanes.h"
 #include "host/tree/bvh.h"
+#include "host/vectors.h"
 
 namespace raygate {
 
@@ -29,12 +30,23 @@ class Crowd {
 
   /// Calls visit(slot) for the triangles whose boxes are within `reach` of the point on each axis,
   /// until it says true; whether it did.
-  template <class Visit>
-  [[nodiscard]] bool any_near(const glm::vec3& point, float reach, const Visit& visit) const {
-    for (std::size_t first = 0; first < slots_.size(); first += kLanes) {
-      for (LaneMask near = near_of_eight(first, point, reach); near != 0; near &= near - 1) {
-        if (visit(slots_[first + static_cast<std::size_t>(std::countr_zero(near))])) return true;
+  template <Vectors kCode = Vectors::kBaseline, class Visit>
+  [[nodiscard]] RAYGATE_INLINE bool any_near(const glm::vec3& point, float reach,
+                                             const Visit& visit) const {
+    const glm::vec3 from = point - reach, to = point + reach;
+    const std::uint32_t* slots = slots_.data();
+    for (const Boxes& boxes : boxes_) {
+      IntLanes touches = IntLanes{} - 1;
+      for (int k = 0; k < 3; ++k) {
+        FloatLanes low, high;
+        load_lanes(boxes.low[k], low);
+        load_lanes(boxes.high[k], high);
+        touches &= (low <= to[k]) & (high >= from[k]);
       }
+      for (LaneMask near = sign_mask<kCode>(touches); near != 0; near &= near - 1) {
+        if (visit(slots[std::countr_zero(near)])) return true;
+      }
+      slots += kLanes;
     }
     return false;
   }
@@ -45,18 +57,30 @@ class Crowd {
     float low[3][kLanes], high[3][kLanes];
   };
 
-  [[nodiscard]] LaneMask near_of_eight(std::size_t first, const glm::vec3& point,
-                                       float reach) const;
-
   std::vector<Boxes> boxes_;
   std::vector<std::uint32_t> slots_;
 };
 
-/// For each triangle and each side of it a length c and a crowd, such that every other triangle
-/// that has points on that side is either of the crowd or at least c w - margin() away from each
-/// point of the triangle, w being the least of that point's three barycentric weights. Most
-/// triangles meet others at their edges and corners alone: they have no crowd, and c is some part
-/// of their least height.
+/// What rays need to know that go on from a triangle ABC: one cache line.
+///
+/// All other triangles are at least c w - margin() away from each point of this one, w being the
+/// least of that point's three barycentric weights, or farther than departure_reach(), or of its
+/// crowd, or in its plane. Most triangles meet others at their edges and corners alone: they have
+/// no crowd, and c is some part of their least height.
+struct alignas(64) Clearance {
+  double normal[3] = {};  ///< (B-A) x (C-A) times a power of two: off by less than 1
+  /// c, at most an eighth of the least height; 0: nothing is known. Negative where there is a
+  /// crowd.
+  float length = 0.0f;
+  float corner[3] = {};       ///< A
+  float gradient[2][3] = {};  ///< of c times the weights of B and of C, in the triangle's plane
+};
+
+/// How far away from a triangle with these vertices things may matter to rays that begin on it: 16
+/// float steps of its largest coordinate, or more.
+[[nodiscard]] double departure_reach(const Corners& corners);
+
+/// The clearances and the crowds of all triangles of a tree.
 ///
 /// Threads may ask at the same time: whoever asks first finds out, and all find the same.
 class Clearances {
@@ -67,38 +91,31 @@ class Clearances {
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
   [[nodiscard]] float margin() const { return margin_; }
 
-  struct Clearance {
-    /// c on the side where plane_side is 1, and on the other; 0 where nothing is known. Not above
-    /// an eighth of the least height.
-    float length[2];
-    const Crowd* crowd;  ///< or nullptr
-  };
-  [[nodiscard]] Clearance of(std::uint32_t slot) const {
-    const Known& known = known_[slot];
-    const Lengths lengths = known.lengths.load(std::memory_order_acquire);
-    if (lengths.behind < 0.0f) return find(slot);
-    return {{lengths.behind, lengths.before}, known.crowd.load(std::memory_order_relaxed)};
+  [[nodiscard]] RAYGATE_INLINE const Clearance& of(std::uint32_t slot) const {
+    const Clearance* const clearance = known_[slot].clearance.load(std::memory_order_acquire);
+    return clearance != nullptr ? *clearance : find(slot);
+  }
+  /// Of a triangle whose clearance has been asked for, and says that there is one.
+  [[nodiscard]] const Crowd& crowd_of(std::uint32_t slot) const {
+    return *known_[slot].crowd.load(std::memory_order_relaxed);
   }
 
  private:
-  struct Lengths {
-    float behind, before;
-  };
   /// Of a slot.
   struct Known {
-    std::atomic<Lengths> lengths{{-1.0f, -1.0f}};  // negative: nobody has asked yet
+    std::atomic<const Clearance*> clearance{nullptr};  // nobody has asked yet
     std::atomic<const Crowd*> crowd{nullptr};
   };
 
   /// Finds out, and keeps it.
-  [[nodiscard]] Clearance find(std::uint32_t slot) const;
-  [[nodiscard]] Lengths look(std::uint32_t slot, Crowd& crowd) const;
+  [[nodiscard]] const Clearance& find(std::uint32_t slot) const;
 
   const Bvh& bvh_;
   float margin_;
   double slack_;  // how far a computed coordinate along a unit vector may be off
   std::unique_ptr<Known[]> known_;
   mutable std::mutex mutex_;
+  mutable std::deque<Clearance> clearances_;
   mutable std::deque<Crowd> crowds_;
 };
 

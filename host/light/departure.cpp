@@ -1,6 +1,7 @@
 #include "host/light/departure.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -78,93 +79,76 @@ int wanted_side(const Ray& ray, const Corners& hit, const Corners& other, Depart
   return way == Departure::kBefore ? before : -before;
 }
 
-/// Hits word by word, as PlainHits has them.
-template <int kWidth>
-struct PlainWords {
-  float words[18][kWidth];
-
-  void put(int i, const Ray& ray, const Corners& corners, Departure way,
-           const Clearances::Clearance& clearance) {
-    int next = 0;
-    const auto add = [&](const glm::vec3& v) {
-      for (int k = 0; k < 3; ++k) words[next++][i] = v[k];
-    };
-    for (const glm::vec3& vertex : corners) add(vertex);
-    add(ray.origin);
-    add(ray.direction);
-    add({way == Departure::kBefore ? -1.0f : 1.0f, clearance.length[0], clearance.length[1]});
-  }
-};
-
 }  // namespace
 
-bool DeparturePoint::is_free(const Crowd& crowd, const glm::vec3& point, float reach) const {
-  return !crowd.any_near(point, reach, [&](std::uint32_t slot) {
-    return !surely_apart(point - reach, point + reach, bvh_.corners_of(slot));
-  });
-}
-
 std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot, Departure way) {
-  const Clearances::Clearance clearance = clearances_.of(slot);
-  PlainWords<1> words;
-  words.put(0, ray, bvh_.corners_of(slot), way, clearance);
-  PlainHits<1> hits;
-  static_assert(sizeof hits == sizeof words.words);
-  std::memcpy(&hits, words.words, sizeof hits);
-  float point[3], reach;
-  int sure = 0;
-  bool clear = false;
-  depart_plainly(hits, clearances_.margin(), point, reach, sure, clear);
-  const glm::vec3 plain(point[0], point[1], point[2]);
-  if (sure != 0 && clear && (!clearance.crowd || is_free(*clearance.crowd, plain, reach))) {
-    return plain;
-  }
-  return search(ray, slot, way);
+  const DepartureQuestion question{&ray, slot, way};
+  DepartureOrigin origin;
+  find({&question, 1}, {&origin, 1});
+  return origin ? std::optional(*origin) : std::nullopt;
 }
 
-/// As many as a vector has room for, or fewer.
-template <int kWidth>
-RAYGATE_INLINE void DeparturePoint::find_some(std::span<const DepartureQuestion> questions,
-                                              std::span<std::optional<glm::vec3>> origins) {
-  PlainWords<kWidth> words;
-  const Crowd* crowds[kWidth];
-  for (std::size_t i = 0; i < kWidth; ++i) {
-    const DepartureQuestion& question = questions[std::min(i, questions.size() - 1)];
-    const Clearances::Clearance clearance = clearances_.of(question.slot);
-    crowds[i] = clearance.crowd;
-    words.put(static_cast<int>(i), *question.ray, bvh_.corners_of(question.slot), question.way,
-              clearance);
+template <Vectors kCode, int kWidth>
+RAYGATE_INLINE void DeparturePoint::find_some(const DepartureQuestion* questions,
+                                              DepartureOrigin* origins) {
+  const Clearance* triangles[kWidth];
+  const Ray* rays[kWidth];
+  typename PlainNumbers<kWidth>::SingleMask ways;
+#pragma GCC unroll 8
+  for (int i = 0; i < kWidth; ++i) {
+    triangles[i] = &clearances_.of(questions[i].slot);
+    rays[i] = questions[i].ray;
+    ways[i] = questions[i].way == Departure::kBefore ? -1 : 1;
   }
   PlainHits<kWidth> hits;
-  static_assert(sizeof hits == sizeof words.words);
-  std::memcpy(&hits, words.words, sizeof hits);
+  plain::load(triangles, rays, hits);
   typename PlainNumbers<kWidth>::Single point[3], reach;
-  typename PlainNumbers<kWidth>::RealMask sure;
-  typename PlainNumbers<kWidth>::SingleMask clear;
-  depart_plainly(hits, clearances_.margin(), point, reach, sure, clear);
-  clear &= __builtin_convertvector(sure, typename PlainNumbers<kWidth>::SingleMask);
-  const LaneMask good = sign_mask(clear);
-  float points[3][kWidth], reaches[kWidth];
-  std::memcpy(points, point, sizeof points);
-  std::memcpy(reaches, &reach, sizeof reaches);
-  for (std::size_t i = 0; i < questions.size(); ++i) {
-    const glm::vec3 plain(points[0][i], points[1][i], points[2][i]);
-    if ((good >> i & 1) != 0 && (!crowds[i] || is_free(*crowds[i], plain, reaches[i]))) {
-      origins[i] = plain;
-    } else {
-      origins[i] = search(*questions[i].ray, questions[i].slot, questions[i].way);
+  typename PlainNumbers<kWidth>::SingleMask is_clear;
+  depart_plainly<kCode>(hits, __builtin_convertvector(ways, typename PlainNumbers<kWidth>::Single),
+                        clearances_.margin(), point, reach, is_clear);
+  FloatQuad rows[kWidth];
+  plain::store(point, is_clear, rows);
+  static_assert(sizeof(DepartureOrigin) == sizeof(FloatQuad));
+  std::memcpy(static_cast<void*>(origins), rows, sizeof rows);
+
+  const LaneMask good = sign_mask(is_clear);
+  const LaneMask crowded = sign_mask(reinterpret_cast<decltype(ways)>(hits.length));
+  constexpr LaneMask kAll = (LaneMask{1} << kWidth) - 1;
+  for (LaneMask rest = (~good & kAll) | crowded; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const DepartureQuestion& question = questions[i];
+    if ((good >> i & 1) != 0) {
+      float reaches[kWidth];
+      std::memcpy(reaches, &reach, sizeof reaches);
+      const glm::vec3 plain = *origins[i];
+      const auto is_there = [&](std::uint32_t slot) {
+        return !surely_apart(plain - reaches[i], plain + reaches[i], bvh_.corners_of(slot));
+      };
+      const Crowd& crowd = clearances_.crowd_of(question.slot);
+      if (!crowd.any_near<kCode>(plain, reaches[i], is_there)) continue;
     }
+    const auto origin = search(*question.ray, question.slot, question.way);
+    origins[i] = origin ? DepartureOrigin{*origin, 1} : DepartureOrigin{};
   }
 }
 
 void DeparturePoint::find(std::span<const DepartureQuestion> questions,
-                          std::span<std::optional<glm::vec3>> origins) {
+                          std::span<DepartureOrigin> origins) {
   in_vectors([&](auto code) RAYGATE_BODY {
     constexpr int kWidth = code() == Vectors::kAvx512 ? kLanes : kQuad;
-    for (std::size_t first = 0; first < questions.size(); first += kWidth) {
-      const std::size_t count = std::min<std::size_t>(kWidth, questions.size() - first);
-      find_some<kWidth>(questions.subspan(first, count), origins.subspan(first, count));
+    std::size_t first = 0;
+    for (; first + kWidth <= questions.size(); first += kWidth) {
+      find_some<code(), kWidth>(&questions[first], &origins[first]);
     }
+    if (first == questions.size()) return;
+    // The last ones, and one of them in the lanes that are left.
+    DepartureQuestion last[kWidth];
+    DepartureOrigin last_origins[kWidth];
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      last[i] = questions[std::min(first + i, questions.size() - 1)];
+    }
+    find_some<code(), kWidth>(last, last_origins);
+    std::copy_n(last_origins, questions.size() - first, &origins[first]);
   });
 }
 

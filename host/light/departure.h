@@ -20,11 +20,20 @@ enum class Departure {
   kAfter,   ///< the other side: refraction
 };
 
-/// A ray that is to go on, whose nearest hit is the triangle in `slot`.
+/// A ray that is to go on, its direction scaled, whose nearest hit is the triangle in `slot`.
 struct DepartureQuestion {
   const Ray* ray = nullptr;
   std::uint32_t slot = 0;
   Departure way = Departure::kBefore;
+};
+
+/// Where it goes on from, if there is such a point.
+struct DepartureOrigin {
+  glm::vec3 point{0.0f};
+  std::uint32_t exists = 0;  ///< or anything else
+
+  explicit operator bool() const { return exists != 0; }
+  const glm::vec3& operator*() const { return point; }
 };
 
 /// Finds origins for secondary rays without an epsilon.
@@ -59,8 +68,7 @@ class DeparturePoint {
 
   /// origins[i] becomes O' for questions[i]: what find() gives, several at a time and so much
   /// sooner.
-  void find(std::span<const DepartureQuestion> questions,
-            std::span<std::optional<glm::vec3>> origins);
+  void find(std::span<const DepartureQuestion> questions, std::span<DepartureOrigin> origins);
 
   /// Whether `direction` goes away from the triangle that `ray` hit, to the side where O' is.
   /// Shading normals and rounding may give directions that do not.
@@ -68,12 +76,8 @@ class DeparturePoint {
                             const glm::vec3& direction) const;
 
  private:
-  template <int kWidth>
-  RAYGATE_INLINE void find_some(std::span<const DepartureQuestion> questions,
-                                std::span<std::optional<glm::vec3>> origins);
-
-  /// Whether nothing of the crowd is within `reach` of the point.
-  [[nodiscard]] bool is_free(const Crowd& crowd, const glm::vec3& point, float reach) const;
+  template <Vectors kCode, int kWidth>
+  RAYGATE_INLINE void find_some(const DepartureQuestion* questions, DepartureOrigin* origins);
 
   /// As find(), looking at what is near.
   [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, Departure way);

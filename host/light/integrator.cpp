@@ -61,7 +61,7 @@ void Integrator::shade(const Wave& wave, std::span<const NearestHit> hits, std::
   }
   origins_.resize(departures_.size());
   departure_.find(departures_, origins_);
-  const std::optional<glm::vec3>* origins = origins_.data();
+  const DepartureOrigin* origins = origins_.data();
   for (std::size_t i = 0; i < count; ++i) {
     if (kinds_[i] != kHitKinds) hand_on(i, origins, output);
   }
@@ -138,13 +138,12 @@ bool Integrator::leaves(const HitPlace& place, WayOn& way) const {
 
 /// What the hit at place i gives, now that it is known where rays go on from: `origins` of its
 /// departures and those of the hits after it. A hit without one on a side sends nothing there.
-void Integrator::hand_on(std::size_t i, const std::optional<glm::vec3>*& origins,
-                         WaveOutput& output) {
+void Integrator::hand_on(std::size_t i, const DepartureOrigin*& origins, WaveOutput& output) {
   const Burden& burden = block_.burden(i);
   const HitPlace& place = block_.places[i];
   output.radiance[burden.sample] += block_.radiance[i];
-  const std::optional<glm::vec3>* points[2] = {nullptr, nullptr};
-  const auto departure = [&](Departure side) -> const std::optional<glm::vec3>& {
+  const DepartureOrigin* points[2] = {nullptr, nullptr};
+  const auto departure = [&](Departure side) -> const DepartureOrigin& {
     return *points[side == Departure::kBefore ? 0 : 1];
   };
   const auto* const end = departures_.data() + departures_.size();

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -71,7 +70,7 @@ class Integrator {
   void sort(std::span<const NearestHit> hits, std::size_t count, WaveOutput& output);
   void choose_departures(std::size_t i);
   [[nodiscard]] bool leaves(const HitPlace& place, WayOn& way) const;
-  void hand_on(std::size_t i, const std::optional<glm::vec3>*& origins, WaveOutput& output);
+  void hand_on(std::size_t i, const DepartureOrigin*& origins, WaveOutput& output);
 
   DeparturePoint departure_;
   Skips skips_;
@@ -81,7 +80,7 @@ class Integrator {
   std::vector<Finish> finishes_;  // of the materials
   HitBlock block_;
   std::vector<DepartureQuestion> departures_;  // of the block's hits, in their order
-  std::vector<std::optional<glm::vec3>> origins_;
+  std::vector<DepartureOrigin> origins_;
   std::vector<HitKind> kinds_;        // by place in the block; kHitKinds: nothing is hit
   std::vector<std::uint32_t> order_;  // places, kind by kind
   std::vector<std::uint32_t> first_;  // of each kind in it

@@ -1,11 +1,12 @@
-// Where a ray goes on from that hits a triangle with nothing near: the same words for one hit and
-// for several at a time.
+// Where rays go on from that hit triangles with nothing near, several at a time.
 #pragma once
 
-#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "host/lanes.h"
+#include "host/light/clearance.h"
 
 // Which side
 //
@@ -14,37 +15,42 @@
 // by more than u / 2, candidate 0 is beyond the plane by
 //   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
 //
+// How exact X is: a component of Clearance::normal is off by less than 1, so D = (A - O) . N is off
+// by less than |A - O|_max, and I . N by less than 2, as no component of I is larger (roundings of
+// the dot products are in kNormalError).
+//
 // Why nothing is near
 //
 // Of the exact X let w be the least of the three weights of the vertices, and c the triangle's
-// clearance: all other triangles that matter are at least c w - margin away, or of the triangle's
-// crowd (see Clearances). What could make candidate 0 no good is within 8 u of the exact X, and
-// within 5 u of the candidate on each axis: the box around it and X as double has it, and 2 u more
-// on every side. Weights are computed from the candidate, which along the plane is less than u
-// from X; and c is at most an eighth of the triangle's least height, so that they give c w within
-// u. They are computed in float, as triple products of differences, of components up to l, and a
-// normal m whose largest component is 1: each is off by less than 2^-17 l^2, and they add up to m .
-// N, which is at least |N|, the least height times a side longer than l. That makes c w less than
-// 2^-20 l wrong, so nothing is near where
-//   c w > 16 u + 2^-19 l + margin
-// and nothing of the crowd is within 16 u of the candidate.
+// clearance: all other triangles are at least c w - margin away, or farther than departure_reach,
+// or of the triangle's crowd (see Clearances), or in the triangle's plane. What could make
+// candidate 0 no good is within 8 u of the exact X, and within 5 u of the candidate on each axis:
+// the box around it and X as double has it, and 2 u more on every side. 16 u are within
+// departure_reach.
+//
+// c times a weight is computed from the candidate p, in float, as G . (p - A). G is c times the
+// weight's gradient: a vector in the triangle's plane, no longer than 1/8, as c is at most an
+// eighth of the least height. So it does not matter that p is u above the plane, and that p is
+// rounded changes c w by less than u. With s = |p - A|_1, rounding G, p - A and the dot product
+// makes it less than 2^-23 s wrong; the third weight, c less the two others, less than 2^-21 (s +
+// c). So nothing is near where
+//   c w > 16 u + 2^-20 (s + c) + margin
+// (of the 16 u, 8 are enough) and nothing of the crowd is within 16 u of the candidate.
 
 namespace raygate {
 
-using DoubleQuad = double __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
-using LongQuad = std::int64_t __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
 using DoubleLanes = double __attribute__((vector_size(8 * kLanes), aligned(8 * kLanes)));
 using LongLanes = std::int64_t __attribute__((vector_size(8 * kLanes), aligned(8 * kLanes)));
 
-/// What numbers are, one or four at a time, and what comparing them gives.
+/// Vectors of so many numbers, and what comparing them gives.
 template <int kWidth>
 struct PlainNumbers;
 template <>
-struct PlainNumbers<1> {
-  using Single = float;
-  using Real = double;
-  using SingleMask = bool;
-  using RealMask = int;
+struct PlainNumbers<kQuad> {
+  using Single = FloatQuad;
+  using Real = DoubleQuad;
+  using SingleMask = IntQuad;
+  using RealMask = LongQuad;
 };
 template <>
 struct PlainNumbers<kLanes> {
@@ -53,50 +59,127 @@ struct PlainNumbers<kLanes> {
   using SingleMask = IntLanes;
   using RealMask = LongLanes;
 };
-template <>
-struct PlainNumbers<kQuad> {
-  using Single = FloatQuad;
-  using Real = DoubleQuad;
-  using SingleMask = IntQuad;
-  using RealMask = LongQuad;
-};
 
 /// Hits to depart from, so many at a time.
 template <int kWidth>
 struct PlainHits {
   using Single = PlainNumbers<kWidth>::Single;
+  using Real = PlainNumbers<kWidth>::Real;
 
-  Single corner[3][3];  ///< [vertex][axis]
-  Single origin[3], direction[3];
-  Single way;           ///< -1: to the side the ray came from; 1: to the other
-  Single clearance[2];  ///< of the side where plane_side is 1, and of the other
+  Real normal[3];
+  Single length, corner[3], gradient[2][3];  ///< as Clearance has them
+  Single origin[3], direction[3];            ///< of the rays
 };
 
 namespace plain {
 
-RAYGATE_INLINE void convert(float from, double& to) { to = from; }
-RAYGATE_INLINE void convert(double from, float& to) { to = static_cast<float>(from); }
+/// The numbers at byte `offset` of each of four objects: row k has their k-th.
+template <class Row, class Object>
+RAYGATE_INLINE void columns(const Object* const* objects, std::size_t offset, Row (&rows)[kQuad]) {
+#pragma GCC unroll 4
+  for (int i = 0; i < kQuad; ++i) {
+    std::memcpy(&rows[i], reinterpret_cast<const char*>(objects[i]) + offset, sizeof(Row));
+  }
+  raygate::transpose(rows);
+}
+
+RAYGATE_INLINE void load(const Clearance* const* triangles, const Ray* const* rays,
+                         PlainHits<kQuad>& hits) {
+  static_assert(offsetof(Clearance, normal) == 0 && offsetof(Clearance, length) == 24 &&
+                offsetof(Clearance, corner) == 28 && offsetof(Clearance, gradient) == 40 &&
+                sizeof(Clearance) == 64 && sizeof(Ray) == 24);
+  DoubleQuad reals[kQuad];
+  columns(triangles, 0, reals);
+  for (int k = 0; k < 3; ++k) hits.normal[k] = reals[k];
+  const auto pairs = reinterpret_cast<FloatLanes>(reals[3]);
+  hits.length = __builtin_shufflevector(pairs, pairs, 0, 2, 4, 6);
+  hits.corner[0] = __builtin_shufflevector(pairs, pairs, 1, 3, 5, 7);
+  FloatQuad words[kQuad];
+  columns(triangles, 32, words);
+  hits.corner[1] = words[0];
+  hits.corner[2] = words[1];
+  hits.gradient[0][0] = words[2];
+  hits.gradient[0][1] = words[3];
+  columns(triangles, 48, words);
+  hits.gradient[0][2] = words[0];
+  for (int k = 0; k < 3; ++k) hits.gradient[1][k] = words[k + 1];
+  columns(rays, 0, words);
+  for (int k = 0; k < 3; ++k) hits.origin[k] = words[k];
+  columns(rays, 8, words);
+  for (int k = 0; k < 3; ++k) hits.direction[k] = words[k + 1];
+}
+
+/// Row i: the point of lane i, and a word of it.
+RAYGATE_INLINE void store(const FloatQuad (&point)[3], const IntQuad& word, FloatQuad* rows) {
+  FloatQuad columns[kQuad] = {point[0], point[1], point[2], reinterpret_cast<FloatQuad>(word)};
+  raygate::transpose(columns);
+  for (int i = 0; i < kQuad; ++i) rows[i] = columns[i];
+}
+template <class Quad, class Lanes>
+RAYGATE_INLINE void split(const Lanes& both, Quad& a, Quad& b) {
+  a = __builtin_shufflevector(both, both, 0, 1, 2, 3);
+  b = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+}
+RAYGATE_INLINE void store(const FloatLanes (&point)[3], const IntLanes& word, FloatQuad* rows) {
+  FloatQuad a[3], b[3];
+  IntQuad word_a, word_b;
+  for (int k = 0; k < 3; ++k) split(point[k], a[k], b[k]);
+  split(word, word_a, word_b);
+  store(a, word_a, rows);
+  store(b, word_b, rows + kQuad);
+}
+
+RAYGATE_INLINE void join(const FloatQuad& a, const FloatQuad& b, FloatLanes& both) {
+  both = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+RAYGATE_INLINE void join(const DoubleQuad& a, const DoubleQuad& b, DoubleLanes& both) {
+  both = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+RAYGATE_INLINE void load(const Clearance* const* triangles, const Ray* const* rays,
+                         PlainHits<kLanes>& hits) {
+  PlainHits<kQuad> a, b;
+  load(triangles, rays, a);
+  load(triangles + kQuad, rays + kQuad, b);
+  join(a.length, b.length, hits.length);
+  for (int k = 0; k < 3; ++k) {
+    join(a.normal[k], b.normal[k], hits.normal[k]);
+    join(a.corner[k], b.corner[k], hits.corner[k]);
+    for (int v = 0; v < 2; ++v) join(a.gradient[v][k], b.gradient[v][k], hits.gradient[v][k]);
+    join(a.origin[k], b.origin[k], hits.origin[k]);
+    join(a.direction[k], b.direction[k], hits.direction[k]);
+  }
+}
+
+/// GCC 12 makes four instructions of what is one.
+template <Vectors kCode>
 RAYGATE_INLINE void convert(const FloatQuad& from, DoubleQuad& to) {
+#ifdef RAYGATE_AVX2
+  if constexpr (kCode != Vectors::kBaseline) {
+    to = __builtin_ia32_cvtps2pd256(from);
+    return;
+  }
+#endif
   to = __builtin_convertvector(from, DoubleQuad);
 }
-RAYGATE_INLINE void convert(const DoubleQuad& from, FloatQuad& to) {
-  to = __builtin_convertvector(from, FloatQuad);
-}
+template <Vectors kCode>
 RAYGATE_INLINE void convert(const FloatLanes& from, DoubleLanes& to) {
   to = __builtin_convertvector(from, DoubleLanes);
 }
+template <Vectors kCode>
+RAYGATE_INLINE void convert(const DoubleQuad& from, FloatQuad& to) {
+  to = __builtin_convertvector(from, FloatQuad);
+}
+template <Vectors kCode>
 RAYGATE_INLINE void convert(const DoubleLanes& from, FloatLanes& to) {
   to = __builtin_convertvector(from, FloatLanes);
 }
-template <class From, class To>
+template <Vectors kCode, class From, class To>
 RAYGATE_INLINE void convert(const From (&from)[3], To (&to)[3]) {
-  for (int k = 0; k < 3; ++k) convert(from[k], to[k]);
+  for (int k = 0; k < 3; ++k) convert<kCode>(from[k], to[k]);
 }
 
 /// How far it is from a float that is not negative to the next one.
-RAYGATE_INLINE void step_of(float x, float& step) {
-  step = std::bit_cast<float>(std::bit_cast<std::int32_t>(x) + 1) - x;
-}
 RAYGATE_INLINE void step_of(const FloatQuad& x, FloatQuad& step) {
   step = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(x) + 1) - x;
 }
@@ -109,116 +192,90 @@ RAYGATE_INLINE void subtract(const T (&a)[3], const T (&b)[3], T (&result)[3]) {
   for (int k = 0; k < 3; ++k) result[k] = a[k] - b[k];
 }
 template <class T>
-RAYGATE_INLINE void larger(const T& a, const T& b, T& result) {
-  result = a < b ? b : a;
+RAYGATE_INLINE void magnitudes(const T (&v)[3], T (&sizes)[3]) {
+  for (int k = 0; k < 3; ++k) magnitude(v[k], sizes[k]);
 }
 template <class T>
 RAYGATE_INLINE void largest(const T (&v)[3], T& result) {
-  T size[3];
-  for (int k = 0; k < 3; ++k) magnitude(v[k], size[k]);
-  larger(size[0], size[1], result);
-  larger(result, size[2], result);
+  T sizes[3];
+  magnitudes(v, sizes);
+  result = sizes[0] < sizes[1] ? sizes[1] : sizes[0];
+  result = result < sizes[2] ? sizes[2] : result;
 }
-
 template <class T>
 RAYGATE_INLINE void dot(const T (&u)[3], const T (&v)[3], T& result) {
   result = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// u . (v x w)
-template <class T>
-RAYGATE_INLINE void triple(const T (&u)[3], const T (&v)[3], const T (&w)[3], T& value) {
-  value = u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-          u[2] * (v[0] * w[1] - v[1] * w[0]);
-}
-
 }  // namespace plain
 
-/// Makes `point` candidate 0 of each hit. It is where the ray goes on from if both `sure` and
-/// `clear` become true, or -1 in a lane, and no triangle of the crowd is within `reach` of it.
-template <int kWidth>
-RAYGATE_INLINE void depart_plainly(const PlainHits<kWidth>& hits, float margin,
+/// Makes `point` candidate 0 of each hit, on the side that the ray came from where `way` is -1, on
+/// the other one where it is 1. It is where the ray goes on from if `is_clear` becomes -1, and no
+/// triangle of the crowd is within `reach` of it.
+template <Vectors kCode, int kWidth>
+RAYGATE_INLINE void depart_plainly(const PlainHits<kWidth>& hits,
+                                   const typename PlainNumbers<kWidth>::Single& way, float margin,
                                    typename PlainNumbers<kWidth>::Single (&point)[3],
                                    typename PlainNumbers<kWidth>::Single& reach,
-                                   typename PlainNumbers<kWidth>::RealMask& sure,
-                                   typename PlainNumbers<kWidth>::SingleMask& clear) {
+                                   typename PlainNumbers<kWidth>::SingleMask& is_clear) {
   using Single = PlainNumbers<kWidth>::Single;
   using Real = PlainNumbers<kWidth>::Real;
-  // D = A . N and I . N as in exact.cpp, their errors a little more.
-  Real corner[3][3], origin[3], direction[3], to_b[3], to_c[3], from_origin[3], normal[3], size[3];
-  for (int v = 0; v < 3; ++v) plain::convert(hits.corner[v], corner[v]);
-  plain::convert(hits.origin, origin);
-  plain::convert(hits.direction, direction);
-  plain::subtract(corner[1], corner[0], to_b);
-  plain::subtract(corner[2], corner[0], to_c);
-  plain::subtract(corner[0], origin, from_origin);
-  cross(to_b, to_c, normal, size);
-  Single origin_range, direction_range;
-  plain::largest(hits.origin, origin_range);
-  plain::largest(hits.direction, direction_range);
-  Real origin_size, direction_size, from_size, plane, slope, above, below;
-  plain::convert(origin_range, origin_size);
-  plain::convert(direction_range, direction_size);
-  plain::largest(from_origin, from_size);
-  plain::dot(from_origin, normal, plane);
-  plain::dot(direction, normal, slope);
+  // X = O + t I, and u.
+  Real corner[3], origin[3], direction[3], from_origin[3];
+  plain::convert<kCode>(hits.corner, corner);
+  plain::convert<kCode>(hits.origin, origin);
+  plain::convert<kCode>(hits.direction, direction);
+  plain::subtract(corner, origin, from_origin);
+  Real plane, slope, above, below;
+  plain::dot(from_origin, hits.normal, plane);
+  plain::dot(direction, hits.normal, slope);
   magnitude(plane, above);
   magnitude(slope, below);
-  const Real off = 10.0 * 0x1p-53 * (size[0] + size[1] + size[2]);
-  const Real plane_error = off * from_size, slope_error = off * direction_size;
-
-  // X = O + t I, and u.
   const Real inverse = 1.0 / below;
   const Real t = above * inverse;
-  const Real t_error = 1.001 * (plane_error + t * slope_error) * inverse;
-  const Real error =
-      0x1p-50 * (origin_size + t * direction_size) + 1.001 * t_error * direction_size;
   Real x[3], step;
   for (int k = 0; k < 3; ++k) x[k] = origin[k] + t * direction[k];
   Single rounded[3], x_size, u;
-  plain::convert(x, rounded);
+  plain::convert<kCode>(x, rounded);
   plain::largest(rounded, x_size);
   plain::step_of(x_size, u);
-  plain::convert(u, step);
-  sure = (slope_error <= 0x1p-34 * below) & (16.0 * error <= step);
+  plain::convert<kCode>(u, step);
+
+  // How far off X may be, with |I|_max < 2.
+  Single origin_range;
+  Real origin_size, from_size;
+  plain::largest(hits.origin, origin_range);
+  plain::convert<kCode>(origin_range, origin_size);
+  plain::largest(from_origin, from_size);
+  const Real along_ray = t + t;
+  const Real error = 0x1p-50 * (origin_size + along_ray) + 2.01 * inverse * (from_size + along_ray);
+  const typename PlainNumbers<kWidth>::RealMask is_sure =
+      (below >= 0x1p35) & (16.0 * error <= step);
 
   // Candidate 0: the normal shows where plane_side is -1.
-  Real way, longest, unit[3], whole_area;
-  plain::convert(hits.way, way);
-  plain::largest(normal, longest);
-  const Real along = plane > 0.0 ? way : -way;
-  const Real scale = along / longest;
-  for (int k = 0; k < 3; ++k) {
-    unit[k] = normal[k] * scale;
-    plain::convert(x[k] + step * unit[k], point[k]);
-  }
-  plain::dot(unit, normal, whole_area);
+  Real turn, longest;
+  plain::convert<kCode>(way, turn);
+  plain::largest(hits.normal, longest);
+  const Real scale = (plane > 0.0 ? turn : -turn) / longest;
+  for (int k = 0; k < 3; ++k)
+    plain::convert<kCode>(x[k] + step * (hits.normal[k] * scale), point[k]);
 
-  // Its least weight, times m . N.
-  Single b[3], c[3], p[3], m[3], turn, whole, first, second, third, least, length, other_length;
-  plain::subtract(hits.corner[1], hits.corner[0], b);
-  plain::subtract(hits.corner[2], hits.corner[0], c);
-  plain::subtract(point, hits.corner[0], p);
-  plain::convert(unit, m);
-  plain::convert(along, turn);
-  plain::convert(whole_area, whole);
-  plain::triple(m, p, c, second);
-  plain::triple(m, b, p, third);
-  first = turn * (whole - second - third);
-  second = turn * second;
-  third = turn * third;
-  least = first < second ? first : second;
+  // c times its least weight.
+  Single length, p[3], second, third, sizes[3], point_size, point_step;
+  magnitude(hits.length, length);
+  plain::subtract(point, hits.corner, p);
+  plain::dot(p, hits.gradient[0], second);
+  plain::dot(p, hits.gradient[1], third);
+  const Single first = length - second - third;
+  Single least = first < second ? first : second;
   least = least < third ? least : third;
-  plain::largest(b, length);
-  plain::largest(c, other_length);
-  plain::larger(length, other_length, length);
-  Single point_size, point_step;
+  plain::magnitudes(p, sizes);
+  const Single error_of_least = 0x1p-20f * (sizes[0] + sizes[1] + sizes[2] + length) + margin;
   plain::largest(point, point_size);
   plain::step_of(point_size, point_step);
   reach = 16.0f * u;
-  const Single clearance = turn < 0.0f ? hits.clearance[0] : hits.clearance[1];
-  clear = (point_step <= u) &
-          (clearance * least > (reach + 0x1p-19f * length + margin) * (turn * whole));
+  is_clear = (point_step <= u) & (least > reach + error_of_least) &
+             __builtin_convertvector(is_sure, typename PlainNumbers<kWidth>::SingleMask);
 }
 
 }  // namespace raygate

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -76,7 +75,7 @@ class ShadowRays {
   Finder& finder_;
   DeparturePoint departure_;
   std::vector<DepartureQuestion> departures_;  // beyond clear surfaces, and their answers
-  std::vector<std::optional<glm::vec3>> origins_;
+  std::vector<DepartureOrigin> origins_;
   bool first_occluder_, culling_, through_refraction_, any_clear_;
   std::uint64_t rays_ = 0;
   // Room to work in.

@@ -46,6 +46,26 @@ double reach_beyond(const Crowd& crowd, const glm::dvec3& x) {
   return reach;
 }
 
+/// Whether what is said of a triangle's vertices and plane holds.
+void check_shape(const Clearance& clearance, const Corners& t) {
+  const glm::dvec3 normal(clearance.normal[0], clearance.normal[1], clearance.normal[2]);
+  const glm::dvec3 exact = triangle_normal(t);
+  const double scale = largest(normal) / largest(exact);
+  EXPECT_EQ(std::exp2(std::round(std::log2(scale))) * exact, normal);
+  const double c = std::abs(clearance.length);
+  for (int v = 0; v < 3; ++v) {
+    EXPECT_EQ(clearance.corner[v], t[0][v]);
+    const glm::dvec3 y = glm::dvec3(t[v]) - glm::dvec3(t[0]);
+    for (int k = 0; k < 2; ++k) {
+      const auto& g = clearance.gradient[k];
+      const glm::dvec3 gradient(g[0], g[1], g[2]);
+      EXPECT_NEAR(glm::dot(gradient, y), v == k + 1 ? c : 0.0, 0x1p-22 * glm::length(y));
+      EXPECT_NEAR(glm::dot(gradient, glm::normalize(exact)), 0.0, 0x1p-24);
+      EXPECT_LE(glm::length(gradient), 0.125 + 0x1p-20);
+    }
+  }
+}
+
 struct Seen {
   int points = 0, free = 0;  // those of triangles without a crowd
 };
@@ -57,21 +77,24 @@ Seen check(const std::vector<Corners>& mesh, Random& random) {
   Seen seen;
   for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
     const Corners& t = bvh.corners_of(slot);
-    for (const int side : {1, -1}) {
-      const auto clearance = clearances.of(slot);
-      const double clear = side == 1 ? clearance.length[0] : clearance.length[1];
+    const Clearance& clearance = clearances.of(slot);
+    const double clear = std::abs(clearance.length);
+    if (clear > 0.0) check_shape(clearance, t);
+    for (int i = 0; i < 2; ++i) {
       ++seen.points;
-      seen.free += clear > 0.0 && clearance.crowd == nullptr;
+      seen.free += clearance.length > 0.0f;
       glm::dvec3 w(0.0);
       for (int k = 0; k < 3; ++k) w[k] = std::exp(random.uniform(-12, 0));
       w /= w.x + w.y + w.z;
       const glm::dvec3 x = w.x * glm::dvec3(t[0]) + w.y * glm::dvec3(t[1]) + w.z * glm::dvec3(t[2]);
+      double least = std::min(clear * std::min({w.x, w.y, w.z}), departure_reach(t));
+      if (clearance.length < 0.0f) {
+        least = std::min(least, reach_beyond(clearances.crowd_of(slot), x));
+      }
       for (std::uint32_t other = 0; other < bvh.slot_count(); ++other) {
-        if (other == slot || lies_beyond(bvh.corners_of(other), t, side)) continue;
-        const double apart = distance(x, bvh.corners_of(other)) + 2.0 * clearances.margin();
-        double least = clear * std::min({w.x, w.y, w.z});
-        if (clearance.crowd != nullptr) least = std::min(least, reach_beyond(*clearance.crowd, x));
-        EXPECT_GE(apart, least) << slot << " " << other << " " << side;
+        const Corners& o = bvh.corners_of(other);
+        if (other == slot || (lies_beyond(o, t, 1) && lies_beyond(o, t, -1))) continue;
+        EXPECT_GE(distance(x, o) + 2.0 * clearances.margin(), least) << slot << " " << other;
       }
     }
   }
@@ -119,12 +142,25 @@ TEST(Clearance, WhatStandsOnATriangleIsItsCrowd) {
   const Bvh bvh(test::scene_of(mesh));
   const Clearances clearances(bvh);
   const std::uint32_t floor = bvh.triangle_of(0) == 0 ? 0 : 1;
-  const auto clearance = clearances.of(floor);
-  ASSERT_NE(clearance.crowd, nullptr);
-  EXPECT_EQ(clearance.crowd->size(), 1u);
-  EXPECT_TRUE(is_near(*clearance.crowd, glm::vec3(-0.01f, 0, 0), 0.01f));
-  EXPECT_FALSE(is_near(*clearance.crowd, glm::vec3(-0.01f, 0, 0), 0.0099f));
-  EXPECT_GT(std::min(clearance.length[0], clearance.length[1]), 0.0f);
+  EXPECT_LT(clearances.of(floor).length, 0.0f);
+  const Crowd& crowd = clearances.crowd_of(floor);
+  EXPECT_EQ(crowd.size(), 1u);
+  EXPECT_TRUE(is_near(crowd, glm::vec3(-0.01f, 0, 0), 0.01f));
+  EXPECT_FALSE(is_near(crowd, glm::vec3(-0.01f, 0, 0), 0.0099f));
+}
+
+// What hovers over a triangle is no crowd, unless it is very near.
+TEST(Clearance, WhatIsBeyondReachDoesNotMatter) {
+  for (const bool is_near : {false, true}) {
+    const float height = is_near ? 0x1p-19f : 0x1p-17f;
+    const Bvh bvh(
+        test::scene_of({{glm::vec3(-1, -1, 0), glm::vec3(1, -1, 0), glm::vec3(0, 1, 0)},
+                        {glm::vec3(0, 0, height), glm::vec3(0, 0, 1), glm::vec3(0.1f, 0, 1)}}));
+    const Clearances clearances(bvh);
+    const float length = clearances.of(bvh.triangle_of(0) == 0 ? 0 : 1).length;
+    EXPECT_EQ(length < 0.0f, is_near);
+    EXPECT_NEAR(std::abs(length), 0.125f * 4.0f / std::sqrt(5.0f), 1e-4f);
+  }
 }
 
 }  // namespace

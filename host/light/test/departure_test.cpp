@@ -184,13 +184,19 @@ TEST(Departure, ManyAtOnceAreTheSame) {
         {&ray, *slot, questions.size() % 3 == 0 ? Departure::kAfter : Departure::kBefore});
   }
   ASSERT_GT(questions.size(), 1000u);
+  std::vector<std::optional<glm::vec3>> expected;
+  for (const DepartureQuestion& q : questions) {
+    const UsingVectors using_vectors(Vectors::kBaseline);
+    expected.push_back(departure.find(*q.ray, q.slot, q.way));
+  }
   for (const Vectors vectors : machine_vectors()) {
     const UsingVectors using_vectors(vectors);
-    std::vector<std::optional<glm::vec3>> origins(questions.size());
+    std::vector<DepartureOrigin> origins(questions.size());
     departure.find(questions, origins);
     for (std::size_t i = 0; i < questions.size(); ++i) {
-      const DepartureQuestion& q = questions[i];
-      ASSERT_EQ(origins[i], departure.find(*q.ray, q.slot, q.way)) << name_of(vectors) << " " << i;
+      ASSERT_EQ(bool(origins[i]), expected[i].has_value()) << name_of(vectors) << " " << i;
+      if (!expected[i]) continue;
+      ASSERT_EQ(*origins[i], *expected[i]) << name_of(vectors) << " " << i;
     }
   }
 }
