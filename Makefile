@@ -47,8 +47,8 @@ test: everything ## build and run all tests
 python: ## install the Python module into build/python, and test it there
 	@$(SETUP) python
 	@test -e build/python/bin/pip || python3 -m venv build/python
-	@build/python/bin/pip install --quiet .
-	@build/python/bin/python host/python/test/raygate_test.py
+	@build/python/bin/pip install --quiet --disable-pip-version-check . -r host/python/requirements.txt
+	@build/python/bin/python -m unittest discover -s host/python/test -p '*_test.py'
 
 check: everything ## clang-tidy, and the host's tests under the sanitizers
 	@$(SETUP) check

@@ -25,6 +25,7 @@
 #include "host/find/unit/unit_finder.h"
 #include "host/light/lights.h"
 #include "host/picture/renderer.h"
+#include "host/python/float_reference.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/obj_loader.h"
@@ -57,7 +58,6 @@ Value choose(const char* what, const std::string& found,
 }
 
 int threads_of(std::optional<int> threads) {
-  if (threads && *threads < 1) throw InputError("threads: expected 1 or more");
   return threads ? *threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
@@ -168,11 +168,6 @@ class PythonScene {
                        const std::optional<Three>& up, std::optional<double> fov,
                        std::optional<int> depth, std::uint64_t seed, const std::string& filter,
                        const std::string& engine, std::optional<int> threads) {
-    if (width < 1 || height < 1 || std::int64_t{width} * height > (std::int64_t{1} << 26)) {
-      throw InputError("width, height: expected 1 or more, and at most 67,108,864 pixels");
-    }
-    if (spp < 1) throw InputError("spp: expected 1 or more");
-    if (depth && *depth < 0) throw InputError("depth: expected 0 or more");
     RenderOptions options{.width = width,
                           .height = height,
                           .threads = threads_of(threads),
@@ -269,6 +264,7 @@ NB_MODULE(_raygate, m) {
   using raygate::PythonScene;
   raygate::require_ieee_floats();
   nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
+  raygate::add_float_reference(m);
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const std::string&, bool, std::optional<int>>(), "file"_a, "strict"_a,
            "threads"_a.none())

@@ -50,7 +50,7 @@ CameraSetting turned(const CameraSetting& camera, double turn) {
   const int axis = size.y >= size.x && size.y >= size.z ? 1 : size.z >= size.x ? 2 : 0;
   const int from = (axis + 1) % 3, to = (axis + 2) % 3;
   const auto [s, c] = sine_cosine(up[axis] < 0.0 ? -turn : turn);
-  const auto rotated = [&](const glm::dvec3& v) {
+  const auto rotated = [from, to, s = s, c = c](const glm::dvec3& v) {  // clang 14: not [&]
     glm::dvec3 result = v;
     result[from] = c * v[from] - s * v[to];
     result[to] = c * v[to] + s * v[from];

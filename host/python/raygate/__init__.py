@@ -8,16 +8,21 @@
 
 Hits are exact: which triangle is nearest, and in which order several lie, is decided for the corners
 and rays as binary32 holds them relative to the scene's middle (Scene.origin).
+
+raygate.float is IEEE 754 arithmetic in any small format; raygate.results reads what this
+repository's benchmarks and synthesis have measured.
 """
 
+import operator
 import os
 
 import numpy as np
 
 from . import _raygate
+from . import float, results  # from here on `float` is the module, not Python's class
 from ._raygate import InputError
 
-__all__ = ["InputError", "Scene"]
+__all__ = ["InputError", "Scene", "float", "results"]
 
 
 class Scene:
@@ -27,7 +32,8 @@ class Scene:
         """Reads `file` and builds its tree. InputError, a ValueError, says with file and line what
         cannot be used. `strict`: refuse faces without area. `threads`: one per
         processor if None, here as everywhere."""
-        self._scene = _raygate.Scene(os.fspath(file), strict, threads)
+        self._scene = _raygate.Scene(os.fsdecode(file), bool(strict),
+                                     _whole("threads", threads, 1))
 
     @property
     def triangle_count(self):
@@ -63,9 +69,15 @@ class Scene:
         each hit of each ray, near before far. columns: ray, hit, triangle, object, material, t,
         point (x, y, z), uv, normal (nx, ny, nz), doubts, unit-point, unit-error; what each means is
         in host/README.md. engine: "cpu", or "model", the hit-test unit's reference model."""
-        rows, fields = self._scene.trace(
-            _vectors(origins), _vectors(directions), None if limits is None else _numbers(limits),
-            hits, list(columns or []), engine, threads)
+        origins, directions = _vectors("origins", origins), _vectors("directions", directions)
+        if limits is not None:
+            limits = np.ascontiguousarray(_numbers("limits", limits))
+            if limits.shape != (len(origins),):
+                raise InputError(f"limits: found an array of shape {limits.shape}, expected one "
+                                 f"number for each ray, ({len(origins)},)")
+        columns = [str(column) for column in columns or []]
+        rows, fields = self._scene.trace(origins, directions, limits, str(hits), columns,
+                                         str(engine), _whole("threads", threads, 1))
         return rows.view(np.dtype([tuple(field) for field in fields]))
 
     def render(self, width=640, height=480, *, spp=1, integrator="whitted", eye=None, target=None,
@@ -76,19 +88,58 @@ class Scene:
         "color" (scene-linear R, G, B, A, premultiplied), "depth", "normal", "point", "albedo",
         "triangle" and "object" (4294967295 where nothing is hit). Options are those of ./render;
         the camera is the scene file's, or sees the whole scene."""
-        return self._scene.render(width, height, spp, integrator, eye, target, up, fov, depth, seed,
-                                  filter, engine, threads)
+        width, height = _whole("width", width, 1), _whole("height", height, 1)
+        if width * height > 2 ** 26:
+            raise InputError(f"width, height: found {width * height:,} pixels, expected at most "
+                             f"{2 ** 26:,}")
+        eye, target, up = _point("eye", eye), _point("target", target), _point("up", up)
+        if fov is not None:
+            fov = _numbers("fov", fov)
+            if fov.shape != () or not 0 < fov < 180:
+                raise InputError(f"fov: found {fov}, expected degrees above 0 and below 180")
+            fov = fov.item()
+        return self._scene.render(
+            width, height, _whole("spp", spp, 1), str(integrator), eye, target, up, fov, _whole("depth", depth, 0),
+            _whole("seed", seed, 0, 2 ** 64 - 1), str(filter), str(engine),
+            _whole("threads", threads, 1))
 
 
-def _vectors(array):
-    array = np.asarray(array)
+def _whole(name, value, least, most=2 ** 31 - 1):
+    """A whole number, or None where None is given."""
+    if value is None:
+        return None
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = None
+    if number is None or not least <= number <= most:
+        raise InputError(f"{name}: found {value!r}, expected a whole number from {least} to {most}")
+    return number
+
+
+def _point(name, value):
+    if value is None:
+        return None
+    point = _numbers(name, value)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise InputError(f"{name}: found {value!r}, expected three finite numbers")
+    return point.tolist()
+
+
+def _vectors(name, array):
+    array = _numbers(name, array)
     if array.ndim != 2 or array.shape[1] != 3:
-        raise InputError(f"found an array of shape {array.shape}, expected (N, 3)")
-    return _numbers(array)
+        raise InputError(f"{name}: found an array of shape {array.shape}, expected (N, 3)")
+    return np.ascontiguousarray(array)
 
 
-def _numbers(array):
-    array = np.asarray(array)
+def _numbers(name, array):
+    try:
+        array = np.asarray(array)
+    except ValueError:  # rows of several lengths
+        array = np.asarray(None)
+    if array.dtype.kind not in "fiu":
+        raise InputError(f"{name}: found an array of {array.dtype}, expected numbers")
     if array.dtype not in (np.float32, np.float64):
         array = array.astype(np.float64)
-    return np.ascontiguousarray(array)
+    return array

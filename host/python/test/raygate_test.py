@@ -63,10 +63,22 @@ class Trace(unittest.TestCase):
         with self.assertRaisesRegex(raygate.InputError, "hits: found 'some'"):
             self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), hits="some")
 
-        for wrong in ({"hits": "any", "columns": ["t"]}, {"hits": "all", "engine": "model"},
-                      {"hits": "all", "columns": ["unit-point"]}):
-            with self.assertRaises(raygate.InputError):
+        for wrong, line in (
+                ({"hits": "any", "columns": ["t"]},
+                 "columns: found 't', expected ray, hit or doubts with hits any"),
+                ({"hits": "all", "engine": "model"}, "engine: expected cpu with hits all"),
+                ({"hits": "all", "columns": ["unit-point"]},
+                 "columns: found 'unit-point', expected none of the unit's with hits all"),
+                ({"columns": ["t", "t"]}, "columns: found 't', expected each name once"),
+                ({"columns": ["tt"]}, "columns: found 'tt', expected some of ray, hit, "),
+                ({"limits": [1, 2, 3]}, "limits: found an array of shape (3,), expected one number"),
+                ({"limits": ["a", "b"]}, "limits: found an array of <U1, expected numbers"),
+                ({"threads": "two"}, "threads: found 'two', expected a whole number from 1"),
+                ({"threads": 0}, "threads: found 0, expected a whole number from 1")):
+            with self.assertRaises(ValueError) as caught:
                 self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), **wrong)
+            self.assertEqual(str(caught.exception)[:len(line)], line)
+            self.assertNotIn("\n", str(caught.exception))
 
     def test_no_rays(self):
         self.assertEqual(len(self.scene.trace(np.zeros((0, 3)), np.zeros((0, 3)))), 0)
@@ -89,8 +101,13 @@ class Render(unittest.TestCase):
         with self.assertRaisesRegex(raygate.InputError, "none.obj: cannot be opened"):
             raygate.Scene("none.obj")
         scene = raygate.Scene(SCENES / "cornell.obj")
-        with self.assertRaisesRegex(raygate.InputError, "width"):
-            scene.render(0, 10)
+        for wrong in ({"width": 0}, {"height": 2.5}, {"spp": 0}, {"seed": -1}, {"depth": -1},
+                      {"threads": 0}, {"eye": [1, 2]}, {"up": ["a", "b", "c"]}, {"fov": 180},
+                      {"target": [[1, 2], [3]]}, {"integrator": "x"}, {"filter": "x"},
+                      {"engine": "rtl"}):
+            with self.assertRaisesRegex(ValueError, next(iter(wrong))) as caught:
+                scene.render(**{"width": 10, "height": 10, **wrong})
+            self.assertNotIn("\n", str(caught.exception))
 
 
 if __name__ == "__main__":

@@ -119,7 +119,7 @@ class DamagedRays : public testing::Test {
 TEST_F(DamagedRays, CanBeTracedOrAreRefused) {
   const std::string seeds[] = {std::string(kCsv), npy(false, 5, 6), npy(true, 4, 7)};
   int usable = 0, refused = 0;
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < 8000; ++round) {
     const std::string bytes = mutate(seeds[round % std::size(seeds)]);
     write(bytes);
     const Outcome outcome = read(3);
@@ -141,8 +141,8 @@ TEST_F(DamagedRays, CanBeTracedOrAreRefused) {
     ASSERT_EQ(whole.error, outcome.error);
     ASSERT_TRUE(!whole.error.empty() || whole.rays.size() == outcome.rays.size());
   }
-  EXPECT_GT(usable, 2000);
-  EXPECT_GT(refused, 2000);
+  EXPECT_GT(usable, 1000);
+  EXPECT_GT(refused, 1000);
 }
 
 /// What this process has held at once so far, in bytes.

@@ -1,0 +1,11 @@
+// Float arithmetic for the Python module: what sim/'s tests compare the float cores with.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace raygate {
+
+/// Adds the functions that raygate/float.py calls.
+void add_float_reference(nanobind::module_& m);
+
+}  // namespace raygate

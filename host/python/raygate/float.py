@@ -1,0 +1,190 @@
+"""IEEE 754 arithmetic in any small format, rounding mode and kind of tininess: value and flags.
+
+    import numpy as np, raygate.float as rf
+    rf.fp_add(np.float32(1), np.float32(2 ** -24), rounding="up")   # 1.0000001, INEXACT
+    rf.fp_divide([1.0], [3.0], rf.Format(5, 10)).value              # 0.33325195, in binary16
+    rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flags   # OVERFLOW | INEXACT
+
+Operands are arrays of floats, which must be numbers of the format (round_to makes them so), or of
+unsigned integers, which are the format's words: sign, exponent, fraction. Results are of the kind
+of the operands. Arrays of different shapes are broadcast.
+
+What computes here is the reference that the simulated cores of hw/fp are compared with, bit by bit,
+by this repository's tests (sim/test/fp): not the cores themselves. NaNs that come out are the
+cores' only one, positive and quiet.
+"""
+
+import dataclasses
+import enum
+import typing
+
+import numpy as np
+
+from . import _raygate
+from ._raygate import InputError
+
+ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")
+RELATIONS = ("==", "<", "<=")
+_TININESS = ("after", "before")
+_OPERATIONS = ("+", "-", "*", "/", *RELATIONS)
+
+
+@dataclasses.dataclass(frozen=True)
+class Format:
+    """A sign, biased exponents of `exponent_bits` (2 to 11), fractions of `fraction_bits` (1 to
+    29); 32 bits at most."""
+
+    exponent_bits: int
+    fraction_bits: int
+
+    def __post_init__(self):
+        if not (2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29
+                and self.width <= 32):
+            raise InputError(f"found {self}, expected 2 to 11 exponent bits, 1 to 29 fraction bits "
+                             "and at most 32 bits in all")
+
+    @property
+    def width(self):
+        """Bits of a word."""
+        return 1 + self.exponent_bits + self.fraction_bits
+
+
+BINARY32 = Format(8, 23)
+BINARY16 = Format(5, 10)
+BFLOAT16 = Format(8, 7)
+FLOAT8 = Format(4, 3)
+
+
+class Flags(enum.IntFlag):
+    """Exceptions, as the bits of `flags`."""
+
+    INEXACT = 1
+    UNDERFLOW = 2
+    OVERFLOW = 4
+    DIVIDE_BY_ZERO = 8
+    INVALID = 16
+
+
+class Result(typing.NamedTuple):
+    """What an operation gives."""
+
+    value: np.ndarray
+    flags: np.ndarray  #: uint8: see Flags
+
+
+def fp_add(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+    """a + b. `rounding` is one of ROUNDINGS; `tininess`, "before" or "after" rounding, is when a
+    result counts as subnormal, which changes the flag UNDERFLOW alone."""
+    return _run("+", a, b, format, rounding, tininess)
+
+
+def fp_subtract(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+    """a - b, as fp_add."""
+    return _run("-", a, b, format, rounding, tininess)
+
+
+def fp_multiply(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+    """a * b, as fp_add."""
+    return _run("*", a, b, format, rounding, tininess)
+
+
+def fp_divide(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+    """a / b, as fp_add."""
+    return _run("/", a, b, format, rounding, tininess)
+
+
+def fp_compare(a, b, relation, format=BINARY32):
+    """Whether a `relation` b, one of RELATIONS, as an array of bool. "==" is quiet, the others
+    signal INVALID for any NaN."""
+    _one_of("relation", relation, RELATIONS)
+    return _run(relation, a, b, format, "nearest-even", "after")
+
+
+def round_to(x, format, rounding="nearest-even", tininess="after"):
+    """Floats rounded to the format: floats, and the flags of it."""
+    bits, flags = encode(x, format, rounding, tininess)
+    return Result(_held(decode(bits, format), np.asarray(x).dtype, format), flags)
+
+
+def encode(x, format, rounding="nearest-even", tininess="after"):
+    """As round_to, but the format's words, uint32."""
+    x = np.asarray(x)
+    if x.dtype.kind != "f" or x.dtype.itemsize > 8:
+        raise InputError(f"found an array of {x.dtype}, expected one of float16, float32 or float64")
+    _one_of("rounding", rounding, ROUNDINGS)
+    _one_of("tininess", tininess, _TININESS)
+    flat = np.ascontiguousarray(x, np.float64).ravel()
+    bits, flags = _raygate.float_encode(flat, format.exponent_bits, format.fraction_bits,
+                                        ROUNDINGS.index(rounding), tininess == "before")
+    return Result(bits.reshape(x.shape)[()], flags.reshape(x.shape)[()])
+
+
+def decode(bits, format):
+    """The numbers, float64, that words of the format stand for."""
+    bits = _words(np.asarray(bits), format)
+    field = bits >> format.fraction_bits & (1 << format.exponent_bits) - 1
+    fraction = (bits & (1 << format.fraction_bits) - 1).astype(np.float64)
+    bias = (1 << format.exponent_bits - 1) - 1
+    one = np.float64(1 << format.fraction_bits)
+    exponent = np.maximum(field, 1).astype(np.int64) - bias - format.fraction_bits
+    size = np.ldexp(np.where(field == 0, fraction, fraction + one), exponent)
+    special = np.where(fraction == 0, np.inf, np.nan)
+    size = np.where(field == (1 << format.exponent_bits) - 1, special, size)
+    return np.where(bits >> format.width - 1 == 1, -size, size)[()]
+
+
+def _run(operation, a, b, format, rounding, tininess):
+    _one_of("rounding", rounding, ROUNDINGS)
+    _one_of("tininess", tininess, _TININESS)
+    a, b = np.asarray(a), np.asarray(b)
+    kinds = {a.dtype.kind, b.dtype.kind}
+    if kinds == {"u"}:
+        words = _words(a, format), _words(b, format)
+    elif kinds == {"f"}:
+        words = _exact(a, format), _exact(b, format)
+    else:
+        raise InputError(f"found arrays of {a.dtype} and {b.dtype}, expected both of unsigned "
+                         "integers (the format's words) or both of floats")
+    try:
+        x, y = np.broadcast_arrays(*words)
+    except ValueError:
+        raise InputError(f"found arrays of shape {a.shape} and {b.shape}, expected shapes that can "
+                         "be broadcast together") from None
+    value, flags = _raygate.float_run(
+        _OPERATIONS.index(operation), np.ascontiguousarray(x).ravel(),
+        np.ascontiguousarray(y).ravel(), format.exponent_bits, format.fraction_bits,
+        ROUNDINGS.index(rounding), tininess == "before")
+    if operation in RELATIONS:
+        value = value != 0
+    elif kinds == {"f"}:
+        value = _held(decode(value, format), np.result_type(a, b), format)
+    return Result(value.reshape(x.shape)[()], flags.reshape(x.shape)[()])
+
+
+def _words(array, format):
+    if array.dtype.kind != "u":
+        raise InputError(f"found an array of {array.dtype}, expected one of unsigned integers")
+    if array.size and int(array.max()) >> format.width:
+        raise InputError(f"found the word {int(array.max()):#x}, expected {format.width} bits")
+    return array.astype(np.uint32)
+
+
+def _exact(array, format):
+    """The words of floats, which must be numbers of the format."""
+    bits, flags = encode(array, format)
+    if np.any(flags):
+        wrong = array[np.asarray(flags) != 0].flat[0] if array.ndim else array[()]
+        raise InputError(f"found {wrong}, which is no number of {format}: round_to makes it one")
+    return np.asarray(bits)
+
+
+def _held(values, dtype, format):
+    """As `dtype`, if that holds the format's numbers; else float64."""
+    info = np.finfo(dtype)
+    fits = format.fraction_bits <= info.nmant and format.exponent_bits <= info.nexp
+    return np.asarray(values).astype(dtype if fits else np.float64)[()]
+
+
+def _one_of(name, found, expected):
+    if found not in expected:
+        raise InputError(f"{name}: found {found!r}, expected one of {', '.join(expected)}")
