@@ -44,7 +44,7 @@ frames: verilate ## the paper's frame at 10 MHz: clocks, frames a second, bytes 
 test: everything ## build and run all tests
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
 
-python: ## install the Python module into build/python, and test it there
+python: ## install the Python module into build/python, test it and its notebook there
 	@$(SETUP) python
 	@test -e build/python/bin/pip || python3 -m venv build/python
 	@build/python/bin/pip install --quiet --disable-pip-version-check . -r host/python/requirements.txt
