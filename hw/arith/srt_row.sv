@@ -56,10 +56,11 @@ module srt_row #(
   assign from[1] = y >= M0[eighth+:EstimateWidth];
   assign from[2] = y >= M1[eighth+:EstimateWidth];
   assign from[3] = y >= M2[eighth+:EstimateWidth];
-  assign multiple = {Width{from[2]}} ^ (({Width{^from}} & divisor_i)
-                                      | ({Width{~from[0] | from[3]}} & (divisor_i << 1)));
-  assign positive_o = {from[3], from[2] ^ from[3]};
-  assign negative_o = {~from[0], from[0] ^ from[1]};
+  // Of their four bits at most one is 1
+  assign positive_o = {from[3], from[2] & ~from[3]};
+  assign negative_o = {~from[0], from[0] & ~from[1]};
+  assign multiple = {Width{from[2]}} ^ (({Width{positive_o[0] | negative_o[0]}} & divisor_i)
+                                      | ({Width{positive_o[1] | negative_o[1]}} & (divisor_i << 1)));
 
   // ---- Subtract: the one that completes a complement goes to the free last place of the carries
 
