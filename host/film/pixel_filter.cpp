@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "host/elementary.h"
@@ -33,24 +34,24 @@ class Inverse {
     }
     cumulative_[kSteps] = sum;
     for (double& value : cumulative_) value /= sum;
-    for (int i = 0, step = 0; i < kSteps; ++i) {
-      while (cumulative_[step + 1] <= static_cast<double>(i) / kSteps) ++step;
-      first_[i] = step;
+    for (int i = 0, step = 0; i < kStarts; ++i) {
+      while (cumulative_[step + 1] <= static_cast<double>(i) / kStarts) ++step;
+      first_[i] = static_cast<std::uint16_t>(step);
     }
   }
 
   [[nodiscard]] double operator()(double u) const {
-    int step = first_[static_cast<int>(u * kSteps)];
+    int step = first_[static_cast<int>(u * kStarts)];
     while (step < kSteps - 1 && cumulative_[step + 1] <= u) ++step;
     const double within = (u - cumulative_[step]) / (cumulative_[step + 1] - cumulative_[step]);
     return place(step + std::clamp(within, 0.0, 1.0));
   }
 
  private:
-  static constexpr int kSteps = 1024;
+  static constexpr int kSteps = 1024, kStarts = 8 * kSteps;  // so that few searches go on
   static double place(double step) { return (2.0 * step / kSteps - 1.0) * kRadius; }
   std::array<double, kSteps + 1> cumulative_;
-  std::array<int, kSteps> first_;  // the step in which u = i / kSteps falls
+  std::array<std::uint16_t, kStarts> first_;  // the step in which u = i / kStarts falls
 };
 
 double tent(double u) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "host/light/widen.h"
 #include "host/tree/box_query.h"
 
 // Why c is a bound
@@ -31,12 +32,15 @@ struct LeafCorners {
   DoubleQuad y[3][3];
   FloatQuad low[3], high[3];  // of the triangles' boxes
 
-  RAYGATE_INLINE LeafCorners(const Bvh& bvh, const Bvh::Child& leaf, const glm::dvec3& from) {
+  template <Vectors kCode>
+  RAYGATE_INLINE LeafCorners(VectorCode<kCode>, const Bvh& bvh, const Bvh::Child& leaf,
+                             const glm::dvec3& from) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       FloatQuad corner[3];
       for (std::uint32_t v = 0; v < 3; ++v) {
         load_quad(bvh.corners_of(leaf) + std::size_t{3 * v + k} * leaf.count, corner[v]);
-        y[v][k] = __builtin_convertvector(corner[v], DoubleQuad) - from[static_cast<int>(k)];
+        widen<kCode>(corner[v], y[v][k]);
+        y[v][k] -= from[static_cast<int>(k)];
       }
       const FloatQuad least = corner[0] < corner[1] ? corner[0] : corner[1],
                       most = corner[0] > corner[1] ? corner[0] : corner[1];
@@ -56,16 +60,13 @@ struct LeafCorners {
 /// A triangle, the planes that its neighbours are likely to be behind, and what is known of them.
 class Subject {
  public:
-  Subject(std::uint32_t slot, const Corners& corners, double slack)
-      : slot_(slot),
-        corners_(corners),
-        from_(corners[0]),
-        reach_(departure_reach(corners)),
-        slack_(slack) {
+  Subject(const Corners& corners, double slack)
+      : corners_(corners), from_(corners[0]), reach_(departure_reach(corners)), slack_(slack) {
+    const auto grown = static_cast<float>(1.125 * reach_);  // more than roundings take away
     for (int k = 0; k < 3; ++k) {
       vertex_[k] = glm::dvec3(corners[k]) - from_;
-      low_[k] = float_below(std::min({corners[0][k], corners[1][k], corners[2][k]}) - reach_);
-      high_[k] = float_above(std::max({corners[0][k], corners[1][k], corners[2][k]}) + reach_);
+      low_[k] = std::min({corners[0][k], corners[1][k], corners[2][k]}) - grown;
+      high_[k] = std::max({corners[0][k], corners[1][k], corners[2][k]}) + grown;
     }
     const glm::dvec3 &b = vertex_[1], &c = vertex_[2];
     cross({b.x, b.y, b.z}, {c.x, c.y, c.z}, normal_, normal_sizes_);
@@ -77,11 +78,21 @@ class Subject {
       const glm::dvec3 edge = vertex_[(k + 1) % 3] - vertex_[k];
       const double length = glm::length(edge);
       inward_[k] = length > 0.0 ? glm::cross(unit_normal_, edge) / length : glm::dvec3(0.0);
-      edge_[k] =
-          std::min(glm::dot(inward_[k], vertex_[k]), glm::dot(inward_[k], vertex_[(k + 1) % 3])) +
-          slack_;
       inverse_height_[k] = length / area;
       longest = std::max(longest, length);
+    }
+    const int along = axis_of(normal);
+    for (int k = 0; k < 2; ++k) across_[k] = static_cast<std::uint32_t>((along + 1 + k) % 3);
+    for (int k = 0; k < 3; ++k) {
+      const auto place = [&](int vertex, int axis) {
+        return double(corners[vertex % 3][static_cast<int>(across_[axis])]);
+      };
+      const double x = place(k + 1, 0) - place(k, 0), y = place(k + 1, 1) - place(k, 1);
+      const double scale = (normal[along] < 0.0 ? -1.0 : 1.0) / std::sqrt(x * x + y * y);
+      Edge& edge = edges_[k];
+      edge.inward[0] = -scale * y;
+      edge.inward[1] = scale * x;
+      edge.most = edge.inward[0] * place(k, 0) + edge.inward[1] * place(k, 1) + slack_;
     }
     most_ = length_ = kShareOfHeight * area / longest;
     if (!(most_ > 4.0 * slack_)) length_ = 0.0;
@@ -95,24 +106,30 @@ class Subject {
   [[nodiscard]] const glm::vec3& low() const { return low_; }
   [[nodiscard]] const glm::vec3& high() const { return high_; }
 
-  /// The other triangles of a leaf whose boxes are near: bit i for number i.
-  [[nodiscard]] RAYGATE_INLINE LaneMask near(const LeafCorners& others,
-                                             const Bvh::Child& leaf) const {
-    if (!has_hope()) return 0;
-    LaneMask mask = others.touching(low_, high_) & ((LaneMask{1} << leaf.count) - 1);
-    if (slot_ - leaf.first < leaf.count) mask &= ~(LaneMask{1} << (slot_ - leaf.first));
-    return mask;
+  /// The triangles of a leaf whose boxes are near: bit i for number i.
+  [[nodiscard]] RAYGATE_INLINE LaneMask near(const LeafCorners& others) const {
+    return has_hope() ? others.touching(low_, high_) : 0;
   }
 
-  /// The triangles of a leaf that are surely behind one of the planes through an edge, at right
-  /// angles to the triangle: bit i for number i. They leave c as large as a height, but for slack.
-  [[nodiscard]] RAYGATE_INLINE LaneMask behind_an_edge(const LeafCorners& leaf) const {
+  /// The triangles of a leaf that are surely behind one of the planes through an edge and along the
+  /// axis to which the normal comes nearest: bit i for number i. Seen along that axis the heights
+  /// are shorter by less than the root of 3: such triangles leave c as it is, but for slack.
+  template <Vectors kCode>
+  [[nodiscard]] RAYGATE_INLINE LaneMask behind_an_edge(const float* leaf,
+                                                       std::uint32_t count) const {
+    DoubleQuad y[3][2];
+    for (std::uint32_t v = 0; v < 3; ++v) {
+      for (std::uint32_t k = 0; k < 2; ++k) {
+        FloatQuad coordinate;
+        load_quad(leaf + std::size_t{3 * v + across_[k]} * count, coordinate);
+        widen<kCode>(coordinate, y[v][k]);
+      }
+    }
     LongQuad behind = {};
-    for (int i = 0; i < 3; ++i) {
-      const glm::dvec3& axis = inward_[i];
+    for (const Edge& edge : edges_) {
       LongQuad all = LongQuad{} - 1;
-      for (const DoubleQuad(&point)[3] : leaf.y) {
-        all &= axis.x * point[0] + axis.y * point[1] + axis.z * point[2] <= edge_[i];
+      for (const DoubleQuad(&point)[2] : y) {
+        all &= edge.inward[0] * point[0] + edge.inward[1] * point[1] <= edge.most;
       }
       behind |= all;
     }
@@ -176,8 +193,9 @@ class Subject {
     result.length = crowd_.size() != 0 ? -length : length;
     int exponent;
     std::frexp(kNormalError * (normal_sizes_[0] + normal_sizes_[1] + normal_sizes_[2]), &exponent);
+    const double scale = std::ldexp(1.0, -exponent);
     for (int k = 0; k < 3; ++k) {
-      result.normal[k] = std::ldexp(normal_[k], -exponent);
+      result.normal[k] = scale * normal_[k];
       result.corner[k] = corners_[0][k];
       result.gradient[0][k] = static_cast<float>(length * inverse_height_[2] * inward_[2][k]);
       result.gradient[1][k] = static_cast<float>(length * inverse_height_[0] * inward_[0][k]);
@@ -187,6 +205,12 @@ class Subject {
   [[nodiscard]] Crowd& crowd() { return crowd_; }
 
  private:
+  /// Of the largest magnitude.
+  static int axis_of(const glm::dvec3& v) {
+    const glm::dvec3 sizes = glm::abs(v);
+    const int axis = sizes.x < sizes.y ? 1 : 0;
+    return sizes[axis] < sizes.z ? 2 : axis;
+  }
   /// 0 where `v` is.
   static glm::dvec3 unit(const glm::dvec3& v) {
     const double length = glm::length(v);
@@ -233,17 +257,40 @@ class Subject {
     return least >= reach_ ? std::numeric_limits<double>::infinity() : sum;
   }
 
-  std::uint32_t slot_;
   const Corners& corners_;
   glm::dvec3 from_;
   double reach_, slack_;
   glm::vec3 low_, high_;
   glm::dvec3 vertex_[3], unit_normal_, inward_[3];
-  double edge_[3], inverse_height_[3];
+  /// A line across the axis to which the normal comes nearest.
+  struct Edge {
+    double inward[2];  // unit vector
+    double most;       // along it, of what is behind the edge
+  };
+  Edge edges_[3];
+  std::uint32_t across_[2];  // the other axes
+  double inverse_height_[3];
   double normal_[3], normal_sizes_[3];
   double most_, length_;  // c, at most and as it is found so far
   Crowd crowd_;
 };
+
+/// Takes the triangles of a leaf into account, but for the one in `slot`: that is the subject.
+template <Vectors kCode>
+RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t slot,
+                            Subject& subject) {
+  LaneMask rest = (LaneMask{1} << leaf.count) - 1;
+  rest &= ~subject.behind_an_edge<kCode>(bvh.corners_of(leaf), leaf.count);
+  if (slot - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (slot - leaf.first));
+  if (rest == 0) return;
+  const LeafCorners others(VectorCode<kCode>{}, bvh, leaf, subject.from());
+  rest &= subject.near(others);
+  if (rest != 0) rest &= ~subject.beyond_their_edge(others);
+  for (; rest != 0; rest &= rest - 1) {
+    const std::uint32_t other = leaf.first + static_cast<std::uint32_t>(std::countr_zero(rest));
+    subject.consider(other, bvh.corners_of(other));
+  }
+}
 
 /// The largest magnitude of a coordinate in the tree.
 float largest_coordinate(const Bvh& bvh) {
@@ -294,21 +341,23 @@ Clearances::Clearances(const Bvh& bvh)
 
 const Clearance& Clearances::find(std::uint32_t slot) const {
   const Corners corners = bvh_.corners_of(slot);
-  Subject subject(slot, corners, slack_);
+  Subject subject(corners, slack_);
   if (subject.has_hope()) {
     in_vectors([&](auto code) RAYGATE_BODY {
-      const auto look = [&](const Bvh::Child& leaf) RAYGATE_BODY {
-        const LeafCorners others(bvh_, leaf, subject.from());
-        LaneMask rest = subject.near(others, leaf);
-        if (rest != 0) rest &= ~subject.behind_an_edge(others);
-        if (rest != 0) rest &= ~subject.beyond_their_edge(others);
-        for (; rest != 0; rest &= rest - 1) {
-          const std::uint32_t other =
-              leaf.first + static_cast<std::uint32_t>(std::countr_zero(rest));
-          subject.consider(other, bvh_.corners_of(other));
-        }
+      // Leaves are looked at a while after they are found: by then they are in the cache.
+      constexpr std::size_t kMostWaiting = 16;
+      Bvh::Child waiting[kMostWaiting];
+      std::size_t count = 0;
+      const auto look = [&]() RAYGATE_BODY {
+        for (std::size_t i = 0; i < count; ++i) take_in<code()>(bvh_, waiting[i], slot, subject);
+        count = 0;
       };
-      for_leaves_near<code()>(bvh_, subject.low(), subject.high(), look);
+      const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {
+        if (count == kMostWaiting) look();
+        waiting[count++] = leaf;
+      };
+      for_leaves_near<code()>(bvh_, subject.low(), subject.high(), found);
+      look();
     });
   }
   Known& known = known_[slot];

@@ -95,6 +95,11 @@ class Clearances {
     const Clearance* const clearance = known_[slot].clearance.load(std::memory_order_acquire);
     return clearance != nullptr ? *clearance : find(slot);
   }
+  /// Says that a triangle's will soon be asked for; later, once more.
+  RAYGATE_INLINE void prefetch(std::uint32_t slot) const { __builtin_prefetch(&known_[slot]); }
+  RAYGATE_INLINE void prefetch_again(std::uint32_t slot) const {
+    __builtin_prefetch(known_[slot].clearance.load(std::memory_order_relaxed));
+  }
   /// Of a triangle whose clearance has been asked for, and says that there is one.
   [[nodiscard]] const Crowd& crowd_of(std::uint32_t slot) const {
     return *known_[slot].crowd.load(std::memory_order_relaxed);

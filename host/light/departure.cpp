@@ -114,12 +114,14 @@ RAYGATE_INLINE void DeparturePoint::find_some(const DepartureQuestion* questions
   const LaneMask good = sign_mask(is_clear);
   const LaneMask crowded = sign_mask(reinterpret_cast<decltype(ways)>(hits.length));
   constexpr LaneMask kAll = (LaneMask{1} << kWidth) - 1;
-  for (LaneMask rest = (~good & kAll) | crowded; rest != 0; rest &= rest - 1) {
+  LaneMask rest = (~good & kAll) | crowded;
+  if (rest == 0) return;
+  float reaches[kWidth];
+  std::memcpy(reaches, &reach, sizeof reaches);
+  for (; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const DepartureQuestion& question = questions[i];
     if ((good >> i & 1) != 0) {
-      float reaches[kWidth];
-      std::memcpy(reaches, &reach, sizeof reaches);
       const glm::vec3 plain = *origins[i];
       const auto is_there = [&](std::uint32_t slot) {
         return !surely_apart(plain - reaches[i], plain + reaches[i], bvh_.corners_of(slot));
@@ -138,6 +140,10 @@ void DeparturePoint::find(std::span<const DepartureQuestion> questions,
     constexpr int kWidth = code() == Vectors::kAvx512 ? kLanes : kQuad;
     std::size_t first = 0;
     for (; first + kWidth <= questions.size(); first += kWidth) {
+      if (first + 3 * kWidth <= questions.size()) {
+        const DepartureQuestion* const soon = &questions[first + 2 * kWidth];
+        for (int i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].slot);
+      }
       find_some<code(), kWidth>(&questions[first], &origins[first]);
     }
     if (first == questions.size()) return;

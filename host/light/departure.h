@@ -66,6 +66,9 @@ class DeparturePoint {
   /// ray runs have no say.
   [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t slot, Departure way);
 
+  /// Says that a slot will soon be asked about.
+  RAYGATE_INLINE void prefetch(std::uint32_t slot) const { clearances_.prefetch(slot); }
+
   /// origins[i] becomes O' for questions[i]: what find() gives, several at a time and so much
   /// sooner.
   void find(std::span<const DepartureQuestion> questions, std::span<DepartureOrigin> origins);

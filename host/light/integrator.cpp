@@ -122,6 +122,7 @@ void Integrator::choose_departures(std::size_t i) {
     way.is_wanted = leaves(place, way);
     (way.side == Departure::kBefore ? is_before : is_after) |= way.is_wanted;
   }
+  if (is_before || is_after) departure_.prefetch(place.slot);
   if (is_before) departures_.push_back({place.ray, place.slot, Departure::kBefore});
   if (is_after) departures_.push_back({place.ray, place.slot, Departure::kAfter});
 }

@@ -7,6 +7,7 @@
 
 #include "host/lanes.h"
 #include "host/light/clearance.h"
+#include "host/light/widen.h"
 
 // Which side
 //
@@ -151,16 +152,9 @@ RAYGATE_INLINE void load(const Clearance* const* triangles, const Ray* const* ra
   }
 }
 
-/// GCC 12 makes four instructions of what is one.
 template <Vectors kCode>
 RAYGATE_INLINE void convert(const FloatQuad& from, DoubleQuad& to) {
-#ifdef RAYGATE_AVX2
-  if constexpr (kCode != Vectors::kBaseline) {
-    to = __builtin_ia32_cvtps2pd256(from);
-    return;
-  }
-#endif
-  to = __builtin_convertvector(from, DoubleQuad);
+  widen<kCode>(from, to);
 }
 template <Vectors kCode>
 RAYGATE_INLINE void convert(const FloatLanes& from, DoubleLanes& to) {

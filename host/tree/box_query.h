@@ -28,6 +28,7 @@ RAYGATE_INLINE void for_leaves_near(const Bvh& bvh, const glm::vec3& low, const 
     }
     for (LaneMask met = sign_mask<kCode>(touches); met != 0; met &= met - 1) {
       const Bvh::Child child = node.child[std::countr_zero(met)];
+      bvh.prefetch(child);
       if (child.count == 0) {
         waiting[depth++] = child.first;
       } else {
