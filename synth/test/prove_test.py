@@ -1,35 +1,44 @@
-"""A proof refuses what is broken: the array, with a wrong wire in a lane or a counter that misses events."""
+"""A proof refuses what is broken: a wrong wire in an array's lane, a counter that misses events, two
+results' places exchanged."""
 
 import pathlib
 import tempfile
 import unittest
 import unittest.mock
 
-from synth import catalogue, prove, store, tools
+from synth import catalogue, store, tools, unit_proofs
 
-
-def broken(files: list[pathlib.Path], folder: pathlib.Path, before: str, after: str) -> list[pathlib.Path]:
-    """The same files, the array's with a fault in it."""
-    array = catalogue.HW / "hit_test" / "hit_test_array.sv"
-    text = array.read_text()
-    assert text.count(before) == 1, before
-    (folder / array.name).write_text(text.replace(before, after))
-    return [folder / array.name if file == array else file for file in files]
+LANES = [(".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])"),
+         (".ready_i(ready_i[n])", ".ready_i(ready_i[Lanes-1-n])"),
+         ("n < Lanes; n++) begin\n        increment", "n < Lanes-1; n++) begin\n        increment"),
+         ("count_q + increment", "count_q | increment")]
+RESULTS = [(".data_o({report_o, closed_o, found_o", ".data_o({report_o, found_o, closed_o"),
+           (".push_i(report != hit_test_pkg::ReportNone | closed", ".push_i(closed")]
 
 
 class ProofsRefuseFaults(unittest.TestCase):
-    def test_of_the_array(self):
-        around = prove._around
-        for before, after in ((".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])"),
-                              (".ready_i(ready_i[n])", ".ready_i(ready_i[Lanes-1-n])"),
-                              ("n < Lanes; n++) begin\n        increment", "n < Lanes-1; n++) begin\n        increment"),
-                              ("count_q + increment", "count_q | increment")):
+    def refuse(self, module, faults, proof):
+        sound = catalogue.HW / "hit_test" / f"{module}.sv"
+        around = unit_proofs.around
+        for before, after in faults:
+            self.assertEqual(sound.read_text().count(before), 1, before)
             with self.subTest(after), tempfile.TemporaryDirectory() as folder:
-                path = pathlib.Path(folder)
-                with unittest.mock.patch.object(store, "OUT", path), unittest.mock.patch.object(
-                        prove, "_around", lambda *names, p=path, b=before, a=after: broken(around(*names), p, b, a)):
-                    with self.assertRaisesRegex(tools.ToolFailed, "array_is_its_lanes.sv"):
-                        prove.array()
+                broken = pathlib.Path(folder) / sound.name
+                broken.write_text(sound.read_text().replace(before, after))
+
+                def with_fault(*names, broken=broken):
+                    return [broken if file == sound else file for file in around(*names)]
+
+                with (unittest.mock.patch.object(store, "OUT", pathlib.Path(folder)),
+                      unittest.mock.patch.object(unit_proofs, "around", with_fault),
+                      self.assertRaisesRegex(tools.ToolFailed, r": sat: \$assert")):
+                    proof()
+
+    def test_of_the_array(self):
+        self.refuse("hit_test_array", LANES, unit_proofs.array)
+
+    def test_of_the_results_places(self):
+        self.refuse("hit_test_pipeline", RESULTS, lambda: unit_proofs.queues_results("binary16", 5, 10))
 
 
 if __name__ == "__main__":

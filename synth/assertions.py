@@ -1,0 +1,62 @@
+"""Proofs of assertions: a module of proofs/, the RTL that it speaks of, and whether they hold."""
+
+import dataclasses
+import pathlib
+from collections.abc import Callable
+
+from synth import catalogue, cores, induction, store, tools
+
+PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
+
+
+@dataclasses.dataclass(frozen=True)
+class Proof:
+    """Something that is shown; `quick`: in well under half a minute, so `make test` shows it too;
+    `long`: only where it is asked for."""
+
+    name: str
+    claim: str
+    how: str
+    work: Callable[[], tuple[dict, bool]]
+    quick: bool = True
+    long: bool = False
+
+
+def rtl(core: str) -> list[pathlib.Path]:
+    """The files of a core of hw/."""
+    return catalogue.Design("", "", core).sources()
+
+
+def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
+          prepare: str = "", parameters: tuple[tuple[str, object], ...] = (), steps: int = 0,
+          reach: int = 0, prepared: str = "", beside: tuple[str, ...] = (), name: str = "") -> tuple[dict, bool]:
+    """Proves the assertions of proofs/<top>.sv; raises ToolFailed where one does not hold, where there
+    is none, and where what is assumed leaves a `cover` out of reach.
+
+    `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, what is named of hw/arith unless said.
+    `prepare`, `prepared`: a Tcl file that makes a module of it first, and what of. `beside`: files of
+    `sources`, by name, whose modules the proof itself has beside that one.
+    `steps`: 0 for combinational ones; else proven for that many clocks from reset and, where they
+    held for so many, for the next one. `reach`: clocks to reach covers in, `steps` unless said.
+    """
+    folder = store.OUT / "proofs" / (name or top)
+    own = PROOFS / f"{top}.sv"
+    hardware = cores.used(top, [*rtl("arith"), own])[:-1] if sources is None else sources
+    read = [*(file for file in hardware if not prepare or file.stem in beside), own]
+    scripts = [PROOFS / "prove.tcl", pathlib.Path(induction.__file__), *([PROOFS / prepare] if prepare else [])]
+    wanted = store.key([*hardware, *read, *scripts], tools.version("yosys"), method, parameters, steps,
+                       reach, prepared)
+
+    def work() -> dict:
+        smt2 = folder / "model.smt2"
+        tools.run(["yosys", "-c", PROOFS / "prove.tcl"], folder / "yosys.log", {
+            "SOURCES": " ".join(map(str, read)), "TOP": top,
+            "PARAMETERS": " ".join(f"{key} {value}" for key, value in parameters),
+            "PREPARE": str(PROOFS / prepare) if prepare else "",
+            "RTL": " ".join(map(str, hardware)), "PREPARED": prepared,
+            "SMT2": str(smt2) if method == "Bitwuzla" else ""})
+        if method == "Bitwuzla":
+            induction.holds(top, smt2, steps, reach or steps)
+        return {"holds": True}
+
+    return store.cached(folder, wanted, tools.measured(work))

@@ -1,0 +1,151 @@
+"""What is claimed of the units and what they are made of, around arithmetic of which as little is known as
+the claim needs (proofs/contracts)."""
+
+import functools
+import pathlib
+import re
+
+from synth import catalogue, cores, float_proofs
+from synth.assertions import PROOFS, Proof, holds
+
+
+def fifo_keeps_order(depth: int, reserve: int) -> tuple[dict, bool]:
+    """A FIFO of this size keeps its promises, by induction."""
+    parameters = f"-chparam Width 2 -chparam Depth {depth} -chparam Reserve {reserve}"
+    return holds("fifo_keeps_order", "Bitwuzla", [catalogue.HW / "common" / "fifo.sv"], "open.tcl",
+                 (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6,
+                 prepared=f"fifo {{{parameters}}} *_q {{words {depth} 2}}", name=f"fifo_{depth}")
+
+
+def nearest_is_kept(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """nearest_hit keeps the nearest hit, by induction."""
+    return holds("nearest_hit_keeps_nearest", "Bitwuzla", cores.files("hit_test"), steps=1, reach=5,
+                 parameters=(("ExpWidth", exp), ("FracWidth", frac)), name=f"nearest.{name}")
+
+
+def around(top: str, *names: str) -> list[pathlib.Path]:
+    """A unit, with the modules of these files of contracts/ in place of its own."""
+    contracts = [PROOFS / "contracts" / f"{name}.sv" for name in names]
+    stands_for = re.findall(r"^module (\w+)", "".join(file.read_text() for file in contracts), re.M)
+    rtl = [file for file in cores.files("hit_test") if file.stem not in stands_for]
+    needed = [file for name in (top, *names) for file in cores.used(name, [*rtl, *contracts])]
+    return [file for file in [*rtl, *contracts] if file in {*needed, *contracts}]
+
+
+def computes(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """The pipelined unit's words go through the cores that they should, by unrolling."""
+    inner = " ".join(f"u_nearest.{port}_i" for port in ("valid", "hit", "doubt", "t", "t_error", "payload"))
+    inner += " u_point.valid_i u_point.dividends_i u_point.v_i u_point.valid_o u_point.point_o"
+    latency = frac // 2 + 16
+    return holds("pipeline_computes", "Bitwuzla", around("hit_test_pipeline", "functions"), "open.tcl",
+                 (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
+                 prepared=_opened(exp, frac, 1, inner), beside=("functions", "hit_decision", "delay_line"),
+                 name=f"computes.{name}")
+
+
+def keeps_credits(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """The pipelined unit never overfills its queue, and holds what it offers, by induction."""
+    inner = ("test_q decided_q dividing_q report closed u_point.valid_q u_results.push_i "
+             "u_results.count_q u_results.read_q u_results.write_q")
+    return holds("pipeline_keeps_credits", "Bitwuzla", around("hit_test_pipeline", "hit_test_arithmetic"),
+                 "open.tcl", (("ExpWidth", exp), ("FracWidth", frac)), steps=1,
+                 prepared=_opened(exp, frac, 1, inner), name=f"credits.{name}")
+
+
+def keeps_tags(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """Tests come to their distances in order, with their tags, by induction."""
+    inner = "u_nearest.valid_i u_nearest.first_i u_nearest.last_i u_nearest.tag_i"
+    latency = frac // 2 + 16
+    return holds("pipeline_keeps_tags", "Bitwuzla", around("hit_test_pipeline", "hit_test_arithmetic"),
+                 "open.tcl", (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
+                 prepared=_opened(exp, frac, 2, inner), name=f"tags.{name}")
+
+
+def queues_results(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """The pipelined unit's ports are what its queue was given, from any state."""
+    inner = " ".join(f"u_nearest.{port}_o" for port in ("report", "report_tag", "closed", "found", "tag", "t",
+                                                "t_error"))
+    return holds("pipeline_queues_results", "Bitwuzla",
+                 around("hit_test_pipeline", "hit_test_arithmetic", "queue_as_wire"), "open.tcl",
+                 (("ExpWidth", exp), ("FracWidth", frac)),
+                 prepared=_opened(exp, frac, 2, inner + " u_point.valid_o u_point.point_o"), name=f"queues.{name}")
+
+
+def array() -> tuple[dict, bool]:
+    """An array of four lanes is its lanes, by induction."""
+    return holds("array_is_its_lanes", "Bitwuzla", around("hit_test_array", "lane"), "open.tcl", steps=1,
+                 reach=8, prepared="hit_test_array {-chparam Lanes 4 -chparam ExpWidth 5 -chparam FracWidth 10 "
+                 "-chparam TagWidth 2 -chparam CounterWidth 6} "
+                 "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")
+
+
+def decision(name: str, exp: int, frac: int) -> tuple[dict, bool]:
+    """hit_decision denies no exact edge product."""
+    return holds("decision_follows_edges", "Bitwuzla", cores.files("hit_test"),
+                 parameters=(("ExpWidth", exp), ("FracWidth", frac)), name=f"decision.{name}")
+
+
+def edge_sign(frac: int) -> tuple[dict, bool]:
+    """An edge product beyond its bound has the exact one's sign, in a format of this fraction width."""
+    u = 2.0 ** -(frac + 1)
+    most = int(1024 * (2 + 6 / (1 - 3 * u)))
+    return holds("edge_sign_is_exact", "Bitwuzla", cores.files("fp"), name=f"edge_sign.{frac}",
+                 parameters=(("ExpWidth", 4), ("FracWidth", frac), ("C1024", most)))
+
+
+def _opened(exp: int, frac: int, tag: int, inner: str) -> str:
+    return (f"hit_test_pipeline {{-chparam ExpWidth {exp} -chparam FracWidth {frac} "
+            f"-chparam TagWidth {tag}}} {{{inner}}}")
+
+
+def timetable() -> tuple[dict, bool]:
+    """The paper's unit keeps its timetable, by induction."""
+    sources = [*(file for file in cores.files("hit_test") if file.stem in ("arith_pkg", "fp_pkg")),
+               PROOFS / "contracts" / "fp_cores.sv",
+               *(catalogue.HW / "hit_test" / f"{name}.sv" for name in ("hit_test_control", "hit_test_unit"))]
+    return holds("timetable", "Bitwuzla", sources, "open.tcl", steps=20,
+                 prepared="hit_test_unit {} {word step clear accumulate load_d divide}")
+
+
+def serial_computes() -> tuple[dict, bool]:
+    """The paper's unit makes its components of a test's words, by unrolling."""
+    return holds("unit_computes", "Bitwuzla", around("hit_test_unit", "functions"), steps=12)
+
+
+def general_computes() -> tuple[dict, bool]:
+    """The general unit likewise."""
+    return holds("general_unit_computes", "Bitwuzla", around("general_hit_test_unit", "functions"), steps=17)
+
+
+ALL = [
+    *(Proof(f"unit.fifo_{depth}", f"a FIFO of {depth} words, {reserve} kept back: order, counts, stability",
+            "Bitwuzla", functools.partial(fifo_keeps_order, depth, reserve))
+      for depth, reserve in ((2, 0), (5, 2), (36, 33), (48, 45))),
+    *(Proof(f"unit.nearest.{name}", "a burst's nearest hit is kept, and near ties reported",
+            "Bitwuzla", functools.partial(nearest_is_kept, name, exp, frac))
+      for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+    *(Proof(f"unit.credits.{name}", "the pipelined unit's queue has room for all that comes; what it "
+            "offers stays until taken", "Bitwuzla",
+            functools.partial(keeps_credits, name, exp, frac), False)
+      for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+    *(Proof(f"unit.tags.{name}", "the pipelined unit keeps the order, tags and bursts of its tests",
+            "Bitwuzla", functools.partial(keeps_tags, name, exp, frac), False)
+      for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+    *(Proof(f"unit.computes.{name}", "the pipelined unit's words go through the operations that they should",
+            "Bitwuzla", functools.partial(computes, name, exp, frac), False)
+      for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+    *(Proof(f"unit.queues.{name}", "the pipelined unit's ports are what its queue was given", "Bitwuzla",
+            functools.partial(queues_results, name, exp, frac))
+      for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+    *(Proof(f"unit.decision.{name}", "no verdict denies exact edge products, if bounds hold", "Bitwuzla",
+            functools.partial(decision, name, exp, frac))
+      for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
+    *(Proof(f"unit.edge_sign.{frac}", f"{frac} bits of fraction: beyond its bound an edge product has "
+            "the exact one's sign", "Bitwuzla", functools.partial(edge_sign, frac), False, frac > 4)
+      for frac in (3, 4, 5, 6, 7)),
+    Proof("unit.timetable", "the unit keeps its timetable, from reset and always", "Bitwuzla", timetable),
+    Proof("unit.computes.serial", "the paper's unit makes P of its words, whatever it did before", "Bitwuzla",
+          serial_computes, False),
+    Proof("unit.computes.general", "the general unit, likewise", "Bitwuzla", general_computes, False),
+    Proof("unit.array", "an array is its lanes, and its counters are their sums", "Bitwuzla", array),
+]
