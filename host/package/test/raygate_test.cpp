@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <random>
 #include <stdexcept>
 #include <utility>
+
+#include "host/exact/test/rational_oracle.h"
 
 namespace raygate {
 namespace {
@@ -35,32 +36,11 @@ std::vector<Tracer::Triangle> cube() {
   return triangles;
 }
 
-using Rational3 = std::array<mpq_class, 3>;
+glm::vec3 vector(const Point& p) { return {p[0], p[1], p[2]}; }
 
-Rational3 minus(const Point& a, const Point& b) {
-  return {mpq_class(a[0]) - mpq_class(b[0]), mpq_class(a[1]) - mpq_class(b[1]),
-          mpq_class(a[2]) - mpq_class(b[2])};
-}
-mpq_class volume(const Rational3& a, const Rational3& b, const Rational3& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
-/// The t of a hit of the ray whose direction is tilted by (e, e^2, e^3), e very small.
-std::optional<mpq_class> rational_hit(const Tracer::Ray& ray, const Tracer::Triangle& triangle) {
-  const Rational3 a = minus(triangle[0], ray.origin), b = minus(triangle[1], ray.origin),
-                  c = minus(triangle[2], ray.origin), way = minus(ray.direction, Point{});
-  Rational3 tilted = way;
-  mpq_class e(1), power(1);
-  e >>= 200;
-  for (mpq_class& component : tilted) component += (power *= e);
-  const mpq_class all = volume(a, b, c);
-  const int side = sgn(all);
-  if (side == 0 || sgn(volume(tilted, a, b)) != side || sgn(volume(tilted, b, c)) != side ||
-      sgn(volume(tilted, c, a)) != side) {
-    return std::nullopt;
-  }
-  return all / (volume(way, a, b) + volume(way, b, c) + volume(way, c, a));
+test::RationalOracle oracle(const Tracer::Ray& ray, const Tracer::Triangle& t) {
+  return {Ray{vector(ray.origin), vector(ray.direction)},
+          Corners{vector(t[0]), vector(t[1]), vector(t[2])}};
 }
 
 TEST(Tracer, SaysWhatRationalsSay) {
@@ -85,10 +65,10 @@ TEST(Tracer, SaysWhatRationalsSay) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     std::vector<std::pair<mpq_class, std::uint32_t>> expected;
     for (std::uint32_t k = 0; k < triangles.size() && rays[i].direction != Point{}; ++k) {
-      const auto t = rational_hit(rays[i], triangles[k]);
-      if (!t) continue;
-      const bool near = std::isinf(rays[i].limit) || *t < mpq_class(rays[i].limit);
-      if (near) expected.emplace_back(*t, k);
+      const test::RationalOracle truth = oracle(rays[i], triangles[k]);
+      if (!truth.hit()) continue;
+      const bool near = std::isinf(rays[i].limit) || truth.t() < mpq_class(rays[i].limit);
+      if (near) expected.emplace_back(truth.t(), k);
       limited += !near;
     }
     std::ranges::sort(expected);

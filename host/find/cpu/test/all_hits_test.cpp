@@ -1,50 +1,18 @@
 // All hits of a ray, against every triangle asked for itself in rationals.
 #include "host/find/cpu/all_hits.h"
 
-#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <utility>
 
 #include "host/exact/test/meshes.h"
+#include "host/exact/test/rational_oracle.h"
 
 namespace raygate {
 namespace {
 
 using test::Random;
-using Rational3 = std::array<mpq_class, 3>;
-
-Rational3 minus(const glm::vec3& a, const glm::vec3& b) {
-  Rational3 difference;
-  for (int k = 0; k < 3; ++k) difference[k] = mpq_class(a[k]) - mpq_class(b[k]);
-  return difference;
-}
-
-mpq_class determinant(const Rational3& a, const Rational3& b, const Rational3& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
-/// The t of a hit in the inside of the triangle; nothing for a miss. On an edge the tilt of the ray
-/// has the last word, which is hits_triangle's: `t` is then still rational.
-std::optional<mpq_class> rational_hit(const Ray& ray, const Corners& triangle) {
-  const Rational3 a = minus(triangle[0], ray.origin), b = minus(triangle[1], ray.origin),
-                  c = minus(triangle[2], ray.origin), way = minus(ray.direction, glm::vec3(0.0f));
-  const mpq_class sides[] = {determinant(way, a, b), determinant(way, b, c),
-                             determinant(way, c, a)};
-  const mpq_class volume = determinant(a, b, c), sum = sides[0] + sides[1] + sides[2];
-  const auto has = [&](int sign) {
-    return std::ranges::any_of(sides, [&](const mpq_class& side) { return sgn(side) == sign; });
-  };
-  if ((has(1) && has(-1)) || sgn(volume) == 0 || sgn(sum) == 0) return std::nullopt;
-  const mpq_class t = volume / sum;
-  if (sgn(t) <= 0 || (has(0) && !hits_triangle(ray, triangle))) return std::nullopt;
-  return t;
-}
-
 class AllHits : public testing::Test {
  protected:
   /// Compares some rays through a mesh of about that size; returns the number of hits.
@@ -76,9 +44,10 @@ class AllHits : public testing::Test {
   static std::size_t compare_one(const Bvh& bvh, const Ray& ray, float limit) {
     std::vector<std::pair<mpq_class, std::uint32_t>> expected;
     for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-      const auto t = rational_hit(ray, bvh.corners_of(slot));
-      if (t && (limit == std::numeric_limits<float>::infinity() || *t < mpq_class(limit))) {
-        expected.emplace_back(*t, bvh.triangle_of(slot));
+      const test::RationalOracle truth(ray, bvh.corners_of(slot));
+      if (!truth.hit()) continue;
+      if (limit == std::numeric_limits<float>::infinity() || truth.t() < mpq_class(limit)) {
+        expected.emplace_back(truth.t(), bvh.triangle_of(slot));
       }
     }
     std::ranges::sort(expected);
