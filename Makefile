@@ -70,9 +70,14 @@ FUZZ_SECONDS ?= 60
 fuzz: ## run libFuzzer on the readers of scenes and rays and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]
 	@$(SETUP) fuzz
 	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYGATE_FUZZ=ON
-	@cmake --build build/fuzz -j $(JOBS) --target obj_fuzz rays_fuzz exact_fuzz
+	@cmake --build build/fuzz -j $(JOBS) --target obj_fuzz ply_fuzz stl_fuzz gltf_fuzz glb_fuzz rays_fuzz exact_fuzz
 	@mkdir -p build/fuzz/scenes && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/scenes
 	@build/fuzz/obj_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/ build/fuzz/scenes
+	@for kind in ply stl gltf glb; do \
+	  mkdir -p build/fuzz/$$kind && cp -n host/scene/io/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
+	  build/fuzz/$${kind}_fuzz -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=2048 \
+	    -artifact_prefix=build/fuzz/ build/fuzz/$$kind || exit 1; \
+	done
 	@mkdir -p build/fuzz/rays && cp -n host/trace/fuzz/rays/* build/fuzz/rays
 	@build/fuzz/rays_fuzz -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=512 -malloc_limit_mb=16 \
 	  -artifact_prefix=build/fuzz/ build/fuzz/rays

@@ -11,10 +11,10 @@ namespace raygate {
 namespace {
 
 constexpr const char* kHelp =
-    R"(Usage: ./render SCENE.obj [options]       or SCENE.json, with camera and lights
-
-Renders a Wavefront OBJ scene. A ray-tracing unit, simulated from its
-SystemVerilog, finds the hits; --engine cpu finds the same without it, faster.
+    R"(Usage: ./render SCENE [options]     SCENE.obj, .glb, .gltf, .ply or .stl, or
+                                    a SCENE.json about one: camera and lights
+Renders a scene. A ray-tracing unit, simulated from its SystemVerilog, finds
+the hits; --engine cpu finds the same without it, faster.
 Writes SCENE.exr and SCENE.png into the current folder.
 
   ./render scenes/cornell.obj --engine cpu

@@ -15,7 +15,7 @@
 #include "host/exact/ieee_floats.h"
 #include "host/film/pending_file.h"
 #include "host/scene/io/input_error.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/scene_file.h"
 #include "host/trace/answers.h"
 #include "host/trace/question.h"
@@ -29,7 +29,7 @@ namespace {
 constexpr const char* kHelp =
     R"(Usage: ./trace SCENE RAYS [options]
 
-Says what rays hit in a scene (OBJ, or a scene file), exactly: which triangle,
+Says what rays hit in a scene (OBJ, glTF, PLY, STL), exactly: which triangle,
 where, and whether binary32 had left it open. RAYS is a CSV table or a NumPy
 array (float32 or float64), or - for standard input, of any length. Its columns
 are the origin, the direction and, where wanted, a limit:
@@ -159,7 +159,7 @@ int run(const TraceOptions& options) {
   std::optional<SceneFile> scene_file;
   if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
   const Scene scene =
-      load_obj(scene_file ? scene_file->obj : options.scene, {.strict = options.strict});
+      load_scene(scene_file ? scene_file->obj : options.scene, {.strict = options.strict});
   for (const std::string& warning : scene.warnings) print_warning(warning);
   const auto threads = static_cast<int>(options.engine.threads);
   const Bvh bvh(scene, threads);

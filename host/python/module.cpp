@@ -28,7 +28,7 @@
 #include "host/python/float_reference.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/input_error.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/view.h"
 #include "host/trace/answers.h"
@@ -109,7 +109,7 @@ class PythonScene {
     const std::filesystem::path path = file;
     if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
-    scene_ = load_obj(file_ ? file_->obj : path, {.strict = strict});
+    scene_ = load_scene(file_ ? file_->obj : path, {.strict = strict});
     if (file_) add_lights(*file_, scene_);
     bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
   }

@@ -23,14 +23,14 @@ namespace {
 
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 26;
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
-  throw InputError(file.string() + ": " + what);
+[[noreturn]] void fail(const std::string& name, const std::string& what) {
+  throw InputError(name + ": " + what);
 }
 
-std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
+std::string read_bytes(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.good()) fail(file, "cannot read the texture");
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.good()) fail(file.string(), "cannot read the texture");
   return bytes;
 }
 
@@ -95,26 +95,36 @@ Texture::Texture(int width, int height, std::vector<Texel> texels)
 }
 
 Texture Texture::load(const std::filesystem::path& file) {
-  const std::vector<unsigned char> bytes = read_bytes(file);
+  return decode(read_bytes(file), file.string());
+}
+
+Texture Texture::decode(std::string_view bytes, const std::string& file) {
   const std::string unreadable = "not a PNG, JPEG, TGA or BMP picture that can be read: ";
-  if (!is_known_format({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
+  if (!is_known_format(bytes)) {
     fail(file, unreadable + "it begins as none of them");
   }
   if (bytes.size() > INT_MAX) fail(file, unreadable + "too large");
   const int size = static_cast<int>(bytes.size());
+  const auto* const first = reinterpret_cast<const stbi_uc*>(bytes.data());
   int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
+  if (stbi_info_from_memory(first, size, &width, &height, &channels) == 0) {
     fail(file, unreadable + stbi_failure_reason());
   }
   if (std::int64_t{width} * height > kMaxTexels) {
     fail(file, "a texture of more than " + std::to_string(kMaxTexels) + " pixels");
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 3), stbi_image_free);
+      stbi_load_from_memory(first, size, &width, &height, &channels, 3), stbi_image_free);
   if (!pixels) fail(file, unreadable + stbi_failure_reason());
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::memcpy(texels.data(), pixels.get(), sizeof(Texel) * texels.size());
   return {width, height, std::move(texels)};
+}
+
+glm::dvec3 Texture::mean_codes() const {
+  glm::dvec3 sum(0.0);
+  for (const Texel& codes : texels_) sum += glm::dvec3(codes[0], codes[1], codes[2]);
+  return sum / (255.0 * static_cast<double>(texels_.size()));
 }
 
 glm::vec3 Texture::at(const glm::dvec2& uv, Wrap wrap) const {

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace raygate {
@@ -28,6 +30,12 @@ class Texture {
   /// left out. Throws InputError: what cannot be read or is none of these, is damaged, or has more
   /// than 2^26 pixels.
   [[nodiscard]] static Texture load(const std::filesystem::path& file);
+
+  /// The same of a file's bytes; `name` is for messages.
+  [[nodiscard]] static Texture decode(std::string_view bytes, const std::string& name);
+
+  /// The mean of all texels' codes, from 0 to 1: for pictures whose codes are numbers, not colours.
+  [[nodiscard]] glm::dvec3 mean_codes() const;
 
   /// Scene-linear colour, between the four nearest texels' middles in proportion (bilinear). Not
   /// finite coordinates count as 0.

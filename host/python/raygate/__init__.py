@@ -26,7 +26,7 @@ __all__ = ["InputError", "Scene", "float", "results"]
 
 
 class Scene:
-    """Triangles, materials, lights: an OBJ file, or a scene file (JSON) about one."""
+    """Triangles, materials, lights: an OBJ, glTF, PLY or STL file, or a scene file (JSON)."""
 
     def __init__(self, file, *, strict=False, threads=None):
         """Reads `file` and builds its tree. InputError, a ValueError, says with file and line what

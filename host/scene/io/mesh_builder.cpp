@@ -17,7 +17,7 @@ class MeshBuilder::Warner {
   }
   void report(const std::string& file, const std::string& what, Scene& scene) const {
     if (count_ == 0) return;
-    scene.warnings.push_back(file + ":" + std::to_string(first_line_) + ": " + what +
+    scene.warnings.push_back(InputError::place_of(file, first_line_) + what +
                              (count_ > 1 ? ", here and in " + std::to_string(count_ - 1) +
                                                " later face" + (count_ > 2 ? "s" : "")
                                          : ""));
@@ -202,7 +202,7 @@ void MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
 
 void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   if (faces_.empty()) {
-    throw InputError(file_name_ + ": no faces, expected at least one f statement");
+    throw InputError(file_name_ + ": no faces, expected at least one polygon");
   }
   check_indices();
   place_positions(scene);

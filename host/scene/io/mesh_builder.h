@@ -29,7 +29,7 @@ class MeshBuilder {
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   void add_normal(const glm::dvec3& normal);
 
-  /// At least three corners. `line` is for messages.
+  /// At least three corners. `line` is for messages; 0 in a file without lines.
   void add_face(std::span<const FileCorner> corners, std::size_t line);
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
   /// Gives faces by number, from `begin` to `end`, their material and object; 0 before.

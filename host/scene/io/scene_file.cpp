@@ -9,6 +9,7 @@
 #include "host/exact/exact_sign.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/located_json.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/words.h"
 
 namespace raygate {
@@ -227,10 +228,10 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   reader.require_object(root, "scene", kKeys);
   SceneFile scene;
   scene.file = file;
-  scene.obj = std::filesystem::path(file).replace_extension(".obj");
+  scene.obj = scene_of_stem(std::filesystem::path(file).replace_extension());
   if (const JsonValue* obj = Reader::find(root, "obj")) {
     if (obj->kind() != Kind::kString || obj->string().empty()) {
-      reader.fail(*obj, "obj", "the name of an OBJ file");
+      reader.fail(*obj, "obj", "the name of a scene");
     }
     scene.obj = file.parent_path() / obj->string();
   }

@@ -1,38 +1,12 @@
 #include "host/scene/io/text_lines.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
+#include "host/scene/io/file_bytes.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {
-
-std::string read_all(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
-  if (std::filesystem::is_directory(status)) {
-    throw InputError(name + ": is a folder, expected a file");
-  }
-  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status)) {
-    throw InputError(name + ": is a device, expected a file");  // it might never end
-  }
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(name + ": cannot be opened: " + std::strerror(errno));
-  std::string text;
-  const std::uintmax_t size = std::filesystem::file_size(file, ignored);
-  if (!ignored) text.reserve(size);
-  char block[1 << 16];
-  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
-    text.append(block, static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) throw InputError(name + ": cannot be read: " + std::strerror(errno));
-  return text;
-}
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
@@ -53,9 +27,8 @@ bool has_comment(std::string_view line) {
 
 TextLines::TextLines(const std::filesystem::path& file)
     : name_(file.string()),
-      bytes_(std::make_shared<const std::string>(read_all(file))),
+      bytes_(std::make_shared<const std::string>(read_file(file))),
       text_(*bytes_) {
-  if (text_.empty()) throw InputError(name_ + ": the file is empty");
   if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
     throw InputError(name_, 1, "UTF-16 text, expected ASCII or UTF-8");
   }

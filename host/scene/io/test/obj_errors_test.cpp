@@ -52,8 +52,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "1: '\\x01\\x02\\x03' is no OBJ statement, expected v, vt, vn, f, g, o, usemtl, "
                 "mtllib, # or the like"},
         BadFile{"Call", "call other.obj\n", "1: 'call' (another file, a command) is not supported"},
-        BadFile{"OnlyComments", "# nothing\n\n", " no faces, expected at least one f statement"},
-        BadFile{"NoFaces", std::string(kTriangle), " no faces, expected at least one f statement"},
+        BadFile{"OnlyComments", "# nothing\n\n", " no faces, expected at least one polygon"},
+        BadFile{"NoFaces", std::string(kTriangle), " no faces, expected at least one polygon"},
         BadFile{"NotANumber", "v 0 zero 0\n", "1: v: 'zero', expected a number"},
         BadFile{"DecimalComma", "v 0,5 1 2\n", "1: v: '0,5', expected a number"},
         BadFile{"Hexadecimal", "v 0x10 1 2\n", "1: v: '0x10', expected a number"},

@@ -126,7 +126,7 @@ TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
   EXPECT_EQ(error("{\n  \"colour\": 1\n}"),
             "s.json:2: scene: unknown key 'colour', expected some of obj, camera, point_lights, "
             "area_lights, background, render");
-  EXPECT_EQ(error(R"({"obj": 5})"), "s.json:1: obj: 5, expected the name of an OBJ file");
+  EXPECT_EQ(error(R"({"obj": 5})"), "s.json:1: obj: 5, expected the name of a scene");
   EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1]}})"), "s.json:1: camera: 'target' is missing");
   EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0, 0],\n\"target\": [0, 0, 0]}}"),
             "s.json:2: camera.eye: an array of 2, expected [x, y, z]");

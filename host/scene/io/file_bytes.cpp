@@ -1,0 +1,39 @@
+#include "host/scene/io/file_bytes.h"
+
+#include <bit>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+
+static_assert(std::endian::native == std::endian::little);
+
+std::string read_file(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_directory(status)) {
+    throw InputError(name + ": is a folder, expected a file");
+  }
+  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status)) {
+    throw InputError(name + ": is a device, expected a file");  // it might never end
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(name + ": cannot be opened: " + std::strerror(errno));
+  std::string text;
+  const std::uintmax_t size = std::filesystem::file_size(file, ignored);
+  if (!ignored) text.reserve(size);
+  char block[1 << 16];
+  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) throw InputError(name + ": cannot be read: " + std::strerror(errno));
+  if (text.empty()) throw InputError(name + ": the file is empty");
+  return text;
+}
+
+}  // namespace raygate

@@ -1,0 +1,29 @@
+// A whole file in memory, and its numbers by their place.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace raygate {
+
+/// Throws InputError: what cannot be read, is a folder or a device, or is empty.
+[[nodiscard]] std::string read_file(const std::filesystem::path& file);
+
+/// The number whose bytes begin at `bytes`: the lowest first, as this machine has it, or the
+/// highest.
+template <class Number>
+[[nodiscard]] Number number_at(const char* bytes, bool highest_first = false) {
+  char ordered[sizeof(Number)];
+  for (std::size_t i = 0; i < sizeof(Number); ++i) {
+    ordered[i] = bytes[highest_first ? sizeof(Number) - 1 - i : i];
+  }
+  Number number;
+  std::memcpy(&number, ordered, sizeof number);
+  return number;
+}
+
+}  // namespace raygate

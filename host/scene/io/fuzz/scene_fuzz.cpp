@@ -1,0 +1,24 @@
+// libFuzzer target: any bytes as a file of the kind that RAYGATE_FUZZED names, "ply".
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/scene_loader.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("raygate_fuzz_" + std::to_string(getpid()) + "." RAYGATE_FUZZED);
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  try {
+    (void)raygate::load_scene(file);
+  } catch (const raygate::InputError&) {
+    // What a bad file deserves.
+  }
+  return 0;
+}

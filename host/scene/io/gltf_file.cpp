@@ -1,0 +1,242 @@
+// Pictures are decoded by Texture.
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#include "host/scene/io/gltf_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "host/scene/io/file_bytes.h"
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/words.h"
+
+namespace raygate {
+namespace {
+
+/// What may stand in extensionsRequired: read, or of no consequence.
+constexpr std::string_view kKnown[] = {"KHR_lights_punctual",     "KHR_materials_emissive_strength",
+                                       "KHR_materials_ior",       "KHR_materials_transmission",
+                                       "KHR_materials_unlit",     "KHR_mesh_quantization",
+                                       "KHR_texture_transform",   "KHR_materials_specular",
+                                       "KHR_materials_clearcoat", "KHR_materials_volume",
+                                       "KHR_materials_sheen",     "KHR_materials_variants"};
+
+/// Files that are read beside the first one.
+struct Reading {
+  std::vector<std::filesystem::path>* files;
+  std::size_t* bytes;
+};
+
+tinygltf::FsCallbacks callbacks(Reading& reading) {
+  tinygltf::FsCallbacks calls{};
+  calls.FileExists = [](const std::string& path, void*) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored);
+  };
+  // As it stands: the library's own would let a shell expand it.
+  calls.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  calls.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error,
+                           const std::string& path, void* user) {
+    const auto& read = *static_cast<Reading*>(user);
+    try {
+      const std::string bytes = read_file(path);
+      out->assign(bytes.begin(), bytes.end());
+      read.files->emplace_back(path);
+      *read.bytes += bytes.size();
+      return true;
+    } catch (const InputError& reason) {
+      if (error != nullptr) *error += reason.what();
+      return false;
+    }
+  };
+  calls.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                            void*) { return false; };
+  calls.user_data = &reading;
+  return calls;
+}
+
+/// Keeps a picture's file as it is.
+bool keep_picture(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+/// The library goes through JSON by recursion: not through a million levels.
+bool is_deep(std::string_view json) {
+  constexpr int kMost = 64;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (in_string && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      in_string = !in_string;
+    } else if (!in_string && (c == '{' || c == '[')) {
+      if (++depth > kMost) return true;
+    } else if (!in_string && (c == '}' || c == ']')) {
+      --depth;
+    }
+  }
+  return false;
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), files_{file} {
+  const std::string bytes = read_file(file);
+  bytes_ = bytes.size();
+  const bool is_binary = bytes.starts_with("glTF");
+  if (bytes_ > std::numeric_limits<unsigned>::max()) fail("more than 4 GB, expected less");
+  constexpr std::size_t kJsonLength = 12, kJson = 20;
+  std::string_view json = bytes;
+  if (is_binary) {
+    if (bytes_ < kJson) fail("a GLB file that ends too soon");
+    json = json.substr(kJson, number_at<std::uint32_t>(bytes.data() + kJsonLength));
+  }
+  if (is_deep(json)) fail("JSON of more than 64 levels, expected fewer");
+  Reading reading{&files_, &bytes_};
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks(callbacks(reading));
+  loader.SetImageLoader(keep_picture, nullptr);
+  std::string error, warning;
+  const std::string folder = file.parent_path().string();
+  bool is_read = false;
+  try {
+    is_read = is_binary ? loader.LoadBinaryFromMemory(
+                              &model_, &error, &warning,
+                              reinterpret_cast<const unsigned char*>(bytes.data()),
+                              static_cast<unsigned>(bytes.size()), folder)
+                        : loader.LoadASCIIFromString(&model_, &error, &warning, bytes.data(),
+                                                     static_cast<unsigned>(bytes.size()), folder);
+  } catch (const std::exception& thrown) {
+    error = thrown.what();
+  }
+  if (!is_read) fail("not a glTF 2.0 file that can be read: " + first_line(error));
+  if (!model_.asset.version.starts_with("2.")) {
+    fail("glTF version " + in_quotes(model_.asset.version) + ", expected 2.0");
+  }
+  for (const std::string& extension : model_.extensionsRequired) {
+    if (std::ranges::find(kKnown, extension) == std::end(kKnown)) {
+      fail("found the extension " + in_quotes(extension) +
+           ", which is not read; expected an export without it (as without compression)");
+    }
+  }
+}
+
+void GltfFile::fail(const std::string& what) const {
+  std::string line = what;
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  throw InputError(name_ + ": " + line);
+}
+
+void GltfFile::fail_index(const char* what, int index, std::size_t count) const {
+  fail(std::string(what) + " " + std::to_string(index) + ", but the file has " +
+       std::to_string(count));
+}
+
+std::size_t GltfFile::count(int accessor) const {
+  return at(model_.accessors, accessor, "accessor").count;
+}
+
+GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
+  const std::string number = "accessor " + std::to_string(accessor) + " (" + what + "): ";
+  const tinygltf::Accessor& a = at(model_.accessors, accessor, "accessor");
+  if (a.sparse.isSparse) fail(number + "sparse, which is not read");
+  const tinygltf::BufferView& view = at(model_.bufferViews, a.bufferView, "buffer view");
+  const tinygltf::Buffer& buffer = at(model_.buffers, view.buffer, "buffer");
+  const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(a.componentType));
+  const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
+  if (size <= 0 || components <= 0) fail(number + "of an unknown type");
+  const std::size_t element = static_cast<std::size_t>(size) * static_cast<std::size_t>(components);
+  const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
+  const std::size_t whole = buffer.data.size();
+  const bool is_within = view.byteOffset <= whole && view.byteLength <= whole - view.byteOffset &&
+                         a.byteOffset <= view.byteLength && a.count > 0 &&
+                         element <= view.byteLength - a.byteOffset &&
+                         a.count - 1 <= (view.byteLength - a.byteOffset - element) / stride;
+  if (!is_within) fail(number + "beyond its buffer, which ends too soon");
+  return {buffer.data.data() + view.byteOffset + a.byteOffset,
+          stride,
+          a.count,
+          a.componentType,
+          components,
+          a.normalized};
+}
+
+std::vector<double> GltfFile::vectors(int accessor, int width, const char* what) const {
+  const Elements from = elements(accessor, what);
+  const auto fail_here = [&](const char* found) {
+    fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
+  };
+  if (from.components < width) fail_here("too few components");
+  std::vector<double> numbers;
+  numbers.reserve(from.count * static_cast<std::size_t>(width));
+  const auto add = [&]<class Number>(Number) {
+    constexpr double kOne = std::is_integral_v<Number> ? std::numeric_limits<Number>::max() : 1.0;
+    for (std::size_t i = 0; i < from.count; ++i) {
+      const char* at = reinterpret_cast<const char*>(from.first + i * from.stride);
+      for (int k = 0; k < width; ++k, at += sizeof(Number)) {
+        double number = static_cast<double>(number_at<Number>(at));
+        if (from.normalized) number = std::max(number / kOne, -1.0);
+        if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
+          fail_here("a number that is not finite");
+        }
+        numbers.push_back(number);
+      }
+    }
+  };
+  switch (from.component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      add(std::int8_t{});
+      break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      add(std::uint8_t{});
+      break;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      add(std::int16_t{});
+      break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      add(std::uint16_t{});
+      break;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      add(float{});
+      break;
+    default:
+      fail_here("numbers of a type that is not expected there");
+  }
+  return numbers;
+}
+
+std::vector<std::uint32_t> GltfFile::indices(int accessor) const {
+  const Elements from = elements(accessor, "indices");
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(from.count);
+  for (std::size_t i = 0; i < from.count; ++i) {
+    const char* const at = reinterpret_cast<const char*>(from.first + i * from.stride);
+    switch (from.component_type) {
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        numbers.push_back(number_at<std::uint8_t>(at));
+        break;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        numbers.push_back(number_at<std::uint16_t>(at));
+        break;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        numbers.push_back(number_at<std::uint32_t>(at));
+        break;
+      default:
+        fail("accessor " + std::to_string(accessor) + " (indices): not of whole numbers");
+    }
+  }
+  return numbers;
+}
+
+}  // namespace raygate

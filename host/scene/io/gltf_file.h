@@ -1,0 +1,65 @@
+// A glTF 2.0 file as tinygltf understands it, and the numbers of its accessors, each checked.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace raygate {
+
+/// .gltf or .glb, with its buffers and the bytes of its pictures. (tinygltf because Debian 12 has
+/// it, under the MIT licence, in one header that the sanitizers can see through; it parses, and
+/// leaves all that indices and lengths say unchecked, which is done here.)
+class GltfFile {
+ public:
+  /// Throws InputError: what cannot be read, is no glTF 2.0, or needs an extension that is not
+  /// known.
+  explicit GltfFile(const std::filesystem::path& file);
+
+  [[nodiscard]] const tinygltf::Model& model() const { return model_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// All that were read.
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
+  /// Of all of them together.
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+  [[noreturn]] void fail(const std::string& what) const;
+
+  /// The element of `list` with this number; `what` is for messages.
+  template <class T>
+  [[nodiscard]] const T& at(const std::vector<T>& list, int index, const char* what) const {
+    if (index >= 0 && static_cast<std::size_t>(index) < list.size()) {
+      return list[static_cast<std::size_t>(index)];
+    }
+    fail_index(what, index, list.size());
+  }
+
+  /// `width` finite numbers of each element of an accessor: of the vector's first components.
+  [[nodiscard]] std::vector<double> vectors(int accessor, int width, const char* what) const;
+  /// The whole numbers of an accessor of indices.
+  [[nodiscard]] std::vector<std::uint32_t> indices(int accessor) const;
+  /// How many elements an accessor has.
+  [[nodiscard]] std::size_t count(int accessor) const;
+
+ private:
+  /// Where an accessor's elements are, all within their buffer.
+  struct Elements {
+    const unsigned char* first;
+    std::size_t stride, count;
+    int component_type, components;
+    bool normalized;
+  };
+  [[nodiscard]] Elements elements(int accessor, const char* what) const;
+  [[noreturn]] void fail_index(const char* what, int index, std::size_t count) const;
+
+  std::string name_;
+  std::vector<std::filesystem::path> files_;
+  std::size_t bytes_ = 0;
+  tinygltf::Model model_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,343 @@
+#include "host/scene/io/gltf_loader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "host/scene/io/gltf_file.h"
+#include "host/scene/io/gltf_materials.h"
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/mesh_builder.h"
+
+namespace raygate {
+namespace {
+
+constexpr double kLumensPerWatt = 683.0;
+constexpr std::size_t kMostVertices = 12'000'000;  // besides one for each byte
+
+/// A light where its node puts it.
+struct PlacedLight {
+  glm::dvec3 position, direction;
+  glm::dvec3 intensity;  // irradiance, of a light from one direction
+  bool is_directional;
+};
+
+bool is_finite(const glm::dmat4& m) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(m[column][row])) return false;
+    }
+  }
+  return true;
+}
+
+class GltfReader {
+ public:
+  GltfReader(const std::filesystem::path& path, const LoadOptions& options)
+      : file_(path), options_(options), mesh_(file_.name()), materials_(file_, scene_) {}
+
+  Scene read() {
+    walk(roots());
+    mesh_.build(options_, scene_);
+    place_lights();
+    scene_.up = glm::dvec3(0.0, 1.0, 0.0);
+    scene_.files = file_.files();
+    if (!file_.model().animations.empty() || !file_.model().skins.empty()) {
+      warn("animations and skins are not read");
+    }
+    return std::move(scene_);
+  }
+
+ private:
+  void warn(const std::string& what) {
+    const std::string warning = file_.name() + ": " + what;
+    if (std::ranges::find(scene_.warnings, warning) == scene_.warnings.end()) {
+      scene_.warnings.push_back(warning);
+    }
+  }
+
+  [[nodiscard]] std::vector<int> roots() const {
+    const tinygltf::Model& model = file_.model();
+    if (!model.scenes.empty()) {
+      return file_.at(model.scenes, std::max(model.defaultScene, 0), "scene").nodes;
+    }
+    std::vector<bool> is_child(model.nodes.size());
+    for (const tinygltf::Node& node : model.nodes) {
+      for (const int child : node.children) {
+        (void)file_.at(model.nodes, child, "node");
+        is_child[static_cast<std::size_t>(child)] = true;
+      }
+    }
+    std::vector<int> found;
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+      if (!is_child[i]) found.push_back(static_cast<int>(i));
+    }
+    return found;
+  }
+
+  void walk(const std::vector<int>& roots) {
+    struct Step {
+      int node;
+      glm::dmat4 parent;
+    };
+    std::vector<Step> steps;
+    const auto add = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
+      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node)
+        steps.push_back({*node, parent});
+    };
+    std::vector<bool> seen(file_.model().nodes.size());
+    add(roots, glm::dmat4(1.0));
+    while (!steps.empty()) {
+      const Step step = steps.back();
+      steps.pop_back();
+      const tinygltf::Node& node = file_.at(file_.model().nodes, step.node, "node");
+      if (seen[static_cast<std::size_t>(step.node)]) {
+        file_.fail("node " + std::to_string(step.node) + " has two parents, expected one");
+      }
+      seen[static_cast<std::size_t>(step.node)] = true;
+      const glm::dmat4 world = step.parent * local(node);
+      if (!is_finite(world)) {
+        file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
+      }
+      read_node(node, world);
+      add(node.children, world);
+    }
+  }
+
+  [[nodiscard]] static glm::dmat4 local(const tinygltf::Node& node) {
+    glm::dmat4 matrix(1.0);
+    if (node.matrix.size() == 16) {
+      for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+      return matrix;
+    }
+    if (const auto& t = node.translation; t.size() == 3) {
+      matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
+    }
+    if (const auto& r = node.rotation; r.size() == 4) {
+      const glm::dquat turn(r[3], r[0], r[1], r[2]);
+      const double length = glm::length(turn);
+      if (length > 0.0) matrix = matrix * glm::mat4_cast(turn / length);
+    }
+    if (const auto& s = node.scale; s.size() == 3) {
+      for (int axis = 0; axis < 3; ++axis) matrix[axis] *= s[static_cast<std::size_t>(axis)];
+    }
+    return matrix;
+  }
+
+  void read_node(const tinygltf::Node& node, const glm::dmat4& world) {
+    if (node.mesh >= 0) {
+      const tinygltf::Mesh& mesh = file_.at(file_.model().meshes, node.mesh, "mesh");
+      const auto object = static_cast<std::uint32_t>(scene_.objects.size());
+      scene_.objects.push_back(!node.name.empty()   ? node.name
+                               : !mesh.name.empty() ? mesh.name
+                                                    : "object " + std::to_string(object));
+      for (const tinygltf::Primitive& primitive : mesh.primitives) {
+        read_primitive(primitive, world, object);
+      }
+    }
+    if (node.camera >= 0)
+      read_camera(file_.at(file_.model().cameras, node.camera, "camera"), world);
+    const auto light = node.extensions.find("KHR_lights_punctual");
+    if (light != node.extensions.end() && light->second.Has("light") &&
+        light->second.Get("light").IsInt()) {
+      read_light(
+          file_.at(file_.model().lights, light->second.Get("light").GetNumberAsInt(), "light"),
+          world);
+    }
+  }
+
+  /// The triangles' corners, as numbers of the primitive's vertices.
+  [[nodiscard]] std::vector<std::uint32_t> corners_of(const tinygltf::Primitive& primitive,
+                                                      std::size_t vertices) const {
+    std::vector<std::uint32_t> order;
+    if (primitive.indices >= 0) {
+      count(file_.count(primitive.indices));
+      order = file_.indices(primitive.indices);
+    } else {
+      for (std::size_t i = 0; i < vertices; ++i) order.push_back(static_cast<std::uint32_t>(i));
+    }
+    if (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == -1) return order;
+    std::vector<std::uint32_t> corners;
+    for (std::size_t i = 2; i < order.size(); ++i) {
+      const bool is_fan = primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+      const std::size_t first = is_fan ? 0 : i - 2, second = i - 1;
+      const bool is_turned = !is_fan && i % 2 == 1;
+      corners.insert(corners.end(), {order[is_turned ? second : first],
+                                     order[is_turned ? first : second], order[i]});
+    }
+    return corners;
+  }
+
+  /// Counts vertices and corners, so that instances of instances do not fill the memory.
+  void count(std::size_t more) const {
+    vertices_ += more;
+    if (more > kMostVertices + file_.bytes() || vertices_ > kMostVertices + file_.bytes()) {
+      file_.fail("more than " + std::to_string(kMostVertices + file_.bytes()) +
+                 " vertices and corners with all instances written out, expected fewer");
+    }
+  }
+
+  void read_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& world,
+                      std::uint32_t object) {
+    if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+      return warn("points and lines are ignored: only polygons are rendered");
+    }
+    const auto attribute = [&](const std::string& name) {
+      const auto found = primitive.attributes.find(name);
+      return found == primitive.attributes.end() ? -1 : found->second;
+    };
+    const int position = attribute("POSITION"), normal = attribute("NORMAL");
+    if (position < 0) return warn("a primitive without positions is left out");
+    const std::size_t vertices = file_.count(position);
+    count(vertices);
+    const std::vector<double> positions = file_.vectors(position, 3, "POSITION");
+    const int set = materials_.texcoord_set(primitive.material);
+    const int texcoord = set < 0 ? -1 : attribute("TEXCOORD_" + std::to_string(set));
+    const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
+    count(corners.size());
+    if (corners.size() % 3 != 0)
+      file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
+
+    const std::int32_t first_position = positions_, first_normal = normals_,
+                       first_texcoord = texcoords_;
+    const double sign = glm::determinant(glm::dmat3(world)) < 0.0 ? -1.0 : 1.0;
+    for (std::size_t i = 0; i < vertices; ++i) {
+      const glm::dvec3 at(
+          world * glm::dvec4(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2], 1.0));
+      if (!(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <=
+            std::numeric_limits<float>::max())) {
+        file_.fail("a vertex is beyond the range of float");
+      }
+      mesh_.add_position(at);
+    }
+    positions_ += static_cast<std::int32_t>(vertices);
+    if (normal >= 0) add_normals(normal, glm::dmat3(world), sign, vertices);
+    if (texcoord >= 0) add_texcoords(texcoord, vertices);
+
+    const std::size_t first_face = mesh_.face_count();
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+      std::array<FileCorner, 3> face;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = corners[i + (sign < 0.0 ? 2 - k : k)];
+        if (vertex >= vertices) {
+          file_.fail("index " + std::to_string(vertex) + " in a primitive of " +
+                     std::to_string(vertices) + " vertices");
+        }
+        const auto number = static_cast<std::int32_t>(vertex) + 1;
+        face[k] = {first_position + number, texcoord >= 0 ? first_texcoord + number : 0,
+                   normal >= 0 ? first_normal + number : 0};
+      }
+      mesh_.add_face(face, 0);
+    }
+    mesh_.assign_faces(first_face, mesh_.face_count(), materials_.number_of(primitive.material),
+                       object);
+  }
+
+  void add_normals(int accessor, const glm::dmat3& world, double sign, std::size_t vertices) {
+    const std::vector<double> normals = file_.vectors(accessor, 3, "NORMAL");
+    if (normals.size() != 3 * vertices) file_.fail("not as many normals as positions");
+    // The inverse transpose but for a factor, which a flat matrix has, too.
+    const glm::dmat3 cofactors(glm::cross(world[1], world[2]), glm::cross(world[2], world[0]),
+                               glm::cross(world[0], world[1]));
+    for (std::size_t i = 0; i < vertices; ++i) {
+      const glm::dvec3 turned =
+          cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+      const bool is_finite =
+          std::isfinite(turned.x) && std::isfinite(turned.y) && std::isfinite(turned.z);
+      mesh_.add_normal(is_finite ? sign * turned : glm::dvec3(0.0));
+    }
+    normals_ += static_cast<std::int32_t>(vertices);
+  }
+
+  void add_texcoords(int accessor, std::size_t vertices) {
+    const std::vector<double> texcoords = file_.vectors(accessor, 2, "TEXCOORD");
+    if (texcoords.size() != 2 * vertices) {
+      file_.fail("not as many texture coordinates as positions");
+    }
+    for (std::size_t i = 0; i < vertices; ++i) {
+      mesh_.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
+    }
+    texcoords_ += static_cast<std::int32_t>(vertices);
+  }
+
+  void read_camera(const tinygltf::Camera& camera, const glm::dmat4& world) {
+    if (camera.type != "perspective") return warn("orthographic cameras are not read");
+    const double fov = camera.perspective.yfov * 180.0 / std::numbers::pi;
+    if (!(fov > 0.0 && fov < 180.0)) {
+      file_.fail("a camera's yfov: expected more than 0 and less than pi");
+    }
+    if (scene_.camera) return warn("of several cameras the first one is taken");
+    const glm::dvec3 eye(world[3]), back(world[2]), up(world[1]);
+    if (glm::length(back) == 0.0 || glm::length(glm::cross(back, up)) == 0.0) {
+      return warn("a camera without a direction is left out");
+    }
+    scene_.camera = {eye, eye - glm::normalize(back), up, fov};
+  }
+
+  void read_light(const tinygltf::Light& light, const glm::dmat4& world) {
+    PlacedLight placed{glm::dvec3(world[3]), glm::dvec3(world[2]), glm::dvec3(1.0),
+                       light.type == "directional"};
+    for (int k = 0; k < 3 && light.color.size() == 3; ++k) {
+      placed.intensity[k] = light.color[static_cast<std::size_t>(k)];
+    }
+    placed.intensity *= light.intensity / kLumensPerWatt;
+    for (int k = 0; k < 3; ++k) {
+      if (!(placed.intensity[k] >= 0.0 &&
+            placed.intensity[k] <= std::numeric_limits<float>::max())) {
+        file_.fail("a light's intensity: expected no negative number within the range of float");
+      }
+    }
+    if (light.type == "spot") warn("spot lights shine to all sides here");
+    lights_.push_back(placed);
+  }
+
+  /// In the scene's coordinates, now that these are known; and the camera's target among the scene.
+  void place_lights() {
+    glm::dvec3 low(scene_.positions[0]), high = low;
+    for (const glm::vec3& position : scene_.positions) {
+      low = glm::min(low, glm::dvec3(position));
+      high = glm::max(high, glm::dvec3(position));
+    }
+    const glm::dvec3 middle = 0.5 * (low + high);
+    constexpr double kFar = 1000.0;  // sizes of the scene: its shadows are all but parallel
+    for (const PlacedLight& light : lights_) {
+      const double distance = kFar * glm::length(high - low), length = glm::length(light.direction);
+      const glm::dvec3 at = light.is_directional && length > 0.0
+                                ? middle + light.direction * (distance / length)
+                                : light.position - scene_.origin;
+      const glm::vec3 rounded(at);
+      if (!std::isfinite(rounded.x + rounded.y + rounded.z)) {
+        file_.fail("a light is beyond the range of float");
+      }
+      scene_.lights.push_back(
+          {rounded, light.intensity * (light.is_directional ? distance * distance : 1.0)});
+    }
+    if (!scene_.camera) return;
+    CameraSetting& camera = *scene_.camera;
+    const glm::dvec3 forward = camera.target - camera.eye;
+    const double depth = glm::dot(middle + scene_.origin - camera.eye, forward);
+    if (depth > 0.0) camera.target = camera.eye + depth * forward;
+  }
+
+  const GltfFile file_;
+  const LoadOptions& options_;
+  Scene scene_;
+  MeshBuilder mesh_;
+  GltfMaterials materials_;
+  std::vector<PlacedLight> lights_;
+  std::int32_t positions_ = 0, normals_ = 0, texcoords_ = 0;  // in mesh_
+  mutable std::size_t vertices_ = 0;
+};
+
+}  // namespace
+
+Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options) {
+  return GltfReader(file, options).read();
+}
+
+}  // namespace raygate

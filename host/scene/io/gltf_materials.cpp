@@ -1,0 +1,194 @@
+#include "host/scene/io/gltf_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "host/scene/srgb.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::int64_t kMostTexels = std::int64_t{1} << 27;
+
+double in_unit(double x) { return x >= 0.0 ? std::min(x, 1.0) : 0.0; }
+
+/// The first three numbers, limited to 1; 1 where there are none.
+glm::vec3 colour_of(const std::vector<double>& numbers, double most = 1.0) {
+  glm::vec3 colour(1.0f);
+  for (int k = 0; k < 3 && static_cast<std::size_t>(k) < numbers.size(); ++k) {
+    const double number = numbers[static_cast<std::size_t>(k)];
+    colour[k] = static_cast<float>(number >= 0.0 ? std::min(number, most) : 0.0);
+  }
+  return colour;
+}
+
+double number_in(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key,
+                 double otherwise) {
+  const auto found = extensions.find(extension);
+  if (found == extensions.end() || !found->second.Has(key)) return otherwise;
+  const tinygltf::Value& value = found->second.Get(key);
+  const double number = value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+  return std::isfinite(number) ? number : otherwise;
+}
+
+glm::vec2 pair_in(const tinygltf::Value& value, const char* key, const glm::vec2& otherwise) {
+  if (!value.Has(key) || !value.Get(key).IsArray() || value.Get(key).ArrayLen() != 2) {
+    return otherwise;
+  }
+  glm::vec2 pair;
+  for (int k = 0; k < 2; ++k) {
+    const tinygltf::Value& number = value.Get(key).Get(k);
+    pair[k] = number.IsNumber() ? static_cast<float>(number.GetNumberAsDouble()) : otherwise[k];
+  }
+  return pair;
+}
+
+}  // namespace
+
+void GltfMaterials::warn_once(const std::string& what) {
+  const std::string warning = file_.name() + ": " + what;
+  if (std::ranges::find(scene_.warnings, warning) == scene_.warnings.end()) {
+    scene_.warnings.push_back(warning);
+  }
+}
+
+std::uint32_t GltfMaterials::number_of(int material) {
+  const auto [entry, is_new] =
+      numbers_.try_emplace(material, static_cast<std::uint32_t>(scene_.materials.size()));
+  if (is_new) {
+    Material result;
+    result.name = "default";
+    if (material != -1)
+      result = translated(file_.at(file_.model().materials, material, "material"));
+    scene_.materials.push_back(std::move(result));
+  }
+  return entry->second;
+}
+
+int GltfMaterials::texcoord_set(int material) const {
+  if (material < 0) return -1;
+  const tinygltf::TextureInfo& info =
+      file_.at(file_.model().materials, material, "material").pbrMetallicRoughness.baseColorTexture;
+  return info.index < 0 ? -1
+                        : static_cast<int>(number_in(info.extensions, "KHR_texture_transform",
+                                                     "texCoord", info.texCoord));
+}
+
+std::optional<Texture> GltfMaterials::picture(int texture) {
+  const tinygltf::Model& model = file_.model();
+  const int source = file_.at(model.textures, texture, "texture").source;
+  if (source < 0) {
+    warn_once("a texture without a PNG or JPEG picture is left out");
+    return std::nullopt;
+  }
+  const tinygltf::Image& image = file_.at(model.images, source, "image");
+  if (image.image.empty()) {
+    warn_once("the texture " + image.uri + " is missing, its material is plain instead");
+    return std::nullopt;
+  }
+  const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()),
+                               image.image.size());
+  Texture result = Texture::decode(bytes, file_.name() + ": image " + std::to_string(source));
+  texels_ += std::int64_t{result.width()} * result.height();
+  if (texels_ > kMostTexels) {
+    file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
+  }
+  return result;
+}
+
+glm::dvec3 GltfMaterials::mean_codes(int texture) {
+  const int source = file_.at(file_.model().textures, texture, "texture").source;
+  auto found = means_.find(source);
+  if (found == means_.end()) {
+    const std::optional<Texture> decoded = picture(texture);
+    found = means_.emplace(source, decoded ? decoded->mean_codes() : glm::dvec3(1.0)).first;
+  }
+  return found->second;
+}
+
+void GltfMaterials::add_texture(const tinygltf::TextureInfo& info, Material& material) {
+  if (info.index < 0) return;
+  const tinygltf::Model& model = file_.model();
+  const tinygltf::Texture& from = file_.at(model.textures, info.index, "texture");
+  const auto [entry, is_new] = texture_of_image_.try_emplace(from.source, kNoIndex);
+  if (is_new) {
+    if (std::optional<Texture> decoded = picture(info.index)) {
+      entry->second = static_cast<std::uint32_t>(scene_.textures.size());
+      scene_.textures.push_back(std::move(*decoded));
+    }
+  }
+  material.diffuse_texture = entry->second;
+  TextureMapping& mapping = material.diffuse_mapping;
+  if (from.sampler >= 0) {
+    mapping.clamp = file_.at(model.samplers, from.sampler, "sampler").wrapS ==
+                    TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  }
+  const auto transform = info.extensions.find("KHR_texture_transform");
+  if (transform == info.extensions.end()) return;
+  mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
+  // Their v runs down: 1 - (s v + o) = s (1 - v) + 1 - s - o.
+  const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
+  mapping.offset = {offset.x, 1.0f - mapping.scale.y - offset.y};
+  if (transform->second.Has("rotation")) warn_once("a texture's rotation is not read");
+}
+
+Material GltfMaterials::translated(const tinygltf::Material& from) {
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  Material material;
+  material.name = from.name;
+  const glm::vec3 base = colour_of(pbr.baseColorFactor);
+  double metalness = in_unit(pbr.metallicFactor), roughness = in_unit(pbr.roughnessFactor);
+  if (pbr.metallicRoughnessTexture.index >= 0) {
+    const glm::dvec3 mean = mean_codes(pbr.metallicRoughnessTexture.index);
+    roughness *= mean.g;
+    metalness *= mean.b;
+    warn_once("textures of metalness and roughness count by their mean");
+  }
+  const double smoothness = 1.0 - roughness;
+  material.diffuse = base * static_cast<float>(1.0 - metalness * smoothness);
+  material.specular =
+      glm::vec3((0.04 * (1.0 - metalness) + glm::dvec3(base) * metalness) * smoothness);
+  constexpr double kMirror =
+      0.1;  // roughness below which a highlight would be smaller than it shows
+  if (roughness >= kMirror) {
+    material.illumination_model = 2;
+    material.shininess = static_cast<float>(0.5 / std::pow(roughness, 4.0));
+  } else {
+    material.illumination_model = metalness < 0.5 ? 5 : 3;
+    material.shininess = 20000.0f;
+  }
+  add_texture(pbr.baseColorTexture, material);
+
+  const double strength = std::clamp(
+      number_in(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0), 0.0,
+      1e6);
+  material.emission = from.emissiveFactor.size() == 3
+                          ? colour_of(from.emissiveFactor) * static_cast<float>(strength)
+                          : glm::vec3(0.0f);
+  if (from.emissiveTexture.index >= 0 && material.emission != glm::vec3(0.0f)) {
+    const glm::dvec3 mean = mean_codes(from.emissiveTexture.index);
+    for (int k = 0; k < 3; ++k) {
+      material.emission[k] *= static_cast<float>(srgb_to_linear(255.0 * mean[k]));
+    }
+    warn_once("textures of emission count by their mean");
+  }
+  if (number_in(from.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0) >= 0.5) {
+    material.illumination_model = 7;
+    material.opacity = 0.0f;
+    material.transmittance = base;
+    material.refraction_index = static_cast<float>(
+        std::clamp(number_in(from.extensions, "KHR_materials_ior", "ior", 1.5), 1.0, 4.0));
+  } else if (from.alphaMode == "BLEND" && pbr.baseColorFactor.size() == 4) {
+    material.opacity = static_cast<float>(in_unit(pbr.baseColorFactor[3]));
+  }
+  if (from.alphaMode == "MASK") warn_once("masks of opacity are not read");
+  if (from.normalTexture.index >= 0) warn_once("normal maps are not read");
+  if (from.extensions.contains("KHR_materials_unlit")) {
+    material.illumination_model = 0;
+    material.diffuse = base;
+  }
+  return material;
+}
+
+}  // namespace raygate

@@ -1,0 +1,222 @@
+#include "host/scene/io/gltf_loader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/test/binary.h"
+#include "host/scene/test/temp_folder.h"
+
+namespace raygate {
+namespace {
+
+using test::glb, test::square_buffer, test::square_json;
+
+constexpr const char* kOneNode = R"([{"mesh": 0}])";
+
+class LoadGltf : public testing::Test {
+ protected:
+  [[nodiscard]] Scene load(const std::string& json,
+                           const std::string& buffer = square_buffer()) const {
+    return load_gltf(folder_.write("s.glb", glb(json, buffer)));
+  }
+  /// What follows "FOLDER/" in the error.
+  [[nodiscard]] std::string error(const std::string& json) const {
+    try {
+      (void)load(json);
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(folder_.path().string().size() + 1);
+    }
+    return "(read)";
+  }
+  void expect_error(const std::string& json, const std::string& start) const {
+    EXPECT_TRUE(error(json).starts_with("s.glb: " + start)) << error(json);
+  }
+
+  const TempFolder folder_;
+};
+
+glm::dvec3 corner(const Scene& scene, std::size_t triangle, std::size_t k) {
+  return scene.origin + glm::dvec3(scene.positions[scene.triangles[triangle].vertices[k]]);
+}
+
+TEST_F(LoadGltf, ASquare) {
+  const Scene scene = load(square_json(kOneNode));
+  ASSERT_EQ(scene.triangles.size(), 2u);
+  EXPECT_EQ(corner(scene, 0, 1), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(corner(scene, 1, 2), glm::dvec3(0, 1, 0));
+  EXPECT_EQ(scene.normals[scene.triangles[1].normals[2]], glm::vec3(0, 0, 1));
+  EXPECT_EQ(scene.triangles[0].texcoords[0], kNoIndex) << "no texture asks for them";
+  EXPECT_EQ(scene.objects, std::vector<std::string>{"square"});
+  EXPECT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.up, glm::dvec3(0, 1, 0));
+  EXPECT_FALSE(scene.camera);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST_F(LoadGltf, NodesArePutWhereTheirParentsAre) {
+  // Twice as large, a quarter turn about z, then moved; its child moved within that. Far away.
+  const Scene scene = load(square_json(R"([
+      {"name": "parent", "mesh": 0, "scale": [2, 2, 2], "rotation": [0, 0, 0.70710678118654757, 0.70710678118654757],
+       "translation": [1000000, 0, 0], "children": [1]},
+      {"mesh": 0, "translation": [5, 0, 0]}])"));
+  ASSERT_EQ(scene.triangles.size(), 4u);
+  const auto near = [](const glm::dvec3& a, const glm::dvec3& b) {
+    EXPECT_LT(glm::length(a - b), 1e-6) << a.x << " " << a.y << " " << a.z;
+  };
+  near(corner(scene, 0, 1), {1000000, 2, 0});
+  near(corner(scene, 1, 2), {999998, 0, 0});
+  near(corner(scene, 2, 0), {1000000, 10, 0});
+  EXPECT_EQ(scene.triangles[0].object, 0u);
+  EXPECT_EQ(scene.triangles[2].object, 1u);
+  EXPECT_EQ(scene.objects[0], "parent");
+}
+
+TEST_F(LoadGltf, AMirroredNodeKeepsItsFront) {
+  const Scene scene = load(square_json(R"([{"mesh": 0, "scale": [-1, 1, 1]}])"));
+  const glm::dvec3 normal = glm::cross(corner(scene, 0, 1) - corner(scene, 0, 0),
+                                       corner(scene, 0, 2) - corner(scene, 0, 0));
+  EXPECT_GT(normal.z, 0.0);
+  EXPECT_EQ(scene.normals[scene.triangles[0].normals[0]], glm::vec3(0, 0, 1));
+  const Scene inside_out = load(square_json(R"([{"mesh": 0, "scale": [-1, -1, -1]}])"));
+  EXPECT_EQ(inside_out.normals[inside_out.triangles[0].normals[0]], glm::vec3(0, 0, -1));
+}
+
+TEST_F(LoadGltf, StripsAndFans) {
+  for (const auto& [mode, last] : {std::pair{"5", glm::dvec3(0, 1, 0)}, {"6", {0, 1, 0}}}) {
+    std::string json = square_json(kOneNode, "", std::string(R"(, "mode": )") + mode);
+    json.replace(json.find(R"("indices": 3)"), 12, R"("extras": 0)");
+    const Scene scene = load(json);
+    ASSERT_EQ(scene.triangles.size(), 2u) << mode;
+    EXPECT_EQ(corner(scene, 1, 2), last);
+    const glm::dvec3 normal = glm::cross(corner(scene, 0, 1) - corner(scene, 0, 0),
+                                         corner(scene, 0, 2) - corner(scene, 0, 0));
+    EXPECT_GT(normal.z, 0.0);
+  }
+}
+
+TEST_F(LoadGltf, CamerasAndLights) {
+  const Scene scene = load(square_json(
+      R"([{"mesh": 0, "children": [1, 2, 3]}, {"camera": 0, "translation": [0.5, 0.5, 4]},
+          {"translation": [1, 2, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+          {"extensions": {"KHR_lights_punctual": {"light": 1}}}])",
+      R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
+         "extensionsUsed": ["KHR_lights_punctual"],
+         "extensions": {"KHR_lights_punctual": {"lights": [
+           {"type": "point", "color": [1, 0.5, 0], "intensity": 1366},
+           {"type": "directional", "intensity": 683}]}})"));
+  ASSERT_TRUE(scene.camera);
+  EXPECT_EQ(scene.camera->eye, glm::dvec3(0.5, 0.5, 4));
+  EXPECT_EQ(scene.camera->target, glm::dvec3(0.5, 0.5, 0)) << "among the scene";
+  EXPECT_EQ(scene.camera->up, glm::dvec3(0, 1, 0));
+  EXPECT_NEAR(*scene.camera->fov, 0.5 * 180 / 3.14159265358979, 1e-9);
+  ASSERT_EQ(scene.lights.size(), 2u);
+  EXPECT_EQ(scene.lights[0].intensity, glm::dvec3(2, 1, 0));
+  EXPECT_EQ(scene.origin + glm::dvec3(scene.lights[0].position), glm::dvec3(1, 2, 3));
+  // From +z, with an irradiance of 1 everywhere in the scene.
+  const glm::dvec3 sun(scene.lights[1].position);
+  const double distance = glm::length(sun);
+  EXPECT_GT(sun.z, 0.999 * distance);
+  EXPECT_NEAR(scene.lights[1].intensity.x / (distance * distance), 1.0, 2e-3);
+}
+
+TEST_F(LoadGltf, Materials) {
+  const auto material = [&](const std::string& text) {
+    return load(square_json(kOneNode, R"(, "materials": [)" + text + "]", R"(, "material": 0)"))
+        .materials.at(0);
+  };
+  const Material matte = material(
+      R"({"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "metallicFactor": 0}})");
+  EXPECT_EQ(matte.name, "m");
+  EXPECT_EQ(matte.diffuse, glm::vec3(0.5f, 0.25f, 1.0f));
+  EXPECT_EQ(matte.specular, glm::vec3(0.0f));
+  EXPECT_EQ(matte.emission, glm::vec3(0.0f));
+  const Material mirror = material(
+      R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "roughnessFactor": 0}})");
+  EXPECT_EQ(mirror.illumination_model, 3);
+  EXPECT_EQ(mirror.specular, glm::vec3(0.5f, 0.25f, 1.0f));
+  EXPECT_EQ(mirror.diffuse, glm::vec3(0.0f));
+  const Material plastic =
+      material(R"({"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5}})");
+  EXPECT_EQ(plastic.illumination_model, 2);
+  EXPECT_EQ(plastic.specular, glm::vec3(0.02f));
+  EXPECT_EQ(plastic.shininess, 8.0f);
+  const Material lamp = material(
+      R"({"emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}})");
+  EXPECT_EQ(lamp.emission, glm::vec3(4, 2, 0));
+  const Material glass = material(
+      R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.3}}})");
+  EXPECT_EQ(glass.illumination_model, 7);
+  EXPECT_EQ(glass.refraction_index, 1.3f);
+}
+
+/// A BMP of one row: red, then blue.
+std::string two_pixels() {
+  const std::string pixels("\x00\x00\xFF\xFF\x00\x00\x00\x00", 8);
+  return "BM" +
+         test::bytes_of(std::uint32_t{62}, std::uint32_t{0}, std::uint32_t{54}, std::uint32_t{40},
+                        std::int32_t{2}, std::int32_t{1}, std::uint16_t{1}, std::uint16_t{24},
+                        std::uint32_t{0}, std::uint32_t{8}, 0, 0, 0, 0) +
+         pixels;
+}
+
+TEST_F(LoadGltf, TexturesAreRightSideUp) {
+  const std::string picture = two_pixels();
+  std::string json = square_json(
+      kOneNode,
+      R"(, "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0}}],
+         "textures": [{"source": 0}], "images": [{"bufferView": 4, "mimeType": "image/bmp"}])",
+      R"(, "material": 0)");
+  const std::string last = R"({"buffer": 0, "byteOffset": 128, "byteLength": 12})";
+  json.replace(json.find(last), last.size(),
+               last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 62})");
+  json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 202)");
+  const Scene scene = load(json, square_buffer() + picture);
+  ASSERT_EQ(scene.textures.size(), 1u);
+  // The square's lower left corner has texture coordinates (0, 1) in the file: the picture's foot.
+  EXPECT_EQ(scene.texcoords[scene.triangles[0].texcoords[0]], glm::vec2(0, 0));
+  EXPECT_EQ(scene.texcoords[scene.triangles[0].texcoords[2]], glm::vec2(1, 1));
+  const glm::vec3 left = diffuse_at(scene, scene.triangles[0], {0.75, 0.0, 0.25});
+  EXPECT_EQ(left, glm::vec3(1, 0, 0));
+}
+
+TEST_F(LoadGltf, WhatIsRefused) {
+  expect_error("{}", "not a glTF 2.0 file that can be read: ");
+  expect_error(square_json(R"([{"mesh": 1}])"), "mesh 1, but the file has 1");
+  expect_error(square_json(R"([{"mesh": 0, "children": [0]}])"), "node 0 has two parents");
+  expect_error(square_json(R"([{"children": [1, 1]}, {"mesh": 0}])"), "node 1 has two parents");
+  expect_error(square_json(R"([{"translation": [1, 2, 3]}])"), "no faces");
+  expect_error(square_json(R"([{"mesh": 0, "scale": [1e300, 1, 1]}])"), "a vertex is beyond");
+  expect_error(square_json(kOneNode, R"(, "extensionsRequired": ["KHR_draco_mesh_compression"])"),
+               "found the extension 'KHR_draco_mesh_compression', which is not read");
+  expect_error(
+      square_json(kOneNode, R"(, "extras": )" + std::string(100, '[') + std::string(100, ']')),
+      "JSON of more than 64 levels");
+  std::string json = square_json(kOneNode);
+  json.replace(json.find(R"("count": 6)"), 10, R"("count": 9)");
+  expect_error(json, "accessor 3 (indices): beyond its buffer");
+  json = square_json(kOneNode);
+  json.replace(json.find(R"("count": 4)"), 10, R"("count": 3)");
+  expect_error(json, "not as many normals as positions");
+  json = square_json(kOneNode);
+  json.replace(json.find("\"2.0\""), 5, "\"1.0\"");
+  expect_error(json, "glTF version '1.0'");
+}
+
+TEST_F(LoadGltf, InstancesOfInstancesAreBounded) {
+  std::string primitives, nodes = "[{\"children\": [";
+  for (int i = 1; i <= 4000; ++i) nodes += (i > 1 ? "," : "") + std::to_string(i);
+  nodes += "]}";
+  for (int i = 1; i <= 4000; ++i) nodes += ",{\"mesh\":0}";
+  std::string json = square_json(nodes + "]");
+  const std::string one =
+      json.substr(json.find("{\"attributes"), json.find("}]}]") + 1 - json.find("{\"attributes"));
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += one + ",";
+  json.insert(json.find("{\"attributes"), many);
+  expect_error(json, "more than ");
+}
+
+}  // namespace
+}  // namespace raygate

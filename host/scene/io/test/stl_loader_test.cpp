@@ -1,0 +1,91 @@
+#include "host/scene/io/stl_loader.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "host/scene/io/input_error.h"
+#include "host/scene/io/test/binary.h"
+#include "host/scene/test/temp_folder.h"
+
+namespace raygate {
+namespace {
+
+using test::bytes_of;
+
+constexpr std::string_view kAscii =
+    "solid a name of words\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
+    "   vertex 0 1e0 0\n  endloop\n endfacet\n"
+    "facet normal nan nan nan outer loop vertex 0 0 0 vertex 0 1 0 vertex 0 0 1 endloop endfacet\n"
+    "endsolid a name of words\n";
+
+std::string binary(std::string header, std::uint32_t said, int facets, float last = 1.0f) {
+  header.resize(80, ' ');
+  std::string bytes = header + bytes_of(said);
+  for (int i = 0; i < facets; ++i) {
+    bytes += bytes_of(9.0f, 9.0f, 9.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, last, 0.0f,
+                      std::uint16_t{7});
+  }
+  return bytes;
+}
+
+class LoadStl : public testing::Test {
+ protected:
+  [[nodiscard]] Scene load(std::string_view text) const {
+    return load_stl(folder_.write("s.stl", text));
+  }
+  /// What follows "FOLDER/" in the error.
+  [[nodiscard]] std::string error(std::string_view text) const {
+    try {
+      (void)load(text);
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(folder_.path().string().size() + 1);
+    }
+    return "(read)";
+  }
+
+  const TempFolder folder_;
+};
+
+TEST_F(LoadStl, Ascii) {
+  const Scene scene = load(kAscii);
+  ASSERT_EQ(scene.triangles.size(), 2u);
+  EXPECT_EQ(scene.origin + glm::dvec3(scene.positions[scene.triangles[1].vertices[2]]),
+            glm::dvec3(0, 0, 1));
+  EXPECT_EQ(scene.up, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(scene.triangles[0].normals[0], kNoIndex);
+}
+
+TEST_F(LoadStl, Binary) {
+  for (const char* header : {"made by us", "solid, but binary"}) {
+    const Scene scene = load(binary(header, 3, 3));
+    ASSERT_EQ(scene.triangles.size(), 3u);
+    EXPECT_EQ(scene.origin + glm::dvec3(scene.positions[scene.triangles[2].vertices[1]]),
+              glm::dvec3(1, 0, 0));
+  }
+  EXPECT_EQ(load(binary("with a tail", 2, 3)).triangles.size(), 2u);
+}
+
+TEST_F(LoadStl, WhatIsRefused) {
+  EXPECT_EQ(
+      error("Dear reader"),
+      "s.stl: not an STL file: 11 bytes, expected \"solid\" at its start or 84 bytes for its 0 "
+      "facets");
+  EXPECT_EQ(
+      error(binary("short", 4, 3)),
+      "s.stl: not an STL file: 234 bytes, expected \"solid\" at its start or 284 bytes for its 4 "
+      "facets");
+  EXPECT_EQ(error(binary("", 4294967295u, 1)).substr(0, 24), "s.stl: not an STL file: ");
+  EXPECT_EQ(error(binary("", 1, 1, std::numeric_limits<float>::infinity())),
+            "s.stl: facet 1 has a coordinate that is not a finite number");
+  EXPECT_EQ(error("solid\nendsolid\n"), "s.stl: no faces, expected at least one polygon");
+  EXPECT_EQ(error("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n"),
+            "s.stl:4: a coordinate: found 'x', expected a finite number");
+  EXPECT_EQ(error("solid\nfacet normal 0 0 1\nouter ring\n"),
+            "s.stl:3: found 'ring', expected 'loop'");
+  EXPECT_EQ(error("solid\nfacet normal 0 0 1"),
+            "s.stl:2: the file ends too soon, expected 'outer'");
+}
+
+}  // namespace
+}  // namespace raygate
