@@ -91,6 +91,10 @@ RAYGATE_INLINE void load_quad(const float* from, FloatQuad& to) {
   std::memcpy(&to, from, sizeof to);
 }
 
+/// As many floats as fit a register: what is wider, GCC takes apart word by word to compare it.
+template <Vectors kCode>
+using NativeFloats = std::conditional_t<kCode == Vectors::kBaseline, FloatQuad, FloatLanes>;
+
 /// Element i of row k becomes element k of row i.
 RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {
   const FloatQuad ab_low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
@@ -123,6 +127,11 @@ RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
   for (int i = 0; i < kQuad; ++i) mask |= static_cast<LaneMask>(quad[i] < 0) << i;
   return mask;
 #endif
+}
+
+template <Vectors kCode>
+RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
+  return sign_mask(quad);
 }
 
 /// |x|, of a number or of vectors of floats or doubles.

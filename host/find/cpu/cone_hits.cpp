@@ -61,17 +61,16 @@ RAYGATE_INLINE void ConeSearch::put(const ConeWalk& walk, const Seen& seen) {
 
 /// P has the bits of plane_point.
 RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<const Seen> seen) {
-  std::array<Corners, kPlanes> corners;
-  std::array<PlaneView, kPlanes> views;
+  PlaneViews views;
   for (std::size_t i = 0; i < kPlanes; ++i) {
-    corners[i] = bvh_.corners_of(seen[std::min(i, seen.size() - 1)].slot);
-    views[i] = {&origin_, &corners[i]};
+    views.set(i, origin_, bvh_.corners_of(seen[std::min(i, seen.size() - 1)].slot));
   }
-  std::array<PolygonRecord, kPlanes> planes;
+  Planes planes;
   make_planes(views, planes);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const glm::vec3& n = planes[i].normal;
-    const float d = planes[i].d;
+    const PolygonRecord plane = planes.record(i);
+    const glm::vec3& n = plane.normal;
+    const float d = plane.d;
     for (LaneMask groups = groups_of(seen[i].rays); groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
       const FloatLanes &x = walk.block->direction[0][g], &y = walk.block->direction[1][g],
@@ -80,8 +79,8 @@ RAYGATE_INLINE void ConeSearch::put_with_points(const ConeWalk& walk, std::span<
       FloatLanes point[3] = {d * x / v, d * y / v, d * z / v};
       IntLanes v_bits, grazing, error_bits;
       bits_of(v, v_bits);
-      grazing_of(planes[i], v_bits, grazing);
-      point_error_of(planes[i], v_bits, grazing, error_bits);
+      grazing_of(plane, v_bits, grazing);
+      point_error_of(plane, v_bits, grazing, error_bits);
       FloatLanes error;
       floats_of(error_bits, error);
       for (FloatLanes& p : point) {

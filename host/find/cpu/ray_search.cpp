@@ -73,14 +73,6 @@ bool RaySearch::settle(RayWalk& walk, std::uint32_t slot, bool sure) {
 
 namespace {
 
-/// A ray's origin and direction in lanes 0 to 2; lane 3 is any number of the ray's.
-RAYGATE_INLINE void load_ray(const Ray& ray, FloatQuad& origin, FloatQuad& direction) {
-  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
-  load_quad(reinterpret_cast<const float*>(&ray), origin);
-  load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, direction);
-  direction = __builtin_shufflevector(direction, direction, 1, 2, 3, 3);
-}
-
 std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
   std::vector<Bvh::Child> leaves;
   for (const Bvh::Node& node : tree.nodes()) {
@@ -159,10 +151,10 @@ void RaySearch::walk_all() {
   in_vectors([&](auto code) RAYGATE_BODY {
     QuadSides sides[kAtOnce];
     LaneMask open[kAtOnce];
-    int near[kAtOnce];
+    std::uint32_t near[kAtOnce];
     RayWalk *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];  // by where they are
-    int inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
-    for (int i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
+    std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+    for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
     for (;;) {
       while (idle_count >= kQuad && next_ < rays_.size()) {
         idle_count -= kQuad;
@@ -170,42 +162,40 @@ void RaySearch::walk_all() {
         std::copy_n(idle + idle_count, kQuad, four);
         const LaneMask started = set_out(four);
         for (int i = 0; i < kQuad; ++i) {
-          const bool on_its_way = (started >> i & 1) != 0;
+          const std::size_t on_its_way = started >> i & 1;
           inside[inside_count] = idle[idle_count] = four[i];
-          inside_count += on_its_way ? 1 : 0;
-          idle_count += on_its_way ? 0 : 1;
+          inside_count += on_its_way;
+          idle_count += on_its_way ^ 1;
         }
       }
       if (inside_count + leaf_count == 0) return;
-      for (int i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, *inside[i]);
-      for (int i = 0; i < leaf_count; ++i) {
+      for (std::size_t i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, *inside[i]);
+      std::size_t open_count = 0;
+      for (std::size_t i = 0; i < leaf_count; ++i) {
         RayWalk& walk = *leaves[i];
         walk.work.tests += walk.at.count;
         open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at), walk.at.count, sides[i]);
-      }
-      int open_count = 0;
-      for (int i = 0; i < leaf_count; ++i) {
-        inside[inside_count + i] = leaves[i];
-        near[open_count] = i;
+        near[open_count] = static_cast<std::uint32_t>(i);
         open_count += open[i] != 0 ? 1 : 0;
+        inside[inside_count + i] = &walk;
       }
-      for (int k = 0; k < open_count; ++k) {
-        const int i = near[k];
+      for (std::size_t k = 0; k < open_count; ++k) {
+        const std::uint32_t i = near[k];
         RayWalk& walk = *leaves[i];
         if (!judge(walk, walk.at, sides[i], open[i])) walk.end();
       }
-      const int count = inside_count + leaf_count, were_idle = idle_count;
+      const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
       inside_count = leaf_count = 0;
-      for (int i = 0; i < count; ++i) {
+      for (std::size_t i = 0; i < count; ++i) {
         RayWalk& walk = *inside[i];
-        go_on<code()>(bvh_, walk);
-        const int ended = walk.has_ended() ? 1 : 0, in_leaf = walk.at.count != 0 ? 1 : 0;
+        go_on(bvh_, walk);
+        const std::size_t ended = walk.has_ended() ? 1 : 0, in_leaf = walk.at.count != 0 ? 1 : 0;
         inside[inside_count] = leaves[leaf_count] = idle[idle_count] = &walk;
         inside_count += (ended | in_leaf) ^ 1;
         leaf_count += in_leaf & ~ended;
         idle_count += ended;
       }
-      for (int i = were_idle; i < idle_count; ++i) arrive(*idle[i]);
+      for (std::size_t i = were_idle; i < idle_count; ++i) arrive(*idle[i]);
       add_points(kPlanes);
     }
   });
@@ -240,25 +230,23 @@ void RaySearch::add_points(int enough) {
 
 /// Of these rays, up to four, with the bits of plane_point.
 void RaySearch::add_points(std::span<const std::uint32_t> numbers) {
-  std::array<Corners, kPlanes> corners;
-  std::array<PlaneView, kPlanes> views;
-  std::array<NearestHit*, kPlanes> hits;
-  FloatQuad origin, d[kQuad], n[kQuad];  // n[3]: d of the plane
+  PlaneViews views;
+  NearestHit* hits[kPlanes];
+  FloatQuad d[kQuad], n[kQuad];  // n[3]: d of the plane
   static_assert(kPlanes == kQuad);
-  for (int i = 0; i < kPlanes; ++i) {
-    const std::uint32_t number = numbers[std::min<std::size_t>(i, numbers.size() - 1)];
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    const std::uint32_t number = numbers[std::min(i, numbers.size() - 1)];
+    const Ray& ray = rays_[number];
     hits[i] = &hits_[number];
-    corners[i] = bvh_.corners_of(hits[i]->slot);
-    views[i] = {&rays_[number].origin, &corners[i]};
-    load_ray(rays_[number], origin, d[i]);
+    views.set(i, ray.origin, bvh_.corners_of(hits[i]->slot));
+    load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, d[i]);
   }
-  std::array<PolygonRecord, kPlanes> planes;
+  Planes planes;
   make_planes(views, planes);
-  for (int i = 0; i < kPlanes; ++i) load_quad(&planes[i].normal.x, n[i]);
+  std::memcpy(n, planes.words, sizeof n);
   in_vectors([&](auto) RAYGATE_BODY {
-    transpose(d);
-    transpose(n);
-    const FloatQuad v = 0.0f + ((n[0] * d[0] + n[1] * d[1]) + n[2] * d[2]);
+    transpose(d);  // of d[0] nothing is wanted: it is the last coordinate of the origins
+    const FloatQuad v = 0.0f + ((n[0] * d[1] + n[1] * d[2]) + n[2] * d[3]);
     IntQuad fields[3], grazing, error;
     for (int k = 0; k < 3; ++k) fields[k] = reinterpret_cast<IntQuad>(n[k]) >> 23 & 0xFF;
     IntQuad largest = fields[0] > fields[1] ? fields[0] : fields[1];
@@ -267,7 +255,7 @@ void RaySearch::add_points(std::span<const std::uint32_t> numbers) {
     point_error_of(reinterpret_cast<IntQuad>(n[3]), reinterpret_cast<IntQuad>(v), grazing, error);
     FloatQuad rows[kQuad];
     for (int k = 0; k < 3; ++k) {
-      const FloatQuad p = n[3] * d[k] / v;
+      const FloatQuad p = n[3] * d[k + 1] / v;
       const IntQuad nan = IntQuad{} + 0x7FC00000;
       rows[k] = p == p ? p : reinterpret_cast<FloatQuad>(nan);
     }

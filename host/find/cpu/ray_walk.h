@@ -48,8 +48,8 @@ struct RayWalk {
   // What waits: children of nodes, the nearest last, as far as one node knows. A key is where the
   // ray enters a child's box, a little less at most, with the child's number in the last bits. At
   // the bottom is one that always matters: there the way ends.
-  static constexpr std::int32_t kBottom = Bvh::kWidth - 1;
-  std::int32_t depth;
+  static constexpr std::size_t kBottom = Bvh::kWidth - 1;
+  std::size_t depth;
   std::int32_t keys[Bvh::kWidth + Bvh::kStackSize + Bvh::kWidth];
   std::uint32_t nodes[Bvh::kWidth + Bvh::kStackSize + Bvh::kWidth];
 
@@ -134,8 +134,9 @@ RAYGATE_INLINE LaneMask set_out(const Ray* const (&rays)[kQuad], RayWalk* const 
   return sign_mask((largest >= 0x3F800000) & (largest < 0x40000000));
 }
 
-/// Puts eight keys in order, the largest first: Batcher's bitonic network.
-RAYGATE_INLINE void sort_falling(IntLanes& keys) {
+/// Puts eight keys in order, the largest first: Batcher's bitonic network. All but `count` may be
+/// known to be the smallest, and behind the others.
+RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count = kLanes) {
   IntLanes other, larger, smaller;
   const auto compare = [&]() __attribute__((always_inline)) {
     larger = keys > other ? keys : other;
@@ -151,6 +152,7 @@ RAYGATE_INLINE void sort_falling(IntLanes& keys) {
   compare();
   keys = __builtin_shufflevector(larger, smaller, 0, 1, 10, 11, 4, 5, 14, 15);
   of_pairs();
+  if (count <= kLanes / 2) return;
   other = __builtin_shufflevector(keys, keys, 7, 6, 5, 4, 3, 2, 1, 0);
   compare();
   keys = __builtin_shufflevector(larger, smaller, 0, 1, 2, 3, 12, 13, 14, 15);
@@ -168,22 +170,37 @@ RAYGATE_INLINE void step_inside(const Bvh& tree, RayWalk& walk) {
   constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
   const Bvh::Node& node = tree.nodes()[walk.at.first];
   const char* const bounds = reinterpret_cast<const char*>(&node);
-  FloatLanes enter = {}, leave = walk.cutoff - FloatLanes{};
-  for (int k = 0; k < 3; ++k) {
-    FloatLanes near, far;
-    std::memcpy(&near, bounds + walk.near_at[k], sizeof near);
-    std::memcpy(&far, bounds + walk.far_at[k], sizeof far);
-    const FloatLanes t_near = (near - walk.origin[k]) * walk.inverse_near[k];
-    const FloatLanes t_far = (far - walk.origin[k]) * walk.inverse_far[k];
-    enter = t_near > enter ? t_near : enter;
-    leave = t_far < leave ? t_far : leave;
+  using Floats = NativeFloats<kCode>;
+  IntLanes keys;
+  LaneMask mask = 0;
+  for (std::size_t part = 0; part < Bvh::kWidth; part += sizeof(Floats) / sizeof(float)) {
+    Floats enter = {}, leave = walk.cutoff - Floats{};
+    for (int k = 0; k < 3; ++k) {
+      Floats near, far;
+      std::memcpy(&near, bounds + walk.near_at[k] + 4 * part, sizeof near);
+      std::memcpy(&far, bounds + walk.far_at[k] + 4 * part, sizeof far);
+      const Floats t_near = (near - walk.origin[k]) * walk.inverse_near[k];
+      const Floats t_far = (far - walk.origin[k]) * walk.inverse_far[k];
+      enter = t_near > enter ? t_near : enter;
+      leave = t_far < leave ? t_far : leave;
+    }
+    mask |= sign_mask<kCode>(enter <= leave) << part;
+    std::memcpy(reinterpret_cast<char*>(&keys) + 4 * part, &enter, sizeof enter);
   }
-  const IntLanes met = enter <= leave;
-  const LaneMask mask = sign_mask<kCode>(met);
-  const int count = std::popcount(mask);
-  IntLanes keys = (reinterpret_cast<IntLanes>(enter) & ~kNumber) | kNumbers;
-  if (count > 2) {
-    keys = met ? keys : IntLanes{} - 1;
+  keys = (keys & ~kNumber) | kNumbers;
+  const auto count = static_cast<std::size_t>(std::popcount(mask));
+#ifdef RAYGATE_AVX2
+  if constexpr (kCode == Vectors::kAvx512) {
+    keys =
+        __builtin_ia32_compresssi256_mask(keys, IntLanes{} - 1, static_cast<unsigned char>(mask));
+    sort_falling(keys, count);
+    std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
+  } else
+#endif
+      if (count > 2) {
+    IntLanes met;
+    lanes_of(mask, met);
+    keys |= ~met;  // negative: they come last
     sort_falling(keys);
     std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
   } else {
@@ -198,8 +215,7 @@ RAYGATE_INLINE void step_inside(const Bvh& tree, RayWalk& walk) {
   walk.depth += count;
 }
 
-/// Goes on to what waits last and still matters. Without a branch, as a rule.
-template <Vectors kCode>
+/// Goes on to what waits last and still matters.
 RAYGATE_INLINE void go_on(const Bvh& tree, RayWalk& walk) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;
   // Floats from 0 on are in the order of their bits.

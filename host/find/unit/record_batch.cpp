@@ -1,6 +1,7 @@
 #include "host/find/unit/record_batch.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cstdint>
 #include <cstring>
@@ -82,18 +83,16 @@ RAYGATE_INLINE void edge_bound(const Floats (&words)[3], Floats& bound) {
                                    __builtin_convertvector(below, Ints));
 }
 
-/// The corners of four triangles, in double.
-RAYGATE_INLINE void load_corners(const Corners* const (&triangles)[kBatch], Points (&t)[3]) {
-  alignas(16) float corners[3][3][kBatch];
-  for (int i = 0; i < kBatch; ++i) {
-    for (int v = 0; v < 3; ++v) {
-      for (int k = 0; k < 3; ++k) corners[v][k][i] = (*triangles[i])[v][k];
-    }
-  }
+RAYGATE_INLINE void to_doubles(const float (&lanes)[kBatch], Doubles& doubles) {
+  Floats floats;
+  std::memcpy(&floats, lanes, sizeof floats);
+  doubles = __builtin_convertvector(floats, Doubles);
+}
+
+/// The corners of four triangles.
+RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   for (int v = 0; v < 3; ++v) {
-    Floats f[3];
-    std::memcpy(f, corners[v], sizeof f);
-    for (int k = 0; k < 3; ++k) t[v][k] = __builtin_convertvector(f[k], Doubles);
+    for (int k = 0; k < 3; ++k) to_doubles(views.corners[v][k], t[v][k]);
   }
 }
 
@@ -123,11 +122,10 @@ RAYGATE_INLINE LaneMask mask_of(const Longs& lanes) {
 }  // namespace
 
 /// Four words of 16 each, and bit i of the result where record i is right.
-LaneMask make_four(const glm::vec3& origin, const Corners* const (&triangles)[kBatch],
-                   float (&words)[kBatch][16]) {
+LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kBatch][16]) {
   return in_vectors([&](auto) RAYGATE_BODY {
     Points t[3], from_o[3];
-    load_corners(triangles, t);
+    load_corners(views, t);
     const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
     for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
     Longs good = Longs{} - 1;
@@ -160,39 +158,35 @@ LaneMask make_four(const glm::vec3& origin, const Corners* const (&triangles)[kB
   });
 }
 
-/// Four words of four planes, and bit i of the result where plane i is right.
-LaneMask make_four_planes(const std::array<PlaneView, kBatch>& views, float (&words)[kBatch][4]) {
+/// Bit i of the result where plane i is right.
+LaneMask make_four_planes(const PlaneViews& views, Planes& planes) {
   return in_vectors([&](auto) RAYGATE_BODY {
-    const Corners* triangles[kBatch];
-    alignas(16) float origins[3][kBatch];
-    for (int i = 0; i < kBatch; ++i) {
-      triangles[i] = views[i].triangle;
-      for (int k = 0; k < 3; ++k) origins[k][i] = (*views[i].origin)[k];
-    }
-    Floats o[3], n[3];
-    std::memcpy(o, origins, sizeof o);
     Points t[3], a, normal;
-    load_corners(triangles, t);
-    for (int k = 0; k < 3; ++k) a[k] = t[0][k] - __builtin_convertvector(o[k], Doubles);
+    load_corners(views, t);
+    for (int k = 0; k < 3; ++k) {
+      Doubles origin;
+      to_doubles(views.origins[k], origin);
+      a[k] = t[0][k] - origin;
+    }
     Longs good = Longs{} - 1;
     Doubles d;
     find_planes(t, a, normal, d, good);
-    to_floats(normal, n);
-    store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+    Floats words[4];
+    for (int k = 0; k < 3; ++k) words[k] = __builtin_convertvector(normal[k], Floats);
+    words[3] = __builtin_convertvector(d, Floats);
+    static_assert(sizeof words == sizeof planes.words);
+    std::memcpy(planes.words, words, sizeof words);
     return mask_of(good);
   });
 }
 
-void make_planes(const std::array<PlaneView, kPlanes>& views,
-                 std::array<PolygonRecord, kPlanes>& planes) {
-  float words[kBatch][4];
-  const LaneMask good = make_four_planes(views, words);
-  for (int i = 0; i < kPlanes; ++i) {
-    if ((good >> i & 1) != 0) {
-      std::memcpy(static_cast<void*>(&planes[i]), words[i], sizeof words[i]);
-    } else {
-      planes[i] = make_plane(*views[i].origin, *views[i].triangle);
-    }
+void make_planes(const PlaneViews& views, Planes& planes) {
+  const LaneMask good = make_four_planes(views, planes);
+  for (LaneMask left = ~good & ((1u << kPlanes) - 1); left != 0; left &= left - 1) {
+    const int i = std::countr_zero(left);
+    const PolygonRecord plane = make_plane(views.origin(i), views.triangle(i));
+    for (int k = 0; k < 3; ++k) planes.words[k][i] = plane.normal[k];
+    planes.words[3][i] = plane.d;
   }
 }
 
@@ -201,8 +195,10 @@ void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
   assert(triangles.size() == records.size());
   for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
     const std::size_t count = std::min<std::size_t>(kBatch, triangles.size() - first);
-    const Corners* batch[kBatch];
-    for (std::size_t i = 0; i < kBatch; ++i) batch[i] = &triangles[first + std::min(i, count - 1)];
+    PlaneViews batch;
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      batch.set(i, origin, triangles[first + std::min(i, count - 1)]);
+    }
     float words[kBatch][16];
     const LaneMask good = make_four(origin, batch, words);
     for (std::size_t i = 0; i < count; ++i) {

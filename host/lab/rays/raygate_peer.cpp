@@ -39,8 +39,11 @@ class RaygatePeer : public Peer {
 
  private:
   [[nodiscard]] std::uint32_t triangle_of(const NearestHit& hit) const {
-    if (hit.slot == NearestHit::kNone) return Found::kNone;
-    return set_->any_hit ? Found::kSome : bvh_.triangle_of(hit.slot);
+    // Without a branch, which would be a guess at what the ray hits.
+    const std::uint32_t found = hit.slot != NearestHit::kNone ? 1 : 0;
+    static_assert(Found::kNone == ~std::uint32_t{0});
+    const std::uint32_t triangle = bvh_.triangle_of(hit.slot & (0 - found));
+    return (set_->any_hit ? Found::kSome : triangle) | (found - 1);
   }
 
   std::string name_ = "raygate";

@@ -24,17 +24,17 @@ void expect_same(const glm::vec3& origin, const std::vector<Corners>& triangles)
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     // Four origins, four triangles.
-    std::array<glm::vec3, kPlanes> origins;
-    std::array<PlaneView, kPlanes> views;
+    PlaneViews views;
     for (std::size_t k = 0; k < kPlanes; ++k) {
-      origins[k] = origin * static_cast<float>(k + 1);
-      views[k] = {&origins[k], &triangles[(i + k) % triangles.size()]};
+      views.set(k, origin * static_cast<float>(k + 1), triangles[(i + k) % triangles.size()]);
     }
-    std::array<PolygonRecord, kPlanes> planes;
+    Planes planes;
     make_planes(views, planes);
     for (std::size_t k = 0; k < kPlanes; ++k) {
-      const PolygonRecord expected = make_plane(*views[k].origin, *views[k].triangle);
-      ASSERT_EQ(std::memcmp(&planes[k], &expected, sizeof expected), 0);
+      const PolygonRecord plane = planes.record(k);
+      const PolygonRecord expected =
+          make_plane(origin * static_cast<float>(k + 1), triangles[(i + k) % triangles.size()]);
+      ASSERT_EQ(std::memcmp(&plane, &expected, sizeof expected), 0);
     }
   }
 }
