@@ -33,7 +33,7 @@ class RaySearch {
   void add_points(int enough);
   void add_points(std::span<const std::uint32_t> numbers);
 
-  static constexpr int kAtOnce = 32;  // rays that take turns
+  static constexpr int kAtOnce = 48;  // rays that take turns
 
   const Bvh& bvh_;
   FindCounters& counters_;
