@@ -54,6 +54,7 @@ struct Header {
   Format format = Format::kAscii;
   std::vector<Element> elements;
   std::size_t bytes = 0, lines = 0;  // that it takes
+  std::vector<std::string> warnings;
 };
 
 /// A line of the header, without its end.
@@ -76,7 +77,8 @@ class HeaderReader {
         if (header.elements.empty()) fail("a property before the first element");
         header.elements.back().properties.push_back(read_property(line));
       } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-        fail("found " + in_quotes(keyword) + ", expected element, property or end_header");
+        header.warnings.push_back(InputError::place_of(name_, line_) + in_quotes(keyword) +
+                                  " is no word of a PLY header, ignored");
       }
     }
     if (!has_format) fail("the header names no format");
@@ -152,30 +154,26 @@ class Numbers {
         format_(header.format),
         tokens_(name_, format_ == Format::kAscii ? bytes_ : std::string_view(), header.lines + 1) {}
 
+  /// A finite number within the range of float.
   [[nodiscard]] double take(Type type, std::string_view of_what) {
     if (format_ == Format::kAscii) return tokens_.number(of_what);
-    const std::size_t size = kTypes[static_cast<std::size_t>(type)].size;
-    if (bytes_.size() - at_ < size) throw InputError(name_ + ": the file ends too soon");
-    const char* const at = bytes_.data() + at_;
-    at_ += size;
-    const double number = at_place(at, type);
+    const double number = take_any(type);
     if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
       fail(std::string(of_what) + ": not a finite number");
     }
     return number;
   }
-  /// Reads over what may be anything.
-  void skip(Type type) {
+  /// Whatever is there; NaN for what is no number.
+  [[nodiscard]] double take_any(Type type) {
     if (format_ == Format::kAscii) {
-      (void)tokens_.take();
-    } else if (const std::size_t size = kTypes[static_cast<std::size_t>(type)].size;
-               bytes_.size() - at_ < size) {
-      throw InputError(name_ + ": the file ends too soon");
-    } else {
-      at_ += size;
+      return to_number(tokens_.take()).value_or(std::numeric_limits<double>::quiet_NaN());
     }
+    const std::size_t size = kTypes[static_cast<std::size_t>(type)].size;
+    if (bytes_.size() - at_ < size) throw InputError(name_ + ": the file ends too soon");
+    const char* const at = bytes_.data() + at_;
+    at_ += size;
+    return at_place(at, type);
   }
-
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Of the next number; 0 in a binary file.
   [[nodiscard]] std::size_t line() const { return format_ == Format::kAscii ? tokens_.line() : 0; }
@@ -223,7 +221,7 @@ long long take_count(Numbers& numbers, const Property& list) {
 
 void skip(Numbers& numbers, const Property& property) {
   const long long count = property.count_type ? take_count(numbers, property) : 1;
-  for (long long i = 0; i < count; ++i) numbers.skip(property.type);
+  for (long long i = 0; i < count; ++i) (void)numbers.take_any(property.type);
 }
 
 /// Returns whether the vertices have normals.
@@ -245,11 +243,15 @@ bool read_vertices(Numbers& numbers, const Element& element, MeshBuilder& mesh) 
       if (place[p] < 0 || (place[p] >= 3 && !has_normals)) {
         skip(numbers, element.properties[p]);
       } else {
-        values[place[p]] = numbers.take(element.properties[p].type, element.properties[p].name);
+        const Property& property = element.properties[p];
+        values[place[p]] = place[p] < 3 ? numbers.take(property.type, property.name)
+                                        : numbers.take_any(property.type);
       }
     }
     mesh.add_position({values[0], values[1], values[2]});
-    if (has_normals) mesh.add_normal({values[3], values[4], values[5]});
+    if (!has_normals) continue;
+    const glm::dvec3 normal(values[3], values[4], values[5]);
+    mesh.add_normal(std::isfinite(normal.x + normal.y + normal.z) ? normal : glm::dvec3(0.0));
   }
   return has_normals;
 }
@@ -296,6 +298,7 @@ Scene load_ply(const std::filesystem::path& file, const LoadOptions& options) {
   Numbers numbers(name, bytes, header);
   MeshBuilder mesh(name);
   Scene scene;
+  scene.warnings = header.warnings;
   bool has_vertices = false, has_normals = false;
   for (const Element& element : header.elements) {
     if (element.name == "vertex" && !has_vertices) {

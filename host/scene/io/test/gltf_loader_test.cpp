@@ -206,7 +206,7 @@ TEST_F(LoadGltf, WhatIsRefused) {
 
 TEST_F(LoadGltf, InstancesOfInstancesAreBounded) {
   std::string primitives, nodes = "[{\"children\": [";
-  for (int i = 1; i <= 4000; ++i) nodes += (i > 1 ? "," : "") + std::to_string(i);
+  for (int i = 1; i <= 4000; ++i) nodes.append(i > 1 ? "," : "").append(std::to_string(i));
   nodes += "]}";
   for (int i = 1; i <= 4000; ++i) nodes += ",{\"mesh\":0}";
   std::string json = square_json(nodes + "]");

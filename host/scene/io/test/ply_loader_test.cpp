@@ -91,6 +91,18 @@ TEST_F(LoadPly, NormalsAndFarPositions) {
   EXPECT_EQ(scene.origin + glm::dvec3(scene.positions[1]), glm::dvec3(100000001.25, 0, 0));
 }
 
+TEST_F(LoadPly, WhatExportersWrite) {
+  const Scene scene = load(
+      "ply\nformat ascii 1.0\nCreated by an exporter\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+      "property float nz\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 nan nan nan\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+  EXPECT_EQ(scene.triangles[0].normals[1], kNoIndex) << "flat, with a warning";
+  ASSERT_EQ(scene.warnings.size(), 2u);
+  EXPECT_TRUE(
+      scene.warnings[0].ends_with("s.ply:3: 'Created' is no word of a PLY header, ignored"));
+}
+
 TEST_F(LoadPly, WhatIsRefused) {
   EXPECT_EQ(error("plx\n"), "s.ply:1: not a PLY file: its first line is not \"ply\"");
   EXPECT_EQ(error("ply\nformat ascii 1.0\n"), "s.ply:3: the header has no end_header");
