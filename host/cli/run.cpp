@@ -17,6 +17,7 @@
 #include "host/cli/report.h"
 #include "host/cli/version.h"
 #include "host/exact/exact.h"
+#include "host/light/clearance.h"
 #include "host/light/lights.h"
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
@@ -253,7 +254,7 @@ class Saver {
 
 /// Renders with a progress bar, until a signal comes.
 Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                 const Bvh& bvh, const Camera& camera, const ExrMetadata& metadata,
+                 const Clearances& clearances, const Camera& camera, const ExrMetadata& metadata,
                  RenderStats& stats) {
   RenderOptions render_options{.width = options.width,
                                .height = options.height,
@@ -280,14 +281,14 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
     bar.erase();
     std::_Exit(run_guarded([&]() -> int { end_interrupted(outputs, film, metadata); }, 1));
   };
-  Film film =
-      render(scene, bvh, camera, render_options,
-             make_finder_factory(options, bvh, options.light.skips), stats, [&](double fraction) {
-               // Before there is something to save, a signal simply ends the program.
-               if (interruption() == 0) note_interruptions();
-               bar.update(fraction);
-               return interruption() == 0;
-             });
+  Film film = render(scene, clearances, camera, render_options,
+                     make_finder_factory(options, clearances.bvh(), options.light.skips), stats,
+                     [&](double fraction) {
+                       // Before there is something to save, a signal simply ends the program.
+                       if (interruption() == 0) note_interruptions();
+                       bar.update(fraction);
+                       return interruption() == 0;
+                     });
   bar.erase();
   if (stats.missing_threads > 0) {
     print_warning("only " + std::to_string(options.threads - stats.missing_threads) + " of " +
@@ -298,9 +299,11 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
 
 /// Renders one picture and writes it with `report` completed.
 void render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                    const Bvh& bvh, const Camera& camera, Clock::time_point start, Report& report) {
+                    const Clearances& clearances, const Camera& camera, Clock::time_point start,
+                    Report& report) {
   const ExrMetadata metadata = make_metadata(options, scene, camera);
-  const Film film = render_film(options, outputs, scene, bvh, camera, metadata, report.render);
+  const Film film =
+      render_film(options, outputs, scene, clearances, camera, metadata, report.render);
   if (report.render.cancelled) end_interrupted(outputs, film, metadata);
 
   // All files are made ready before the first takes its name: a full disk changes none of them.
@@ -315,15 +318,16 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
 }
 
 /// One picture after the other; a line for each.
-void render_film_of_frames(const Options& options, Scene& scene, const Bvh& bvh, Report& report,
-                           std::FILE* console) {
+void render_film_of_frames(const Options& options, Scene& scene, const Clearances& clearances,
+                           Report& report, std::FILE* console) {
   const int frames = options.output.frames;
   const Lighting lighting(scene);
   for (int frame = 1; frame <= frames; ++frame) {
     const Clock::time_point start = Clock::now();
     const Camera camera = make_camera(options, scene, frame);
     lighting.set(options, scene, camera);
-    render_picture(options, options.output.numbered(frame), scene, bvh, camera, start, report);
+    render_picture(options, options.output.numbered(frame), scene, clearances, camera, start,
+                   report);
     if (options.quiet) continue;
     print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
               format_duration(report.total_seconds) + ", wrote " + listed(report.pictures) + "\n",
@@ -360,14 +364,15 @@ void run(const Options& options) {
   const Clock::time_point tree_start = Clock::now();
   const Bvh bvh(scene, static_cast<int>(options.threads));
   report.tree_seconds = seconds_since(tree_start);
+  const Clearances clearances(bvh);
 
   report.view = view_text(options, scene);
   if (frames > 0) {
-    render_film_of_frames(options, scene, bvh, report, console);
+    render_film_of_frames(options, scene, clearances, report, console);
   } else {
     const Camera camera = make_camera(options, scene, 1);
     Lighting(scene).set(options, scene, camera);
-    render_picture(options, options.output, scene, bvh, camera, start, report);
+    render_picture(options, options.output, scene, clearances, camera, start, report);
     if (!options.quiet) print(to_text(report), console);
   }
 }

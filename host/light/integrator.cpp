@@ -10,6 +10,7 @@ namespace raygate {
 namespace {
 
 constexpr std::size_t kMostHits = 2048;          // of a block: its lists stay in the cache
+constexpr std::size_t kFacesAhead = 12;          // to fetch
 constexpr std::size_t kMostQuestions = 1 << 16;  // of a block: 3 MB
 
 }  // namespace
@@ -73,6 +74,10 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
   first_.assign(kHitKinds + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const NearestHit& hit = hits[block_.begin + i];
+    const std::uint32_t soon = hits[block_.begin + std::min(i + kFacesAhead, count - 1)].slot;
+    if (soon != NearestHit::kNone) {
+      __builtin_prefetch(&scene.triangles[shading_.bvh.triangle_of(soon)].material);
+    }
     kinds_[i] = kHitKinds;
     if (hit.slot == NearestHit::kNone) {
       const Burden& burden = block_.burden(i);

@@ -218,13 +218,14 @@ class Crew {
 
 }  // namespace
 
-Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const RenderOptions& options,
-            const FinderFactory& make_finder, RenderStats& stats,
+Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
+            const RenderOptions& options, const FinderFactory& make_finder, RenderStats& stats,
             const ProgressFunction& progress) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
   const double busy = processor_seconds();
   stats = {};
+  const Bvh& bvh = clearances.bvh();
   Film film = empty_film(options);
   auto first_finder = make_finder();
   const Tiles tiles(film.window, options.samples, first_finder->preferred_batch(), options.threads);
@@ -234,7 +235,6 @@ Film render(const Scene& scene, const Bvh& bvh, const Camera& camera, const Rend
     sums.albedo.assign(film.albedo.size(), glm::dvec3(0.0));
   }
   const Lights lights(scene, bvh);
-  const Clearances clearances(bvh);
   const RenderJob job{scene, bvh, camera, options, lights, clearances};
   Crew(job, tiles, std::move(first_finder), make_finder, progress, film, sums, stats).run();
   if (stats.find.common_records != 0) {

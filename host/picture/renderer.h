@@ -8,6 +8,7 @@
 #include "host/film/film.h"
 #include "host/film/pixel_filter.h"
 #include "host/find/finder.h"
+#include "host/light/clearance.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/point_error.h"
 #include "host/light/skips.h"
@@ -65,11 +66,19 @@ struct RenderStats {
 /// stops the render. May be empty.
 using ProgressFunction = std::function<bool(double)>;
 
+/// The clearances are for renders of the same tree to share, one after the other or at once.
 /// The film is the same, bit for bit, for every finder, number of threads and skip, and a window's
 /// is that part of the whole one's. An exception of a finder ends the render and is thrown on.
 /// Scenes without any light are black, but for kPrimary: see light_if_dark.
-[[nodiscard]] Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
+[[nodiscard]] Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
                           const RenderOptions& options, const FinderFactory& make_finder,
                           RenderStats& stats, const ProgressFunction& progress = {});
+
+/// The same for a tree that is rendered once.
+[[nodiscard]] inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
+                                 const RenderOptions& options, const FinderFactory& make_finder,
+                                 RenderStats& stats, const ProgressFunction& progress = {}) {
+  return render(scene, Clearances(bvh), camera, options, make_finder, stats, progress);
+}
 
 }  // namespace raygate

@@ -23,6 +23,7 @@
 #include "host/find/unit/record_cache.h"
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/unit_finder.h"
+#include "host/light/clearance.h"
 #include "host/light/lights.h"
 #include "host/picture/renderer.h"
 #include "host/python/float_reference.h"
@@ -112,6 +113,7 @@ class PythonScene {
     scene_ = load_scene(file_ ? file_->obj : path, {.strict = strict});
     if (file_) add_lights(*file_, scene_);
     bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
+    clearances_ = std::make_unique<Clearances>(*bvh_);
   }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -198,7 +200,7 @@ class PythonScene {
     {
       const nb::gil_scoped_release release;
       RenderStats stats;
-      *film = render(scene_, *bvh_, camera, options, finders(engine), stats,
+      *film = render(scene_, *clearances_, camera, options, finders(engine), stats,
                      [](double) { return keep_going(); });
     }
     scene_.lights = lights;
@@ -254,6 +256,7 @@ class PythonScene {
   std::optional<SceneFile> file_;
   Scene scene_;
   std::unique_ptr<Bvh> bvh_;
+  std::unique_ptr<Clearances> clearances_;
 };
 
 }  // namespace
