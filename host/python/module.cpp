@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/exact/exact_sign.h"
 #include "host/exact/ieee_floats.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
@@ -29,8 +30,9 @@
 #include "host/python/float_reference.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/input_error.h"
-#include "host/scene/io/scene_loader.h"
+#include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
 #include "host/trace/answers.h"
 #include "host/trace/question.h"
@@ -114,6 +116,33 @@ class PythonScene {
     if (file_) add_lights(*file_, scene_);
     bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
     clearances_ = std::make_unique<Clearances>(*bvh_);
+  }
+
+  /// Triangles alone: their corners, one after the other. Refuses those without area, so that
+  /// their numbers stay.
+  PythonScene(const Vectors3& corners, std::optional<int> threads) {
+    const Elements points("triangles", corners);
+    const nb::gil_scoped_release release;
+    MeshBuilder mesh("triangles");
+    for (std::size_t i = 0; i + 2 < corners.shape(0); i += 3) {
+      std::array<FileCorner, 3> face;
+      for (std::size_t k = 0; k < 3; ++k) {
+        mesh.add_position(points.vector(i + k));
+        face[k].position = static_cast<std::int32_t>(i + k + 1);
+      }
+      mesh.add_face(face, 0);
+    }
+    mesh.build({}, scene_);
+    for (std::size_t i = 0; i + 2 < scene_.positions.size(); i += 3) {
+      const glm::vec3* const p = &scene_.positions[i];
+      if (collinear(p[0], p[1], p[2])) {
+        throw InputError("triangles: found no area in triangle " + std::to_string(i / 3) +
+                         ", expected one");
+      }
+    }
+    scene_.materials.emplace_back().name = "default";
+    scene_.objects = {"default"};
+    bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
   }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -270,6 +299,8 @@ NB_MODULE(_raygate, m) {
   raygate::add_float_reference(m);
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const std::string&, bool, std::optional<int>>(), "file"_a, "strict"_a,
+           "threads"_a.none())
+      .def(nb::init<const raygate::Vectors3&, std::optional<int>>(), "corners"_a,
            "threads"_a.none())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })

@@ -35,6 +35,22 @@ class Scene:
         self._scene = _raygate.Scene(os.fsdecode(file), bool(strict),
                                      _whole("threads", threads, 1))
 
+    @classmethod
+    def of_triangles(cls, corners, *, threads=None):
+        """A scene of grey triangles: corners of shape (N, 3, 3), float32 or float64. Triangles
+        without area are refused: leave them out, no ray hits them."""
+        corners = _numbers("triangles", corners)
+        if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not 0 < len(corners) < 2 ** 29:
+            raise InputError(f"triangles: found an array of shape {corners.shape}, expected (N, 3, 3)")
+        wrong = ~(np.abs(corners) <= 2.0 ** 125).all(axis=(1, 2))
+        if wrong.any():
+            raise InputError(f"triangles: found inf, nan or a coordinate beyond 2^125 in triangle "
+                             f"{np.argmax(wrong)}, expected finite numbers")
+        scene = cls.__new__(cls)
+        scene._scene = _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3),
+                                      _whole("threads", threads, 1))
+        return scene
+
     @property
     def triangle_count(self):
         return self._scene.triangle_count

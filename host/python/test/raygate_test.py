@@ -1,6 +1,7 @@
 """The Python module as its users have it: installed by `pip install .`."""
 
 import pathlib
+import tempfile
 import unittest
 
 import numpy as np
@@ -79,6 +80,30 @@ class Trace(unittest.TestCase):
                 self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), **wrong)
             self.assertEqual(str(caught.exception)[:len(line)], line)
             self.assertNotIn("\n", str(caught.exception))
+
+    def test_triangles_of_an_array(self):
+        random = np.random.default_rng(2)
+        corners = random.normal(size=(300, 3, 3)).astype(np.float32)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "same.obj"
+            file.write_text("".join(f"v {x!s} {y!s} {z!s}\n" for x, y, z in corners.reshape(-1, 3)) +
+                            "".join(f"f {i} {i + 1} {i + 2}\n" for i in range(1, 900, 3)))
+            same = raygate.Scene(file)
+        scene = raygate.Scene.of_triangles(corners)
+        self.assertEqual(scene.triangle_count, 300)
+        hits = [s.trace(self.origins, self.directions, hits="all") for s in (scene, same)]
+        self.assertGreater(len(hits[0]), 500)
+        self.assertEqual(hits[0].tobytes(), hits[1].tobytes())
+        self.assertEqual(scene.render(20, 20)["color"].shape, (20, 20, 4))
+        flat = corners.copy()
+        flat[7, 2] = flat[7, 1]
+        infinite = corners.copy()
+        infinite[9, 0, 0] = np.inf
+        for wrong, line in ((flat, "no area in triangle 7"), (infinite, "in triangle 9"),
+                            (corners[:0], r"shape \(0, 3, 3\)"), (corners[0], r"shape \(3, 3\)"),
+                            ("teapot", "array of <U6")):
+            with self.assertRaisesRegex(ValueError, line):
+                raygate.Scene.of_triangles(wrong)
 
     def test_no_rays(self):
         self.assertEqual(len(self.scene.trace(np.zeros((0, 3)), np.zeros((0, 3)))), 0)
