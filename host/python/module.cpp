@@ -201,10 +201,10 @@ class PythonScene {
                        const std::string& engine, std::optional<int> threads) {
     RenderOptions options{.width = width,
                           .height = height,
+                          .window = {0, 0, width, height},
                           .threads = threads_of(threads),
                           .samples = spp,
                           .seed = seed};
-    options.window = {0, 0, width, height};
     options.channels = {.position = true, .albedo = true, .object = true};
     options.integrator = choose<IntegratorKind>("integrator", integrator,
                                                 {{"primary", IntegratorKind::kPrimary},
