@@ -138,10 +138,11 @@ void DeparturePoint::find(std::span<const DepartureQuestion> questions,
                           std::span<DepartureOrigin> origins) {
   in_vectors([&](auto code) RAYGATE_BODY {
     constexpr int kWidth = code() == Vectors::kAvx512 ? kLanes : kQuad;
+    constexpr std::size_t kAhead = std::size_t{2} * kWidth;  // to fetch
     std::size_t first = 0;
     for (; first + kWidth <= questions.size(); first += kWidth) {
-      if (first + 3 * kWidth <= questions.size()) {
-        const DepartureQuestion* const soon = &questions[first + 2 * kWidth];
+      if (first + kAhead + kWidth <= questions.size()) {
+        const DepartureQuestion* const soon = &questions[first + kAhead];
         for (int i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].slot);
       }
       find_some<code(), kWidth>(&questions[first], &origins[first]);
