@@ -80,10 +80,11 @@ class Bvh {
   /// nothing but prefetch for one without effect, and leaves its calls out.)
   RAYGATE_INLINE void prefetch(const Child& child) const {
     // Without a branch, which would be a guess about what kind of child it is.
+    const auto* const corners = reinterpret_cast<const char*>(corners_of(child));
     const auto node = reinterpret_cast<std::uintptr_t>(nodes_.data() + child.first);
-    const auto corners = reinterpret_cast<std::uintptr_t>(corners_of(child));
-    const auto is_node = std::uintptr_t{0} - std::uintptr_t{child.count == 0};
-    const auto* const begin = reinterpret_cast<const char*>(corners ^ ((node ^ corners) & is_node));
+    const auto to_node =
+        static_cast<std::ptrdiff_t>(node - reinterpret_cast<std::uintptr_t>(corners));
+    const char* const begin = corners + (to_node & -std::ptrdiff_t{child.count == 0});
     for (std::ptrdiff_t line = 0; line < 4; ++line) __builtin_prefetch(begin + 64 * line);
   }
 
