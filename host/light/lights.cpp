@@ -131,6 +131,7 @@ class Studio {
   }
 
   [[nodiscard]] bool is_inside() const { return is_inside_; }
+  [[nodiscard]] double size() const { return size_; }
 
   /// From the upper left of the camera, or from the camera.
   [[nodiscard]] PointLight key() const {
@@ -167,6 +168,20 @@ bool has_no_lamp(const Scene& scene) {
          });
 }
 
+/// Radiance times area of all faces that emit.
+double emitted(const Scene& scene) {
+  double sum = 0.0;
+  for (const Triangle& face : scene.triangles) {
+    const Material& material = scene.materials[face.material];
+    if (!emits(material)) continue;
+    const auto& [a, b, c] = face.vertices;
+    sum +=
+        0.5 * mean(glm::dvec3(material.emission)) *
+        glm::length(triangle_normal({scene.positions[a], scene.positions[b], scene.positions[c]}));
+  }
+  return sum;
+}
+
 constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 
 }  // namespace
@@ -178,8 +193,11 @@ void light_if_dark(Scene& scene, const Camera& camera) {
 }
 
 void light_first_look(Scene& scene, const Camera& camera) {
-  if (scene.positions.empty() || !has_no_lamp(scene)) return;
+  if (scene.positions.empty() || !scene.lights.empty()) return;
   const Studio studio(scene, camera);
+  // Labels and the like that glow are no lamps: not a hundredth of what the key lamp does.
+  constexpr double kGlow = 0.01;
+  if (emitted(scene) > kGlow * studio.size() * studio.size()) return;
   scene.lights.push_back(studio.key());
   if (!studio.is_inside()) scene.lights.push_back(studio.fill());
   if (scene.background == glm::vec3(0.0f)) scene.background = kDimSky;

@@ -22,7 +22,7 @@ class Camera;
 void light_if_dark(Scene& scene, const Camera& camera);
 
 /// The same for a first look, whose camera nobody chose: with a second, weaker lamp from the right,
-/// and also where a background is all the light there is.
+/// and also where all the light there is is a background, or faces that glow but light nothing.
 void light_first_look(Scene& scene, const Camera& camera);
 
 /// The emitting faces of one object and material: one lamp, which shines to both sides of each

@@ -104,6 +104,16 @@ TEST_F(BadInput, SceneWithoutFaces) {
   expect_refused(render({"scene.obj"}), "scene\\.obj(:[0-9]+)?: [^\n]+");
 }
 
+TEST_F(BadInput, KindsOfFilesThatAreNotRead) {
+  folder_.write("scene.fbx", "Kaydara FBX Binary");
+  expect_refused(render({"scene.fbx"}),
+                 "scene\\.fbx: found a \\.fbx file, expected \\.obj, [^\n]+ Blender writes [^\n]+");
+  for (const char* name : {"scene.glb", "scene.gltf", "scene.ply", "scene.stl"}) {
+    folder_.write(name, kGoodScene);
+    expect_refused(render({name, "-o", "scene"}), std::string(name) + "(:1)?: [^\n]+");
+  }
+}
+
 TEST_F(BadInput, TextThatIsNoObj) {
   expect_refused_scene("Dear reader,\nthis is a letter.\n", 1);
   expect_refused_scene("{\"a\": 1}\n", 1);

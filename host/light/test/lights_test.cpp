@@ -57,6 +57,15 @@ TEST(LightFirstLook, AddsTwoLampsAndKeepsTheBackground) {
   EXPECT_GT(scene.lights[0].intensity.x, scene.lights[1].intensity.x);
 }
 
+TEST(LightFirstLook, TakesALabelThatGlowsForNoLamp) {
+  Scene scene = square(matte(glm::vec3(0.5f)));
+  add(scene, rectangle({0, 0, 0.1f}, {0.1f, 0, 0}, {0, 0.1f, 0}), lamp(glm::vec3(1.0f)));
+  light_if_dark(scene, camera_from({0, 0, 5}));
+  EXPECT_TRUE(scene.lights.empty()) << "who gives a camera gives the light";
+  light_first_look(scene, camera_from({0, 0, 5}));
+  EXPECT_EQ(scene.lights.size(), 2u);
+}
+
 TEST(LightFirstLook, StandsAtACameraWithinTheScene) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   add(scene, rectangle({-1, -1, 4}, {2, 0, 0}, {0, 2, 0}), matte(glm::vec3(0.5f)));

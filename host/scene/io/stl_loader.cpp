@@ -89,17 +89,16 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
   // A binary file may begin with "solid", too: its length says what it is.
   const std::size_t facets =
       bytes.size() < kStart ? 0 : number_at<std::uint32_t>(bytes.data() + kHeader);
-  if (bytes.size() >= kStart && bytes.size() == kStart + facets * kFacet) {
-    read_binary(name, bytes, facets, mesh);
-  } else if (std::string_view(bytes).starts_with("solid")) {
+  const std::size_t length = kStart + facets * kFacet;
+  const bool is_solid = std::string_view(bytes).starts_with("solid");
+  if (bytes.size() == length || (!is_solid && facets > 0 && bytes.size() > length)) {
+    read_binary(name, bytes, facets, mesh);  // perhaps with something after it
+  } else if (is_solid) {
     read_ascii(name, bytes, mesh);
-  } else if (bytes.size() >= kStart + facets * kFacet && facets > 0) {
-    read_binary(name, bytes, facets, mesh);  // with something after it
   } else {
     throw InputError(name + ": not an STL file: " + std::to_string(bytes.size()) +
-                     " bytes, expected \"solid\" at its start or " +
-                     std::to_string(kStart + facets * kFacet) + " bytes for its " +
-                     std::to_string(facets) + " facets");
+                     " bytes, expected \"solid\" at its start or " + std::to_string(length) +
+                     " bytes for its " + std::to_string(facets) + " facets");
   }
   Scene scene;
   mesh.build(options, scene);
