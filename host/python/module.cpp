@@ -114,8 +114,7 @@ class PythonScene {
     const nb::gil_scoped_release release;
     scene_ = load_scene(file_ ? file_->obj : path, {.strict = strict});
     if (file_) add_lights(*file_, scene_);
-    bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
-    clearances_ = std::make_unique<Clearances>(*bvh_);
+    build(threads);
   }
 
   /// Triangles alone: their corners, one after the other. Refuses those without area, so that
@@ -142,7 +141,7 @@ class PythonScene {
     }
     scene_.materials.emplace_back().name = "default";
     scene_.objects = {"default"};
-    bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
+    build(threads);
   }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -247,6 +246,12 @@ class PythonScene {
   }
 
  private:
+  /// The tree, when the scene is there.
+  void build(std::optional<int> threads) {
+    bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
+    clearances_ = std::make_unique<Clearances>(*bvh_);
+  }
+
   [[nodiscard]] FinderFactory finders(const std::string& engine) const {
     if (choose<bool>("engine", engine, {{"cpu", false}, {"model", true}})) {
       return [this, caches = std::make_shared<RecordCaches>(*bvh_)] {
