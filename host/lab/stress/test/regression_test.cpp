@@ -29,7 +29,7 @@ TEST(Regressions, VerdictsOfExactSubjectsAreTheTruth) {
       for (const Verdict& verdict : truth.verdicts) {
         EXPECT_EQ((answer++)->hit, verdict.hit) << kind.name << ", case " << i;
       }
-      EXPECT_EQ(answers.nearest[i], truth.nearest[0]) << kind.name << ", case " << i;
+      EXPECT_EQ(answers.nearest[i], truth.nearest(0)) << kind.name << ", case " << i;
     }
   }
 }
