@@ -22,8 +22,8 @@
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/camera_path.h"
-#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
 #include "host/tree/bvh.h"
 
@@ -353,8 +353,8 @@ void run(const Options& options) {
   Report report;
   report.options = options;
 
-  Scene scene = load_scene(options.obj(),
-                         {.strict = options.strict, .threads = static_cast<int>(options.threads)});
+  Scene scene = load_scene(
+      options.obj(), {.strict = options.strict, .threads = static_cast<int>(options.threads)});
   if (options.scene_file) add_lights(*options.scene_file, scene);
   report.load_seconds = seconds_since(start);
   report.triangles = scene.triangles.size();

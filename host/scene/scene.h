@@ -70,8 +70,8 @@ struct Scene {
   std::vector<Texture> textures;     ///< that materials of triangles name
   std::vector<std::string> objects;  ///< never empty; "o" and "g" names of the file
   std::vector<PointLight> lights;
-  glm::vec3 background{0.0f};  ///< radiance from where no geometry is, scene-linear RGB
-  glm::dvec3 origin{0.0};      ///< world = origin + position
+  glm::vec3 background{0.0f};           ///< radiance from where no geometry is, scene-linear RGB
+  glm::dvec3 origin{0.0};               ///< world = origin + position
   std::optional<CameraSetting> camera;  ///< the file's first one, in world coordinates
   std::optional<glm::dvec3> up;         ///< upwards, where the file's format says so
   std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures

@@ -59,8 +59,9 @@ module srt_row #(
   // Of their four bits at most one is 1
   assign positive_o = {from[3], from[2] & ~from[3]};
   assign negative_o = {~from[0], from[0] & ~from[1]};
-  assign multiple = {Width{from[2]}} ^ (({Width{positive_o[0] | negative_o[0]}} & divisor_i)
-                                      | ({Width{positive_o[1] | negative_o[1]}} & (divisor_i << 1)));
+  assign multiple = {Width{from[2]}}
+                  ^ (({Width{positive_o[0] | negative_o[0]}} & divisor_i)
+                   | ({Width{positive_o[1] | negative_o[1]}} & (divisor_i << 1)));
 
   // ---- Subtract: the one that completes a complement goes to the free last place of the carries
 

@@ -118,7 +118,7 @@ RAYGATE_INLINE void RaySearch::arrive(const RayWalk& walk) {
   counters.edge_doubts += walk.work.doubts;
   if (!search_.work.empty()) search_.work[walk.number] = walk.work;
   hits_[walk.number].slot = walk.slot;
-  hits_[walk.number].t = walk.t();
+  hits_[walk.number].t = walk.slot != NearestHit::kNone ? walk.t() : Interval{};
   pointless_[pointless_count_] = walk.number;
   pointless_count_ += walk.slot != NearestHit::kNone ? 1 : 0;
 }
