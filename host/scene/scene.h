@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/scene/camera_setting.h"
+#include "host/scene/environment_map.h"
 #include "host/scene/texture.h"
 
 namespace raygate {
@@ -25,7 +26,25 @@ struct TextureMapping {
   bool clamp = false;      ///< -clamp on: its border goes on for ever, instead of repeating it
 };
 
-/// One MTL material. Colours are scene-linear RGB, usually in [0, 1].
+/// A texture that a material names, and where it lies.
+struct MaterialMap {
+  std::string file;  ///< joined to the naming file's folder; empty: none, or embedded
+  TextureMapping mapping;
+  std::uint32_t texture = kNoIndex;  ///< index into Scene::textures
+};
+
+/// The metallic-roughness model of glTF 2.0 (its appendix B), in place of the lobes of `illum`. The
+/// base colour is Material::diffuse and its texture; what is not metallic reflects by
+/// Material::refraction_index, which counts as 1.5 where it is 1.
+struct MetallicRoughness {
+  float metallic = 1.0f;      ///< in [0, 1]
+  float roughness = 1.0f;     ///< in [0, 1]; GGX's alpha is its square
+  float transmission = 0.0f;  ///< in [0, 1]: so much of what is not metallic is (rough) glass
+  MaterialMap map;            ///< times roughness (green code) and metallic (blue code)
+};
+
+/// One material: of an MTL file, or what other files have in its terms. Colours are scene-linear
+/// RGB, usually in [0, 1].
 struct Material {
   std::string name;
   glm::vec3 diffuse{0.8f};        ///< Kd
@@ -39,6 +58,11 @@ struct Material {
   std::string diffuse_map;        ///< map_Kd, joined to the MTL file's folder; empty: none
   TextureMapping diffuse_mapping;
   std::uint32_t diffuse_texture = kNoIndex;  ///< index into Scene::textures
+  std::optional<MetallicRoughness> metallic_roughness;
+  MaterialMap normal_map;       ///< codes 0 .. 1 are -1 .. 1 along tangent, bitangent, normal
+  float normal_scale = 1.0f;    ///< of the first two
+  MaterialMap opacity_map;      ///< what is below opacity_cutoff there is not there
+  float opacity_cutoff = 0.5f;  ///< in [0, 1]
 };
 
 /// One triangle: indices into the scene's arrays. Vertices run counter-clockwise seen from the
@@ -51,11 +75,27 @@ struct Triangle {
   std::uint32_t object = 0;    ///< always valid: index into Scene::objects
 };
 
+/// Where a spot light shines: within `inner` of its axis fully, beyond `outer` not at all, and
+/// between them as KHR_lights_punctual of glTF says. Angles from the axis, in degrees, 0 <= inner <
+/// outer <= 90.
+struct SpotCone {
+  glm::dvec3 axis{0.0, 0.0, -1.0};  ///< unit length, away from the light
+  double inner = 0.0, outer = 45.0;
+};
+
 /// A light without size, whose irradiance at distance r is intensity / r^2.
 struct PointLight {
   glm::vec3 position{0.0f};  ///< relative to the scene's origin
-  /// Radiant intensity, scene-linear RGB; double, for it goes with the square of lengths.
+  /// Radiant intensity, scene-linear RGB; double, for it goes with the square of lengths. Of a spot
+  /// light along its axis.
   glm::dvec3 intensity{0.0};
+  std::optional<SpotCone> spot = {};  ///< none: it shines to all sides
+};
+
+/// A light from one direction, infinitely far away.
+struct DirectionalLight {
+  glm::dvec3 direction{0.0, -1.0, 0.0};  ///< in which the light goes; unit length
+  glm::vec3 irradiance{0.0f};            ///< of a surface across it, scene-linear RGB
 };
 
 /// All geometry, materials and lights besides the faces that emit. Positions are relative to
@@ -70,12 +110,14 @@ struct Scene {
   std::vector<Texture> textures;     ///< that materials of triangles name
   std::vector<std::string> objects;  ///< never empty; "o" and "g" names of the file
   std::vector<PointLight> lights;
-  glm::vec3 background{0.0f};           ///< radiance from where no geometry is, scene-linear RGB
-  glm::dvec3 origin{0.0};               ///< world = origin + position
-  std::optional<CameraSetting> camera;  ///< the file's first one, in world coordinates
-  std::optional<glm::dvec3> up;         ///< upwards, where the file's format says so
-  std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures
-  std::vector<std::string> warnings;         ///< "file:line: ...": of statements, then of faces
+  std::vector<DirectionalLight> directional_lights;
+  glm::vec3 background{0.0f};  ///< radiance from where no geometry is, scene-linear RGB
+  std::optional<EnvironmentMap> environment;  ///< takes the background's place
+  glm::dvec3 origin{0.0};                     ///< world = origin + position
+  std::optional<CameraSetting> camera;        ///< the file's first one, in world coordinates
+  std::optional<glm::dvec3> up;               ///< upwards, where the file's format says so
+  std::vector<std::filesystem::path> files;   ///< that were read for it: OBJ, MTL and textures
+  std::vector<std::string> warnings;          ///< "file:line: ...": of statements, then of faces
 };
 
 }  // namespace raygate
