@@ -15,6 +15,9 @@ class App;
 
 namespace raygate {
 
+/// Samples per pixel where nobody says how many: of an engine that simulates nothing.
+inline constexpr int kCpuSamples = 4;
+
 /// How light is followed; all values are possible.
 struct LightOptions {
   IntegratorKind integrator = IntegratorKind::kWhitted;

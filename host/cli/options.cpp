@@ -57,7 +57,7 @@ Light
   --integrator NAME          primary: camera rays alone, lit from the camera;
                              whitted: shadows, reflection, refraction (default);
                              path: full global illumination
-  --spp, --samples N         samples per pixel (1)
+  --spp, --samples N         samples per pixel (1; 4 with --engine cpu)
   --filter NAME              reconstruction filter: box, tent, gauss or
                              blackman-harris (default)
   --depth, --max-depth N     reflections and refractions in a row (4; path: 64)
@@ -141,6 +141,9 @@ void check_values(const RawValues& raw, Options& options) {
   if (!raw.up.empty()) options.view.up = parse_axis(raw.up);
   if (!raw.fov.empty()) options.view.fov = parse_fov(raw.fov);
   static_cast<EngineOptions&>(options) = parse_engine_options(raw.engine);
+  if (raw.light.samples.empty() && options.engine == Engine::kCpu) {
+    options.light.samples = kCpuSamples;
+  }
   if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);
 }
 

@@ -22,6 +22,7 @@
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/camera_path.h"
+#include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
@@ -41,6 +42,21 @@ void print_warnings(const Scene& scene) {
   for (const std::string& warning : scene.warnings) {
     if (printed.insert(warning).second) print_warning(warning);
   }
+}
+
+/// The scene that a scene file is about may be one that a script makes.
+void require_scene(const Options& options) {
+  std::error_code ignored;
+  if (!options.scene_file || std::filesystem::exists(options.obj(), ignored)) return;
+  const std::filesystem::path& file = options.scene_file->file;
+  const std::string scene = options.obj().lexically_normal().string();
+  const std::filesystem::path script =
+      file.parent_path() / ("make_" + file.stem().string() + ".py");
+  throw InputError(file.string() + ": found no " + scene + ", expected the scene that it is about" +
+                   (std::filesystem::exists(script, ignored)
+                        ? "; `make verilate` makes it, and so does `python3 " + script.string() +
+                              " " + scene + "`"
+                        : ""));
 }
 
 /// No output may take the place of a file that the scene was read from.
@@ -353,6 +369,7 @@ void run(const Options& options) {
   Report report;
   report.options = options;
 
+  require_scene(options);
   Scene scene = load_scene(
       options.obj(), {.strict = options.strict, .threads = static_cast<int>(options.threads)});
   if (options.scene_file) add_lights(*options.scene_file, scene);

@@ -229,7 +229,10 @@ TEST_F(BadInput, SceneFiles) {
   refused("{\"camera\": {\n\"eye\": [0, 0, 1],\n\"target\": [0, 0, 1]}}", 3);
   refused("{\"render\":\n{\"size\": \"0x0\"}}", 2);
   folder_.write("scene.json", "{\"obj\": \"none.obj\"}");
-  expect_refused(render({"scene.json"}), "none\\.obj: [^\n]+");
+  expect_refused(render({"scene.json"}), "scene\\.json: found no none\\.obj, expected [^\n]+");
+  folder_.write("make_scene.py", "");
+  expect_refused(render({"scene.json"}),
+                 "scene\\.json: found no none\\.obj, [^\n]+ `python3 make_scene\\.py none\\.obj`");
 }
 
 /// Numbers so large that differences, products or the camera's distance leave float's range.

@@ -76,6 +76,9 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(plain.integrator, IntegratorKind::kWhitted);
   EXPECT_EQ(plain.max_depth(), 4);
   EXPECT_EQ(plain.samples, 1);
+  EXPECT_EQ(parse({"a.obj", "--engine", "cpu"}).light.samples, 4);
+  EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).light.samples, 1);
+  EXPECT_EQ(parse({"a.obj", "--engine", "model"}).light.samples, 1);
   const LightOptions path =
       parse({"a.obj", "--integrator", "path", "--spp", "16", "--filter", "tent", "--threshold",
              "0.5", "--ambient", "0", "--no-skip", "culling,records"})

@@ -34,7 +34,7 @@ class EveryScene : public Render, public testing::WithParamInterface<std::string
 
 TEST_P(EveryScene, EnginesGiveTheSameBytes) {
   const std::string& scene = GetParam();
-  render({scene, "--size", "64x48", "--engine", "cpu", "-o", "cpu"});
+  render({scene, "--size", "64x48", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
   const json cpu = stats_;
   EXPECT_GT(cpu.at("hits"), 0) << "an empty picture shows nothing";
   EXPECT_EQ(cpu.at("clocks"), 0);
@@ -53,7 +53,7 @@ TEST_P(EveryScene, VectorsGiveTheSameBytes) {
   for (const Vectors vectors : machine_vectors()) {
     const std::string name(name_of(vectors));
     setenv("RAYGATE_VECTORS", name.c_str(), 1);
-    render({scene, "--size", "64x48", "--engine", "cpu", "-o", name});
+    render({scene, "--size", "64x48", "--engine", "cpu", "--spp", "1", "-o", name});
     unsetenv("RAYGATE_VECTORS");
     expect_same_pictures("baseline", name);
   }
@@ -151,8 +151,16 @@ TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
 }
 
 TEST_F(Render, SkipsChangeNoByte) {
-  const std::vector<std::string> arguments{
-      RAYGATE_SCENES "/paper.obj", "--size", "40x30", "--engine", "cpu", "--depth", "2", "-o"};
+  const std::vector<std::string> arguments{RAYGATE_SCENES "/paper.obj",
+                                           "--size",
+                                           "40x30",
+                                           "--engine",
+                                           "cpu",
+                                           "--spp",
+                                           "1",
+                                           "--depth",
+                                           "2",
+                                           "-o"};
   const auto with = [&](std::vector<std::string> rest) {
     rest.insert(rest.begin(), arguments.begin(), arguments.end());
     return rest;
@@ -189,9 +197,9 @@ TEST_F(Render, SavingInBetweenChangesNothingInTheEnd) {
 }
 
 TEST_F(Render, CropIsThatPartOfTheWhole) {
-  render({kCornell, "--size", "90x60", "--engine", "cpu", "-o", "whole.exr"});
-  render(
-      {kCornell, "--size", "90x60", "--engine", "cpu", "--crop", "31,7,58,44", "-o", "part.exr"});
+  render({kCornell, "--size", "90x60", "--engine", "cpu", "--spp", "1", "-o", "whole.exr"});
+  render({kCornell, "--size", "90x60", "--engine", "cpu", "--spp", "1", "--crop", "31,7,58,44",
+          "-o", "part.exr"});
   EXPECT_EQ(stats_.at("window"), (json{31, 7, 58, 44}));
   EXPECT_EQ(stats_.at("camera_rays"), 27 * 37);
   ExrReader whole(folder_.read("whole.exr"));

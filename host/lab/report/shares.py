@@ -44,7 +44,7 @@ def row(program: pathlib.Path, scene: str, arguments: list[str]) -> dict:
     with tempfile.TemporaryDirectory() as name:
         profile, stats = pathlib.Path(name) / "profile", pathlib.Path(name) / "stats.json"
         subprocess.run(["valgrind", "--quiet", "--tool=callgrind", f"--callgrind-out-file={profile}", program, scene,
-                        "--engine", "cpu", "--quiet", "--threads", "1", "--output", pathlib.Path(name) / "picture.exr",
+                        "--engine", "cpu", "--spp", "1", "--quiet", "--threads", "1", "--output", pathlib.Path(name) / "picture.exr",
                         "--stats", stats, *arguments], cwd=ROOT, check=True)
         found, counts = calls(profile.read_text()), json.loads(stats.read_text())
     whole = inside(found, WHOLE)

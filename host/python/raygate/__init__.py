@@ -96,13 +96,14 @@ class Scene:
                                          str(engine), _whole("threads", threads, 1))
         return rows.view(np.dtype([tuple(field) for field in fields]))
 
-    def render(self, width=640, height=480, *, spp=1, integrator="whitted", eye=None, target=None,
+    def render(self, width=640, height=480, *, spp=None, integrator="whitted", eye=None, target=None,
                up=None, fov=None, depth=None, seed=0, filter="blackman-harris", engine="cpu",
                threads=None):
         """A picture: a dictionary of arrays of `height` rows, the top one first.
 
         "color" (scene-linear R, G, B, A, premultiplied), "depth", "normal", "point", "albedo",
-        "triangle" and "object" (4294967295 where nothing is hit). Options are those of ./render;
+        "triangle" and "object" (4294967295 where nothing is hit). Options are those of ./render (spp: 4, or
+        1 with engine "model");
         the camera is the scene file's, or sees the whole scene."""
         width, height = _whole("width", width, 1), _whole("height", height, 1)
         if width * height > 2 ** 26:
@@ -114,6 +115,8 @@ class Scene:
             if fov.shape != () or not 0 < fov < 180:
                 raise InputError(f"fov: found {fov}, expected degrees above 0 and below 180")
             fov = fov.item()
+        if spp is None:
+            spp = 4 if engine == "cpu" else 1
         return self._scene.render(
             width, height, _whole("spp", spp, 1), str(integrator), eye, target, up, fov, _whole("depth", depth, 0),
             _whole("seed", seed, 0, 2 ** 64 - 1), str(filter), str(engine),

@@ -112,7 +112,7 @@ class Trace(unittest.TestCase):
 class Render(unittest.TestCase):
     def test_a_picture(self):
         scene = raygate.Scene(SCENES / "cornell.obj")
-        picture = scene.render(40, 30, threads=2)
+        picture = scene.render(40, 30, spp=1, threads=2)
         self.assertEqual(picture["color"].shape, (30, 40, 4))
         self.assertEqual(picture["color"].dtype, np.float32)
         self.assertGreater(picture["color"][..., :3].max(), 0.1)
