@@ -1,0 +1,58 @@
+// What the parts of the ray core share: the lines of its memory, rays, results.
+//
+// Memory is read in lines of 64 bytes, by number: line n is at byte 64 n. Bit fields are given from bit 0,
+// the lowest bit of a line's first byte.
+package ray_core_pkg;
+
+  // verilator lint_off UNUSEDPARAM
+  // No top uses everything.
+
+  localparam int unsigned LineWidth = 512;
+  localparam int unsigned AddressWidth = 28;  // of a line: 16 GiB
+
+  // ---- Node line: up to seven children and their boxes
+  //
+  // A box is given on a grid of the node's own: along axis k, q stands for origin_k + q 2**(e_k - 127),
+  // exactly, with q from 0 to 255. A box holds all of its child's triangles (closed: they may touch it).
+  // The children's lines follow each other from line `base` on, child 0's first: one line of an inner node,
+  // or as many triangle lines as the leaf has.
+
+  localparam int unsigned Children = 7;
+  localparam int unsigned NodeOrigin = 0;       // three binary32, finite
+  localparam int unsigned NodeExponents = 96;   // three e_k of eight bits, 1 to 254
+  localparam int unsigned NodeBase = 120;       // AddressWidth bits
+  localparam int unsigned NodeKinds = 148;      // four bits a child, see below
+  localparam int unsigned NodeBoxes = 176;      // 48 bits a child: low x, y, z, high x, y, z
+  localparam int unsigned KindWidth = 4;
+  localparam int unsigned BoxWidth = 48;
+  localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of so many triangles
+  localparam logic [KindWidth-1:0] KindInner = 4'd8;
+
+  // ---- Triangle line
+
+  localparam int unsigned TriangleCorners = 0;   // nine binary32: A.x, A.y, A.z, B.x, ... C.z
+  localparam int unsigned TriangleIndex = 288;   // 32 bits, the host's name of the triangle
+
+  // ---- What box_unit says of a node: a group of children
+  //
+  // Children that the ray enters, near first: entry 0 is the nearest. An entry's `enter` is in units of
+  // 2**(exponent - 127 - EnterWidth) a t that is not above the one where the ray enters the box.
+
+  localparam int unsigned EnterWidth = 12;
+  localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
+  localparam int unsigned CountWidth = 3;   // of a leaf's triangles; 0: an inner node
+  localparam int unsigned EntryWidth = EnterWidth + OffsetWidth + CountWidth;  // {enter, offset, count}
+  localparam int unsigned ExponentWidth = 9;
+  localparam int unsigned GroupWidth = AddressWidth + ExponentWidth + Children * EntryWidth;  // {base, exponent, entries}
+
+  // ---- Results: what the core says of a ray
+
+  typedef enum logic [1:0] {
+    ResultEnd   = 2'd0,  // the ray's last word: the nearest sure hit, if there is one
+    ResultDoubt = 2'd1,  // a triangle that the host must look at: hit or not, or how far
+    ResultRest  = 2'd2   // subtrees for which the stack had no room: the host sends the ray there
+  } result_e;
+
+  // verilator lint_on UNUSEDPARAM
+
+endpackage
