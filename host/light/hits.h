@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "host/find/nearest_hit.h"
 #include "host/lane_math.h"
 #include "host/light/bsdf.h"
 #include "host/light/departure.h"
@@ -223,6 +224,23 @@ RAYGATE_INLINE Triple<T> light_from_point(const Hits<T>& hits, const Lights& lig
   const Triple<T> light = hits.weight * hits.bsdf.scattered_from_point(way.direction) * intensity *
                           (cosine / (way.squared * chance));
   return choose(way.is_before, bounded(light), zero<T>());
+}
+
+/// The cosine between a spot light's axis and the way from it to the surface.
+template <class T>
+RAYGATE_INLINE T spot_cosine(const Hits<T>& hits, const Lights& lights, const Triple<T>& position,
+                             const Triple<T>& axis) {
+  return -dot(WayToLight<T>(lights, hits.surface, position).direction, axis);
+}
+
+/// The light of one direction that surfaces scatter, per chance; `towards` is a unit vector.
+template <class T>
+RAYGATE_INLINE Triple<T> light_from_direction(const Hits<T>& hits, const Triple<T>& towards,
+                                              const Triple<T>& irradiance, const T& chance) {
+  const T cosine = at_least(dot(hits.surface.normal, towards), 0.0f);
+  const Triple<T> light =
+      hits.weight * hits.bsdf.scattered_from_point(towards) * irradiance * (cosine / chance);
+  return choose(dot(hits.surface.flat_normal, towards) > 0.0f, bounded(light), zero<T>());
 }
 
 /// The light of points of lamps; `weighted` is radiance over the density of the point, per area,

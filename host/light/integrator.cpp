@@ -167,7 +167,7 @@ void Integrator::hand_on(std::size_t i, const DepartureOrigin*& origins, WaveOut
     shadow.light = question.light;
     shadow.surface = *origin;
     shadow.surface_slot = place.slot;
-    if (question.lamp < shading_.lights.points().size()) {
+    if (shading_.lights.lamp(question.lamp).kind == Lights::Kind::kPoint) {
       shadow.point_light = question.lamp;
     } else {
       shadow.lamp = question.place;

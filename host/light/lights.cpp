@@ -92,6 +92,26 @@ double unit_of(const Scene& scene) {
                      : 1.0;
 }
 
+/// Of the ball around the scene's box: what falls on it comes into the scene.
+double cross_section_of(const Scene& scene) {
+  if (scene.positions.empty()) return 0.0;
+  glm::dvec3 low(scene.positions[0]), high = low;
+  for (const glm::vec3& position : scene.positions) {
+    low = glm::min(low, glm::dvec3(position));
+    high = glm::max(high, glm::dvec3(position));
+  }
+  const double radius = 0.5 * glm::length(high - low);
+  return std::numbers::pi * radius * radius;
+}
+
+/// In which a point light shines: all steradians, or those within the middle of a cone's border.
+double solid_angle(const PointLight& light) {
+  if (!light.spot) return 4.0 * std::numbers::pi;
+  const double inner = sine_cosine(light.spot->inner / 360.0).cosine;
+  const double outer = sine_cosine(light.spot->outer / 360.0).cosine;
+  return 2.0 * std::numbers::pi * (1.0 - 0.5 * (inner + outer));
+}
+
 /// The corner of a parallelogram and its two sides. Its diagonal from that corner parts the
 /// triangles: the first one has more of u than of v.
 struct Parallelogram {
@@ -163,7 +183,8 @@ class Studio {
 
 /// Neither lights nor faces that emit.
 bool has_no_lamp(const Scene& scene) {
-  return scene.lights.empty() && std::ranges::none_of(scene.triangles, [&](const Triangle& face) {
+  return scene.lights.empty() && scene.directional_lights.empty() &&
+         std::ranges::none_of(scene.triangles, [&](const Triangle& face) {
            return emits(scene.materials[face.material]);
          });
 }
@@ -193,7 +214,7 @@ void light_if_dark(Scene& scene, const Camera& camera) {
 }
 
 void light_first_look(Scene& scene, const Camera& camera) {
-  if (scene.positions.empty() || !scene.lights.empty()) return;
+  if (scene.positions.empty() || !scene.lights.empty() || !scene.directional_lights.empty()) return;
   const Studio studio(scene, camera);
   // Labels and the like that glow are no lamps: not a hundredth of what the key lamp does.
   constexpr double kGlow = 0.01;
@@ -228,16 +249,28 @@ Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
     Lamp& lamp = lamps_.emplace_back();
     lamp.light = bounded(light.intensity / unit / unit);
     lamp.position = light.position;
-    power += 4.0 * std::numbers::pi * mean(light.intensity);
+    lamp.is_spot = light.spot.has_value();
+    if (lamp.is_spot) lamp.spot = SpotRamp(*light.spot);
+    power += solid_angle(light) * mean(light.intensity);
     power_up_to.push_back(power);
   }
   for (AreaLight& light : areas_) {
     find_middle(bvh, light);
     Lamp& lamp = lamps_.emplace_back();
+    lamp.kind = Kind::kArea;
     lamp.light = bounded(light.radiance);
     lamp.area = bounded(light.area() / unit / unit);
     add_patches(light, lamp);
     power += 2.0 * std::numbers::pi * light.area() * mean(light.radiance);
+    power_up_to.push_back(power);
+  }
+  const double cross_section = cross_section_of(scene);
+  for (const DirectionalLight& light : scene.directional_lights) {
+    Lamp& lamp = lamps_.emplace_back();
+    lamp.kind = Kind::kDirection;
+    lamp.light = light.irradiance;
+    lamp.position = glm::vec3(-light.direction);
+    power += cross_section * mean(glm::dvec3(light.irradiance));
     power_up_to.push_back(power);
   }
   any_power_ = power > 0.0;

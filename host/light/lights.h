@@ -9,6 +9,7 @@
 
 #include "host/lane_math.h"
 #include "host/light/sampler.h"
+#include "host/light/spot.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -40,8 +41,9 @@ struct AreaLight {
 /// Points of lamps, one a lane.
 template <class T>
 struct LightPoint {
+  /// Of a light that is infinitely far away a unit vector towards it, and no normal.
   Triple<T> position, normal;  ///< the normal to one of both sides
-  WordOf<T> slot;
+  WordOf<T> slot;              ///< NearestHit::kNone: infinitely far away
 };
 
 /// All lights of a scene, ready for use. Lengths in what is asked of a surface (areas, distances)
@@ -53,23 +55,32 @@ class Lights {
 
   [[nodiscard]] std::span<const PointLight> points() const { return scene_.lights; }
   [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
+  [[nodiscard]] std::span<const DirectionalLight> directions() const {
+    return scene_.directional_lights;
+  }
   [[nodiscard]] glm::vec3 background() const { return scene_.background; }
   /// Radiance from all sides that may stand for light that goes from surface to surface: the
   /// background's or, where that is black, what the lamps' flux would come to after many
   /// reflections if it were spread evenly over all surfaces ("A progressive refinement approach to
   /// fast radiosity image generation", Cohen, Chen, Wallace and Greenberg 1988, has such a term).
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
-  /// Points first, then areas.
+  /// Points first, then areas, then directions.
   [[nodiscard]] std::size_t count() const { return lamps_.size(); }
 
   /// The inverse of a power of two about as long as the scene.
   [[nodiscard]] float per_unit() const { return per_unit_; }
 
+  enum class Kind : std::uint8_t { kPoint, kArea, kDirection };
+
   /// What shading reads of a light, by its index as in count().
   struct Lamp {
-    /// Of a point light its intensity, in square units; of an area light radiance.
+    Kind kind = Kind::kPoint;
+    bool is_spot = false;
+    /// Of a point light its intensity, in square units; of an area light radiance; of light from
+    /// one direction irradiance.
     glm::vec3 light{0.0f};
-    glm::vec3 position{0.0f};      ///< of a point light
+    glm::vec3 position{0.0f};  ///< of a point light; or the direction towards the light
+    SpotRamp spot;
     float area = 0.0f;             ///< in square units
     float chance = 0.0f;           ///< how likely choose() is to give it
     float chance_of_place = 0.0f;  ///< chance over area: of a point, per square unit

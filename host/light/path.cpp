@@ -59,43 +59,72 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
   const Lights& lights = shading.lights;
   float chosen[kCount];
   lanes_to(chosen, hits.random(kChooseLight).x);
-  enum : std::uint8_t { kLight, kPosition = 3, kIsPoint = 6, kChance, kPlace, kFields };
+  enum : std::uint8_t {
+    kLight,
+    kPosition = 3,
+    kAxis = 6,
+    kRamp = 9,
+    kIsPoint = 11,
+    kIsArea,
+    kChance,
+    kPlace,
+    kFields
+  };
   Gathered<T, kFields> in;
   std::uint32_t lamps[kCount];
-  bool any_point = false, any_area = false;
+  bool any_point = false, any_area = false, any_direction = false, any_spot = false;
   for (int k = 0; k < kCount; ++k) {
     lamps[k] = lights.choose(chosen[k]);
     const Lights::Lamp& lamp = lights.lamp(lamps[k]);
-    const bool is_point = lamp.patches == 0;
+    const bool is_point = lamp.kind == Lights::Kind::kPoint;
+    const bool is_area = lamp.kind == Lights::Kind::kArea;
     in.put(kLight, k, lamp.light);
     in.put(kPosition, k, lamp.position);
     in.values[kIsPoint][k] = is_point ? 1.0f : 0.0f;
+    in.values[kIsArea][k] = is_area ? 1.0f : 0.0f;
     in.values[kChance][k] = lamp.chance;
     in.values[kPlace][k] = lamp.chance_of_place;
     any_point = any_point || is_point;
-    any_area = any_area || !is_point;
+    any_area = any_area || is_area;
+    any_direction = any_direction || lamp.kind == Lights::Kind::kDirection;
+    any_spot = any_spot || lamp.is_spot;
   }
-  const auto is_point = in.one(kIsPoint) > 0.0f;
+  const auto is_point = in.one(kIsPoint) > 0.0f, is_area = in.one(kIsArea) > 0.0f;
+  const LightPoint<T> place = {in.triple(kPosition), zero<T>(), WordOf<T>{} + NearestHit::kNone};
   if (any_point) {
-    const LightPoint<T> point = {in.triple(kPosition), zero<T>(), WordOf<T>{}};
+    Triple<T> light = in.triple(kLight);
+    if (any_spot) {
+      for (int k = 0; k < kCount; ++k) {
+        const SpotRamp& spot = lights.lamp(lamps[k]).spot;
+        in.put(kAxis, k, spot.axis);
+        in.values[kRamp][k] = spot.scale;
+        in.values[kRamp + 1][k] = spot.offset;
+      }
+      light = light * spot_share(spot_cosine(hits, lights, place.position, in.triple(kAxis)),
+                                 in.one(kRamp), in.one(kRamp + 1));
+    }
+    light = light_from_point(hits, lights, place.position, light, in.one(kChance));
+    ask<T>(hits, 0, is_point, light, lamps, place);
+  }
+  if (any_direction) {
     const Triple<T> light =
-        light_from_point(hits, lights, point.position, in.triple(kLight), in.one(kChance));
-    ask<T>(hits, 0, is_point, light, lamps, point);
+        light_from_direction(hits, place.position, in.triple(kLight), in.one(kChance));
+    ask<T>(hits, 0, (!is_point) & (!is_area), light, lamps, place);
   }
   if (!any_area) return;
   for (int k = 0; k < kCount; ++k) {
     // A lane without an area light samples one nevertheless, and nothing comes of it.
-    if (lights.lamp(lamps[k]).patches == 0)
+    if (lights.lamp(lamps[k]).kind != Lights::Kind::kArea)
       lamps[k] = static_cast<std::uint32_t>(lights.points().size());
   }
   const LightPoint<T> point = lights.sample<T>(lamps, hits.random(kLightPoint));
   const WayToLight<T> way(lights, hits.surface, point.position);
-  const T place = in.one(kPlace), cosine = absolute(dot(point.normal, way.direction));
-  const T asked = place * way.squared / cosine;
+  const T per_area = in.one(kPlace), cosine = absolute(dot(point.normal, way.direction));
+  const T asked = per_area * way.squared / cosine;
   const T scattered =
       hits.bsdf.density(way.direction) * LobeChances<T>(hits.bsdf).share_of_scatter();
-  const Triple<T> weighted = in.triple(kLight) * (share_of(asked, scattered) / place);
-  ask<T>(hits, 0, (!is_point) & hits.bsdf.scatters() & (cosine > 0.0f),
+  const Triple<T> weighted = in.triple(kLight) * (share_of(asked, scattered) / per_area);
+  ask<T>(hits, 0, is_area & hits.bsdf.scatters() & (cosine > 0.0f),
          light_from_area(hits, way, point, weighted), lamps, point);
 }
 

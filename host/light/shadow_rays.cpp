@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 #include "host/light/bsdf.h"
 #include "host/light/surface.h"
@@ -13,6 +14,7 @@ namespace {
 constexpr float kWholeWay = 1.0f;
 constexpr float kSureOfLight = 1.0f - 0x1p-10f;  // hits of a ray from a light that surely count
 constexpr float kBeforeAreaLight = 1.0f - 0x1p-16f;
+constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 
 /// The share of light that goes through a hit surface straight on, as far as shadows are concerned:
 /// refracting surfaces let none through, or, where `bent` says so, as much as if they did not bend
@@ -80,7 +82,8 @@ void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced
 ShadowRays::Segment ShadowRays::from_surface(const Lights& lights, const ShadowRay& ray,
                                              std::uint32_t index) {
   if (ray.point_light == ShadowRay::kNoPoint) {
-    return {index, ray.surface, ray.lamp, ray.lamp_slot, kBeforeAreaLight};
+    return {index, ray.surface, ray.lamp, ray.lamp_slot,
+            ray.lamp_slot == NearestHit::kNone ? kNoEnd : kBeforeAreaLight};
   }
   return {index, ray.surface, lights.points()[ray.point_light].position, NearestHit::kNone,
           kWholeWay};
@@ -143,6 +146,13 @@ void ShadowRays::trace(bool from_light, float enough) {
   enough_.clear();
   ignored_.clear();
   for (const Segment& segment : segments_) {
+    if (segment.share == kNoEnd) {
+      wave_.push_back({segment.from, scaled_direction(glm::dvec3(segment.to))});
+      limits_.push_back(kNoEnd);
+      enough_.push_back(kNoEnd);
+      ignored_.push_back(NearestHit::kNone);
+      continue;
+    }
     const Aim aim(segment.from, segment.to);
     wave_.push_back({segment.from, aim.direction});
     limits_.push_back(aim.whole_way * segment.share);

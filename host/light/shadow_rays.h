@@ -23,9 +23,9 @@ struct ShadowRay {
   glm::vec3 light{0.0f};     ///< what arrives if nothing is between; what does arrive
   glm::vec3 surface{0.0f};   ///< a DeparturePoint of the surface
   std::uint32_t surface_slot = 0;
-  std::uint32_t point_light = kNoPoint;  ///< index; or else the lamp is an area's:
-  glm::vec3 lamp{0.0f};                  ///< its point
-  std::uint32_t lamp_slot = 0;           ///< and what that is on
+  std::uint32_t point_light = kNoPoint;  ///< index; or else the lamp is an area's or far away:
+  glm::vec3 lamp{0.0f};                  ///< its point, or the direction towards it
+  std::uint32_t lamp_slot = 0;           ///< and what that is on; kNone: it is infinitely far away
 };
 
 /// Traces shadow rays in waves.
@@ -35,7 +35,8 @@ struct ShadowRay {
 /// does not count by itself: such a ray is traced again, from the surface. Hits of the surface's
 /// own triangle do not count, for the departure point is on the lamp's side of it. Rays of area
 /// lights begin at the surface and end 2^-16 of the way before the lamp, whose own triangle does
-/// not count. Surfaces that let light through straight weaken it.
+/// not count. Rays to lights that are infinitely far away begin at the surface and have no end.
+/// Surfaces that let light through straight weaken it.
 class ShadowRays {
  public:
   /// `through_refraction`: glass that bends light casts the shadow of one that does not.
@@ -57,7 +58,7 @@ class ShadowRays {
     std::uint32_t index;  // of the shadow ray that it is a part of
     glm::vec3 from, to;
     std::uint32_t ignored;  // slot
-    float share;            // of the way in which hits count
+    float share;            // of the way in which hits count; infinite: `to` is a direction
   };
 
   void trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light);

@@ -14,18 +14,28 @@ RAYGATE_INLINE void ask_all_lights(const ShadingScene& shading, Hits<T>& hits) {
   const T one = spread<T>(1.0f);
   std::uint32_t lamps[Hits<T>::kCount];
   const std::size_t points = lights.points().size();
+  const WordOf<T> no_slot = WordOf<T>{} + NearestHit::kNone;
   for (std::uint32_t i = 0; i < lights.count(); ++i) {
     const Lights::Lamp& lamp = lights.lamp(i);
     for (std::uint32_t& number : lamps) number = i;
-    const Triple<T> light = spread<T>(lamp.light);
-    if (i < points) {
-      const LightPoint<T> point = {spread<T>(lamp.position), zero<T>(), WordOf<T>{}};
-      ask<T>(hits, i, one > 0.0f, light_from_point(hits, lights, point.position, light, one), lamps,
-             point);
+    const Triple<T> position = spread<T>(lamp.position);
+    Triple<T> light = spread<T>(lamp.light);
+    if (lamp.kind == Lights::Kind::kPoint) {
+      if (lamp.is_spot) {
+        light = light * spot_share(spot_cosine(hits, lights, position, spread<T>(lamp.spot.axis)),
+                                   spread<T>(lamp.spot.scale), spread<T>(lamp.spot.offset));
+      }
+      ask<T>(hits, i, one > 0.0f, light_from_point(hits, lights, position, light, one), lamps,
+             {position, zero<T>(), no_slot});
+      continue;
+    }
+    if (lamp.kind == Lights::Kind::kDirection) {
+      ask<T>(hits, i, one > 0.0f, light_from_direction(hits, position, light, one), lamps,
+             {position, zero<T>(), no_slot});
       continue;
     }
     const auto scatters = hits.bsdf.scatters();
-    if (!any(scatters)) return;
+    if (!any(scatters)) continue;
     const AreaLight& area = lights.areas()[i - points];
     const auto number = static_cast<std::uint32_t>(i - points);
     const LightPoint<T> point =

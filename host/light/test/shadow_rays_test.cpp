@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-/// A sphere, an open box with an inner wall, two point lights, a lamp.
+/// A sphere, an open box with an inner wall, two point lights, a lamp, light from one direction.
 Scene obstacles() {
   Scene scene;
   add(scene, sphere(2), matte(glm::vec3(0.5f)));
@@ -24,6 +24,7 @@ Scene obstacles() {
   add(scene, rectangle({-0.5f, 2.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}), lamp(glm::vec3(1.0f)));
   scene.lights.push_back({{2, 2.5f, 2}, glm::vec3(1.0f)});
   scene.lights.push_back({{-2.7f, -1, 2.8f}, glm::vec3(1.0f)});
+  scene.directional_lights.push_back({glm::normalize(glm::dvec3(0.3, 0.2, -1)), glm::vec3(1.0f)});
   return scene;
 }
 
@@ -61,12 +62,16 @@ class ShadowRaysTest : public testing::Test {
       ray.lamp = {point.position.x, point.position.y, point.position.z};
       ray.lamp_slot = point.slot;
       ask(ray.lamp);
+      ray.lamp = glm::vec3(-scene_.directional_lights[0].direction);
+      ray.lamp_slot = NearestHit::kNone;
+      if (direction_side(ray.lamp, bvh_.corners_of(slot)) == -side) questions_.push_back(ray);
     }
   }
 
   /// Whether a triangle is between the departure point and the lamp, in exact arithmetic.
   bool is_blocked(const ShadowRay& question) const {
     const bool is_point = question.point_light != ShadowRay::kNoPoint;
+    if (!is_point && question.lamp_slot == NearestHit::kNone) return is_blocked_from_afar(question);
     const glm::vec3 lamp = is_point ? scene_.lights[question.point_light].position : question.lamp;
     const glm::dvec3 way = glm::dvec3(lamp) - glm::dvec3(question.surface);
     const Ray ray = {question.surface, scaled_direction(way)};
@@ -78,6 +83,14 @@ class ShadowRaysTest : public testing::Test {
       if (!is_point && slot == question.lamp_slot) continue;
       const Corners& t = bvh_.corners_of(slot);
       if (hits_triangle(ray, t) && compare_hit_to_limit(ray, t, limit) < 0) return true;
+    }
+    return false;
+  }
+
+  bool is_blocked_from_afar(const ShadowRay& question) const {
+    const Ray ray = {question.surface, scaled_direction(glm::dvec3(question.lamp))};
+    for (std::uint32_t slot = 0; slot < bvh_.slot_count(); ++slot) {
+      if (hits_triangle(ray, bvh_.corners_of(slot))) return true;
     }
     return false;
   }

@@ -103,6 +103,51 @@ TEST(Physics, PointLightFallsOffWithTheSquare) {
   }
 }
 
+TEST(Physics, ADirectionalLightFallsOffWithTheCosineAlone) {
+  for (const glm::dvec3& way :
+       {glm::dvec3(0, -1, 0), glm::dvec3(1, -0.3, 2), glm::dvec3(1, 1, 0)}) {
+    Scene scene;
+    scene.directional_lights.push_back({glm::normalize(way), glm::vec3(3.0f)});
+    const double expected = 3.0 * std::max(0.0, -glm::normalize(way).y) / kPi;
+    EXPECT_NEAR(floor_radiance(scene, kWhitted, 1), expected, 1e-6);
+    EXPECT_NEAR(floor_radiance(scene, kPath, 1), expected, 1e-6);
+  }
+}
+
+// KHR_lights_punctual: the square of a ramp of the cosine.
+TEST(Physics, ASpotLightFadesBetweenItsAngles) {
+  const auto seen = [](double degrees, IntegratorKind integrator) {
+    const double angle = degrees * kPi / 180.0;
+    Scene scene;
+    PointLight& light = scene.lights.emplace_back();
+    light.position = {0, 2, 0};
+    light.intensity = glm::dvec3(5.0);
+    light.spot = {{std::sin(angle), -std::cos(angle), 0.0}, 20.0, 40.0};
+    return floor_radiance(scene, integrator, 1);
+  };
+  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+    const double full = 5.0 / 4.0 / kPi;
+    EXPECT_NEAR(seen(0.0, integrator), full, 1e-6);
+    EXPECT_NEAR(seen(19.9, integrator), full, 1e-6);
+    const double inner = std::cos(kPi / 9), outer = std::cos(kPi / 4.5);
+    const double ramp = (std::cos(kPi / 6) - outer) / (inner - outer);
+    EXPECT_NEAR(seen(30.0, integrator), full * ramp * ramp, 1e-5);
+    EXPECT_EQ(seen(40.1, integrator), 0.0f);
+    EXPECT_EQ(seen(180.0, integrator), 0.0f);
+  }
+}
+
+// Which of several kinds of lights is asked, chance says; the mean is the sum of all.
+TEST(Physics, LightsOfAllKindsAddUp) {
+  Scene scene;
+  scene.lights.push_back({{1, 2, 0}, glm::dvec3(5.0)});
+  scene.lights.push_back({{0, 2, 1}, glm::dvec3(9.0), SpotCone{{0, -1, 0}, 10.0, 80.0}});
+  scene.directional_lights.push_back({{0.6, -0.8, 0}, glm::vec3(2.0f)});
+  add(scene, rectangle({-1, 1.5f, -1}, {0, 0, 1}, {0.5f, 0, 0}), lamp(glm::vec3(3.0f)));
+  const double sum = floor_radiance(scene, kWhitted, 1024);
+  EXPECT_NEAR(floor_radiance(scene, kPath, 4096), sum, 0.005 * sum);
+}
+
 // A parallel rectangle with one corner straight above (Siegel and Howell's catalogue, B-4).
 TEST(Physics, RectangularLampHasItsFormFactor) {
   const double a = 1.5, b = 0.8, height = 1.2;
@@ -138,10 +183,17 @@ TEST(Physics, ShadowOfASquareIsWhereItMustBe) {
   Scene scene;
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
   add(scene, rectangle({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}), matte(glm::vec3(1.0f)));
-  const glm::dvec3 lamp(0.7, 3, -0.2);
-  scene.lights.push_back({glm::vec3(lamp), glm::vec3(10.0f)});
+  const glm::dvec3 lamp(0.7, 3, -0.2), way(-0.3, -1.0, 0.2);
   const Camera camera = camera_at({0, 0.9, 2.5}, {0.2, 0, 0}, 60.0);
-  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+  for (const auto& [integrator, is_far] :
+       {std::pair(kWhitted, false), {kPath, false}, {kWhitted, true}, {kPath, true}}) {
+    scene.lights.clear();
+    scene.directional_lights.clear();
+    if (is_far) {
+      scene.directional_lights.push_back({glm::normalize(way), glm::vec3(1.0f)});
+    } else {
+      scene.lights.push_back({glm::vec3(lamp), glm::vec3(10.0f)});
+    }
     RenderOptions options = light(integrator, 96, 96, 1);
     options.max_depth = 0;
     const Film film = film_of(scene, camera, options);
@@ -150,9 +202,11 @@ TEST(Physics, ShadowOfASquareIsWhereItMustBe) {
       for (int x = 0; x < 96; ++x) {
         const std::size_t pixel = std::size_t(y) * 96 + x;
         if (film.primitive[pixel] > 1) continue;  // the square itself, or nothing
-        const glm::dvec3 way(camera.direction((x + 0.5) / 96, (y + 0.5) / 96));
-        const glm::dvec3 eye(camera.eye()), point = eye - eye.y / way.y * way;
-        const glm::dvec3 crossing = lamp + (lamp.y - 1.0) / (lamp.y - point.y) * (point - lamp);
+        const glm::dvec3 view(camera.direction((x + 0.5) / 96, (y + 0.5) / 96));
+        const glm::dvec3 eye(camera.eye()), point = eye - eye.y / view.y * view;
+        const glm::dvec3 crossing =
+            is_far ? point + way / way.y
+                   : lamp + (lamp.y - 1.0) / (lamp.y - point.y) * (point - lamp);
         const double inside = std::max(std::abs(crossing.x), std::abs(crossing.z)) - 0.5;
         if (std::abs(inside) < 1e-6) continue;
         ASSERT_EQ(film.color[pixel].r == 0.0f, inside < 0.0) << x << ", " << y;

@@ -60,14 +60,14 @@ TEST_F(ReadSceneFile, EveryKey) {
   EXPECT_EQ(scene.path[1].eye, glm::dvec3(2, 1, 5));
   EXPECT_EQ(scene.path[1].fov, 50.0);
   EXPECT_FALSE(scene.path[0].fov);
-  ASSERT_EQ(scene.point_lights.size(), 1u);
-  EXPECT_EQ(scene.point_lights[0].position, glm::dvec3(1, 2, 3));
-  EXPECT_EQ(scene.point_lights[0].intensity, glm::vec3(10, 20, 30));
-  ASSERT_EQ(scene.area_lights.size(), 1u);
-  EXPECT_EQ(scene.area_lights[0].corner, glm::dvec3(0, 3, 0));
-  EXPECT_EQ(scene.area_lights[0].edges[1], glm::dvec3(0, 0, 2));
-  EXPECT_EQ(scene.area_lights[0].radiance, glm::vec3(5)) << "one number is grey";
-  EXPECT_EQ(scene.background, glm::vec3(0.1f, 0.2f, 0.3f));
+  ASSERT_EQ(scene.lights.points.size(), 1u);
+  EXPECT_EQ(scene.lights.points[0].position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(scene.lights.points[0].intensity, glm::vec3(10, 20, 30));
+  ASSERT_EQ(scene.lights.areas.size(), 1u);
+  EXPECT_EQ(scene.lights.areas[0].corner, glm::dvec3(0, 3, 0));
+  EXPECT_EQ(scene.lights.areas[0].edges[1], glm::dvec3(0, 0, 2));
+  EXPECT_EQ(scene.lights.areas[0].radiance, glm::vec3(5)) << "one number is grey";
+  EXPECT_EQ(scene.lights.background, glm::vec3(0.1f, 0.2f, 0.3f));
   ASSERT_EQ(scene.options.size(), 4u);
   EXPECT_EQ(scene.options[0].name, "size");
   EXPECT_EQ(scene.options[0].value, "320x200");
@@ -80,8 +80,8 @@ TEST_F(ReadSceneFile, NothingIsNeeded) {
   const SceneFile scene = read("{}");
   EXPECT_EQ(scene.obj, folder_.path() / "s.obj") << "the same name";
   EXPECT_FALSE(scene.camera);
-  EXPECT_TRUE(scene.path.empty() && scene.point_lights.empty() && scene.area_lights.empty());
-  EXPECT_FALSE(scene.background);
+  EXPECT_TRUE(scene.path.empty() && scene.lights.points.empty() && scene.lights.areas.empty());
+  EXPECT_FALSE(scene.lights.background);
 }
 
 TEST_F(ReadSceneFile, APathAloneBeginsWithItsFirstPlace) {
@@ -122,10 +122,10 @@ TEST_F(ReadSceneFile, WhatIsNoJson) {
 TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
   EXPECT_EQ(error("[]"),
             "s.json:1: scene: an array of 0, expected an object with obj, camera, "
-            "point_lights, area_lights, background, render");
+            "point_lights, spot_lights, directional_lights, area_lights, background, render");
   EXPECT_EQ(error("{\n  \"colour\": 1\n}"),
             "s.json:2: scene: unknown key 'colour', expected some of obj, camera, point_lights, "
-            "area_lights, background, render");
+            "spot_lights, directional_lights, area_lights, background, render");
   EXPECT_EQ(error(R"({"obj": 5})"), "s.json:1: obj: 5, expected the name of a scene");
   EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1]}})"), "s.json:1: camera: 'target' is missing");
   EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0, 0],\n\"target\": [0, 0, 0]}}"),
@@ -137,6 +137,10 @@ TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
       "s.json:1: background: 'blue', expected [red, green, blue] or one number for all three");
   EXPECT_EQ(error(R"({"point_lights": {}})"),
             "s.json:1: point_lights: an object, expected an array");
+  EXPECT_EQ(error(R"({"spot_lights": [{"position": [0, 0, 0], "intensity": 1}]})"),
+            "s.json:1: spot_lights[0]: 'direction' is missing");
+  EXPECT_EQ(error(R"({"directional_lights": [{"direction": [0, -1], "irradiance": 1}]})"),
+            "s.json:1: directional_lights[0].direction: an array of 2, expected [x, y, z]");
   EXPECT_EQ(error(R"({"render": {"spp": [1]}})"),
             "s.json:1: render.spp: an array of 1, expected a number or a string, as on the command "
             "line");
@@ -167,6 +171,33 @@ TEST_F(ReadSceneFile, ValuesOutOfRange) {
   EXPECT_EQ(error(R"({"area_lights": [{"corner": [0, 0, 0], "edges": [[1, 0, 0], [2, 0, 0]],
                       "radiance": 1}]})"),
             "s.json:1: area_lights[0].edges: an array of 2, expected two that are not parallel");
+}
+
+TEST_F(ReadSceneFile, SpotAndDirectionalLights) {
+  const SceneFile file = read(R"({
+      "spot_lights": [{"position": [1, 2, 3], "direction": [0, -2, 0], "intensity": 9},
+          {"position": [0, 0, 0], "direction": [1, 0, 0], "intensity": 1, "inner": 5, "outer": 6}],
+      "directional_lights": [{"direction": [0, 0, 1e-30], "irradiance": [1, 2, 3]}]})");
+  ASSERT_EQ(file.lights.points.size(), 2u);
+  ASSERT_TRUE(file.lights.points[0].spot && file.lights.points[1].spot);
+  EXPECT_EQ(file.lights.points[0].spot->axis, glm::dvec3(0, -1, 0));
+  EXPECT_EQ(file.lights.points[0].spot->inner, 0.0);
+  EXPECT_EQ(file.lights.points[0].spot->outer, 45.0);
+  EXPECT_EQ(file.lights.points[1].spot->inner, 5.0);
+  ASSERT_EQ(file.lights.directions.size(), 1u);
+  EXPECT_EQ(file.lights.directions[0].direction, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(file.lights.directions[0].irradiance, glm::vec3(1, 2, 3));
+  const auto spot = [&](const std::string& rest) {
+    return error(R"({"spot_lights": [{"position": [0, 0, 0], "intensity": 1, )" + rest + "}]}");
+  };
+  EXPECT_EQ(spot(R"("direction": [0, 0, 0])"),
+            "s.json:1: spot_lights[0].direction: an array of 3, expected a direction: not all "
+            "three 0");
+  EXPECT_EQ(spot(R"("direction": [0, 0, 1], "outer": 91)"),
+            "s.json:1: spot_lights[0].outer: 91, expected degrees from the axis, 0.001 to 90");
+  EXPECT_EQ(spot(R"("direction": [0, 0, 1], "inner": 46)"),
+            "s.json:1: spot_lights[0].inner: 46, expected degrees from the axis, from 0 to "
+            "'outer'");
 }
 
 TEST_F(ReadSceneFile, LightsJoinTheScene) {
