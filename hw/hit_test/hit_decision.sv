@@ -1,12 +1,13 @@
 // Hit, miss or doubt: what the four dot products of a test say, with their error bounds.
 //
 // U_k = I . E_k is sure where bound_k < |U_k| < infinity; then its sign is the exact one. d's sign
-// is exact, and that of the exact I . N for every ray that hits ahead of its origin.
-//   miss   d = 0, or a sure U_k of the other sign than d
+// is exact, and that of the exact I . N for every ray that hits ahead of its origin. A NaN for d says
+// that nobody knows its sign: then two edges of opposite signs still are a miss.
+//   miss   d = 0, or a sure U_k of the other sign than d, or than another sure U_k
 //   hit    all U_k sure with d's sign, and V = I . N good for a division: a normal number of d's
 //          sign whose exponent is at most max_grazing below the largest of N's
 //   doubt  everything else
-// Exactly one is true. NaN is never sure. All comparisons are of words as integers.
+// Exactly one is true. A NaN is never sure. All comparisons are of words as integers.
 //
 // t_error_o: see hit_test_pkg; means something for a hit only.
 // Combinational.
@@ -33,9 +34,10 @@ module hit_decision #(
   localparam int unsigned MaxGrazing = hit_test_pkg::max_grazing(FracWidth);
   localparam logic [Width-2:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 
-  logic sign, d_zero;
+  logic sign, d_zero, d_nan;
   assign sign   = d_i[Width-1];
   assign d_zero = d_i[Width-2:0] == '0;
+  assign d_nan  = d_i[Width-2:0] > Infinity;
 
   // ---- The edges
 
@@ -63,8 +65,8 @@ module hit_decision #(
 
   // ---- The verdict
 
-  assign miss_o  = d_zero | (|(sure & ~agrees));
-  assign hit_o   = ~d_zero & (&(sure & agrees)) & v_good;
+  assign miss_o  = d_zero | ((|(sure & ~agrees)) & (~d_nan | (|(sure & agrees))));
+  assign hit_o   = ~d_zero & ~d_nan & (&(sure & agrees)) & v_good;
   assign doubt_o = ~miss_o & ~hit_o;
 
 endmodule

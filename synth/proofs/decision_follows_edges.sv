@@ -1,7 +1,7 @@
 // hit_decision, in one format, given what a bound promises: an edge product beyond its bound has the sign of
 // the exact one. Then a hit has all three exact edge products on d's side, so the ray, aimed ahead,
-// meets the triangle; a miss has d = 0 or one of them on the other side; and one verdict is given. A hit's V is
-// a normal number of d's sign, whose error is stated.
+// meets the triangle; a miss has d = 0 or one of them on the other side, or, where d is a NaN, two on
+// different sides; and one verdict is given. A hit's V is a normal number of d's sign, whose error is stated.
 // Exact arithmetic is any: three signs, of which a zero is neither.
 module decision_follows_edges #(
   parameter int unsigned ExpWidth  = 8,
@@ -55,20 +55,24 @@ module decision_follows_edges #(
   assign on_side = d[Width-1] ? exact_negative : exact_positive;
   assign on_other_side = d[Width-1] ? exact_positive : exact_negative;
 
+  logic d_nan;
+  assign d_nan = d[Width-2:0] > Infinity;
+
   logic [ExpWidth-1:0] v_exponent;
   assign v_exponent = v[FracWidth+:ExpWidth];
 
   always_comb begin
     assert ({1'b0, miss} + {1'b0, hit} + {1'b0, doubt} == 2'd1 && !(miss && hit));
     if (hit) begin
-      assert (on_side == '1 && d[Width-2:0] != '0);
+      assert (on_side == '1 && d[Width-2:0] != '0 && !d_nan);
       assert (v[Width-1] == d[Width-1] && v_exponent != '0 && v_exponent != '1);
       assert (t_error <= 4'(hit_test_pkg::max_grazing(FracWidth)));
       assert ((ExpWidth + 1)'(normal_exponent) <= (ExpWidth + 1)'(v_exponent) + t_error);
     end
-    if (miss) assert (d[Width-2:0] == '0 || on_other_side != '0);
+    if (miss) assert (d[Width-2:0] == '0 || (on_other_side != '0 && (!d_nan || on_side != '0)));
     cover (hit && t_error == 4'(hit_test_pkg::max_grazing(FracWidth)));
     cover (miss && d[Width-2:0] != '0);
+    cover (miss && d_nan);
     cover (doubt && d[Width-2:0] != '0 && on_side == '1);
   end
 

@@ -51,18 +51,21 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// What the edges alone say: a hit is one if it is ahead, which those of d's sign are.
+  /// What the edges alone say: a hit is one if it is ahead, which those of d's sign are. Where d is
+  /// a NaN, nobody knows its sign: edges of opposite signs are a miss, all else is in doubt.
   [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
                                           const glm::vec3& direction) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     if (record.d == 0.0f) return UnitVerdict::kMiss;
     const bool side = std::signbit(record.d);
-    bool all_sure = true;
+    bool all_sure = !std::isnan(record.d), any_agrees = all_sure, any_differs = false;
     for (int k = 0; k < 3; ++k) {
       const float u = math_.dot(record.edges[k], direction);
       const float bound = record.bounds[k];
       const bool sure = !std::signbit(bound) && std::abs(u) > bound && std::abs(u) < kInfinity;
-      if (sure && std::signbit(u) != side) return UnitVerdict::kMiss;
+      any_agrees |= sure && std::signbit(u) == side;
+      any_differs |= sure && std::signbit(u) != side;
+      if (any_agrees && any_differs) return UnitVerdict::kMiss;
       all_sure = all_sure && sure;
     }
     return all_sure ? UnitVerdict::kHit : UnitVerdict::kDoubt;
