@@ -8,10 +8,9 @@ package set_up_pkg;
   localparam int unsigned FracWidth = 23;
   localparam int unsigned Width = 1 + ExpWidth + FracWidth;
 
-  // From the clock edge that takes a triangle to that after which its record is there: two differences
-  // (corner, then component), a product each, and a dot product.
-  localparam int unsigned Latency =
-      2 * hit_test_pkg::AdderLatency + hit_test_pkg::MultiplierLatency + hit_test_pkg::DotLatency;
+  // From the clock edge that takes a triangle to that after which its record is there: two differences,
+  // a product between them, and a dot product.
+  localparam int unsigned Latency = 16;
 
   // ---- How far off N and d are: see set_up_unit
 
@@ -25,16 +24,16 @@ package set_up_pkg;
   localparam int unsigned TErrorUnit = 8;
   localparam int unsigned TErrorExponentWidth = 5;
 
-  function automatic logic is_good_hit(logic [hit_test_pkg::TErrorWidth-1:0] t_error,
+  function automatic logic is_good_hit(logic [TErrorExponentWidth-1:0] t_error,
                                        logic [PlaneErrorWidth-1:0] normal_error);
     is_good_hit = 32'(t_error) + 32'(normal_error) <= MostPlaneError;
   endfunction
 
   function automatic logic [TErrorExponentWidth-1:0] t_error_exponent(
-      logic [hit_test_pkg::TErrorWidth-1:0] t_error, logic [PlaneErrorWidth-1:0] normal_error,
+      logic [TErrorExponentWidth-1:0] t_error, logic [PlaneErrorWidth-1:0] normal_error,
       logic [PlaneErrorWidth-1:0] distance_error);
     logic [TErrorExponentWidth-1:0] plane, distance;
-    plane    = TErrorExponentWidth'(t_error) + TErrorExponentWidth'(normal_error);
+    plane    = t_error + TErrorExponentWidth'(normal_error);
     distance = TErrorExponentWidth'(distance_error);
     t_error_exponent = TErrorExponentWidth'(TErrorUnit) + ((plane > distance) ? plane : distance);
   endfunction

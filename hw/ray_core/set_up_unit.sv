@@ -57,6 +57,10 @@ module set_up_unit #(
   localparam int unsigned SumLatency = 2 * AdderLatency;
   localparam int unsigned DotLatency = hit_test_pkg::DotLatency;
 
+  if (set_up_pkg::Latency != AdderLatency + CrossLatency + DotLatency) begin : gen_check
+    $error("set_up_unit: set_up_pkg::Latency is not what the cores' latencies make it");
+  end
+
   localparam int unsigned LeastField = 27;  // of an exponent that counts: 2**-100
 
   // ---- Subtract
