@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "host/cli/command_line.h"
+#include "host/cli/option_text.h"
 #include "host/cli/values.h"
 #include "host/scene/io/input_error.h"
 
@@ -46,6 +47,8 @@ Picture
                              bottom, iso, or azimuth and elevation (33,24)
   --up AXIS                  upwards: x, -x, y ... (a guess: y or z)
   --fov DEGREES              vertical field of view of any camera (35)
+  --ground on|off            a ground that shows shadows alone (on from above,
+                             where there is no camera and no light)
   --exposure STOPS           exposure of the PNG in stops: +1 is twice as bright
   --tone clip|filmic         tone curve of the PNG (clip)
   --channels NAMES           more of the EXR: P,Albedo,objectId,tests,doubts
@@ -79,7 +82,7 @@ line, the scene or an output cannot be used; 130 interrupted (partial pictures).
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
-  std::string scene, size, camera, view, up, fov, crop, seed;
+  std::string scene, size, camera, view, up, fov, ground, crop, seed;
   RawEngineOptions engine;
   RawOutputOptions output;
   RawLightOptions light;
@@ -101,6 +104,7 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   value("--view", raw.view);
   value("--up", raw.up);
   value("--fov", raw.fov);
+  value("--ground", raw.ground);
   declare_output_options(app, raw.output);
   declare_light_options(app, raw.light);
   declare_engine_options(app, raw.engine);
@@ -140,6 +144,9 @@ void check_values(const RawValues& raw, Options& options) {
   if (!raw.view.empty()) options.view.angles = parse_view(raw.view);
   if (!raw.up.empty()) options.view.up = parse_axis(raw.up);
   if (!raw.fov.empty()) options.view.fov = parse_fov(raw.fov);
+  if (!raw.ground.empty()) {
+    options.ground = choose<bool>("--ground", raw.ground, {{"on", true}, {"off", false}});
+  }
   static_cast<EngineOptions&>(options) = parse_engine_options(raw.engine);
   if (raw.light.samples.empty() && options.engine == Engine::kCpu) {
     options.light.samples = kCpuSamples;

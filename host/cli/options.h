@@ -37,6 +37,7 @@ struct Options : EngineOptions {
   PixelRect window;                     ///< to be rendered: the frame or --crop
   std::optional<CameraSetting> camera;  ///< in the file's coordinates; none: its own, or a view
   ViewOptions view;                     ///< what changes it, or the view
+  std::optional<bool> ground;           ///< none: where a first look needs it
   std::vector<CameraSetting> path;      ///< of --frames; empty: once round the target
   LightOptions light;
   std::uint64_t seed = 0;

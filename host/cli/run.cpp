@@ -15,17 +15,15 @@
 #include "host/cli/process.h"
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
+#include "host/cli/shots.h"
 #include "host/cli/version.h"
-#include "host/exact/exact.h"
 #include "host/light/clearance.h"
-#include "host/light/lights.h"
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
-#include "host/scene/camera_path.h"
+#include "host/scene/ground.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/view.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {
@@ -70,135 +68,8 @@ void require_inputs_kept(const Options& options, const Scene& scene) {
   }
 }
 
-/// In the scene's coordinates.
-CameraSetting recentred(CameraSetting camera, const Scene& scene) {
-  camera.eye -= scene.origin;
-  camera.target -= scene.origin;
-  return camera;
-}
-
-/// In the scene's coordinates, with what the command line says of every camera.
-CameraSetting completed(const CameraSetting& camera, const Options& options, const Scene& scene) {
-  CameraSetting result = recentred(camera, scene);
-  if (options.view.up) result.up = options.view.up;
-  if (options.view.fov) result.fov = options.view.fov;
-  return result;
-}
-
-/// The camera that somebody chose: on the command line, in the scene file, in the scene itself.
-std::optional<CameraSetting> given_camera(const Options& options, const Scene& scene) {
-  if (options.camera) return options.camera;
-  return options.view.angles ? std::nullopt : scene.camera;
-}
-
-/// The view where nobody gave a camera.
-View chosen_view(const Options& options, const Scene& scene) {
-  const glm::dvec3 up = options.view.up ? *options.view.up : guessed_up(scene);
-  if (!options.view.angles) return first_view(scene, up);
-  return {options.view.angles->first, options.view.angles->second, up};
-}
-
-double aspect_of(const Options& options) {
-  return static_cast<double>(options.width) / options.height;
-}
-
-/// The camera of a picture, or of frame `frame` of a film, from 1.
-CameraSetting camera_setting(const Options& options, const Scene& scene, int frame) {
-  const int frames = options.output.frames;
-  if (frames > 1 && !options.path.empty()) {
-    const double time = (frame - 1.0) / (frames - 1.0);
-    return completed(camera_on_path(options.path, time, Camera::kDefaultFov), options, scene);
-  }
-  const double turn = frames > 1 ? (frame - 1.0) / frames : 0.0;
-  if (const auto given = given_camera(options, scene)) {
-    const CameraSetting still = completed(*given, options, scene);
-    return frames > 1 ? turned(still, turn) : still;
-  }
-  View view = chosen_view(options, scene);
-  view.azimuth += 360.0 * turn;
-  return framing(scene, aspect_of(options), options.view.fov.value_or(Camera::kDefaultFov), view,
-                 frames > 1 ? Filling::kCylinder : Filling::kVertices);
-}
-
-/// What to type for the view that was chosen, and for its camera; nothing if a camera was given.
-std::string view_text(const Options& options, const Scene& scene) {
-  if (given_camera(options, scene)) return "";
-  const View view = chosen_view(options, scene);
-  const CameraSetting camera = camera_setting(options, scene, 1);
-  const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
-  std::string text = "--view " + format_number(view.azimuth) + "," + format_number(view.elevation);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(view.up[axis]) < largest(view.up)) continue;
-    text += std::string(" --up ") + (view.up[axis] < 0.0 ? "-" : "") + "xyz"[axis];
-  }
-  if (!options.view.up) text += scene.up ? " (of the format)" : " (a guess)";
-  text += "; --camera ";
-  for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";
-  for (int axis = 0; axis < 3; ++axis) text += format_number(target[axis]) + ",";
-  return text + format_number(*camera.fov);
-}
-
-Camera make_camera(const Options& options, const Scene& scene, int frame) {
-  return Camera::look_at(camera_setting(options, scene, frame), aspect_of(options));
-}
-
-/// Lamps go with the camera, so that a film of a scene that has none does not end in its shadow.
-class Lighting {
- public:
-  explicit Lighting(const Scene& scene) : lights_(scene.lights), background_(scene.background) {}
-
-  /// As the scene is, and lamps for this camera if it is dark.
-  void set(const Options& options, Scene& scene, const Camera& camera) const {
-    scene.lights = lights_;
-    scene.background = background_;
-    if (given_camera(options, scene)) {
-      light_if_dark(scene, camera);
-    } else {
-      light_first_look(scene, camera);
-    }
-  }
-
- private:
-  std::vector<PointLight> lights_;
-  glm::vec3 background_;
-};
-
-/// What makes the same picture again of the same scene, by the names of the options.
-std::vector<std::pair<std::string, std::string>> picture_options(const Options& options,
-                                                                 const Scene& scene) {
-  const LightOptions& light = options.light;
-  std::vector<std::pair<std::string, std::string>> all = {
-      {"integrator", to_string(light.integrator)},
-      {"spp", std::to_string(light.samples)},
-      {"filter", to_string(light.filter)},
-      {"depth", std::to_string(light.max_depth())},
-      {"threshold", format_exactly(light.threshold)},
-      {"pointError", format_exactly(light.point_error)}};
-  if (light.ambient) all.emplace_back("ambient", format_exactly(*light.ambient));
-  const auto numbers = [](std::initializer_list<double> values) {
-    std::string text;
-    for (const double value : values)
-      text.append(text.empty() ? "" : ",").append(format_exactly(value));
-    return text;
-  };
-  std::optional<glm::dvec3> up = options.view.up;
-  if (const auto given = given_camera(options, scene)) {
-    all.emplace_back(
-        "camera", numbers({given->eye.x, given->eye.y, given->eye.z, given->target.x,
-                           given->target.y, given->target.z,
-                           options.view.fov.value_or(given->fov.value_or(Camera::kDefaultFov))}));
-    if (!up) up = given->up;
-  } else {
-    const View view = chosen_view(options, scene);
-    all.emplace_back("view", numbers({view.azimuth, view.elevation}));
-    all.emplace_back("fov", numbers({options.view.fov.value_or(Camera::kDefaultFov)}));
-    up = view.up;
-  }
-  if (up) all.emplace_back("up", numbers({up->x, up->y, up->z}));
-  return all;
-}
-
-ExrMetadata make_metadata(const Options& options, const Scene& scene, const Camera& camera) {
+ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shots& shots,
+                          const Camera& camera) {
   const glm::dvec3 eye = scene.origin + glm::dvec3(camera.eye());
   glm::mat4 world_to_camera(1.0f);
   const glm::dvec3 axes[] = {camera.right(), camera.up(), camera.forward()};
@@ -212,7 +83,7 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Came
   return {.software = kSoftware,
           .scene = options.obj().filename().string(),
           .seed = options.seed,
-          .options = picture_options(options, scene),
+          .options = shots.options(),
           .world_to_camera = world_to_camera,
           .screen_window_width = static_cast<float>(height * options.width / options.height)};
 }
@@ -315,9 +186,9 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
 
 /// Renders one picture and writes it with `report` completed.
 void render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                    const Clearances& clearances, const Camera& camera, Clock::time_point start,
-                    Report& report) {
-  const ExrMetadata metadata = make_metadata(options, scene, camera);
+                    const Clearances& clearances, const Shots& shots, const Camera& camera,
+                    Clock::time_point start, Report& report) {
+  const ExrMetadata metadata = make_metadata(options, scene, shots, camera);
   const Film film =
       render_film(options, outputs, scene, clearances, camera, metadata, report.render);
   if (report.render.cancelled) end_interrupted(outputs, film, metadata);
@@ -335,15 +206,12 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
 
 /// One picture after the other; a line for each.
 void render_film_of_frames(const Options& options, Scene& scene, const Clearances& clearances,
-                           Report& report, std::FILE* console) {
+                           const Shots& shots, Report& report, std::FILE* console) {
   const int frames = options.output.frames;
-  const Lighting lighting(scene);
   for (int frame = 1; frame <= frames; ++frame) {
     const Clock::time_point start = Clock::now();
-    const Camera camera = make_camera(options, scene, frame);
-    lighting.set(options, scene, camera);
-    render_picture(options, options.output.numbered(frame), scene, clearances, camera, start,
-                   report);
+    render_picture(options, options.output.numbered(frame), scene, clearances, shots,
+                   shots.light(frame, scene), start, report);
     if (options.quiet) continue;
     print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
               format_duration(report.total_seconds) + ", wrote " + listed(report.pictures) + "\n",
@@ -378,18 +246,21 @@ void run(const Options& options) {
   print_warnings(scene);
   require_inputs_kept(options, scene);
 
+  // Cameras and lamps are found before there is a ground, which is not to be framed.
+  const Shots shots(options, scene);
+  if (shots.has_ground()) add_ground(scene, shots.up());
+  report.view = shots.text();
+
   const Clock::time_point tree_start = Clock::now();
   const Bvh bvh(scene, static_cast<int>(options.threads));
   report.tree_seconds = seconds_since(tree_start);
   const Clearances clearances(bvh);
 
-  report.view = view_text(options, scene);
   if (frames > 0) {
-    render_film_of_frames(options, scene, clearances, report, console);
+    render_film_of_frames(options, scene, clearances, shots, report, console);
   } else {
-    const Camera camera = make_camera(options, scene, 1);
-    Lighting(scene).set(options, scene, camera);
-    render_picture(options, options.output, scene, clearances, camera, start, report);
+    render_picture(options, options.output, scene, clearances, shots, shots.light(1, scene), start,
+                   report);
     if (!options.quiet) print(to_text(report), console);
   }
 }

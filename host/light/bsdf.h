@@ -27,7 +27,7 @@ namespace raygate {
 /// | 6 | d Kd | | Ks | the rest of (1 - d) Tf, refracted by Ni |
 /// | 7 | d Kd | | Fresnel's formula for Ni | the rest of (1 - d) Tf, refracted by Ni |
 /// | 8, 9 | as 3, 4, but mirrors show only the background | | | |
-/// | 10 | as 1: a shadow to lay over a picture needs a picture | | | |
+/// | 10 | as 1, with the colour at which it looks like the background (catcher_colour) | | | |
 ///
 /// With 4, 6, 7 and 9, d = 1 counts as 0: it is what exporters leave there, and the model says
 /// that the material is clear. Light that enters glass is not made denser by Ni squared, and not

@@ -38,6 +38,7 @@ Finish::Finish(const Material& material) {
   if (is_any(glossy)) kind |= kGlossy;
   if (is_any(mirror) || is_any(grazing) || refracts) kind |= kMirrors;
   if (is_any(through)) kind |= kLetsThrough;
+  if (model == 10) kind |= kCatchesShadows;
   if (material.diffuse_texture != kNoIndex) kind |= kHasWeights;
 }
 

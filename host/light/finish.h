@@ -17,7 +17,8 @@ inline constexpr HitKind kEmits = 2;         ///< a lamp, or a colour that is on
 inline constexpr HitKind kGlossy = 4;        ///< a highlight
 inline constexpr HitKind kMirrors = 8;       ///< a mirror
 inline constexpr HitKind kLetsThrough = 16;  ///< light passes
-inline constexpr HitKind kHitKinds = 32;     ///< sets are less than that
+inline constexpr HitKind kCatchesShadows = 32;  ///< of the background's colour but for shadows
+inline constexpr HitKind kHitKinds = 64;        ///< sets are less than that
 
 /// The shares of a material before an angle is known: Bsdf has the table.
 struct Finish {

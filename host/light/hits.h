@@ -13,6 +13,7 @@
 #include "host/light/finish.h"
 #include "host/light/lights.h"
 #include "host/light/sampler.h"
+#include "host/light/shadow_catcher.h"
 #include "host/light/surface.h"
 #include "host/light/wave.h"
 
@@ -71,7 +72,7 @@ struct ShadingScene {
   const Scene& scene;
   const Bvh& bvh;
   const Lights& lights;
-  glm::vec3 ambient{0.0f};
+  glm::vec3 ambient{0.0f};  ///< radiance from all sides, before anything is in its way
   int max_depth = 4;
   float threshold = 0.0f;
   bool single_sample = false;
@@ -109,6 +110,9 @@ struct Hits {
     stream = words.one(0);
     index = words.one(1);
     surface = surface_at<T>(shading.scene, shading.bvh, kind, places);
+    if ((kind & kCatchesShadows) != 0) {
+      surface.colour = catcher_colour(shading.lights, shading.ambient, surface);
+    }
     bsdf = Bsdf<T>(surface, kind, finishes);
     if (hits.first_surfaces != nullptr) show_first_surfaces();
   }

@@ -213,15 +213,18 @@ void light_if_dark(Scene& scene, const Camera& camera) {
   scene.background = kDimSky;
 }
 
-void light_first_look(Scene& scene, const Camera& camera) {
-  if (scene.positions.empty() || !scene.lights.empty() || !scene.directional_lights.empty()) return;
+bool light_first_look(Scene& scene, const Camera& camera) {
+  if (scene.positions.empty() || !scene.lights.empty() || !scene.directional_lights.empty()) {
+    return false;
+  }
   const Studio studio(scene, camera);
   // Labels and the like that glow are no lamps: not a hundredth of what the key lamp does.
   constexpr double kGlow = 0.01;
-  if (emitted(scene) > kGlow * studio.size() * studio.size()) return;
+  if (emitted(scene) > kGlow * studio.size() * studio.size()) return false;
   scene.lights.push_back(studio.key());
   if (!studio.is_inside()) scene.lights.push_back(studio.fill());
   if (scene.background == glm::vec3(0.0f)) scene.background = kDimSky;
+  return true;
 }
 
 Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {

@@ -24,7 +24,8 @@ void light_if_dark(Scene& scene, const Camera& camera);
 
 /// The same for a first look, whose camera nobody chose: with a second, weaker lamp from the right,
 /// and also where all the light there is is a background, or faces that glow but light nothing.
-void light_first_look(Scene& scene, const Camera& camera);
+/// Returns whether it did.
+bool light_first_look(Scene& scene, const Camera& camera);
 
 /// The emitting faces of one object and material: one lamp, which shines to both sides of each
 /// face. Each part of its area is as likely to be sampled as any other.

@@ -14,7 +14,10 @@ class Path final : public Integrator {
  public:
   Path(const Scene& scene, const Clearances& clearances, const Lights& lights, const Skips& skips,
        const IntegratorOptions& options)
-      : Integrator(scene, clearances, lights, skips, options, 1, 1) {}
+      : Integrator(scene, clearances, lights, skips, options, 1, 1) {
+    // What rays that leave the scene bring.
+    shading_.ambient = lights.background();
+  }
 
   [[nodiscard]] bool shadows_through_refraction() const override { return false; }
 

@@ -57,18 +57,6 @@ double standing(const Scene& scene, const Box& box, int axis) {
   return whole > 0.0 ? std::min(1.0, area / whole) : 0.0;
 }
 
-/// Whether faces look inwards: the volume that they enclose is then negative. A closed box without
-/// one of its walls has -5/6 of its volume, a ball turned inside out -0.52.
-bool is_room(const Scene& scene, const Box& box) {
-  const glm::dvec3 size = box.high - box.low, middle = box.middle();
-  double volume = 0.0;
-  for (const Triangle& triangle : scene.triangles) {
-    const Face face(scene, triangle);
-    volume += glm::dot(face.corners[0] - middle, face.normal) / 6.0;
-  }
-  return volume < -0.6 * size.x * size.y * size.z;
-}
-
 /// Of a scene whose up is `up`: right-handed, of length 1.
 struct Axes {
   glm::dvec3 up, front, right;
@@ -92,8 +80,21 @@ View front_view(const Scene& scene, const glm::dvec3& up) {
   return {0.0, 3.0 + 27.0 * flatness, up};
 }
 
+// The volume that faces enclose is negative where they look inwards. A closed box without one of
+// its walls has -5/6 of its volume, a ball turned inside out -0.52.
+bool is_room(const Scene& scene) {
+  const Box box = bounding_box(scene);
+  const glm::dvec3 size = box.high - box.low, middle = box.middle();
+  double volume = 0.0;
+  for (const Triangle& triangle : scene.triangles) {
+    const Face face(scene, triangle);
+    volume += glm::dot(face.corners[0] - middle, face.normal) / 6.0;
+  }
+  return volume < -0.6 * size.x * size.y * size.z;
+}
+
 View first_view(const Scene& scene, const glm::dvec3& up) {
-  if (is_room(scene, bounding_box(scene))) return front_view(scene, up);
+  if (is_room(scene)) return front_view(scene, up);
   return {kFirstAzimuth, kFirstElevation, up};
 }
 

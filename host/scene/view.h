@@ -22,8 +22,11 @@ inline constexpr double kFirstAzimuth = 33.0, kFirstElevation = 24.0;
 /// From the front: level for a tall scene (or the inside of a box), the higher the flatter it is.
 [[nodiscard]] View front_view(const Scene& scene, const glm::dvec3& up = {0.0, 1.0, 0.0});
 
-/// The view of a first look: kFirstAzimuth and kFirstElevation; or front_view() of a room, most of
-/// whose faces look inwards: its walls would be in the way.
+/// Whether most faces look inwards: the inside of a box, whose floor and walls are there.
+[[nodiscard]] bool is_room(const Scene& scene);
+
+/// The view of a first look: kFirstAzimuth and kFirstElevation; or front_view() of a room, whose
+/// walls would be in the way.
 [[nodiscard]] View first_view(const Scene& scene, const glm::dvec3& up);
 
 /// +y or +z: the file's format says which (Scene::up), or on what the scene seems to stand. +z

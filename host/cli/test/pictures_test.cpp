@@ -87,6 +87,26 @@ TEST_F(Render, AViewSaysWhatToTypeForIt) {
   EXPECT_EQ(picture({"--camera", "9,9,9,0,0,0"}, "c.png").find("\nview "), std::string::npos);
 }
 
+TEST_F(Render, AFirstLookFromAboveStandsOnAGround) {
+  folder_.write("ball.obj",
+                "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+                "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
+  const auto ground = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"ball.obj", "--size", "40x30", "--engine", "cpu", "-o", "a.exr"});
+    render(more);
+    EXPECT_EQ(stats_.at("triangles"), 8) << "of the file";
+    const auto ids = ExrReader(folder_.read("a.exr")).read<std::uint32_t>("id", Imf::UINT);
+    return std::ranges::find_if(ids, [](auto id) { return id == 8 || id == 9; }) != ids.end();
+  };
+  EXPECT_TRUE(ground({}));
+  const ExrReader reader(folder_.read("a.exr"));
+  EXPECT_EQ(reader.text("ground"), "on");
+  EXPECT_FALSE(ground({"--ground", "off"}));
+  EXPECT_FALSE(ground({"--view", "33,-10"})) << "from below";
+  EXPECT_FALSE(ground({"--camera", "3,3,3,0,0,0"}));
+  EXPECT_TRUE(ground({"--camera", "3,3,3,0,0,0", "--ground", "on"}));
+}
+
 TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
   render({kCornell,  "--size", "24x20", "--engine",      "cpu",      "--spp", "3",
           "--depth", "2",      "--fov", "41.1",          "--filter", "tent",  "--integrator",

@@ -47,6 +47,33 @@ TEST(Physics, WhiteFurnace) {
   }
 }
 
+// What catches shadows looks like the background, and is darker where something keeps light away.
+TEST(Physics, AShadowCatcherIsSeenWhereItsShadowsAre) {
+  Material catcher = matte(glm::vec3(0.0f));
+  catcher.illumination_model = 10;
+  Scene scene;
+  add(scene, rectangle({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}), catcher);
+  scene.background = {0.2f, 0.3f, 0.4f};
+  scene.lights.push_back({{3, 8, 2}, glm::dvec3(40.0)});
+  const Camera camera = camera_at({0, 5, 9}, {0, 0, 0}, 40.0);
+  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+    const glm::dvec3 mean = mean_colour(film_of(scene, camera, light(integrator, 24, 24, 64)));
+    const double tolerance = integrator == kWhitted ? 1e-6 : 0.01;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], scene.background[k], tolerance) << k;
+  }
+  Scene shaded = scene;
+  add(shaded, rectangle({-1, 4, 1}, {2, 0, 0}, {0, 0, -2}), matte(glm::vec3(0.5f)));
+  const Film film = film_of(shaded, camera, light(kWhitted, 24, 24, 1));
+  int dark = 0;
+  for (std::size_t i = 0; i < film.color.size(); ++i) {
+    if (film.primitive[i] > 1) continue;
+    const bool is_dark = film.color[i].g < 0.29f;
+    EXPECT_TRUE(is_dark || std::abs(film.color[i].g - 0.3f) < 1e-6f);
+    dark += is_dark;
+  }
+  EXPECT_GT(dark, 10);
+}
+
 // In a closed room whose walls all glow and reflect the share r, light adds up to 1 / (1 - r).
 TEST(Physics, ClosedFurnaceAddsUpTheGeometricSeries) {
   Material wall = matte(glm::vec3(0.5f, 0.25f, 0.75f));

@@ -1,0 +1,134 @@
+#include "host/cli/shots.h"
+
+#include <cmath>
+#include <initializer_list>
+
+#include "host/cli/format.h"
+#include "host/exact/exact.h"
+#include "host/light/lights.h"
+#include "host/scene/camera_path.h"
+
+namespace raygate {
+namespace {
+
+/// In the scene's coordinates, with what the command line says of every camera.
+CameraSetting completed(const CameraSetting& camera, const Options& options, const Scene& scene) {
+  CameraSetting result = camera;
+  result.eye -= scene.origin;
+  result.target -= scene.origin;
+  if (options.view.up) result.up = options.view.up;
+  if (options.view.fov) result.fov = options.view.fov;
+  return result;
+}
+
+View chosen_view(const Options& options, const Scene& scene) {
+  const glm::dvec3 up = options.view.up ? *options.view.up : guessed_up(scene);
+  if (!options.view.angles) return first_view(scene, up);
+  return {options.view.angles->first, options.view.angles->second, up};
+}
+
+double aspect_of(const Options& options) {
+  return static_cast<double>(options.width) / options.height;
+}
+
+}  // namespace
+
+Shots::Shots(const Options& options, Scene& scene)
+    : options_(options),
+      given_(options.camera        ? options.camera
+             : options.view.angles ? std::nullopt
+                                   : scene.camera),
+      view_(given_ && !options.ground.value_or(false) ? View{} : chosen_view(options, scene)) {
+  bool has_lamps = false;
+  const std::vector<PointLight> lights = scene.lights;
+  const glm::vec3 background = scene.background;
+  for (int number = 1; number <= std::max(1, options.output.frames); ++number) {
+    Shot& shot = shots_.emplace_back(Camera::look_at(setting(scene, number), aspect_of(options)));
+    if (given_) {
+      light_if_dark(scene, shot.camera);
+    } else {
+      has_lamps = light_first_look(scene, shot.camera);
+    }
+    shot.lights = std::exchange(scene.lights, lights);
+    shot.background = std::exchange(scene.background, background);
+  }
+  const bool is_first_look = has_lamps && view_.elevation > 0.0 && !is_room(scene);
+  has_ground_ = options.ground.value_or(is_first_look);
+  if (!given_) text_ = view_text(scene);
+}
+
+const Camera& Shots::light(int number, Scene& scene) const {
+  const Shot& shot = shots_[static_cast<std::size_t>(number - 1)];
+  scene.lights = shot.lights;
+  scene.background = shot.background;
+  return shot.camera;
+}
+
+CameraSetting Shots::setting(const Scene& scene, int number) const {
+  const int frames = options_.output.frames;
+  if (frames > 1 && !options_.path.empty()) {
+    const double time = (number - 1.0) / (frames - 1.0);
+    return completed(camera_on_path(options_.path, time, Camera::kDefaultFov), options_, scene);
+  }
+  const double turn = frames > 1 ? (number - 1.0) / frames : 0.0;
+  if (given_) {
+    const CameraSetting still = completed(*given_, options_, scene);
+    return frames > 1 ? turned(still, turn) : still;
+  }
+  View view = view_;
+  view.azimuth += 360.0 * turn;
+  return framing(scene, aspect_of(options_), options_.view.fov.value_or(Camera::kDefaultFov), view,
+                 frames > 1 ? Filling::kCylinder : Filling::kVertices);
+}
+
+std::string Shots::view_text(const Scene& scene) const {
+  const CameraSetting camera = setting(scene, 1);
+  const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
+  std::string text =
+      "--view " + format_number(view_.azimuth) + "," + format_number(view_.elevation);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(view_.up[axis]) < largest(view_.up)) continue;
+    text += std::string(" --up ") + (view_.up[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+  }
+  if (!options_.view.up) text += scene.up ? " (of the format)" : " (a guess)";
+  text += "; --camera ";
+  for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";
+  for (int axis = 0; axis < 3; ++axis) text += format_number(target[axis]) + ",";
+  return text + format_number(*camera.fov);
+}
+
+std::vector<std::pair<std::string, std::string>> Shots::options() const {
+  const LightOptions& light = options_.light;
+  std::vector<std::pair<std::string, std::string>> all = {
+      {"integrator", to_string(light.integrator)},
+      {"spp", std::to_string(light.samples)},
+      {"filter", to_string(light.filter)},
+      {"depth", std::to_string(light.max_depth())},
+      {"threshold", format_exactly(light.threshold)},
+      {"pointError", format_exactly(light.point_error)}};
+  if (light.ambient) all.emplace_back("ambient", format_exactly(*light.ambient));
+  const auto numbers = [](std::initializer_list<double> values) {
+    std::string text;
+    for (const double value : values)
+      text.append(text.empty() ? "" : ",").append(format_exactly(value));
+    return text;
+  };
+  const ViewOptions& asked = options_.view;
+  std::optional<glm::dvec3> up = asked.up;
+  if (given_) {
+    const glm::dvec3 &eye = given_->eye, &target = given_->target;
+    all.emplace_back("camera",
+                     numbers({eye.x, eye.y, eye.z, target.x, target.y, target.z,
+                              asked.fov.value_or(given_->fov.value_or(Camera::kDefaultFov))}));
+    if (!up) up = given_->up;
+  } else {
+    all.emplace_back("view", numbers({view_.azimuth, view_.elevation}));
+    all.emplace_back("fov", numbers({asked.fov.value_or(Camera::kDefaultFov)}));
+    up = view_.up;
+  }
+  if (up) all.emplace_back("up", numbers({up->x, up->y, up->z}));
+  if (has_ground_ || !given_) all.emplace_back("ground", has_ground_ ? "on" : "off");
+  return all;
+}
+
+}  // namespace raygate

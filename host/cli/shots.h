@@ -1,0 +1,56 @@
+// From where the pictures of a run are taken, and by which light.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/cli/options.h"
+#include "host/scene/camera.h"
+#include "host/scene/scene.h"
+#include "host/scene/view.h"
+
+namespace raygate {
+
+/// The cameras of all frames, or of the one picture; lamps for a scene that has none, which go with
+/// the camera, so that no frame shows the scene's shadowed side; and whether there is a ground.
+class Shots {
+ public:
+  /// Of a scene as the file has it, which is left as it is. `options` must outlive this. Throws
+  /// InputError as Camera::look_at and framing.
+  Shots(const Options& options, Scene& scene);
+
+  /// Gives `scene`, the same one, the light of frame `number`, from 1; returns its camera.
+  const Camera& light(int number, Scene& scene) const;
+
+  /// A ground catches the shadows of a first look, from above, or where --ground says so.
+  [[nodiscard]] bool has_ground() const { return has_ground_; }
+  /// Upwards in the scene.
+  [[nodiscard]] const glm::dvec3& up() const { return view_.up; }
+
+  /// What to type for the view that was chosen, and for its camera; nothing if a camera was given.
+  [[nodiscard]] const std::string& text() const { return text_; }
+  /// What makes the same picture again of the same scene, by the names of the options.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> options() const;
+
+ private:
+  struct Shot {
+    Camera camera;
+    std::vector<PointLight> lights;
+    glm::vec3 background{0.0f};
+  };
+
+  [[nodiscard]] CameraSetting setting(const Scene& scene, int number) const;
+  [[nodiscard]] std::string view_text(const Scene& scene) const;
+
+  const Options& options_;
+  std::optional<CameraSetting> given_;  // on the command line, in the scene file or the scene
+  View view_;                           // where it is not given
+  std::vector<Shot> shots_;
+  bool has_ground_ = false;
+  std::string text_;
+};
+
+}  // namespace raygate
