@@ -45,6 +45,19 @@ package ray_core_pkg;
   localparam int unsigned ExponentWidth = 9;
   localparam int unsigned GroupWidth = AddressWidth + ExponentWidth + Children * EntryWidth;  // {base, exponent, entries}
 
+  // Whether a child begins surely beyond the limit, a binary32 number without its sign: the limit in the
+  // entry's units, rounded down, is below `enter`.
+  function automatic logic is_beyond(logic [ExponentWidth-1:0] exponent, logic [EnterWidth-1:0] enter,
+                                     logic [30:0] limit);
+    logic signed [10:0] amount;
+    amount    = $signed({2'b0, exponent}) + 11'sd11 - $signed({3'b0, limit[30:23]});
+    is_beyond = (amount > 11'sd11)
+              && (amount > 11'sd23 ? enter != '0 : {12'b0, enter} > ({1'b1, limit[22:0]} >> amount[4:0]));
+  endfunction
+
+  // From the clock edge that takes a node to the one after which its group is there, see box_unit.
+  localparam int unsigned BoxLatency = 12;
+
   // ---- Results: what the core says of a ray
 
   typedef enum logic [1:0] {

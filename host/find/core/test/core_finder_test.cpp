@@ -1,0 +1,140 @@
+// Rays through a core, its reference model, find what CpuFinder finds, bit for bit.
+#include "host/find/core/core_finder.h"
+
+#include <gtest/gtest.h>
+
+#include "host/exact/test/meshes.h"
+#include "host/find/check_finder.h"
+#include "host/find/core/memory_image.h"
+#include "host/find/core/reference_core.h"
+#include "host/find/cpu/cpu_finder.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+
+/// Bodies of which one is flat, one much too large and one far away.
+std::vector<Corners> bodies() {
+  std::vector<Corners> mesh = test::sphere(2);
+  for (const auto& part : {test::box(glm::vec3(-3), glm::vec3(3)),
+                           test::box(glm::vec3(-2, 0.5f, -2), glm::vec3(2, 0.5f, 2)),
+                           test::box(glm::vec3(1000, 0, 0), glm::vec3(1001, 1, 1))}) {
+    mesh.insert(mesh.end(), part.begin(), part.end());
+  }
+  return mesh;
+}
+
+/// Some go through corners, some along an axis, some from a common origin.
+std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int count) {
+  std::vector<Ray> rays;
+  const glm::vec3 shared = random.point(2.5f);
+  while (static_cast<int>(rays.size()) < count) {
+    const glm::vec3 origin = random.below(3) == 0 ? shared : random.point(2.5f);
+    glm::dvec3 way(random.point(1.0f));
+    if (random.below(2) == 0) {
+      const Corners& target =
+          mesh[static_cast<std::size_t>(random.below(static_cast<int>(mesh.size())))];
+      way = glm::dvec3(target[static_cast<std::size_t>(random.below(3))]) - glm::dvec3(origin);
+    } else if (random.below(4) == 0) {
+      way[random.below(3)] = 0.0;
+      way[random.below(3)] = 0.0;
+    }
+    if (largest(way) > 0.0) rays.push_back({origin, scaled_direction(way)});
+  }
+  return rays;
+}
+
+class CoreFinderTest : public testing::Test {
+ protected:
+  /// Throws where the two differ.
+  void check(const std::vector<Ray>& rays, const Search& search, int stack_depth) {
+    auto core = std::make_unique<ReferenceCore>(image_.lines(), stack_depth);
+    core_ = core.get();
+    CheckFinder finder(bvh_, std::make_unique<CoreFinder>(bvh_, std::move(core)),
+                       std::make_unique<CpuFinder>(bvh_));
+    std::vector<NearestHit> hits(rays.size());
+    finder.find(rays, search, hits);
+    for (const NearestHit& hit : hits) found_ += hit.slot != NearestHit::kNone;
+    counters_ = core_->counters();
+  }
+
+  std::vector<Corners> mesh_ = bodies();
+  Bvh bvh_{test::scene_of(mesh_)};
+  MemoryImage image_{bvh_};
+  Random random_;
+  ReferenceCore* core_ = nullptr;
+  CoreCounters counters_;
+  int found_ = 0;
+};
+
+TEST_F(CoreFinderTest, NearestHitsAreTheCpuFinders) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 20'000);
+  check(rays, {}, 8);
+  EXPECT_GT(found_, 19'000);
+  EXPECT_GT(counters_.doubts, 100u);
+  EXPECT_GT(counters_.near_ties, 100u);
+  EXPECT_EQ(counters_.rests, 0u);
+  EXPECT_LT(counters_.triangles, rays.size() * mesh_.size() / 16) << "boxes cull";
+}
+
+TEST_F(CoreFinderTest, AShortStackCostsWalksAndNoHits) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
+  check(rays, {}, 1);
+  EXPECT_GT(counters_.rests, 1'000u);
+  EXPECT_GT(counters_.rays, rays.size());
+}
+
+TEST_F(CoreFinderTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 10'000);
+  std::vector<float> limits, enough;
+  std::vector<std::uint32_t> ignored;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    limits.push_back(random_.below(4) == 0 ? std::numeric_limits<float>::infinity()
+                                           : random_.uniform(0.01f, 3.0f));
+    enough.push_back(random_.below(2) == 0 ? limits.back() : 0.5f * limits.back());
+    ignored.push_back(static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
+  }
+  check(rays, {.limits = limits}, 8);
+  EXPECT_GT(found_, 1'000);
+  check(rays, {.limits = limits, .ignored = ignored}, 8);
+  const std::uint64_t nodes = counters_.nodes;
+  check(rays, {.limits = limits, .ignored = ignored, .enough_before = enough}, 8);
+  EXPECT_LT(counters_.nodes, nodes);
+}
+
+TEST_F(CoreFinderTest, WithoutCullingEveryTriangleIsTested) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 50);
+  std::vector<RayWork> work(rays.size());
+  check(rays, {.culling = false, .work = work}, 8);
+  EXPECT_EQ(counters_.triangles, rays.size() * mesh_.size());
+  for (const RayWork& ray : work) EXPECT_EQ(ray.tests, mesh_.size());
+}
+
+TEST(MemoryImage, OfNothingIsANodeWithoutChildren) {
+  const Bvh bvh(Scene{});
+  const MemoryImage image(bvh);
+  ASSERT_EQ(image.lines().size(), 1u);
+  CoreFinder finder(bvh, std::make_unique<ReferenceCore>(image.lines()));
+  const Ray ray{glm::vec3(0), glm::vec3(1, 0, 0)};
+  NearestHit hit;
+  finder.find({&ray, 1}, {}, {&hit, 1});
+  EXPECT_EQ(hit.slot, NearestHit::kNone);
+}
+
+TEST(MemoryImage, LinesHoldWhatTheyAreMadeOf) {
+  NodeLine node;
+  node.origin = {1.0f, -2.0f, 3.0f};
+  node.exponent = {1, 254, 127};
+  node.base = 0x8000001;
+  for (std::uint32_t i = 0; i < NodeLine::kChildren; ++i) {
+    node.child[i] = {
+        i + 2, {static_cast<std::uint8_t>(i), 1, 255}, {static_cast<std::uint8_t>(i + 9), 2, 255}};
+  }
+  EXPECT_EQ(NodeLine(node.line()).line().words, node.line().words);
+  EXPECT_EQ(NodeLine(node.line()).child[6].high[0], 15);
+  EXPECT_EQ(NodeLine(node.line()).base, 0x8000001u);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,68 @@
+// box_unit against its reference, bit for bit, a node in every clock.
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "Vbox_unit_behavioural.h"
+#include "Vbox_unit_structural.h"
+#include "host/find/core/test/box_cases.h"
+#include "sim/model.h"
+
+namespace raygate {
+namespace {
+
+template <class Top>
+class BoxUnitTest : public testing::Test {};
+using Tops = testing::Types<Vbox_unit_behavioural, Vbox_unit_structural>;
+TYPED_TEST_SUITE(BoxUnitTest, Tops);
+
+constexpr std::size_t kLatency = 12;  // ray_core_pkg::BoxLatency
+
+/// Bits of a port.
+template <class Port>
+std::uint32_t bits(const Port& port, unsigned first, unsigned width) {
+  std::uint64_t two = port[first / 32];
+  if (first % 32 + width > 32) two |= std::uint64_t{port[first / 32 + 1]} << 32;
+  return static_cast<std::uint32_t>(two >> first % 32 & ((std::uint64_t{1} << width) - 1));
+}
+
+TYPED_TEST(BoxUnitTest, EqualsItsReference) {
+  constexpr std::uint32_t kSeed = 20261123;
+  BoxCases cases(kSeed);
+  Model<TypeParam> model;
+  std::deque<BoxCase> taken;  // the latest first
+  int entered = 0;
+  for (int clock = 0; clock < 50'000; ++clock) {
+    const BoxCase box = cases.next();
+    const BoxRay ray = box.read();
+    const MemoryLine line = box.node.line();
+    std::memcpy(&model->node_i, &line, sizeof line);
+    std::memcpy(&model->origin_i, &ray.origin, sizeof ray.origin);
+    std::memcpy(&model->inverse_i, &ray.inverse, sizeof ray.inverse);
+    model->limit_i = std::bit_cast<std::uint32_t>(ray.limit);
+    model->every_box_i = ray.every_box;
+    taken.push_front(box);
+    model.clock();
+    if (taken.size() < kLatency) continue;
+    taken.resize(kLatency);
+    const BoxGroup expected = enter_boxes(taken.back().node, taken.back().read());
+    BoxGroup group{
+        .base = bits(model->group_o, 156, 28), .exponent = bits(model->group_o, 147, 9), .size = 0};
+    ASSERT_EQ(model->inner_o & model->leaf_o, 0);
+    for (unsigned n = 0; n < 7; ++n) {
+      if (((model->inner_o | model->leaf_o) >> n & 1) == 0) continue;
+      ASSERT_EQ(group.size, static_cast<int>(n)) << "no gaps";
+      const unsigned at = 21 * n;
+      group.entry[n] = {bits(model->group_o, at + 9, 12), bits(model->group_o, at + 3, 6),
+                        bits(model->group_o, at, 3)};
+      ASSERT_EQ(model->inner_o >> n & 1, group.entry[n].count == 0);
+      ++group.size;
+    }
+    entered += group.size;
+    ASSERT_EQ(group, expected) << "seed " << kSeed << ", clock " << clock;
+  }
+  EXPECT_GT(entered, 40'000);
+}
+
+}  // namespace
+}  // namespace raygate
