@@ -72,6 +72,8 @@ Run
   --save-every SECONDS       save the unfinished pictures now and then
   --stats FILE.json          all statistics as JSON; - prints them
   --strict                   refuse faces without area, which are left out
+  --smooth DEGREES           faces without normals are smooth where they meet at
+                             so much or less (as the OBJ's s statements say)
   --no-scene-file            do not read the .json beside an OBJ
   -q, --quiet; -v, --verbose print no statistics and no progress; or all of them
   -h, --help; --version
@@ -82,7 +84,7 @@ line, the scene or an output cannot be used; 130 interrupted (partial pictures).
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
-  std::string scene, size, camera, view, up, fov, ground, crop, seed;
+  std::string scene, size, camera, view, up, fov, ground, crop, seed, smooth;
   RawEngineOptions engine;
   RawOutputOptions output;
   RawLightOptions light;
@@ -109,6 +111,7 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   declare_light_options(app, raw.light);
   declare_engine_options(app, raw.engine);
   value("--seed", raw.seed);
+  value("--smooth", raw.smooth);
   flag("--strict", options.strict);
   flag("--no-scene-file", raw.no_scene_file);
   flag("-q,--quiet", options.quiet);
@@ -152,6 +155,7 @@ void check_values(const RawValues& raw, Options& options) {
     options.light.samples = kCpuSamples;
   }
   if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);
+  if (!raw.smooth.empty()) options.smooth = parse_smooth(raw.smooth);
 }
 
 /// The file that the scene is, or that stands beside it.

@@ -42,7 +42,8 @@ struct Options : EngineOptions {
   LightOptions light;
   std::uint64_t seed = 0;
   bool quiet = false, verbose = false;
-  bool strict = false;  ///< faces without area are refused
+  bool strict = false;           ///< faces without area are refused
+  std::optional<double> smooth;  ///< degrees, as LoadOptions has it
 
   [[nodiscard]] const std::filesystem::path& obj() const {
     return scene_file ? scene_file->obj : scene;

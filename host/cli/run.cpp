@@ -238,8 +238,9 @@ void run(const Options& options) {
   report.options = options;
 
   require_scene(options);
-  Scene scene = load_scene(
-      options.obj(), {.strict = options.strict, .threads = static_cast<int>(options.threads)});
+  Scene scene = load_scene(options.obj(), {.strict = options.strict,
+                                           .smooth = options.smooth,
+                                           .threads = static_cast<int>(options.threads)});
   if (options.scene_file) add_lights(*options.scene_file, scene);
   report.load_seconds = seconds_since(start);
   report.triangles = scene.triangles.size();

@@ -113,6 +113,7 @@ std::vector<std::pair<std::string, std::string>> Shots::options() const {
       text.append(text.empty() ? "" : ",").append(format_exactly(value));
     return text;
   };
+  if (options_.smooth) all.emplace_back("smooth", format_exactly(*options_.smooth));
   const ViewOptions& asked = options_.view;
   std::optional<glm::dvec3> up = asked.up;
   if (given_) {

@@ -91,6 +91,14 @@ double parse_fov(const std::string& text) {
   return *fov;
 }
 
+double parse_smooth(const std::string& text) {
+  const auto angle = parse_number<double>(text);
+  if (!angle || !(*angle >= 0.0 && *angle <= 180.0)) {
+    fail_value("--smooth", text, "degrees from 0 to 180");
+  }
+  return *angle;
+}
+
 PixelRect parse_crop(const std::string& text, Size size) {
   const std::string frame = std::to_string(size.width) + "x" + std::to_string(size.height);
   PixelRect window{0, 0, size.width, size.height};

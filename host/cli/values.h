@@ -26,6 +26,7 @@ struct Size {
 [[nodiscard]] std::pair<double, double> parse_view(const std::string& text);
 [[nodiscard]] glm::dvec3 parse_axis(const std::string& text);            ///< "z", "-z"
 [[nodiscard]] double parse_fov(const std::string& text);                 ///< "40"
+[[nodiscard]] double parse_smooth(const std::string& text);              ///< "30"
 [[nodiscard]] PixelRect parse_crop(const std::string& text, Size size);  ///< "10,10,20,20"
 [[nodiscard]] std::uint64_t parse_seed(const std::string& text);         ///< "7"
 

@@ -108,11 +108,12 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
 /// A scene and the tree around it.
 class PythonScene {
  public:
-  PythonScene(const std::string& file, bool strict, std::optional<int> threads) {
+  PythonScene(const std::string& file, bool strict, std::optional<double> smooth,
+              std::optional<int> threads) {
     const std::filesystem::path path = file;
     if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
-    scene_ = load_scene(file_ ? file_->obj : path, {.strict = strict});
+    scene_ = load_scene(file_ ? file_->obj : path, {.strict = strict, .smooth = smooth});
     if (file_) add_lights(*file_, scene_);
     build(threads);
   }
@@ -303,8 +304,8 @@ NB_MODULE(_raygate, m) {
   nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
   raygate::add_float_reference(m);
   nb::class_<PythonScene>(m, "Scene")
-      .def(nb::init<const std::string&, bool, std::optional<int>>(), "file"_a, "strict"_a,
-           "threads"_a.none())
+      .def(nb::init<const std::string&, bool, std::optional<double>, std::optional<int>>(),
+           "file"_a, "strict"_a, "smooth"_a.none(), "threads"_a.none())
       .def(nb::init<const raygate::Vectors3&, std::optional<int>>(), "corners"_a,
            "threads"_a.none())
       .def_prop_ro("triangle_count",

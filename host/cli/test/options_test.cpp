@@ -232,6 +232,10 @@ TEST(Options, Views) {
   for (const char* fov : {"0", "180", "wide"}) {
     expect_error({"a.obj", "--fov", fov}, "--fov: expected ");
   }
+  for (const char* angle : {"-1", "181", "nan", "flat"}) {
+    expect_error({"a.obj", "--smooth", angle}, "--smooth: expected degrees from 0 to 180");
+  }
+  EXPECT_EQ(parse({"a.obj", "--smooth", "30"}).smooth, 30.0);
   expect_error({"a.obj", "--ground", "yes"}, "--ground: expected on or off");
   EXPECT_EQ(parse({"a.obj", "--ground", "off"}).ground, false);
   EXPECT_FALSE(parse({"a.obj"}).ground);
@@ -246,41 +250,16 @@ TEST(Options, NamesThatPeopleType) {
 
 TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {
   const std::string help = parse({"--help"}).information;
-  for (const char* option : {"-o, --output",
-                             "--size",
-                             "--crop",
-                             "--camera",
-                             "--view",
-                             "--up AXIS",
-                             "--fov",
-                             "--exposure",
-                             "--ground on|off",
-                             "--tone",
-                             "--channels",
-                             "--false-colour",
-                             "--frames",
-                             "--save-every",
-                             "--stats",
-                             "--integrator",
-                             "--spp, --samples",
-                             "--filter",
-                             "--depth, --max-depth",
-                             "--threshold",
-                             "--ambient",
-                             "--seed",
-                             "--engine",
-                             "--unit",
-                             "--lanes",
-                             "--threads",
-                             "--no-skip",
-                             "--strict",
-                             "--no-scene-file",
-                             "-q, --quiet",
-                             "-v, --verbose",
-                             "--arith",
-                             "--point-error",
-                             "-h, --help",
-                             "--version"}) {
+  for (const char* option :
+       {"-o, --output",    "--size",           "--crop",       "--camera",
+        "--view",          "--up AXIS",        "--fov",        "--exposure",
+        "--ground on|off", "--smooth",         "--tone",       "--channels",
+        "--false-colour",  "--frames",         "--save-every", "--stats",
+        "--integrator",    "--spp, --samples", "--filter",     "--depth, --max-depth",
+        "--threshold",     "--ambient",        "--seed",       "--engine",
+        "--unit",          "--lanes",          "--threads",    "--no-skip",
+        "--strict",        "--no-scene-file",  "-q, --quiet",  "-v, --verbose",
+        "--arith",         "--point-error",    "-h, --help",   "--version"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
   for (const SkipName& skip : kSkipNames) {

@@ -28,11 +28,17 @@ __all__ = ["InputError", "Scene", "float", "results"]
 class Scene:
     """Triangles, materials, lights: an OBJ, glTF, PLY or STL file, or a scene file (JSON)."""
 
-    def __init__(self, file, *, strict=False, threads=None):
+    def __init__(self, file, *, strict=False, smooth=None, threads=None):
         """Reads `file` and builds its tree. InputError, a ValueError, says with file and line what
-        cannot be used. `strict`: refuse faces without area. `threads`: one per
-        processor if None, here as everywhere."""
-        self._scene = _raygate.Scene(os.fsdecode(file), bool(strict),
+        cannot be used. `strict`: refuse faces without area. `smooth`: degrees at which faces
+        without normals may meet to be smooth. `threads`: one per processor if None, here as
+        everywhere."""
+        if smooth is not None:
+            smooth = _numbers("smooth", smooth)
+            if smooth.shape != () or not 0 <= smooth <= 180:
+                raise InputError(f"smooth: found {smooth}, expected degrees from 0 to 180")
+            smooth = smooth.item()
+        self._scene = _raygate.Scene(os.fsdecode(file), bool(strict), smooth,
                                      _whole("threads", threads, 1))
 
     @classmethod

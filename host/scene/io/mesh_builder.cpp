@@ -6,6 +6,7 @@
 #include "host/exact/exact_sign.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/polygon_cutter.h"
+#include "host/scene/io/smooth_normals.h"
 
 namespace raygate {
 
@@ -79,10 +80,11 @@ void MeshBuilder::add_face(std::span<const FileCorner> corners, std::size_t line
 }
 
 void MeshBuilder::assign_faces(std::size_t begin, std::size_t end, std::uint32_t material,
-                               std::uint32_t object) {
+                               std::uint32_t object, std::uint32_t group) {
   for (std::size_t i = begin; i < end; ++i) {
     faces_[i].material = material;
     faces_[i].object = object;
+    faces_[i].group = group;
   }
 }
 
@@ -144,7 +146,8 @@ void MeshBuilder::place_positions(Scene& scene) {
   for (Corner& corner : corners_) corner.position = new_index[corner.position];
 }
 
-void MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
+std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
+  std::vector<std::uint32_t> groups;
   PolygonCutter cutter;
   std::vector<glm::vec3> polygon;
   Warner dropped, touching, no_direction;
@@ -187,6 +190,10 @@ void MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
       Triangle& triangle = scene.triangles.emplace_back();
       triangle.material = face.material;
       triangle.object = face.object;
+      if (face.group != 0 || !groups.empty()) {
+        groups.resize(scene.triangles.size() - 1);
+        groups.push_back(face.group);
+      }
       for (int i = 0; i < 3; ++i) {
         const Corner& corner = corners[piece[i]];
         triangle.vertices[i] = corner.position;
@@ -198,6 +205,7 @@ void MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
   dropped.report(file_name_, "face of zero area, left out", scene);
   touching.report(file_name_, "polygon crosses or touches itself, cut as well as can be", scene);
   no_direction.report(file_name_, "normal of length 0, the face is taken as flat", scene);
+  return groups;
 }
 
 void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
@@ -206,10 +214,11 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   }
   check_indices();
   place_positions(scene);
-  cut_faces(options, scene);
+  const std::vector<std::uint32_t> groups = cut_faces(options, scene);
   if (scene.triangles.empty()) throw InputError(file_name_ + ": no face has an area");
   scene.normals = std::move(normals_);
   scene.texcoords = std::move(texcoords_);
+  if (options.smooth || !groups.empty()) add_smooth_normals(groups, options.smooth, scene);
 }
 
 }  // namespace raygate

@@ -32,9 +32,10 @@ class MeshBuilder {
   /// At least three corners. `line` is for messages; 0 in a file without lines.
   void add_face(std::span<const FileCorner> corners, std::size_t line);
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
-  /// Gives faces by number, from `begin` to `end`, their material and object; 0 before.
+  /// Gives faces by number, from `begin` to `end`, their material, object and smoothing group; 0
+  /// before. Group 0 is flat.
   void assign_faces(std::size_t begin, std::size_t end, std::uint32_t material,
-                    std::uint32_t object);
+                    std::uint32_t object, std::uint32_t group = 0);
 
   /// What a file has of vertices.
   struct Counts {
@@ -63,7 +64,7 @@ class MeshBuilder {
   struct Face {
     std::size_t end;  // of its corners; they begin where the last face's end
     std::size_t line;
-    std::uint32_t material = 0, object = 0;
+    std::uint32_t material = 0, object = 0, group = 0;
   };
   class Warner;
 
@@ -71,7 +72,9 @@ class MeshBuilder {
                                       std::size_t line) const;
   void check_indices() const;
   void place_positions(Scene& scene);
-  void cut_faces(const LoadOptions& options, Scene& scene) const;
+  /// Returns the smoothing groups of the triangles; empty: all are flat.
+  [[nodiscard]] std::vector<std::uint32_t> cut_faces(const LoadOptions& options,
+                                                     Scene& scene) const;
 
   std::string file_name_;
   Counts earlier_;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 
 #include "host/scene/scene.h"
 
@@ -12,6 +13,9 @@ struct LoadOptions {
   /// A face of exactly zero area (after rounding to float) is an error; false: it is left out, and
   /// one warning counts them.
   bool strict = false;
+  /// Faces without normals are smooth over edges at which they are at most so far apart, in degrees
+  /// from 0 to 180; none: as the file's smoothing groups say, where it can have any.
+  std::optional<double> smooth = {};
   int threads = 1;                   ///< that read the file; they change nothing of the scene
   std::size_t part_size = 1u << 18;  ///< bytes of the file that are worth a thread's while
 };

@@ -19,10 +19,9 @@ constexpr std::array<std::string_view, 26> kOtherShapes{
     "surf",  "parm", "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech",
     "stech", "bsp",  "bzp",  "cdc",    "cdp",  "res",  "t",    "vw"};
 
-// What changes no polygon and no material: smoothing and merging groups, display attributes.
-constexpr std::array<std::string_view, 10> kOfNoConsequence{
-    "s",   "mg",         "bevel",     "c_interp", "d_interp",
-    "lod", "shadow_obj", "trace_obj", "usemap",   "maplib"};
+// What changes no polygon and no material: merging groups, display attributes.
+constexpr std::array<std::string_view, 9> kOfNoConsequence{
+    "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "usemap", "maplib"};
 
 // Bits of a corner's form.
 constexpr int kHasTexcoord = 1;
@@ -71,7 +70,8 @@ void ObjPart::read_statement(std::string_view statement) {
     mesh_.add_texcoord({numbers[0], numbers.size() > 1 ? numbers[1] : 0.0});
   } else if (keyword == "f" || keyword == "fo") {  // fo: of old files, to be read as f
     read_face(words);
-  } else if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "mtllib") {
+  } else if (keyword == "g" || keyword == "o" || keyword == "s" || keyword == "usemtl" ||
+             keyword == "mtllib") {
     keep(statement);
   } else if (is_one_of(kOtherShapes, keyword)) {
     keep_once(keyword);

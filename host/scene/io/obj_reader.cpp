@@ -1,6 +1,7 @@
 #include "host/scene/io/obj_reader.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <utility>
 
@@ -55,7 +56,7 @@ void ObjReader::assign_faces(std::size_t begin, std::size_t end) {
     object_number_ = objects_.number_of(name.empty() ? "default" : name);
     object_is_known_ = true;
   }
-  mesh_.assign_faces(begin, end, material_number_, object_number_);
+  mesh_.assign_faces(begin, end, material_number_, object_number_, smoothing_group_);
 }
 
 void ObjReader::read_statement(std::string_view statement) {
@@ -65,6 +66,8 @@ void ObjReader::read_statement(std::string_view statement) {
   } else if (keyword == "o") {
     object_ = statement;
     object_is_known_ = false;
+  } else if (keyword == "s") {
+    set_smoothing(statement);
   } else if (keyword == "usemtl") {
     use_material(std::string(statement));
   } else if (keyword == "mtllib") {
@@ -84,6 +87,19 @@ void ObjReader::set_group(std::string_view names) {
     group_.append(group_.empty() ? "" : " ").append(name);
   }
   object_is_known_ = false;
+}
+
+void ObjReader::set_smoothing(std::string_view words) {
+  const std::string_view word = take_word_before_comment(words);
+  const char* const end = word.data() + word.size();
+  smoothing_group_ = 0;
+  const auto [rest, error] = std::from_chars(word.data(), end, smoothing_group_);
+  if (word == "off" || (error == std::errc() && rest == end)) return;
+  smoothing_group_ = word == "on" ? 1 : 0;
+  if (word != "on") {
+    warn_once("s",
+              "s " + in_quotes(word) + ", expected the number of a group or off; taken as off");
+  }
 }
 
 void ObjReader::use_material(const std::string& name) {

@@ -31,10 +31,10 @@ class NameTable {
   std::vector<std::string> names_;
 };
 
-/// Reads v, vt, vn, f, g, o, usemtl and mtllib; vertices and faces part by part (see ObjPart), on
-/// several threads. Points, lines and free-form curves and surfaces are left out with a
-/// warning, what only concerns a modeller without one; all else is an InputError. (B. Wavefront's
-/// "Object Files", version 3.0, is the source of the statements.)
+/// Reads v, vt, vn, f, g, o, s, usemtl and mtllib; vertices and faces part by part (see ObjPart),
+/// on several threads. Points, lines and free-form curves and surfaces are left out with a warning,
+/// what only concerns a modeller without one; all else is an InputError. (B. Wavefront's "Object
+/// Files", version 3.0, is the source of the statements.)
 class ObjReader final : public StatementReader {
  public:
   ObjReader(const std::filesystem::path& file, MeshBuilder& mesh,
@@ -56,6 +56,7 @@ class ObjReader final : public StatementReader {
   void read_statement(std::string_view statement);
   void use_material(const std::string& name);
   void set_group(std::string_view names);
+  void set_smoothing(std::string_view words);
 
   MeshBuilder& mesh_;
   MtlLoader mtl_;
@@ -65,6 +66,7 @@ class ObjReader final : public StatementReader {
   std::uint32_t object_number_ = 0;
   bool object_is_known_ = false;
   std::uint32_t material_number_ = kNoIndex;
+  std::uint32_t smoothing_group_ = 0;
 };
 
 }  // namespace raygate
