@@ -46,6 +46,11 @@ struct Film {
   /// depends on the engine, the skips and the window, not on the number of threads.
   std::vector<std::uint32_t> tests;
   std::vector<std::uint32_t> doubts;  ///< those tests that float32 could not decide
+
+  /// Where a pixel of the window is in the arrays.
+  [[nodiscard]] std::size_t index_of(int x, int y) const {
+    return std::size_t(y - window.y0) * std::size_t(window.width()) + std::size_t(x - window.x0);
+  }
 };
 
 }  // namespace raygate

@@ -240,7 +240,13 @@ Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
     }
     lamp_of_slot_[slot] = static_cast<std::uint32_t>(points().size() + at->second);
     AreaLight& light = areas_[at->second];
-    const double area = 0.5 * glm::length(triangle_normal(bvh.corners_of(slot)));
+    const Corners corners = bvh.corners_of(slot);
+    if (is_new) light.low = light.high = corners[0];
+    for (const glm::vec3& corner : corners) {
+      light.low = glm::min(light.low, corner);
+      light.high = glm::max(light.high, corner);
+    }
+    const double area = 0.5 * glm::length(triangle_normal(corners));
     light.area_up_to.push_back((light.slots.empty() ? 0.0 : light.area()) + area);
     light.slots.push_back(slot);
   }

@@ -31,7 +31,8 @@ bool light_first_look(Scene& scene, const Camera& camera);
 /// face. Each part of its area is as likely to be sampled as any other.
 struct AreaLight {
   std::vector<std::uint32_t> slots;
-  std::vector<double> area_up_to;  ///< of the slots so far, each included
+  std::vector<double> area_up_to;   ///< of the slots so far, each included
+  glm::vec3 low{0.0f}, high{0.0f};  ///< of the box around it
   glm::dvec3 radiance{0.0};
   bool is_flat = false;
   glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< of a flat one

@@ -235,6 +235,8 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     sums.albedo.assign(film.albedo.size(), glm::dvec3(0.0));
   }
   const Lights lights(scene, bvh);
+  // One sample is the pixel's middle: where it falls is no matter of chance.
+  if (options.samples > 1 && !lights.areas().empty()) sums.lamp_edges.assign(film.color.size(), 0);
   const RenderJob job{scene, bvh, camera, options, lights, clearances};
   Crew(job, tiles, std::move(first_finder), make_finder, progress, film, sums, stats).run();
   if (stats.find.common_records != 0) {

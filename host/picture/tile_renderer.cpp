@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "host/picture/lamp_edges.h"
 #include "host/picture/view_pyramid.h"
 #include "host/stopwatch.h"
 
@@ -15,6 +16,8 @@ namespace {
 constexpr int kBlockWidth = 4, kBlockHeight = 2;
 constexpr int kSquare = 8;
 constexpr std::uint32_t kFilterStream = 0;
+constexpr std::uint32_t kLampStream = 7;          // the integrators' streams are made from others
+constexpr int kLooks = 8;                         // at a lamp's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 constexpr double kBrightest = std::numeric_limits<float>::max();
 
@@ -58,35 +61,37 @@ void TileRenderer::list_pixels(const PixelRect& tile) {
   for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
     for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
       for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
-        pixels_.push_back({pixel.x0, pixel.y0,
-                           std::size_t(pixel.y0 - film_.window.y0) * film_.window.width() +
-                               std::size_t(pixel.x0 - film_.window.x0)});
+        pixels_.push_back({pixel.x0, pixel.y0, film_.index_of(pixel.x0, pixel.y0)});
       });
     });
   });
 }
 
 /// With one sample a pixel its ray goes through the pixel's middle.
-void TileRenderer::make_camera_rays() {
+Ray TileRenderer::camera_ray(int x, int y, const Sampler& sampler, std::uint32_t index,
+                             std::uint32_t stream) const {
   const RenderOptions& options = job_.options;
+  glm::dvec2 offset(0.0);
+  if (options.samples > 1) {
+    const SquarePoint<float> u = sampler(index, stream);
+    offset = filter_offset(options.filter, {u.x, u.y});
+  }
+  return {job_.camera.eye(), job_.camera.direction((x + 0.5 + offset.x) / film_.width,
+                                                   (y + 0.5 + offset.y) / film_.height)};
+}
+
+void TileRenderer::make_camera_rays() {
   wave_.clear();
   wave_.depth = 0;
   for (const Pixel& pixel : pixels_) {
-    const Sampler sampler(options.seed, pixel.x, pixel.y);
+    const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int i = 0; i < count_; ++i) {
       const auto index = static_cast<std::uint32_t>(first_sample_ + i);
-      glm::dvec2 offset(0.0);
-      if (options.samples > 1) {
-        const SquarePoint<float> u = sampler(index, kFilterStream);
-        offset = filter_offset(options.filter, {u.x, u.y});
-      }
       Burden& burden = wave_.burdens.emplace_back();
       burden.sample = static_cast<std::uint32_t>(wave_.rays.size());
       burden.stream = sampler.key();
       burden.index = index;
-      wave_.rays.push_back(
-          {job_.camera.eye(), job_.camera.direction((pixel.x + 0.5 + offset.x) / film_.width,
-                                                    (pixel.y + 0.5 + offset.y) / film_.height)});
+      wave_.rays.push_back(camera_ray(pixel.x, pixel.y, sampler, index, kFilterStream));
     }
   }
 }
@@ -103,6 +108,7 @@ bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
   output_.first_surface.assign(samples, {});
   output_.shadows.clear();
   from_lamps_.assign(samples, glm::vec3(0.0f));
+  sharpened_.assign(pixels_.size(), glm::dvec3(0.0));
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
   if (job_.options.skips.empty_tiles &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
@@ -118,7 +124,48 @@ bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
     if (!keep_going()) return false;
     trace_wave();
   }
+  sharpen_lamps(tile);
   return true;
+}
+
+/// Where a lamp's edge runs through a pixel, looks more often what camera rays see of lamps: the
+/// mean of that takes the place of what the samples have seen. A lamp's own light is all that is
+/// exchanged, whatever else the samples brought; and that is so whatever emission_of() says.
+void TileRenderer::sharpen_lamps(const PixelRect& tile) {
+  if (sums_.lamp_edges.empty()) return;
+  Stopwatch watch;
+  std::size_t rays = 0;
+  if (first_sample_ == 0) rays = find_lamp_edges(job_, finder_, film_, tile, sums_.lamp_edges);
+  wave_.clear();
+  const int looks = count_ * kLooks;
+  for (const Pixel& pixel : pixels_) {
+    if (sums_.lamp_edges[pixel.index] == 0) continue;
+    const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
+    for (int i = 0; i < looks; ++i) {
+      wave_.rays.push_back(camera_ray(pixel.x, pixel.y, sampler,
+                                      static_cast<std::uint32_t>(first_sample_ * kLooks + i),
+                                      kLampStream));
+    }
+  }
+  rays += wave_.rays.size();
+  stats_.rays += rays;
+  stats_.camera_rays += rays;
+  if (wave_.rays.empty()) return;
+  hits_.resize(wave_.rays.size());
+  stats_.shade_seconds += watch.lap();
+  finder_.find(wave_.rays, {.common_origin = true, .culling = job_.options.skips.culling}, hits_);
+  watch.lap();
+  auto hit = hits_.begin();
+  for (std::size_t p = 0; p < pixels_.size(); ++p) {
+    if (sums_.lamp_edges[pixels_[p].index] == 0) continue;
+    glm::dvec3 looked(0.0), seen(0.0);
+    for (int i = 0; i < looks; ++i) looked += glm::dvec3(job_.emission_of((hit++)->slot));
+    for (int i = 0; i < count_; ++i) {
+      seen += glm::dvec3(job_.emission_of(seen_[p * count_ + i].slot));
+    }
+    sharpened_[p] = looked / double{kLooks} - seen;
+  }
+  stats_.shade_seconds += watch.lap();
 }
 
 /// The rays of one depth, and the shadow rays from where they end: these in several waves where
@@ -194,7 +241,8 @@ void TileRenderer::write() {
       if (!film_.tests.empty()) film_.tests[pixel] += seen.work.tests;
       if (!film_.doubts.empty()) film_.doubts[pixel] += seen.work.doubts;
     }
-    film_.color[pixel] = glm::vec4(glm::min(color / samples_so_far, kBrightest));
+    color += glm::dvec4(sharpened_[p], 0.0);
+    film_.color[pixel] = glm::vec4(glm::clamp(color / samples_so_far, 0.0, kBrightest));
     if (!film_.albedo.empty()) film_.albedo[pixel] = glm::vec3(albedo / samples_so_far);
     if (!sums_.color.empty()) sums_.color[pixel] = color;
     if (!sums_.albedo.empty()) sums_.albedo[pixel] = albedo;

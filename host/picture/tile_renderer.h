@@ -12,25 +12,17 @@
 #include "host/light/integrator.h"
 #include "host/light/shadow_rays.h"
 #include "host/light/wave.h"
-#include "host/picture/renderer.h"
-#include "host/scene/camera.h"
+#include "host/picture/render_job.h"
 
 namespace raygate {
 
-/// What all threads read.
-struct RenderJob {
-  const Scene& scene;
-  const Bvh& bvh;
-  const Camera& camera;
-  const RenderOptions& options;
-  const Lights& lights;
-  const Clearances& clearances;
-};
-
-/// What the samples of a pixel add up to, where they come in several passes.
+/// What passes over a pixel leave for the next: what its samples add up to, where there are
+/// several.
 struct FilmSums {
   std::vector<glm::dvec4> color;
   std::vector<glm::dvec3> albedo;  ///< if the film has it
+  std::vector<std::uint8_t>
+      lamp_edges;  ///< not 0: find_lamp_edges() says so, from the first pass on
 };
 
 /// Renders tiles into a film. All rays of one depth are one wave, and all shadow rays of a depth
@@ -59,7 +51,10 @@ class TileRenderer {
   };
 
   void list_pixels(const PixelRect& tile);
+  [[nodiscard]] Ray camera_ray(int x, int y, const Sampler& sampler, std::uint32_t index,
+                               std::uint32_t stream) const;
   void make_camera_rays();
+  void sharpen_lamps(const PixelRect& tile);
   void trace_wave();
   void trace_shadows();
   void see();
@@ -84,6 +79,7 @@ class TileRenderer {
   bool is_counting_;
   WaveOutput output_;
   std::vector<glm::vec3> from_lamps_;  // by sample: what shadow rays have brought
+  std::vector<glm::dvec3> sharpened_;  // by pixel: see sharpen_lamps()
   Wave wave_;
   std::vector<NearestHit> hits_;  // of the wave
   std::vector<RayWork> work_;     // of the wave, if it is counted

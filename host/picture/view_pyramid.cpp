@@ -10,8 +10,10 @@ namespace {
 /// The pyramid from the eye through a part of the picture.
 class ViewPyramid {
  public:
-  ViewPyramid(const Camera& camera, double x0, double y0, double x1, double y1)
+  ViewPyramid(const Camera& camera, const Film& film, const PixelRect& tile, double margin)
       : eye_(camera.eye()) {
+    const double x0 = (tile.x0 - margin) / film.width, y0 = (tile.y0 - margin) / film.height,
+                 x1 = (tile.x1 + margin) / film.width, y1 = (tile.y1 + margin) / film.height;
     const glm::dvec3 corners[4] = {camera.direction(x0, y0), camera.direction(x1, y0),
                                    camera.direction(x1, y1), camera.direction(x0, y1)};
     for (int k = 0; k < 4; ++k) {
@@ -58,13 +60,16 @@ struct PyramidVisitor {
 
 bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, const PixelRect& tile,
                       double margin) {
-  const ViewPyramid pyramid(camera, (tile.x0 - margin) / film.width,
-                            (tile.y0 - margin) / film.height, (tile.x1 + margin) / film.width,
-                            (tile.y1 + margin) / film.height);
+  const ViewPyramid pyramid(camera, film, tile, margin);
   PyramidVisitor visitor{pyramid};
   WalkStack<Whole> stack({});
   Waiting<Whole> leaf;
   return next_leaf(bvh, visitor, stack, leaf);
+}
+
+bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
+                 const Film& film, const PixelRect& tile, double margin) {
+  return !ViewPyramid(camera, film, tile, margin).is_beside(low, high);
 }
 
 }  // namespace raygate

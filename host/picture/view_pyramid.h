@@ -12,4 +12,8 @@ namespace raygate {
 [[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
                                     const PixelRect& tile, double margin);
 
+/// The same of a ray that may meet the box from `low` to `high`.
+[[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
+                               const Film& film, const PixelRect& tile, double margin);
+
 }  // namespace raygate

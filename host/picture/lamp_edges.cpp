@@ -1,0 +1,49 @@
+#include "host/picture/lamp_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "host/find/finder.h"
+#include "host/picture/view_pyramid.h"
+
+namespace raygate {
+
+std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
+                            const PixelRect& tile, std::span<std::uint8_t> is_edge) {
+  // Corners of pixels, up to so many beyond the tile's own.
+  const int beyond = static_cast<int>(std::ceil(filter_radius(job.options.filter) - 0.5));
+  const auto may_see = [&](const AreaLight& lamp) {
+    return may_see_box(lamp.low, lamp.high, job.camera, film, tile, beyond + 1.0);
+  };
+  if (std::ranges::none_of(job.lights.areas(), may_see)) return 0;
+  const int columns = tile.width() + 1 + 2 * beyond, rows = tile.height() + 1 + 2 * beyond;
+  std::vector<Ray> rays;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      rays.push_back(
+          {job.camera.eye(), job.camera.direction(double(tile.x0 - beyond + x) / film.width,
+                                                  double(tile.y0 - beyond + y) / film.height)});
+    }
+  }
+  std::vector<NearestHit> hits(rays.size());
+  finder.find(rays, {.common_origin = true, .culling = job.options.skips.culling}, hits);
+  const auto emission_at = [&](int x, int y) {
+    return job.emission_of(hits[std::size_t(y) * std::size_t(columns) + std::size_t(x)].slot);
+  };
+  for (int y = 0; y < tile.height(); ++y) {
+    for (int x = 0; x < tile.width(); ++x) {
+      const glm::vec3 first = emission_at(x, y);
+      bool is_one = true;
+      for (int dy = 0; dy <= 1 + 2 * beyond && is_one; ++dy) {
+        for (int dx = 0; dx <= 1 + 2 * beyond && is_one; ++dx) {
+          is_one = emission_at(x + dx, y + dy) == first;
+        }
+      }
+      is_edge[film.index_of(tile.x0 + x, tile.y0 + y)] = is_one ? 0 : 1;
+    }
+  }
+  return rays.size();
+}
+
+}  // namespace raygate

@@ -1,0 +1,26 @@
+// Pixels in which a lamp begins or ends.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "host/film/film.h"
+#include "host/picture/render_job.h"
+
+namespace raygate {
+
+class Finder;
+
+/// Marks them in a tile: `is_edge` is by pixel of the film's window.
+///
+/// A lamp is as a rule far brighter than all around it, and the pixels at its edges are the
+/// noisiest of a picture, while what camera rays see of lamps costs little to know: no light, no
+/// shadow, no way on. In these pixels it is worth more rays.
+///
+/// A pixel is one of them if rays through the corners of pixels, as far as its filter reaches, meet
+/// different emission. That depends on no sample, so that more rays where it is so favour nothing.
+/// Lamps between all corners, smaller than pixels, are not found. Returns how many rays it took.
+std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
+                            const PixelRect& tile, std::span<std::uint8_t> is_edge);
+
+}  // namespace raygate

@@ -1,0 +1,26 @@
+// What all threads of a render read.
+#pragma once
+
+#include "host/light/clearance.h"
+#include "host/light/lights.h"
+#include "host/picture/renderer.h"
+#include "host/scene/camera.h"
+
+namespace raygate {
+
+struct RenderJob {
+  const Scene& scene;
+  const Bvh& bvh;
+  const Camera& camera;
+  const RenderOptions& options;
+  const Lights& lights;
+  const Clearances& clearances;
+
+  /// What a triangle, or kNone, sends out as a lamp.
+  [[nodiscard]] glm::vec3 emission_of(std::uint32_t slot) const {
+    if (slot == NearestHit::kNone) return glm::vec3(0.0f);
+    return scene.materials[scene.triangles[bvh.triangle_of(slot)].material].emission;
+  }
+};
+
+}  // namespace raygate
