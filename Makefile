@@ -16,10 +16,10 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help verilate example render gallery frames test python check soak mutate fuzz lint analyze format clean
+.PHONY: help verilate example render gallery contact-sheet frames test python check soak mutate fuzz lint analyze format clean
 
 help: ## list these targets
-	@sed -nE 's/^([a-z]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
+	@sed -nE 's/^([a-z-]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
 
 verilate: ## build ./render, with the simulated hardware in it, ./trace and ./compare
 	$(call build,build,render trace compare scenes)
@@ -37,6 +37,10 @@ render: verilate ## render a scene: make render SCENE=scenes/cornell.obj ARGS='-
 gallery: verilate ## render the pictures of the gallery again, each by the command beside it
 	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
 	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
+
+contact-sheet: verilate ## models by their default view on one sheet: make contact-sheet [MODELS='a.obj b.glb']
+	@$(SETUP) lab
+	@$(PYTHON) -B scenes/contact_sheet.py ./render build/contact_sheet.png $(MODELS)
 
 frames: verilate ## the paper's frame at 10 MHz: clocks, frames a second, bytes read; every polygon, and with culling
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj

@@ -41,6 +41,7 @@ struct MetallicRoughness {
   float roughness = 1.0f;     ///< in [0, 1]; GGX's alpha is its square
   float transmission = 0.0f;  ///< in [0, 1]: so much of what is not metallic is (rough) glass
   MaterialMap map;            ///< times roughness (green code) and metallic (blue code)
+  std::string metallic_file;  ///< where `map.file` has roughness alone: grey, put into one map
 };
 
 /// One material: of an MTL file, or what other files have in its terms. Colours are scene-linear

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -94,11 +93,11 @@ Texture::Texture(int width, int height, std::vector<Texel> texels)
   assert(texels_.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
-Texture Texture::load(const std::filesystem::path& file) {
-  return decode(read_bytes(file), file.string());
+Texture Texture::load(const std::filesystem::path& file, Content content) {
+  return decode(read_bytes(file), file.string(), content);
 }
 
-Texture Texture::decode(std::string_view bytes, const std::string& file) {
+Texture Texture::decode(std::string_view bytes, const std::string& file, Content content) {
   const std::string unreadable = "not a PNG, JPEG, TGA or BMP picture that can be read: ";
   if (!is_known_format(bytes)) {
     fail(file, unreadable + "it begins as none of them");
@@ -113,12 +112,50 @@ Texture Texture::decode(std::string_view bytes, const std::string& file) {
   if (std::int64_t{width} * height > kMaxTexels) {
     fail(file, "a texture of more than " + std::to_string(kMaxTexels) + " pixels");
   }
+  const bool is_opacity = content == Content::kOpacity;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(first, size, &width, &height, &channels, 3), stbi_image_free);
+      stbi_load_from_memory(first, size, &width, &height, &channels, is_opacity ? 2 : 3),
+      stbi_image_free);
   if (!pixels) fail(file, unreadable + stbi_failure_reason());
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  std::memcpy(texels.data(), pixels.get(), sizeof(Texel) * texels.size());
+  if (is_opacity) {
+    // Grey and opacity: the second of pictures that have one.
+    const stbi_uc* code = pixels.get() + (channels == 2 || channels == 4 ? 1 : 0);
+    for (Texel& texel : texels) {
+      texel.fill(*code);
+      code += 2;
+    }
+  } else {
+    std::memcpy(texels.data(), pixels.get(), sizeof(Texel) * texels.size());
+  }
   return {width, height, std::move(texels)};
+}
+
+Texture Texture::of_channels(const Texture* green, const Texture* blue) {
+  const Texture& one = green != nullptr ? *green : *blue;
+  const Texture& other = blue != nullptr ? *blue : one;
+  const int width = std::max(one.width_, other.width_),
+            height = std::max(one.height_, other.height_);
+  std::vector<Texel> texels;
+  texels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto code = [&](const Texture* texture) -> std::uint8_t {
+        if (texture == nullptr) return 255;
+        const auto column = std::int64_t{x} * texture->width_ / width;
+        const auto row = std::int64_t{y} * texture->height_ / height;
+        return texture->texels_[static_cast<std::size_t>(row * texture->width_ + column)][0];
+      };
+      texels.push_back({255, code(green), code(blue)});
+    }
+  }
+  return {width, height, std::move(texels)};
+}
+
+double Texture::least_code() const {
+  std::uint8_t least = 255;
+  for (const Texel& codes : texels_) least = std::min(least, codes[0]);
+  return least / 255.0;
 }
 
 glm::dvec3 Texture::mean_codes() const {
@@ -154,25 +191,6 @@ glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dv
   uv = uv * glm::dvec2(mapping.scale) + glm::dvec2(mapping.offset);
   return material.diffuse * scene.textures[material.diffuse_texture].at(
                                 uv, mapping.clamp ? Wrap::kClamp : Wrap::kRepeat);
-}
-
-void load_textures(Scene& scene) {
-  std::map<std::string, std::uint32_t> loaded;
-  for (const Triangle& triangle : scene.triangles) {
-    Material& material = scene.materials[triangle.material];
-    if (material.diffuse_map.empty() || material.diffuse_texture != kNoIndex) continue;
-    const auto [entry, is_new] = loaded.emplace(material.diffuse_map, kNoIndex);
-    std::error_code ignored;
-    if (is_new && !std::filesystem::is_regular_file(material.diffuse_map, ignored)) {
-      scene.warnings.push_back(material.diffuse_map +
-                               ": the texture is missing, its material is plain instead");
-    } else if (is_new) {
-      entry->second = static_cast<std::uint32_t>(scene.textures.size());
-      scene.files.emplace_back(material.diffuse_map);
-      scene.textures.push_back(Texture::load(material.diffuse_map));
-    }
-    material.diffuse_texture = entry->second;
-  }
 }
 
 }  // namespace raygate

@@ -23,16 +23,28 @@ class Texture {
  public:
   using Texel = std::array<std::uint8_t, 3>;  ///< sRGB codes
 
+  /// What is read of a file: its colours; or its opacity, as all three codes, or what is bright
+  /// where it has none.
+  enum class Content : std::uint8_t { kColour, kOpacity };
+
   /// `texels`, row by row from the top; width * height of them, at least one.
   Texture(int width, int height, std::vector<Texel> texels);
 
-  /// Reads a PNG, JPEG, TGA or BMP file; a palette, grey and 16 bits become 24-bit RGB, opacity is
-  /// left out. Throws InputError: what cannot be read or is none of these, is damaged, or has more
-  /// than 2^26 pixels.
-  [[nodiscard]] static Texture load(const std::filesystem::path& file);
+  /// Reads a PNG, JPEG, TGA or BMP file; a palette, grey and 16 bits become 24-bit RGB. Throws
+  /// InputError: what cannot be read or is none of these, is damaged, or has more than 2^26 pixels.
+  [[nodiscard]] static Texture load(const std::filesystem::path& file,
+                                    Content content = Content::kColour);
 
   /// The same of a file's bytes; `name` is for messages.
-  [[nodiscard]] static Texture decode(std::string_view bytes, const std::string& name);
+  [[nodiscard]] static Texture decode(std::string_view bytes, const std::string& name,
+                                      Content content = Content::kColour);
+
+  /// The red codes of two textures as green and blue codes of one, as large as the larger one; 255
+  /// for one that is not given. One of them is.
+  [[nodiscard]] static Texture of_channels(const Texture* green, const Texture* blue);
+
+  /// The least of the red codes, from 0 to 1.
+  [[nodiscard]] double least_code() const;
 
   /// The mean of all texels' codes, from 0 to 1: for pictures whose codes are numbers, not colours.
   [[nodiscard]] glm::dvec3 mean_codes() const;
@@ -54,9 +66,5 @@ class Texture {
 /// coordinates the texture counts as white.
 [[nodiscard]] glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle,
                                    const glm::dvec3& weights);
-
-/// Loads the textures that materials of triangles name, each file once; fills Scene::textures and
-/// the materials' indices. Warns of a file that is missing; throws InputError as Texture::load.
-void load_textures(Scene& scene);
 
 }  // namespace raygate

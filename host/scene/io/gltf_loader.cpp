@@ -20,11 +20,11 @@ namespace {
 constexpr double kLumensPerWatt = 683.0;
 constexpr std::size_t kMostVertices = 12'000'000;  // besides one for each byte
 
-/// A light where its node puts it.
+/// A light of a point, where its node puts it.
 struct PlacedLight {
-  glm::dvec3 position, direction;
-  glm::dvec3 intensity;  // irradiance, of a light from one direction
-  bool is_directional;
+  glm::dvec3 position;
+  glm::dvec3 intensity;
+  std::optional<SpotCone> spot;
 };
 
 bool is_finite(const glm::dmat4& m) {
@@ -280,20 +280,35 @@ class GltfReader {
   }
 
   void read_light(const tinygltf::Light& light, const glm::dmat4& world) {
-    PlacedLight placed{glm::dvec3(world[3]), glm::dvec3(world[2]), glm::dvec3(1.0),
-                       light.type == "directional"};
+    glm::dvec3 intensity(light.intensity / kLumensPerWatt);
     for (int k = 0; k < 3 && light.color.size() == 3; ++k) {
-      placed.intensity[k] = light.color[static_cast<std::size_t>(k)];
+      intensity[k] *= light.color[static_cast<std::size_t>(k)];
     }
-    placed.intensity *= light.intensity / kLumensPerWatt;
     for (int k = 0; k < 3; ++k) {
-      if (!(placed.intensity[k] >= 0.0 &&
-            placed.intensity[k] <= std::numeric_limits<float>::max())) {
+      if (!(intensity[k] >= 0.0 && intensity[k] <= std::numeric_limits<float>::max())) {
         file_.fail("a light's intensity: expected no negative number within the range of float");
       }
     }
-    if (light.type == "spot") warn("spot lights shine to all sides here");
-    lights_.push_back(placed);
+    const double length = glm::length(glm::dvec3(world[2]));
+    const bool is_directional = light.type == "directional", is_spot = light.type == "spot";
+    if ((is_directional || is_spot) && !(length > 0.0 && std::isfinite(length))) {
+      return warn("a light without a direction is left out");
+    }
+    const glm::dvec3 direction = -glm::dvec3(world[2]) / length;
+    if (is_directional) {
+      scene_.directional_lights.push_back({direction, glm::vec3(intensity)});
+      return;
+    }
+    PlacedLight& placed = lights_.emplace_back(PlacedLight{glm::dvec3(world[3]), intensity, {}});
+    if (!is_spot) return;
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    const double inner = light.spot.innerConeAngle * kDegrees,
+                 outer = light.spot.outerConeAngle * kDegrees;
+    // 90 degrees are pi / 2 but for rounding.
+    if (!(inner >= 0.0 && inner < outer && outer <= 90.0 + 1e-9)) {
+      file_.fail("a spot light's angles: expected 0 <= inner < outer <= pi / 2");
+    }
+    placed.spot = SpotCone{direction, inner, std::min(outer, 90.0)};
   }
 
   /// In the scene's coordinates, now that these are known; and the camera's target among the scene.
@@ -304,18 +319,12 @@ class GltfReader {
       high = glm::max(high, glm::dvec3(position));
     }
     const glm::dvec3 middle = 0.5 * (low + high);
-    constexpr double kFar = 1000.0;  // sizes of the scene: its shadows are all but parallel
     for (const PlacedLight& light : lights_) {
-      const double distance = kFar * glm::length(high - low), length = glm::length(light.direction);
-      const glm::dvec3 at = light.is_directional && length > 0.0
-                                ? middle + light.direction * (distance / length)
-                                : light.position - scene_.origin;
-      const glm::vec3 rounded(at);
+      const glm::vec3 rounded(light.position - scene_.origin);
       if (!std::isfinite(rounded.x + rounded.y + rounded.z)) {
         file_.fail("a light is beyond the range of float");
       }
-      scene_.lights.push_back(
-          {rounded, light.intensity * (light.is_directional ? distance * distance : 1.0)});
+      scene_.lights.push_back({rounded, light.intensity, light.spot});
     }
     if (!scene_.camera) return;
     CameraSetting& camera = *scene_.camera;

@@ -66,16 +66,30 @@ std::uint32_t GltfMaterials::number_of(int material) {
   return entry->second;
 }
 
-int GltfMaterials::texcoord_set(int material) const {
+int GltfMaterials::texcoord_set(int material) {
   if (material < 0) return -1;
-  const tinygltf::TextureInfo& info =
-      file_.at(file_.model().materials, material, "material").pbrMetallicRoughness.baseColorTexture;
-  return info.index < 0 ? -1
-                        : static_cast<int>(number_in(info.extensions, "KHR_texture_transform",
-                                                     "texCoord", info.texCoord));
+  const tinygltf::Material& from = file_.at(file_.model().materials, material, "material");
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  int set = -1;
+  const auto look_at = [&](int texture, int texcoord, const tinygltf::ExtensionMap& extensions) {
+    if (texture < 0) return;
+    const int its =
+        static_cast<int>(number_in(extensions, "KHR_texture_transform", "texCoord", texcoord));
+    if (set >= 0 && its != set) {
+      warn_once(
+          "of textures of one material with several sets of coordinates the first has its own");
+    } else {
+      set = its;
+    }
+  };
+  const auto look = [&](const auto& info) { look_at(info.index, info.texCoord, info.extensions); };
+  look(pbr.baseColorTexture);
+  look(pbr.metallicRoughnessTexture);
+  look(from.normalTexture);
+  return set;
 }
 
-std::optional<Texture> GltfMaterials::picture(int texture) {
+std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content content) {
   const tinygltf::Model& model = file_.model();
   const int source = file_.at(model.textures, texture, "texture").source;
   if (source < 0) {
@@ -89,7 +103,8 @@ std::optional<Texture> GltfMaterials::picture(int texture) {
   }
   const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()),
                                image.image.size());
-  Texture result = Texture::decode(bytes, file_.name() + ": image " + std::to_string(source));
+  Texture result =
+      Texture::decode(bytes, file_.name() + ": image " + std::to_string(source), content);
   texels_ += std::int64_t{result.width()} * result.height();
   if (texels_ > kMostTexels) {
     file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
@@ -101,36 +116,58 @@ glm::dvec3 GltfMaterials::mean_codes(int texture) {
   const int source = file_.at(file_.model().textures, texture, "texture").source;
   auto found = means_.find(source);
   if (found == means_.end()) {
-    const std::optional<Texture> decoded = picture(texture);
+    const std::optional<Texture> decoded = picture(texture, Texture::Content::kColour);
     found = means_.emplace(source, decoded ? decoded->mean_codes() : glm::dvec3(1.0)).first;
   }
   return found->second;
 }
 
-void GltfMaterials::add_texture(const tinygltf::TextureInfo& info, Material& material) {
-  if (info.index < 0) return;
+MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& extensions,
+                                  Texture::Content content) {
+  MaterialMap map;
+  if (texture < 0) return map;
   const tinygltf::Model& model = file_.model();
-  const tinygltf::Texture& from = file_.at(model.textures, info.index, "texture");
-  const auto [entry, is_new] = texture_of_image_.try_emplace(from.source, kNoIndex);
+  const tinygltf::Texture& from = file_.at(model.textures, texture, "texture");
+  const auto [entry, is_new] =
+      texture_of_image_.try_emplace(std::pair(from.source, content), kNoIndex);
   if (is_new) {
-    if (std::optional<Texture> decoded = picture(info.index)) {
+    if (std::optional<Texture> decoded = picture(texture, content)) {
       entry->second = static_cast<std::uint32_t>(scene_.textures.size());
       scene_.textures.push_back(std::move(*decoded));
     }
   }
-  material.diffuse_texture = entry->second;
-  TextureMapping& mapping = material.diffuse_mapping;
+  map.texture = entry->second;
   if (from.sampler >= 0) {
-    mapping.clamp = file_.at(model.samplers, from.sampler, "sampler").wrapS ==
-                    TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    map.mapping.clamp = file_.at(model.samplers, from.sampler, "sampler").wrapS ==
+                        TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
   }
-  const auto transform = info.extensions.find("KHR_texture_transform");
-  if (transform == info.extensions.end()) return;
-  mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
+  const auto transform = extensions.find("KHR_texture_transform");
+  if (transform == extensions.end()) return map;
+  map.mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
   // Their v runs down: 1 - (s v + o) = s (1 - v) + 1 - s - o.
   const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
-  mapping.offset = {offset.x, 1.0f - mapping.scale.y - offset.y};
+  map.mapping.offset = {offset.x, 1.0f - map.mapping.scale.y - offset.y};
   if (transform->second.Has("rotation")) warn_once("a texture's rotation is not read");
+  return map;
+}
+
+/// Opacity: as it is, by a factor; or a mask, which the base colour's texture is, too.
+void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& material) {
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
+  const bool is_mask = from.alphaMode == "MASK";
+  const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
+  const double cutoff = is_mask ? in_unit(from.alphaCutoff) : 0.5;
+  if (!is_mask) material.opacity = static_cast<float>(factor);
+  if (is_mask && factor < cutoff) material.opacity = 0.0f;
+  const tinygltf::TextureInfo& base = pbr.baseColorTexture;
+  if (base.index < 0 || material.opacity == 0.0f) return;
+  MaterialMap map = map_of(base.index, base.extensions, Texture::Content::kOpacity);
+  const double least = is_mask ? cutoff / factor : cutoff;
+  if (map.texture == kNoIndex || scene_.textures[map.texture].least_code() >= least) return;
+  if (!is_mask) warn_once("textures of opacity without a mask are masks of one half");
+  material.opacity_map = map;
+  material.opacity_cutoff = static_cast<float>(least);
 }
 
 Material GltfMaterials::translated(const tinygltf::Material& from) {
@@ -138,27 +175,21 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
   Material material;
   material.name = from.name;
   const glm::vec3 base = colour_of(pbr.baseColorFactor);
-  double metalness = in_unit(pbr.metallicFactor), roughness = in_unit(pbr.roughnessFactor);
-  if (pbr.metallicRoughnessTexture.index >= 0) {
-    const glm::dvec3 mean = mean_codes(pbr.metallicRoughnessTexture.index);
-    roughness *= mean.g;
-    metalness *= mean.b;
-    warn_once("textures of metalness and roughness count by their mean");
-  }
-  const double smoothness = 1.0 - roughness;
-  material.diffuse = base * static_cast<float>(1.0 - metalness * smoothness);
-  material.specular =
-      glm::vec3((0.04 * (1.0 - metalness) + glm::dvec3(base) * metalness) * smoothness);
-  constexpr double kMirror =
-      0.1;  // roughness below which a highlight would be smaller than it shows
-  if (roughness >= kMirror) {
-    material.illumination_model = 2;
-    material.shininess = static_cast<float>(0.5 / std::pow(roughness, 4.0));
-  } else {
-    material.illumination_model = metalness < 0.5 ? 5 : 3;
-    material.shininess = 20000.0f;
-  }
-  add_texture(pbr.baseColorTexture, material);
+  material.diffuse = base;
+  MetallicRoughness& shares = material.metallic_roughness.emplace();
+  shares.metallic = static_cast<float>(in_unit(pbr.metallicFactor));
+  shares.roughness = static_cast<float>(in_unit(pbr.roughnessFactor));
+  const auto colour = Texture::Content::kColour;
+  shares.map =
+      map_of(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.extensions, colour);
+  const MaterialMap diffuse =
+      map_of(pbr.baseColorTexture.index, pbr.baseColorTexture.extensions, colour);
+  material.diffuse_texture = diffuse.texture;
+  material.diffuse_mapping = diffuse.mapping;
+  material.normal_map = map_of(from.normalTexture.index, from.normalTexture.extensions, colour);
+  material.normal_scale =
+      static_cast<float>(std::isfinite(from.normalTexture.scale) ? from.normalTexture.scale : 1.0);
+  set_opacity(from, material);
 
   const double strength = std::clamp(
       number_in(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0), 0.0,
@@ -173,20 +204,13 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
     }
     warn_once("textures of emission count by their mean");
   }
-  if (number_in(from.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0) >= 0.5) {
-    material.illumination_model = 7;
-    material.opacity = 0.0f;
-    material.transmittance = base;
-    material.refraction_index = static_cast<float>(
-        std::clamp(number_in(from.extensions, "KHR_materials_ior", "ior", 1.5), 1.0, 4.0));
-  } else if (from.alphaMode == "BLEND" && pbr.baseColorFactor.size() == 4) {
-    material.opacity = static_cast<float>(in_unit(pbr.baseColorFactor[3]));
-  }
-  if (from.alphaMode == "MASK") warn_once("masks of opacity are not read");
-  if (from.normalTexture.index >= 0) warn_once("normal maps are not read");
+  shares.transmission = static_cast<float>(
+      in_unit(number_in(from.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0)));
+  material.refraction_index = static_cast<float>(
+      std::clamp(number_in(from.extensions, "KHR_materials_ior", "ior", 1.5), 1.0, 4.0));
   if (from.extensions.contains("KHR_materials_unlit")) {
     material.illumination_model = 0;
-    material.diffuse = base;
+    material.metallic_roughness.reset();
   }
   return material;
 }

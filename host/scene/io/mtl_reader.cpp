@@ -21,15 +21,17 @@ struct Value {
   std::string_view keyword;
   double low, high, instead;  // what stands in for a number below `low`
 };
-constexpr std::array<Value, 5> kValues{{
+constexpr std::array<Value, 7> kValues{{
     {"Ns", 0.0, kInfinity, 0.0},
     {"Ni", 0.001, kInfinity, 1.0},  // an index of 0 is what some exporters write for "none"
     {"d", 0.0, 1.0, 0.0},
     {"Tr", 0.0, 1.0, 0.0},
     {"illum", 0.0, 10.0, 2.0},
+    {"Pr", 0.0, 1.0, 0.0},
+    {"Pm", 0.0, 1.0, 0.0},
 }};
 
-/// map_Kd options and how many words may follow each; all but the first must be numbers.
+/// Options of maps and how many words may follow each; all but the first must be numbers.
 struct TextureOption {
   std::string_view name;
   int words;
@@ -48,6 +50,9 @@ constexpr std::array<TextureOption, 14> kTextureOptions{{{"-blendu", 1},
                                                          {"-type", 1},
                                                          {"-cc", 1},
                                                          {"-colorspace", 1}}};
+
+/// Pictures: of colour, roughness, metalness, opacity and normals.
+constexpr std::array<std::string_view, 5> kMaps{"map_Kd", "map_Pr", "map_Pm", "map_d", "norm"};
 
 std::string shortest(double number) {
   char text[32];
@@ -80,7 +85,7 @@ std::optional<std::filesystem::path> find_file(const std::filesystem::path& fold
 
 std::vector<Material> MtlReader::read() {
   while (const auto statement = lines().next()) read_statement(*statement);
-  if (is_kept_) materials_.push_back(std::move(material_));
+  finish_material();
   return std::move(materials_);
 }
 
@@ -91,23 +96,47 @@ void MtlReader::read_statement(std::string_view statement) {
   glm::vec3* const colour = colour_of(material_, unused, keyword);
   const bool is_value = std::any_of(kValues.begin(), kValues.end(),
                                     [&](const Value& value) { return value.keyword == keyword; });
-  if ((colour != nullptr || is_value || keyword == "map_Kd") && !in_material_) {
+  const bool is_map = std::ranges::find(kMaps, keyword) != kMaps.end();
+  if ((colour != nullptr || is_value || is_map) && !in_material_) {
     lines().fail(in_quotes(keyword) + " before the first newmtl");
   }
   if (colour != nullptr) {
     read_colour(keyword, statement, *colour);
   } else if (is_value) {
     read_value(keyword, statement);
-  } else if (keyword == "map_Kd") {
-    read_diffuse_map(statement);
+  } else if (is_map) {
+    read_map(keyword, statement);
   } else {
     warn_once(keyword, in_quotes(keyword) + " is not supported, ignored");
   }
 }
 
+/// Any of the PBR statements makes a material metallic and rough. What they leave out is what
+/// exporters have that write them: no metal, and Ns = 1000 (1 - roughness)^2.
+void MtlReader::finish_material() {
+  if (!is_kept_) return;
+  const bool has_maps = material_.metallic_roughness.has_value();  // begun by map_Pr or map_Pm
+  if (has_maps || roughness_ || metallic_) {
+    if (!has_maps) material_.metallic_roughness.emplace();
+    MetallicRoughness& shares = *material_.metallic_roughness;
+    const float root = std::sqrt(std::min(material_.shininess / 1000.0f, 1.0f));
+    const bool has_rough_map = !shares.map.file.empty(),
+               has_metal_map = !shares.metallic_file.empty();
+    shares.roughness = roughness_.value_or(has_rough_map ? 1.0f : 1.0f - root);
+    shares.metallic = metallic_.value_or(has_metal_map ? 1.0f : 0.0f);
+    const int model = material_.illumination_model;
+    if (model == 6 || model == 7) {
+      shares.transmission = 1.0f;
+      material_.opacity = 1.0f;
+    }
+  }
+  materials_.push_back(std::move(material_));
+}
+
 void MtlReader::begin_material(std::string_view name) {
-  if (is_kept_) materials_.push_back(std::move(material_));
+  finish_material();
   material_ = {};
+  roughness_ = metallic_ = std::nullopt;
   material_.name = name;
   in_material_ = true;
   has_diffuse_ = has_opacity_ = false;
@@ -173,6 +202,10 @@ void MtlReader::read_value(std::string_view keyword, std::string_view words) {
     material_.illumination_model = static_cast<int>(number);
   } else if (keyword == "Ns") {
     material_.shininess = static_cast<float>(number);
+  } else if (keyword == "Pr") {
+    roughness_ = static_cast<float>(number);
+  } else if (keyword == "Pm") {
+    metallic_ = static_cast<float>(number);
   } else if (keyword == "Ni") {
     material_.refraction_index = static_cast<float>(number);
   } else if (keyword == "d") {
@@ -183,8 +216,10 @@ void MtlReader::read_value(std::string_view keyword, std::string_view words) {
   }
 }
 
-void MtlReader::read_diffuse_map(std::string_view words) {
+void MtlReader::read_map(std::string_view keyword, std::string_view words) {
+  const std::string map(keyword);
   TextureMapping mapping;
+  float normal_scale = 1.0f;
   while (words.starts_with('-')) {
     std::string_view rest = words;
     const std::string_view name = take_word(rest);
@@ -197,11 +232,14 @@ void MtlReader::read_diffuse_map(std::string_view words) {
       mapping.clamp = take_word(rest) == "on" || mapping.clamp;
       words = rest;
     } else if (name == "-s") {
-      mapping.scale = take_texture_vector(name, words);
+      mapping.scale = take_texture_vector(map + " -s", words);
     } else if (name == "-o") {
-      mapping.offset = take_texture_vector(name, words);
+      mapping.offset = take_texture_vector(map + " -o", words);
+    } else if (name == "-bm" && keyword == "norm") {
+      normal_scale = static_cast<float>(expect_number(lines(), take_word(rest), "norm -bm"));
+      words = rest;
     } else {
-      warn_once("map_Kd option", "map_Kd " + std::string(name) + " is not supported, ignored");
+      warn_once(map + " option", map + " " + std::string(name) + " is not supported, ignored");
       for (int i = 0; i < option->words; ++i) {
         const std::string_view word = take_word(rest);
         if (i > 0 && !to_number(word)) break;
@@ -209,23 +247,37 @@ void MtlReader::read_diffuse_map(std::string_view words) {
       }
     }
   }
-  if (words.empty()) return warn("map_Kd without a file, ignored");
-  // Without a Kd of its own the texture's colours stand as they are. (A later Kd still counts.)
-  if (!has_diffuse_) material_.diffuse = glm::vec3(1.0f);
-  has_diffuse_ = true;
-  material_.diffuse_map = find_file(folder_, words).value_or(folder_ / words).string();
-  material_.diffuse_mapping = mapping;
+  if (words.empty()) return warn(map + " without a file, ignored");
+  const std::string file = find_file(folder_, words).value_or(folder_ / words).string();
+  if (keyword == "norm") {
+    material_.normal_map = {file, mapping};
+    material_.normal_scale = normal_scale;
+  } else if (keyword == "map_d") {
+    material_.opacity_map = {file, mapping};
+  } else if (keyword == "map_Kd") {
+    // Without a Kd of its own the texture's colours stand as they are. (A later Kd still counts.)
+    if (!has_diffuse_) material_.diffuse = glm::vec3(1.0f);
+    has_diffuse_ = true;
+    material_.diffuse_map = file;
+    material_.diffuse_mapping = mapping;
+  } else {
+    if (!material_.metallic_roughness) material_.metallic_roughness.emplace();
+    MetallicRoughness& shares = *material_.metallic_roughness;
+    (keyword == "map_Pr" ? shares.map.file : shares.metallic_file) = file;
+    shares.map.mapping = mapping;
+  }
 }
 
-glm::vec2 MtlReader::take_texture_vector(std::string_view option, std::string_view& words) const {
+glm::vec2 MtlReader::take_texture_vector(const std::string& of_what,
+                                         std::string_view& words) const {
   // One to three numbers; the third is for solid textures.
   std::array<double, 3> uvw{};
-  uvw.fill(option == "-s" ? 1.0 : 0.0);
+  uvw.fill(of_what.ends_with("-s") ? 1.0 : 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     std::string_view rest = words;
     const std::string_view word = take_word(rest);
     if (i > 0 && !to_number(word)) break;
-    uvw[i] = expect_number(lines(), word, "map_Kd " + std::string(option));
+    uvw[i] = expect_number(lines(), word, of_what);
     words = rest;
   }
   return {uvw[0], uvw[1]};

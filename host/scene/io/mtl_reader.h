@@ -25,8 +25,9 @@ class MtlReader final : public StatementReader {
   void begin_material(std::string_view name);
   void read_colour(std::string_view keyword, std::string_view words, glm::vec3& colour);
   void read_value(std::string_view keyword, std::string_view words);
-  void read_diffuse_map(std::string_view words);
-  glm::vec2 take_texture_vector(std::string_view option, std::string_view& words) const;
+  void read_map(std::string_view keyword, std::string_view words);
+  void finish_material();
+  glm::vec2 take_texture_vector(const std::string& of_what, std::string_view& words) const;
 
   std::filesystem::path folder_;
   std::vector<Material> materials_;
@@ -36,6 +37,8 @@ class MtlReader final : public StatementReader {
   bool is_kept_ = false;      // it has a name that is new
   bool has_diffuse_ = false;  // Kd was there, or stands in for it
   bool has_opacity_ = false;  // d was there, which Tr does not change
+  // Of the PBR statements.
+  std::optional<float> roughness_, metallic_;
 };
 
 /// The file `name` in `folder`: as it is written, or with Windows' backslashes for slashes.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "host/scene/io/load_textures.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/obj_reader.h"
 #include "host/scene/io/words.h"

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <random>
 #include <string>
 
 #include "host/scene/io/input_error.h"
+#include "host/scene/test/damage.h"
 #include "host/trace/rays_in.h"
 
 namespace raygate {
@@ -21,21 +21,9 @@ namespace {
 constexpr std::string_view kCsv =
     "ox,oy,oz,dx,dy,dz,limit\n# a comment\n1,2,3,0,0,-1\r\n +4 , 5e0,6, 3,0,0, 2\n"
     "0,0,0,1,1,0.25,inf\n\n7,8,9,0,0,0\n0.5,0,0,0,-0.125,0,1e-3\n";
-constexpr const char* kSplinters[] = {"nan",   "-inf",
-                                      "1e999", "1e-999",
-                                      "1e38",  "1e39",
-                                      "0",     "-0",
-                                      ",",     ",,",
-                                      "\n",    "\r",
-                                      "#",     " ",
-                                      "1.5e",  "--",
-                                      "+",     "0x10",
-                                      "\xFF",  "(",
-                                      ")",     "'",
-                                      "'<f8'", "False",
-                                      "True",  "99999999999999999999",
-                                      "{",     "}",
-                                      ":",     "shape"};
+constexpr const char* kSplinters[] = {"1e38",  "1e39",  "-0",   ",",    ",,",   "\n", "\r",   "#",
+                                      " ",     "--",    "+",    "0x10", "\xFF", "(",  ")",    "'",
+                                      "'<f8'", "False", "True", "{",    "}",    ":",  "shape"};
 
 std::string npy(bool is_double, int rows, int columns) {
   std::string header = "{'descr': '<f" + std::string(is_double ? "8" : "4") +
@@ -84,43 +72,17 @@ class DamagedRays : public testing::Test {
     return outcome;
   }
 
-  std::string mutate(std::string text) {
-    for (std::size_t times = 1 + below(4); times > 0 && !text.empty(); --times) {
-      // Half of the time at the start, where an array has its header.
-      const std::size_t at =
-          below(below(2) == 0 ? std::min<std::size_t>(text.size(), 90) : text.size());
-      switch (below(5)) {
-        case 0:
-          text[at] = static_cast<char>(below(256));
-          break;
-        case 1:
-          text[at] = static_cast<char>(text[at] ^ (1 << below(8)));
-          break;
-        case 2:
-          text.insert(at, kSplinters[below(std::size(kSplinters))]);
-          break;
-        case 3:
-          text.erase(at, 1 + below(8));
-          break;
-        case 4:
-          text.resize(at);
-          break;
-      }
-    }
-    return text;
-  }
-  std::size_t below(std::size_t limit) { return random_() % limit; }
-
   int file_ = memfd_create("rays", 0);  // of no disk: thousands are written
   std::filesystem::path path_ = "/proc/self/fd/" + std::to_string(file_);
-  std::mt19937_64 random_{20261122};
+  test::Damage damage_{20261122, kSplinters};
 };
 
 TEST_F(DamagedRays, CanBeTracedOrAreRefused) {
   const std::string seeds[] = {std::string(kCsv), npy(false, 5, 6), npy(true, 4, 7)};
   int usable = 0, refused = 0;
   for (int round = 0; round < 8000; ++round) {
-    const std::string bytes = mutate(seeds[round % std::size(seeds)]);
+    // An array has its header in front.
+    const std::string bytes = damage_(seeds[round % std::size(seeds)], 90);
     write(bytes);
     const Outcome outcome = read(3);
     for (const Ray& ray : outcome.rays) {

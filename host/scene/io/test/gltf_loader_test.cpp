@@ -100,12 +100,15 @@ TEST_F(LoadGltf, CamerasAndLights) {
   const Scene scene = load(square_json(
       R"([{"mesh": 0, "children": [1, 2, 3]}, {"camera": 0, "translation": [0.5, 0.5, 4]},
           {"translation": [1, 2, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}},
-          {"extensions": {"KHR_lights_punctual": {"light": 1}}}])",
+          {"extensions": {"KHR_lights_punctual": {"light": 1}}, "children": [4]},
+          {"extensions": {"KHR_lights_punctual": {"light": 2}}}])",
       R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
          "extensionsUsed": ["KHR_lights_punctual"],
          "extensions": {"KHR_lights_punctual": {"lights": [
            {"type": "point", "color": [1, 0.5, 0], "intensity": 1366},
-           {"type": "directional", "intensity": 683}]}})"));
+           {"type": "directional", "intensity": 683},
+           {"type": "spot", "intensity": 683,
+            "spot": {"innerConeAngle": 0.5, "outerConeAngle": 1.5707963267948966}}]}})"));
   ASSERT_TRUE(scene.camera);
   EXPECT_EQ(scene.camera->eye, glm::dvec3(0.5, 0.5, 4));
   EXPECT_EQ(scene.camera->target, glm::dvec3(0.5, 0.5, 0)) << "among the scene";
@@ -114,11 +117,14 @@ TEST_F(LoadGltf, CamerasAndLights) {
   ASSERT_EQ(scene.lights.size(), 2u);
   EXPECT_EQ(scene.lights[0].intensity, glm::dvec3(2, 1, 0));
   EXPECT_EQ(scene.origin + glm::dvec3(scene.lights[0].position), glm::dvec3(1, 2, 3));
-  // From +z, with an irradiance of 1 everywhere in the scene.
-  const glm::dvec3 sun(scene.lights[1].position);
-  const double distance = glm::length(sun);
-  EXPECT_GT(sun.z, 0.999 * distance);
-  EXPECT_NEAR(scene.lights[1].intensity.x / (distance * distance), 1.0, 2e-3);
+  EXPECT_FALSE(scene.lights[0].spot);
+  ASSERT_TRUE(scene.lights[1].spot);
+  EXPECT_EQ(scene.lights[1].spot->axis, glm::dvec3(0, 0, -1));
+  EXPECT_NEAR(scene.lights[1].spot->inner, 0.5 * 180 / 3.14159265358979, 1e-9);
+  EXPECT_EQ(scene.lights[1].spot->outer, 90.0);
+  ASSERT_EQ(scene.directional_lights.size(), 1u);
+  EXPECT_EQ(scene.directional_lights[0].direction, glm::dvec3(0, 0, -1));
+  EXPECT_EQ(scene.directional_lights[0].irradiance, glm::vec3(1));
 }
 
 TEST_F(LoadGltf, Materials) {
@@ -130,24 +136,31 @@ TEST_F(LoadGltf, Materials) {
       R"({"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "metallicFactor": 0}})");
   EXPECT_EQ(matte.name, "m");
   EXPECT_EQ(matte.diffuse, glm::vec3(0.5f, 0.25f, 1.0f));
-  EXPECT_EQ(matte.specular, glm::vec3(0.0f));
   EXPECT_EQ(matte.emission, glm::vec3(0.0f));
-  const Material mirror = material(
-      R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "roughnessFactor": 0}})");
-  EXPECT_EQ(mirror.illumination_model, 3);
-  EXPECT_EQ(mirror.specular, glm::vec3(0.5f, 0.25f, 1.0f));
-  EXPECT_EQ(mirror.diffuse, glm::vec3(0.0f));
+  ASSERT_TRUE(matte.metallic_roughness);
+  EXPECT_EQ(matte.metallic_roughness->metallic, 0.0f);
+  EXPECT_EQ(matte.metallic_roughness->roughness, 1.0f);
+  EXPECT_EQ(matte.opacity, 1.0f);
   const Material plastic =
-      material(R"({"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5}})");
-  EXPECT_EQ(plastic.illumination_model, 2);
-  EXPECT_EQ(plastic.specular, glm::vec3(0.02f));
-  EXPECT_EQ(plastic.shininess, 8.0f);
+      material(R"({"pbrMetallicRoughness": {"metallicFactor": 0.25, "roughnessFactor": 0.5}})");
+  EXPECT_EQ(plastic.metallic_roughness->metallic, 0.25f);
+  EXPECT_EQ(plastic.metallic_roughness->roughness, 0.5f);
+  EXPECT_EQ(plastic.refraction_index, 1.5f);
+  const Material window = material(
+      R"({"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}})");
+  EXPECT_EQ(window.opacity, 0.25f);
+  const Material hole = material(
+      R"({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}})");
+  EXPECT_EQ(hole.opacity, 0.0f);
+  const Material unlit = material(R"({"extensions": {"KHR_materials_unlit": {}}})");
+  EXPECT_EQ(unlit.illumination_model, 0);
+  EXPECT_FALSE(unlit.metallic_roughness);
   const Material lamp = material(
       R"({"emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}})");
   EXPECT_EQ(lamp.emission, glm::vec3(4, 2, 0));
   const Material glass = material(
       R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.3}}})");
-  EXPECT_EQ(glass.illumination_model, 7);
+  EXPECT_EQ(glass.metallic_roughness->transmission, 1.0f);
   EXPECT_EQ(glass.refraction_index, 1.3f);
 }
 
@@ -179,6 +192,43 @@ TEST_F(LoadGltf, TexturesAreRightSideUp) {
   EXPECT_EQ(scene.texcoords[scene.triangles[0].texcoords[2]], glm::vec2(1, 1));
   const glm::vec3 left = diffuse_at(scene, scene.triangles[0], {0.75, 0.0, 0.25});
   EXPECT_EQ(left, glm::vec3(1, 0, 0));
+}
+
+/// A TGA of one row: red and opaque, then blue and clear.
+std::string half_clear() {
+  std::string bytes(18, '\0');
+  bytes[2] = 2;
+  bytes[12] = 2;
+  bytes[14] = 1;
+  bytes[16] = 32;
+  bytes[17] = 8;
+  return bytes + std::string("\x00\x00\xFF\xFF\xFF\x00\x00\x10", 8);
+}
+
+TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
+  const std::string picture = half_clear();
+  std::string json = square_json(kOneNode,
+                                 R"(, "materials": [{"alphaMode": "MASK", "alphaCutoff": 0.25,
+           "normalTexture": {"index": 0, "scale": 0.5},
+           "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5],
+                                    "metallicRoughnessTexture": {"index": 0}}}],
+         "textures": [{"source": 0}], "images": [{"bufferView": 4, "mimeType": "image/tga"}])",
+                                 R"(, "material": 0)");
+  const std::string last = R"({"buffer": 0, "byteOffset": 128, "byteLength": 12})";
+  json.replace(json.find(last), last.size(),
+               last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 26})");
+  json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 166)");
+  const Scene scene = load(json, square_buffer() + picture);
+  ASSERT_EQ(scene.textures.size(), 2u) << "colour and opacity of one picture";
+  const Material& material = scene.materials[0];
+  EXPECT_EQ(material.diffuse_texture, 0u);
+  EXPECT_EQ(material.normal_map.texture, 0u);
+  EXPECT_EQ(material.normal_scale, 0.5f);
+  EXPECT_EQ(material.metallic_roughness->map.texture, 0u);
+  EXPECT_EQ(material.opacity_map.texture, 1u);
+  EXPECT_EQ(material.opacity_cutoff, 0.5f) << "of the texture alone";
+  EXPECT_EQ(scene.textures[1].least_code(), 16 / 255.0);
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST_F(LoadGltf, WhatIsRefused) {

@@ -113,6 +113,48 @@ TEST_F(LoadMtl, TextureOptionsAreNotTheFile) {
             (folder_.path() / "-minus.png").string());
 }
 
+TEST_F(LoadMtl, ThePbrStatementsMakeAMaterialMetallicAndRough) {
+  EXPECT_FALSE(material("newmtl a\nKd 1 0 0\nNs 250\n").metallic_roughness);
+  const Material m = material("newmtl a\nPr 0.25\nPm 0.75\nd 0.5\n");
+  ASSERT_TRUE(m.metallic_roughness);
+  EXPECT_EQ(m.metallic_roughness->roughness, 0.25f);
+  EXPECT_EQ(m.metallic_roughness->metallic, 0.75f);
+  EXPECT_EQ(m.metallic_roughness->transmission, 0.0f);
+  EXPECT_EQ(m.opacity, 0.5f);
+  EXPECT_EQ(material("newmtl a\nPm 1\nNs 250\n").metallic_roughness->roughness, 0.5f)
+      << "as Ns has it";
+  EXPECT_EQ(material("newmtl a\nPr 0\nnewmtl b\nPm 1\n").metallic_roughness->metallic, 0.0f);
+  EXPECT_EQ(material("newmtl a\nillum 7\nd 0\nPr 0.5\n").metallic_roughness->transmission, 1.0f);
+  EXPECT_EQ(warning("newmtl a\nPr 2\n"), "m.mtl:2: Pr '2' is out of range, taken as 1");
+}
+
+TEST_F(LoadMtl, MapsOfRoughnessMetalnessOpacityAndNormals) {
+  using test::tga;
+  folder_.write("rough.tga", tga(1, 1, {{51, 51, 51}}));
+  folder_.write("metal.tga", tga(2, 1, {{102, 102, 102}, {204, 204, 204}}));
+  folder_.write("hole.tga", tga(2, 1, {{0, 0, 0}, {255, 255, 255}}));
+  folder_.write("whole.tga", tga(1, 1, {{200, 200, 200}}));
+  const Scene scene = load(
+      "newmtl a\nmap_Pr rough.tga\nmap_Pm -s 2 metal.tga\nmap_d hole.tga\nnorm -bm 0.5 "
+      "rough.tga\n");
+  EXPECT_TRUE(scene.warnings.empty());
+  const Material& m = scene.materials[scene.triangles[0].material];
+  ASSERT_TRUE(m.metallic_roughness);
+  EXPECT_EQ(m.metallic_roughness->roughness, 1.0f);
+  EXPECT_EQ(m.metallic_roughness->metallic, 1.0f);
+  EXPECT_EQ(m.metallic_roughness->map.mapping.scale, glm::vec2(2, 1));
+  const Texture& both = scene.textures.at(m.metallic_roughness->map.texture);
+  EXPECT_EQ(both.width(), 2);
+  EXPECT_NEAR(both.mean_codes().g, 51 / 255.0, 1e-9);
+  EXPECT_NEAR(both.mean_codes().b, 153 / 255.0, 1e-9);
+  EXPECT_EQ(m.normal_scale, 0.5f);
+  EXPECT_NE(m.normal_map.texture, kNoIndex);
+  ASSERT_NE(m.opacity_map.texture, kNoIndex);
+  EXPECT_EQ(scene.textures[m.opacity_map.texture].least_code(), 0.0);
+  EXPECT_EQ(material("newmtl a\nmap_d whole.tga\n").opacity_map.texture, kNoIndex)
+      << "it hides nothing";
+}
+
 TEST_F(LoadMtl, OddTextIsFine) {
   EXPECT_EQ(material("\xEF\xBB\xBFnewmtl  a \r\n\tKd 0.5 \\\r\n 0.25 0.125\r\n").diffuse,
             glm::vec3(0.5f, 0.25f, 0.125f));
@@ -166,6 +208,7 @@ TEST_F(LoadMtl, Warnings) {
   EXPECT_EQ(warning("newmtl a\nd -halo 0.5\n"), "m.mtl:2: d -halo is not supported, taken as d");
   EXPECT_EQ(warning("newmtl a\nmap_Kd none.png\n"),
             "none.png: the texture is missing, its material is plain instead");
+  EXPECT_EQ(warning("newmtl a\nmap_Pr\n"), "m.mtl:2: map_Pr without a file, ignored");
   EXPECT_EQ(warning("newmtl a\nmap_Kd\n"), "m.mtl:2: map_Kd without a file, ignored");
   EXPECT_EQ(warning("newmtl a\nKd 1 0 0\nnewmtl b\nnewmtl a\nKd 0 1 0\n"),
             "m.mtl:4: material 'a' was defined before, which stands");

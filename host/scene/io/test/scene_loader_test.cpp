@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <cmath>
-#include <random>
-
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/test/binary.h"
+#include "host/scene/io/test/sound.h"
+#include "host/scene/test/damage.h"
 #include "host/scene/test/temp_folder.h"
 #include "host/scene/test/tga.h"
 
@@ -83,59 +82,7 @@ std::string whole_gltf() {
   return json.insert(json.find(kBuffer) + kBuffer.size(), "\"uri\": \"square.bin\", ");
 }
 
-std::string mutated(std::string bytes, std::mt19937_64& random) {
-  constexpr const char* kSplinters[] = {"-1",  "4294967295", "99999999999", "1e999", "nan", "\"",
-                                        "[",   "]",          "{}",          "null",  "\n",  " ",
-                                        "0.5", "2147483647", "-2147483648", ",",     "0"};
-  const auto below = [&](std::size_t limit) { return random() % limit; };
-  for (std::size_t times = 1 + below(3); times > 0 && bytes.size() > 8; --times) {
-    const std::size_t at = below(bytes.size());
-    switch (below(6)) {
-      case 0:
-        bytes[at] = static_cast<char>(random());
-        break;
-      case 1:
-        bytes.erase(at, 1 + below(8));
-        break;
-      case 2:
-        bytes.insert(at, kSplinters[below(std::size(kSplinters))]);
-        break;
-      case 3: {
-        const std::size_t number = bytes.find_first_of("0123456789", at);
-        if (number == std::string::npos) break;
-        bytes.replace(number, 1, kSplinters[below(std::size(kSplinters))]);
-        break;
-      }
-      case 4:
-        bytes.replace(at, std::min<std::size_t>(4, bytes.size() - at), "\xFF\xFF\xFF\x7F", 4);
-        break;
-      case 5:
-        if (below(8) == 0) bytes.resize(at);
-        break;
-    }
-  }
-  return bytes;
-}
-
-void expect_sound(const Scene& scene) {
-  ASSERT_FALSE(scene.triangles.empty());
-  for (const glm::vec3& p : scene.positions) {
-    ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
-  }
-  for (const Triangle& triangle : scene.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      ASSERT_LT(triangle.vertices[k], scene.positions.size());
-      if (triangle.normals[k] != kNoIndex) {
-        ASSERT_LT(triangle.normals[k], scene.normals.size());
-      }
-      if (triangle.texcoords[k] != kNoIndex) {
-        ASSERT_LT(triangle.texcoords[k], scene.texcoords.size());
-      }
-    }
-    ASSERT_LT(triangle.material, scene.materials.size());
-    ASSERT_LT(triangle.object, scene.objects.size());
-  }
-}
+constexpr const char* kSplinters[] = {"\"", "[", "]", "{}", "null", "\n", " ", ",", "2147483647"};
 
 struct Kind {
   const char* name;
@@ -148,15 +95,15 @@ TEST_P(DamagedFile, LoadsSoundlyOrIsRefused) {
   const TempFolder folder;
   const std::uint64_t seed = 20240902;
   RecordProperty("seed", std::to_string(seed));
-  std::mt19937_64 random(seed);
+  test::Damage damage(seed, kSplinters);
   (void)folder.write("square.bin", test::square_buffer());
   (void)folder.write("dot.tga", test::tga(1, 1, {{9, 9, 9}}));
   int loaded = 0, refused = 0;
   for (int round = 0; round < 600; ++round) {
-    const std::string bytes = mutated(GetParam().bytes, random);
+    const std::string bytes = damage(GetParam().bytes);
     const std::filesystem::path file = folder.write(GetParam().name, bytes);
     try {
-      expect_sound(load_scene(file));
+      test::expect_sound(load_scene(file));
       if (testing::Test::HasFatalFailure()) FAIL() << "round " << round << "\n" << bytes;
       ++loaded;
     } catch (const InputError& error) {

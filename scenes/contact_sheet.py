@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Renders models by their default view and puts the pictures on one sheet.
+
+  make contact-sheet                                    # the models at hand: build/contact_sheet.png
+  make contact-sheet MODELS='bunny.ply room.glb'        # these
+
+The models at hand are those of scenes/ and build/scenes/, without their scene files; one of each format that this
+script writes; and, if Debian's package assimp-testmodels is there, some of its models."""
+import argparse
+import json
+import math
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+from PIL import Image, ImageDraw
+
+from make_sphere import icosphere
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ASSIMP = pathlib.Path("/usr/share/assimp/models")
+ASSIMP_MODELS = ["OBJ/spider.obj", "OBJ/WusonOBJ.obj", "PLY/Wuson.ply", "PLY/cube_uv.ply", "STL/Spider_ascii.stl",
+                 "STL/Spider_binary.stl", "STL/Wuson.stl", "STL/sphereWithHole.stl",
+                 "glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb",
+                 "glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", "glTF2/textureTransform/TextureTransformTest.gltf",
+                 "glTF2/ClearCoat-glTF/ClearCoatTest.gltf"]
+
+
+def write_knot(folder: pathlib.Path) -> list[pathlib.Path]:
+    """A trefoil knot's tube as PLY and STL, z upwards."""
+    around, across = 200, 24
+    points = []
+    for i in range(around):
+        a = 2 * math.pi * i / around
+        centre = [math.sin(a) + 2 * math.sin(2 * a), math.cos(a) - 2 * math.cos(2 * a), -math.sin(3 * a)]
+        ahead = [math.cos(a) + 4 * math.cos(2 * a), -math.sin(a) + 4 * math.sin(2 * a), -3 * math.cos(3 * a)]
+        size = math.hypot(*ahead)
+        ahead = [x / size for x in ahead]
+        side = [ahead[1], -ahead[0], 0]
+        size = math.hypot(*side)
+        side = [x / size for x in side]
+        top = [side[1] * ahead[2] - side[2] * ahead[1], side[2] * ahead[0] - side[0] * ahead[2],
+               side[0] * ahead[1] - side[1] * ahead[0]]
+        for k in range(across):
+            b = 2 * math.pi * k / across
+            points.append([c + 0.6 * (math.cos(b) * s + math.sin(b) * t) for c, s, t in zip(centre, side, top)])
+    quads = [[i * across + k, i * across + (k + 1) % across, (i + 1) % around * across + (k + 1) % across,
+              (i + 1) % around * across + k] for i in range(around) for k in range(across)]
+    ply, stl = folder / "knot.ply", folder / "knot.stl"
+    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\n"
+              f"property float y\nproperty float z\nelement face {len(quads)}\n"
+              "property list uchar int vertex_indices\nend_header\n")
+    ply.write_bytes(header.encode() + b"".join(struct.pack("<3f", *p) for p in points) +
+                    b"".join(struct.pack("<B4i", 4, *quad) for quad in quads))
+    facets = [(q[0], q[1], q[2]) for q in quads] + [(q[0], q[2], q[3]) for q in quads]
+    stl.write_bytes(bytes(80) + struct.pack("<I", len(facets)) +
+                    b"".join(bytes(12) + b"".join(struct.pack("<3f", *points[v]) for v in f) + bytes(2)
+                             for f in facets))
+    return [ply, stl]
+
+
+def write_balls(file: pathlib.Path, smoothness: int = 4) -> pathlib.Path:
+    """A GLB of ten balls: metal in the upper row, plastic in the lower one, rougher from left to right."""
+    points, faces = icosphere(smoothness)
+    positions = b"".join(struct.pack("<3f", *p) for p in points)
+    indices = b"".join(struct.pack("<3I", *f) for f in faces)
+    materials, nodes = [], []
+    for row, (metallic, colour) in enumerate([(1, [1, 0.77, 0.34, 1]), (0, [0.1, 0.25, 0.7, 1])]):
+        for column in range(5):
+            materials.append({"pbrMetallicRoughness": {"baseColorFactor": colour, "metallicFactor": metallic,
+                                                       "roughnessFactor": 0.05 + 0.2 * column}})
+            nodes.append({"mesh": len(nodes), "translation": [2.4 * column, 2.4 * (1 - row), 0]})
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(10))}], "nodes": nodes,
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1, "material": i}]}
+                   for i in range(10)],
+        "materials": materials,
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
+                       "min": [-1, -1, -1], "max": [1, 1, 1]},
+                      {"bufferView": 1, "componentType": 5125, "count": 3 * len(faces), "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(positions)},
+                        {"buffer": 0, "byteOffset": len(positions), "byteLength": len(indices)}],
+        "buffers": [{"byteLength": len(positions) + len(indices)}]}
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    data = positions + indices
+    file.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(data)) +
+                     struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data)
+    return file
+
+
+def models_at_hand(folder: pathlib.Path) -> list[pathlib.Path]:
+    stored = sorted((ROOT / "scenes").glob("*.obj")) + sorted((ROOT / "build" / "scenes").glob("*.obj"))
+    return stored + write_knot(folder) + [write_balls(folder / "balls.glb")] + \
+        [ASSIMP / name for name in ASSIMP_MODELS if (ASSIMP / name).is_file()]
+
+
+def render(program: pathlib.Path, model: pathlib.Path, size: tuple[int, int], options: list[str]) -> Image.Image:
+    """Its picture, or what the program says."""
+    with tempfile.TemporaryDirectory() as folder:
+        picture = pathlib.Path(folder) / "picture.png"
+        done = subprocess.run([program, model, "--no-scene-file", "--engine", "cpu", "--quiet", "--size",
+                               f"{size[0]}x{size[1]}", "-o", picture, *options], capture_output=True, text=True)
+        if done.returncode == 0:
+            return Image.open(picture).convert("RGB").copy()
+    tile = Image.new("RGB", size, "white")
+    words = done.stderr.strip().splitlines()[-1:] or [f"exit status {done.returncode}"]
+    ImageDraw.Draw(tile).multiline_text((8, size[1] // 3), "\n".join(
+        words[0][i:i + 48] for i in range(0, len(words[0]), 48)), fill="black")
+    return tile
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=pathlib.Path, help="./render")
+    parser.add_argument("output", type=pathlib.Path)
+    parser.add_argument("models", type=pathlib.Path, nargs="*", help="default: those at hand")
+    parser.add_argument("--size", default="320x240", help="of each picture (320x240)")
+    parser.add_argument("--columns", type=int, default=5)
+    parser.add_argument("--options", default="", help="more of ./render")
+    asked = parser.parse_args()
+    size = tuple(int(side) for side in asked.size.split("x"))
+    with tempfile.TemporaryDirectory() as folder:
+        models = asked.models or models_at_hand(pathlib.Path(folder))
+        rows = math.ceil(len(models) / asked.columns)
+        sheet = Image.new("RGB", (asked.columns * size[0], rows * (size[1] + 16)), "white")
+        for i, model in enumerate(models):
+            place = (i % asked.columns * size[0], i // asked.columns * (size[1] + 16))
+            sheet.paste(render(asked.program.resolve(), model.resolve(), size, asked.options.split()), place)
+            ImageDraw.Draw(sheet).text((place[0] + 4, place[1] + size[1] + 2), model.name, fill="black")
+            print(f"{i + 1} of {len(models)}: {model.name}", file=sys.stderr)
+    sheet.save(asked.output)
+    print(f"wrote {asked.output}: {len(models)} models")
+
+
+if __name__ == "__main__":
+    main()
