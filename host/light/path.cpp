@@ -8,7 +8,8 @@ namespace {
 // What random numbers and branches are for.
 constexpr std::uint32_t kGoOn = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                         kDirection = 5;
-constexpr int kSureSurfaces = 3;         // before chance decides whether a ray lives on
+constexpr int kSureSurfaces = 3;         // before chance decides whether a ray lives on,
+constexpr float kSureWeight = 0.25f;     // unless it counts for as much as this
 constexpr float kLeastDensity = 1e-20f;  // of a direction: floats have room for the inverse
 
 /// How likely each way on is, in proportion to what it brings.
@@ -28,10 +29,11 @@ struct LobeChances {
   }
 };
 
-/// a / (a + b), where a may be infinite.
+/// a^2 / (a^2 + b^2), where a may be infinite.
 template <class T>
 RAYGATE_INLINE T share_of(const T& a, const T& b) {
-  return 1.0f / (1.0f + b / a);
+  const T over = b / a;
+  return 1.0f / (1.0f + over * over);
 }
 
 /// What the surfaces emit. Lamps that a scattered ray has found count for the share of that way of
@@ -140,7 +142,7 @@ RAYGATE_INLINE void go_on_by_chance(const ShadingScene& shading, Hits<T>& hits,
   ways.is_wanted = chances.sum > 0.0f;
   // Chance decides before the lobe is looked at, so that no work is lost on rays that end.
   if (hits.block.wave->depth >= kSureSurfaces) {
-    const T survival = at_most(largest(weight) * chances.sum, 1.0f);
+    const T survival = at_most(largest(weight) * chances.sum * (1.0f / kSureWeight), 1.0f);
     ways.is_wanted = ways.is_wanted & (choice.y < survival);
     weight = choose(ways.is_wanted, weight * (1.0f / survival), weight);
   }

@@ -7,9 +7,9 @@ namespace raygate {
 
 /// At each hit one lamp is asked for its light, and one ray goes on, scattered, mirrored or through
 /// the surface. Where a scattered ray finds a lamp itself, both ways of finding it are weighed by
-/// how likely each was (the balance heuristic of Veach and Guibas, 1995). After three surfaces a
-/// ray that counts for little lives on by chance, and counts for more then. The last rays, one
-/// deeper than the depth chosen, see what emits and nothing else.
+/// how likely each was, squared (the power heuristic of Veach and Guibas, 1995). After three
+/// surfaces a ray that counts for less than a quarter lives on by chance, and counts for a quarter
+/// then. The last rays, one deeper than the depth chosen, see what emits and nothing else.
 class Path final : public Integrator {
  public:
   Path(const Scene& scene, const Clearances& clearances, const Lights& lights, const Skips& skips,
