@@ -7,7 +7,7 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers rays skips predicates shares claims
+.PHONY: stress bench peers rays skips predicates shares stages claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -48,6 +48,11 @@ predicates: ## what an exact decision costs, beside rationals and __float128
 shares: ## what a path-traced picture spends on hit tests, departures, shading and doubts, scene by scene
 	$(call build,lab,render scenes)
 	@$(LAB_REPORT) shares $(GALLERY) build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)')
+
+stages: ## load, tree, render, write: milliseconds of a small and two large scenes: make stages [BEFORE=PROGRAM]
+	$(call build,lab,render scenes)
+	@$(LAB_REPORT) stages scenes/cornell.obj scenes/teapot.obj build/scenes/sphereflake.obj \
+	  build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)')
 
 claims: everything ## check the figures of host/lab/CLAIMS.md by their commands: make claims [ONLY=frame_rates]
 	@python3 -B host/lab/claims.py --only '$(ONLY)'

@@ -1,11 +1,11 @@
-"""`python3 -m host.lab.report`: what `make bench`, `make stress` and `make shares` run."""
+"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make shares` and `make stages` run."""
 
 import argparse
 import pathlib
 import shutil
 import sys
 
-from host.lab.report import bench, bench_report, compare, document, shares, stress_report
+from host.lab.report import bench, bench_report, compare, document, shares, stages, stress_report
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
 
@@ -34,6 +34,12 @@ def arguments() -> argparse.Namespace:
     command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
     command.add_argument("--size", default="128x96")
     command.add_argument("--spp", default="4")
+    command = commands.add_parser("stages", help="load, tree, render, write: how long each takes ./render")
+    command.add_argument("scenes", nargs="+")
+    command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
+    command.add_argument("--before", type=pathlib.Path, metavar="PROGRAM", help="an older one to print in brackets")
+    command.add_argument("--size", default="640x480")
+    command.add_argument("--repeats", type=int, default=9)
     return parser.parse_args()
 
 
@@ -100,10 +106,28 @@ def run_shares(given: argparse.Namespace) -> int:
     return 0
 
 
+def run_stages(given: argparse.Namespace) -> int:
+    """Prints the table, the fastest of each stage's runs, and keeps the rows."""
+    programs = [given.render.resolve()] + ([given.before.resolve()] if given.before else [])
+    rows = stages.measure(programs, given.scenes, ["--integrator", "whitted", "--spp", "1", "--size", given.size],
+                          given.repeats)
+    kept.write(KEPT / "stages.jsonl", rows)
+
+    def cell(scene: str, stage: str) -> str:
+        now, *before = (f"{1000 * min(row['seconds'][stage]):.0f}" for row in kept.of(rows, "stages", scene=scene))
+        return now + "".join(f" ({old})" for old in before)
+
+    print(document.table(
+        {"scene": "", "triangles": ","} | {f"{stage}, ms": "" for stage in stages.STAGES},
+        [[kept.scene_name(row), row["triangles"], *(cell(row["scene"], stage) for stage in stages.STAGES)]
+         for row in kept.of(rows, "stages", program=0)]))
+    return 0
+
+
 def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
-    commands = {"bench": run_bench, "stress": run_stress, "shares": run_shares}
+    commands = {"bench": run_bench, "stress": run_stress, "shares": run_shares, "stages": run_stages}
     try:
         return commands[given.command](given)
     except (OSError, ValueError) as error:
