@@ -71,21 +71,23 @@ mutate: ## single faults in cores and pipeline that the tests' vectors catch: ma
 	@python3 -m sim.mutate build/mutate --jobs $(JOBS)
 
 FUZZ_SECONDS ?= 60
-fuzz: ## run libFuzzer on the readers of scenes and rays and on exact arithmetic: make fuzz [FUZZ_SECONDS=60]
+# A number of files in place of seconds: the same ones each time, for the same program.
+FUZZ_LENGTH = $(if $(FUZZ_FILES),-runs=$(FUZZ_FILES) -seed=1,-max_total_time=$(FUZZ_SECONDS))
+FUZZ_LIMITS := -max_len=1048576 -rss_limit_mb=2048 -artifact_prefix=build/fuzz/
+FUZZ_SCENES := obj ply stl gltf glb
+fuzz: ## run libFuzzer on the readers of scenes and rays and on exact arithmetic: make fuzz [FUZZ_SECONDS=60 | FUZZ_FILES=5000]
 	@$(SETUP) fuzz
 	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYGATE_FUZZ=ON
-	@cmake --build build/fuzz -j $(JOBS) --target obj_fuzz ply_fuzz stl_fuzz gltf_fuzz glb_fuzz rays_fuzz exact_fuzz
-	@mkdir -p build/fuzz/scenes && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/scenes
-	@build/fuzz/obj_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/ build/fuzz/scenes
-	@for kind in ply stl gltf glb; do \
+	@cmake --build build/fuzz -j $(JOBS) --target $(FUZZ_SCENES:=_fuzz) rays_fuzz exact_fuzz
+	@mkdir -p build/fuzz/obj && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/obj
+	@for kind in $(FUZZ_SCENES); do \
 	  mkdir -p build/fuzz/$$kind && cp -n host/scene/io/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
-	  build/fuzz/$${kind}_fuzz -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=2048 \
-	    -artifact_prefix=build/fuzz/ build/fuzz/$$kind || exit 1; \
+	  build/fuzz/$${kind}_fuzz $(FUZZ_LENGTH) $(FUZZ_LIMITS) build/fuzz/$$kind || exit 1; \
 	done
 	@mkdir -p build/fuzz/rays && cp -n host/trace/fuzz/rays/* build/fuzz/rays
-	@build/fuzz/rays_fuzz -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=512 -malloc_limit_mb=16 \
+	@build/fuzz/rays_fuzz $(FUZZ_LENGTH) -rss_limit_mb=512 -malloc_limit_mb=16 \
 	  -artifact_prefix=build/fuzz/ build/fuzz/rays
-	@build/fuzz/exact_fuzz -max_total_time=$(FUZZ_SECONDS) -artifact_prefix=build/fuzz/
+	@build/fuzz/exact_fuzz $(FUZZ_LENGTH) -artifact_prefix=build/fuzz/
 
 lint: everything ## check layout and pitfalls of all sources, but for clang-tidy's (make check)
 	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
