@@ -49,6 +49,7 @@ test: everything ## build and run all tests
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
 
 python: ## install the Python module into build/python, test it and its notebook there
+	$(call build,build,float_cores)
 	@$(SETUP) python
 	@test -e build/python/bin/pip || python3 -m venv build/python
 	@build/python/bin/pip install --quiet --disable-pip-version-check . -r host/python/requirements.txt
@@ -71,7 +72,7 @@ mutate: ## single faults in cores and pipeline that the tests' vectors catch: ma
 	@python3 -m sim.mutate build/mutate --jobs $(JOBS)
 
 FUZZ_SECONDS ?= 60
-# A number of files in place of seconds: the same ones each time, for the same program.
+# A number of files in place of seconds.
 FUZZ_LENGTH = $(if $(FUZZ_FILES),-runs=$(FUZZ_FILES) -seed=1,-max_total_time=$(FUZZ_SECONDS))
 FUZZ_LIMITS := -max_len=1048576 -rss_limit_mb=2048 -artifact_prefix=build/fuzz/
 FUZZ_SCENES := obj ply stl gltf glb

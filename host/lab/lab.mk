@@ -7,7 +7,7 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers rays skips predicates shares stages claims
+.PHONY: stress bench peers gltf-pictures rays skips predicates shares stages claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -29,6 +29,10 @@ bench: ## run time against error, one report: make bench [QUICK=1 BASE=old.jsonl
 peers: ## error against time next to Mitsuba 3: make peers [QUICK=1 SCENES='cornell teapot' PUBLISH=1]
 	$(call build,peers,render scenes)
 	@$(PYTHON) -B -m host.lab.peers $(SCENES) $(if $(QUICK),--quick) $(if $(PUBLISH),--publish)
+
+gltf-pictures: ## glTF models next to Mitsuba 3's pictures of them: build/results/gltf.png
+	$(call build,peers,render)
+	@$(PYTHON) -B -m host.lab.peers.gltf_pictures
 
 rays: ## rays per second of the cpu engine next to Embree 3
 	$(call build,lab,lab scenes)

@@ -10,12 +10,15 @@ unsigned integers, which are the format's words: sign, exponent, fraction. Resul
 of the operands. Arrays of different shapes are broadcast.
 
 What computes here is the reference that the simulated cores of hw/fp are compared with, bit by bit,
-by this repository's tests (sim/test/fp): not the cores themselves. NaNs that come out are the
-cores' only one, positive and quiet.
+by this repository's tests (sim/test/fp). With `cores`, the path of the program float_cores of this
+repository (cmake --build build --target float_cores), the cores themselves do, Verilated, in the
+four formats below. NaNs that come out are the cores' only one, positive and quiet.
 """
 
 import dataclasses
 import enum
+import os
+import subprocess
 import typing
 
 import numpy as np
@@ -72,32 +75,33 @@ class Result(typing.NamedTuple):
     flags: np.ndarray  #: uint8: see Flags
 
 
-def fp_add(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+def fp_add(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a + b. `rounding` is one of ROUNDINGS; `tininess`, "before" or "after" rounding, is when a
-    result counts as subnormal, which changes the flag UNDERFLOW alone."""
-    return _run("+", a, b, format, rounding, tininess)
+    result counts as subnormal, which changes the flag UNDERFLOW alone. `cores`: the program
+    float_cores, if the simulated cores are to compute."""
+    return _run("+", a, b, format, rounding, tininess, cores)
 
 
-def fp_subtract(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+def fp_subtract(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a - b, as fp_add."""
-    return _run("-", a, b, format, rounding, tininess)
+    return _run("-", a, b, format, rounding, tininess, cores)
 
 
-def fp_multiply(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+def fp_multiply(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a * b, as fp_add."""
-    return _run("*", a, b, format, rounding, tininess)
+    return _run("*", a, b, format, rounding, tininess, cores)
 
 
-def fp_divide(a, b, format=BINARY32, rounding="nearest-even", tininess="after"):
+def fp_divide(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a / b, as fp_add."""
-    return _run("/", a, b, format, rounding, tininess)
+    return _run("/", a, b, format, rounding, tininess, cores)
 
 
-def fp_compare(a, b, relation, format=BINARY32):
+def fp_compare(a, b, relation, format=BINARY32, cores=None):
     """Whether a `relation` b, one of RELATIONS, as an array of bool. "==" is quiet, the others
     signal INVALID for any NaN."""
     _one_of("relation", relation, RELATIONS)
-    return _run(relation, a, b, format, "nearest-even", "after")
+    return _run(relation, a, b, format, "nearest-even", "after", cores)
 
 
 def round_to(x, format, rounding="nearest-even", tininess="after"):
@@ -133,7 +137,7 @@ def decode(bits, format):
     return np.where(bits >> format.width - 1 == 1, -size, size)[()]
 
 
-def _run(operation, a, b, format, rounding, tininess):
+def _run(operation, a, b, format, rounding, tininess, cores):
     _one_of("rounding", rounding, ROUNDINGS)
     _one_of("tininess", tininess, _TININESS)
     a, b = np.asarray(a), np.asarray(b)
@@ -150,15 +154,33 @@ def _run(operation, a, b, format, rounding, tininess):
     except ValueError:
         raise InputError(f"found arrays of shape {a.shape} and {b.shape}, expected shapes that can "
                          "be broadcast together") from None
-    value, flags = _raygate.float_run(
-        _OPERATIONS.index(operation), np.ascontiguousarray(x).ravel(),
-        np.ascontiguousarray(y).ravel(), format.exponent_bits, format.fraction_bits,
-        ROUNDINGS.index(rounding), tininess == "before")
+    x_words, y_words = np.ascontiguousarray(x).ravel(), np.ascontiguousarray(y).ravel()
+    if cores is None:
+        value, flags = _raygate.float_run(
+            _OPERATIONS.index(operation), x_words, y_words, format.exponent_bits,
+            format.fraction_bits, ROUNDINGS.index(rounding), tininess == "before")
+    else:
+        value, flags = _by_cores(cores, operation, x_words, y_words, format, rounding, tininess)
     if operation in RELATIONS:
         value = value != 0
     elif kinds == {"f"}:
         value = _held(decode(value, format), np.result_type(a, b), format)
     return Result(value.reshape(x.shape)[()], flags.reshape(x.shape)[()])
+
+
+def _by_cores(cores, operation, x, y, format, rounding, tininess):
+    """Result and flags, by the program float_cores."""
+    words = [os.fsdecode(cores), operation, str(format.exponent_bits), str(format.fraction_bits),
+             str(ROUNDINGS.index(rounding)), str(int(tininess == "before"))]
+    try:
+        done = subprocess.run(words, input=np.stack([x, y], axis=1).astype("<u4").tobytes(),
+                              capture_output=True)
+    except OSError as error:
+        raise InputError(f"cores: found {cores}, expected the program float_cores ({error.strerror})") from None
+    if done.returncode != 0:
+        raise InputError(done.stderr.decode(errors="replace").strip())
+    pairs = np.frombuffer(done.stdout, "<u4").reshape(-1, 2).astype(np.uint32)
+    return pairs[:, 0].copy(), pairs[:, 1].astype(np.uint8)
 
 
 def _words(array, format):

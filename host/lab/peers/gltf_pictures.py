@@ -1,0 +1,115 @@
+"""`make gltf-pictures`: glTF models as raygate and Mitsuba render them, side by side, under the same lamp and sky."""
+
+import argparse
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import mitsuba
+import numpy
+from matplotlib import pyplot
+
+mitsuba.set_variant("scalar_rgb")
+
+from host.lab.peers.gltf_scene import mitsuba_meshes  # noqa: E402  (wants a variant)
+from host.lab.peers.renderers import light_of  # noqa: E402
+from host.lab.report.rows import ROOT  # noqa: E402
+
+sys.path.insert(0, str(ROOT / "scenes"))
+from contact_sheet import ASSIMP, write_balls  # noqa: E402
+
+PACKAGED = ["glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", "glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb"]
+SKY = 0.4
+WIDTH, HEIGHT = 320, 240
+FOV = 30.0
+
+
+def scene_of(meshes: dict) -> tuple[dict, dict]:
+    """Camera and lamp around the meshes: as a scene file has them."""
+    boxes = [mitsuba.load_dict(mesh).bbox() for mesh in meshes.values()]
+    low = numpy.min([numpy.array(box.min) for box in boxes], axis=0)
+    high = numpy.max([numpy.array(box.max) for box in boxes], axis=0)
+    middle, size = (low + high) / 2, float(numpy.linalg.norm(high - low))
+    away = numpy.array([math.sin(0.55), 0.5, math.cos(0.55)])
+    eye = middle + away / numpy.linalg.norm(away) * size * 0.5 / math.tan(math.radians(FOV / 2)) * 1.05
+    corner = middle + numpy.array([-0.75, 1.0, -0.25]) * size
+    camera = {"eye": eye.tolist(), "target": middle.tolist(), "up": [0, 1, 0], "fov": FOV}
+    # Its front, by the right-hand rule of the edges, looks down: Mitsuba's shines there alone.
+    lamp = {"corner": corner.tolist(), "edges": [[size, 0, 0], [0, 0, size]], "radiance": 3.0}
+    return camera, lamp
+
+
+def by_mitsuba(meshes: dict, camera: dict, lamp: dict, samples: int) -> numpy.ndarray:
+    corner, (along, across) = numpy.array(lamp["corner"]), numpy.array(lamp["edges"])
+    # The rectangle from (-1, -1) to (1, 1) looks along +z.
+    matrix = numpy.eye(4)
+    matrix[:3, 0], matrix[:3, 1] = along / 2, across / 2
+    matrix[:3, 2] = numpy.cross(along, across) / numpy.linalg.norm(numpy.cross(along, across))
+    matrix[:3, 3] = corner + (along + across) / 2
+    transform = mitsuba.ScalarTransform4f
+    scene = mitsuba.load_dict({
+        "type": "scene", "integrator": {"type": "path", "max_depth": 66}, **meshes,
+        "sky": {"type": "constant", "radiance": {"type": "rgb", "value": [SKY] * 3}},
+        "lamp": {"type": "rectangle", "to_world": transform(matrix), "bsdf": {
+            "type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}},
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": lamp["radiance"]}}},
+        "camera": {"type": "perspective", "fov_axis": "y", "fov": FOV,
+                   "to_world": transform().look_at(camera["eye"], camera["target"], camera["up"]),
+                   "film": {"type": "hdrfilm", "width": WIDTH, "height": HEIGHT, "rfilter": {"type": "box"},
+                            "pixel_format": "rgb"}}})
+    return numpy.array(mitsuba.render(scene, spp=samples))
+
+
+def by_raygate(program: pathlib.Path, model: pathlib.Path, camera: dict, lamp: dict, samples: int,
+               folder: pathlib.Path) -> numpy.ndarray:
+    scene = folder / "scene.json"
+    scene.write_text(json.dumps({"obj": str(model), "camera": camera, "area_lights": [lamp],
+                                 "background": [SKY] * 3}))
+    picture = folder / "picture.exr"
+    subprocess.run([program, scene, "--engine", "cpu", "--quiet", "--integrator", "path", "--filter", "box", "--spp",
+                    str(samples), "--size", f"{WIDTH}x{HEIGHT}", "-o", picture], check=True)
+    return light_of(mitsuba.Bitmap(str(picture)))
+
+
+def shown(picture: numpy.ndarray) -> numpy.ndarray:
+    """As sRGB."""
+    limited = numpy.clip(picture, 0, 1)
+    return numpy.where(limited <= 0.0031308, 12.92 * limited, 1.055 * limited ** (1 / 2.4) - 0.055)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="gltf_pictures", description=__doc__)
+    parser.add_argument("models", nargs="*", type=pathlib.Path, metavar="MODEL.glb", help="(those at hand)")
+    parser.add_argument("--samples", type=int, default=64, help="(64)")
+    parser.add_argument("--render", type=pathlib.Path, default=ROOT / "render", help="raygate's program (./render)")
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build" / "results" / "gltf.png")
+    asked = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        models = asked.models or [write_balls(folder / "balls.glb")] + \
+            [ASSIMP / model for model in PACKAGED if (ASSIMP / model).is_file()]
+        figure, axes = pyplot.subplots(len(models), 3, figsize=(10, 2.6 * len(models)), squeeze=False)
+        for row, model in zip(axes, models, strict=True):
+            meshes = mitsuba_meshes(model, folder)
+            camera, lamp = scene_of(meshes)
+            ours = by_raygate(asked.render, model.resolve(), camera, lamp, asked.samples, folder)
+            theirs = by_mitsuba(meshes, camera, lamp, asked.samples)
+            apart = ours - theirs
+            for cell, picture, title in zip(row, (shown(ours), shown(theirs), numpy.clip(0.5 + apart, 0, 1)), (
+                    f"{model.name}: raygate", "Mitsuba, principled", "difference + 0.5"), strict=True):
+                cell.imshow(picture)
+                cell.set_title(title, fontsize=8)
+                cell.axis("off")
+            print(f"{model.name}: mean {ours.mean():.4f} and {theirs.mean():.4f}, mean absolute difference "
+                  f"{numpy.abs(apart).mean():.4f}")
+    asked.output.parent.mkdir(parents=True, exist_ok=True)
+    figure.tight_layout()
+    figure.savefig(asked.output, dpi=110)
+    print(f"wrote {asked.output}")
+
+
+if __name__ == "__main__":
+    main()
