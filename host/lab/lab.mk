@@ -7,7 +7,7 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers gltf-pictures rays skips predicates shares stages claims
+.PHONY: stress bench peers gltf-pictures rays skips predicates shares stages trace-rates claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -57,6 +57,10 @@ stages: ## load, tree, render, write: milliseconds of a small and two large scen
 	$(call build,lab,render scenes)
 	@$(LAB_REPORT) stages scenes/cornell.obj scenes/teapot.obj build/scenes/sphereflake.obj \
 	  build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)')
+
+trace-rates: ## rays per second of ./trace: nearest, any and all hits, tables in and out included
+	$(call build,lab,trace scenes)
+	@$(LAB_REPORT) trace scenes/cornell.obj scenes/teapot.obj $(LARGE_SCENES) build/scenes/landscape.obj
 
 claims: everything ## check the figures of host/lab/CLAIMS.md by their commands: make claims [ONLY=frame_rates]
 	@python3 -B host/lab/claims.py --only '$(ONLY)'

@@ -1,11 +1,12 @@
-"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make shares` and `make stages` run."""
+"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make shares`, `make stages` and
+`make trace-rates` run."""
 
 import argparse
 import pathlib
 import shutil
 import sys
 
-from host.lab.report import bench, bench_report, compare, document, shares, stages, stress_report
+from host.lab.report import bench, bench_report, compare, document, shares, stages, stress_report, trace_rates
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
 
@@ -40,6 +41,10 @@ def arguments() -> argparse.Namespace:
     command.add_argument("--before", type=pathlib.Path, metavar="PROGRAM", help="an older one to print in brackets")
     command.add_argument("--size", default="640x480")
     command.add_argument("--repeats", type=int, default=9)
+    command = commands.add_parser("trace", help="rays per second of ./trace")
+    command.add_argument("scenes", nargs="+", help="OBJ files")
+    command.add_argument("--trace", type=pathlib.Path, default=ROOT / "trace", metavar="PROGRAM")
+    command.add_argument("--rays", type=int, default=1_000_000)
     return parser.parse_args()
 
 
@@ -124,10 +129,21 @@ def run_stages(given: argparse.Namespace) -> int:
     return 0
 
 
+def run_trace(given: argparse.Namespace) -> int:
+    """Prints the table and keeps its rows."""
+    rows = [row for scene in given.scenes for row in trace_rates.rows(given.trace.resolve(), scene, given.rays)]
+    kept.write(KEPT / "trace.jsonl", rows)
+    print(document.table(
+        {"scene": "", "hits": "", "rays": ",", "rows that hit": ",", "rays/s": ","},
+        [[kept.scene_name(row), row["kind"], row["rays"], row["hits"], row["rays_per_second"]] for row in rows]))
+    return 0
+
+
 def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
-    commands = {"bench": run_bench, "stress": run_stress, "shares": run_shares, "stages": run_stages}
+    commands = {"bench": run_bench, "stress": run_stress, "shares": run_shares, "stages": run_stages,
+                "trace": run_trace}
     try:
         return commands[given.command](given)
     except (OSError, ValueError) as error:
