@@ -1,5 +1,6 @@
 #include "host/film/channels.h"
 
+#include <array>
 #include <cstring>
 
 namespace raygate {
@@ -20,6 +21,20 @@ void add_numbers(std::vector<Channel>& channels, const char* name,
   channels.push_back({name, Channel::Type::kUint, values.data(), sizeof(std::uint32_t)});
 }
 
+/// "sums.R.0" to "sums.R.5" and so on.
+template <std::size_t N>
+void add_sums(std::vector<Channel>& channels, const std::string& layer, const char* parts,
+              const std::vector<std::array<SampleSum, N>>& sums) {
+  if (sums.empty()) return;
+  for (std::size_t k = 0; k < N; ++k) {
+    for (int word = 0; word < SampleSum::kWords; ++word) {
+      channels.push_back({layer + "." + parts[k] + "." + std::to_string(word), Channel::Type::kUint,
+                          static_cast<const std::uint32_t*>(sums.front()[k].words()) + word,
+                          sizeof(std::array<SampleSum, N>)});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Channel> channels_of(const Film& film) {
@@ -37,6 +52,11 @@ std::vector<Channel> channels_of(const Film& film) {
   add_numbers(channels, "objectId", film.object);
   add_numbers(channels, "tests", film.tests);
   add_numbers(channels, "doubts", film.doubts);
+  if (film.keeps_sums) {
+    add_numbers(channels, "samples", film.sums.samples);
+    add_sums(channels, "sums", "RGBA", film.sums.color);
+    add_sums(channels, "sums.Albedo", "RGB", film.sums.albedo);
+  }
   return channels;
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "host/film/channels.h"
+#include "host/film/exr_slices.h"
 #include "host/threads.h"
 
 namespace raygate {
@@ -55,21 +56,11 @@ Imf::Header make_header(const Film& film, const PixelRect& window, const ExrMeta
 /// The file of `window`, with all of its rows or, as yet, with none.
 std::string encode_window(const Film& film, const PixelRect& window, const ExrMetadata& metadata,
                           bool with_rows) {
-  Imf::FrameBuffer buffer;
-  for (const Channel& channel : channels_of(film)) {
-    const auto type = channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
-    // The library's slices start at pixel (0, 0), which may lie outside the window.
-    const std::size_t row = channel.stride * static_cast<std::size_t>(film.window.width());
-    char* base = static_cast<char*>(const_cast<void*>(channel.first)) -
-                 static_cast<std::ptrdiff_t>(channel.stride) * film.window.x0 -
-                 static_cast<std::ptrdiff_t>(row) * film.window.y0;
-    buffer.insert(channel.name, Imf::Slice(type, base, channel.stride, row));
-  }
   Imf::StdOSStream stream;
   {
     // None of the library's threads; the destructor completes the file.
     Imf::OutputFile file(stream, make_header(film, window, metadata), 0);
-    file.setFrameBuffer(buffer);
+    file.setFrameBuffer(exr_slices(film));
     if (with_rows) file.writePixels(window.height());
   }
   return stream.str();

@@ -5,19 +5,26 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 
+#include <charconv>
 #include <cstdint>
 #include <exception>
 #include <fstream>
 #include <system_error>
 
+#include "host/film/channels.h"
+#include "host/film/exr_slices.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
+
+std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
 
 void require_exr(const std::filesystem::path& file) {
   std::error_code error;
@@ -75,34 +82,17 @@ std::vector<double> read_channel(Imf::InputFile& file, const std::string& name, 
   return {values.begin(), values.end()};
 }
 
-}  // namespace
-
-ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::string> names) {
+/// Calls read(file) for an OpenEXR file of no more pixels than we take.
+template <class Read>
+auto with_file(const std::filesystem::path& path, const Read& read) {
   require_exr(path);
   try {
     Imf::InputFile file(path.c_str(), 0);
-    const Imf::Header& header = file.header();
-    const Imath::Box2i& data = header.dataWindow();
-    const Imath::Box2i& frame = header.displayWindow();
-    const auto side = [](int low, int high) { return std::int64_t{high} - low + 1; };
+    const Imath::Box2i& data = file.header().dataWindow();
     if (side(data.min.x, data.max.x) * side(data.min.y, data.max.y) > kMaxPixels) {
       throw InputError(path.string() + ": more than " + std::to_string(kMaxPixels) + " pixels");
     }
-    ChannelPicture picture;
-    picture.width = static_cast<int>(side(frame.min.x, frame.max.x));
-    picture.height = static_cast<int>(side(frame.min.y, frame.max.y));
-    require_channels(path, header.channels(), names);
-    const PixelRect window{data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
-    for (const std::string& name : names) {
-      picture.names.push_back(name);
-      const bool is_uint = header.channels().findChannel(name)->type == Imf::UINT;
-      picture.channels.push_back(is_uint
-                                     ? read_channel<std::uint32_t>(file, name, Imf::UINT, window)
-                                     : read_channel<float>(file, name, Imf::FLOAT, window));
-    }
-    picture.window = {window.x0 - frame.min.x, window.y0 - frame.min.y, window.x1 - frame.min.x,
-                      window.y1 - frame.min.y};
-    return picture;
+    return read(file);
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -115,6 +105,112 @@ ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::
     }
     throw InputError(path.string() + ": damaged: " + what);
   }
+}
+
+/// The windows of a file, in the frame's coordinates.
+void read_windows(const Imf::Header& header, int& width, int& height, PixelRect& window) {
+  const Imath::Box2i& data = header.dataWindow();
+  const Imath::Box2i& frame = header.displayWindow();
+  width = static_cast<int>(side(frame.min.x, frame.max.x));
+  height = static_cast<int>(side(frame.min.y, frame.max.y));
+  window = {data.min.x - frame.min.x, data.min.y - frame.min.y, data.max.x + 1 - frame.min.x,
+            data.max.y + 1 - frame.min.y};
+}
+
+/// A film with the arrays of a file's channels.
+Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
+  const Imf::ChannelList& channels = header.channels();
+  const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
+  if (!has("samples")) {
+    throw InputError(path.string() +
+                     ": found no sums of samples, expected a picture of `render --channels sums`");
+  }
+  Film film;
+  read_windows(header, film.width, film.height, film.window);
+  film.keeps_sums = true;
+  const std::size_t pixels = std::size_t(film.window.width()) * std::size_t(film.window.height());
+  film.color.resize(pixels);
+  film.depth.resize(pixels);
+  film.normal.resize(pixels);
+  film.primitive.resize(pixels);
+  film.sums.samples.resize(pixels);
+  film.sums.color.resize(pixels);
+  if (has("P.X")) film.position.resize(pixels);
+  if (has("Albedo.R")) film.albedo.resize(pixels);
+  film.sums.albedo.resize(film.albedo.size());
+  if (has("objectId")) film.object.resize(pixels);
+  if (has("tests")) film.tests.resize(pixels);
+  if (has("doubts")) film.doubts.resize(pixels);
+  std::vector<std::string> names;
+  for (const Channel& channel : channels_of(film)) names.push_back(channel.name);
+  require_channels(path, channels, names);
+  return film;
+}
+
+/// What encode_exr wrote of them.
+ExrMetadata metadata_of(const Imf::Header& header) {
+  ExrMetadata metadata;
+  for (auto at = header.begin(); at != header.end(); ++at) {
+    const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute());
+    if (text == nullptr) continue;
+    const std::string name = at.name();
+    const std::string& value = text->value();
+    if (name == "software") {
+      metadata.software = value;
+    } else if (name == "scene") {
+      metadata.scene = value;
+    } else if (name == "seed") {
+      std::from_chars(value.data(), value.data() + value.size(), metadata.seed);
+    } else if (name == "partial") {
+      metadata.partial = true;
+    } else {
+      metadata.options.emplace_back(name, value);
+    }
+  }
+  if (Imf::hasWorldToCamera(header)) {
+    const Imath::M44f& m = Imf::worldToCamera(header);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) metadata.world_to_camera[i][j] = m[i][j];
+    }
+  }
+  metadata.screen_window_width = header.screenWindowWidth();
+  return metadata;
+}
+
+}  // namespace
+
+ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::string> names) {
+  return with_file(path, [&](Imf::InputFile& file) {
+    const Imf::Header& header = file.header();
+    ChannelPicture picture;
+    read_windows(header, picture.width, picture.height, picture.window);
+    require_channels(path, header.channels(), names);
+    const Imath::Box2i& data = header.dataWindow();
+    const PixelRect window{data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
+    for (const std::string& name : names) {
+      picture.names.push_back(name);
+      const bool is_uint = header.channels().findChannel(name)->type == Imf::UINT;
+      picture.channels.push_back(is_uint
+                                     ? read_channel<std::uint32_t>(file, name, Imf::UINT, window)
+                                     : read_channel<float>(file, name, Imf::FLOAT, window));
+    }
+    return picture;
+  });
+}
+
+FilmFile read_film(const std::filesystem::path& path) {
+  return with_file(path, [&](Imf::InputFile& file) {
+    const Imath::V2i& corner = file.header().displayWindow().min;
+    if (corner != Imath::V2i(0, 0)) {
+      throw InputError(path.string() + ": found a frame that begins at " +
+                       std::to_string(corner.x) + "," + std::to_string(corner.y) +
+                       ", expected a picture of `render`");
+    }
+    FilmFile result{film_like(path, file.header()), metadata_of(file.header())};
+    file.setFrameBuffer(exr_slices(result.film));
+    file.readPixels(result.film.window.y0, result.film.window.y1 - 1);
+    return result;
+  });
 }
 
 }  // namespace raygate

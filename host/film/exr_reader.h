@@ -1,4 +1,4 @@
-// OpenEXR files of any program, for comparing.
+// OpenEXR files of any program, for comparing; and of ours, to go on with.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/film/exr.h"
 #include "host/film/film.h"
 
 namespace raygate {
@@ -22,5 +23,15 @@ struct ChannelPicture {
 /// cannot be read or is not OpenEXR, is damaged, lacks a channel, or is larger than 2^26 pixels.
 [[nodiscard]] ChannelPicture read_exr(const std::filesystem::path& file,
                                       std::span<const std::string> names);
+
+/// A film as encode_exr left it.
+struct FilmFile {
+  Film film;
+  ExrMetadata metadata;
+};
+
+/// Reads a film that keeps its sums. Throws InputError: what cannot be read, is not OpenEXR or not
+/// such a film, is damaged, or is larger than 2^26 pixels.
+[[nodiscard]] FilmFile read_film(const std::filesystem::path& file);
 
 }  // namespace raygate

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "host/film/film_sums.h"
+
 namespace raygate {
 
 /// The primitive or object of a pixel whose ray hits nothing.
@@ -21,6 +23,7 @@ struct PixelRect {
 /// What a film holds only if it was asked for.
 struct ExtraChannels {
   bool position = false, albedo = false, object = false, tests = false, doubts = false;
+  bool sums = false;  ///< what a render goes on from
 };
 
 /// Scene-linear picture of `window` (the crop) within a `width` x `height` frame.
@@ -46,6 +49,9 @@ struct Film {
   /// depends on the engine, the skips and the window, not on the number of threads.
   std::vector<std::uint32_t> tests;
   std::vector<std::uint32_t> doubts;  ///< those tests that float32 could not decide
+  /// Where there is more to come; files have them if they were asked for.
+  FilmSums sums;
+  bool keeps_sums = false;
 
   /// Where a pixel of the window is in the arrays.
   [[nodiscard]] std::size_t index_of(int x, int y) const {

@@ -10,13 +10,19 @@
 namespace raygate {
 
 std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
-                            const PixelRect& tile, std::span<std::uint8_t> is_edge) {
+                            const PixelRect& tile, std::span<LampEdge> is_edge) {
   // Corners of pixels, up to so many beyond the tile's own.
   const int beyond = static_cast<int>(std::ceil(filter_radius(job.options.filter) - 0.5));
   const auto may_see = [&](const AreaLight& lamp) {
     return may_see_box(lamp.low, lamp.high, job.camera, film, tile, beyond + 1.0);
   };
-  if (std::ranges::none_of(job.lights.areas(), may_see)) return 0;
+  if (std::ranges::none_of(job.lights.areas(), may_see)) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      const auto row = is_edge.subspan(film.index_of(tile.x0, y), std::size_t(tile.width()));
+      std::ranges::fill(row, LampEdge::kNo);
+    }
+    return 0;
+  }
   const int columns = tile.width() + 1 + 2 * beyond, rows = tile.height() + 1 + 2 * beyond;
   std::vector<Ray> rays;
   for (int y = 0; y < rows; ++y) {
@@ -40,7 +46,7 @@ std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& fi
           is_one = emission_at(x + dx, y + dy) == first;
         }
       }
-      is_edge[film.index_of(tile.x0 + x, tile.y0 + y)] = is_one ? 0 : 1;
+      is_edge[film.index_of(tile.x0 + x, tile.y0 + y)] = is_one ? LampEdge::kNo : LampEdge::kYes;
     }
   }
   return rays.size();

@@ -11,7 +11,10 @@ namespace raygate {
 
 class Finder;
 
-/// Marks them in a tile: `is_edge` is by pixel of the film's window.
+/// Whether a pixel is one of them.
+enum class LampEdge : std::uint8_t { kUnknown, kNo, kYes };
+
+/// Finds them in a tile: `is_edge` is by pixel of the film's window.
 ///
 /// A lamp is as a rule far brighter than all around it, and the pixels at its edges are the
 /// noisiest of a picture, while what camera rays see of lamps costs little to know: no light, no
@@ -21,6 +24,6 @@ class Finder;
 /// different emission. That depends on no sample, so that more rays where it is so favour nothing.
 /// Lamps between all corners, smaller than pixels, are not found. Returns how many rays it took.
 std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
-                            const PixelRect& tile, std::span<std::uint8_t> is_edge);
+                            const PixelRect& tile, std::span<LampEdge> is_edge);
 
 }  // namespace raygate

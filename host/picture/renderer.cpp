@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -15,6 +16,7 @@
 
 #include "host/light/clearance.h"
 #include "host/light/lights.h"
+#include "host/picture/lamp_edges.h"
 #include "host/picture/schedule.h"
 #include "host/picture/tile_renderer.h"
 #include "host/picture/tiles.h"
@@ -40,6 +42,7 @@ Film empty_film(const RenderOptions& options) {
   film.normal.assign(pixels, glm::vec3(0.0f));
   film.primitive.assign(pixels, kNoPrimitive);
   const ExtraChannels& extra = options.channels;
+  film.keeps_sums = extra.sums;
   if (extra.position) film.position.assign(pixels, glm::vec3(0.0f));
   if (extra.albedo) film.albedo.assign(pixels, glm::vec3(0.0f));
   if (extra.object) film.object.assign(pixels, kNoPrimitive);
@@ -53,15 +56,15 @@ Film empty_film(const RenderOptions& options) {
 class Crew {
  public:
   Crew(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
-       const FinderFactory& make_finder, const ProgressFunction& report, Film& film, FilmSums& sums,
-       RenderStats& stats)
+       const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
+       std::span<LampEdge> lamp_edges, RenderStats& stats)
       : job_(job),
         tiles_(tiles),
         first_finder_(std::move(first_finder)),
         make_finder_(make_finder),
         report_(report),
         film_(film),
-        sums_(sums),
+        lamp_edges_(lamp_edges),
         stats_(stats),
         schedule_(tiles.count, tiles.passes()) {}
 
@@ -97,17 +100,15 @@ class Crew {
     try {
       auto finder = take_first_finder();
       if (!finder) finder = make_finder_();
-      TileRenderer renderer(job_, *finder, film_, sums_);
+      TileRenderer renderer(job_, *finder, film_, lamp_edges_);
       const auto keep_going = [this] {
         if (is_alone_) look();
         const std::scoped_lock lock(mutex_);
         return !stopped_;
       };
       while (const auto step = next()) {
-        if (!renderer.trace(tiles_[step->tile], tiles_.first_sample(step->pass),
-                            tiles_.samples_of(step->pass), keep_going)) {
-          break;
-        }
+        const int end = job_.options.first_sample + tiles_.samples_after(step->pass);
+        if (!renderer.trace(tiles_[step->tile], end, keep_going)) break;
         const std::scoped_lock lock(mutex_);
         renderer.write();
         schedule_.end(step->tile);
@@ -203,7 +204,7 @@ class Crew {
   std::mutex mutex_;  // of all that follows
   std::condition_variable changed_;
   Film& film_;
-  FilmSums& sums_;
+  std::span<LampEdge> lamp_edges_;
   RenderStats& stats_;
   Schedule schedule_;
   int gone_ = 0;
@@ -228,17 +229,24 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
   const Bvh& bvh = clearances.bvh();
   Film film = empty_film(options);
   auto first_finder = make_finder();
-  const Tiles tiles(film.window, options.samples, first_finder->preferred_batch(), options.threads);
-  FilmSums sums;
-  if (tiles.passes() > 1) {
-    sums.color.assign(film.color.size(), glm::dvec4(0.0));
-    sums.albedo.assign(film.albedo.size(), glm::dvec3(0.0));
+  const int end = options.end_sample > 0 ? options.end_sample : options.samples;
+  const Tiles tiles(film.window, end - options.first_sample, first_finder->preferred_batch(),
+                    options.threads);
+  if (options.begun != nullptr) {
+    film = *options.begun;
+  } else if (tiles.passes() > 1 || film.keeps_sums) {
+    film.sums.samples.assign(film.color.size(), 0);
+    film.sums.color.resize(film.color.size());
+    film.sums.albedo.resize(film.albedo.size());
   }
   const Lights lights(scene, bvh);
   // One sample is the pixel's middle: where it falls is no matter of chance.
-  if (options.samples > 1 && !lights.areas().empty()) sums.lamp_edges.assign(film.color.size(), 0);
+  std::vector<LampEdge> lamp_edges;
+  if (options.samples > 1 && !lights.areas().empty()) {
+    lamp_edges.assign(film.color.size(), LampEdge::kUnknown);
+  }
   const RenderJob job{scene, bvh, camera, options, lights, clearances};
-  Crew(job, tiles, std::move(first_finder), make_finder, progress, film, sums, stats).run();
+  Crew(job, tiles, std::move(first_finder), make_finder, progress, film, lamp_edges, stats).run();
   if (stats.find.common_records != 0) {
     stats.skipped.records =
         bvh.slot_count() * (1 + lights.points().size()) - stats.find.common_records;

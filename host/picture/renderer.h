@@ -25,6 +25,11 @@ struct RenderOptions {
   PixelRect window;           ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;            ///< at least 1; the film does not depend on it
   int samples = 1;            ///< of each pixel, at least 1; a single one is its middle
+  int first_sample = 0;       ///< those from this one ...
+  int end_sample = 0;         ///< ... to before this one are rendered; 0: all
+  /// What there is of this picture, of the same window, options and samples from first_sample on,
+  /// with its sums: the render goes on from there. Null: nothing.
+  const Film* begun = nullptr;
   PixelFilter filter = PixelFilter::kBlackmanHarris;  ///< with more than one sample
   std::uint64_t seed = 0;                             ///< of everything random
   ExtraChannels channels{};  ///< besides colour, depth, normal and primitive

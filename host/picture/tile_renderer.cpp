@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "host/film/film_sums.h"
 #include "host/picture/lamp_edges.h"
 #include "host/picture/view_pyramid.h"
 #include "host/stopwatch.h"
@@ -19,7 +20,6 @@ constexpr std::uint32_t kFilterStream = 0;
 constexpr std::uint32_t kLampStream = 7;          // the integrators' streams are made from others
 constexpr int kLooks = 8;                         // at a lamp's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
-constexpr double kBrightest = std::numeric_limits<float>::max();
 
 /// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
 /// smaller.
@@ -45,23 +45,31 @@ std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
 
 }  // namespace
 
-TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film, FilmSums& sums)
+TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film,
+                           std::span<LampEdge> lamp_edges)
     : job_(job),
       finder_(finder),
       film_(film),
-      sums_(sums),
+      lamp_edges_(lamp_edges),
       integrator_(integrator_of(job)),
       shadow_rays_(job.scene, job.clearances, job.lights, finder, job.options.skips,
                    integrator_->shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
 /// Square by square, and in them block by block: finders' packets are blocks, their cones squares.
-void TileRenderer::list_pixels(const PixelRect& tile) {
+void TileRenderer::list_pixels(const PixelRect& tile, int end) {
   pixels_.clear();
+  samples_ = 0;
+  const int begin = job_.options.first_sample;
+  const std::vector<std::uint32_t>& done = film_.sums.samples;
   for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
     for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
       for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
-        pixels_.push_back({pixel.x0, pixel.y0, film_.index_of(pixel.x0, pixel.y0)});
+        const std::size_t index = film_.index_of(pixel.x0, pixel.y0);
+        const int first = begin + (done.empty() ? 0 : static_cast<int>(done[index]));
+        if (first >= end) return;
+        pixels_.push_back({pixel.x0, pixel.y0, index, first, end});
+        samples_ += static_cast<std::size_t>(end - first);
       });
     });
   });
@@ -85,8 +93,8 @@ void TileRenderer::make_camera_rays() {
   wave_.depth = 0;
   for (const Pixel& pixel : pixels_) {
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
-    for (int i = 0; i < count_; ++i) {
-      const auto index = static_cast<std::uint32_t>(first_sample_ + i);
+    for (int i = pixel.first; i < pixel.end; ++i) {
+      const auto index = static_cast<std::uint32_t>(i);
       Burden& burden = wave_.burdens.emplace_back();
       burden.sample = static_cast<std::uint32_t>(wave_.rays.size());
       burden.stream = sampler.key();
@@ -96,29 +104,25 @@ void TileRenderer::make_camera_rays() {
   }
 }
 
-bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
-                         const std::function<bool()>& keep_going) {
+bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going) {
   Stopwatch watch;
-  first_sample_ = first_sample;
-  count_ = count;
-  list_pixels(tile);
-  const std::size_t samples = pixels_.size() * static_cast<std::size_t>(count);
-  seen_.assign(samples, {});
-  output_.radiance.assign(samples, glm::vec3(0.0f));
-  output_.first_surface.assign(samples, {});
+  list_pixels(tile, end);
+  seen_.assign(samples_, {});
+  output_.radiance.assign(samples_, glm::vec3(0.0f));
+  output_.first_surface.assign(samples_, {});
   output_.shadows.clear();
-  from_lamps_.assign(samples, glm::vec3(0.0f));
-  sharpened_.assign(pixels_.size(), glm::dvec3(0.0));
+  from_lamps_.assign(samples_, glm::vec3(0.0f));
+  sharpened_.assign(pixels_.size(), {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
   if (job_.options.skips.empty_tiles &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
-    output_.radiance.assign(samples, integrator_->background());
-    stats_.skipped.empty_tile_rays += samples;
+    output_.radiance.assign(samples_, integrator_->background());
+    stats_.skipped.empty_tile_rays += samples_;
     stats_.shade_seconds += watch.lap();
     return true;
   }
   make_camera_rays();
-  stats_.camera_rays += samples;
+  stats_.camera_rays += samples_;
   stats_.shade_seconds += watch.lap();
   while (!wave_.rays.empty()) {
     if (!keep_going()) return false;
@@ -132,19 +136,19 @@ bool TileRenderer::trace(const PixelRect& tile, int first_sample, int count,
 /// mean of that takes the place of what the samples have seen. A lamp's own light is all that is
 /// exchanged, whatever else the samples brought; and that is so whatever emission_of() says.
 void TileRenderer::sharpen_lamps(const PixelRect& tile) {
-  if (sums_.lamp_edges.empty()) return;
+  if (lamp_edges_.empty() || pixels_.empty()) return;
   Stopwatch watch;
   std::size_t rays = 0;
-  if (first_sample_ == 0) rays = find_lamp_edges(job_, finder_, film_, tile, sums_.lamp_edges);
+  if (lamp_edges_[pixels_[0].index] == LampEdge::kUnknown) {
+    rays = find_lamp_edges(job_, finder_, film_, tile, lamp_edges_);
+  }
   wave_.clear();
-  const int looks = count_ * kLooks;
   for (const Pixel& pixel : pixels_) {
-    if (sums_.lamp_edges[pixel.index] == 0) continue;
+    if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
-    for (int i = 0; i < looks; ++i) {
-      wave_.rays.push_back(camera_ray(pixel.x, pixel.y, sampler,
-                                      static_cast<std::uint32_t>(first_sample_ * kLooks + i),
-                                      kLampStream));
+    for (int look = pixel.first * kLooks; look < pixel.end * kLooks; ++look) {
+      wave_.rays.push_back(
+          camera_ray(pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(look), kLampStream));
     }
   }
   rays += wave_.rays.size();
@@ -156,14 +160,18 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
   finder_.find(wave_.rays, {.common_origin = true, .culling = job_.options.skips.culling}, hits_);
   watch.lap();
   auto hit = hits_.begin();
+  std::size_t sample = 0;
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
-    if (sums_.lamp_edges[pixels_[p].index] == 0) continue;
-    glm::dvec3 looked(0.0), seen(0.0);
-    for (int i = 0; i < looks; ++i) looked += glm::dvec3(job_.emission_of((hit++)->slot));
-    for (int i = 0; i < count_; ++i) {
-      seen += glm::dvec3(job_.emission_of(seen_[p * count_ + i].slot));
-    }
-    sharpened_[p] = looked / double{kLooks} - seen;
+    const Pixel& pixel = pixels_[p];
+    const std::size_t first = sample;
+    sample += static_cast<std::size_t>(pixel.end - pixel.first);
+    if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
+    const auto add = [&](std::uint32_t slot, double share) {
+      const glm::vec3 emission = job_.emission_of(slot);
+      for (int k = 0; k < 3; ++k) sharpened_[p][k].add(share * double{emission[k]});
+    };
+    for (std::size_t i = first * kLooks; i < sample * kLooks; ++i) add((hit++)->slot, 1.0 / kLooks);
+    for (std::size_t i = first; i < sample; ++i) add(seen_[i].slot, -1.0);
   }
   stats_.shade_seconds += watch.lap();
 }
@@ -214,7 +222,7 @@ void TileRenderer::see() {
   for (std::size_t i = 0; i < hits_.size(); ++i) {
     const NearestHit& hit = hits_[i];
     seen_[i].slot = hit.slot;
-    if (hit.slot == NearestHit::kNone || first_sample_ != 0) continue;
+    if (hit.slot == NearestHit::kNone || wave_.burdens[i].index != 0) continue;
     seen_[i].point = is_point_doubt(hit, job_.options.point_error)
                          ? precise_hit(wave_.rays[i], job_.bvh.corners_of(hit.slot)).point
                          : hit.point;
@@ -228,25 +236,34 @@ void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
 
 void TileRenderer::write() {
   Stopwatch watch;
-  const double samples_so_far = first_sample_ + count_;
+  FilmSums& kept = film_.sums;
+  std::size_t i = 0;  // a sample
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
-    const std::size_t pixel = pixels_[p].index;
-    glm::dvec4 color = sums_.color.empty() ? glm::dvec4(0.0) : sums_.color[pixel];
-    glm::dvec3 albedo = sums_.albedo.empty() ? glm::dvec3(0.0) : sums_.albedo[pixel];
-    for (std::size_t i = p * count_; i < (p + 1) * count_; ++i) {
+    const Pixel& pixel = pixels_[p];
+    const std::size_t at = pixel.index;
+    if (pixel.first == 0) write_channels(at, i);
+    std::array<SampleSum, 4> color{};
+    std::array<SampleSum, 3> albedo{};
+    if (!kept.color.empty()) color = kept.color[at];
+    if (!kept.albedo.empty()) albedo = kept.albedo[at];
+    for (int index = pixel.first; index < pixel.end; ++index, ++i) {
       const Seen& seen = seen_[i];
-      color += glm::dvec4(glm::dvec3(output_.radiance[i]) + glm::dvec3(from_lamps_[i]),
-                          seen.slot == NearestHit::kNone ? 0.0 : 1.0);
-      albedo += glm::dvec3(output_.first_surface[i].albedo);
-      if (!film_.tests.empty()) film_.tests[pixel] += seen.work.tests;
-      if (!film_.doubts.empty()) film_.doubts[pixel] += seen.work.doubts;
+      const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(from_lamps_[i]);
+      for (int k = 0; k < 3; ++k) {
+        color[k].add(light[k]);
+        albedo[k].add(output_.first_surface[i].albedo[k]);
+      }
+      color[3].add(seen.slot == NearestHit::kNone ? 0.0 : 1.0);
+      if (!film_.tests.empty()) film_.tests[at] += seen.work.tests;
+      if (!film_.doubts.empty()) film_.doubts[at] += seen.work.doubts;
     }
-    color += glm::dvec4(sharpened_[p], 0.0);
-    film_.color[pixel] = glm::vec4(glm::clamp(color / samples_so_far, 0.0, kBrightest));
-    if (!film_.albedo.empty()) film_.albedo[pixel] = glm::vec3(albedo / samples_so_far);
-    if (!sums_.color.empty()) sums_.color[pixel] = color;
-    if (!sums_.albedo.empty()) sums_.albedo[pixel] = albedo;
-    if (first_sample_ == 0) write_channels(pixel, p * count_);
+    for (int k = 0; k < 3; ++k) color[k] += sharpened_[p][k];
+    const int samples = pixel.end - job_.options.first_sample;
+    if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
+    if (!kept.color.empty()) kept.color[at] = color;
+    if (!kept.albedo.empty()) kept.albedo[at] = albedo;
+    film_.color[at] = mean_of(color, samples);
+    if (!film_.albedo.empty()) film_.albedo[at] = mean_of(albedo, samples);
   }
   stats_.shade_seconds += watch.lap();
 }

@@ -36,9 +36,9 @@ struct Tiles {
   }
 
   [[nodiscard]] int passes() const { return (samples + samples_per_pass - 1) / samples_per_pass; }
-  [[nodiscard]] int first_sample(int pass) const { return pass * samples_per_pass; }
-  [[nodiscard]] int samples_of(int pass) const {
-    return std::min(samples_per_pass, samples - first_sample(pass));
+  /// How many samples a pixel has after a pass.
+  [[nodiscard]] int samples_after(int pass) const {
+    return std::min(samples, (pass + 1) * samples_per_pass);
   }
 
   [[nodiscard]] PixelRect operator[](int index) const {

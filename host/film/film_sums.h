@@ -1,0 +1,33 @@
+// What the samples of each pixel add up to: what a picture goes on from.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "host/film/sample_sum.h"
+
+namespace raygate {
+
+/// Arrays of a film's pixels, in its order.
+struct FilmSums {
+  std::vector<std::uint32_t> samples;  ///< how many
+  std::vector<std::array<SampleSum, 4>> color;
+  std::vector<std::array<SampleSum, 3>> albedo;  ///< if the film has it
+};
+
+/// The mean of so many samples, as a film has it: not negative, whatever
+/// small number rounding has left.
+template <std::size_t N>
+[[nodiscard]] glm::vec<N, float> mean_of(const std::array<SampleSum, N>& sums, double samples) {
+  glm::vec<N, float> mean;
+  for (std::size_t k = 0; k < N; ++k) {
+    mean[static_cast<int>(k)] = static_cast<float>(std::max(sums[k].value(), 0.0) / samples);
+  }
+  return mean;
+}
+
+}  // namespace raygate

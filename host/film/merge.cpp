@@ -1,0 +1,243 @@
+#include "host/film/merge.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <map>
+#include <tuple>
+
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+namespace {
+
+constexpr const char* kSamples = "samples";
+
+const std::string* option_of(const ExrMetadata& metadata, const std::string& name) {
+  const auto at =
+      std::ranges::find(metadata.options, name, &std::pair<std::string, std::string>::first);
+  return at == metadata.options.end() ? nullptr : &at->second;
+}
+
+std::string text(const PixelRect& r) {
+  return std::to_string(r.x0) + "," + std::to_string(r.y0) + "," + std::to_string(r.x1) + "," +
+         std::to_string(r.y1);
+}
+
+auto edges(const PixelRect& r) { return std::tuple(r.y0, r.x0, r.y1, r.x1); }
+
+bool overlap(const PixelRect& a, const PixelRect& b) {
+  return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
+
+/// A part by itself, and next to the first.
+void require_like(const NamedFilm& part, const NamedFilm& first) {
+  const auto& [name, file] = part;
+  const Film &film = file.film, &other = first.second.film;
+  if (file.metadata.partial) {
+    throw InputError(name + ": found a picture that is not finished, expected a whole one; " +
+                     "`render --resume` finishes it");
+  }
+  if (const auto difference = different_picture(file.metadata, first.second.metadata)) {
+    throw InputError(name + ": found " + *difference + " in " + first.first);
+  }
+  const auto layout = [](const Film& f) {
+    return std::tuple(f.width, f.height, f.position.empty(), f.albedo.empty(), f.object.empty(),
+                      f.tests.empty(), f.doubts.empty());
+  };
+  if (layout(film) != layout(other)) {
+    throw InputError(name + ": found another frame or other channels than in " + first.first +
+                     ", expected the same");
+  }
+}
+
+/// Copies `values` of one film into the place that its window has in a larger one.
+template <class T>
+void place(const std::vector<T>& values, const PixelRect& from, std::vector<T>& into,
+           const PixelRect& window) {
+  if (values.empty()) return;
+  into.resize(std::size_t(window.width()) * std::size_t(window.height()));
+  for (int y = from.y0; y < from.y1; ++y) {
+    const auto row = std::size_t(y - from.y0) * std::size_t(from.width());
+    const auto at =
+        std::size_t(y - window.y0) * std::size_t(window.width()) + std::size_t(from.x0 - window.x0);
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row), from.width(),
+                into.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+}
+
+template <std::size_t N>
+void add(std::vector<std::array<SampleSum, N>>& sums,
+         const std::vector<std::array<SampleSum, N>>& more) {
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    for (std::size_t k = 0; k < N; ++k) sums[i][k] += more[i][k];
+  }
+}
+
+void add(std::vector<std::uint32_t>& counts, const std::vector<std::uint32_t>& more) {
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += more[i];
+}
+
+/// Adds the samples that follow those of `film`, whose means are not those of its sums after that.
+void add_samples(Film& film, const Film& more) {
+  add(film.sums.samples, more.sums.samples);
+  add(film.sums.color, more.sums.color);
+  add(film.sums.albedo, more.sums.albedo);
+  add(film.tests, more.tests);
+  add(film.doubts, more.doubts);
+}
+
+void set_means(Film& film) {
+  for (std::size_t i = 0; i < film.color.size(); ++i) {
+    const double samples = film.sums.samples[i];
+    film.color[i] = mean_of(film.sums.color[i], samples);
+    if (!film.albedo.empty()) film.albedo[i] = mean_of(film.sums.albedo[i], samples);
+  }
+}
+
+/// All parts of one window become the one that begins first.
+NamedFilm joined(std::vector<NamedFilm>& parts) {
+  const auto range = [](const NamedFilm& part) { return samples_of(part.second.metadata); };
+  std::ranges::sort(parts, {}, [&](const NamedFilm& part) { return range(part).first; });
+  NamedFilm whole = std::move(parts.front());
+  SampleRange samples = range(whole);
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const SampleRange next = range(parts[i]);
+    if (next.first != samples.end) {
+      throw InputError(parts[i].first + ": found samples " + to_string(next) + " beside " +
+                       to_string(samples) + " of the same pixels, expected some from " +
+                       std::to_string(samples.end) + " on");
+    }
+    add_samples(whole.second.film, parts[i].second.film);
+    samples.end = next.end;
+  }
+  set_samples(whole.second.metadata, samples);
+  set_means(whole.second.film);
+  return whole;
+}
+
+PixelRect bounds(const std::vector<NamedFilm>& windows) {
+  PixelRect all = windows.front().second.film.window;
+  for (const NamedFilm& part : windows) {
+    const PixelRect& w = part.second.film.window;
+    all = {std::min(all.x0, w.x0), std::min(all.y0, w.y0), std::max(all.x1, w.x1),
+           std::max(all.y1, w.y1)};
+  }
+  return all;
+}
+
+void require_tiling(const std::vector<NamedFilm>& windows, const PixelRect& all) {
+  std::int64_t pixels = 0;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const auto& [name, file] = windows[i];
+    const PixelRect& w = file.film.window;
+    pixels += std::int64_t{w.width()} * w.height();
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!overlap(w, windows[k].second.film.window)) continue;
+      throw InputError(name + ": found pixels " + text(w) + ", some of which are in " +
+                       windows[k].first + ", expected others");
+    }
+    const SampleRange here = samples_of(file.metadata);
+    const SampleRange there = samples_of(windows[0].second.metadata);
+    if (here.first == there.first && here.end == there.end) continue;
+    throw InputError(name + ": found samples " + to_string(here) + ", expected " +
+                     to_string(there) + " as in " + windows[0].first);
+  }
+  if (pixels == std::int64_t{all.width()} * all.height()) return;
+  throw InputError(windows[0].first + ": found that all parts together lack some pixels of " +
+                   text(all) + ", expected a whole rectangle");
+}
+
+}  // namespace
+
+std::optional<SampleRange> parse_sample_range(const std::string& text) {
+  SampleRange range;
+  const char *at = text.data(), *const end = at + text.size();
+  const auto first = std::from_chars(at, end, range.first);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ':') return std::nullopt;
+  const auto last = std::from_chars(first.ptr + 1, end, range.end);
+  if (last.ec != std::errc() || last.ptr != end) return std::nullopt;
+  if (range.first < 0 || range.first >= range.end) return std::nullopt;
+  return range;
+}
+
+std::string to_string(const SampleRange& range) {
+  return std::to_string(range.first) + ":" + std::to_string(range.end);
+}
+
+SampleRange samples_of(const ExrMetadata& metadata) {
+  const std::string* const range = option_of(metadata, kSamples);
+  const std::string* const all = option_of(metadata, "spp");
+  if (range != nullptr) return parse_sample_range(*range).value_or(SampleRange{});
+  return all == nullptr ? SampleRange{} : parse_sample_range("0:" + *all).value_or(SampleRange{});
+}
+
+void set_samples(ExrMetadata& metadata, const SampleRange& range) {
+  std::erase_if(metadata.options, [](const auto& option) { return option.first == kSamples; });
+  const SampleRange all = samples_of(metadata);
+  if (range.first == all.first && range.end == all.end) return;
+  metadata.options.emplace_back(kSamples, to_string(range));
+}
+
+std::optional<std::string> different_picture(const ExrMetadata& found,
+                                             const ExrMetadata& expected) {
+  const auto facts = [](const ExrMetadata& metadata) {
+    std::map<std::string, std::string> all(metadata.options.begin(), metadata.options.end());
+    all.erase(kSamples);
+    all["software"] = metadata.software;
+    all["scene"] = metadata.scene;
+    all["seed"] = std::to_string(metadata.seed);
+    return all;
+  };
+  const auto here = facts(found), there = facts(expected);
+  const auto value = [](const auto& all, const std::string& name) {
+    const auto at = all.find(name);
+    return at == all.end() ? "no " + name : name + " " + at->second;
+  };
+  for (const auto* side : {&here, &there}) {
+    for (const auto& [name, ignored] : *side) {
+      const std::string a = value(here, name), b = value(there, name);
+      if (a != b) return a + ", expected " + b + " as";
+    }
+  }
+  return std::nullopt;
+}
+
+FilmFile merge(std::vector<NamedFilm> parts) {
+  std::map<std::tuple<int, int, int, int>, std::vector<NamedFilm>> by_window;
+  for (const NamedFilm& part : parts) require_like(part, parts.front());
+  for (NamedFilm& part : parts) {
+    by_window[edges(part.second.film.window)].push_back(std::move(part));
+  }
+  std::vector<NamedFilm> windows;
+  for (auto& [ignored, group] : by_window) windows.push_back(joined(group));
+  const PixelRect all = bounds(windows);
+  require_tiling(windows, all);
+  if (windows.size() == 1) return std::move(windows[0].second);
+  FilmFile result;
+  result.metadata = windows[0].second.metadata;
+  Film& film = result.film;
+  film.width = windows[0].second.film.width;
+  film.height = windows[0].second.film.height;
+  film.window = all;
+  film.keeps_sums = true;
+  for (const NamedFilm& window : windows) {
+    const Film& part = window.second.film;
+    const auto put = [&](const auto& values, auto& into) { place(values, part.window, into, all); };
+    put(part.color, film.color);
+    put(part.depth, film.depth);
+    put(part.normal, film.normal);
+    put(part.primitive, film.primitive);
+    put(part.position, film.position);
+    put(part.albedo, film.albedo);
+    put(part.object, film.object);
+    put(part.tests, film.tests);
+    put(part.doubts, film.doubts);
+    put(part.sums.samples, film.sums.samples);
+    put(part.sums.color, film.sums.color);
+    put(part.sums.albedo, film.sums.albedo);
+  }
+  return result;
+}
+
+}  // namespace raygate
