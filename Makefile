@@ -21,8 +21,8 @@ endef
 help: ## list these targets
 	@sed -nE 's/^([a-z-]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
 
-verilate: ## build ./render, with the simulated hardware in it, ./trace and ./compare
-	$(call build,build,render trace compare scenes)
+verilate: ## build ./render, with the simulated hardware in it, ./trace, ./compare and ./merge
+	$(call build,build,render trace compare merge scenes)
 
 example: ## the paper's worked example, its words and its waveform for GTKWave
 	$(call build,build,worked_example)

@@ -98,7 +98,8 @@ void declare_light_options(CLI::App& app, RawLightOptions& raw) {
     app.add_option(names, text)->take_last();
   };
   value("--integrator", raw.integrator);
-  value("--spp,--samples", raw.samples);
+  value("--spp", raw.samples);
+  value("--samples", raw.range);
   value("--filter", raw.filter);
   value("--depth,--max-depth", raw.depth);
   value("--threshold", raw.threshold);
@@ -112,6 +113,11 @@ LightOptions parse_light_options(const RawLightOptions& raw) {
   if (!raw.integrator.empty()) options.integrator = parse_integrator(raw.integrator);
   if (!raw.depth.empty()) options.depth = parse_count("--depth", raw.depth, 0, 1000);
   if (!raw.samples.empty()) options.samples = parse_count("--spp", raw.samples, 1, 1 << 20);
+  if (!raw.range.empty()) {
+    options.range = parse_sample_range(raw.range);
+    if (!options.range)
+      fail_value("--samples", raw.range, "A:B, from sample A to before sample B of --spp");
+  }
   if (!raw.filter.empty()) options.filter = parse_filter(raw.filter);
   if (!raw.threshold.empty()) {
     const auto threshold = parse_number<double>(raw.threshold);

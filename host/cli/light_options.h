@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/film/pixel_filter.h"
+#include "host/film/sample_range.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/point_error.h"
 #include "host/light/skips.h"
@@ -25,6 +26,7 @@ struct LightOptions {
   double threshold = 1.0 / 256.0;
   std::optional<double> ambient;  ///< radiance; none: Lights::ambient
   int samples = 1;
+  std::optional<SampleRange> range;  ///< those of them that are rendered; none: all
   PixelFilter filter = PixelFilter::kBlackmanHarris;
   Skips skips;
   float point_error = kPointError;
@@ -37,7 +39,7 @@ struct LightOptions {
 
 /// As they were typed; empty where they were not given.
 struct RawLightOptions {
-  std::string integrator, depth, threshold, ambient, samples, filter, no_skip, point_error;
+  std::string integrator, depth, threshold, ambient, samples, range, filter, no_skip, point_error;
 };
 
 void declare_light_options(CLI::App& app, RawLightOptions& raw);

@@ -51,7 +51,8 @@ Picture
                              where there is no camera and no light)
   --exposure STOPS           exposure of the PNG in stops: +1 is twice as bright
   --tone clip|filmic         tone curve of the PNG (clip)
-  --channels NAMES           more of the EXR: P,Albedo,objectId,tests,doubts
+  --channels NAMES           more of the EXR: P,Albedo,objectId,tests,doubts; or
+                             sums, from which --resume and ./merge go on
   --false-colour CHANNEL[:LOW:HIGH]=FILE.png   a channel in false colours
   --frames N                 a film of N pictures, NAME-0001 and on: along the
                              scene file's path, or once around the target
@@ -60,7 +61,8 @@ Light
   --integrator NAME          primary: camera rays alone, lit from the camera;
                              whitted: shadows, reflection, refraction (default);
                              path: full global illumination
-  --spp, --samples N         samples per pixel (1; 4 with --engine cpu)
+  --spp N                    samples per pixel (1; 4 with --engine cpu)
+  --samples A:B              of these only A to B-1, for ./merge to add the rest
   --filter NAME              reconstruction filter: box, tent, gauss or
                              blackman-harris (default)
   --depth, --max-depth N     reflections and refractions in a row (4; path: 64)
@@ -69,6 +71,7 @@ Light
   --seed N                   seed of the random numbers (0)
 
 Run
+  --resume FILE.exr          go on from a picture with sums, finished or not
   --save-every SECONDS       save the unfinished pictures now and then
   --stats FILE.json          all statistics as JSON; - prints them
   --strict                   refuse faces without area, which are left out
@@ -84,7 +87,7 @@ line, the scene or an output cannot be used; 130 interrupted (partial pictures).
 
 /// Option values as they were typed; empty where the option was not given.
 struct RawValues {
-  std::string scene, size, camera, view, up, fov, ground, crop, seed, smooth;
+  std::string scene, size, camera, view, up, fov, ground, crop, seed, smooth, resume;
   RawEngineOptions engine;
   RawOutputOptions output;
   RawLightOptions light;
@@ -112,6 +115,7 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   declare_engine_options(app, raw.engine);
   value("--seed", raw.seed);
   value("--smooth", raw.smooth);
+  value("--resume", raw.resume);
   flag("--strict", options.strict);
   flag("--no-scene-file", raw.no_scene_file);
   flag("-q,--quiet", options.quiet);
@@ -153,6 +157,18 @@ void check_values(const RawValues& raw, Options& options) {
   static_cast<EngineOptions&>(options) = parse_engine_options(raw.engine);
   if (raw.light.samples.empty() && options.engine == Engine::kCpu) {
     options.light.samples = kCpuSamples;
+  }
+  if (const auto& range = options.light.range) {
+    if (range->end > options.light.samples) {
+      fail_value("--samples", raw.light.range,
+                 "some of the " + std::to_string(options.light.samples) + " of --spp");
+    }
+    if (!options.output.exr) throw InputError("--samples: expected an EXR among the outputs");
+    options.output.channels.sums = true;
+  }
+  if (!raw.resume.empty()) {
+    options.resume = raw.resume;
+    if (options.output.frames > 0) throw InputError("--resume: expected no --frames beside it");
   }
   if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);
   if (!raw.smooth.empty()) options.smooth = parse_smooth(raw.smooth);

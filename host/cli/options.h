@@ -40,6 +40,7 @@ struct Options : EngineOptions {
   std::optional<bool> ground;           ///< none: where a first look needs it
   std::vector<CameraSetting> path;      ///< of --frames; empty: once round the target
   LightOptions light;
+  std::filesystem::path resume;  ///< a picture to go on from; empty: none
   std::uint64_t seed = 0;
   bool quiet = false, verbose = false;
   bool strict = false;           ///< faces without area are refused

@@ -15,11 +15,9 @@ namespace raygate {
 namespace {
 
 constexpr std::pair<std::string_view, bool ExtraChannels::*> kExtraChannels[] = {
-    {"P", &ExtraChannels::position},
-    {"Albedo", &ExtraChannels::albedo},
-    {"objectId", &ExtraChannels::object},
-    {"tests", &ExtraChannels::tests},
-    {"doubts", &ExtraChannels::doubts}};
+    {"P", &ExtraChannels::position},      {"Albedo", &ExtraChannels::albedo},
+    {"objectId", &ExtraChannels::object}, {"tests", &ExtraChannels::tests},
+    {"doubts", &ExtraChannels::doubts},   {"sums", &ExtraChannels::sums}};
 
 constexpr const char* kStandardOutput = "/dev/stdout";
 
@@ -40,7 +38,7 @@ ExtraChannels parse_channels(const std::string& text) {
       std::vector<std::string> names;
       for (const auto& [known, wanted] : kExtraChannels) names.emplace_back(known);
       fail_value("--channels", text,
-                 "some of P, Albedo, objectId, tests, doubts with commas between",
+                 "some of P, Albedo, objectId, tests, doubts, sums with commas between",
                  did_you_mean(name, names));
     }
   }
@@ -169,18 +167,19 @@ OutputOptions OutputOptions::numbered(int frame) const {
   return result;
 }
 
-void declare_output_options(CLI::App& app, RawOutputOptions& raw) {
-  const auto value = [&app](const char* names, std::string& text) {
-    app.add_option(names, text)->take_last();
-  };
-  value("-o,--output", raw.output);
-  value("--exposure", raw.exposure);
-  value("--tone", raw.tone);
-  value("--channels", raw.channels);
+void declare_picture_options(CLI::App& app, RawOutputOptions& raw) {
+  app.add_option("-o,--output", raw.output)->take_last();
+  app.add_option("--exposure", raw.exposure)->take_last();
+  app.add_option("--tone", raw.tone)->take_last();
+  app.add_option("--channels", raw.channels)->take_last();
   app.add_option("--false-colour,--false-color", raw.false_colors)->allow_extra_args(false);
-  value("--frames", raw.frames);
-  value("--save-every", raw.save_every);
-  value("--stats", raw.stats);
+}
+
+void declare_output_options(CLI::App& app, RawOutputOptions& raw) {
+  declare_picture_options(app, raw);
+  app.add_option("--frames", raw.frames)->take_last();
+  app.add_option("--save-every", raw.save_every)->take_last();
+  app.add_option("--stats", raw.stats)->take_last();
 }
 
 OutputOptions parse_output_options(const RawOutputOptions& raw,

@@ -48,6 +48,9 @@ struct RawOutputOptions {
   std::vector<std::string> false_colors;
 };
 
+/// Those of a picture, whoever made it.
+void declare_picture_options(CLI::App& app, RawOutputOptions& raw);
+/// All of them.
 void declare_output_options(CLI::App& app, RawOutputOptions& raw);
 
 /// Names that are not given come from `scene`'s, in the current folder. Throws InputError, one

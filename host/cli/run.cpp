@@ -15,6 +15,7 @@
 #include "host/cli/process.h"
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
+#include "host/cli/resume.h"
 #include "host/cli/shots.h"
 #include "host/cli/version.h"
 #include "host/light/clearance.h"
@@ -80,12 +81,15 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shot
     world_to_camera[3][row] = static_cast<float>(-glm::dot(axes[row], eye));
   }
   const double height = 2.0 * camera.half_height();
-  return {.software = kSoftware,
-          .scene = options.obj().filename().string(),
-          .seed = options.seed,
-          .options = shots.options(),
-          .world_to_camera = world_to_camera,
-          .screen_window_width = static_cast<float>(height * options.width / options.height)};
+  ExrMetadata metadata{
+      .software = kSoftware,
+      .scene = options.obj().filename().string(),
+      .seed = options.seed,
+      .options = shots.options(),
+      .world_to_camera = world_to_camera,
+      .screen_window_width = static_cast<float>(height * options.width / options.height)};
+  if (options.light.range) set_samples(metadata, *options.light.range);
+  return metadata;
 }
 
 void write_partial(const OutputOptions& outputs, const Film& film, ExrMetadata metadata) {
@@ -99,11 +103,16 @@ std::string listed(const std::vector<std::filesystem::path>& paths) {
   return text;
 }
 
+/// Whether nothing has been rendered, or nothing but misses.
+bool is_empty(const Film& film) {
+  return std::ranges::all_of(film.color, [](const glm::vec4& color) { return color.a == 0.0f; });
+}
+
 /// Writes what had been rendered when a signal came, if that is anything.
 [[noreturn]] void end_interrupted(const OutputOptions& outputs, const Film& film,
                                   const ExrMetadata& metadata) {
   const int signal = interruption();
-  if (std::ranges::all_of(film.primitive, [](auto id) { return id == kNoPrimitive; })) {
+  if (is_empty(film)) {
     throw Interrupted(signal, "no file was changed");
   }
   write_partial(outputs, film, metadata);
@@ -142,12 +151,16 @@ class Saver {
 /// Renders with a progress bar, until a signal comes.
 Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
                  const Clearances& clearances, const Camera& camera, const ExrMetadata& metadata,
-                 RenderStats& stats) {
+                 const Film* begun, RenderStats& stats) {
+  const SampleRange all{0, options.light.samples};
   RenderOptions render_options{.width = options.width,
                                .height = options.height,
                                .window = options.window,
                                .threads = static_cast<int>(options.threads),
                                .samples = options.light.samples,
+                               .first_sample = options.light.range.value_or(all).first,
+                               .end_sample = options.light.range.value_or(all).end,
+                               .begun = begun,
                                .filter = options.light.filter,
                                .seed = options.seed,
                                .channels = options.output.needed_channels(),
@@ -189,8 +202,9 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
                     const Clearances& clearances, const Shots& shots, const Camera& camera,
                     Clock::time_point start, Report& report) {
   const ExrMetadata metadata = make_metadata(options, scene, shots, camera);
-  const Film film =
-      render_film(options, outputs, scene, clearances, camera, metadata, report.render);
+  const std::optional<Film> begun = begun_film(options, metadata);
+  const Film film = render_film(options, outputs, scene, clearances, camera, metadata,
+                                begun ? &*begun : nullptr, report.render);
   if (report.render.cancelled) end_interrupted(outputs, film, metadata);
 
   // All files are made ready before the first takes its name: a full disk changes none of them.

@@ -1,23 +1,15 @@
 #include "host/film/merge.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <map>
 #include <tuple>
 
+#include "host/film/sample_range.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {
-
-constexpr const char* kSamples = "samples";
-
-const std::string* option_of(const ExrMetadata& metadata, const std::string& name) {
-  const auto at =
-      std::ranges::find(metadata.options, name, &std::pair<std::string, std::string>::first);
-  return at == metadata.options.end() ? nullptr : &at->second;
-}
 
 std::string text(const PixelRect& r) {
   return std::to_string(r.x0) + "," + std::to_string(r.y0) + "," + std::to_string(r.x1) + "," +
@@ -39,7 +31,7 @@ void require_like(const NamedFilm& part, const NamedFilm& first) {
                      "`render --resume` finishes it");
   }
   if (const auto difference = different_picture(file.metadata, first.second.metadata)) {
-    throw InputError(name + ": found " + *difference + " in " + first.first);
+    throw InputError(name + ": found " + *difference + " as in " + first.first);
   }
   const auto layout = [](const Film& f) {
     return std::tuple(f.width, f.height, f.position.empty(), f.albedo.empty(), f.object.empty(),
@@ -150,40 +142,11 @@ void require_tiling(const std::vector<NamedFilm>& windows, const PixelRect& all)
 
 }  // namespace
 
-std::optional<SampleRange> parse_sample_range(const std::string& text) {
-  SampleRange range;
-  const char *at = text.data(), *const end = at + text.size();
-  const auto first = std::from_chars(at, end, range.first);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ':') return std::nullopt;
-  const auto last = std::from_chars(first.ptr + 1, end, range.end);
-  if (last.ec != std::errc() || last.ptr != end) return std::nullopt;
-  if (range.first < 0 || range.first >= range.end) return std::nullopt;
-  return range;
-}
-
-std::string to_string(const SampleRange& range) {
-  return std::to_string(range.first) + ":" + std::to_string(range.end);
-}
-
-SampleRange samples_of(const ExrMetadata& metadata) {
-  const std::string* const range = option_of(metadata, kSamples);
-  const std::string* const all = option_of(metadata, "spp");
-  if (range != nullptr) return parse_sample_range(*range).value_or(SampleRange{});
-  return all == nullptr ? SampleRange{} : parse_sample_range("0:" + *all).value_or(SampleRange{});
-}
-
-void set_samples(ExrMetadata& metadata, const SampleRange& range) {
-  std::erase_if(metadata.options, [](const auto& option) { return option.first == kSamples; });
-  const SampleRange all = samples_of(metadata);
-  if (range.first == all.first && range.end == all.end) return;
-  metadata.options.emplace_back(kSamples, to_string(range));
-}
-
 std::optional<std::string> different_picture(const ExrMetadata& found,
                                              const ExrMetadata& expected) {
   const auto facts = [](const ExrMetadata& metadata) {
     std::map<std::string, std::string> all(metadata.options.begin(), metadata.options.end());
-    all.erase(kSamples);
+    all.erase(kSamplesAttribute);
     all["software"] = metadata.software;
     all["scene"] = metadata.scene;
     all["seed"] = std::to_string(metadata.seed);
@@ -197,7 +160,7 @@ std::optional<std::string> different_picture(const ExrMetadata& found,
   for (const auto* side : {&here, &there}) {
     for (const auto& [name, ignored] : *side) {
       const std::string a = value(here, name), b = value(there, name);
-      if (a != b) return a + ", expected " + b + " as";
+      if (a != b) return a + ", expected " + b;
     }
   }
   return std::nullopt;

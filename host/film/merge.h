@@ -10,22 +10,8 @@
 
 namespace raygate {
 
-/// Samples [first, end) of each pixel.
-struct SampleRange {
-  int first = 0, end = 0;
-};
-
-/// "A:B"; none if it is no such range with 0 <= A < B.
-[[nodiscard]] std::optional<SampleRange> parse_sample_range(const std::string& text);
-[[nodiscard]] std::string to_string(const SampleRange& range);
-
-/// What a film file says that it holds: its attribute "samples", or all of "spp".
-[[nodiscard]] SampleRange samples_of(const ExrMetadata& metadata);
-/// The attribute says so from now on; it is not there where that is all of "spp".
-void set_samples(ExrMetadata& metadata, const SampleRange& range);
-
 /// In what two files are not of the same picture, whatever samples and pixels of it they have:
-/// "spp 8, expected spp 16 as", or nothing.
+/// "spp 8, expected spp 16", or nothing.
 [[nodiscard]] std::optional<std::string> different_picture(const ExrMetadata& found,
                                                            const ExrMetadata& expected);
 

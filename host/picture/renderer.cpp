@@ -234,6 +234,7 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
                     options.threads);
   if (options.begun != nullptr) {
     film = *options.begun;
+    assert(film.sums.samples.size() == film.color.size());
   } else if (tiles.passes() > 1 || film.keeps_sums) {
     film.sums.samples.assign(film.color.size(), 0);
     film.sums.color.resize(film.color.size());

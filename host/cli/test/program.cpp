@@ -45,7 +45,8 @@ Channel make_terminal() {
 
 /// In the child: never returns.
 [[noreturn]] void become_program(const Invocation& invocation, int out, int err) {
-  std::vector<char*> argv{const_cast<char*>(RAYGATE_PROGRAM)};
+  const std::string program = invocation.program.empty() ? RAYGATE_PROGRAM : invocation.program;
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : invocation.arguments) {
     argv.push_back(const_cast<char*>(argument.c_str()));
   }
@@ -68,7 +69,7 @@ Channel make_terminal() {
     const rlimit limit{threads, threads};
     ready = ready && ::setrlimit(RLIMIT_NPROC, &limit) == 0;
   }
-  if (ready) ::execv(RAYGATE_PROGRAM, argv.data());
+  if (ready) ::execv(program.c_str(), argv.data());
   ::_exit(127);
 }
 

@@ -22,6 +22,7 @@ struct Invocation {
   long file_size_limit = 0;     ///< bytes that a file may grow to; 0: no limit
   bool without_rights = false;  ///< as a user who is not root
   int most_threads = 0;         ///< that its user may have, its first one counted; 0: no limit
+  std::string program{};        ///< another one than that under test
 };
 
 /// What came of it.

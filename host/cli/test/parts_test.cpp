@@ -1,0 +1,166 @@
+// Pictures that are rendered in parts, merged, broken off and gone on with: the bytes of one run.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "host/cli/test/render_run.h"
+
+namespace raygate {
+namespace {
+
+class Parts : public Render {
+ protected:
+  /// 12 samples a pixel of a small Cornell box, and more arguments.
+  Outcome part(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {kCornell,       "--size", "60x44",     "--spp", "12",
+                                          "--integrator", "path",   "--threads", "1"};
+    if (std::ranges::find(more, "--engine") == more.end()) {
+      arguments.insert(arguments.end(), {"--engine", "cpu"});
+    }
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program({.arguments = arguments, .folder = folder_.path()});
+  }
+  void make(const std::vector<std::string>& more) {
+    const Outcome outcome = part(more);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  Outcome merge(std::vector<std::string> arguments) {
+    return run_program(
+        {.arguments = std::move(arguments), .folder = folder_.path(), .program = RAYGATE_MERGE});
+  }
+  void expect_merged(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"-o", "merged"});
+    const Outcome outcome = merge(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    expect_same_pictures("merged", "whole");
+  }
+  void expect_refused(const Outcome& outcome, const std::string& line) const {
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("error: " + line), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_EQ(folder_.read("merged.exr"), "");
+  }
+};
+
+TEST_F(Parts, OfItsSamplesMakeThePicture) {
+  make({"-o", "whole", "--channels", "Albedo,objectId"});
+  for (const std::vector<int>& cuts :
+       {std::vector{0, 5, 12}, {0, 1, 4, 12}, {0, 2, 3, 5, 6, 11, 12}}) {
+    std::vector<std::string> names;
+    for (std::size_t i = 1; i < cuts.size(); ++i) {
+      names.push_back(std::to_string(i) + ".exr");
+      make({"-o", names.back(), "--samples",
+            std::to_string(cuts[i - 1]) + ":" + std::to_string(cuts[i]), "--channels",
+            "Albedo,objectId", "--engine", i % 2 == 0 ? "cpu" : "model"});
+    }
+    std::ranges::reverse(names);
+    expect_merged(names);
+  }
+}
+
+TEST_F(Parts, OfItsPixelsMakeThePicture) {
+  make({"-o", "whole"});
+  const std::vector<std::string> crops = {"0,0,31,20", "31,0,60,20", "0,20,60,21", "0,21,60,44"};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < crops.size(); ++i) {
+    for (const char* samples : {"0:7", "7:12"}) {
+      names.push_back(std::to_string(i) + samples[0] + ".exr");
+      make({"-o", names.back(), "--crop", crops[i], "--samples", samples});
+    }
+  }
+  expect_merged(names);
+}
+
+TEST_F(Parts, ThatAreNotAllKeepTheirSums) {
+  make({"-o", "whole", "--channels", "sums"});
+  make({"-o", "a.exr", "--samples", "0:3"});
+  make({"-o", "b.exr", "--samples", "3:7"});
+  make({"-o", "c.exr", "--samples", "7:12"});
+  ASSERT_EQ(merge({"b.exr", "c.exr", "-o", "d.exr"}).status, 0);
+  const Outcome outcome = merge({"a.exr", "d.exr", "-o", "merged", "--channels", "sums"});
+  EXPECT_EQ(outcome.out, "wrote merged.exr, merged.png: samples 0:12\n");
+  expect_same_pictures("merged", "whole");
+}
+
+TEST_F(Parts, GoOnWhereTheyWere) {
+  make({"-o", "whole"});
+  make({"-o", "a.exr", "--samples", "0:5"});
+  make({"-o", "b.exr", "--resume", "a.exr", "--samples", "0:8"});
+  make({"-o", "resumed", "--resume", "b.exr", "--engine", "model", "--threads", "2"});
+  expect_same_pictures("resumed", "whole");
+  // With fewer samples, all of which were taken, and with more.
+  make({"-o", "few.exr", "--spp", "4", "--channels", "sums"});
+  make({"-o", "more", "--resume", "few.exr"});
+  expect_same_pictures("more", "whole");
+}
+
+/// Killed at any time, what was saved last is a picture to go on with.
+TEST_F(Parts, SurviveBeingKilled) {
+  const std::vector<std::string> long_run = {"--size", "200x150",    "--spp",
+                                             "48",     "--channels", "sums"};
+  std::vector<std::string> arguments = long_run;
+  arguments.insert(arguments.end(), {"-o", "whole"});
+  make(arguments);
+  std::mt19937 random(20261122);
+  int killed = 0;
+  for (int i = 0; i < 4; ++i) {
+    arguments = {kCornell, "--integrator", "path", "--threads", "2",    "--engine",
+                 "cpu",    "--save-every", "0.1",  "-o",        "a.exr"};
+    arguments.insert(arguments.end(), long_run.begin(), long_run.end());
+    if (folder_.read("a.exr") != "") arguments.insert(arguments.end(), {"--resume", "a.exr"});
+    const Outcome outcome =
+        run_program({.arguments = arguments,
+                     .folder = folder_.path(),
+                     .terminal = true,
+                     .when_said = {{"rendering [", [&](int process) {
+                                      std::this_thread::sleep_for(
+                                          std::chrono::milliseconds(150 + random() % 300));
+                                      ::kill(process, SIGKILL);
+                                    }}}});
+    killed += outcome.signal == SIGKILL;
+  }
+  EXPECT_GT(killed, 0);
+  ASSERT_NE(folder_.read("a.exr"), "");
+  arguments = long_run;
+  arguments.insert(arguments.end(), {"--resume", "a.exr", "-o", "resumed"});
+  make(arguments);
+  expect_same_pictures("resumed", "whole");
+}
+
+TEST_F(Parts, OfDifferentPicturesAreRefused) {
+  make({"-o", "a.exr", "--samples", "0:5"});
+  make({"-o", "b.exr", "--samples", "5:12", "--seed", "3"});
+  expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
+                 "b.exr: found seed 3, expected seed 0 as in a.exr");
+  make({"-o", "b.exr", "--samples", "6:12"});
+  expect_refused(
+      merge({"a.exr", "b.exr", "-o", "merged"}),
+      "b.exr: found samples 6:12 beside 0:5 of the same pixels, expected some from 5 on");
+  make({"-o", "b.exr", "--samples", "0:5", "--crop", "0,0,9,9"});
+  expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
+                 "a.exr: found pixels 0,0,60,44, some of which are in b.exr, expected others");
+  make({"-o", "a.exr", "--samples", "0:5", "--crop", "9,9,60,44"});
+  expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
+                 "b.exr: found that all parts together lack some pixels of 0,0,60,44");
+  make({"-o", "c.exr"});
+  expect_refused(merge({"a.exr", "c.exr", "-o", "merged"}), "c.exr: found no sums of samples");
+  expect_refused(merge({"a.exr", "none.exr", "-o", "merged"}), "none.exr: cannot read");
+  expect_refused(merge({"a.exr"}), "expected parts of a picture and -o NAME");
+  expect_refused(part({"--resume", "a.exr"}), "a.exr: found another frame or crop");
+  expect_refused(part({"--resume", "c.exr"}), "c.exr: found no sums of samples");
+  make({"-o", "b.exr", "--samples", "0:5"});
+  expect_refused(part({"--resume", "b.exr", "--seed", "1"}),
+                 "b.exr: found seed 0, expected seed 1 as this run has it");
+  expect_refused(part({"--resume", "b.exr", "--samples", "0:3"}),
+                 "b.exr: found samples 0:5, expected the first of 0:3");
+  expect_refused(part({"--resume", "b.exr", "--channels", "Albedo"}),
+                 "b.exr: found no channel Albedo");
+  expect_refused(part({"--samples", "0:13"}), "--samples: expected some of the 12 of --spp");
+  expect_refused(part({"--samples", "5"}), "--samples: expected A:B");
+}
+
+}  // namespace
+}  // namespace raygate
