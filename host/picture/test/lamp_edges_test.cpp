@@ -42,7 +42,7 @@ RenderOptions options(int samples, PixelFilter filter = PixelFilter::kBox) {
           .integrator = IntegratorKind::kPath};
 }
 
-std::vector<std::uint8_t> marks(const Panel& panel, PixelFilter filter, std::size_t& rays) {
+std::vector<LampEdge> marks(const Panel& panel, PixelFilter filter, std::size_t& rays) {
   const Bvh bvh(panel.scene);
   const Clearances clearances(bvh);
   const Lights lights(panel.scene, bvh);
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> marks(const Panel& panel, PixelFilter filter, std::siz
   Film film;
   film.width = film.height = kSide;
   film.window = {0, 0, kSide, kSide};
-  std::vector<std::uint8_t> found(std::size_t{kSide} * kSide, 2);
+  std::vector<LampEdge> found(std::size_t{kSide} * kSide);
   rays = find_lamp_edges({panel.scene, bvh, panel.camera, asked, lights, clearances}, finder, film,
                          film.window, found);
   return found;
@@ -59,23 +59,25 @@ std::vector<std::uint8_t> marks(const Panel& panel, PixelFilter filter, std::siz
 
 TEST(LampEdges, ArePixelsWithCornersOnBothSides) {
   std::size_t rays = 0;
-  const std::vector<std::uint8_t> found =
-      marks(Panel(2.5f, 1.5f, 6.5f, 5.5f), PixelFilter::kBox, rays);
+  const std::vector<LampEdge> found = marks(Panel(2.5f, 1.5f, 6.5f, 5.5f), PixelFilter::kBox, rays);
   EXPECT_EQ(rays, std::size_t{kSide + 1} * (kSide + 1));
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       const bool is_near = x >= 2 && x <= 6 && y >= 1 && y <= 5;
       const bool is_within = x >= 3 && x <= 5 && y >= 2 && y <= 4;
-      EXPECT_EQ(found[std::size_t(y * kSide + x)], is_near && !is_within ? 1 : 0) << x << " " << y;
+      EXPECT_EQ(found[std::size_t(y * kSide + x)],
+                is_near && !is_within ? LampEdge::kYes : LampEdge::kNo)
+          << x << " " << y;
     }
   }
 }
 
 TEST(LampEdges, AreAsFarAsTheFilterReaches) {
   std::size_t rays = 0;
-  const std::vector<std::uint8_t> found =
+  const std::vector<LampEdge> found =
       marks(Panel(2.5f, -9.0f, 20.0f, 20.0f), PixelFilter::kBlackmanHarris, rays);
-  for (int x = 0; x < kSide; ++x) EXPECT_EQ(found[std::size_t(x)], x >= 1 && x <= 3 ? 1 : 0) << x;
+  for (int x = 0; x < kSide; ++x)
+    EXPECT_EQ(found[std::size_t(x)], x >= 1 && x <= 3 ? LampEdge::kYes : LampEdge::kNo) << x;
 }
 
 TEST(LampEdges, AreNotLookedForWhereNoLampCanBe) {
