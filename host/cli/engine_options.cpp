@@ -19,7 +19,8 @@ Engine parse_engine(const std::string& text) {
 }
 
 std::string parse_unit(const std::string& text) {
-  return choose<std::string>("--unit", text, {{"pipeline", "pipeline"}, {"serial", "serial"}});
+  return choose<std::string>("--unit", text,
+                             {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}});
 }
 
 Arith parse_arith(const std::string& text) {
@@ -59,8 +60,8 @@ EngineOptions parse_engine_options(const RawEngineOptions& raw, EngineOptions de
   if (!raw.unit.empty()) options.unit = parse_unit(raw.unit);
   if (!raw.arith.empty()) options.arith = parse_arith(raw.arith);
   if (!raw.lanes.empty()) options.lanes = parse_lanes(raw.lanes);
-  if (options.unit == "serial" && options.lanes != 1) {
-    throw InputError("--lanes: expected 1 with --unit serial, got " + raw.lanes);
+  if (options.unit != "pipeline" && options.lanes != 1) {
+    throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " + raw.lanes);
   }
   options.threads = raw.threads.empty() ? std::max(1u, std::thread::hardware_concurrency())
                                         : parse_threads(raw.threads);

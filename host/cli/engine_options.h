@@ -22,9 +22,9 @@ enum class Engine {
 /// Every value is possible.
 struct EngineOptions {
   Engine engine = Engine::kRtl;
-  std::string unit = "pipeline";  ///< or "serial"
+  std::string unit = "pipeline";  ///< or "serial", "core"
   Arith arith = Arith::kStructural;
-  int lanes = 1;  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for the serial one
+  int lanes = 1;  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
   unsigned threads = 1;
 };
 

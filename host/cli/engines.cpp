@@ -3,6 +3,9 @@
 #include <memory>
 
 #include "host/find/check_finder.h"
+#include "host/find/core/core_finder.h"
+#include "host/find/core/memory_image.h"
+#include "host/find/core/reference_core.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/record_cache.h"
@@ -11,6 +14,7 @@
 #include "host/find/unit/serial_hit_tester.h"
 #include "host/find/unit/unit_finder.h"
 #include "sim/rtl_burst_unit.h"
+#include "sim/rtl_core.h"
 #include "sim/rtl_plane_unit.h"
 
 namespace raygate {
@@ -31,6 +35,29 @@ std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips
   return std::make_unique<PipelineHitTester>(std::move(unit));
 }
 
+/// A core for each thread, all of one image.
+FinderFactory make_core_factory(const EngineOptions& options, const Bvh& bvh) {
+  const auto image = std::make_shared<const MemoryImage>(bvh, static_cast<int>(options.threads));
+  return [options, &bvh, image]() -> std::unique_ptr<Finder> {
+    std::unique_ptr<CoreUnit> core;
+    if (options.engine == Engine::kModel) {
+      core = std::make_unique<ReferenceCore>();
+    } else {
+      core = make_rtl_core(options.arith);
+    }
+    return std::make_unique<CoreFinder>(bvh, image, std::move(core));
+  };
+}
+
+/// Of the unit in `options`.
+FinderFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh, const Skips& skips) {
+  if (options.unit == "core") return make_core_factory(options, bvh);
+  const auto caches = std::make_shared<RecordCaches>(bvh, skips.records);
+  return [options, &bvh, skips, caches] {
+    return std::make_unique<UnitFinder>(bvh, make_tester(options, skips), caches);
+  };
+}
+
 }  // namespace
 
 FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh,
@@ -38,11 +65,10 @@ FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh,
   if (options.engine == Engine::kCpu) {
     return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
   }
-  const auto caches = std::make_shared<RecordCaches>(bvh, skips.records);
-  return [options, &bvh, skips, caches]() -> std::unique_ptr<Finder> {
-    auto unit = std::make_unique<UnitFinder>(bvh, make_tester(options, skips), caches);
-    if (options.engine != Engine::kCheck) return unit;
-    return std::make_unique<CheckFinder>(bvh, std::move(unit), std::make_unique<CpuFinder>(bvh));
+  const FinderFactory make_unit = make_unit_factory(options, bvh, skips);
+  if (options.engine != Engine::kCheck) return make_unit;
+  return [&bvh, make_unit] {
+    return std::make_unique<CheckFinder>(bvh, make_unit(), std::make_unique<CpuFinder>(bvh));
   };
 }
 

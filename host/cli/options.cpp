@@ -26,7 +26,9 @@ Engine
   --engine NAME              rtl: the simulated hardware (default); cpu: without
                              it, much faster; model: the unit's reference model;
                              check: rtl and cpu, stopping where they differ
-  --unit pipeline|serial     a test every clock (default), or the paper's unit
+  --unit NAME                pipeline: a test every clock (default); serial: the
+                             paper's unit; core: a ray core, which walks the
+                             tree by itself
   --arith NAME               structural: Booth trees, carry-select (default); or
                              behavioural: + and *, simulated faster
   --lanes 1|2|4|8            pipelined units side by side, per thread (1)

@@ -23,6 +23,7 @@ void add_variants(CLI::App& lab, Common& common);    ///< the table of variants
 void add_check(CLI::App& lab, Common& common);       ///< reference models against hardware
 void add_pictures(CLI::App& lab, Common& common);    ///< pictures by any variant, timed and judged
 void add_rays(CLI::App& lab, Common& common);        ///< rays per second, next to Embree's
+void add_core(CLI::App& lab, Common& common);        ///< clocks a ray of the ray core
 void add_skips(CLI::App& lab, Common& common);       ///< what each skip saves
 
 }  // namespace raygate::lab

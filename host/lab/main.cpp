@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   lab::add_check(app, common);
   lab::add_pictures(app, common);
   lab::add_rays(app, common);
+  lab::add_core(app, common);
   lab::add_skips(app, common);
   try {
     app.parse(argc, argv);

@@ -33,6 +33,8 @@ package ray_core_pkg;
   localparam int unsigned TriangleCorners = 0;   // nine binary32: A.x, A.y, A.z, B.x, ... C.z
   localparam int unsigned TriangleIndex = 288;   // 32 bits, the host's name of the triangle
 
+  localparam int unsigned TriangleWidth = 320;   // what is used of the line
+
   // ---- What box_unit says of a node: a group of children
   //
   // Children that the ray enters, near first: entry 0 is the nearest. An entry's `enter` is in units of
@@ -65,6 +67,26 @@ package ray_core_pkg;
     ResultDoubt = 2'd1,  // a triangle that the host must look at: hit or not, or how far
     ResultRest  = 2'd2   // subtrees for which the stack had no room: the host sends the ray there
   } result_e;
+
+  localparam int unsigned NodesWidth = 7 * Children;  // of a rest: bit i stands for the node at line + i
+  localparam int unsigned TestsWidth = 16;
+
+  // ---- Events of a clock, for counters
+
+  typedef enum logic [3:0] {
+    EventRay      = 4'd0,  // a ray has ended
+    EventNode     = 4'd1,  // box_unit takes a node
+    EventTriangle = 4'd2,  // set_up_unit takes a triangle
+    EventHit      = 4'd3,  // a test is over: surely hit,
+    EventMiss     = 4'd4,  // surely missed, or the triangle that the ray ignores,
+    EventDoubt    = 4'd5,  // or neither
+    EventNearTie  = 4'd6,  // a sure hit leaves as a doubt
+    EventRest     = 4'd7,
+    EventRead     = 4'd8,  // a line is asked for
+    EventWait     = 4'd9   // memory does not take what is asked for
+  } event_e;
+
+  localparam int unsigned NumEvents = 10;
 
   // verilator lint_on UNUSEDPARAM
 

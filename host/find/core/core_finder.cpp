@@ -29,6 +29,7 @@ FindCounters CoreFinder::counters() const {
   counters.hit.hits = core.hits;
   counters.hit.edge_doubts = core.doubts;
   counters.hit.depth_doubts = core.near_ties;
+  counters.hit.quotients = 3 * core.rays + 4 * core.hits;  // 1 / I, t, P
   counters.hit.input_bytes = core.lines * sizeof(MemoryLine);
   counters.hit.clocks = core.clocks;
   return counters;
@@ -47,7 +48,7 @@ void CoreFinder::find(std::span<const Ray> rays, const Search& search, std::span
   }
   while (!sent_.empty()) {
     results_.clear();
-    core_->trace(sent_, results_);
+    core_->trace(image_->lines(), sent_, results_);
     sent_.clear();
     for (const CoreResult& result : results_) {
       const Ray& ray = rays[result.tag];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/find/core/core_unit.h"
+#include "host/find/core/memory_image.h"
 #include "host/find/finder.h"
 #include "host/tree/bvh.h"
 
@@ -15,8 +16,11 @@ namespace raygate {
 /// finders'.
 class CoreFinder : public Finder {
  public:
-  /// The core must read an image of `bvh`, which must outlive this.
-  CoreFinder(const Bvh& bvh, std::unique_ptr<CoreUnit> core) : bvh_(bvh), core_(std::move(core)) {}
+  /// `image`, of `bvh`, is what the core reads. The tree must outlive this. Finders of one thread
+  /// may share a core.
+  CoreFinder(const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
+             std::shared_ptr<CoreUnit> core)
+      : bvh_(bvh), image_(std::move(image)), core_(std::move(core)) {}
 
   void find(std::span<const Ray> rays, const Search& search, std::span<NearestHit> hits) override;
   [[nodiscard]] FindCounters counters() const override;
@@ -25,7 +29,8 @@ class CoreFinder : public Finder {
   void settle(const Ray& ray, const Search& search, const CoreResult& result, NearestHit& best);
 
   const Bvh& bvh_;
-  std::unique_ptr<CoreUnit> core_;
+  std::shared_ptr<const MemoryImage> image_;
+  std::shared_ptr<CoreUnit> core_;
   FindCounters counters_;
   std::vector<CoreRay> sent_;
   std::vector<CoreResult> results_;

@@ -69,8 +69,10 @@ class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
 
-  /// Adds what the rays give to `results`; all words of all rays.
-  virtual void trace(std::span<const CoreRay> rays, std::vector<CoreResult>& results) = 0;
+  /// Adds what the rays give to `results`; all words of all rays. The memory holds `lines`, a
+  /// MemoryImage's.
+  virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+                     std::vector<CoreResult>& results) = 0;
 
   [[nodiscard]] virtual CoreCounters counters() const = 0;
 };

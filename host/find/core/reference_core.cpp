@@ -16,11 +16,13 @@ struct Waiting {
 
 }  // namespace
 
-void ReferenceCore::trace(std::span<const CoreRay> rays, std::vector<CoreResult>& results) {
-  for (const CoreRay& ray : rays) trace(ray, results);
+void ReferenceCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+                          std::vector<CoreResult>& results) {
+  for (const CoreRay& ray : rays) trace(lines, ray, results);
 }
 
-void ReferenceCore::trace(const CoreRay& ray, std::vector<CoreResult>& results) {
+void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
+                          std::vector<CoreResult>& results) {
   const ReferenceBurstUnit unit;
   NearestSureHit nearest(ray.limit);
   glm::vec3 point{0.0f};
@@ -58,7 +60,7 @@ void ReferenceCore::trace(const CoreRay& ray, std::vector<CoreResult>& results) 
   for (;;) {
     ++counters_.nodes;
     const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.every_box};
-    const BoxGroup group = enter_boxes(NodeLine(lines_[line]), box_ray);
+    const BoxGroup group = enter_boxes(NodeLine(lines[line]), box_ray);
     // Leaves first, then what is inside: as the core does.
     Waiting inside{group};
     inside.group.size = 0;
@@ -70,7 +72,7 @@ void ReferenceCore::trace(const CoreRay& ray, std::vector<CoreResult>& results) 
       }
       if (ended || is_beyond(group, entry, nearest.limit())) continue;
       for (std::uint32_t k = 0; k < entry.count; ++k) {
-        test(TriangleLine(lines_[group.base + entry.offset + k]));
+        test(TriangleLine(lines[group.base + entry.offset + k]));
       }
     }
     if (inside.group.size != 0) {

@@ -10,19 +10,19 @@ namespace raygate {
 /// doubts.
 class ReferenceCore : public CoreUnit {
  public:
-  /// The lines of a MemoryImage; they must outlive this. `stack_depth`: see ray_core.sv.
-  explicit ReferenceCore(std::span<const MemoryLine> lines, int stack_depth = kStackDepth)
-      : lines_(lines), stack_depth_(stack_depth) {}
+  /// `stack_depth`: see ray_core.sv.
+  explicit ReferenceCore(int stack_depth = kStackDepth) : stack_depth_(stack_depth) {}
 
-  void trace(std::span<const CoreRay> rays, std::vector<CoreResult>& results) override;
+  void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+             std::vector<CoreResult>& results) override;
   [[nodiscard]] CoreCounters counters() const override { return counters_; }
 
  private:
   static constexpr int kStackDepth = 8;
 
-  void trace(const CoreRay& ray, std::vector<CoreResult>& results);
+  void trace(std::span<const MemoryLine> lines, const CoreRay& ray,
+             std::vector<CoreResult>& results);
 
-  std::span<const MemoryLine> lines_;
   int stack_depth_;
   CoreCounters counters_;
 };

@@ -3,55 +3,26 @@
 
 #include <gtest/gtest.h>
 
-#include "host/exact/test/meshes.h"
 #include "host/find/check_finder.h"
 #include "host/find/core/memory_image.h"
 #include "host/find/core/reference_core.h"
+#include "host/find/core/test/core_cases.h"
 #include "host/find/cpu/cpu_finder.h"
 
 namespace raygate {
 namespace {
 
+using test::bodies;
 using test::Random;
-
-/// Bodies of which one is flat, one much too large and one far away.
-std::vector<Corners> bodies() {
-  std::vector<Corners> mesh = test::sphere(2);
-  for (const auto& part : {test::box(glm::vec3(-3), glm::vec3(3)),
-                           test::box(glm::vec3(-2, 0.5f, -2), glm::vec3(2, 0.5f, 2)),
-                           test::box(glm::vec3(1000, 0, 0), glm::vec3(1001, 1, 1))}) {
-    mesh.insert(mesh.end(), part.begin(), part.end());
-  }
-  return mesh;
-}
-
-/// Some go through corners, some along an axis, some from a common origin.
-std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int count) {
-  std::vector<Ray> rays;
-  const glm::vec3 shared = random.point(2.5f);
-  while (static_cast<int>(rays.size()) < count) {
-    const glm::vec3 origin = random.below(3) == 0 ? shared : random.point(2.5f);
-    glm::dvec3 way(random.point(1.0f));
-    if (random.below(2) == 0) {
-      const Corners& target =
-          mesh[static_cast<std::size_t>(random.below(static_cast<int>(mesh.size())))];
-      way = glm::dvec3(target[static_cast<std::size_t>(random.below(3))]) - glm::dvec3(origin);
-    } else if (random.below(4) == 0) {
-      way[random.below(3)] = 0.0;
-      way[random.below(3)] = 0.0;
-    }
-    if (largest(way) > 0.0) rays.push_back({origin, scaled_direction(way)});
-  }
-  return rays;
-}
+using test::some_rays;
 
 class CoreFinderTest : public testing::Test {
  protected:
   /// Throws where the two differ.
   void check(const std::vector<Ray>& rays, const Search& search, int stack_depth) {
-    auto core = std::make_unique<ReferenceCore>(image_.lines(), stack_depth);
+    auto core = std::make_unique<ReferenceCore>(stack_depth);
     core_ = core.get();
-    CheckFinder finder(bvh_, std::make_unique<CoreFinder>(bvh_, std::move(core)),
+    CheckFinder finder(bvh_, std::make_unique<CoreFinder>(bvh_, image_, std::move(core)),
                        std::make_unique<CpuFinder>(bvh_));
     std::vector<NearestHit> hits(rays.size());
     finder.find(rays, search, hits);
@@ -61,7 +32,7 @@ class CoreFinderTest : public testing::Test {
 
   std::vector<Corners> mesh_ = bodies();
   Bvh bvh_{test::scene_of(mesh_)};
-  MemoryImage image_{bvh_};
+  std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
   Random random_;
   ReferenceCore* core_ = nullptr;
   CoreCounters counters_;
@@ -113,9 +84,9 @@ TEST_F(CoreFinderTest, WithoutCullingEveryTriangleIsTested) {
 
 TEST(MemoryImage, OfNothingIsANodeWithoutChildren) {
   const Bvh bvh(Scene{});
-  const MemoryImage image(bvh);
-  ASSERT_EQ(image.lines().size(), 1u);
-  CoreFinder finder(bvh, std::make_unique<ReferenceCore>(image.lines()));
+  const auto image = std::make_shared<const MemoryImage>(bvh);
+  ASSERT_EQ(image->lines().size(), 1u);
+  CoreFinder finder(bvh, image, std::make_unique<ReferenceCore>());
   const Ray ray{glm::vec3(0), glm::vec3(1, 0, 0)};
   NearestHit hit;
   finder.find({&ray, 1}, {}, {&hit, 1});

@@ -1,0 +1,41 @@
+// A scene and rays that try a ray core.
+#pragma once
+
+#include <vector>
+
+#include "host/exact/test/meshes.h"
+
+namespace raygate::test {
+
+/// Bodies of which one is flat, one much too large and one far away.
+inline std::vector<Corners> bodies() {
+  std::vector<Corners> mesh = sphere(2);
+  for (const auto& part :
+       {box(glm::vec3(-3), glm::vec3(3)), box(glm::vec3(-2, 0.5f, -2), glm::vec3(2, 0.5f, 2)),
+        box(glm::vec3(1000, 0, 0), glm::vec3(1001, 1, 1))}) {
+    mesh.insert(mesh.end(), part.begin(), part.end());
+  }
+  return mesh;
+}
+
+/// Some go through corners, some along an axis, some from a common origin.
+inline std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int count) {
+  std::vector<Ray> rays;
+  const glm::vec3 shared = random.point(2.5f);
+  while (static_cast<int>(rays.size()) < count) {
+    const glm::vec3 origin = random.below(3) == 0 ? shared : random.point(2.5f);
+    glm::dvec3 way(random.point(1.0f));
+    if (random.below(2) == 0) {
+      const Corners& target =
+          mesh[static_cast<std::size_t>(random.below(static_cast<int>(mesh.size())))];
+      way = glm::dvec3(target[static_cast<std::size_t>(random.below(3))]) - glm::dvec3(origin);
+    } else if (random.below(4) == 0) {
+      way[random.below(3)] = 0.0;
+      way[random.below(3)] = 0.0;
+    }
+    if (largest(way) > 0.0) rays.push_back({origin, scaled_direction(way)});
+  }
+  return rays;
+}
+
+}  // namespace raygate::test

@@ -1,0 +1,123 @@
+// Clocks, lines and bytes a ray of the simulated ray core, by kind of ray and by memory. Nothing
+// passes or fails here: each ray's answer is compared with the cpu engine's, and a difference ends
+// the run.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "host/find/check_finder.h"
+#include "host/find/core/core_finder.h"
+#include "host/find/core/memory_image.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "host/lab/commands.h"
+#include "host/lab/rays/peer.h"
+#include "host/lab/rays/ray_sets.h"
+#include "host/lab/results.h"
+#include "host/lab/timing.h"
+#include "host/scene/io/obj_loader.h"
+#include "sim/rtl_core.h"
+
+namespace raygate::lab {
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::vector<int> latencies = {1, 50, 200};
+  int size = 128;
+};
+
+class CoreBench {
+ public:
+  CoreBench(const Options& options, const std::filesystem::path& results)
+      : options_(options), results_(results) {}
+
+  void scene(const std::filesystem::path& file) {
+    const Scene scene = load_obj(file);
+    name_ = file.stem().string();
+    const Bvh bvh(scene);
+    const auto image = std::make_shared<const MemoryImage>(bvh);
+    const RaySet camera = camera_rays(scene, options_.size);
+    const auto cpu = make_raygate(scene);
+    Found seen;
+    seen.triangle.resize(camera.rays.size());
+    seen.t.resize(camera.rays.size());
+    cpu->prepare(camera);
+    cpu->run(seen);
+    for (const RaySet& set :
+         {camera, light_rays(scene, camera, seen), scattered_rays(scene, camera, seen)}) {
+      for (const int latency : options_.latencies) run(bvh, image, set, latency);
+    }
+  }
+
+ private:
+  void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const RaySet& set,
+           int latency) {
+    const std::shared_ptr<CoreUnit> core =
+        make_rtl_core(Arith::kBehavioural, MemoryTiming{.latency = latency});
+    CheckFinder finder(bvh, std::make_unique<CoreFinder>(bvh, image, core),
+                       std::make_unique<CpuFinder>(bvh));
+    std::vector<NearestHit> hits(set.rays.size());
+    Search search{.limits = set.limits};
+    if (set.any_hit) search.enough_before = set.limits;
+    const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    finder.find(set.rays, search, hits);
+    const double seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+    const CoreCounters counters = core->counters();
+    const auto rays = static_cast<double>(set.rays.size());
+    const auto clocks = static_cast<double>(counters.clocks);
+    const Row row = {
+        {"table", "core"},
+        {"scene", name_},
+        {"rays", set.name},
+        {"latency", latency},
+        {"clocks_per_ray", clocks / rays},
+        {"lines_per_ray", static_cast<double>(counters.lines) / rays},
+        {"bytes_per_ray", 64.0 * static_cast<double>(counters.lines) / rays},
+        {"nodes_percent", 100.0 * static_cast<double>(counters.nodes) / clocks},
+        {"triangles_percent", 100.0 * static_cast<double>(counters.triangles) / clocks},
+        {"doubts_per_1000", 1e3 * static_cast<double>(counters.doubts) / rays},
+        {"near_ties_per_1000", 1e3 * static_cast<double>(counters.near_ties) / rays},
+        {"rays_per_second", rays / seconds}};
+    table_.print(row);
+    results_.add(row);
+  }
+
+  const Options& options_;
+  Results results_;
+  std::string name_;
+  TextTable table_{{{"scene", "scene", -1, 16},
+                    {"rays", "rays", -1, 10},
+                    {"latency", "latency", -1},
+                    {"clocks_per_ray", "clocks/ray", 2},
+                    {"lines_per_ray", "lines/ray", 2},
+                    {"bytes_per_ray", "bytes/ray", 0},
+                    {"nodes_percent", "boxes busy, %", 1},
+                    {"triangles_percent", "triangles busy, %", 1},
+                    {"doubts_per_1000", "doubts/1000 rays", 2},
+                    {"near_ties_per_1000", "near ties/1000", 2},
+                    {"rays_per_second", "rays/s", 0}}};
+};
+
+}  // namespace
+
+void add_core(CLI::App& lab, Common& common) {
+  auto* app = lab.add_subcommand("core", "clocks, lines and bytes a ray of the simulated ray core");
+  const auto options = std::make_shared<Options>();
+  app->add_option("scenes", options->scenes, "OBJ files")->required();
+  app->add_option("--size", options->size, "pixels along each side; a multiple of 128")
+      ->check(CLI::Range(128, 8192));
+  app->add_option("--latency", options->latencies, "of memory, in clocks; several may be given")
+      ->check(CLI::Range(1, 10'000));
+  app->callback([options, &common] {
+    options->size -= options->size % 128;
+    std::printf(
+        "%dx%d pixels; 64 rays in flight, a line of 64 bytes a clock. rays/s: simulated, "
+        "behavioural\n"
+        "arithmetic, the comparison with the cpu engine included.\n",
+        options->size, options->size);
+    CoreBench bench(*options, common.results);
+    for (const std::string& scene : options->scenes) bench.scene(scene);
+  });
+}
+
+}  // namespace raygate::lab

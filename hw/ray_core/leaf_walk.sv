@@ -1,0 +1,112 @@
+// Leaves that rays enter: asks for their triangles, one a clock, near ones first.
+//
+// A group of leaves at a time, in the order in which they came. Where a leaf is beyond its ray's limit by
+// then, it and the rest of the group are dropped: they are no nearer. A ray has one group here at most.
+module leaf_walk #(
+  parameter int unsigned Rays = 64,
+  localparam int unsigned RayWidth = $clog2(Rays),
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
+  localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
+  localparam int unsigned Children = ray_core_pkg::Children
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    box_valid_i,
+  input  logic [RayWidth-1:0]     box_ray_i,
+  input  logic [GroupWidth-1:0]   box_group_i,
+  input  logic [Children-1:0]     box_leaf_i,
+  output logic [RayWidth-1:0]     limit_ray_o,
+  input  logic [30:0]             limit_i,   // of limit_ray_o, in the same clock
+  input  logic                    ended_i,   // of limit_ray_o: it needs nothing any more
+  input  logic                    crowded_i, // of limit_ray_o: as many tests on their way as can be counted
+  output logic [Rays-1:0]         held_o,    // has a group here
+  // triangles asked for
+  output logic                    triangle_valid_o,
+  input  logic                    triangle_ready_i,
+  output logic [RayWidth-1:0]     triangle_ray_o,
+  output logic [AddressWidth-1:0] triangle_line_o
+);
+
+  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
+  localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth;
+  localparam int unsigned CountWidth = ray_core_pkg::CountWidth;
+  localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth;
+
+  // ---- Groups that wait
+
+  logic push, queued, load, unused_space;
+  logic [RayWidth-1:0] queued_ray;
+  logic [GroupWidth-1:0] queued_group;
+  logic [Children-1:0] queued_leaf;
+
+  assign push = box_valid_i & (box_leaf_i != '0);
+
+  fifo #(
+    .Width(RayWidth + GroupWidth + Children),
+    .Depth(Rays)
+  ) u_groups (
+    .clk_i,
+    .rst_ni,
+    .push_i(push),
+    .data_i({box_ray_i, box_group_i, box_leaf_i}),
+    .space_o(unused_space),
+    .pop_i(load),
+    .valid_o(queued),
+    .data_o({queued_ray, queued_group, queued_leaf})
+  );
+
+  // ---- The group whose turn it is
+
+  logic valid_q;
+  logic [RayWidth-1:0] ray_q;
+  logic [GroupWidth-1:0] group_q;
+  logic [Children-1:0] mask_q, lowest, rest;
+  logic [CountWidth-1:0] number_q;  // of the triangle in its leaf
+  logic [EntryWidth-1:0] entry;
+  logic beyond, given, last, done;
+
+  assign lowest = mask_q & -mask_q;
+  assign rest   = mask_q & ~lowest;
+
+  always_comb begin
+    entry = '0;
+    for (int unsigned n = 0; n < Children; n++) begin
+      if (lowest[n]) entry = group_q[EntryWidth*n +: EntryWidth];
+    end
+  end
+
+  assign limit_ray_o = ray_q;
+  assign beyond = ended_i | ray_core_pkg::is_beyond(
+      group_q[Children*EntryWidth +: ray_core_pkg::ExponentWidth], entry[EntryWidth-1 -: EnterWidth], limit_i);
+  assign triangle_valid_o = valid_q & ~beyond & ~crowded_i;
+  assign triangle_ray_o   = ray_q;
+  assign triangle_line_o  = group_q[GroupWidth-1 -: AddressWidth]
+                          + AddressWidth'(entry[CountWidth +: OffsetWidth]) + AddressWidth'(number_q);
+  assign given = triangle_valid_o & triangle_ready_i;
+  assign last  = number_q + 1'b1 == entry[CountWidth-1:0];
+  assign done  = valid_q & (beyond | (given & last & (rest == '0)));
+  assign load  = queued & (~valid_q | done);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      valid_q <= 1'b0;
+      held_o  <= '0;
+    end else begin
+      valid_q <= load | (valid_q & ~done);
+      if (done) held_o[ray_q] <= 1'b0;
+      if (push) held_o[box_ray_i] <= 1'b1;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (load) begin
+      ray_q    <= queued_ray;
+      group_q  <= queued_group;
+      mask_q   <= queued_leaf;
+      number_q <= '0;
+    end else if (given) begin
+      number_q <= last ? '0 : number_q + 1'b1;
+      if (last) mask_q <= rest;
+    end
+  end
+
+endmodule

@@ -1,0 +1,102 @@
+// The memory behind a ray core in simulation: latency, bandwidth, a cache, order.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <queue>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "host/find/core/memory_line.h"
+
+namespace raygate {
+
+/// How long lines take.
+struct MemoryTiming {
+  int latency =
+      50;  ///< clocks from a request's taking to its line, where the cache lacks it; at least 1
+  int bytes = 64;          ///< taken a clock, at most 64: a request every 64 / bytes clocks
+  int cache_lines = 0;     ///< of a direct-mapped cache in front of it; 0 or a power of two
+  int cache_latency = 4;   ///< of what it holds
+  int disorder = 0;        ///< up to so many clocks more, at random, for each line
+  int not_taken = 0;       ///< chance in 1/256 a clock that no request is taken
+  std::uint64_t seed = 0;  ///< of the last two
+};
+
+/// Lines by number, each with the tag of its request. One request and one line a clock at most.
+class MemoryModel {
+ public:
+  explicit MemoryModel(const MemoryTiming& timing)
+      : timing_(timing),
+        random_(timing.seed),
+        cached_(static_cast<std::size_t>(timing.cache_lines), kNothing) {}
+
+  /// What the memory holds from now on, while no line is on its way.
+  void load(std::span<const MemoryLine> lines) {
+    std::ranges::fill(cached_, kNothing);
+    lines_ = lines;
+  }
+
+  /// The next clock.
+  void clock() {
+    ++now_;
+    ready_ = now_ >= free_at_ &&
+             (timing_.not_taken == 0 || static_cast<int>(random_() & 0xFF) >= timing_.not_taken);
+  }
+
+  /// Whether a request would be taken in this clock.
+  [[nodiscard]] bool ready() const { return ready_; }
+  /// Takes a request. Lines beyond the last one are the caller's bug, or a broken core's: true if
+  /// so.
+  [[nodiscard]] bool read(std::uint32_t line, std::uint64_t tag) {
+    if (line >= lines_.size()) return true;
+    int latency = timing_.latency;
+    if (!cached_.empty()) {
+      std::uint32_t& held = cached_[line & (cached_.size() - 1)];
+      if (held == line) latency = timing_.cache_latency;
+      if (held != line) ++misses_;
+      held = line;
+    } else {
+      ++misses_;
+    }
+    if (timing_.disorder != 0)
+      latency += static_cast<int>(random_() % static_cast<std::uint64_t>(timing_.disorder + 1));
+    due_.push({now_ + static_cast<std::uint64_t>(latency), sent_++, line, tag});
+    free_at_ = now_ + static_cast<std::uint64_t>(64 / timing_.bytes);
+    return false;
+  }
+
+  /// Whether a line is there in this clock.
+  [[nodiscard]] bool valid() const { return !due_.empty() && due_.top().at <= now_; }
+  [[nodiscard]] const MemoryLine& line() const { return lines_[due_.top().line]; }
+  [[nodiscard]] std::uint64_t tag() const { return due_.top().tag; }
+  void pop() { due_.pop(); }
+
+  /// Lines that the cache lacked.
+  [[nodiscard]] std::uint64_t misses() const { return misses_; }
+
+ private:
+  static constexpr std::uint32_t kNothing = 0xFFFFFFFF;
+
+  struct Due {
+    std::uint64_t at, number;
+    std::uint32_t line;
+    std::uint64_t tag;
+
+    /// For a queue whose top is the earliest.
+    friend bool operator<(const Due& a, const Due& b) {
+      return a.at != b.at ? a.at > b.at : a.number > b.number;
+    }
+  };
+
+  std::span<const MemoryLine> lines_;
+  MemoryTiming timing_;
+  std::mt19937_64 random_;
+  std::vector<std::uint32_t> cached_;
+  std::priority_queue<Due> due_;
+  std::uint64_t now_ = 0, free_at_ = 0, sent_ = 0, misses_ = 0;
+  bool ready_ = true;
+};
+
+}  // namespace raygate

@@ -1,0 +1,21 @@
+#include "sim/rtl_core.h"
+
+#include <utility>
+
+#include "Vray_core_behavioural.h"
+#include "Vray_core_behavioural___024root.h"
+#include "Vray_core_structural.h"
+#include "Vray_core_structural___024root.h"
+#include "sim/core_model.h"
+
+namespace raygate {
+
+std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
+                                        const CoreStalls& stalls) {
+  if (arith == Arith::kStructural) {
+    return std::make_unique<CoreModel<Vray_core_structural>>(timing, stalls);
+  }
+  return std::make_unique<CoreModel<Vray_core_behavioural>>(timing, stalls);
+}
+
+}  // namespace raygate

@@ -1,0 +1,24 @@
+// The ray core in simulation, behind the interface of host/find/core.
+#pragma once
+
+#include <memory>
+
+#include "host/find/core/core_unit.h"
+#include "sim/arith.h"
+#include "sim/memory_model.h"
+
+namespace raygate {
+
+/// Chances, in 1/256 a clock, that no ray is offered and that a result is not taken.
+struct CoreStalls {
+  int no_ray = 0, not_taken = 0;
+  std::uint64_t seed = 0;
+};
+
+/// ray_core, Verilated, and the memory behind it. Not for use by two threads at once: each thread
+/// makes its own.
+[[nodiscard]] std::unique_ptr<CoreUnit> make_rtl_core(Arith arith = Arith::kStructural,
+                                                      const MemoryTiming& timing = {},
+                                                      const CoreStalls& stalls = {});
+
+}  // namespace raygate

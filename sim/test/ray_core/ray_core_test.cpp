@@ -1,0 +1,142 @@
+// The ray core in simulation finds what CpuFinder finds, whatever makes it wait.
+// Tests: ray_core, ray_intake, ray_walk, leaf_walk, line_cache, line_port, ray_hits, rotating_pick
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "Vray_core_small.h"
+#include "host/find/check_finder.h"
+#include "host/find/core/core_finder.h"
+#include "host/find/core/memory_image.h"
+#include "host/find/core/reference_core.h"
+#include "host/find/core/test/core_cases.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "sim/core_model.h"
+#include "sim/rtl_core.h"
+
+namespace raygate {
+namespace {
+
+using test::bodies;
+using test::Random;
+using test::some_rays;
+
+class RayCoreTest : public testing::Test {
+ protected:
+  /// Throws where the core, with the host's help, and CpuFinder differ.
+  void check(const std::vector<Ray>& rays, const Search& search, std::unique_ptr<CoreUnit> core) {
+    const CoreUnit& unit = *core;
+    CheckFinder finder(bvh_, std::make_unique<CoreFinder>(bvh_, image_, std::move(core)),
+                       std::make_unique<CpuFinder>(bvh_));
+    std::vector<NearestHit> hits(rays.size());
+    finder.find(rays, search, hits);
+    counters_ = unit.counters();
+  }
+
+  std::unique_ptr<CoreUnit> core(Arith arith, const MemoryTiming& timing = {},
+                                 const CoreStalls& stalls = {}) {
+    return make_rtl_core(arith, timing, stalls);
+  }
+
+  Bvh bvh_{test::scene_of(bodies())};
+  std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
+  Random random_;
+  CoreCounters counters_;
+};
+
+TEST_F(RayCoreTest, NearestHitsAreTheCpuFinders) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 10'000);
+  check(rays, {}, core(Arith::kBehavioural));
+  EXPECT_GT(counters_.doubts, 50u);
+  EXPECT_GT(counters_.near_ties, 50u);
+  EXPECT_LT(counters_.lines, (counters_.nodes + counters_.triangles) / 8)
+      << "caches hold the scene";
+  EXPECT_LT(counters_.clocks, counters_.nodes * 5 / 4) << "a node in nearly every clock";
+}
+
+TEST_F(RayCoreTest, ArithmeticsGiveTheSame) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 500);
+  check(rays, {}, core(Arith::kBehavioural));
+  const CoreCounters behavioural = counters_;
+  check(rays, {}, core(Arith::kStructural));
+  EXPECT_EQ(counters_.clocks, behavioural.clocks);
+  EXPECT_EQ(counters_.triangles, behavioural.triangles);
+}
+
+TEST_F(RayCoreTest, WaitsChangeNothing) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
+  for (const MemoryTiming& timing :
+       {MemoryTiming{.latency = 1}, MemoryTiming{.latency = 200, .disorder = 300, .seed = 1},
+        MemoryTiming{.latency = 50, .bytes = 16, .not_taken = 64, .seed = 2},
+        MemoryTiming{.latency = 20, .cache_lines = 16, .cache_latency = 2}}) {
+    check(rays, {}, core(Arith::kBehavioural, timing, {.no_ray = 32, .not_taken = 200, .seed = 3}));
+    check(rays, {}, core(Arith::kBehavioural, timing));
+  }
+}
+
+TEST_F(RayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 3'000);
+  std::vector<float> limits, enough;
+  std::vector<std::uint32_t> ignored;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    limits.push_back(random_.below(4) == 0 ? std::numeric_limits<float>::infinity()
+                                           : random_.uniform(0.01f, 3.0f));
+    enough.push_back(random_.below(2) == 0 ? limits.back() : 0.5f * limits.back());
+    ignored.push_back(
+        static_cast<std::uint32_t>(random_.below(static_cast<int>(bvh_.slot_count()))));
+  }
+  check(rays, {.limits = limits}, core(Arith::kBehavioural));
+  check(rays, {.limits = limits, .ignored = ignored}, core(Arith::kBehavioural));
+  const std::uint64_t triangles = counters_.triangles;
+  check(rays, {.limits = limits, .ignored = ignored, .enough_before = enough},
+        core(Arith::kBehavioural));
+  EXPECT_LT(counters_.triangles, triangles);
+}
+
+TEST_F(RayCoreTest, WithoutCullingEveryTriangleIsTested) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 70);
+  std::vector<RayWork> work(rays.size());
+  check(rays, {.culling = false, .work = work}, core(Arith::kBehavioural));
+  for (const RayWork& ray : work) EXPECT_EQ(ray.tests, bvh_.slot_count());
+}
+
+/// P of sure hits has the bits that the reference has for the core's own records.
+TEST_F(RayCoreTest, PointsAreTheReferences) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
+  std::vector<CoreRay> sent;
+  for (const Ray& ray : rays)
+    sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
+  std::vector<CoreResult> got, expected;
+  core(Arith::kBehavioural)->trace(image_->lines(), sent, got);
+  ReferenceCore().trace(image_->lines(), sent, expected);
+  const auto ends = [&](const std::vector<CoreResult>& results) {
+    std::vector<CoreResult> ends(sent.size());
+    for (const CoreResult& result : results) {
+      if (result.kind == CoreResult::Kind::kEnd) ends[result.tag] = result;
+    }
+    return ends;
+  };
+  const auto a = ends(got), b = ends(expected);
+  int same = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!a[i].found || !b[i].found || a[i].triangle != b[i].triangle) continue;
+    ++same;
+    ASSERT_EQ(a[i].t, b[i].t) << i;
+    ASSERT_EQ(a[i].t_error, b[i].t_error) << i;
+    ASSERT_EQ(a[i].point, b[i].point) << i;
+  }
+  EXPECT_GT(same, 1'500);
+}
+
+TEST_F(RayCoreTest, AShortStackCostsWalksAndNoHits) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 1'000);
+  check(rays, {},
+        std::make_unique<CoreModel<Vray_core_small>>(MemoryTiming{.latency = 3},
+                                                     CoreStalls{.not_taken = 64}));
+  EXPECT_GT(counters_.rests, 100u);
+  EXPECT_GT(counters_.rays, rays.size());
+}
+
+}  // namespace
+}  // namespace raygate
