@@ -71,6 +71,8 @@ void Integrator::shade(const Wave& wave, std::span<const NearestHit> hits, std::
 /// Lists the hits of the block, kind by kind. What hits nothing is done with.
 void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveOutput& output) {
   const Scene& scene = shading_.scene;
+  const glm::vec3 behind = background();
+  const bool is_dark = behind == glm::vec3(0.0f);
   first_.assign(kHitKinds + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const NearestHit& hit = hits[block_.begin + i];
@@ -80,8 +82,9 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
     }
     kinds_[i] = kHitKinds;
     if (hit.slot == NearestHit::kNone) {
+      if (is_dark) continue;
       const Burden& burden = block_.burden(i);
-      output.radiance[burden.sample] += burden.weight * background();
+      output.radiance[burden.sample] += burden.weight * behind;
       continue;
     }
     const bool is_doubtful = is_point_doubt(hit, point_error_);
@@ -179,7 +182,9 @@ void Integrator::hand_on(std::size_t i, const DepartureOrigin*& origins, WaveOut
     if (!way.is_wanted) continue;
     const auto& origin = departure(way.side);
     if (!origin) continue;
-    output.next.rays.push_back({*origin, way.direction});
+    Ray& ray = output.next.rays.emplace_back();
+    ray.origin = *origin;
+    ray.direction = way.direction;
     Burden& next = output.next.burdens.emplace_back(way.burden);
     next.sample = burden.sample;
     next.index = burden.index;

@@ -73,20 +73,23 @@ void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced
   }
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (rays[i].point_light == ShadowRay::kNoPoint) {
-      next_.push_back(from_surface(lights_, rays[i], i));
+      next_from_surface(rays[i], i);
     }
   }
   while (!next_.empty()) trace_from_surface(rays);
 }
 
-ShadowRays::Segment ShadowRays::from_surface(const Lights& lights, const ShadowRay& ray,
-                                             std::uint32_t index) {
-  if (ray.point_light == ShadowRay::kNoPoint) {
-    return {index, ray.surface, ray.lamp, ray.lamp_slot,
-            ray.lamp_slot == NearestHit::kNone ? kNoEnd : kBeforeAreaLight};
-  }
-  return {index, ray.surface, lights.points()[ray.point_light].position, NearestHit::kNone,
-          kWholeWay};
+/// Fields one by one: an object that is made elsewhere would be read back before it is written.
+void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
+  const bool is_area = ray.point_light == ShadowRay::kNoPoint;
+  Segment& segment = next_.emplace_back();
+  segment.index = index;
+  segment.from = ray.surface;
+  segment.to = is_area ? ray.lamp : lights_.points()[ray.point_light].position;
+  segment.ignored = is_area ? ray.lamp_slot : NearestHit::kNone;
+  segment.share = !is_area                             ? kWholeWay
+                  : ray.lamp_slot == NearestHit::kNone ? kNoEnd
+                                                       : kBeforeAreaLight;
 }
 
 void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light) {
@@ -106,7 +109,7 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
     if (is_sure && (!any_clear_ || transmittance(i) == glm::vec3(0.0f))) {
       ray.light = glm::vec3(0.0f);
     } else {
-      next_.push_back(from_surface(lights_, ray, segments_[i].index));
+      next_from_surface(ray, segments_[i].index);
     }
   }
 }
@@ -141,23 +144,24 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
 
 /// Of all segments. Searches may end at hits before the share `enough` of the way.
 void ShadowRays::trace(bool from_light, float enough) {
-  wave_.clear();
-  limits_.clear();
-  enough_.clear();
-  ignored_.clear();
-  for (const Segment& segment : segments_) {
+  const std::size_t count = segments_.size();
+  wave_.resize(count);
+  limits_.resize(count);
+  enough_.resize(count);
+  ignored_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Segment& segment = segments_[i];
+    wave_[i].origin = segment.from;
+    ignored_[i] = segment.ignored;
     if (segment.share == kNoEnd) {
-      wave_.push_back({segment.from, scaled_direction(glm::dvec3(segment.to))});
-      limits_.push_back(kNoEnd);
-      enough_.push_back(kNoEnd);
-      ignored_.push_back(NearestHit::kNone);
+      wave_[i].direction = scaled_direction(glm::dvec3(segment.to));
+      limits_[i] = enough_[i] = kNoEnd;
       continue;
     }
     const Aim aim(segment.from, segment.to);
-    wave_.push_back({segment.from, aim.direction});
-    limits_.push_back(aim.whole_way * segment.share);
-    enough_.push_back(aim.whole_way * std::min(enough, segment.share));
-    ignored_.push_back(segment.ignored);
+    wave_[i].direction = aim.direction;
+    limits_[i] = aim.whole_way * segment.share;
+    enough_[i] = aim.whole_way * std::min(enough, segment.share);
   }
   Search search{
       .common_origin = from_light, .limits = limits_, .ignored = ignored_, .culling = culling_};

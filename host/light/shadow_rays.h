@@ -64,8 +64,7 @@ class ShadowRays {
   void trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light);
   void trace_from_surface(std::span<ShadowRay> rays);
   void trace(bool from_light, float enough);
-  [[nodiscard]] static Segment from_surface(const Lights& lights, const ShadowRay& ray,
-                                            std::uint32_t index);
+  void next_from_surface(const ShadowRay& ray, std::uint32_t index);
   /// What is left after the surface that ray `number` of the wave has hit.
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 

@@ -76,16 +76,18 @@ void TileRenderer::list_pixels(const PixelRect& tile, int end) {
 }
 
 /// With one sample a pixel its ray goes through the pixel's middle.
-Ray TileRenderer::camera_ray(int x, int y, const Sampler& sampler, std::uint32_t index,
-                             std::uint32_t stream) const {
+void TileRenderer::add_camera_ray(const Pixel& pixel, const Sampler& sampler, std::uint32_t index,
+                                  std::uint32_t stream) {
   const RenderOptions& options = job_.options;
   glm::dvec2 offset(0.0);
   if (options.samples > 1) {
     const SquarePoint<float> u = sampler(index, stream);
     offset = filter_offset(options.filter, {u.x, u.y});
   }
-  return {job_.camera.eye(), job_.camera.direction((x + 0.5 + offset.x) / film_.width,
-                                                   (y + 0.5 + offset.y) / film_.height)};
+  Ray& ray = wave_.rays.emplace_back();
+  ray.origin = job_.camera.eye();
+  ray.direction = job_.camera.direction((pixel.x + 0.5 + offset.x) / film_.width,
+                                        (pixel.y + 0.5 + offset.y) / film_.height);
 }
 
 void TileRenderer::make_camera_rays() {
@@ -99,7 +101,7 @@ void TileRenderer::make_camera_rays() {
       burden.sample = static_cast<std::uint32_t>(wave_.rays.size());
       burden.stream = sampler.key();
       burden.index = index;
-      wave_.rays.push_back(camera_ray(pixel.x, pixel.y, sampler, index, kFilterStream));
+      add_camera_ray(pixel, sampler, index, kFilterStream);
     }
   }
 }
@@ -147,8 +149,7 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
     if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int look = pixel.first * kLooks; look < pixel.end * kLooks; ++look) {
-      wave_.rays.push_back(
-          camera_ray(pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(look), kLampStream));
+      add_camera_ray(pixel, sampler, static_cast<std::uint32_t>(look), kLampStream);
     }
   }
   rays += wave_.rays.size();

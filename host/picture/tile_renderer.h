@@ -45,9 +45,15 @@ class TileRenderer {
     RayWork work;           // of all rays of the sample
   };
 
+  struct Pixel {
+    int x, y;
+    std::size_t index;  // in the film
+    int first, end;     // its samples
+  };
+
   void list_pixels(const PixelRect& tile, int end);
-  [[nodiscard]] Ray camera_ray(int x, int y, const Sampler& sampler, std::uint32_t index,
-                               std::uint32_t stream) const;
+  void add_camera_ray(const Pixel& pixel, const Sampler& sampler, std::uint32_t index,
+                      std::uint32_t stream);
   void make_camera_rays();
   void sharpen_lamps(const PixelRect& tile);
   void trace_wave();
@@ -64,11 +70,6 @@ class TileRenderer {
   ShadowRays shadow_rays_;
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.
-  struct Pixel {
-    int x, y;
-    std::size_t index;  // in the film
-    int first, end;     // its samples
-  };
   std::vector<Pixel> pixels_;
   std::size_t samples_ = 0;  // of all of them
   std::vector<Seen> seen_;   // by sample
