@@ -7,7 +7,7 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers gltf-pictures rays skips predicates shares stages trace-rates claims
+.PHONY: stress bench peers gltf-pictures rays core skips predicates shares stages trace-rates claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -38,6 +38,12 @@ rays: ## rays per second of the cpu engine next to Embree 3
 	$(call build,lab,lab scenes)
 	@$(LAB) --results $(LAB_ROWS)/rays.jsonl rays scenes/cornell.obj scenes/teapot.obj \
 	  scenes/paper.obj $(LARGE_SCENES) build/scenes/landscape.obj
+
+core: ## clocks, lines and bytes a ray of the simulated ray core, by kind of ray and memory's latency
+	$(call build,build,lab scenes)
+	@$(LAB) --results $(LAB_ROWS)/core.jsonl core scenes/cornell.obj scenes/paper.obj scenes/teapot.obj \
+	  build/scenes/cornell_spheres.obj build/scenes/still_life.obj build/scenes/columns.obj \
+	  build/scenes/sphereflake.obj
 
 skips: ## tests and time that each skip saves
 	$(call build,build,lab scenes)

@@ -1,6 +1,9 @@
 // The engines and the variants of arithmetic, each through the Finder that the renderer would use.
 #include <deque>
 
+#include "host/find/core/core_finder.h"
+#include "host/find/core/memory_image.h"
+#include "host/find/core/reference_core.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/reference_burst_unit.h"
@@ -11,6 +14,7 @@
 #include "host/lab/variants/variant_hit_tester.h"
 #include "host/tree/bvh.h"
 #include "sim/rtl_burst_unit.h"
+#include "sim/rtl_core.h"
 #include "sim/rtl_plane_unit.h"
 
 namespace raygate::lab {
@@ -178,6 +182,18 @@ SubjectKind unit(const char* name, const char* what, double share, Lanes... lane
           }};
 }
 
+/// The ray core that `make_core` makes, one for all trees.
+SubjectKind core(const char* name, const char* what, double share,
+                 std::unique_ptr<CoreUnit> (*make_core)()) {
+  return {.name = name, .what = what, .exact = true, .binary32 = true, .share = share, .make = [=] {
+            const auto make = [core = std::shared_ptr<CoreUnit>(make_core())](const Bvh& bvh) {
+              return std::make_unique<CoreFinder>(bvh, std::make_shared<const MemoryImage>(bvh),
+                                                  core);
+            };
+            return std::make_unique<FinderSubject>(make, Way{.delivers = true});
+          }};
+}
+
 /// "pipelined unit, 16 digits, doubts ignored".
 std::string description(const Variant& variant) {
   const Arithmetic& math = variant.math;
@@ -203,7 +219,11 @@ std::vector<SubjectKind> engine_subjects() {
           unit<PipelineHitTester, RtlBurstUnit>("rtl", "the pipelined unit, simulated", 0.02, 1),
           unit<SerialHitTester, ReferencePlaneUnit>("model serial",
                                                     "the paper's unit's reference model", 0.1),
-          unit<SerialHitTester, RtlPlaneUnit>("rtl serial", "the paper's unit, simulated", 0.02)};
+          unit<SerialHitTester, RtlPlaneUnit>("rtl serial", "the paper's unit, simulated", 0.02),
+          core("model core", "the ray core's reference model", 0.2,
+               []() -> std::unique_ptr<CoreUnit> { return std::make_unique<ReferenceCore>(); }),
+          core("rtl core", "the ray core, simulated", 0.02,
+               [] { return make_rtl_core(Arith::kBehavioural); })};
 }
 
 std::vector<SubjectKind> variant_subjects() {
