@@ -175,7 +175,7 @@ TEST_F(OptionsOfASceneFile, MayNotBeOverwrittenBeforeItIsThere) {
 
 TEST(Options, OtherValuesThatAreImpossible) {
   expect_error({"a.obj", "--engine", "gpu"}, "--engine: expected rtl, model, cpu or check");
-  expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline or serial");
+  expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline, serial or core");
   for (const char* lanes : {"0", "3", "16", "-1", "x"}) {
     expect_error({"a.obj", "--lanes", lanes}, "--lanes: expected 1, 2, 4 or 8");
   }
