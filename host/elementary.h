@@ -34,6 +34,27 @@ RAYGATE_INLINE SineCosine<D> sine_cosine(const D& turns) {
   return {choose(is_odd, cosine, sine) * sine_sign, choose(is_odd, sine, cosine) * cosine_sign};
 }
 
+/// The angle of the point (x, y) in turns, counter-clockwise from +x: from -1/2 to 1/2, 0 for (0,
+/// 0). T is float or FloatLanes, finite. Off by less than 2^-50.
+template <class T>
+RAYGATE_INLINE WideOf<T> turns_of(const T& y, const T& x) {
+  using D = WideOf<T>;
+  constexpr double kTurnsOfRadian = 0.15915494309189533576888376337251;
+  constexpr float kHalf = 0.41421356f;  // the tangent of an eighth of half a turn
+  const T across = absolute(x), along = absolute(y);
+  const auto is_steep = along > across;
+  const T larger = choose(is_steep, along, across), smaller = choose(is_steep, across, along);
+  const D ratio = wide(smaller) / wide(choose(larger > 0.0f, larger, spread<T>(1.0f)));
+  const auto is_large = narrow(ratio) > kHalf;
+  const D t = choose(is_large, (ratio - 1.0) / (ratio + 1.0), ratio), squared = t * t;
+  D sum = D{} + 1.0 / 41;  // Taylor's series
+  for (int k = 39; k >= 1; k -= 2) sum = 1.0 / k - sum * squared;
+  D angle = t * sum * kTurnsOfRadian + choose(is_large, D{} + 0.125, D{});
+  angle = choose(is_steep, 0.25 - angle, angle);
+  angle = choose(x < 0.0f, 0.5 - angle, angle);
+  return choose(y < 0.0f, -angle, angle);
+}
+
 /// The logarithm to the base 2 of x, which is positive and in the range of normal floats. Off by
 /// less than 2^-50 of itself or 2^-52, whichever is more.
 template <class D>

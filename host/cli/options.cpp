@@ -5,6 +5,7 @@
 
 #include "host/cli/command_line.h"
 #include "host/cli/option_text.h"
+#include "host/cli/sky_lens_options.h"
 #include "host/cli/values.h"
 #include "host/scene/io/input_error.h"
 
@@ -49,6 +50,10 @@ Picture
                              bottom, iso, or azimuth and elevation (33,24)
   --up AXIS                  upwards: x, -x, y ... (a guess: y or z)
   --fov DEGREES              vertical field of view of any camera (35)
+  --projection NAME          perspective (default), orthographic, panorama
+  --aperture R               radius of the lens: what is not in focus is blurred,
+                             with several samples per pixel (0)
+  --focus D                  distance of what is in focus (the target's)
   --ground on|off            a ground that shows shadows alone (on from above,
                              where there is no camera and no light)
   --exposure STOPS           exposure of the PNG in stops: +1 is twice as bright
@@ -70,6 +75,9 @@ Light
   --depth, --max-depth N     reflections and refractions in a row (4; path: 64)
   --threshold X              whitted: ignore rays that weigh less (0.00390625)
   --ambient X                whitted: ambient light (from background or lamps)
+  --environment FILE         light from all around: a latitude-longitude EXR or HDR
+  --environment-rotation DEG counter-clockwise, seen from above (0)
+  --environment-strength X   times what the file has (1)
   --seed N                   seed of the random numbers (0)
 
 Run
@@ -93,6 +101,7 @@ struct RawValues {
   RawEngineOptions engine;
   RawOutputOptions output;
   RawLightOptions light;
+  RawSkyLensOptions sky_lens;
   bool no_scene_file = false;
 };
 
@@ -114,6 +123,7 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   value("--ground", raw.ground);
   declare_output_options(app, raw.output);
   declare_light_options(app, raw.light);
+  declare_sky_lens_options(app, raw.sky_lens);
   declare_engine_options(app, raw.engine);
   value("--seed", raw.seed);
   value("--smooth", raw.smooth);
@@ -153,6 +163,8 @@ void check_values(const RawValues& raw, Options& options) {
   if (!raw.view.empty()) options.view.angles = parse_view(raw.view);
   if (!raw.up.empty()) options.view.up = parse_axis(raw.up);
   if (!raw.fov.empty()) options.view.fov = parse_fov(raw.fov);
+  options.view.lens = parse_lens(raw.sky_lens, options.view.lens);
+  options.environment = parse_environment(raw.sky_lens, options.environment);
   if (!raw.ground.empty()) {
     options.ground = choose<bool>("--ground", raw.ground, {{"on", true}, {"off", false}});
   }
@@ -250,6 +262,8 @@ Options parse_options(int argc, const char* const* argv) {
     raw = read_line(words, options);
     options.camera = options.scene_file->camera;
     options.path = options.scene_file->path;
+    options.view.lens = options.scene_file->lens;
+    options.environment = options.scene_file->lights.environment;
     if (!options.camera) {
       options.view.up = options.scene_file->up;
       options.view.fov = options.scene_file->fov;

@@ -23,6 +23,7 @@ struct ViewOptions {
   std::optional<std::pair<double, double>> angles;
   std::optional<glm::dvec3> up;
   std::optional<double> fov;
+  LensSetting lens;
 };
 
 /// Checked options: every value is possible. Whether files can be read or written is not checked.
@@ -39,6 +40,7 @@ struct Options : EngineOptions {
   ViewOptions view;                     ///< what changes it, or the view
   std::optional<bool> ground;           ///< none: where a first look needs it
   std::vector<CameraSetting> path;      ///< of --frames; empty: once round the target
+  std::optional<EnvironmentSetting> environment;
   LightOptions light;
   std::filesystem::path resume;  ///< a picture to go on from; empty: none
   std::uint64_t seed = 0;

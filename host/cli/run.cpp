@@ -18,6 +18,7 @@
 #include "host/cli/resume.h"
 #include "host/cli/shots.h"
 #include "host/cli/version.h"
+#include "host/film/environment_file.h"
 #include "host/light/clearance.h"
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
@@ -234,6 +235,13 @@ void render_film_of_frames(const Options& options, Scene& scene, const Clearance
   }
 }
 
+/// Upwards on the command line, in the scene file, or a guess.
+glm::dvec3 environment_up(const Options& options, const Scene& scene) {
+  if (options.view.up) return *options.view.up;
+  if (options.scene_file && options.scene_file->up) return *options.scene_file->up;
+  return guessed_up(scene);
+}
+
 }  // namespace
 
 void run(const Options& options) {
@@ -256,6 +264,9 @@ void run(const Options& options) {
                                            .smooth = options.smooth,
                                            .threads = static_cast<int>(options.threads)});
   if (options.scene_file) add_lights(*options.scene_file, scene);
+  if (options.environment) {
+    load_environment(*options.environment, environment_up(options, scene), scene);
+  }
   report.load_seconds = seconds_since(start);
   report.triangles = scene.triangles.size();
   print_warnings(scene);

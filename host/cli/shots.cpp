@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include "host/cli/format.h"
+#include "host/cli/sky_lens_options.h"
 #include "host/exact/exact.h"
 #include "host/light/lights.h"
 #include "host/scene/camera_path.h"
@@ -18,6 +19,7 @@ CameraSetting completed(const CameraSetting& camera, const Options& options, con
   result.target -= scene.origin;
   if (options.view.up) result.up = options.view.up;
   if (options.view.fov) result.fov = options.view.fov;
+  result.lens = camera.lens.changed_by(options.view.lens);
   return result;
 }
 
@@ -77,8 +79,11 @@ CameraSetting Shots::setting(const Scene& scene, int number) const {
   }
   View view = view_;
   view.azimuth += 360.0 * turn;
-  return framing(scene, aspect_of(options_), options_.view.fov.value_or(Camera::kDefaultFov), view,
-                 frames > 1 ? Filling::kCylinder : Filling::kVertices);
+  CameraSetting whole =
+      framing(scene, aspect_of(options_), options_.view.fov.value_or(Camera::kDefaultFov), view,
+              frames > 1 ? Filling::kCylinder : Filling::kVertices);
+  whole.lens = options_.view.lens;
+  return whole;
 }
 
 std::string Shots::view_text(const Scene& scene) const {
@@ -128,6 +133,9 @@ std::vector<std::pair<std::string, std::string>> Shots::options() const {
     up = view_.up;
   }
   if (up) all.emplace_back("up", numbers({up->x, up->y, up->z}));
+  for (auto& word : sky_lens_words(shots_.front().camera, options_.environment)) {
+    all.push_back(std::move(word));
+  }
   if (has_ground_ || !given_) all.emplace_back("ground", has_ground_ ? "on" : "off");
   return all;
 }

@@ -4,6 +4,7 @@
 #include "host/elementary.h"
 #include "host/lane_math.h"
 #include "host/light/around.h"
+#include "host/light/facet_lobes.h"
 #include "host/light/finish.h"
 #include "host/light/fresnel.h"
 #include "host/light/sampler.h"
@@ -36,6 +37,12 @@ namespace raygate {
 /// light, which has no size: there it has a highlight with exponent Ns instead, unless that is 1
 /// (what it is where the file does not say) or less.
 ///
+/// A metallic-roughness material has the lobes of FacetLobes instead: `diffuse` is what is under
+/// the facets, `glossy` what rough facets reflect (up to what they hide from each other) and
+/// `mirror` what smooth ones do; glass is `mirror` and `through`. Where glass is rough, these two
+/// are its shares straight on: what a facet does, it says itself, and light from lamps comes by it
+/// by chance alone.
+///
 /// T is float or FloatLanes: hits of one kind, each with a material of its own.
 template <class T>
 class Bsdf {
@@ -66,12 +73,18 @@ class Bsdf {
   /// Diffuse and glossy reflection, per steradian and without the cosine, from unit direction
   /// `light`; 0 from behind.
   [[nodiscard]] RAYGATE_INLINE Triple<T> scattered(const Triple<T>& light) const {
+    if ((kind_ & kFacets) != 0) {
+      return above(light, facets_.scattered(light, (kind_ & kGlossy) != 0, false));
+    }
     return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * lobe(light)
                                                : diffuse_ * per_pi());
   }
   /// The same with the mirror as a highlight, for point lights.
   [[nodiscard]] RAYGATE_INLINE Triple<T> scattered_from_point(const Triple<T>& light) const {
     if ((kind_ & (kGlossy | kMirrors)) == 0) return scattered(light);
+    if ((kind_ & kFacets) != 0) {
+      return above(light, facets_.scattered(light, (kind_ & kGlossy) != 0, has_rough_glass()));
+    }
     const Triple<T> shown = choose(exponent_ > 1.0f, mirror_, zero<T>());
     return above(light, diffuse_ * per_pi() + (glossy_ + shown) * lobe(light));
   }
@@ -84,9 +97,19 @@ class Bsdf {
     const T diffuse = at_least(dot(normal_, light), 0.0f) * kPerPi;
     if ((kind_ & kGlossy) == 0) return diffuse;
     const T share = glossy_share();
+    if ((kind_ & kFacets) != 0) {
+      return (1.0f - share) * diffuse + share * facets_.density(light);
+    }
     return (1.0f - share) * diffuse +
            share * (lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
   }
+
+  /// Whether what a facet mirrors and lets through is for that facet to say.
+  [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
+    return (~kind_ & (kFacets | kGlossy | kMirrors)) == 0;
+  }
+  /// Of metallic-roughness materials.
+  [[nodiscard]] RAYGATE_INLINE const FacetLobes<T>& facets() const { return facets_; }
 
  private:
   static constexpr float kPerPi = 0.318309886183790671537767526745f;
@@ -113,11 +136,14 @@ class Bsdf {
     return choose(squared < 1.99999f, height * narrow(power(cosine, wide(exponent_))), T{});
   }
 
+  RAYGATE_INLINE void set_facets();
+
   HitKind kind_;
   Triple<T> view_, normal_;
   T eta_, exponent_;
   Triple<T> diffuse_, glossy_, mirror_, through_, emission_, unlit_;
   MaskOf<T> mirror_is_traced_, is_refracting_;
+  FacetLobes<T> facets_;  // of kFacets alone
 };
 
 template <class T>
@@ -156,6 +182,11 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     }
     emission_ = lamps.triple(0);
     unlit_ = colour * lamps.triple(3);
+  }
+  if ((kind & kFacets) != 0) {
+    facets_ = FacetLobes<T>(surface, (kind & kGlossy) != 0, finishes);
+    set_facets();
+    return;
   }
   if ((kind & (kGlossy | kMirrors)) != 0) {
     Gathered<T, 4> shiny;
@@ -217,6 +248,19 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
 }
 
 template <class T>
+RAYGATE_INLINE void Bsdf<T>::set_facets() {
+  diffuse_ = facets_.under;
+  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.reflected;
+  through_ = {facets_.clear, facets_.clear, facets_.clear};
+  if ((~kind_ & (kMirrors | kLetsThrough)) != 0) return;
+  eta_ = facets_.eta;
+  is_refracting_ = facets_.is_glass;
+  const T mirrored = facets_.glass * fresnel_reflectance(facets_.view_cosine, eta_);
+  mirror_ = mirror_ + Triple<T>{mirrored, mirrored, mirrored};
+  through_ = choose(is_refracting_, facets_.tint * (facets_.glass - mirrored), through_);
+}
+
+template <class T>
 RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u) const {
   const auto turn = sine_cosine(wide(u.y));
   const T turned_x = narrow(turn.cosine), turned_y = narrow(turn.sine);
@@ -229,6 +273,12 @@ RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u) const {
   const T glossy_rest = 1.0f - u.x / choose(share > 0.0f, share, spread<T>(1.0f));
   const T diffuse_rest = (u.x - share) / choose(left > 0.0f, left, spread<T>(1.0f));
   const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
+  if ((kind_ & kFacets) != 0) {
+    // The same point of the square for both: each lane has use for one of them.
+    const Triple<T> facet = facets_.ggx.sample(view_, {rest, u.y});
+    return choose(is_glossy, mirrored(view_, facet),
+                  around(normal_, root(1.0f - rest), root(rest), turned_x, turned_y));
+  }
   const auto cosine = power(wide(at_least(rest, 0x1p-24f)), 1.0 / (wide(exponent_) + 1.0));
   const T sine = narrow(root(1.0 - cosine * cosine));
   const Triple<T> axis = choose(is_glossy, mirrored(view_, normal_), normal_);

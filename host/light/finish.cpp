@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/light/ggx.h"
+
 namespace raygate {
 namespace {
 
@@ -16,6 +18,28 @@ bool is_any(const glm::vec3& colour) { return colour != glm::vec3(0.0f); }
 
 }  // namespace
 
+/// Glass is clear: it has no opacity besides.
+void Finish::set(const Material& material, const MetallicRoughness& shares) {
+  metallic = std::clamp(shares.metallic, 0.0f, 1.0f);
+  transmission = std::clamp(shares.transmission, 0.0f, 1.0f);
+  if (index == 1.0f) index = 1.5f;
+  const float root = (index - 1.0f) / (index + 1.0f);
+  reflectance = root * root;
+  const bool has_map = shares.map.texture != kNoIndex;
+  refracts = transmission > 0.0f && (metallic < 1.0f || has_map);
+  is_glass = is_fresnel = false;
+  mirror_is_traced = true;
+  opacity = refracts ? 1.0f : std::clamp(material.opacity, 0.0f, 1.0f);
+  through = glm::vec3(1.0f - opacity);
+  // A texture may leave any roughness: it is never smooth, only nearly.
+  roughness = std::clamp(shares.roughness, 0.0f, 1.0f);
+  const bool is_rough = has_map || roughness * roughness >= Ggx<float>::kLeast;
+  kind |= kFacets | (is_rough ? kGlossy : kMirrors);
+  if (refracts) kind |= kMirrors;
+  if (refracts || opacity < 1.0f) kind |= kLetsThrough;
+  if (has_map) kind |= kHasWeights;
+}
+
 Finish::Finish(const Material& material) {
   const int model = material.illumination_model;
   is_glass = model == 4 || model == 6 || model == 7 || model == 9;
@@ -26,6 +50,13 @@ Finish::Finish(const Material& material) {
   opacity = is_glass && d == 1.0f ? 0.0f : d;
   exponent = std::clamp(material.shininess, 0.0f, 1e6f);
   index = std::clamp(material.refraction_index, kLeastIndex, kMostIndex);
+  emission = material.emission;
+  if (is_any(emission)) kind |= kEmits;
+  if (material.diffuse_texture != kNoIndex) kind |= kHasWeights;
+  if (material.metallic_roughness) {
+    set(material, *material.metallic_roughness);
+    return;
+  }
   const glm::vec3 ks = limited(material.specular);
   (model == 0 ? unlit : diffuse) = glm::vec3(opacity);
   if (model == 2) glossy = opacity * ks;
@@ -33,13 +64,11 @@ Finish::Finish(const Material& material) {
   if (model == 5) grazing = opacity * (1.0f - ks);
   if (model == 4 || model == 6 || model == 9) mirror = ks;
   through = (1.0f - opacity) * (is_glass ? limited(material.transmittance) : glm::vec3(1.0f));
-  emission = material.emission;
-  if (is_any(emission) || is_any(unlit)) kind |= kEmits;
+  if (is_any(unlit)) kind |= kEmits;
   if (is_any(glossy)) kind |= kGlossy;
   if (is_any(mirror) || is_any(grazing) || refracts) kind |= kMirrors;
   if (is_any(through)) kind |= kLetsThrough;
   if (model == 10) kind |= kCatchesShadows;
-  if (material.diffuse_texture != kNoIndex) kind |= kHasWeights;
 }
 
 std::vector<Finish> finishes_of(const Scene& scene) {

@@ -18,7 +18,8 @@ inline constexpr HitKind kGlossy = 4;        ///< a highlight
 inline constexpr HitKind kMirrors = 8;       ///< a mirror
 inline constexpr HitKind kLetsThrough = 16;  ///< light passes
 inline constexpr HitKind kCatchesShadows = 32;  ///< of the background's colour but for shadows
-inline constexpr HitKind kHitKinds = 64;        ///< sets are less than that
+inline constexpr HitKind kFacets = 64;          ///< metallic-roughness; rough where it is glossy
+inline constexpr HitKind kHitKinds = 128;       ///< sets are less than that
 
 /// The shares of a material before an angle is known: Bsdf has the table.
 struct Finish {
@@ -36,9 +37,15 @@ struct Finish {
   bool refracts = false;
   bool is_fresnel = false;  ///< the mirror is Fresnel's
   bool mirror_is_traced = true;
-  HitKind kind = 0;  ///< without what depends on the triangle
+  /// Of a metallic-roughness material, which has the textures' colours in all its shares:
+  float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
+  float reflectance = 0.04f;  ///< of what is not metallic, straight on
+  HitKind kind = 0;           ///< without what depends on the triangle
 
   explicit Finish(const Material& material);
+
+ private:
+  void set(const Material& material, const MetallicRoughness& shares);
 };
 
 /// Of all materials of a scene, in its order.

@@ -77,6 +77,8 @@ struct ShadingScene {
   float threshold = 0.0f;
   bool single_sample = false;
   bool skips_weightless = true;
+  bool sees_environment = true;   ///< rays that hit nothing
+  bool asks_environment = false;  ///< surfaces, as they do lamps
 };
 
 /// As many hits of one kind as T has lanes.
@@ -230,6 +232,20 @@ RAYGATE_INLINE Triple<T> light_from_point(const Hits<T>& hits, const Lights& lig
   return choose(way.is_before, bounded(light), zero<T>());
 }
 
+/// a^2 / (a^2 + b^2), where a may be infinite.
+template <class T>
+RAYGATE_INLINE T share_of(const T& a, const T& b) {
+  const T over = b / a;
+  return 1.0f / (1.0f + over * over);
+}
+
+/// What is seen in a direction where nothing is; unit vectors.
+template <class T>
+RAYGATE_INLINE Triple<T> sky(const Lights& lights, const Triple<T>& direction) {
+  const Environment* const environment = lights.environment();
+  return environment != nullptr ? environment->radiance(direction) : spread<T>(lights.background());
+}
+
 /// The cosine between a spot light's axis and the way from it to the surface.
 template <class T>
 RAYGATE_INLINE T spot_cosine(const Hits<T>& hits, const Lights& lights, const Triple<T>& position,
@@ -237,13 +253,14 @@ RAYGATE_INLINE T spot_cosine(const Hits<T>& hits, const Lights& lights, const Tr
   return -dot(WayToLight<T>(lights, hits.surface, position).direction, axis);
 }
 
-/// The light of one direction that surfaces scatter, per chance; `towards` is a unit vector.
+/// The light of one direction that surfaces scatter, per chance; `towards` is a unit vector, and
+/// `scattered` says how much of it.
 template <class T>
 RAYGATE_INLINE Triple<T> light_from_direction(const Hits<T>& hits, const Triple<T>& towards,
+                                              const Triple<T>& scattered,
                                               const Triple<T>& irradiance, const T& chance) {
   const T cosine = at_least(dot(hits.surface.normal, towards), 0.0f);
-  const Triple<T> light =
-      hits.weight * hits.bsdf.scattered_from_point(towards) * irradiance * (cosine / chance);
+  const Triple<T> light = hits.weight * scattered * irradiance * (cosine / chance);
   return choose(dot(hits.surface.flat_normal, towards) > 0.0f, bounded(light), zero<T>());
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/light/escapes.h"
 #include "host/light/path.h"
 #include "host/light/primary.h"
 #include "host/light/whitted.h"
@@ -73,6 +74,9 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
   const Scene& scene = shading_.scene;
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
+  const bool sees_environment =
+      shading_.sees_environment && shading_.lights.environment() != nullptr;
+  escaped_.clear();
   first_.assign(kHitKinds + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const NearestHit& hit = hits[block_.begin + i];
@@ -81,6 +85,10 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
       __builtin_prefetch(&scene.triangles[shading_.bvh.triangle_of(soon)].material);
     }
     kinds_[i] = kHitKinds;
+    if (hit.slot == NearestHit::kNone && sees_environment) {
+      escaped_.push_back(static_cast<std::uint32_t>(i));
+      continue;
+    }
     if (hit.slot == NearestHit::kNone) {
       if (is_dark) continue;
       const Burden& burden = block_.burden(i);
@@ -95,6 +103,9 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
     block_.finishes[i] = &finishes_[face.material];
     kinds_[i] = finishes_[face.material].kind | weights_needed(block_.places[i]);
     ++first_[kinds_[i] + 1];
+  }
+  if (!escaped_.empty()) {
+    add_environment(shading_, block_, escaped_, shading_.asks_environment, output);
   }
   for (HitKind kind = 0; kind < kHitKinds; ++kind) first_[kind + 1] += first_[kind];
   order_.resize(first_[kHitKinds]);

@@ -81,9 +81,10 @@ class Integrator {
   HitBlock block_;
   std::vector<DepartureQuestion> departures_;  // of the block's hits, in their order
   std::vector<DepartureOrigin> origins_;
-  std::vector<HitKind> kinds_;        // by place in the block; kHitKinds: nothing is hit
-  std::vector<std::uint32_t> order_;  // places, kind by kind
-  std::vector<std::uint32_t> first_;  // of each kind in it
+  std::vector<HitKind> kinds_;          // by place in the block; kHitKinds: nothing is hit
+  std::vector<std::uint32_t> order_;    // places, kind by kind
+  std::vector<std::uint32_t> first_;    // of each kind in it
+  std::vector<std::uint32_t> escaped_;  // places of rays that hit nothing but the environment
 };
 
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Scene& scene,

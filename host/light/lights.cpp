@@ -183,7 +183,7 @@ class Studio {
 
 /// Neither lights nor faces that emit.
 bool has_no_lamp(const Scene& scene) {
-  return scene.lights.empty() && scene.directional_lights.empty() &&
+  return scene.lights.empty() && scene.directional_lights.empty() && !scene.environment &&
          std::ranges::none_of(scene.triangles, [&](const Triangle& face) {
            return emits(scene.materials[face.material]);
          });
@@ -214,7 +214,8 @@ void light_if_dark(Scene& scene, const Camera& camera) {
 }
 
 bool light_first_look(Scene& scene, const Camera& camera) {
-  if (scene.positions.empty() || !scene.lights.empty() || !scene.directional_lights.empty()) {
+  if (scene.positions.empty() || !scene.lights.empty() || !scene.directional_lights.empty() ||
+      scene.environment) {
     return false;
   }
   const Studio studio(scene, camera);
@@ -282,6 +283,12 @@ Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
     power += cross_section * mean(glm::dvec3(light.irradiance));
     power_up_to.push_back(power);
   }
+  if (scene.environment) {
+    environment_.emplace(*scene.environment);
+    lamps_.emplace_back().kind = Kind::kEnvironment;
+    power += cross_section * 4.0 * std::numbers::pi * mean(environment_->mean_radiance());
+    power_up_to.push_back(power);
+  }
   any_power_ = power > 0.0;
   for (std::size_t i = 0; any_power_ && i < lamps_.size(); ++i) {
     const double chance = (power_up_to[i] - (i == 0 ? 0.0 : power_up_to[i - 1])) / power;
@@ -292,8 +299,8 @@ Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
     }
     chance_up_to_.push_back(static_cast<float>(power_up_to[i] / power));
   }
-  ambient_ = scene.background != glm::vec3(0.0f) ? glm::dvec3(scene.background)
-                                                 : guessed_ambient(scene, areas_);
+  ambient_ =
+      background() != glm::vec3(0.0f) ? glm::dvec3(background()) : guessed_ambient(scene, areas_);
 }
 
 /// Two triangles in a row that share an edge and are opposite corners' halves of a parallelogram

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "host/lane_math.h"
+#include "host/light/environment.h"
 #include "host/light/sampler.h"
 #include "host/light/spot.h"
 #include "host/scene/scene.h"
@@ -60,26 +62,35 @@ class Lights {
   [[nodiscard]] std::span<const DirectionalLight> directions() const {
     return scene_.directional_lights;
   }
-  [[nodiscard]] glm::vec3 background() const { return scene_.background; }
+  /// nullptr: there is none, but a background.
+  [[nodiscard]] const Environment* environment() const {
+    return environment_ ? &*environment_ : nullptr;
+  }
+  /// How likely choose() is to give it.
+  [[nodiscard]] float environment_chance() const { return lamps_.back().chance; }
+  /// Of an environment the mean.
+  [[nodiscard]] glm::vec3 background() const {
+    return environment_ ? glm::vec3(environment_->mean_radiance()) : scene_.background;
+  }
   /// Radiance from all sides that may stand for light that goes from surface to surface: the
   /// background's or, where that is black, what the lamps' flux would come to after many
   /// reflections if it were spread evenly over all surfaces ("A progressive refinement approach to
   /// fast radiosity image generation", Cohen, Chen, Wallace and Greenberg 1988, has such a term).
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
-  /// Points first, then areas, then directions.
+  /// Points first, then areas, then directions, then the environment.
   [[nodiscard]] std::size_t count() const { return lamps_.size(); }
 
   /// The inverse of a power of two about as long as the scene.
   [[nodiscard]] float per_unit() const { return per_unit_; }
 
-  enum class Kind : std::uint8_t { kPoint, kArea, kDirection };
+  enum class Kind : std::uint8_t { kPoint, kArea, kDirection, kEnvironment };
 
   /// What shading reads of a light, by its index as in count().
   struct Lamp {
     Kind kind = Kind::kPoint;
     bool is_spot = false;
     /// Of a point light its intensity, in square units; of an area light radiance; of light from
-    /// one direction irradiance.
+    /// one direction irradiance; of the environment nothing.
     glm::vec3 light{0.0f};
     glm::vec3 position{0.0f};  ///< of a point light; or the direction towards the light
     SpotRamp spot;
@@ -128,6 +139,7 @@ class Lights {
 
   const Scene& scene_;
   const Bvh& bvh_;
+  std::optional<Environment> environment_;
   std::vector<AreaLight> areas_;
   std::vector<Lamp> lamps_;
   std::vector<Patch> patches_;

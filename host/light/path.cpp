@@ -7,7 +7,7 @@ namespace {
 
 // What random numbers and branches are for.
 constexpr std::uint32_t kGoOn = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
-                        kDirection = 5;
+                        kDirection = 5, kFacet = 6;
 constexpr int kSureSurfaces = 3;         // before chance decides whether a ray lives on,
 constexpr float kSureWeight = 0.25f;     // unless it counts for as much as this
 constexpr float kLeastDensity = 1e-20f;  // of a direction: floats have room for the inverse
@@ -28,13 +28,6 @@ struct LobeChances {
     return choose(sum > 0.0f, scatter / sum, T{});
   }
 };
-
-/// a^2 / (a^2 + b^2), where a may be infinite.
-template <class T>
-RAYGATE_INLINE T share_of(const T& a, const T& b) {
-  const T over = b / a;
-  return 1.0f / (1.0f + over * over);
-}
 
 /// What the surfaces emit. Lamps that a scattered ray has found count for the share of that way of
 /// finding them.
@@ -66,32 +59,32 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
     kPosition = 3,
     kAxis = 6,
     kRamp = 9,
-    kIsPoint = 11,
-    kIsArea,
+    kKind = 11,
     kChance,
     kPlace,
     kFields
   };
   Gathered<T, kFields> in;
   std::uint32_t lamps[kCount];
-  bool any_point = false, any_area = false, any_direction = false, any_spot = false;
+  bool any_point = false, any_area = false, any_direction = false, any_spot = false,
+       any_environment = false;
   for (int k = 0; k < kCount; ++k) {
     lamps[k] = lights.choose(chosen[k]);
     const Lights::Lamp& lamp = lights.lamp(lamps[k]);
-    const bool is_point = lamp.kind == Lights::Kind::kPoint;
-    const bool is_area = lamp.kind == Lights::Kind::kArea;
     in.put(kLight, k, lamp.light);
     in.put(kPosition, k, lamp.position);
-    in.values[kIsPoint][k] = is_point ? 1.0f : 0.0f;
-    in.values[kIsArea][k] = is_area ? 1.0f : 0.0f;
+    in.values[kKind][k] = static_cast<float>(lamp.kind);
     in.values[kChance][k] = lamp.chance;
     in.values[kPlace][k] = lamp.chance_of_place;
-    any_point = any_point || is_point;
-    any_area = any_area || is_area;
+    any_point = any_point || lamp.kind == Lights::Kind::kPoint;
+    any_area = any_area || lamp.kind == Lights::Kind::kArea;
     any_direction = any_direction || lamp.kind == Lights::Kind::kDirection;
+    any_environment = any_environment || lamp.kind == Lights::Kind::kEnvironment;
     any_spot = any_spot || lamp.is_spot;
   }
-  const auto is_point = in.one(kIsPoint) > 0.0f, is_area = in.one(kIsArea) > 0.0f;
+  const T kinds = in.one(kKind);
+  const auto is_a = [&](Lights::Kind kind)
+                        RAYGATE_BODY { return kinds == spread<T>(static_cast<float>(kind)); };
   const LightPoint<T> place = {in.triple(kPosition), zero<T>(), WordOf<T>{} + NearestHit::kNone};
   if (any_point) {
     Triple<T> light = in.triple(kLight);
@@ -106,12 +99,25 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
                                  in.one(kRamp), in.one(kRamp + 1));
     }
     light = light_from_point(hits, lights, place.position, light, in.one(kChance));
-    ask<T>(hits, 0, is_point, light, lamps, place);
+    ask<T>(hits, 0, is_a(Lights::Kind::kPoint), light, lamps, place);
   }
   if (any_direction) {
     const Triple<T> light =
-        light_from_direction(hits, place.position, in.triple(kLight), in.one(kChance));
-    ask<T>(hits, 0, (!is_point) & (!is_area), light, lamps, place);
+        light_from_direction(hits, place.position, hits.bsdf.scattered_from_point(place.position),
+                             in.triple(kLight), in.one(kChance));
+    ask<T>(hits, 0, is_a(Lights::Kind::kDirection), light, lamps, place);
+  }
+  if (any_environment) {
+    const Environment& environment = *lights.environment();
+    const Triple<T> towards = environment.sample<T>(hits.random(kLightPoint));
+    const T asked = environment.density(towards) * in.one(kChance);
+    const T scattered = hits.bsdf.density(towards) * LobeChances<T>(hits.bsdf).share_of_scatter();
+    const Triple<T> light = light_from_direction(
+        hits, towards, hits.bsdf.scattered(towards) * share_of(asked, scattered),
+        environment.radiance(towards), asked);
+    ask<T>(hits, 0,
+           is_a(Lights::Kind::kEnvironment) & hits.bsdf.scatters() & (asked > kLeastDensity), light,
+           lamps, {towards, zero<T>(), place.slot});
   }
   if (!any_area) return;
   for (int k = 0; k < kCount; ++k) {
@@ -126,7 +132,7 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
   const T scattered =
       hits.bsdf.density(way.direction) * LobeChances<T>(hits.bsdf).share_of_scatter();
   const Triple<T> weighted = in.triple(kLight) * (share_of(asked, scattered) / per_area);
-  ask<T>(hits, 0, is_area & hits.bsdf.scatters() & (cosine > 0.0f),
+  ask<T>(hits, 0, is_a(Lights::Kind::kArea) & hits.bsdf.scatters() & (cosine > 0.0f),
          light_from_area(hits, way, point, weighted), lamps, point);
 }
 
@@ -148,9 +154,20 @@ RAYGATE_INLINE void go_on_by_chance(const ShadingScene& shading, Hits<T>& hits,
   }
   if (!any(ways.is_wanted)) return;
   const T u = choice.x * chances.sum;
-  const auto is_mirrored = u < chances.mirror;
+  // Rough glass: its facet says what is mirrored.
+  const bool has_rough_glass = bsdf.has_rough_glass();
+  const T glass_chance = chances.mirror + chances.through;
+  Triple<T> facet = surface.normal;
+  T mirrored_up_to = chances.mirror;
+  if (has_rough_glass) {
+    const auto found = bsdf.facets().glass_facet(hits.random(kFacet));
+    facet = found.normal;
+    mirrored_up_to = found.reflectance * glass_chance;
+  }
+  const auto is_mirrored = u < mirrored_up_to;
   ways.is_through = (!is_mirrored) & (u < chances.mirror + chances.through);
   ways.has_flat = is_mirrored | ways.is_through;
+  if (has_rough_glass) ways.has_flat = ways.has_flat & !ways.has_flat;
   ways.stream = mixed(hits.stream, kGoOn);
 
   ways.direction = bsdf.sample(hits.random(kDirection));
@@ -164,28 +181,39 @@ RAYGATE_INLINE void go_on_by_chance(const ShadingScene& shading, Hits<T>& hits,
       choose(brings, bounded(weight * bsdf.scattered(ways.direction) * (cosine / ways.density)),
              zero<T>());
   if ((hits.kind & kMirrors) != 0) {
-    const Triple<T> mirrored_weight = weight * bsdf.mirror() * (chances.sum / chances.mirror);
-    ways.direction = choose(is_mirrored, mirrored(surface.view, surface.normal), ways.direction);
+    const Triple<T> mirrored_way = mirrored(surface.view, facet);
+    Triple<T> mirrored_weight = weight * bsdf.mirror() * (chances.sum / chances.mirror);
+    if (has_rough_glass) {
+      const FacetLobes<T>& facets = bsdf.facets();
+      mirrored_weight = weight * (facets.glass * facets.mirrored_share(mirrored_way) *
+                                  (chances.sum / glass_chance));
+    }
+    ways.direction = choose(is_mirrored, mirrored_way, ways.direction);
     ways.flat = choose(is_mirrored, mirrored(surface.view, surface.flat_normal), ways.flat);
     ways.weight = choose(is_mirrored, mirrored_weight, ways.weight);
     ways.density = choose(is_mirrored, T{}, ways.density);
     const auto shows_background = ways.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
-    radiance =
-        choose(shows_background,
-               radiance + mirrored_weight * spread<T>(shading.lights.background()), radiance);
+    radiance = choose(shows_background,
+                      radiance + mirrored_weight * sky(shading.lights, mirrored_way), radiance);
     ways.is_wanted = ways.is_wanted & !shows_background;
   }
   if ((hits.kind & kLetsThrough) != 0) {
     const auto is_bent = ways.is_through & bsdf.is_refracting();
     const auto is_straight = ways.is_through & !bsdf.is_refracting();
-    const Refraction<T> bent(surface.view, surface.normal, bsdf.eta());
+    const Refraction<T> bent(surface.view, facet, bsdf.eta());
     const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
     ways.direction = choose(is_bent, bent.direction, ways.direction);
     ways.flat = choose(is_bent, flat.direction, ways.flat);
     ways.has_flat = ways.has_flat & ((!is_bent) | flat.exists);
     ways.is_wanted = ways.is_wanted & ((!is_bent) | bent.exists);
-    ways.weight = choose(ways.is_through, weight * bsdf.through() * (chances.sum / chances.through),
-                         ways.weight);
+    Triple<T> through_weight = weight * bsdf.through() * (chances.sum / chances.through);
+    if (has_rough_glass) {
+      const FacetLobes<T>& facets = bsdf.facets();
+      through_weight =
+          weight * facets.tint *
+          (facets.glass * facets.through_share(bent.direction) * (chances.sum / glass_chance));
+    }
+    ways.weight = choose(ways.is_through, through_weight, ways.weight);
     ways.density = choose(is_bent, T{}, ways.density);
     // Straight on as if there were nothing.
     ways.direction = choose(is_straight, -surface.view, ways.direction);

@@ -17,6 +17,7 @@ class Path final : public Integrator {
       : Integrator(scene, clearances, lights, skips, options, 1, 1) {
     // What rays that leave the scene bring.
     shading_.ambient = lights.background();
+    shading_.asks_environment = true;
   }
 
   [[nodiscard]] bool shadows_through_refraction() const override { return false; }

@@ -11,7 +11,9 @@ class Primary final : public Integrator {
  public:
   Primary(const Scene& scene, const Clearances& clearances, const Lights& lights,
           const Skips& skips, const IntegratorOptions& options)
-      : Integrator(scene, clearances, lights, skips, options, 0, 0) {}
+      : Integrator(scene, clearances, lights, skips, options, 0, 0) {
+    shading_.sees_environment = false;
+  }
 
   [[nodiscard]] glm::vec3 background() const override { return glm::vec3(0.0f); }
 

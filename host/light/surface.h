@@ -40,6 +40,8 @@ struct Surface {
   /// be seen from the ray, tilted until it is at right angles to the ray.
   Triple<T> normal;
   Triple<T> colour;  ///< Kd, times the texture
+  /// What the texture of a metallic-roughness material multiplies; of other kinds nothing.
+  T roughness, metallic;
   /// The ray comes from outside: from where the file's normals point or, without, from where the
   /// vertices run counter-clockwise.
   MaskOf<T> outside;
@@ -81,6 +83,10 @@ struct Surface {
 /// The colour of a hit whose vertices have these weights.
 [[nodiscard]] glm::vec3 textured(const Scene& scene, const Triangle& face,
                                  const glm::vec3& weights);
+
+/// What its texture multiplies of a metallic-roughness material: x roughness, y metallic.
+[[nodiscard]] glm::vec2 textured_roughness(const Scene& scene, const Triangle& face,
+                                           const glm::vec3& weights);
 
 /// The weights of the vertices, up to a common factor: I . (B x C), I . (C x A), I . (A x B), all
 /// of one sign but for rounding.
@@ -126,6 +132,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   surface.point = in.triple(kOrigin) + in.triple(kPoint);
   surface.view = -normalized(direction);
   surface.colour = in.triple(kColour);
+  if ((kind & kFacets) != 0) surface.roughness = surface.metallic = spread<T>(1.0f);
 
   const Triple<Wide> corners[3] = {wide(in.triple(kCorners)), wide(in.triple(kCorners + 3)),
                                    wide(in.triple(kCorners + 6))};
@@ -185,6 +192,18 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
           textured(scene, face, {weight.values[0][k], weight.values[1][k], weight.values[2][k]}));
     }
     surface.colour = more.triple(kTextured);
+    if ((kind & kFacets) != 0) {
+      Gathered<T, 2> factor;
+      for (int k = 0; k < kCount; ++k) {
+        const glm::vec2 textured =
+            textured_roughness(scene, *places[k].face,
+                               {weight.values[0][k], weight.values[1][k], weight.values[2][k]});
+        factor.values[0][k] = textured.x;
+        factor.values[1][k] = textured.y;
+      }
+      surface.roughness = factor.one(0);
+      surface.metallic = factor.one(1);
+    }
     const Triple<T> own_point = narrow(corners[0] * wide(weights.x) + corners[1] * wide(weights.y) +
                                        corners[2] * wide(weights.z));
     surface.point = choose(more.one(kHasPoint) > 0.0f, surface.point, own_point);

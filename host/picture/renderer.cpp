@@ -243,14 +243,14 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
   const Lights lights(scene, bvh);
   // One sample is the pixel's middle: where it falls is no matter of chance.
   std::vector<LampEdge> lamp_edges;
-  if (options.samples > 1 && !lights.areas().empty()) {
+  if (options.samples > 1 && camera.is_pinhole() && !lights.areas().empty()) {
     lamp_edges.assign(film.color.size(), LampEdge::kUnknown);
   }
   const RenderJob job{scene, bvh, camera, options, lights, clearances};
   Crew(job, tiles, std::move(first_finder), make_finder, progress, film, lamp_edges, stats).run();
   if (stats.find.common_records != 0) {
-    stats.skipped.records =
-        bvh.slot_count() * (1 + lights.points().size()) - stats.find.common_records;
+    const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
+    stats.skipped.records = bvh.slot_count() * origins - stats.find.common_records;
   }
   const std::uint64_t every_test = stats.rays * bvh.slot_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);

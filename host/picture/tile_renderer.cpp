@@ -16,8 +16,8 @@ namespace {
 // agree about.
 constexpr int kBlockWidth = 4, kBlockHeight = 2;
 constexpr int kSquare = 8;
-constexpr std::uint32_t kFilterStream = 0;
-constexpr std::uint32_t kLampStream = 7;          // the integrators' streams are made from others
+// The integrators' streams are made from others.
+constexpr std::uint32_t kFilterStream = 0, kLampStream = 7, kLensStream = 8;
 constexpr int kLooks = 8;                         // at a lamp's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
@@ -75,19 +75,29 @@ void TileRenderer::list_pixels(const PixelRect& tile, int end) {
   });
 }
 
-/// With one sample a pixel its ray goes through the pixel's middle.
+/// With one sample a pixel its ray goes through the middles of pixel and lens.
 void TileRenderer::add_camera_ray(const Pixel& pixel, const Sampler& sampler, std::uint32_t index,
                                   std::uint32_t stream) {
   const RenderOptions& options = job_.options;
-  glm::dvec2 offset(0.0);
+  const Camera& camera = job_.camera;
+  glm::dvec2 offset(0.0), lens(0.0);
   if (options.samples > 1) {
     const SquarePoint<float> u = sampler(index, stream);
     offset = filter_offset(options.filter, {u.x, u.y});
   }
-  Ray& ray = wave_.rays.emplace_back();
-  ray.origin = job_.camera.eye();
-  ray.direction = job_.camera.direction((pixel.x + 0.5 + offset.x) / film_.width,
-                                        (pixel.y + 0.5 + offset.y) / film_.height);
+  const double x = (pixel.x + 0.5 + offset.x) / film_.width;
+  const double y = (pixel.y + 0.5 + offset.y) / film_.height;
+  if (camera.is_pinhole()) {
+    Ray& ray = wave_.rays.emplace_back();
+    ray.origin = camera.eye();
+    ray.direction = camera.direction(x, y);
+    return;
+  }
+  if (options.samples > 1 && camera.aperture() > 0.0) {
+    const SquarePoint<float> u = sampler(index, kLensStream);
+    lens = {u.x, u.y};
+  }
+  wave_.rays.push_back(camera.ray(x, y, lens));
 }
 
 void TileRenderer::make_camera_rays() {
@@ -116,7 +126,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   from_lamps_.assign(samples_, glm::vec3(0.0f));
   sharpened_.assign(pixels_.size(), {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
-  if (job_.options.skips.empty_tiles &&
+  if (job_.options.skips.empty_tiles && job_.lights.environment() == nullptr &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
     output_.radiance.assign(samples_, integrator_->background());
     stats_.skipped.empty_tile_rays += samples_;
@@ -186,10 +196,11 @@ void TileRenderer::trace_wave() {
   stats_.rays += rays.size();
   hits_.resize(rays.size());
   work_.resize(is_counting_ ? rays.size() : 0);
-  finder_.find(
-      rays,
-      {.common_origin = wave_.depth == 0, .culling = job_.options.skips.culling, .work = work_},
-      hits_);
+  finder_.find(rays,
+               {.common_origin = wave_.depth == 0 && job_.camera.has_common_origin(),
+                .culling = job_.options.skips.culling,
+                .work = work_},
+               hits_);
   watch.lap();
   output_.next.clear();
   output_.next.depth = wave_.depth + 1;
@@ -224,6 +235,7 @@ void TileRenderer::see() {
     const NearestHit& hit = hits_[i];
     seen_[i].slot = hit.slot;
     if (hit.slot == NearestHit::kNone || wave_.burdens[i].index != 0) continue;
+    seen_[i].origin = wave_.rays[i].origin;
     seen_[i].point = is_point_doubt(hit, job_.options.point_error)
                          ? precise_hit(wave_.rays[i], job_.bvh.corners_of(hit.slot)).point
                          : hit.point;
@@ -274,12 +286,13 @@ void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
   const Seen& seen = seen_[sample];
   if (seen.slot == NearestHit::kNone) return;
   const std::uint32_t triangle = job_.bvh.triangle_of(seen.slot);
-  const glm::dvec3 point(seen.point);
-  film_.depth[pixel] = static_cast<float>(glm::dot(point, job_.camera.forward()));
+  const glm::dvec3 origin(seen.origin), point(seen.point);
+  const glm::dvec3 from_eye = origin - glm::dvec3(job_.camera.eye()) + point;
+  film_.depth[pixel] = static_cast<float>(job_.camera.depth(from_eye));
   film_.normal[pixel] = output_.first_surface[sample].normal;
   film_.primitive[pixel] = triangle;
   if (!film_.position.empty()) {
-    film_.position[pixel] = glm::vec3(job_.scene.origin + glm::dvec3(job_.camera.eye()) + point);
+    film_.position[pixel] = glm::vec3(job_.scene.origin + origin + point);
   }
   if (!film_.object.empty()) film_.object[pixel] = job_.scene.triangles[triangle].object;
 }

@@ -41,8 +41,9 @@ class TileRenderer {
   /// What a camera ray saw.
   struct Seen {
     std::uint32_t slot = NearestHit::kNone;
-    glm::vec3 point{0.0f};  // relative to the eye
-    RayWork work;           // of all rays of the sample
+    glm::vec3 origin{0.0f};  // of the ray
+    glm::vec3 point{0.0f};   // relative to it
+    RayWork work;            // of all rays of the sample
   };
 
   struct Pixel {

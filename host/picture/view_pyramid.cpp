@@ -60,6 +60,7 @@ struct PyramidVisitor {
 
 bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, const PixelRect& tile,
                       double margin) {
+  if (!camera.is_pinhole()) return true;
   const ViewPyramid pyramid(camera, film, tile, margin);
   PyramidVisitor visitor{pyramid};
   WalkStack<Whole> stack({});

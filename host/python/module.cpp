@@ -19,6 +19,7 @@
 
 #include "host/exact/exact_sign.h"
 #include "host/exact/ieee_floats.h"
+#include "host/film/environment_file.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/record_cache.h"
@@ -114,7 +115,12 @@ class PythonScene {
     if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
     scene_ = load_scene(file_ ? file_->obj : path, {.strict = strict, .smooth = smooth});
-    if (file_) add_lights(*file_, scene_);
+    if (file_) {
+      add_lights(*file_, scene_);
+      const auto& environment = file_->lights.environment;
+      if (environment)
+        load_environment(*environment, file_->up.value_or(guessed_up(scene_)), scene_);
+    }
     build(threads);
   }
 

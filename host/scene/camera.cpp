@@ -30,6 +30,26 @@ std::string text(const glm::dvec3& v) {
 
 }  // namespace
 
+std::optional<Projection> projection_named(std::string_view name) {
+  for (const Projection projection :
+       {Projection::kPerspective, Projection::kOrthographic, Projection::kPanorama}) {
+    if (name == to_string(projection)) return projection;
+  }
+  return std::nullopt;
+}
+
+std::string_view to_string(Projection projection) {
+  switch (projection) {
+    case Projection::kPerspective:
+      return "perspective";
+    case Projection::kOrthographic:
+      return "orthographic";
+    case Projection::kPanorama:
+      return "panorama";
+  }
+  return "";
+}
+
 Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up,
                        double vertical_fov_degrees, double aspect) {
   if (!is_finite(eye) || !is_finite(target) || !is_finite(up)) {
@@ -72,13 +92,65 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
   const glm::dvec3 view = setting.target - setting.eye;
   const bool vertical = view.x == 0.0 && view.z == 0.0;
   const glm::dvec3 up = vertical ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(0.0, 1.0, 0.0);
-  return look_at(setting.eye, setting.target, setting.up.value_or(up),
-                 setting.fov.value_or(kDefaultFov), aspect);
+  Camera camera = look_at(setting.eye, setting.target, setting.up.value_or(up),
+                          setting.fov.value_or(kDefaultFov), aspect);
+  const LensSetting& lens = setting.lens;
+  camera.projection_ = lens.projection.value_or(Projection::kPerspective);
+  camera.aperture_ = lens.aperture.value_or(0.0);
+  camera.distance_ = glm::length(view);
+  camera.focus_ = lens.focus.value_or(camera.distance_);
+  if (!(camera.aperture_ >= 0.0 && std::isfinite(camera.aperture_))) {
+    throw InputError("camera: aperture of " + std::to_string(camera.aperture_) +
+                     ": expected the radius of a lens, 0 or more");
+  }
+  if (!(camera.focus_ > 0.0 && std::isfinite(camera.focus_))) {
+    throw InputError("camera: focus at " + std::to_string(camera.focus_) +
+                     ": expected a distance, more than 0");
+  }
+  return camera;
 }
 
 Camera Camera::frame(const Scene& scene, double aspect, double vertical_fov_degrees) {
   return look_at(framing(scene, aspect, vertical_fov_degrees, front_view(scene), Filling::kBox),
                  aspect);
+}
+
+/// A thin lens: all rays of a point of the picture meet where the ray through its middle is at the
+/// distance of focus.
+Ray Camera::ray(double x, double y, const glm::dvec2& lens) const {
+  const double across = 2.0 * x - 1.0, along = 1.0 - 2.0 * y;
+  glm::dvec3 origin(eye_), way = forward_;
+  switch (projection_) {
+    case Projection::kPerspective:
+      way += across * half_width_ * right_ + along * half_height_ * up_;
+      break;
+    case Projection::kOrthographic:
+      origin += distance_ * (across * half_width_ * right_ + along * half_height_ * up_);
+      break;
+    case Projection::kPanorama: {
+      const SineCosine<double> turn = sine_cosine(0.5 * across), angle = sine_cosine(0.5 * y);
+      way = angle.sine * (turn.cosine * forward_ + turn.sine * right_) + angle.cosine * up_;
+      break;
+    }
+  }
+  if (aperture_ > 0.0) {
+    const glm::dvec3 sharp = origin + focus_ * way;
+    // Across the view; a panorama's lens turns with it.
+    glm::dvec3 u = right_, v = up_;
+    if (projection_ == Projection::kPanorama) {
+      const SineCosine<double> turn = sine_cosine(0.5 * across);
+      u = turn.cosine * right_ - turn.sine * forward_;
+      v = glm::cross(u, way);
+    }
+    const SineCosine<double> turn = sine_cosine(lens.y);
+    origin += aperture_ * std::sqrt(lens.x) * (turn.cosine * u + turn.sine * v);
+    way = sharp - glm::dvec3(glm::vec3(origin));
+  }
+  return {glm::vec3(origin), scaled_direction(way)};
+}
+
+double Camera::depth(const glm::dvec3& point) const {
+  return projection_ == Projection::kPanorama ? glm::length(point) : glm::dot(point, forward_);
 }
 
 glm::vec3 Camera::direction(double x, double y) const {

@@ -1,12 +1,19 @@
-// A pinhole camera: where rays begin, and which way the ray of a point of the picture goes.
+// A camera: where rays begin, and which way the ray of a point of the picture goes.
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
+#include <string_view>
 
+#include "host/exact/exact.h"
 #include "host/scene/camera_setting.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
+
+/// "perspective", "orthographic" or "panorama".
+[[nodiscard]] std::optional<Projection> projection_named(std::string_view name);
+[[nodiscard]] std::string_view to_string(Projection projection);
 
 /// Coordinates are the scene's (a world point minus Scene::origin). Right-handed: seen from the
 /// eye, `right` is +x and `up` is +y of the picture, and the view goes along `forward`.
@@ -25,14 +32,15 @@ class Camera {
                                       double aspect);
 
   /// Looks as `setting` says. Without `up`, +y is up; where the view goes along it, up is what a
-  /// map has there, -z. Without `fov` it is kDefaultFov. Throws as above.
+  /// map has there, -z. Without `fov` it is kDefaultFov. Throws as above, and for an aperture that
+  /// is negative, or a focus that is not positive.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
 
   /// Looks at all of a scene from the front: see front_view().
   [[nodiscard]] static Camera frame(const Scene& scene, double aspect,
                                     double vertical_fov_degrees = kDefaultFov);
 
-  /// The common origin of all camera rays.
+  /// The origin of all camera rays, where has_common_origin(); of orthographic ones the middle.
   [[nodiscard]] const glm::vec3& eye() const { return eye_; }
   [[nodiscard]] const glm::dvec3& right() const { return right_; }      ///< unit length
   [[nodiscard]] const glm::dvec3& up() const { return up_; }            ///< unit length
@@ -42,8 +50,27 @@ class Camera {
   /// Of the picture, at distance 1 along forward().
   [[nodiscard]] double half_height() const { return half_height_; }
 
-  /// The direction of the ray through a point of the picture: x from 0 (left edge) to 1 (right),
-  /// y from 0 (upper edge) to 1 (lower), so that pixel (i, j) has its centre at
+  /// Whether all rays begin at the eye: not those of an orthographic camera, or of a lens.
+  [[nodiscard]] bool has_common_origin() const {
+    return projection_ != Projection::kOrthographic && aperture_ == 0.0;
+  }
+  /// Whether rays begin at the eye and fill the pyramid around direction()'s corners.
+  [[nodiscard]] bool is_pinhole() const {
+    return projection_ == Projection::kPerspective && aperture_ == 0.0;
+  }
+  [[nodiscard]] Projection projection() const { return projection_; }
+  [[nodiscard]] double aperture() const { return aperture_; }
+  [[nodiscard]] double focus() const { return focus_; }
+
+  /// The ray through a point of the picture, places as in direction(), and through the point of
+  /// the lens that a point of the unit square stands for; (0, 0) is its middle.
+  [[nodiscard]] Ray ray(double x, double y, const glm::dvec2& lens) const;
+  /// How far a point is along the camera's axis, or of a panorama from the eye; `point` is relative
+  /// to that.
+  [[nodiscard]] double depth(const glm::dvec3& point) const;
+
+  /// The direction of the pinhole camera's ray through a point of the picture: x from 0 (left edge)
+  /// to 1 (right), y from 0 (upper edge) to 1 (lower), so that pixel (i, j) has its centre at
   /// ((i + 0.5) / width, (j + 0.5) / height). Scaled as scaled_direction says.
   [[nodiscard]] glm::vec3 direction(double x, double y) const;
 
@@ -52,6 +79,8 @@ class Camera {
   glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, forward_{0.0, 0.0, -1.0};
   double vertical_fov_degrees_ = 0.0;
   double half_width_ = 1.0, half_height_ = 1.0;  // of the picture, at distance 1 along forward
+  Projection projection_ = Projection::kPerspective;
+  double aperture_ = 0.0, focus_ = 1.0, distance_ = 1.0;  // distance: of the target
 };
 
 }  // namespace raygate

@@ -164,33 +164,65 @@ glm::dvec3 Texture::mean_codes() const {
   return sum / (255.0 * static_cast<double>(texels_.size()));
 }
 
-glm::vec3 Texture::at(const glm::dvec2& uv, Wrap wrap) const {
+/// Bilinear, of what `value` makes of a texel's codes.
+template <class TexelValue>
+glm::vec3 Texture::between(const glm::dvec2& uv, Wrap wrap, const TexelValue& value) const {
   const Neighbours x = neighbours(uv.x, width_, wrap);
   const Neighbours y = neighbours(1.0 - uv.y, height_, wrap);
-  const auto& linear = linear_of_code();
   const auto texel = [&](int column, int row) {
     const Texel& codes = texels_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
                                  static_cast<std::size_t>(column)];
-    return glm::dvec3(linear[codes[0]], linear[codes[1]], linear[codes[2]]);
+    return glm::dvec3(value(codes[0]), value(codes[1]), value(codes[2]));
   };
   const glm::dvec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.share);
   const glm::dvec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.share);
   return glm::vec3(glm::mix(upper, lower, y.share));
 }
 
+glm::vec3 Texture::at(const glm::dvec2& uv, Wrap wrap) const {
+  const auto& linear = linear_of_code();
+  return between(uv, wrap, [&](std::uint8_t code) { return linear[code]; });
+}
+
+glm::vec3 Texture::codes_at(const glm::dvec2& uv, Wrap wrap) const {
+  return between(uv, wrap, [](std::uint8_t code) { return code / 255.0; });
+}
+
+namespace {
+
+/// Where on its texture a point of a triangle is that has texture coordinates.
+glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
+                    const glm::dvec3& weights) {
+  glm::dvec2 uv(0.0);
+  for (int k = 0; k < 3; ++k) {
+    uv += weights[k] * glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(k)]]);
+  }
+  return uv * glm::dvec2(mapping.scale) + glm::dvec2(mapping.offset);
+}
+
+Wrap wrap_of(const TextureMapping& mapping) { return mapping.clamp ? Wrap::kClamp : Wrap::kRepeat; }
+
+}  // namespace
+
 glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
   if (material.diffuse_texture == kNoIndex || triangle.texcoords[0] == kNoIndex) {
     return material.diffuse;
   }
-  glm::dvec2 uv(0.0);
-  for (int k = 0; k < 3; ++k) {
-    uv += weights[k] * glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(k)]]);
-  }
   const TextureMapping& mapping = material.diffuse_mapping;
-  uv = uv * glm::dvec2(mapping.scale) + glm::dvec2(mapping.offset);
   return material.diffuse * scene.textures[material.diffuse_texture].at(
-                                uv, mapping.clamp ? Wrap::kClamp : Wrap::kRepeat);
+                                place_on(mapping, scene, triangle, weights), wrap_of(mapping));
+}
+
+glm::vec2 roughness_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const auto& shares = scene.materials[triangle.material].metallic_roughness;
+  if (!shares || shares->map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) {
+    return glm::vec2(1.0f);
+  }
+  const TextureMapping& mapping = shares->map.mapping;
+  const glm::vec3 codes = scene.textures[shares->map.texture].codes_at(
+      place_on(mapping, scene, triangle, weights), wrap_of(mapping));
+  return {codes.g, codes.b};
 }
 
 }  // namespace raygate

@@ -53,10 +53,16 @@ class Texture {
   /// finite coordinates count as 0.
   [[nodiscard]] glm::vec3 at(const glm::dvec2& uv, Wrap wrap) const;
 
+  /// The codes themselves, from 0 to 1, likewise between texels.
+  [[nodiscard]] glm::vec3 codes_at(const glm::dvec2& uv, Wrap wrap) const;
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
  private:
+  template <class TexelValue>
+  [[nodiscard]] glm::vec3 between(const glm::dvec2& uv, Wrap wrap, const TexelValue& value) const;
+
   int width_, height_;
   std::vector<Texel> texels_;
 };
@@ -66,5 +72,10 @@ class Texture {
 /// coordinates the texture counts as white.
 [[nodiscard]] glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle,
                                    const glm::dvec3& weights);
+
+/// What the texture of a metallic-roughness material multiplies at that point: x roughness, y
+/// metallic. 1 where it has none, or the face has no texture coordinates.
+[[nodiscard]] glm::vec2 roughness_at(const Scene& scene, const Triangle& triangle,
+                                     const glm::dvec3& weights);
 
 }  // namespace raygate

@@ -121,6 +121,28 @@ TEST(Options, CamerasThatAreImpossible) {
   }
 }
 
+TEST(Options, LensesAndEnvironments) {
+  const Options none = parse({"a.obj"});
+  EXPECT_FALSE(none.view.lens.projection || none.view.lens.aperture || none.environment);
+  const Options all = parse({"a.obj", "--projection", "orthographic", "--aperture", "0.25",
+                             "--focus", "3", "--environment", "sky.hdr", "--environment-rotation",
+                             "-90", "--environment-strength=2"});
+  EXPECT_EQ(all.view.lens.projection, Projection::kOrthographic);
+  EXPECT_EQ(all.view.lens.aperture, 0.25);
+  EXPECT_EQ(all.view.lens.focus, 3.0);
+  ASSERT_TRUE(all.environment);
+  EXPECT_EQ(all.environment->file, "sky.hdr");
+  EXPECT_EQ(all.environment->rotation, -90.0);
+  EXPECT_EQ(all.environment->strength, 2.0);
+  expect_error({"a.obj", "--projection", "fisheye"}, "--projection: expected ");
+  expect_error({"a.obj", "--aperture", "-1"}, "--aperture: expected ");
+  expect_error({"a.obj", "--focus", "0"}, "--focus: expected ");
+  expect_error({"a.obj", "--environment-rotation", "10"},
+               "--environment-rotation: expected --environment beside it");
+  expect_error({"a.obj", "--environment", "s.exr", "--environment-strength", "-1"},
+               "--environment-strength: expected ");
+}
+
 /// A scene file in a folder of its own.
 class OptionsOfASceneFile : public testing::Test {
  protected:

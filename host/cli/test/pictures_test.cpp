@@ -108,13 +108,16 @@ TEST_F(Render, AFirstLookFromAboveStandsOnAGround) {
 }
 
 TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
-  render({kCornell,  "--size", "24x20", "--engine",      "cpu",      "--spp", "3",
-          "--depth", "2",      "--fov", "41.1",          "--filter", "tent",  "--integrator",
-          "path",    "--seed", "11",    "--point-error", "0.001",    "-o",    "a.exr"});
+  render({kCornell, "--size",       "24x20", "--engine",     "cpu",          "--spp",
+          "3",      "--depth",      "2",     "--fov",        "41.1",         "--filter",
+          "tent",   "--integrator", "path",  "--seed",       "11",           "--point-error",
+          "0.001",  "-o",           "a.exr", "--projection", "orthographic", "--aperture",
+          "7.5",    "--focus",      "900"});
   const ExrReader reader(folder_.read("a.exr"));
   std::vector<std::string> again = {
       kCornell, "--no-scene-file", "--size", "24x20", "--engine", "cpu", "-o", "b.exr"};
-  for (const char* name : {"integrator", "spp", "filter", "depth", "threshold", "camera", "seed"}) {
+  for (const char* name : {"integrator", "spp", "filter", "depth", "threshold", "camera", "seed",
+                           "projection", "aperture", "focus"}) {
     again.insert(again.end(), {std::string("--") + name, reader.text(name)});
   }
   again.insert(again.end(), {"--point-error", reader.text("pointError")});

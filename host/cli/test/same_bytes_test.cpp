@@ -150,6 +150,28 @@ TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
   }
 }
 
+// Rays with and without a common origin, in all directions.
+TEST_F(Render, EnginesGiveTheSameBytesThroughAnyLens) {
+  for (const std::string projection : {"perspective", "orthographic", "panorama"}) {
+    for (const std::string aperture : {"0", "20"}) {
+      const auto with = [&](std::vector<std::string> rest) {
+        rest.insert(rest.end(), {kCornell, "--projection", projection, "--aperture", aperture,
+                                 "--size", "24x18", "--spp", "2"});
+        return rest;
+      };
+      render(with({"-o", "cpu", "--engine", "cpu"}));
+      EXPECT_GT(stats_.at("hits"), 0);
+      render(with({"-o", "rtl", "--engine", "rtl"}));
+      expect_same_pictures("cpu", "rtl");
+      render(with({"-o", "all", "--engine", "model", "--no-skip", "all"}));
+      expect_same_pictures("cpu", "all");
+      const ExrReader exr(folder_.read("cpu.exr"));
+      EXPECT_EQ(exr.text("projection"), projection == "perspective" ? "(none)" : projection);
+      EXPECT_EQ(exr.text("aperture"), aperture == "0" ? "(none)" : aperture);
+    }
+  }
+}
+
 TEST_F(Render, SkipsChangeNoByte) {
   const std::vector<std::string> arguments{RAYGATE_SCENES "/paper.obj",
                                            "--size",

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/exact/test/meshes.h"
 #include "host/light/fresnel.h"
 #include "host/light/sampler.h"
+#include "host/light/test/seen.h"
 
 namespace raygate {
 namespace {
+
+using test::seen;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -62,20 +64,6 @@ TEST(Fresnel, RefractionIsSnellsLaw) {
       EXPECT_NEAR(glm::dot(out, glm::cross(normal, tangent)), 0.0, 1e-6) << "out of the plane";
     }
   }
-}
-
-/// A triangle of this material seen at an angle to its normal, +z.
-Bsdf<float> seen(const Material& material, double angle) {
-  Scene scene = test::scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}});
-  scene.materials[0] = material;
-  const Bvh bvh(scene);
-  const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
-  const Ray ray = {eye, scaled_direction(glm::dvec3(-eye))};
-  const HitPlace places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
-  const Finish finish(material);
-  const Finish* const finishes[] = {&finish};
-  const HitKind kind = finish.kind | weights_needed(places[0]);
-  return {surface_at<float>(scene, bvh, kind, places), kind, finishes};
 }
 
 Material material(int model, float diffuse, float specular, float opacity) {

@@ -73,6 +73,29 @@ TEST_F(Elementary, SinesAndCosines) {
   }
 }
 
+TEST_F(Elementary, AnglesOfPoints) {
+  double worst = 0.0;
+  const std::vector<double> all = numbers(-2.0, 2.0, 0.0);
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    // Some of them near the axes, and near the diagonals.
+    const auto x = static_cast<float>(i % 3 == 0 ? all[i] * 1e-6 : all[i]);
+    const auto y = i % 5 == 0 ? std::nextafter(x, 3.0f) : static_cast<float>(all[i + 1]);
+    Exact angle(double{y}), other(double{x}), pi(0.0);
+    mpfr_atan2(angle.get(), angle.get(), other.get(), MPFR_RNDN);
+    mpfr_const_pi(pi.get(), MPFR_RNDN);
+    mpfr_div(angle.get(), angle.get(), pi.get(), MPFR_RNDN);
+    mpfr_div_ui(angle.get(), angle.get(), 2, MPFR_RNDN);
+    worst = std::max(worst, angle.error_of(turns_of<float>(y, x)));
+  }
+  std::cout << "largest error " << worst * 0x1p50 << " 2^-50\n";
+  EXPECT_LT(worst, 0x1p-50);
+  EXPECT_EQ(turns_of<float>(0.0f, 0.0f), 0.0);
+  EXPECT_EQ(turns_of<float>(0.0f, 1.0f), 0.0);
+  EXPECT_EQ(turns_of<float>(0.0f, -1.0f), 0.5);
+  EXPECT_EQ(turns_of<float>(1.0f, 0.0f), 0.25);
+  EXPECT_EQ(turns_of<float>(-1.0f, -1.0f), -0.375);
+}
+
 TEST_F(Elementary, Logarithms) {
   double worst = 0.0;
   std::vector<double> all = numbers(0x1p-30, 4.0, 1.0);

@@ -10,6 +10,7 @@
 #include "host/lane_math.h"
 #include "host/light/around.h"
 #include "host/light/fresnel.h"
+#include "host/light/ggx.h"
 #include "host/light/sampler.h"
 #include "host/vectors.h"
 
@@ -121,6 +122,19 @@ TEST(Lanes, DirectionsAreTheScalars) {
     out[0] = fresnel_reflectance(in[0], in[1]);
     out[1] = schlick_share(in[2]);
     put(mirrored(triple(in), triple(in + 3)), out + 1);
+  });
+}
+
+TEST(Lanes, FacetsAreTheScalars) {
+  compare([](auto& in, auto& out) RAYGATE_BODY {
+    using T = std::remove_cvref_t<decltype(in[0])>;
+    const Triple<T> view = normalized(triple(in)), light = normalized(triple(in + 3));
+    const T alpha = at_most(at_least(absolute(in[1]), Ggx<T>::kLeast), 1.0f);
+    const Ggx<T> ggx({T{}, T{}, spread<T>(1.0f)}, alpha);
+    const auto u = at_most(at_least(in[2], 0.0f), 1.0f);
+    put(ggx.sample(view, {u, u}), out);
+    const auto pair = ggx.pair(view, light);
+    out[3] = pair.height * ggx.visibility(view.z, light.z) + pair.half_cosine;
   });
 }
 

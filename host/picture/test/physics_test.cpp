@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/light/bsdf.h"
 #include "host/light/lights.h"
 #include "host/light/test/light_scenes.h"
 
@@ -72,6 +73,38 @@ TEST(Physics, AShadowCatcherIsSeenWhereItsShadowsAre) {
     dark += is_dark;
   }
   EXPECT_GT(dark, 10);
+}
+
+Material facets(float metallic, float roughness, float transmission) {
+  Material material = matte(glm::vec3(1.0f));
+  material.metallic_roughness = {metallic, roughness, transmission, {}, {}};
+  return material;
+}
+
+// Facets hide light from each other, which is lost; nothing is made.
+TEST(Physics, WhiteFurnaceOfFacets) {
+  struct Case {
+    float metallic, roughness, transmission, least;
+  };
+  for (const Case& c : {Case{1, 0, 0, 0.999f},
+                        {1, 0.3f, 0, 0.95f},
+                        {1, 1, 0, 0.5f},
+                        {0, 0, 0, 0.999f},
+                        {0, 0.5f, 0, 0.9f},
+                        {0.5f, 0.5f, 0, 0.8f},
+                        {0, 0.2f, 1, 0.93f},
+                        {0, 0.5f, 0.5f, 0.85f}}) {
+    Scene scene;
+    add(scene, sphere(2), facets(c.metallic, c.roughness, c.transmission));
+    scene.background = glm::vec3(1.0f);
+    const Camera camera = camera_at({0, 0, 4}, {0, 0, 0}, 30.0);
+    for (const IntegratorKind integrator : {kPath, kWhitted}) {
+      const Film film = film_of(scene, camera, light(integrator, 24, 24, 16));
+      const glm::dvec3 mean = mean_colour(film);
+      EXPECT_LE(mean.g, 1.002) << c.metallic << " " << c.roughness << " " << c.transmission;
+      EXPECT_GE(mean.g, c.least) << c.metallic << " " << c.roughness << " " << c.transmission;
+    }
+  }
 }
 
 // In a closed room whose walls all glow and reflect the share r, light adds up to 1 / (1 - r).
@@ -186,6 +219,47 @@ TEST(Physics, RectangularLampHasItsFormFactor) {
   const double form = (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
   EXPECT_NEAR(floor_radiance(scene, kWhitted, 4096), 3.0 * form, 3e-4 * form);
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 3.0 * form, 3e-3 * form);
+}
+
+// Of a rough floor under a lamp, seen at an angle: the integral over the lamp. Whether lamps are
+// asked for or met by chance, wide lobes or narrow ones.
+TEST(Physics, FacetsReflectALamp) {
+  for (const float roughness : {0.25f, 0.6f, 1.0f}) {
+    Material material = facets(0.5f, roughness, 0.0f);
+    material.diffuse = glm::vec3(0.8f);
+    Scene scene;
+    add(scene, rectangle({-1, 2, -2}, {2, 0, 0}, {0, 0, 1.5f}), lamp(glm::vec3(3.0f)));
+    add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
+    const Camera camera = camera_at({0, 1, 1.5}, {0, 0, 0}, 1e-3);
+    RenderOptions options = light(kPath, 1, 1, 4096);
+    options.max_depth = 1;
+    const Bvh bvh(scene);
+    const glm::vec3 eye(camera.eye());
+    const Ray ray = {eye, camera.direction(0.5, 0.5)};
+    const Finish finish(material);
+    const Finish* const finishes[] = {&finish};
+    std::uint32_t floor = 0;
+    while (!hits_triangle(ray, bvh.corners_of(floor))) ++floor;
+    const HitPlace places[] = {{&ray, floor, &scene.triangles[bvh.triangle_of(floor)], nullptr}};
+    const HitKind kind = finish.kind | weights_needed(places[0]);
+    const Bsdf<float> bsdf(surface_at<float>(scene, bvh, kind, places), kind, finishes);
+    double integral = 0.0;
+    constexpr int kSteps = 400;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int k = 0; k < kSteps; ++k) {
+        const glm::dvec3 at(-1 + 2 * (i + 0.5) / kSteps, 2.0, -2 + 1.5 * (k + 0.5) / kSteps);
+        const double squared = glm::dot(at, at), cosine = 2.0 / std::sqrt(squared);
+        const glm::vec3 way(glm::normalize(at));
+        integral += 3.0 * bsdf.scattered({way.x, way.y, way.z}).x * cosine * cosine / squared *
+                    (3.0 / kSteps / kSteps);
+      }
+    }
+    EXPECT_NEAR(film_of(scene, camera, options).color[0].r, integral, 0.01 * integral) << roughness;
+    options.integrator = kWhitted;
+    options.max_depth = 0;
+    options.ambient = 0.0;
+    EXPECT_NEAR(film_of(scene, camera, options).color[0].r, integral, 0.01 * integral) << roughness;
+  }
 }
 
 // A disc parallel to the floor, straight above: sin^2 of the angle under which its rim is seen.

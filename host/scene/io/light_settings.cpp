@@ -86,14 +86,32 @@ void read_areas(const JsonReader& reader, const JsonValue* array,
   }
 }
 
+EnvironmentSetting read_environment(const JsonReader& reader, const JsonValue& value,
+                                    const std::filesystem::path& folder) {
+  constexpr const char* kKeys[] = {"file", "rotation", "strength"};
+  const std::string name = "environment";
+  reader.require_object(value, name, kKeys);
+  const JsonValue& file = reader.need(value, name, "file");
+  if (file.kind() != Kind::kString || file.string().empty()) {
+    reader.fail(file, name + ".file", "the name of an EXR or HDR file");
+  }
+  return {folder / file.string(),
+          reader.number_in(value, name, "rotation", -360.0, 360.0, "degrees from -360 to 360", 0.0),
+          reader.number_in(value, name, "strength", 0.0, 1e9, "a factor from 0 to 1e9", 1.0)};
+}
+
 }  // namespace
 
-LightSettings read_lights(const JsonReader& reader, const JsonValue& scene) {
+LightSettings read_lights(const JsonReader& reader, const JsonValue& scene,
+                          const std::filesystem::path& folder) {
   LightSettings lights;
   read_points(reader, JsonReader::find(scene, "point_lights"), lights);
   read_spots(reader, JsonReader::find(scene, "spot_lights"), lights);
   read_directions(reader, JsonReader::find(scene, "directional_lights"), lights);
   read_areas(reader, JsonReader::find(scene, "area_lights"), lights.areas);
+  if (const JsonValue* const environment = JsonReader::find(scene, "environment")) {
+    lights.environment = read_environment(reader, *environment, folder);
+  }
   if (const JsonValue* const background = JsonReader::find(scene, "background")) {
     lights.background = reader.light(*background, "background");
   }

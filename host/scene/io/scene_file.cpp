@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -38,6 +40,29 @@ std::optional<double> read_fov(const JsonReader& reader, const JsonValue& camera
   return fov;
 }
 
+LensSetting read_lens(const JsonReader& reader, const JsonValue& camera, const std::string& name) {
+  LensSetting lens;
+  if (const JsonValue* const projection = JsonReader::find(camera, "projection")) {
+    const auto found =
+        projection->kind() == Kind::kString ? projection_named(projection->string()) : std::nullopt;
+    if (!found) {
+      reader.fail(*projection, name + ".projection", "perspective, orthographic or panorama");
+    }
+    lens.projection = found;
+  }
+  const auto length = [&](const char* key, double low, const char* expected) {
+    std::optional<double> found;
+    if (JsonReader::find(camera, key) != nullptr) {
+      found = reader.number_in(camera, name, key, low, std::numeric_limits<float>::max(), expected,
+                               0.0);
+    }
+    return found;
+  };
+  lens.aperture = length("aperture", 0.0, "the radius of a lens, 0 or more");
+  lens.focus = length("focus", std::numeric_limits<float>::min(), "a distance, more than 0");
+  return lens;
+}
+
 CameraSetting read_camera(const JsonReader& reader, const JsonValue& value,
                           const std::string& name) {
   CameraSetting camera;
@@ -56,11 +81,13 @@ CameraSetting read_camera(const JsonReader& reader, const JsonValue& value,
     }
   }
   camera.fov = read_fov(reader, value, name);
+  camera.lens = read_lens(reader, value, name);
   return camera;
 }
 
 void read_cameras(const JsonReader& reader, const JsonValue& value, SceneFile& scene) {
-  constexpr const char* kKeys[] = {"eye", "target", "up", "fov", "path"};
+  constexpr const char* kKeys[] = {"eye",        "target",   "up",    "fov",
+                                   "projection", "aperture", "focus", "path"};
   reader.require_object(value, "camera", kKeys);
   const JsonValue* const path = JsonReader::find(value, "path");
   if (JsonReader::find(value, "eye") != nullptr || JsonReader::find(value, "target") != nullptr) {
@@ -68,6 +95,7 @@ void read_cameras(const JsonReader& reader, const JsonValue& value, SceneFile& s
   }
   scene.up = read_up(reader, value, "camera");
   scene.fov = read_fov(reader, value, "camera");
+  scene.lens = read_lens(reader, value, "camera");
   if (path == nullptr) return;
   for (const JsonValue& place : reader.array(path, "camera.path")) {
     constexpr const char* kPlaceKeys[] = {"eye", "target", "up", "fov"};
@@ -118,7 +146,7 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   }
   if (const JsonValue* camera = JsonReader::find(root, "camera"))
     read_cameras(reader, *camera, scene);
-  scene.lights = read_lights(reader, root);
+  scene.lights = read_lights(reader, root, file.parent_path());
   if (const JsonValue* render = JsonReader::find(root, "render"))
     read_options(reader, *render, scene);
   return scene;

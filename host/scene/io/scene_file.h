@@ -28,6 +28,7 @@ struct SceneFile {
   std::optional<CameraSetting> camera;
   std::optional<glm::dvec3> up;     ///< "camera.up", also without a camera: of views
   std::optional<double> fov;        ///< the same of "camera.fov"
+  LensSetting lens;                 ///< and of what the camera looks through
   std::vector<CameraSetting> path;  ///< what the camera passes, in order; at least two, or none
   LightSettings lights;
   std::vector<OptionSetting> options;

@@ -146,5 +146,83 @@ TEST(Frame, RefusesNothingToSeeAndTooMuch) {
   EXPECT_THROW((void)Camera::frame(scene, 1), InputError);
 }
 
+/// Looks along -z from (1, 2, 3) at what is 4 away; the picture is twice as wide as high.
+Camera through(const LensSetting& lens) {
+  CameraSetting setting{{1, 2, 3}, {1, 2, -1}, std::nullopt, 90.0};
+  setting.lens = lens;
+  return Camera::look_at(setting, 2.0);
+}
+
+/// Where a ray is at this z.
+glm::dvec3 at_depth(const Ray& ray, double z) {
+  const glm::dvec3 origin(ray.origin), way(ray.direction);
+  return origin + (z - origin.z) / way.z * way;
+}
+
+TEST(Lens, WithoutOneRaysArePinholes) {
+  const Camera camera = through({});
+  EXPECT_TRUE(camera.is_pinhole());
+  const Ray ray = camera.ray(0.3, 0.1, {0.7, 0.2});
+  EXPECT_EQ(ray.origin, camera.eye());
+  EXPECT_EQ(ray.direction, camera.direction(0.3, 0.1));
+}
+
+TEST(Lens, OrthographicRaysAreAsFarApartAsAtTheTarget) {
+  const Camera pinhole = through({}), camera = through({Projection::kOrthographic, {}, {}});
+  EXPECT_FALSE(camera.has_common_origin());
+  for (const auto& [x, y] : {std::pair(0.5, 0.5), {0.0, 0.0}, {0.9, 0.3}}) {
+    const Ray ray = camera.ray(x, y, {0.0, 0.0});
+    EXPECT_EQ(ray.direction, glm::vec3(0, 0, -1));
+    EXPECT_EQ(ray.origin.z, 3.0f);
+    const glm::dvec3 seen = at_depth(pinhole.ray(x, y, {0.0, 0.0}), -1.0);
+    EXPECT_NEAR(glm::length(at_depth(ray, -1.0) - seen), 0.0, 1e-6);
+  }
+}
+
+TEST(Lens, RaysOfAPointMeetWhereItIsInFocus) {
+  for (const Projection projection : {Projection::kPerspective, Projection::kOrthographic}) {
+    const Camera camera = through({projection, 0.25, 7.0});
+    EXPECT_FALSE(camera.has_common_origin());
+    const Ray middle = camera.ray(0.8, 0.1, {0.0, 0.0});
+    double farthest = 0.0;
+    for (const glm::dvec2 lens : {glm::dvec2(1, 0), {1, 0.3}, {0.5, 0.6}, {0.2, 0.9}}) {
+      const Ray ray = camera.ray(0.8, 0.1, lens);
+      EXPECT_NEAR(glm::length(at_depth(ray, -4.0) - at_depth(middle, -4.0)), 0.0, 3e-6);
+      EXPECT_NEAR(ray.origin.z, 3.0, 1e-6);
+      farthest = std::max(farthest, double(glm::length(ray.origin - middle.origin)));
+    }
+    EXPECT_NEAR(farthest, 0.25, 1e-6);
+  }
+  EXPECT_EQ(through({{}, 0.1, {}}).focus(), 4.0) << "the target's distance";
+}
+
+TEST(Lens, APanoramaHasAllDirections) {
+  const Camera camera = through({Projection::kPanorama, {}, {}});
+  EXPECT_TRUE(camera.has_common_origin());
+  EXPECT_FALSE(camera.is_pinhole());
+  const auto way = [&](double x, double y) {
+    const Ray ray = camera.ray(x, y, {0.0, 0.0});
+    EXPECT_EQ(ray.origin, camera.eye());
+    return glm::normalize(glm::dvec3(ray.direction));
+  };
+  EXPECT_NEAR(glm::length(way(0.5, 0.5) - glm::dvec3(0, 0, -1)), 0.0, 1e-7);
+  EXPECT_NEAR(glm::length(way(0.75, 0.5) - glm::dvec3(1, 0, 0)), 0.0, 1e-7);
+  EXPECT_NEAR(glm::length(way(0.0, 0.5) - glm::dvec3(0, 0, 1)), 0.0, 1e-7);
+  EXPECT_NEAR(glm::length(way(0.3, 0.0) - glm::dvec3(0, 1, 0)), 0.0, 1e-7);
+  EXPECT_NEAR(glm::length(way(0.3, 1.0) - glm::dvec3(0, -1, 0)), 0.0, 1e-7);
+  EXPECT_EQ(camera.depth({3, 0, 4}), 5.0);
+  const Camera lens = through({Projection::kPanorama, 0.1, 2.0});
+  const Ray ray = lens.ray(0.3, 0.4, {0.9, 0.2}), middle = lens.ray(0.3, 0.4, {0.0, 0.0});
+  const glm::dvec3 sharp = glm::dvec3(middle.origin) + 2.0 * way(0.3, 0.4);
+  const glm::dvec3 towards = glm::normalize(sharp - glm::dvec3(ray.origin));
+  EXPECT_NEAR(glm::length(towards - glm::normalize(glm::dvec3(ray.direction))), 0.0, 1e-6);
+}
+
+TEST(Lens, ImpossibleOnesAreRefused) {
+  EXPECT_THROW((void)through({{}, -1.0, {}}), InputError);
+  EXPECT_THROW((void)through({{}, 1.0, 0.0}), InputError);
+  EXPECT_THROW((void)through({{}, std::numeric_limits<double>::infinity(), {}}), InputError);
+}
+
 }  // namespace
 }  // namespace raygate

@@ -121,10 +121,11 @@ TEST_F(ReadSceneFile, WhatIsNoJson) {
 TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
   EXPECT_EQ(error("[]"),
             "s.json:1: scene: an array of 0, expected an object with obj, camera, "
-            "point_lights, spot_lights, directional_lights, area_lights, background, render");
+            "point_lights, spot_lights, directional_lights, area_lights, environment, background, "
+            "render");
   EXPECT_EQ(error("{\n  \"colour\": 1\n}"),
             "s.json:2: scene: unknown key 'colour', expected some of obj, camera, point_lights, "
-            "spot_lights, directional_lights, area_lights, background, render");
+            "spot_lights, directional_lights, area_lights, environment, background, render");
   EXPECT_EQ(error(R"({"obj": 5})"), "s.json:1: obj: 5, expected the name of a scene");
   EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1]}})"), "s.json:1: camera: 'target' is missing");
   EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0, 0],\n\"target\": [0, 0, 0]}}"),
@@ -170,6 +171,31 @@ TEST_F(ReadSceneFile, ValuesOutOfRange) {
   EXPECT_EQ(error(R"({"area_lights": [{"corner": [0, 0, 0], "edges": [[1, 0, 0], [2, 0, 0]],
                       "radiance": 1}]})"),
             "s.json:1: area_lights[0].edges: an array of 2, expected two that are not parallel");
+}
+
+TEST_F(ReadSceneFile, LensesAndEnvironments) {
+  const SceneFile file = read(R"({
+      "camera": {"eye": [0, 0, 1], "target": [0, 0, 0], "projection": "panorama", "aperture": 0.5,
+                 "focus": 3},
+      "environment": {"file": "sky.exr", "rotation": 90, "strength": 2}})");
+  ASSERT_TRUE(file.camera);
+  EXPECT_EQ(file.camera->lens.projection, Projection::kPanorama);
+  EXPECT_EQ(file.camera->lens.aperture, 0.5);
+  EXPECT_EQ(file.lens.focus, 3.0) << "also of views";
+  ASSERT_TRUE(file.lights.environment);
+  EXPECT_EQ(file.lights.environment->file, folder_.path() / "sky.exr");
+  EXPECT_EQ(file.lights.environment->rotation, 90.0);
+  EXPECT_EQ(file.lights.environment->strength, 2.0);
+  EXPECT_EQ(error(R"({"camera": {"projection": "fisheye"}})"),
+            "s.json:1: camera.projection: 'fisheye', expected perspective, orthographic or "
+            "panorama");
+  EXPECT_EQ(error(R"({"camera": {"aperture": -1}})"),
+            "s.json:1: camera.aperture: -1, expected the radius of a lens, 0 or more");
+  EXPECT_EQ(error(R"({"camera": {"focus": 0}})"),
+            "s.json:1: camera.focus: 0, expected a distance, more than 0");
+  EXPECT_EQ(error(R"({"environment": {}})"), "s.json:1: environment: 'file' is missing");
+  EXPECT_EQ(error(R"({"environment": {"file": "a", "strength": -1}})"),
+            "s.json:1: environment.strength: -1, expected a factor from 0 to 1e9");
 }
 
 TEST_F(ReadSceneFile, SpotAndDirectionalLights) {

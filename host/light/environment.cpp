@@ -1,0 +1,70 @@
+#include "host/light/environment.h"
+
+#include <cassert>
+#include <cstddef>
+#include <numbers>
+
+namespace raygate {
+namespace {
+
+double brightness(const glm::vec3& radiance) {
+  return (double{radiance.x} + radiance.y + radiance.z) / 3.0;
+}
+
+/// Chances in the same proportions as `weights`, each with those before it; even ones where all are
+/// 0.
+void put_ends(const std::vector<double>& weights, float* ends) {
+  double sum = 0.0;
+  for (const double weight : weights) sum += weight;
+  double so_far = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    so_far += sum > 0.0 ? weights[i] / sum : 1.0 / static_cast<double>(weights.size());
+    ends[i] = static_cast<float>(std::min(so_far, 1.0));
+  }
+  ends[weights.size() - 1] = 1.0f;
+}
+
+}  // namespace
+
+Environment::Environment(const EnvironmentMap& map)
+    : map_(map),
+      width_(static_cast<std::uint32_t>(map.width)),
+      height_(static_cast<std::uint32_t>(map.height)),
+      up_(map.up),
+      ahead_(map.ahead),
+      right_(glm::cross(map.ahead, map.up)) {
+  assert(map.width > 0 && map.height > 0);
+  const std::uint32_t rows = height_ + 1;
+  cosines_.push_back(1.0f);
+  for (std::uint32_t row = 0; row < height_; ++row) {
+    cosines_.push_back(static_cast<float>(sine_cosine((row + 0.5) / (2.0 * height_)).cosine));
+  }
+  cosines_.push_back(-1.0f);
+  row_ends_.resize(rows);
+  column_ends_.resize(std::size_t{rows} * width_);
+  std::vector<double> of_rows(rows), of_cells(width_);
+  glm::dvec3 sum(0.0);
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    const double solid_angle =
+        2.0 * std::numbers::pi / width_ * (double{cosines_[row]} - double{cosines_[row + 1]});
+    density_of_chance_.push_back(static_cast<float>(1.0 / solid_angle));
+    for (std::uint32_t column = 0; column < width_; ++column) {
+      glm::dvec3 corners(0.0);
+      double bright = 0.0;
+      for (const std::uint32_t x : {left_of(column), column}) {
+        for (const std::uint32_t y : {above(row), below(row)}) {
+          corners += glm::dvec3(texel(x, y));
+          bright += brightness(texel(x, y));
+        }
+      }
+      sum += 0.25 * solid_angle * corners;
+      of_cells[column] = bright;
+      of_rows[row] += bright * solid_angle;
+    }
+    put_ends(of_cells, &column_ends_[std::size_t{row} * width_]);
+  }
+  put_ends(of_rows, row_ends_.data());
+  mean_ = sum * (double{map.strength} / (4.0 * std::numbers::pi));
+}
+
+}  // namespace raygate

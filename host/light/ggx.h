@@ -1,0 +1,88 @@
+// Rough borders as many small smooth ones: the GGX distribution of their normals. T is float or
+// FloatLanes.
+//
+// Walter, Marschner, Li and Torrance, "Microfacet models for refraction through rough surfaces",
+// 2007; masking of both directions by height (Heitz, "Understanding the masking-shadowing
+// function", 2014). Light that meets a second facet is lost: single scattering.
+#pragma once
+
+#include "host/elementary.h"
+#include "host/lane_math.h"
+#include "host/light/around.h"
+#include "host/light/sampler.h"
+
+namespace raygate {
+
+/// Facets on a surface with a unit normal. alpha is the roughness, in [kLeast, 1]; directions are
+/// unit vectors away from the surface, cosines those with the surface's normal.
+template <class T>
+struct Ggx {
+  static constexpr float kLeast = 0x1p-10f;  // float cosines have room for the lobe
+
+  Triple<T> normal;
+  T squared;  ///< alpha^2
+
+  Ggx() = default;
+  RAYGATE_INLINE Ggx(const Triple<T>& surface_normal, const T& alpha)
+      : normal(surface_normal), squared(alpha * alpha) {}
+
+  /// Two directions and the facets that mirror one into the other.
+  struct Pair {
+    T height;       ///< D: facets of that normal, per steradian and per area of the surface
+    T half_cosine;  ///< between either direction and that normal
+  };
+  [[nodiscard]] RAYGATE_INLINE Pair pair(const Triple<T>& a, const Triple<T>& b) const {
+    constexpr float kPerPi = 0.318309886183790671537767526745f;
+    const Triple<T> sum = a + b;
+    const T size = dot(sum, sum), along = dot(normal, sum);
+    // The part across the normal, by itself: cosines next to 1 are too coarse for narrow lobes.
+    const Triple<T> across = sum - normal * along;
+    const T ratio = size / (dot(across, across) + squared * along * along);
+    return {kPerPi * squared * ratio * ratio, 0.5f * root(size)};
+  }
+
+  /// sqrt(1 + alpha^2 tan^2) times the cosine: Lambda is half of this over the cosine, less 1.
+  [[nodiscard]] RAYGATE_INLINE T stretched(const T& cosine) const {
+    return root(squared + (1.0f - squared) * cosine * cosine);
+  }
+
+  /// G2 / (4 cos cos): with D and Fresnel's share it is the reflection per steradian.
+  [[nodiscard]] RAYGATE_INLINE T visibility(const T& a, const T& b) const {
+    return 0.5f / (a * stretched(b) + b * stretched(a));
+  }
+
+  /// How likely sample() and a mirror at its facet give the other direction of a pair, per
+  /// steradian.
+  [[nodiscard]] RAYGATE_INLINE T mirror_density(const T& view, const T& height) const {
+    return height * 0.5f / (view + stretched(view));
+  }
+
+  /// The share of what a facet that was sampled for `view` mirrors that gets away: G2 / G1.
+  [[nodiscard]] RAYGATE_INLINE T mirrored_share(const T& view, const T& light) const {
+    return light * (view + stretched(view)) / (light * stretched(view) + view * stretched(light));
+  }
+  /// The same of what it lets through, whose masking is independent of the view's: G1.
+  [[nodiscard]] RAYGATE_INLINE T through_share(const T& light) const {
+    return 2.0f * light / (light + stretched(light));
+  }
+
+  /// The normal of a facet, chosen among those that `view` sees by the areas that it sees of them
+  /// ("Sampling visible GGX normals with spherical caps", Dupuy and Benyoub 2023).
+  [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const Triple<T>& view,
+                                                const SquarePoint<T>& u) const {
+    const Frame<T> frame(normal);
+    const T alpha = root(squared);
+    // Squeezed by alpha along the normal, the facets are a half of a sphere.
+    const Triple<T> squeezed = normalized(Triple<T>{
+        alpha * dot(frame.u, view), alpha * dot(frame.v, view), at_least(dot(normal, view), 0.0f)});
+    const T z = (1.0f - u.x) * (1.0f + squeezed.z) - squeezed.z;
+    const T across = root(at_least(1.0f - z * z, 0.0f));
+    const auto turn = sine_cosine(wide(u.y));
+    const Triple<T> cap =
+        Triple<T>{across * narrow(turn.cosine), across * narrow(turn.sine), z} + squeezed;
+    return normalized(frame.u * (alpha * cap.x) + frame.v * (alpha * cap.y) +
+                      normal * at_least(cap.z, 0.0f));
+  }
+};
+
+}  // namespace raygate

@@ -1,0 +1,25 @@
+// One surface and its BSDF.
+#pragma once
+
+#include <cmath>
+
+#include "host/exact/test/meshes.h"
+#include "host/light/bsdf.h"
+
+namespace raygate::test {
+
+/// A triangle of this material seen at an angle to its normal, +z.
+inline Bsdf<float> seen(const Material& material, double angle) {
+  Scene scene = scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}});
+  scene.materials[0] = material;
+  const Bvh bvh(scene);
+  const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
+  const Ray ray = {eye, scaled_direction(glm::dvec3(-eye))};
+  const HitPlace places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
+  const Finish finish(material);
+  const Finish* const finishes[] = {&finish};
+  const HitKind kind = finish.kind | weights_needed(places[0]);
+  return {surface_at<float>(scene, bvh, kind, places), kind, finishes};
+}
+
+}  // namespace raygate::test
