@@ -36,6 +36,13 @@ int parse_lanes(const std::string& text) {
   return *lanes;
 }
 
+InstanceUse parse_instances(const std::string& text) {
+  return choose<InstanceUse>("--instances", text,
+                             {{"auto", InstanceUse::kAutomatic},
+                              {"keep", InstanceUse::kKept},
+                              {"write", InstanceUse::kWritten}});
+}
+
 unsigned parse_threads(const std::string& text) {
   const auto threads = parse_number<unsigned>(text);
   if (!threads || *threads < 1 || *threads > 1024) {
@@ -52,6 +59,7 @@ void declare_engine_options(CLI::App& app, RawEngineOptions& raw) {
   app.add_option("--arith", raw.arith)->take_last();
   app.add_option("--lanes", raw.lanes)->take_last();
   app.add_option("--threads", raw.threads)->take_last();
+  app.add_option("--instances", raw.instances)->take_last();
 }
 
 EngineOptions parse_engine_options(const RawEngineOptions& raw, EngineOptions defaults) {
@@ -65,6 +73,13 @@ EngineOptions parse_engine_options(const RawEngineOptions& raw, EngineOptions de
   }
   options.threads = raw.threads.empty() ? std::max(1u, std::thread::hardware_concurrency())
                                         : parse_threads(raw.threads);
+  if (!raw.instances.empty()) options.instances = parse_instances(raw.instances);
+  if (options.unit == "core" && options.engine != Engine::kCpu) {
+    if (options.instances == InstanceUse::kKept) {
+      throw InputError("--instances: expected auto or write with --unit core, got keep");
+    }
+    options.instances = InstanceUse::kWritten;  // its memory holds one tree
+  }
   return options;
 }
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "host/scene/instances.h"
 #include "sim/arith.h"
 
 namespace CLI {
@@ -26,11 +27,12 @@ struct EngineOptions {
   Arith arith = Arith::kStructural;
   int lanes = 1;  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
   unsigned threads = 1;
+  InstanceUse instances = InstanceUse::kAutomatic;  ///< what is in the tree
 };
 
 /// As they were typed; empty where they were not given.
 struct RawEngineOptions {
-  std::string engine, unit, arith, lanes, threads;
+  std::string engine, unit, arith, lanes, threads, instances;
 };
 
 void declare_engine_options(CLI::App& app, RawEngineOptions& raw);

@@ -23,6 +23,7 @@
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/ground.h"
+#include "host/scene/instances.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
@@ -260,15 +261,18 @@ void run(const Options& options) {
   report.options = options;
 
   require_scene(options);
-  Scene scene = load_scene(options.obj(), {.strict = options.strict,
-                                           .smooth = options.smooth,
-                                           .threads = static_cast<int>(options.threads)});
+  const LoadOptions load_options{.strict = options.strict,
+                                 .keep_instances = true,
+                                 .smooth = options.smooth,
+                                 .threads = static_cast<int>(options.threads)};
+  Scene scene = options.scene_file ? load_scene(*options.scene_file, load_options)
+                                   : load_scene(options.scene, load_options);
   if (options.scene_file) add_lights(*options.scene_file, scene);
   if (options.environment) {
     load_environment(*options.environment, environment_up(options, scene), scene);
   }
   report.load_seconds = seconds_since(start);
-  report.triangles = scene.triangles.size();
+  report.triangles = triangle_count(scene);
   print_warnings(scene);
   require_inputs_kept(options, scene);
 
@@ -276,6 +280,7 @@ void run(const Options& options) {
   const Shots shots(options, scene);
   if (shots.has_ground()) add_ground(scene, shots.up());
   report.view = shots.text();
+  settle_instances(scene, options.instances, options.scene);
 
   const Clock::time_point tree_start = Clock::now();
   const Bvh bvh(scene, static_cast<int>(options.threads));

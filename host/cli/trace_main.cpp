@@ -48,7 +48,7 @@ are the origin, the direction and, where wanted, a limit:
                              doubts,unit-point,unit-error (all but material and
                              the last two; of any: ray,hit)
   --engine NAME              cpu (default), rtl, model or check: as in ./render
-  --unit, --arith, --lanes, --threads     as in ./render
+  --unit, --arith, --lanes, --threads, --instances     as in ./render
   --strict                   refuse faces without area (they are left out)
   -q, --quiet                print no summary (on standard error)
   -h, --help; --version
@@ -158,8 +158,10 @@ int run(const TraceOptions& options) {
   if (!options.is_to_standard_output()) require_writable(options.output);
   std::optional<SceneFile> scene_file;
   if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
-  const Scene scene =
-      load_scene(scene_file ? scene_file->obj : options.scene, {.strict = options.strict});
+  const LoadOptions load_options{.strict = options.strict, .keep_instances = true};
+  Scene scene =
+      scene_file ? load_scene(*scene_file, load_options) : load_scene(options.scene, load_options);
+  settle_instances(scene, options.engine.instances, options.scene);
   for (const std::string& warning : scene.warnings) print_warning(warning);
   const auto threads = static_cast<int>(options.engine.threads);
   const Bvh bvh(scene, threads);

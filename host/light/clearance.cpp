@@ -33,12 +33,12 @@ struct LeafCorners {
   FloatQuad low[3], high[3];  // of the triangles' boxes
 
   template <Vectors kCode>
-  RAYGATE_INLINE LeafCorners(VectorCode<kCode>, const Bvh& bvh, const Bvh::Child& leaf,
+  RAYGATE_INLINE LeafCorners(VectorCode<kCode>, const float* leaf_corners, std::uint32_t count,
                              const glm::dvec3& from) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       FloatQuad corner[3];
       for (std::uint32_t v = 0; v < 3; ++v) {
-        load_quad(bvh.corners_of(leaf) + std::size_t{3 * v + k} * leaf.count, corner[v]);
+        load_quad(leaf_corners + std::size_t{3 * v + k} * count, corner[v]);
         widen<kCode>(corner[v], y[v][k]);
         y[v][k] -= from[static_cast<int>(k)];
       }
@@ -280,10 +280,12 @@ template <Vectors kCode>
 RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t slot,
                             Subject& subject) {
   LaneMask rest = (LaneMask{1} << leaf.count) - 1;
-  rest &= ~subject.behind_an_edge<kCode>(bvh.corners_of(leaf), leaf.count);
+  Bvh::LeafRoom room;
+  const float* const corners = bvh.corners_of(leaf, room);
+  rest &= ~subject.behind_an_edge<kCode>(corners, leaf.count);
   if (slot - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (slot - leaf.first));
   if (rest == 0) return;
-  const LeafCorners others(VectorCode<kCode>{}, bvh, leaf, subject.from());
+  const LeafCorners others(VectorCode<kCode>{}, corners, leaf.count, subject.from());
   rest &= subject.near(others);
   if (rest != 0) rest &= ~subject.beyond_their_edge(others);
   for (; rest != 0; rest &= rest - 1) {
@@ -339,7 +341,7 @@ Clearances::Clearances(const Bvh& bvh)
       slack_(0x1p-47 * largest_coordinate(bvh)),
       known_(std::make_unique<Known[]>(bvh.slot_count())) {}
 
-const Clearance& Clearances::find(std::uint32_t slot) const {
+Clearances::Found Clearances::look(std::uint32_t slot) const {
   const Corners corners = bvh_.corners_of(slot);
   Subject subject(corners, slack_);
   if (subject.has_hope()) {
@@ -355,16 +357,22 @@ const Clearance& Clearances::find(std::uint32_t slot) const {
       const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {
         if (count == kMostWaiting) look();
         waiting[count++] = leaf;
+        return false;
       };
-      for_leaves_near<code()>(bvh_, subject.low(), subject.high(), found);
+      (void)any_leaf_near<code()>(bvh_, subject.low(), subject.high(), found);
       look();
     });
   }
+  return {subject.found(), std::move(subject.crowd())};
+}
+
+const Clearance& Clearances::find(std::uint32_t slot) const {
+  Found looked = look(slot);
   Known& known = known_[slot];
   const std::lock_guard lock(mutex_);
-  const Clearance& found = clearances_.emplace_back(subject.found());
+  const Clearance& found = clearances_.emplace_back(looked.clearance);
   if (found.length < 0.0f) {
-    known.crowd.store(&crowds_.emplace_back(std::move(subject.crowd())), std::memory_order_relaxed);
+    known.crowd.store(&crowds_.emplace_back(std::move(looked.crowd)), std::memory_order_relaxed);
   }
   known.clearance.store(&found, std::memory_order_release);
   return found;

@@ -80,7 +80,7 @@ struct alignas(64) Clearance {
 /// float steps of its largest coordinate, or more.
 [[nodiscard]] double departure_reach(const Corners& corners);
 
-/// The clearances and the crowds of all triangles of a tree.
+/// The clearances and the crowds of all triangles of a tree. Those of instances are not kept.
 ///
 /// Threads may ask at the same time: whoever asks first finds out, and all find the same.
 class Clearances {
@@ -91,13 +91,25 @@ class Clearances {
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
   [[nodiscard]] float margin() const { return margin_; }
 
+  /// A clearance that is not kept.
+  struct Found {
+    Clearance clearance;
+    Crowd crowd;
+  };
+  /// Finds it out: of any triangle, an instance's too, of which there may be too many to keep.
+  [[nodiscard]] Found look(std::uint32_t slot) const;
+
+  /// Of a slot that is no instance's.
   [[nodiscard]] RAYGATE_INLINE const Clearance& of(std::uint32_t slot) const {
     const Clearance* const clearance = known_[slot].clearance.load(std::memory_order_acquire);
     return clearance != nullptr ? *clearance : find(slot);
   }
   /// Says that a triangle's will soon be asked for; later, once more.
-  RAYGATE_INLINE void prefetch(std::uint32_t slot) const { __builtin_prefetch(&known_[slot]); }
+  RAYGATE_INLINE void prefetch(std::uint32_t slot) const {
+    if (!bvh_.is_placed(slot)) __builtin_prefetch(&known_[slot]);
+  }
   RAYGATE_INLINE void prefetch_again(std::uint32_t slot) const {
+    if (bvh_.is_placed(slot)) return;
     __builtin_prefetch(known_[slot].clearance.load(std::memory_order_relaxed));
   }
   /// Of a triangle whose clearance has been asked for, and says that there is one.

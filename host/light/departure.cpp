@@ -96,7 +96,7 @@ RAYGATE_INLINE void DeparturePoint::find_some(const DepartureQuestion* questions
   typename PlainNumbers<kWidth>::SingleMask ways;
 #pragma GCC unroll 8
   for (int i = 0; i < kWidth; ++i) {
-    triangles[i] = &clearances_.of(questions[i].slot);
+    triangles[i] = &clearance_of(questions[i].slot, i);
     rays[i] = questions[i].ray;
     ways[i] = questions[i].way == Departure::kBefore ? -1 : 1;
   }
@@ -126,7 +126,8 @@ RAYGATE_INLINE void DeparturePoint::find_some(const DepartureQuestion* questions
       const auto is_there = [&](std::uint32_t slot) {
         return !surely_apart(plain - reaches[i], plain + reaches[i], bvh_.corners_of(slot));
       };
-      const Crowd& crowd = clearances_.crowd_of(question.slot);
+      const Crowd& crowd = bvh_.is_placed(question.slot) ? found_[static_cast<std::size_t>(i)].crowd
+                                                         : clearances_.crowd_of(question.slot);
       if (!crowd.any_near<kCode>(plain, reaches[i], is_there)) continue;
     }
     const auto origin = search(*question.ray, question.slot, question.way);
@@ -159,6 +160,11 @@ void DeparturePoint::find(std::span<const DepartureQuestion> questions,
   });
 }
 
+const Clearance& DeparturePoint::find_clearance(std::uint32_t slot, std::size_t lane) {
+  if (found_.size() <= lane) found_.resize(kLanes);
+  return (found_[lane] = clearances_.look(slot)).clearance;
+}
+
 std::optional<glm::vec3> DeparturePoint::search(const Ray& ray, std::uint32_t slot, Departure way) {
   const Corners& hit = bvh_.corners_of(slot);
   const Interval t = hit_distance(ray, hit);
@@ -176,13 +182,11 @@ std::optional<glm::vec3> DeparturePoint::search(const Ray& ray, std::uint32_t sl
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
-    slots_near(bvh_, low, high, near_);
-    return std::ranges::all_of(near_, [&](std::uint32_t other_slot) {
-      const Corners& other = bvh_.corners_of(other_slot);
-      if (other_slot == slot || surely_apart(low, high, other)) return true;
-      if (lies_beyond(other, hit, side)) return true;
+    return !any_slot_near(bvh_, low, high, [&](std::uint32_t other_slot, const Corners& other) {
+      if (other_slot == slot || surely_apart(low, high, other)) return false;
+      if (lies_beyond(other, hit, side)) return false;
       const int wanted = wanted_side(ray, hit, other, way);
-      return wanted == 0 || plane_side(candidate, other) == wanted;
+      return wanted != 0 && plane_side(candidate, other) != wanted;
     });
   };
   for (int k = 0; k <= kLastStep; ++k) {

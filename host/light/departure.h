@@ -82,12 +82,20 @@ class DeparturePoint {
   template <Vectors kCode, int kWidth>
   RAYGATE_INLINE void find_some(const DepartureQuestion* questions, DepartureOrigin* origins);
 
+  /// Of a question in this lane.
+  [[nodiscard]] RAYGATE_INLINE const Clearance& clearance_of(std::uint32_t slot, int lane) {
+    if (bvh_.is_placed(slot)) [[unlikely]]
+      return find_clearance(slot, static_cast<std::size_t>(lane));
+    return clearances_.of(slot);
+  }
+  [[nodiscard]] const Clearance& find_clearance(std::uint32_t slot, std::size_t lane);
+
   /// As find(), looking at what is near.
   [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, Departure way);
 
   const Clearances& clearances_;
   const Bvh& bvh_;
-  std::vector<std::uint32_t> near_;  // kept from call to call
+  std::vector<Clearances::Found> found_;  // of instances' triangles, by lane
 };
 
 }  // namespace raygate

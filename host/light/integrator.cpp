@@ -6,6 +6,7 @@
 #include "host/light/path.h"
 #include "host/light/primary.h"
 #include "host/light/whitted.h"
+#include "host/scene/placed.h"
 
 namespace raygate {
 namespace {
@@ -82,7 +83,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
     const NearestHit& hit = hits[block_.begin + i];
     const std::uint32_t soon = hits[block_.begin + std::min(i + kFacesAhead, count - 1)].slot;
     if (soon != NearestHit::kNone) {
-      __builtin_prefetch(&scene.triangles[shading_.bvh.triangle_of(soon)].material);
+      __builtin_prefetch(&face_at(scene, shading_.bvh.face_of(soon)).material);
     }
     kinds_[i] = kHitKinds;
     if (hit.slot == NearestHit::kNone && sees_environment) {
@@ -97,9 +98,10 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
     }
     const bool is_doubtful = is_point_doubt(hit, point_error_);
     point_doubts_ += is_doubtful ? 1 : 0;
-    const Triangle& face = scene.triangles[shading_.bvh.triangle_of(hit.slot)];
+    const StoredFace stored = shading_.bvh.face_of(hit.slot);
+    const Triangle& face = face_at(scene, stored);
     block_.places[i] = {&block_.wave->rays[block_.begin + i], hit.slot, &face,
-                        is_doubtful ? nullptr : &hit.point};
+                        is_doubtful ? nullptr : &hit.point, instance_at(scene, stored)};
     block_.finishes[i] = &finishes_[face.material];
     kinds_[i] = finishes_[face.material].kind | weights_needed(block_.places[i]);
     ++first_[kinds_[i] + 1];

@@ -10,6 +10,7 @@
 
 #include "host/exact/exact.h"
 #include "host/scene/camera.h"
+#include "host/scene/instances.h"
 
 namespace raygate {
 namespace {
@@ -64,14 +65,11 @@ glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lam
   double area = 0.0;
   for (const AreaLight& lamp : lamps) flux += std::numbers::pi * lamp.area() * lamp.radiance;
   if (flux == glm::dvec3(0.0)) return flux;
-  for (const Triangle& face : scene.triangles) {
-    const auto& [a, b, c] = face.vertices;
-    const double own =
-        0.5 *
-        glm::length(triangle_normal({scene.positions[a], scene.positions[b], scene.positions[c]}));
+  for_each_face(scene, [&](const Corners& corners, const Triangle& face) {
+    const double own = 0.5 * glm::length(triangle_normal(corners));
     area += own;
     reflecting += own * glm::dvec3(scene.materials[face.material].diffuse);
-  }
+  });
   const glm::dvec3 mean = glm::clamp(reflecting / area, glm::dvec3(0.0), glm::dvec3(0.9));
   return flux * mean / (1.0 - mean) / (std::numbers::pi * area);
 }
@@ -85,7 +83,10 @@ glm::vec3 bounded(const glm::dvec3& x) { return {bounded(x.x), bounded(x.y), bou
 /// A power of two about as long as the scene, its lights included.
 double unit_of(const Scene& scene) {
   float size = 0.0f;
-  for (const glm::vec3& position : scene.positions) size = std::max(size, largest(position));
+  if (!is_empty(scene)) {
+    const PositionBox box = position_box(scene);
+    size = static_cast<float>(std::max(largest(box.low), largest(box.high)));
+  }
   for (const PointLight& light : scene.lights) size = std::max(size, largest(light.position));
   constexpr int kMostExponent = 126;  // the inverse is a float, too
   return size > 0.0f ? std::ldexp(1.0, std::clamp(std::ilogb(size), -kMostExponent, kMostExponent))
@@ -94,12 +95,8 @@ double unit_of(const Scene& scene) {
 
 /// Of the ball around the scene's box: what falls on it comes into the scene.
 double cross_section_of(const Scene& scene) {
-  if (scene.positions.empty()) return 0.0;
-  glm::dvec3 low(scene.positions[0]), high = low;
-  for (const glm::vec3& position : scene.positions) {
-    low = glm::min(low, glm::dvec3(position));
-    high = glm::max(high, glm::dvec3(position));
-  }
+  if (is_empty(scene)) return 0.0;
+  const auto [low, high] = position_box(scene);
   const double radius = 0.5 * glm::length(high - low);
   return std::numbers::pi * radius * radius;
 }
@@ -139,11 +136,7 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
 class Studio {
  public:
   Studio(const Scene& scene, const Camera& camera) : camera_(camera) {
-    glm::dvec3 low(scene.positions[0]), high = low;
-    for (const glm::vec3& position : scene.positions) {
-      low = glm::min(low, glm::dvec3(position));
-      high = glm::max(high, glm::dvec3(position));
-    }
+    const auto [low, high] = position_box(scene);
     const glm::dvec3 eye(camera.eye());
     middle_ = 0.5 * (low + high);
     size_ = glm::length(high - low);
@@ -208,13 +201,13 @@ constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 }  // namespace
 
 void light_if_dark(Scene& scene, const Camera& camera) {
-  if (scene.positions.empty() || scene.background != glm::vec3(0.0f) || !has_no_lamp(scene)) return;
+  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || !has_no_lamp(scene)) return;
   scene.lights.push_back(Studio(scene, camera).key());
   scene.background = kDimSky;
 }
 
 bool light_first_look(Scene& scene, const Camera& camera) {
-  if (scene.positions.empty() || !scene.lights.empty() || !scene.directional_lights.empty() ||
+  if (is_empty(scene) || !scene.lights.empty() || !scene.directional_lights.empty() ||
       scene.environment) {
     return false;
   }

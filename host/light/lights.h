@@ -114,7 +114,7 @@ class Lights {
 
   /// Which light a slot belongs to, as in count(); kNoIndex for none.
   [[nodiscard]] std::uint32_t lamp_of(std::uint32_t slot) const {
-    return lamp_of_slot_.empty() ? kNoIndex : lamp_of_slot_[slot];
+    return slot < lamp_of_slot_.size() ? lamp_of_slot_[slot] : kNoIndex;
   }
 
   /// Whether there is a light, and not all are dark.
@@ -144,7 +144,7 @@ class Lights {
   std::vector<Lamp> lamps_;
   std::vector<Patch> patches_;
   std::vector<float> patch_ends_;            // of the patches, for searching
-  std::vector<std::uint32_t> lamp_of_slot_;  // or kNoIndex; empty: none at all
+  std::vector<std::uint32_t> lamp_of_slot_;  // or kNoIndex; empty: none at all. No instance emits
   std::vector<float> chance_up_to_;          // each light included
   bool any_power_ = false;
   float per_unit_ = 1.0f;

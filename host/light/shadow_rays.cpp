@@ -176,11 +176,13 @@ void ShadowRays::trace(bool from_light, float enough) {
 
 glm::vec3 ShadowRays::transmittance(std::size_t number) const {
   const std::uint32_t slot = hits_[number].slot;
-  const Triangle& face = scene_.triangles[bvh_.triangle_of(slot)];
+  const StoredFace stored = bvh_.face_of(slot);
+  const Triangle& face = face_at(scene_, stored);
   const Finish& finish = finishes_[face.material];
   if ((finish.kind & kLetsThrough) == 0) return glm::vec3(0.0f);
-  return shadow_transmittance(scene_, bvh_, {&wave_[number], slot, &face, nullptr}, finish,
-                              through_refraction_);
+  return shadow_transmittance(scene_, bvh_,
+                              {&wave_[number], slot, &face, nullptr, instance_at(scene_, stored)},
+                              finish, through_refraction_);
 }
 
 }  // namespace raygate

@@ -7,6 +7,7 @@
 #include "host/exact/exact.h"
 #include "host/lane_math.h"
 #include "host/light/finish.h"
+#include "host/scene/placed.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -19,6 +20,13 @@ struct HitPlace {
   const Triangle* face = nullptr;    ///< of the slot
   const glm::vec3* point = nullptr;  ///< P as the hit-test unit has it, seen from the ray's origin;
                                      ///< none: it is for the host to find
+  const Instance* instance = nullptr;  ///< whose triangle it is; none: it is the scene's own
+
+  /// A normal that the face names.
+  [[nodiscard]] glm::vec3 normal(const Scene& scene, std::uint32_t index) const {
+    const glm::vec3& own = scene.normals[index];
+    return instance == nullptr ? own : placed_normal(*instance, own);
+  }
 };
 
 /// Whether the weights of the vertices at the hit matter.
@@ -184,7 +192,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
         const std::uint32_t index = face.normals[c];
         if (index == kNoIndex) more.values[kHasNormals][k] = 0.0f;
         more.put(kNormals + 3 * static_cast<int>(c), k,
-                 index == kNoIndex ? glm::vec3(0.0f) : scene.normals[index]);
+                 index == kNoIndex ? glm::vec3(0.0f) : places[k].normal(scene, index));
       }
       more.values[kHasPoint][k] = places[k].point != nullptr ? 1.0f : 0.0f;
       more.put(

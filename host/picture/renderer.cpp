@@ -252,7 +252,7 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
     stats.skipped.records = bvh.slot_count() * origins - stats.find.common_records;
   }
-  const std::uint64_t every_test = stats.rays * bvh.slot_count();
+  const std::uint64_t every_test = stats.rays * bvh.triangle_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);
   stats.wall_seconds = wall.lap();
   stats.processor_seconds = processor_seconds() - busy;

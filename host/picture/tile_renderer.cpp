@@ -294,7 +294,8 @@ void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
   if (!film_.position.empty()) {
     film_.position[pixel] = glm::vec3(job_.scene.origin + origin + point);
   }
-  if (!film_.object.empty()) film_.object[pixel] = job_.scene.triangles[triangle].object;
+  if (!film_.object.empty())
+    film_.object[pixel] = object_at(job_.scene, job_.bvh.face_of(seen.slot));
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

@@ -114,13 +114,15 @@ class PythonScene {
     const std::filesystem::path path = file;
     if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
-    scene_ = load_scene(file_ ? file_->obj : path, {.strict = strict, .smooth = smooth});
+    const LoadOptions options{.strict = strict, .keep_instances = true, .smooth = smooth};
+    scene_ = file_ ? load_scene(*file_, options) : load_scene(path, options);
     if (file_) {
       add_lights(*file_, scene_);
       const auto& environment = file_->lights.environment;
       if (environment)
         load_environment(*environment, file_->up.value_or(guessed_up(scene_)), scene_);
     }
+    settle_instances(scene_, InstanceUse::kWritten, path);
     build(threads);
   }
 

@@ -2,21 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "host/scene/instances.h"
 
 namespace raygate {
 
 void add_ground(Scene& scene, const glm::dvec3& up) {
-  if (scene.positions.empty()) return;
+  if (is_empty(scene)) return;
   const glm::dvec3 upright =
       glm::normalize(up / std::max({std::abs(up.x), std::abs(up.y), std::abs(up.z)}));
-  glm::dvec3 low(scene.positions[0]), high = low;
-  double lowest = glm::dot(low, upright);
-  for (const glm::vec3& position : scene.positions) {
-    const glm::dvec3 at(position);
-    low = glm::min(low, at);
-    high = glm::max(high, at);
-    lowest = std::min(lowest, glm::dot(at, upright));
-  }
+  const auto [low, high] = position_box(scene);
+  double lowest = std::numeric_limits<double>::infinity();
+  for_each_position(scene, [&](const glm::vec3& position) {
+    lowest = std::min(lowest, glm::dot(glm::dvec3(position), upright));
+  });
   // A floor of the scene's own is seen, not this one.
   constexpr double kBelow = 0x1p-11, kHalfSide = 16.0;
   const double size = glm::length(high - low);

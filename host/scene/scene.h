@@ -76,6 +76,22 @@ struct Triangle {
   std::uint32_t object = 0;    ///< always valid: index into Scene::objects
 };
 
+/// Triangles that stand in several places: written once, in coordinates of their own. None of their
+/// materials emits.
+struct Mesh {
+  std::vector<glm::vec3> positions;  ///< each of some triangle
+  std::vector<Triangle> triangles;  ///< `vertices` are of these positions, all else is as elsewhere
+};
+
+/// A mesh in one of its places. instances.h has what it stands for.
+struct Instance {
+  /// From the mesh's positions to the scene's: three rows of a 3 x 4 matrix. Finite, of a
+  /// determinant that is not negative: a mirrored mesh is a mesh of its own.
+  double rows[3][4] = {{1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 0.0, 1.0, 0.0}};
+  std::uint32_t mesh = 0;    ///< index into Scene::meshes
+  std::uint32_t object = 0;  ///< added to the objects of the mesh's triangles
+};
+
 /// Where a spot light shines: within `inner` of its axis fully, beyond `outer` not at all, and
 /// between them as KHR_lights_punctual of glTF says. Angles from the axis, in degrees, 0 <= inner <
 /// outer <= 90.
@@ -102,11 +118,16 @@ struct DirectionalLight {
 /// All geometry, materials and lights besides the faces that emit. Positions are relative to
 /// `origin`, which is subtracted in double before rounding to float, so that a scene far from the
 /// world's origin keeps its digits.
+///
+/// A triangle's number is its place in `triangles`; those of the instances follow, one instance
+/// after the other.
 struct Scene {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;  ///< unit length, where a triangle uses them
   std::vector<glm::vec2> texcoords;
   std::vector<Triangle> triangles;
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;   ///< of meshes that are kept as such: see instances.h
   std::vector<Material> materials;   ///< never empty; a default stands where the file names none
   std::vector<Texture> textures;     ///< that materials of triangles name
   std::vector<std::string> objects;  ///< never empty; "o" and "g" names of the file

@@ -5,30 +5,20 @@
 
 #include "host/elementary.h"
 #include "host/scene/camera.h"
+#include "host/scene/instances.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {
 
-struct Box {
-  glm::dvec3 low, high;
-
+struct Box : PositionBox {
   [[nodiscard]] glm::dvec3 middle() const { return 0.5 * (low + high); }
   [[nodiscard]] glm::dvec3 half() const { return 0.5 * (high - low); }
 };
 
 Box bounding_box(const Scene& scene) {
-  if (scene.triangles.empty()) throw InputError("cannot frame a scene without faces");
-  const glm::dvec3 first(scene.positions[scene.triangles[0].vertices[0]]);
-  Box box{first, first};
-  for (const Triangle& triangle : scene.triangles) {
-    for (const std::uint32_t vertex : triangle.vertices) {
-      const glm::dvec3 position(scene.positions[vertex]);
-      box.low = glm::min(box.low, position);
-      box.high = glm::max(box.high, position);
-    }
-  }
-  return box;
+  if (is_empty(scene)) throw InputError("cannot frame a scene without faces");
+  return {corner_box(scene)};
 }
 
 /// Twice the area of a triangle as a vector along its normal; its corners.
@@ -36,8 +26,8 @@ struct Face {
   glm::dvec3 corners[3];
   glm::dvec3 normal;
 
-  Face(const Scene& scene, const Triangle& triangle) {
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = scene.positions[triangle.vertices[k]];
+  explicit Face(const Corners& triangle) {
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = triangle[k];
     normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   }
 };
@@ -47,12 +37,12 @@ double standing(const Scene& scene, const Box& box, int axis) {
   const glm::dvec3 size = box.high - box.low;
   const double end = box.low[axis] + 0.01 * size[axis];
   double area = 0.0;
-  for (const Triangle& triangle : scene.triangles) {
-    const Face face(scene, triangle);
+  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
+    const Face face(triangle);
     const bool is_low = std::ranges::all_of(
         face.corners, [&](const glm::dvec3& corner) { return corner[axis] <= end; });
     if (is_low) area += 0.5 * std::abs(face.normal[axis]);
-  }
+  });
   const double whole = size[(axis + 1) % 3] * size[(axis + 2) % 3];
   return whole > 0.0 ? std::min(1.0, area / whole) : 0.0;
 }
@@ -86,10 +76,10 @@ bool is_room(const Scene& scene) {
   const Box box = bounding_box(scene);
   const glm::dvec3 size = box.high - box.low, middle = box.middle();
   double volume = 0.0;
-  for (const Triangle& triangle : scene.triangles) {
-    const Face face(scene, triangle);
+  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
+    const Face face(triangle);
     volume += glm::dot(face.corners[0] - middle, face.normal) / 6.0;
-  }
+  });
   return volume < -0.6 * size.x * size.y * size.z;
 }
 
@@ -133,11 +123,9 @@ CameraSetting framing(const Scene& scene, double aspect, double fov, const View&
     distance = std::max(distance, std::max(across, upwards) / kFilled + nearer);
   };
   if (filling == Filling::kVertices) {
-    for (const Triangle& triangle : scene.triangles) {
-      for (const std::uint32_t vertex : triangle.vertices) {
-        show(glm::dvec3(scene.positions[vertex]) - centre);
-      }
-    }
+    for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
+      for (const glm::vec3& corner : triangle) show(glm::dvec3(corner) - centre);
+    });
   } else if (filling == Filling::kBox) {
     for (int corner = 0; corner < 8; ++corner) {
       show(half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));

@@ -121,12 +121,12 @@ void Answers::write(const RayBlock& block, const RayHit& found, Row& row) const 
   const Ray& ray = block.rays[found.ray];
   Corners corners{};
   std::int64_t number = -1;
-  const Triangle* triangle = nullptr;
+  StoredFace stored;
   HitPlace place{std::numeric_limits<double>::infinity(), kNan, kNan};  // t of the scaled ray
   if (is_hit) {
     corners = bvh_.corners_of(hit.slot);
     number = bvh_.triangle_of(hit.slot);
-    triangle = &scene_.triangles[static_cast<std::size_t>(number)];
+    stored = bvh_.face_of(hit.slot);
     place = place_of_hit(ray, corners);
   }
   const auto vector = [&](const glm::dvec3& v) {
@@ -147,10 +147,10 @@ void Answers::write(const RayBlock& block, const RayHit& found, Row& row) const 
         row.integer(number);
         break;
       case Answer::kObject:
-        row.integer(is_hit ? std::int64_t{triangle->object} : -1);
+        row.integer(is_hit ? std::int64_t{object_at(scene_, stored)} : -1);
         break;
       case Answer::kMaterial:
-        row.integer(is_hit ? std::int64_t{triangle->material} : -1);
+        row.integer(is_hit ? std::int64_t{face_at(scene_, stored).material} : -1);
         break;
       case Answer::kT:
         row.number(std::ldexp(place.t, block.exponents[found.ray]));

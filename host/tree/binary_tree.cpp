@@ -180,8 +180,8 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
 }  // namespace
 
 /// Where the run is cut in two; puts its primitives on their sides, in a room as large as it. Not
-/// far from the largest depth, and where no cut is found, halves are split.
-std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depth, Box& box) {
+/// far from the largest depth, `depths_left` away, and where no cut is found, halves are split.
+std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left, Box& box) {
   return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
     const auto size = static_cast<std::uint32_t>(run.size());
     Around around;
@@ -189,7 +189,7 @@ std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depth, Box&
     box = around.box;
     if (size == 2) return 1;
     Cut cut;
-    const bool is_deep = static_cast<int>(std::bit_width(size)) >= BinaryTree::kMaxDepth - depth;
+    const bool is_deep = static_cast<int>(std::bit_width(size)) >= depths_left;
     if (is_deep) {
       std::ranges::stable_sort(run, {},
                                [](const Primitive& primitive) { return primitive.middle(0); });
@@ -210,8 +210,10 @@ namespace {
 /// Cuts runs up to the last one.
 class Divider {
  public:
-  explicit Divider(BinaryTree& tree)
-      : tree_(tree), room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {
+  Divider(BinaryTree& tree, int max_depth)
+      : tree_(tree),
+        max_depth_(max_depth),
+        room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {
     waiting_.push_back({0, tree.size(), 0, 0, 0});
   }
 
@@ -246,8 +248,9 @@ class Divider {
     }
     Box box;
     const std::span<Primitive> primitives(tree_.primitives);
-    const std::uint32_t middle = run.begin + cut_run(primitives.subspan(run.begin, run.size()),
-                                                     &room_[run.begin], run.depth, box);
+    const std::uint32_t middle =
+        run.begin + cut_run(primitives.subspan(run.begin, run.size()), &room_[run.begin],
+                            max_depth_ - run.depth, box);
     BinaryTree::Node& node = tree_.nodes[middle];
     node.box = box;
     node.first = run.begin;
@@ -266,6 +269,7 @@ class Divider {
   }
 
   BinaryTree& tree_;
+  int max_depth_;
   std::unique_ptr<Primitive[]> room_;
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -275,22 +279,26 @@ class Divider {
 
 }  // namespace
 
-BinaryTree::BinaryTree(const Scene& scene, int threads)
-    : primitives(scene.triangles.size()), nodes(scene.triangles.size()) {
+BinaryTree::BinaryTree(const TreeContent& content, int max_depth, int threads)
+    : primitives(content.size()), nodes(content.size()) {
   if (primitives.empty()) return;
   const std::size_t tasks = (primitives.size() + kTaskSize - 1) / kTaskSize;
   for_each_on_threads(threads, tasks, [&](std::size_t task) {
     const std::size_t begin = task * kTaskSize;
     const std::size_t end = std::min(begin + kTaskSize, primitives.size());
     for (std::size_t i = begin; i < end; ++i) {
-      const auto& [a, b, c] = scene.triangles[i].vertices;
       Box box;
-      box_around(scene.positions[a], scene.positions[b], scene.positions[c], box);
+      if (i < content.triangles.size()) {
+        const auto& [a, b, c] = content.triangles[i].vertices;
+        box_around(content.positions[a], content.positions[b], content.positions[c], box);
+      } else {
+        box = content.others[i - content.triangles.size()].box;
+      }
       std::memcpy(&primitives[i], &box, sizeof box);
       primitives[i].triangle = static_cast<std::uint32_t>(i);
     }
   });
-  Divider divider(*this);
+  Divider divider(*this, max_depth);
   on_threads(static_cast<int>(std::min<std::size_t>(threads, tasks)), [&] { divider.work(); });
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "host/scene/scene.h"
@@ -11,7 +12,21 @@
 
 namespace raygate {
 
-/// A triangle and its grown box.
+/// What a tree is built around.
+struct TreeContent {
+  /// Whatever has a tree of its own: an instance.
+  struct Other {
+    Box box;
+    std::uint32_t root;  ///< the number of its tree's root, as a node
+  };
+  std::span<const glm::vec3> positions;
+  std::span<const Triangle> triangles;  ///< of these positions
+  std::vector<Other> others = {};
+
+  [[nodiscard]] std::size_t size() const { return triangles.size() + others.size(); }
+};
+
+/// A triangle and its grown box; or, of a number beyond those of triangles, one of the others.
 struct Primitive {
   float low[3];
   std::uint32_t triangle;
@@ -31,8 +46,6 @@ struct Primitive {
 /// nodes[m]. So each thread knows where its nodes go, and the tree does not depend on which thread
 /// made what.
 struct BinaryTree {
-  static constexpr int kMaxDepth = Bvh::kMaxDepth;  ///< of leaves; the root's is 0
-
   /// A node's number; from `size()` on: that of a leaf's primitive, plus size().
   using Ref = std::uint32_t;
 
@@ -42,8 +55,9 @@ struct BinaryTree {
     std::uint32_t first, count;  ///< the run
   };
 
-  /// All positions finite, of magnitude at most 2^126; fewer than 2^31 triangles.
-  BinaryTree(const Scene& scene, int threads);
+  /// All positions finite, of magnitude at most 2^126; fewer than 2^31 primitives. No leaf is
+  /// deeper than `max_depth`, the root's depth being 0, if halves are not.
+  BinaryTree(const TreeContent& content, int max_depth, int threads);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }
   [[nodiscard]] bool is_leaf(Ref ref) const { return ref >= size(); }

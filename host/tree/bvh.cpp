@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "host/threads.h"
@@ -40,17 +41,18 @@ struct Plan {
 /// Makes a binary tree wide.
 class BvhWriter {
  public:
-  BvhWriter(Bvh& bvh, const Scene& scene, const BinaryTree& tree, int threads)
-      : bvh_(bvh), scene_(scene), tree_(tree), threads_(threads), plans_(tree.size()) {}
+  BvhWriter(Bvh& bvh, const TreeContent& content, const BinaryTree& tree, int threads)
+      : bvh_(bvh), content_(content), tree_(tree), threads_(threads), plans_(tree.size()) {}
 
   void write() {
-    bvh_.nodes_.emplace_back();
+    bvh_.nodes_.assign(1, {});
     clear(bvh_.nodes_[0]);
-    const std::uint32_t size = tree_.size();
-    bvh_.triangles_.resize(size);
-    bvh_.places_.resize(size);
-    bvh_.corners_.resize(9 * std::size_t{size} + Bvh::kMaxLeafSize);
-    if (size == 0) return;
+    const std::size_t slots = content_.triangles.size();
+    bvh_.triangles_.resize(slots);
+    bvh_.places_.resize(slots);
+    bvh_.corners_.resize(9 * slots + Bvh::kMaxLeafSize);
+    if (tree_.size() == 0) return;
+    number_slots();
     Box whole;
     tree_.get_box(tree_.root(), whole);
     unit_ = unit_of(whole);
@@ -63,6 +65,25 @@ class BvhWriter {
   }
 
  private:
+  /// Others, which have no slots, stand between the triangles.
+  void number_slots() {
+    if (content_.others.empty()) return;
+    std::uint32_t slots = 0;
+    for (const Primitive& primitive : tree_.primitives) {
+      slots_.push_back(slots);
+      slots += is_triangle(primitive);
+    }
+  }
+  [[nodiscard]] bool is_triangle(const Primitive& primitive) const {
+    return primitive.triangle < content_.triangles.size();
+  }
+  [[nodiscard]] bool are_triangles(Ref ref) const {
+    return content_.others.empty() ||
+           std::ranges::all_of(
+               std::span(tree_.primitives).subspan(tree_.first(ref), tree_.count(ref)),
+               [&](const Primitive& p) { return is_triangle(p); });
+  }
+
   /// A task: a binary node with as many leaves as one thread is to see to.
   struct Task {
     Ref ref;
@@ -113,7 +134,8 @@ class BvhWriter {
     const std::uint32_t count = tree_.count(ref);
     const float own_area = area(ref);
     plan.cost[0] = plan.cost[Bvh::kWidth - 1] + kNodeCost * own_area;
-    plan.is_leaf = count <= Bvh::kMaxLeafSize && kLeafCost[count] * own_area <= plan.cost[0];
+    plan.is_leaf = count <= Bvh::kMaxLeafSize && kLeafCost[count] * own_area <= plan.cost[0] &&
+                   are_triangles(ref);
     if (plan.is_leaf) plan.cost[0] = kLeafCost[count] * own_area;
     for (int i = 2; i < Bvh::kWidth; ++i) {
       if (plan.cost[i - 1] < plan.cost[i - 2]) continue;
@@ -170,20 +192,27 @@ class BvhWriter {
       node.bounds[1][k][i] = -box[k + 4];
     }
     if (!is_leaf(ref)) return;
-    node.child[i] = {tree_.first(ref), tree_.count(ref)};
-    write_slots(node.child[i]);
+    const std::uint32_t first = tree_.first(ref);
+    const Primitive& primitive = tree_.primitives[first];
+    if (!is_triangle(primitive)) {
+      node.child[i] = {content_.others[primitive.triangle - content_.triangles.size()].root, 0};
+      return;
+    }
+    node.child[i] = {slots_.empty() ? first : slots_[first], tree_.count(ref)};
+    write_slots(node.child[i], first);
   }
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || plans_[ref].is_leaf; }
 
-  void write_slots(const Bvh::Child& leaf) {
+  /// Writes a leaf of the primitives from number `first` on.
+  void write_slots(const Bvh::Child& leaf, std::uint32_t first) {
     float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      const std::uint32_t slot = leaf.first + i, triangle = tree_.primitives[slot].triangle;
+      const std::uint32_t slot = leaf.first + i, triangle = tree_.primitives[first + i].triangle;
       bvh_.triangles_[slot] = triangle;
       bvh_.places_[slot] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(leaf.count)};
       for (std::uint32_t v = 0; v < 3; ++v) {
-        const glm::vec3& corner = scene_.positions[scene_.triangles[triangle].vertices[v]];
+        const glm::vec3& corner = content_.positions[content_.triangles[triangle].vertices[v]];
         for (std::uint32_t k = 0; k < 3; ++k) {
           to[(3 * v + k) * leaf.count + i] = corner[static_cast<int>(k)];
         }
@@ -235,7 +264,7 @@ class BvhWriter {
       Bvh::Node* to = &nodes[tasks[i].offset];
       for (Bvh::Node& node : tasks[i].nodes) {
         for (Bvh::Child& child : node.child) {
-          if (child.count == 0) child.first += tasks[i].offset;
+          if (child.count == 0 && !bvh_.is_placed(child.first)) child.first += tasks[i].offset;
         }
         *to++ = node;
       }
@@ -243,16 +272,23 @@ class BvhWriter {
   }
 
   Bvh& bvh_;
-  const Scene& scene_;
+  const TreeContent& content_;
   const BinaryTree& tree_;
   int threads_;
   float unit_ = 0.0f;
   std::vector<Plan> plans_;
+  std::vector<std::uint32_t> slots_;  // of the primitives; empty: each has its own number
 };
 
+void Bvh::build(const TreeContent& content, int most_levels, int threads) {
+  const BinaryTree tree(content, most_levels, threads);
+  BvhWriter(*this, content, tree, threads).write();
+}
+
 Bvh::Bvh(const Scene& scene, int threads) {
-  const BinaryTree tree(scene, threads);
-  BvhWriter(*this, scene, tree, threads).write();
+  TreeContent content{scene.positions, scene.triangles};
+  const int levels = scene.instances.empty() ? 0 : place_instances(scene, threads, content);
+  build(content, kMaxDepth - levels, threads);
 }
 
 }  // namespace raygate

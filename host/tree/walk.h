@@ -48,7 +48,8 @@ RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>
     leaf = stack.waiting[--stack.depth];
     while (visitor.goes_on(leaf.entry, leaf.rays)) {
       if (leaf.child.count != 0) return true;
-      const Bvh::Node& node = tree.nodes()[leaf.child.first];
+      Bvh::Node room;
+      const Bvh::Node& node = tree.node(leaf.child.first, room);
       FloatLanes entry;
       LaneMask met = visitor.meet(node, leaf.rays, entry);
       if (met == 0) break;

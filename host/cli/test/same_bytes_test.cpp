@@ -72,6 +72,74 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(all_scenes()), []
   return name;
 });
 
+/// A room with instances of a teapot, one of them mirrored, two in one place and two that cut each
+/// other, of a glass ball and of a lamp.
+class InstancedScene : public Render {
+ protected:
+  InstancedScene() {
+    folder_.write("lamp.mtl", "newmtl lamp\nKe 9 8 6\n");
+    folder_.write("lamp.obj",
+                  "mtllib lamp.mtl\nusemtl lamp\nv 0 0 0\nv 90 0 0\nv 0 0 90\nf 1 2 3\n");
+    folder_.write("glass.mtl", "newmtl glass\nillum 7\nNi 1.5\nd 0\n");
+    std::string ball = "mtllib glass.mtl\nusemtl glass\n", line;
+    std::ifstream sphere(RAYGATE_MADE_SCENES "/sphere.obj");
+    while (std::getline(sphere, line)) {
+      if (line.starts_with("v ") || line.starts_with("f ")) ball += line + "\n";
+    }
+    folder_.write("ball.obj", ball);
+    folder_.write("room.json", R"({"obj": ")" RAYGATE_SCENES R"(/cornell.obj",
+        "camera": {"eye": [278, 273, -800], "target": [278, 273, 0], "fov": 39},
+        "instances": [
+          {"model": ")" RAYGATE_SCENES R"(/teapot.obj", "places": [
+            [30, 0, 0, 150, 0, 30, 0, 0, 0, 0, 30, 90],
+            [-30, 0, 0, 150, 0, 30, 3, 120, 0, 0, 30, 90],
+            [21, 0, 21, 400, 5, 40, 0, 10, -21, 0, 21, 150],
+            [21, 0, 21, 420, 5, 40, 0, 10, -21, 0, 21, 160],
+            [21, 0, 21, 420, 5, 40, 0, 10, -21, 0, 21, 160],
+            [10, 20, 5, 300, -20, 10, 5, 300, 0, 3, 20, 250]]},
+          {"model": "lamp.obj", "places": [[100, 400, 100], [300, 420, 200]]},
+          {"model": "ball.obj", "places": [
+            [60, 0, 0, 350, 0, 60, 0, 420, 0, 0, 60, 150],
+            [0, 0, 50, 170, 50, 0, 0, 250, 0, 50, 0, 120]]}]})");
+  }
+};
+
+TEST_F(InstancedScene, IsTheSameKeptAndWrittenOut) {
+  for (const char* integrator : {"primary", "whitted", "path"}) {
+    const std::vector<std::string> words = {"room.json", "--size",     "96x96",     "--engine",
+                                            "cpu",       "--spp",      "4",         "--integrator",
+                                            integrator,  "--channels", "P,objectId"};
+    const auto render_as = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> all = words;
+      all.insert(all.end(), more.begin(), more.end());
+      render(all);
+    };
+    render_as({"--instances", "write", "-o", "written"});
+    render_as({"--instances", "keep", "-o", "kept"});
+    expect_same_pictures("written", "kept");
+    render_as({"--instances", "keep", "--threads", "3", "-o", "threads"});
+    expect_same_pictures("written", "threads");
+    render_as({"-o", "auto"});
+    expect_same_pictures("written", "auto");
+  }
+}
+
+TEST_F(InstancedScene, IsTheSameForEveryEngine) {
+  render({"room.json", "--size", "40x40", "--engine", "cpu", "--spp", "1", "--instances", "write",
+          "-o", "cpu"});
+  const json written = stats_;
+  for (const char* engine : {"rtl", "model", "check"}) {
+    render(
+        {"room.json", "--size", "40x40", "--engine", engine, "--instances", "keep", "-o", engine});
+    EXPECT_EQ(stats_.at("triangles"), written.at("triangles"));
+    expect_same_pictures("cpu", engine);
+  }
+  render({"room.json", "--size", "20x20", "--engine", "check", "--instances", "keep", "--no-skip",
+          "culling", "-o", "all"});
+  render({"room.json", "--size", "20x20", "--engine", "cpu", "--spp", "1", "-o", "some"});
+  expect_same_pictures("some", "all");
+}
+
 std::string read_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

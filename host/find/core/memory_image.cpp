@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "host/scene/scene.h"
 #include "host/tree/binary_tree.h"
@@ -183,8 +184,9 @@ class ImageWriter {
 };
 
 MemoryImage::MemoryImage(const Bvh& bvh, int threads) {
+  if (bvh.has_instances()) throw std::invalid_argument("instances, expected them written out");
   const Scene scene = scene_of(bvh);
-  const BinaryTree tree(scene, threads);
+  const BinaryTree tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, threads);
   ImageWriter(*this, bvh, tree).write();
 }
 

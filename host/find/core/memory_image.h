@@ -15,6 +15,7 @@ class MemoryImage {
  public:
   static constexpr std::uint32_t kRoot = 0;
 
+  /// Throws std::invalid_argument for a tree with instances: they are to be written out.
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
 
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }

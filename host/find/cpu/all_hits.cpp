@@ -27,7 +27,8 @@ RAYGATE_INLINE void test_leaf(const Bvh& bvh, const Ray& ray, const ShearedRay& 
                               const Bvh::Child& leaf, std::vector<NearestHit>& hits,
                               RayWork& work) {
   QuadVerdict verdict;
-  test_quad(sheared, bvh.corners_of(leaf), leaf.count, verdict);
+  Bvh::LeafRoom room;
+  test_quad(sheared, bvh.corners_of(leaf, room), leaf.count, verdict);
   work.tests += leaf.count;
   work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
   for (LaneMask open = verdict.hit | verdict.level | verdict.doubt; open != 0; open &= open - 1) {

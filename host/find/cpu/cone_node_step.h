@@ -94,7 +94,8 @@ template <Vectors kCode>
 RAYGATE_INLINE void step_through(ConeWalk& walk, const Bvh& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
   constexpr int kFew = 1;  // children
-  const Bvh::Node& node = tree.nodes()[index];
+  Bvh::Node room;
+  const Bvh::Node& node = tree.node(index, room);
   if (several(groups) && std::popcount(rays) <= kFewRays) {
     step_one_by_one<kCode>(walk, tree, node, rays);
     return;

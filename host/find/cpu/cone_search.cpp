@@ -176,7 +176,9 @@ void walk_tree(ConeSearch& search, ConeWalk& walk) {
         continue;
       }
       QuadRecord record;
-      make_quad_record(cones.whole.origin, tree.corners_of(item.child), item.child.count, record);
+      Bvh::LeafRoom room;
+      make_quad_record(cones.whole.origin, tree.corners_of(item.child, room), item.child.count,
+                       record);
       LaneMask there = (1u << item.child.count) - 1;
       if (record.unsure != 0) search.settle_sides(item.child, record, there);
       LaneMask changed = 0;

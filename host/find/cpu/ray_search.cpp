@@ -71,20 +71,6 @@ bool RaySearch::settle(RayWalk& walk, std::uint32_t slot, bool sure) {
   return true;
 }
 
-namespace {
-
-std::vector<Bvh::Child> all_leaves(const Bvh& tree) {
-  std::vector<Bvh::Child> leaves;
-  for (const Bvh::Node& node : tree.nodes()) {
-    for (const Bvh::Child& child : node.child) {
-      if (child.count != 0) leaves.push_back(child);
-    }
-  }
-  return leaves;
-}
-
-}  // namespace
-
 /// Sends the next rays on their ways, with these walks; bit i of the result where walk i is on one.
 RAYGATE_INLINE LaneMask RaySearch::set_out(RayWalk* const (&walks)[kQuad]) {
   const auto first = static_cast<std::uint32_t>(next_);
@@ -125,7 +111,7 @@ RAYGATE_INLINE void RaySearch::arrive(const RayWalk& walk) {
 
 /// Each ray tests everything.
 void RaySearch::visit_all() {
-  const std::vector<Bvh::Child> leaves = all_leaves(bvh_);
+  const std::vector<Bvh::Child> leaves = bvh_.leaves();
   const auto walks = std::make_unique<RayWalk[]>(kQuad);
   while (next_ < rays_.size()) {
     LaneMask open = set_out({&walks[0], &walks[1], &walks[2], &walks[3]});
@@ -133,7 +119,9 @@ void RaySearch::visit_all() {
       RayWalk& walk = walks[std::countr_zero(open)];
       for (const Bvh::Child& leaf : leaves) {
         QuadSides sides;
-        const LaneMask near = find_sides(walk.sheared, bvh_.corners_of(leaf), leaf.count, sides);
+        Bvh::LeafRoom room;
+        const LaneMask near =
+            find_sides(walk.sheared, bvh_.corners_of(leaf, room), leaf.count, sides);
         walk.work.tests += leaf.count;
         if (near != 0 && !judge(walk, leaf, sides, near)) break;
       }
@@ -174,7 +162,8 @@ void RaySearch::walk_all() {
       for (std::size_t i = 0; i < leaf_count; ++i) {
         RayWalk& walk = *leaves[i];
         walk.work.tests += walk.at.count;
-        open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at), walk.at.count, sides[i]);
+        Bvh::LeafRoom room;
+        open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at, room), walk.at.count, sides[i]);
         near[open_count] = static_cast<std::uint32_t>(i);
         open_count += open[i] != 0 ? 1 : 0;
         inside[inside_count + i] = &walk;

@@ -168,7 +168,8 @@ template <Vectors kCode>
 RAYGATE_INLINE void step_inside(const Bvh& tree, RayWalk& walk) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;
   constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
-  const Bvh::Node& node = tree.nodes()[walk.at.first];
+  Bvh::Node room;
+  const Bvh::Node& node = tree.node(walk.at.first, room);
   const char* const bounds = reinterpret_cast<const char*>(&node);
   using Floats = NativeFloats<kCode>;
   IntLanes keys;
@@ -222,7 +223,7 @@ RAYGATE_INLINE void go_on(const Bvh& tree, RayWalk& walk) {
   const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | kNumber;
   while (walk.keys[--walk.depth] > last_key) {
   }
-  walk.at = tree.nodes()[walk.nodes[walk.depth]].child[walk.keys[walk.depth] & kNumber];
+  walk.at = tree.child_of(walk.nodes[walk.depth], walk.keys[walk.depth] & kNumber);
   tree.prefetch(walk.at);
 }
 

@@ -48,7 +48,7 @@ void UnitFinder::find(std::span<const Ray> rays, const Search& search, std::span
       collect(half);
       counters_.traverse += watch.lap();
       if (half.batch.empty()) continue;
-      if (common_ == nullptr) make_own_records(half);
+      if (common_ == nullptr || bvh_.has_instances()) make_own_records(half);
       counters_.record += watch.lap();
       tester_->start(half.batch);
       half.started = busy = true;
@@ -102,9 +102,12 @@ void UnitFinder::make_packets() {
 
 LeafVisits UnitFinder::next_leaf(Packet& packet) {
   if (search_.culling) return packet.traversal.next_leaf();
+  const auto [placed, end] = bvh_.placed_slots();
+  if (packet.next_slot == bvh_.slot_count()) packet.next_slot = placed;
   const std::uint32_t first = packet.next_slot;
-  if (first >= bvh_.slot_count()) return {};
-  const std::uint32_t count = std::min(Bvh::kMaxLeafSize, bvh_.slot_count() - first);
+  if (first == end) return {};
+  const std::uint32_t most = bvh_.is_placed(first) ? end : bvh_.slot_count();
+  const std::uint32_t count = std::min(Bvh::kMaxLeafSize, most - first);
   packet.next_slot += count;
   return {{LeafVisit{first, count, packet.lanes}}, 1};
 }
@@ -163,7 +166,7 @@ std::size_t UnitFinder::visit_leaves(Half& half) {
     half.active[kept++] = index;
     for (const LeafVisit& visit : leaf) {
       tests += visit.count * static_cast<std::size_t>(std::popcount(visit.lanes));
-      if (common_ != nullptr) {
+      if (common_ != nullptr && !bvh_.is_placed(visit.first)) {
         assert(rays_[packet.rays[0]].origin == common_->origin());
         half.batch.push_back(make_bundle(rays_, packet.rays, visit, visit.lanes));
         half.batch.back().records =
@@ -178,14 +181,18 @@ std::size_t UnitFinder::visit_leaves(Half& half) {
   return tests;
 }
 
-/// All at once, when it is known how many: bundles point at their records.
+/// All at once, when it is known how many: bundles point at their records. Those of instances are
+/// made here, too, even of a common origin: a cache would have a place for each.
 void UnitFinder::make_own_records(Half& half) {
   std::size_t count = 0;
-  for (const RayBundle& bundle : half.batch) count += bundle.record_count;
+  for (const RayBundle& bundle : half.batch) {
+    if (bundle.records == nullptr) count += bundle.record_count;
+  }
   if (half.records.size() < count) half.records.resize(count);
   PolygonRecord* next = half.records.data();
   for (std::size_t i = 0; i < half.batch.size(); ++i) {
     RayBundle& bundle = half.batch[i];
+    if (bundle.records != nullptr) continue;
     const Ray& ray = rays_[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
     std::array<Corners, Bvh::kMaxLeafSize> corners;
     for (std::uint32_t k = 0; k < bundle.record_count; ++k) {

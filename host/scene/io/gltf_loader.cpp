@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 #include "host/scene/io/gltf_file.h"
 #include "host/scene/io/gltf_materials.h"
+#include "host/scene/io/gltf_places.h"
 #include "host/scene/io/input_error.h"
+#include "host/scene/io/instance_settings.h"
 #include "host/scene/io/mesh_builder.h"
 
 namespace raygate {
@@ -27,6 +29,26 @@ struct PlacedLight {
   std::optional<SpotCone> spot;
 };
 
+/// What becomes of the vertices and faces of meshes, and how many it has so far.
+struct Geometry {
+  MeshBuilder builder;
+  std::int32_t positions = 0, normals = 0, texcoords = 0;
+};
+
+/// A mesh that stands in several places.
+struct SharedMesh {
+  Scene part;                      // until it is the scene's
+  PositionBox box;                 // around its positions
+  std::optional<PlacedMesh> mesh;  // then
+};
+
+/// One of these places.
+struct Place {
+  int mesh;
+  glm::dmat4 world;
+  std::uint32_t object;
+};
+
 bool is_finite(const glm::dmat4& m) {
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) {
@@ -39,12 +61,22 @@ bool is_finite(const glm::dmat4& m) {
 class GltfReader {
  public:
   GltfReader(const std::filesystem::path& path, const LoadOptions& options)
-      : file_(path), options_(options), mesh_(file_.name()), materials_(file_, scene_) {}
+      : file_(path),
+        options_(options),
+        own_{MeshBuilder(file_.name())},
+        materials_(file_, scene_) {}
 
   Scene read() {
     walk(roots());
-    mesh_.build(options_, scene_);
+    for (const auto& [node, world] : nodes_) count_uses(*node);
+    for (const auto& [node, world] : nodes_) read_node(*node, world);
+    for (const Place& place : places_) make_room(place);
+    if (!places_.empty()) own_.builder.allow_nothing();
+    own_.builder.build(options_, scene_);
+    for (const Place& place : places_) add_instance(place);
+    if (is_empty(scene_)) throw InputError(file_.name() + ": no face has an area");
     place_lights();
+    if (!options_.keep_instances) settle_instances(scene_, InstanceUse::kWritten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
     if (!file_.model().animations.empty() || !file_.model().skins.empty()) {
@@ -100,33 +132,13 @@ class GltfReader {
         file_.fail("node " + std::to_string(step.node) + " has two parents, expected one");
       }
       seen[static_cast<std::size_t>(step.node)] = true;
-      const glm::dmat4 world = step.parent * local(node);
+      const glm::dmat4 world = step.parent * local_matrix(node);
       if (!is_finite(world)) {
         file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
       }
-      read_node(node, world);
+      nodes_.emplace_back(&node, world);
       add(node.children, world);
     }
-  }
-
-  [[nodiscard]] static glm::dmat4 local(const tinygltf::Node& node) {
-    glm::dmat4 matrix(1.0);
-    if (node.matrix.size() == 16) {
-      for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-      return matrix;
-    }
-    if (const auto& t = node.translation; t.size() == 3) {
-      matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
-    }
-    if (const auto& r = node.rotation; r.size() == 4) {
-      const glm::dquat turn(r[3], r[0], r[1], r[2]);
-      const double length = glm::length(turn);
-      if (length > 0.0) matrix = matrix * glm::mat4_cast(turn / length);
-    }
-    if (const auto& s = node.scale; s.size() == 3) {
-      for (int axis = 0; axis < 3; ++axis) matrix[axis] *= s[static_cast<std::size_t>(axis)];
-    }
-    return matrix;
   }
 
   void read_node(const tinygltf::Node& node, const glm::dmat4& world) {
@@ -136,8 +148,14 @@ class GltfReader {
       scene_.objects.push_back(!node.name.empty()   ? node.name
                                : !mesh.name.empty() ? mesh.name
                                                     : "object " + std::to_string(object));
-      for (const tinygltf::Primitive& primitive : mesh.primitives) {
-        read_primitive(primitive, world, object);
+      if (uses_[node.mesh] > 1) {
+        for (const glm::dmat4& own : places_in(file_, node)) {
+          places_.push_back({node.mesh, world * own, object});
+        }
+      } else {
+        for (const tinygltf::Primitive& primitive : mesh.primitives) {
+          read_primitive(primitive, world, object, own_);
+        }
       }
     }
     if (node.camera >= 0)
@@ -148,6 +166,52 @@ class GltfReader {
       read_light(
           file_.at(file_.model().lights, light->second.Get("light").GetNumberAsInt(), "light"),
           world);
+    }
+  }
+
+  void count_uses(const tinygltf::Node& node) {
+    if (node.mesh < 0) return;
+    const bool many = node.extensions.contains("EXT_mesh_gpu_instancing");
+    uses_[node.mesh] += many ? 2 : 1;
+  }
+
+  /// The mesh of a place, read when it is first asked for: in its own coordinates.
+  SharedMesh& shared(int number) {
+    const auto [at, is_new] = shared_.try_emplace(number);
+    if (!is_new) return at->second;
+    Geometry geometry{MeshBuilder(file_.name())};
+    geometry.builder.allow_nothing();
+    for (const tinygltf::Primitive& primitive :
+         file_.model().meshes[static_cast<std::size_t>(number)].primitives) {
+      read_primitive(primitive, glm::dmat4(1.0), 0, geometry);
+    }
+    Scene& part = at->second.part;
+    geometry.builder.build(options_, part);
+    if (!part.triangles.empty()) at->second.box = box_around(part.positions);
+    return at->second;
+  }
+
+  /// The whole scene is recentred. And what will be written out is counted.
+  void make_room(const Place& place) {
+    const auto& [part, own_box, ignored] = shared(place.mesh);
+    if (part.triangles.empty()) return;
+    if (!options_.keep_instances) count(part.positions.size() + 3 * part.triangles.size());
+    const PositionBox box = placed(rows_of(place.world), part.origin, own_box);
+    constexpr double kMost = std::numeric_limits<float>::max();
+    if (!(largest(box.low) <= kMost && largest(box.high) <= kMost)) {
+      file_.fail("a vertex is beyond the range of float");
+    }
+    own_.builder.make_room(box);
+  }
+
+  void add_instance(const Place& place) {
+    SharedMesh& shared_mesh = shared(place.mesh);
+    if (!shared_mesh.mesh) {
+      if (shared_mesh.part.triangles.empty()) return;
+      shared_mesh.mesh.emplace(scene_, std::move(shared_mesh.part));
+    }
+    if (!shared_mesh.mesh->add(rows_of(place.world), place.object)) {
+      file_.fail("an instance is beyond the range of float");
     }
   }
 
@@ -173,7 +237,7 @@ class GltfReader {
     return corners;
   }
 
-  /// Counts vertices and corners, so that instances of instances do not fill the memory.
+  /// Counts vertices and corners, so that what is written out does not fill the memory.
   void count(std::size_t more) const {
     vertices_ += more;
     if (more > kMostVertices + file_.bytes() || vertices_ > kMostVertices + file_.bytes()) {
@@ -183,7 +247,7 @@ class GltfReader {
   }
 
   void read_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& world,
-                      std::uint32_t object) {
+                      std::uint32_t object, Geometry& to) {
     if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
       return warn("points and lines are ignored: only polygons are rendered");
     }
@@ -203,8 +267,8 @@ class GltfReader {
     if (corners.size() % 3 != 0)
       file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
 
-    const std::int32_t first_position = positions_, first_normal = normals_,
-                       first_texcoord = texcoords_;
+    const std::int32_t first_position = to.positions, first_normal = to.normals,
+                       first_texcoord = to.texcoords;
     const double sign = glm::determinant(glm::dmat3(world)) < 0.0 ? -1.0 : 1.0;
     for (std::size_t i = 0; i < vertices; ++i) {
       const glm::dvec3 at(
@@ -213,13 +277,13 @@ class GltfReader {
             std::numeric_limits<float>::max())) {
         file_.fail("a vertex is beyond the range of float");
       }
-      mesh_.add_position(at);
+      to.builder.add_position(at);
     }
-    positions_ += static_cast<std::int32_t>(vertices);
-    if (normal >= 0) add_normals(normal, glm::dmat3(world), sign, vertices);
-    if (texcoord >= 0) add_texcoords(texcoord, vertices);
+    to.positions += static_cast<std::int32_t>(vertices);
+    if (normal >= 0) add_normals(normal, glm::dmat3(world), sign, vertices, to);
+    if (texcoord >= 0) add_texcoords(texcoord, vertices, to);
 
-    const std::size_t first_face = mesh_.face_count();
+    const std::size_t first_face = to.builder.face_count();
     for (std::size_t i = 0; i < corners.size(); i += 3) {
       std::array<FileCorner, 3> face;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -232,13 +296,14 @@ class GltfReader {
         face[k] = {first_position + number, texcoord >= 0 ? first_texcoord + number : 0,
                    normal >= 0 ? first_normal + number : 0};
       }
-      mesh_.add_face(face, 0);
+      to.builder.add_face(face, 0);
     }
-    mesh_.assign_faces(first_face, mesh_.face_count(), materials_.number_of(primitive.material),
-                       object);
+    to.builder.assign_faces(first_face, to.builder.face_count(),
+                            materials_.number_of(primitive.material), object);
   }
 
-  void add_normals(int accessor, const glm::dmat3& world, double sign, std::size_t vertices) {
+  void add_normals(int accessor, const glm::dmat3& world, double sign, std::size_t vertices,
+                   Geometry& to) {
     const std::vector<double> normals = file_.vectors(accessor, 3, "NORMAL");
     if (normals.size() != 3 * vertices) file_.fail("not as many normals as positions");
     // The inverse transpose but for a factor, which a flat matrix has, too.
@@ -249,20 +314,20 @@ class GltfReader {
           cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
       const bool is_finite =
           std::isfinite(turned.x) && std::isfinite(turned.y) && std::isfinite(turned.z);
-      mesh_.add_normal(is_finite ? sign * turned : glm::dvec3(0.0));
+      to.builder.add_normal(is_finite ? sign * turned : glm::dvec3(0.0));
     }
-    normals_ += static_cast<std::int32_t>(vertices);
+    to.normals += static_cast<std::int32_t>(vertices);
   }
 
-  void add_texcoords(int accessor, std::size_t vertices) {
+  void add_texcoords(int accessor, std::size_t vertices, Geometry& to) {
     const std::vector<double> texcoords = file_.vectors(accessor, 2, "TEXCOORD");
     if (texcoords.size() != 2 * vertices) {
       file_.fail("not as many texture coordinates as positions");
     }
     for (std::size_t i = 0; i < vertices; ++i) {
-      mesh_.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
+      to.builder.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
     }
-    texcoords_ += static_cast<std::int32_t>(vertices);
+    to.texcoords += static_cast<std::int32_t>(vertices);
   }
 
   void read_camera(const tinygltf::Camera& camera, const glm::dmat4& world) {
@@ -313,11 +378,7 @@ class GltfReader {
 
   /// In the scene's coordinates, now that these are known; and the camera's target among the scene.
   void place_lights() {
-    glm::dvec3 low(scene_.positions[0]), high = low;
-    for (const glm::vec3& position : scene_.positions) {
-      low = glm::min(low, glm::dvec3(position));
-      high = glm::max(high, glm::dvec3(position));
-    }
+    const auto [low, high] = position_box(scene_);
     const glm::dvec3 middle = 0.5 * (low + high);
     for (const PlacedLight& light : lights_) {
       const glm::vec3 rounded(light.position - scene_.origin);
@@ -336,10 +397,13 @@ class GltfReader {
   const GltfFile file_;
   const LoadOptions& options_;
   Scene scene_;
-  MeshBuilder mesh_;
+  Geometry own_;  // of meshes that stand in one place
   GltfMaterials materials_;
+  std::vector<std::pair<const tinygltf::Node*, glm::dmat4>> nodes_;  // in their order
+  std::map<int, int> uses_;                                          // of meshes, by number
+  std::map<int, SharedMesh> shared_;
+  std::vector<Place> places_;
   std::vector<PlacedLight> lights_;
-  std::int32_t positions_ = 0, normals_ = 0, texcoords_ = 0;  // in mesh_
   mutable std::size_t vertices_ = 0;
 };
 

@@ -127,8 +127,8 @@ void MeshBuilder::check_indices() const {
 void MeshBuilder::place_positions(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const Corner& corner : corners_) new_index[corner.position] = 0;
-  glm::dvec3 low = positions_[corners_[0].position];
-  glm::dvec3 high = low;
+  const auto first = corners_.empty() ? glm::dvec3(0.0) : positions_[corners_[0].position];
+  auto [low, high] = others_.value_or(PositionBox{first, first});
   std::uint32_t used = 0;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     if (new_index[i] == kNoIndex) continue;
@@ -208,14 +208,22 @@ std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Sc
   return groups;
 }
 
+void MeshBuilder::make_room(const PositionBox& box) {
+  if (!others_) others_ = box;
+  others_->low = glm::min(others_->low, box.low);
+  others_->high = glm::max(others_->high, box.high);
+}
+
 void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
-  if (faces_.empty()) {
+  if (faces_.empty() && !may_be_nothing_) {
     throw InputError(file_name_ + ": no faces, expected at least one polygon");
   }
   check_indices();
   place_positions(scene);
   const std::vector<std::uint32_t> groups = cut_faces(options, scene);
-  if (scene.triangles.empty()) throw InputError(file_name_ + ": no face has an area");
+  if (scene.triangles.empty() && !may_be_nothing_) {
+    throw InputError(file_name_ + ": no face has an area");
+  }
   scene.normals = std::move(normals_);
   scene.texcoords = std::move(texcoords_);
   if (options.smooth || !groups.empty()) add_smooth_normals(groups, options.smooth, scene);

@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "host/scene/instances.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/scene.h"
 
@@ -53,6 +55,11 @@ class MeshBuilder {
   /// Adds what the file's next part gave, whose builder began after this one's counts.
   void append(MeshBuilder&& part);
 
+  /// What else the scene is to be recentred with.
+  void make_room(const PositionBox& box);
+  /// No face with an area is no error.
+  void allow_nothing() { may_be_nothing_ = true; }
+
   /// Fills positions, normals, texcoords, triangles and origin, and appends to the warnings.
   /// Throws InputError: an index of nothing, a face without area, no face at all.
   void build(const LoadOptions& options, Scene& scene);
@@ -77,6 +84,8 @@ class MeshBuilder {
                                                      Scene& scene) const;
 
   std::string file_name_;
+  std::optional<PositionBox> others_;
+  bool may_be_nothing_ = false;
   Counts earlier_;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> normals_;

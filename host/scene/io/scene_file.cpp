@@ -131,7 +131,7 @@ void read_options(const JsonReader& reader, const JsonValue& value, SceneFile& s
 SceneFile read_scene_file(const std::filesystem::path& file) {
   const JsonValue root = JsonValue::read(file);
   const JsonReader reader(file);
-  std::vector<const char*> known = {"obj", "camera"};
+  std::vector<const char*> known = {"obj", "camera", "instances"};
   known.insert(known.end(), std::begin(kLightKeys), std::end(kLightKeys));
   known.push_back("render");
   reader.require_object(root, "scene", known);
@@ -146,9 +146,19 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   }
   if (const JsonValue* camera = JsonReader::find(root, "camera"))
     read_cameras(reader, *camera, scene);
+  scene.instances = read_instances(reader, file.parent_path(), JsonReader::find(root, "instances"));
   scene.lights = read_lights(reader, root, file.parent_path());
   if (const JsonValue* render = JsonReader::find(root, "render"))
     read_options(reader, *render, scene);
+  return scene;
+}
+
+Scene load_scene(const SceneFile& file, const LoadOptions& options) {
+  LoadOptions kept = options;
+  kept.keep_instances = true;
+  Scene scene = load_scene(file.obj, kept);
+  add_instances(file.instances, file.file, options, scene);
+  if (!options.keep_instances) settle_instances(scene, InstanceUse::kWritten, file.file);
   return scene;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/scene/camera.h"
+#include "host/scene/io/instance_settings.h"
 #include "host/scene/io/light_settings.h"
 #include "host/scene/scene.h"
 
@@ -31,6 +32,7 @@ struct SceneFile {
   LensSetting lens;                 ///< and of what the camera looks through
   std::vector<CameraSetting> path;  ///< what the camera passes, in order; at least two, or none
   LightSettings lights;
+  std::vector<InstanceSetting> instances;
   std::vector<OptionSetting> options;
 };
 
@@ -38,7 +40,10 @@ struct SceneFile {
 /// read or is not JSON, unknown keys, values of a wrong type or out of range.
 [[nodiscard]] SceneFile read_scene_file(const std::filesystem::path& file);
 
-/// Adds the file's lights to the scene of its OBJ file.
+/// Loads the scene that the file is about, with its instances, and without its lights.
+[[nodiscard]] Scene load_scene(const SceneFile& file, const LoadOptions& options = {});
+
+/// Adds the file's lights to its scene.
 void add_lights(const SceneFile& file, Scene& scene);
 
 }  // namespace raygate

@@ -29,11 +29,12 @@ struct Walk {
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
       ++visits[leaf.first + i];
       const Corners corners = bvh.corners_of(leaf.first + i);
+      Bvh::LeafRoom room;
       for (std::uint32_t v = 0; v < 3; ++v) {
         ASSERT_TRUE(glm::all(glm::lessThan(low, corners[v])));
         ASSERT_TRUE(glm::all(glm::lessThan(corners[v], high)));
         for (std::uint32_t k = 0; k < 3; ++k) {
-          ASSERT_EQ(bvh.corners_of(leaf)[(3 * v + k) * leaf.count + i], corners[v][k]);
+          ASSERT_EQ(bvh.corners_of(leaf, room)[(3 * v + k) * leaf.count + i], corners[v][k]);
         }
       }
     }
@@ -148,10 +149,11 @@ TEST(Bvh, DepthIsBounded) {
     }
   }
   expect_sound(shrinking);
-  const BinaryTree tree(test::scene_of(shrinking), 1);
+  const Scene scene = test::scene_of(shrinking);
+  const BinaryTree tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, 1);
   const int depth = depth_below(tree, tree.root());
-  EXPECT_LE(depth, BinaryTree::kMaxDepth);
-  EXPECT_GT(depth, BinaryTree::kMaxDepth - 4);  // it would be deeper
+  EXPECT_LE(depth, Bvh::kMaxDepth);
+  EXPECT_GT(depth, Bvh::kMaxDepth - 4);  // it would be deeper
 }
 
 bool same_bytes(const Bvh& a, const Bvh& b) {

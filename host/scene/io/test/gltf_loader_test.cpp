@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "host/scene/instances.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/test/binary.h"
 #include "host/scene/test/temp_folder.h"
@@ -71,6 +72,53 @@ TEST_F(LoadGltf, NodesArePutWhereTheirParentsAre) {
   EXPECT_EQ(scene.triangles[0].object, 0u);
   EXPECT_EQ(scene.triangles[2].object, 1u);
   EXPECT_EQ(scene.objects[0], "parent");
+}
+
+TEST_F(LoadGltf, MeshesOfSeveralNodesAreKeptOnceIfAskedFor) {
+  const std::string json = square_json(R"([{"children": [1, 2, 3]},
+      {"name": "one", "mesh": 0, "translation": [3000000, 0, 0]},
+      {"name": "two", "mesh": 0, "translation": [3000002, 0.25, 0], "scale": [-1, 2, 1]},
+      {"name": "three", "mesh": 0, "scale": [1, 1, 1], "translation": [3000000, 5, 1]}])");
+  const Scene kept =
+      load_gltf(folder_.write("s.glb", glb(json, square_buffer())), {.keep_instances = true});
+  EXPECT_TRUE(kept.triangles.empty());
+  ASSERT_EQ(kept.instances.size(), 3u);
+  EXPECT_EQ(kept.meshes.size(), 2u) << "one is mirrored";
+  const Scene written = load(json);
+  EXPECT_TRUE(written.instances.empty());
+  EXPECT_EQ(written.objects, (std::vector<std::string>{"one", "two", "three"}));
+  ASSERT_EQ(written.triangles.size(), 6u);
+  EXPECT_EQ(kept.origin, written.origin);
+  std::size_t number = 0;
+  for_each_face(kept, [&](const Corners& corners, const Triangle&) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(corners[k], written.positions[written.triangles[number].vertices[k]]);
+    }
+    EXPECT_EQ(written.triangles[number].object, number / 2);
+    const glm::dvec3 normal = glm::cross(corner(written, number, 1) - corner(written, number, 0),
+                                         corner(written, number, 2) - corner(written, number, 0));
+    EXPECT_GT(normal.z, 0.0);
+    EXPECT_EQ(written.normals[written.triangles[number].normals[0]], glm::vec3(0, 0, 1));
+    ++number;
+  });
+  EXPECT_EQ(corner(written, 1, 2), glm::dvec3(3000000, 1, 0));
+  EXPECT_EQ(corner(written, 0, 1), glm::dvec3(3000001, 0, 0));
+  expect_error(
+      square_json(R"([{"mesh": 0, "children": [1]}, {"mesh": 0, "translation": [0, 0, 1e39]}])"),
+      "a vertex is beyond the range of float");
+}
+
+TEST_F(LoadGltf, InstancesOfAnExtension) {
+  // The square's positions serve as places, too.
+  const std::string with = R"([{"mesh": 0, "translation": [0, 0, 3], "extensions":
+      {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}}])";
+  const Scene kept = load_gltf(folder_.write("s.glb", glb(square_json(with), square_buffer())),
+                               {.keep_instances = true});
+  EXPECT_EQ(kept.instances.size(), 4u);
+  const Scene scene = load(square_json(with));
+  ASSERT_EQ(scene.triangles.size(), 8u);
+  EXPECT_EQ(corner(scene, 4, 0), corner(scene, 0, 0) + glm::dvec3(1, 1, 0));
+  EXPECT_EQ(corner(scene, 4, 0).z, 3.0);
 }
 
 TEST_F(LoadGltf, AMirroredNodeKeepsItsFront) {

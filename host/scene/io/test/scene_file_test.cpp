@@ -120,12 +120,13 @@ TEST_F(ReadSceneFile, WhatIsNoJson) {
 
 TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
   EXPECT_EQ(error("[]"),
-            "s.json:1: scene: an array of 0, expected an object with obj, camera, "
+            "s.json:1: scene: an array of 0, expected an object with obj, camera, instances, "
             "point_lights, spot_lights, directional_lights, area_lights, environment, background, "
             "render");
   EXPECT_EQ(error("{\n  \"colour\": 1\n}"),
-            "s.json:2: scene: unknown key 'colour', expected some of obj, camera, point_lights, "
-            "spot_lights, directional_lights, area_lights, environment, background, render");
+            "s.json:2: scene: unknown key 'colour', expected some of obj, camera, instances, "
+            "point_lights, spot_lights, directional_lights, area_lights, environment, background, "
+            "render");
   EXPECT_EQ(error(R"({"obj": 5})"), "s.json:1: obj: 5, expected the name of a scene");
   EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1]}})"), "s.json:1: camera: 'target' is missing");
   EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0, 0],\n\"target\": [0, 0, 0]}}"),
@@ -247,6 +248,46 @@ TEST_F(ReadSceneFile, LightsJoinTheScene) {
     area += 0.5 * glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
   }
   EXPECT_DOUBLE_EQ(area, 2.0);
+}
+
+TEST_F(ReadSceneFile, InstancesOfModels) {
+  folder_.write("room.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
+  folder_.write("far.obj",
+                "o first\nv 99999 0 0\nv 100001 0 0\nv 100000 1 0\nf 1 2 3\n"
+                "o second\nf 3 2 1\n");
+  const SceneFile file = read(R"({"obj": "room.obj", "instances": [{"model": "far.obj", "places": [
+      [1, 2, 3], [2, 0, 0, -200000, 0, 0, -1, 1, 0, 1, 0, 2], [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]]}]})");
+  const Scene kept = load_scene(file, {.keep_instances = true}), written = load_scene(file);
+  EXPECT_EQ(kept.instances.size(), 3u);
+  EXPECT_EQ(kept.meshes.size(), 2u);
+  EXPECT_EQ(kept.triangles.size(), 1u);
+  ASSERT_EQ(written.triangles.size(), 7u);
+  const auto corner = [&](std::size_t triangle, std::size_t k) {
+    return written.origin + glm::dvec3(written.positions[written.triangles[triangle].vertices[k]]);
+  };
+  EXPECT_EQ(corner(1, 0), glm::dvec3(100000, 2, 3));
+  EXPECT_EQ(corner(3, 2), glm::dvec3(0, 1, 3));
+  EXPECT_EQ(corner(5, 2), glm::dvec3(-99999, 0, 0));
+  EXPECT_EQ(written.objects[written.triangles[4].object], "second");
+  EXPECT_EQ(written.triangles[4].object, written.triangles[2].object + 2);
+}
+
+TEST_F(ReadSceneFile, InstancesThatAreNoneAreRefused) {
+  const auto expect = [&](const std::string& instance, const std::string& name) {
+    const std::string found = error(R"({"instances": [)" + instance + "]}");
+    EXPECT_TRUE(found.starts_with("s.json:1: " + name + ": ")) << found;
+  };
+  expect(R"({"model": 3, "places": []})", "instances[0].model");
+  expect(R"({"model": "a.obj"})", "instances[0]");
+  expect(R"({"model": "a.obj", "places": [[1, 2]]})", "instances[0].places[0]");
+  expect(R"({"model": "a.obj", "places": [[1, 2, "3"]]})", "instances[0].places[0][2]");
+  folder_.write("room.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const SceneFile missing =
+      read(R"({"obj": "room.obj", "instances": [{"model": "no.obj", "places": [[0, 0, 0]]}]})");
+  EXPECT_THROW((void)load_scene(missing), InputError);
+  const SceneFile huge = read(R"({"obj": "room.obj", "instances": [{"model": "room.obj", "places":
+      [[3e38, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]]}]})");
+  EXPECT_THROW((void)load_scene(huge), InputError);
 }
 
 TEST_F(ReadSceneFile, LightsBeyondFloatAreRefused) {

@@ -1,0 +1,74 @@
+// Where an instance puts what is in its mesh: one sequence of operations, whoever asks.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "host/scene/scene.h"
+#include "host/vectors.h"
+
+namespace raygate {
+
+/// A coordinate of a point after a row of Instance::rows, before it is rounded to float. T: double,
+/// or a vector of them.
+template <class T>
+RAYGATE_INLINE void place_coordinate(const double (&row)[4], const T (&point)[3], T& result) {
+  result = ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
+}
+
+/// Where an instance of these rows has a position of its mesh: everybody's corners are these
+/// floats.
+[[nodiscard]] inline glm::vec3 placed(const double (&rows)[3][4], const glm::vec3& position) {
+  const double point[3] = {position.x, position.y, position.z};
+  glm::vec3 result;
+  for (int k = 0; k < 3; ++k) {
+    double coordinate;
+    place_coordinate(rows[k], point, coordinate);
+    result[k] = static_cast<float>(coordinate);
+  }
+  return result;
+}
+
+/// A normal of the mesh as the instance has it, of unit length; 0 where the instance leaves nothing
+/// of it. The inverse transpose but for a factor, which a flat matrix has, too.
+[[nodiscard]] inline glm::vec3 placed_normal(const Instance& instance, const glm::vec3& normal) {
+  glm::dvec3 row[3];
+  for (int k = 0; k < 3; ++k) {
+    row[k] = {instance.rows[k][0], instance.rows[k][1], instance.rows[k][2]};
+  }
+  const glm::dvec3 n(normal);
+  const glm::dvec3 turned(glm::dot(glm::cross(row[1], row[2]), n),
+                          glm::dot(glm::cross(row[2], row[0]), n),
+                          glm::dot(glm::cross(row[0], row[1]), n));
+  // Scaled first, so that neither tiny nor huge components are lost in the squares.
+  const double size = std::max({std::abs(turned.x), std::abs(turned.y), std::abs(turned.z)});
+  if (!(size > 0.0 && std::isfinite(size))) return glm::vec3(0.0f);
+  return glm::vec3(glm::normalize(turned / size));
+}
+
+/// A triangle, by where it is stored.
+struct StoredFace {
+  std::uint32_t instance = kNoIndex;  ///< kNoIndex: it is one of Scene::triangles
+  std::uint32_t triangle = 0;         ///< of these, or of the instance's mesh
+};
+
+[[nodiscard]] inline const Triangle& face_at(const Scene& scene, const StoredFace& face) {
+  if (face.instance == kNoIndex) [[likely]]
+    return scene.triangles[face.triangle];
+  return scene.meshes[scene.instances[face.instance].mesh].triangles[face.triangle];
+}
+
+/// The instance of a stored triangle; nullptr for one of Scene::triangles.
+[[nodiscard]] inline const Instance* instance_at(const Scene& scene, const StoredFace& face) {
+  return face.instance == kNoIndex ? nullptr : &scene.instances[face.instance];
+}
+
+/// The number of its object.
+[[nodiscard]] inline std::uint32_t object_at(const Scene& scene, const StoredFace& face) {
+  const Instance* const instance = instance_at(scene, face);
+  return face_at(scene, face).object + (instance != nullptr ? instance->object : 0);
+}
+
+}  // namespace raygate
