@@ -121,6 +121,10 @@ def height(x, z):
             + 22 * math.sin(z / 190 + 2) * math.cos(x / 230))
 
 
+def above(x, z, metres):
+    return [round(x, 3), round(height(x, z) + metres, 3), round(z, 3)]
+
+
 def write_tree(path, tree):
     path.with_suffix(".mtl").write_text(TREE, encoding="ascii")
     with open(path, "w", encoding="ascii") as file:
@@ -177,17 +181,17 @@ def main():
     edge = 0.5 * SPACE * math.ceil(math.sqrt(options.trees))
     scene = {
         "obj": options.output.name,
-        "camera": {"eye": [0.2 * edge, height(0.2 * edge, 1.1 * edge) + 30, 1.1 * edge],
-                   "target": [0, height(0, 0.5 * edge) + 2, 0.5 * edge], "fov": 40},
+        "camera": {"eye": above(0.2 * edge, edge + 35, 13), "target": above(0.03 * edge, edge - 40, 6),
+                   "fov": 45},
         "directional_lights": [{"direction": [-0.6, -0.75, -0.2], "irradiance": [3.2, 2.9, 2.4]}],
         "background": [0.42, 0.56, 0.8],
         "render": {"size": "960x540", "integrator": "path", "depth": 4},
     }
-    text = json.dumps(scene, indent=1)[:-2]
+    text = ",\n".join(f' "{key}": {json.dumps(value)}' for key, value in scene.items())
     rows = ",\n".join(json.dumps([round(x, 6) for x in place])
                       for place in places(options.trees, rng))
     options.output.with_suffix(".json").write_text(
-        text + ',\n "instances": [{"model": "' + tree.name + '", "places": [\n' + rows + "]}]\n}\n",
+        "{\n" + text + ',\n "instances": [{"model": "' + tree.name + '", "places": [\n' + rows + "]}]\n}\n",
         encoding="ascii")
 
 
