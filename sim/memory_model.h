@@ -9,20 +9,9 @@
 #include <vector>
 
 #include "host/find/core/memory_line.h"
+#include "sim/memory_timing.h"
 
 namespace raygate {
-
-/// How long lines take.
-struct MemoryTiming {
-  int latency =
-      50;  ///< clocks from a request's taking to its line, where the cache lacks it; at least 1
-  int bytes = 64;          ///< taken a clock, at most 64: a request every 64 / bytes clocks
-  int cache_lines = 0;     ///< of a direct-mapped cache in front of it; 0 or a power of two
-  int cache_latency = 4;   ///< of what it holds
-  int disorder = 0;        ///< up to so many clocks more, at random, for each line
-  int not_taken = 0;       ///< chance in 1/256 a clock that no request is taken
-  std::uint64_t seed = 0;  ///< of the last two
-};
 
 /// Lines by number, each with the tag of its request. One request and one line a clock at most.
 class MemoryModel {

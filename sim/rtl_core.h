@@ -5,7 +5,7 @@
 
 #include "host/find/core/core_unit.h"
 #include "sim/arith.h"
-#include "sim/memory_model.h"
+#include "sim/memory_timing.h"
 
 namespace raygate {
 

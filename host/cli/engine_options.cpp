@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <bit>
 #include <thread>
 
 #include "host/cli/option_text.h"
@@ -43,6 +44,31 @@ InstanceUse parse_instances(const std::string& text) {
                               {"write", InstanceUse::kWritten}});
 }
 
+/// "latency=100,bytes=16,cache=1024", each of them or not.
+MemoryTiming parse_memory(const std::string& text) {
+  MemoryTiming timing;
+  for (const std::string& word : split_at_commas(text)) {
+    const std::size_t equals = std::min(word.find('='), word.size());
+    const std::string name = word.substr(0, equals);
+    const auto value =
+        parse_number<int>(std::string_view(word).substr(std::min(equals + 1, word.size())));
+    const auto is_power = [&](int most) {
+      return *value >= 1 && *value <= most && std::has_single_bit(static_cast<unsigned>(*value));
+    };
+    if (value && name == "latency" && *value >= 1 && *value <= 10'000) {
+      timing.latency = *value;
+    } else if (value && name == "bytes" && is_power(64)) {
+      timing.bytes = *value;
+    } else if (value && name == "cache" && (*value == 0 || is_power(1 << 24))) {
+      timing.cache_lines = *value;
+    } else {
+      fail_value("--memory", text,
+                 "latency=1 to 10000, bytes=1, 2, 4 ... 64, cache=0 or lines, a power of two");
+    }
+  }
+  return timing;
+}
+
 unsigned parse_threads(const std::string& text) {
   const auto threads = parse_number<unsigned>(text);
   if (!threads || *threads < 1 || *threads > 1024) {
@@ -58,6 +84,7 @@ void declare_engine_options(CLI::App& app, RawEngineOptions& raw) {
   app.add_option("--unit", raw.unit)->take_last();
   app.add_option("--arith", raw.arith)->take_last();
   app.add_option("--lanes", raw.lanes)->take_last();
+  app.add_option("--memory", raw.memory)->take_last();
   app.add_option("--threads", raw.threads)->take_last();
   app.add_option("--instances", raw.instances)->take_last();
 }
@@ -68,6 +95,12 @@ EngineOptions parse_engine_options(const RawEngineOptions& raw, EngineOptions de
   if (!raw.unit.empty()) options.unit = parse_unit(raw.unit);
   if (!raw.arith.empty()) options.arith = parse_arith(raw.arith);
   if (!raw.lanes.empty()) options.lanes = parse_lanes(raw.lanes);
+  if (!raw.memory.empty()) options.memory = parse_memory(raw.memory);
+  if (!raw.memory.empty() && (options.unit != "core" || options.engine == Engine::kCpu ||
+                              options.engine == Engine::kModel)) {
+    throw InputError("--memory: expected with --unit core and --engine rtl or check, got " +
+                     raw.memory);
+  }
   if (options.unit != "pipeline" && options.lanes != 1) {
     throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " + raw.lanes);
   }

@@ -5,6 +5,7 @@
 
 #include "host/scene/instances.h"
 #include "sim/arith.h"
+#include "sim/memory_timing.h"
 
 namespace CLI {
 class App;
@@ -25,14 +26,15 @@ struct EngineOptions {
   Engine engine = Engine::kRtl;
   std::string unit = "pipeline";  ///< or "serial", "core"
   Arith arith = Arith::kStructural;
-  int lanes = 1;  ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
+  int lanes = 1;        ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
+  MemoryTiming memory;  ///< of a simulated core
   unsigned threads = 1;
   InstanceUse instances = InstanceUse::kAutomatic;  ///< what is in the tree
 };
 
 /// As they were typed; empty where they were not given.
 struct RawEngineOptions {
-  std::string engine, unit, arith, lanes, threads, instances;
+  std::string engine, unit, arith, lanes, memory, threads, instances;
 };
 
 void declare_engine_options(CLI::App& app, RawEngineOptions& raw);

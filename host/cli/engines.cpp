@@ -43,7 +43,7 @@ FinderFactory make_core_factory(const EngineOptions& options, const Bvh& bvh) {
     if (options.engine == Engine::kModel) {
       core = std::make_unique<ReferenceCore>();
     } else {
-      core = make_rtl_core(options.arith);
+      core = make_rtl_core(options.arith, options.memory);
     }
     return std::make_unique<CoreFinder>(bvh, image, std::move(core));
   };

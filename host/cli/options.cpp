@@ -30,6 +30,8 @@ Engine
   --unit NAME                pipeline: a test every clock (default); serial: the
                              paper's unit; core: a ray core, which walks the
                              tree by itself
+  --memory latency=N,bytes=N,cache=N   of the ray core: clocks to a line (50),
+                             bytes a clock (64), lines of a cache before it (0)
   --arith NAME               structural: Booth trees, carry-select (default); or
                              behavioural: + and *, simulated faster
   --lanes 1|2|4|8            pipelined units side by side, per thread (1)
