@@ -26,8 +26,8 @@ struct EngineOptions {
   Engine engine = Engine::kRtl;
   std::string unit = "pipeline";  ///< or "serial", "core"
   Arith arith = Arith::kStructural;
-  int lanes = 1;        ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
-  MemoryTiming memory;  ///< of a simulated core
+  int lanes = 1;          ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
+  MemoryTiming memory{};  ///< of a simulated core
   unsigned threads = 1;
   InstanceUse instances = InstanceUse::kAutomatic;  ///< what is in the tree
 };
