@@ -27,13 +27,14 @@ std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& fi
   std::vector<Ray> rays;
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < columns; ++x) {
-      rays.push_back(
-          {job.camera.eye(), job.camera.direction(double(tile.x0 - beyond + x) / film.width,
-                                                  double(tile.y0 - beyond + y) / film.height)});
+      rays.push_back(job.camera.ray(double(tile.x0 - beyond + x) / film.width,
+                                    double(tile.y0 - beyond + y) / film.height, {}));
     }
   }
   std::vector<NearestHit> hits(rays.size());
-  finder.find(rays, {.common_origin = true, .culling = job.options.skips.culling}, hits);
+  finder.find(
+      rays, {.common_origin = job.camera.has_common_origin(), .culling = job.options.skips.culling},
+      hits);
   const auto emission_at = [&](int x, int y) {
     return job.emission_of(hits[std::size_t(y) * std::size_t(columns) + std::size_t(x)].slot);
   };

@@ -20,9 +20,10 @@ enum class LampEdge : std::uint8_t { kUnknown, kNo, kYes };
 /// noisiest of a picture, while what camera rays see of lamps costs little to know: no light, no
 /// shadow, no way on. In these pixels it is worth more rays.
 ///
-/// A pixel is one of them if rays through the corners of pixels, as far as its filter reaches, meet
-/// different emission. That depends on no sample, so that more rays where it is so favour nothing.
-/// Lamps between all corners, smaller than pixels, are not found. Returns how many rays it took.
+/// A pixel is one of them if rays through the corners of pixels, as far
+/// as its filter reaches, meet different emission. That depends on no sample, so that more rays
+/// where it is so favour nothing. Lamps between all corners, smaller than pixels, are not found.
+/// Returns how many rays it took.
 std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
                             const PixelRect& tile, std::span<LampEdge> is_edge);
 

@@ -241,9 +241,10 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     film.sums.albedo.resize(film.albedo.size());
   }
   const Lights lights(scene, bvh);
-  // One sample is the pixel's middle: where it falls is no matter of chance.
+  // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lamps
+  // have no edges.
   std::vector<LampEdge> lamp_edges;
-  if (options.samples > 1 && camera.is_pinhole() && !lights.areas().empty()) {
+  if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
     lamp_edges.assign(film.color.size(), LampEdge::kUnknown);
   }
   const RenderJob job{scene, bvh, camera, options, lights, clearances};

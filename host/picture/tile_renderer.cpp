@@ -168,7 +168,10 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
   if (wave_.rays.empty()) return;
   hits_.resize(wave_.rays.size());
   stats_.shade_seconds += watch.lap();
-  finder_.find(wave_.rays, {.common_origin = true, .culling = job_.options.skips.culling}, hits_);
+  finder_.find(
+      wave_.rays,
+      {.common_origin = job_.camera.has_common_origin(), .culling = job_.options.skips.culling},
+      hits_);
   watch.lap();
   auto hit = hits_.begin();
   std::size_t sample = 0;

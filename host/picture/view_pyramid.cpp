@@ -70,7 +70,7 @@ bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, co
 
 bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
                  const Film& film, const PixelRect& tile, double margin) {
-  return !ViewPyramid(camera, film, tile, margin).is_beside(low, high);
+  return !camera.is_pinhole() || !ViewPyramid(camera, film, tile, margin).is_beside(low, high);
 }
 
 }  // namespace raygate

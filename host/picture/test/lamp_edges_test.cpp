@@ -19,10 +19,16 @@ constexpr float kRadiance = 10.0f;
 /// A lamp that covers these pixels of 8 x 8, from left to right and from the upper edge down.
 struct Panel {
   Scene scene;
-  Camera camera =
-      Camera::look_at(glm::dvec3(0, 0, 1), glm::dvec3(0), glm::dvec3(0, 1, 0), 90.0, 1.0);
+  Camera camera;
 
-  Panel(float left, float upper, float right, float lower) {
+  Panel(float left, float upper, float right, float lower,
+        Projection projection = Projection::kPerspective)
+      : camera(Camera::look_at({.eye = glm::dvec3(0, 0, 1),
+                                .target = glm::dvec3(0),
+                                .up = glm::dvec3(0, 1, 0),
+                                .fov = 90.0,
+                                .lens = {.projection = projection, .aperture = {}, .focus = {}}},
+                               1.0)) {
     const auto place = [](float x, float y) {
       return glm::vec3(2.0f * x / kSide - 1.0f, 1.0f - 2.0f * y / kSide, 0.0f);
     };
@@ -112,14 +118,16 @@ double error(const Panel& panel, float left, float upper, float right, float low
 // Of an edge along an axis, n samples alone are off by 0.4 / n in the mean. Eight times as many are
 // off by an eighth, and by a little more at corners, and where their number is no power of two.
 TEST(LampEdges, AreSharperThanTheSamplesAlone) {
-  for (const int samples : {4, 10, 16}) {
-    const float left = 2.3f, upper = 1.6f, right = 6.45f, lower = 5.2f;
-    const double found =
-        error(Panel(left, upper, right, lower), left, upper, right, lower, samples);
-    constexpr double kEdgePixels = 16.0 / (kSide * kSide);
-    const double alone = kRadiance * 0.4 / samples;
-    EXPECT_LT(found, kEdgePixels * alone * alone / 16.0) << samples;
-    EXPECT_GT(found, 0.0) << samples;
+  for (const Projection projection : {Projection::kPerspective, Projection::kOrthographic}) {
+    for (const int samples : {4, 10, 16}) {
+      const float left = 2.3f, upper = 1.6f, right = 6.45f, lower = 5.2f;
+      const double found =
+          error(Panel(left, upper, right, lower, projection), left, upper, right, lower, samples);
+      constexpr double kEdgePixels = 16.0 / (kSide * kSide);
+      const double alone = kRadiance * 0.4 / samples;
+      EXPECT_LT(found, kEdgePixels * alone * alone / 16.0) << samples;
+      EXPECT_GT(found, 0.0) << samples;
+    }
   }
 }
 
