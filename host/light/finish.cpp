@@ -53,6 +53,8 @@ Finish::Finish(const Material& material) {
   emission = material.emission;
   if (is_any(emission)) kind |= kEmits;
   if (material.diffuse_texture != kNoIndex) kind |= kHasWeights;
+  if (material.normal_map.texture != kNoIndex) kind |= kHasWeights | kIsBumpy;
+  has_mask = material.opacity_map.texture != kNoIndex;
   if (material.metallic_roughness) {
     set(material, *material.metallic_roughness);
     return;

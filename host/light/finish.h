@@ -19,7 +19,8 @@ inline constexpr HitKind kMirrors = 8;       ///< a mirror
 inline constexpr HitKind kLetsThrough = 16;  ///< light passes
 inline constexpr HitKind kCatchesShadows = 32;  ///< of the background's colour but for shadows
 inline constexpr HitKind kFacets = 64;          ///< metallic-roughness; rough where it is glossy
-inline constexpr HitKind kHitKinds = 128;       ///< sets are less than that
+inline constexpr HitKind kIsBumpy = 128;        ///< a normal map
+inline constexpr HitKind kHitKinds = 256;       ///< sets are less than that
 
 /// The shares of a material before an angle is known: Bsdf has the table.
 struct Finish {
@@ -42,7 +43,17 @@ struct Finish {
   float reflectance = 0.04f;  ///< of what is not metallic, straight on
   HitKind kind = 0;           ///< without what depends on the triangle
 
+  bool has_mask = false;  ///< is_masked_out may say that it is not there: hits have nothing() then
+
   explicit Finish(const Material& material);
+
+  /// Light goes straight on, all of it.
+  [[nodiscard]] static Finish nothing() {
+    Material clear;
+    clear.illumination_model = 1;
+    clear.opacity = 0.0f;
+    return Finish(clear);
+  }
 
  private:
   void set(const Material& material, const MetallicRoughness& shares);

@@ -102,8 +102,10 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
     const Triangle& face = face_at(scene, stored);
     block_.places[i] = {&block_.wave->rays[block_.begin + i], hit.slot, &face,
                         is_doubtful ? nullptr : &hit.point, instance_at(scene, stored)};
-    block_.finishes[i] = &finishes_[face.material];
-    kinds_[i] = finishes_[face.material].kind | weights_needed(block_.places[i]);
+    const Finish& finish = finishes_[face.material];
+    const bool is_there = !finish.has_mask || !is_masked_out(scene, shading_.bvh, block_.places[i]);
+    block_.finishes[i] = is_there ? &finish : &nothing_;
+    kinds_[i] = block_.finishes[i]->kind | weights_needed(block_.places[i]);
     ++first_[kinds_[i] + 1];
   }
   if (!escaped_.empty()) {

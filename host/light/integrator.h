@@ -78,6 +78,7 @@ class Integrator {
   std::uint64_t point_doubts_ = 0;
   std::size_t block_size_;
   std::vector<Finish> finishes_;  // of the materials
+  const Finish nothing_ = Finish::nothing();
   HitBlock block_;
   std::vector<DepartureQuestion> departures_;  // of the block's hits, in their order
   std::vector<DepartureOrigin> origins_;

@@ -59,8 +59,9 @@ ShadowRays::ShadowRays(const Scene& scene, const Clearances& clearances, const L
       departure_(clearances),
       culling_(skips.culling),
       through_refraction_(through_refraction),
-      any_clear_(std::ranges::any_of(
-          finishes_, [](const Finish& finish) { return (finish.kind & kLetsThrough) != 0; })) {
+      any_clear_(std::ranges::any_of(finishes_, [](const Finish& finish) {
+        return finish.has_mask || (finish.kind & kLetsThrough) != 0;
+      })) {
   // The first occluder may be a clear one: then the nearest one must be known.
   first_occluder_ = skips.first_occluder && !any_clear_;
 }
@@ -179,10 +180,10 @@ glm::vec3 ShadowRays::transmittance(std::size_t number) const {
   const StoredFace stored = bvh_.face_of(slot);
   const Triangle& face = face_at(scene_, stored);
   const Finish& finish = finishes_[face.material];
+  const HitPlace place = {&wave_[number], slot, &face, nullptr, instance_at(scene_, stored)};
+  if (finish.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
   if ((finish.kind & kLetsThrough) == 0) return glm::vec3(0.0f);
-  return shadow_transmittance(scene_, bvh_,
-                              {&wave_[number], slot, &face, nullptr, instance_at(scene_, stored)},
-                              finish, through_refraction_);
+  return shadow_transmittance(scene_, bvh_, place, finish, through_refraction_);
 }
 
 }  // namespace raygate

@@ -1,5 +1,7 @@
 #include "host/light/surface.h"
 
+#include <cmath>
+
 #include "host/scene/texture.h"
 
 namespace raygate {
@@ -10,6 +12,24 @@ glm::vec3 textured(const Scene& scene, const Triangle& face, const glm::vec3& we
 
 glm::vec2 textured_roughness(const Scene& scene, const Triangle& face, const glm::vec3& weights) {
   return roughness_at(scene, face, glm::dvec3(weights));
+}
+
+glm::vec3 bent_normal(const Scene& scene, const Triangle& face, const Corners& corners,
+                      const glm::vec3& weights, const glm::vec3& normal) {
+  return mapped_normal(scene, face, {corners[0], corners[1], corners[2]}, glm::dvec3(weights),
+                       normal);
+}
+
+bool is_masked_out(const Scene& scene, const Bvh& bvh, const HitPlace& place) {
+  const Corners corners = bvh.corners_of(place.slot);
+  const auto wide = [](const glm::vec3& v) { return Triple<double>{v.x, v.y, v.z}; };
+  const Triple<double> at =
+      unscaled_weights<double>(wide(place.ray->origin), wide(place.ray->direction),
+                               {wide(corners[0]), wide(corners[1]), wide(corners[2])});
+  const double sum = at.x + at.y + at.z;
+  const glm::dvec3 weights = glm::dvec3(at.x, at.y, at.z) / sum;
+  return std::isfinite(weights.x + weights.y + weights.z) &&
+         is_masked_out(scene, *place.face, weights);
 }
 
 }  // namespace raygate

@@ -96,6 +96,14 @@ struct Surface {
 [[nodiscard]] glm::vec2 textured_roughness(const Scene& scene, const Triangle& face,
                                            const glm::vec3& weights);
 
+/// The normal by the texture of the face's material; mapped_normal says more.
+[[nodiscard]] glm::vec3 bent_normal(const Scene& scene, const Triangle& face,
+                                    const Corners& corners, const glm::vec3& weights,
+                                    const glm::vec3& normal);
+
+/// Whether the mask of the face's material says that there is nothing where the ray hits it.
+[[nodiscard]] bool is_masked_out(const Scene& scene, const Bvh& bvh, const HitPlace& place);
+
 /// The weights of the vertices, up to a common factor: I . (B x C), I . (C x A), I . (A x B), all
 /// of one sign but for rounding.
 template <class D>
@@ -223,6 +231,20 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
     surface.normal = choose(is_smooth, sum * (1.0f / root(squared)), surface.normal);
     along = !(dot(surface.flat_normal, surface.normal) < 0.0f);
     surface.flat_normal = choose(along, surface.flat_normal, -surface.flat_normal);
+    if ((kind & kIsBumpy) != 0) {
+      Gathered<T, 3> normals;
+      lanes_to(normals.values[0], surface.normal.x);
+      lanes_to(normals.values[1], surface.normal.y);
+      lanes_to(normals.values[2], surface.normal.z);
+      for (int k = 0; k < kCount; ++k) {
+        normals.put(
+            0, k,
+            bent_normal(scene, *places[k].face, bvh.corners_of(places[k].slot),
+                        {weight.values[0][k], weight.values[1][k], weight.values[2][k]},
+                        {normals.values[0][k], normals.values[1][k], normals.values[2][k]}));
+      }
+      surface.normal = normals.triple(0);
+    }
   }
   surface.outside = towards == along;
   surface.flat_normal = choose(surface.outside, surface.flat_normal, -surface.flat_normal);
