@@ -45,16 +45,15 @@ def write_scene(output):
 
 
 def sky(direction):
-    """Radiance from a direction: a low sun, a sky that is warm at the horizon, dark ground."""
+    """Radiance from a direction: the glow of a low sun, a sky that is warm at the horizon, dark ground."""
     _, height, _ = direction
     if height < 0:
         return (0.1, 0.09, 0.08)
     low = (1 - height) ** 4
     light = [a + (b - a) * low for a, b in zip((0.1, 0.2, 0.45), (0.85, 0.6, 0.4))]
     towards = max(0.0, sum(a * b for a, b in zip(direction, SUN)))
-    glow = towards ** 40
-    disc = 400.0 if towards > 0.9985 else 0.0
-    return tuple(x + (glow + disc) * tint for x, tint in zip(light, (1.0, 0.75, 0.5)))
+    glow = 14 * towards ** 60
+    return tuple(x + glow * tint for x, tint in zip(light, (1.0, 0.75, 0.5)))
 
 
 def rgbe(colour):

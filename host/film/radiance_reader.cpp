@@ -77,8 +77,10 @@ class Reader {
   void read_size(RadiancePicture& picture) {
     const std::string_view text = line();
     const auto number = [&](std::string_view before, std::size_t& at) {
-      if (text.substr(at, before.size()) != before) at = std::string_view::npos;
-      if (at == std::string_view::npos) return 0;
+      if (at > text.size() || text.substr(at, before.size()) != before) {
+        at = std::string_view::npos;
+        return 0;
+      }
       int value = 0;
       const char* const end = text.data() + text.size();
       const auto found = std::from_chars(text.data() + at + before.size(), end, value);
