@@ -24,6 +24,7 @@ struct Options {
   std::vector<std::string> scenes;
   std::vector<int> latencies = {1, 50, 200};
   int size = 128;
+  bool structural = false;
 };
 
 class CoreBench {
@@ -53,7 +54,8 @@ class CoreBench {
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const RaySet& set,
            int latency) {
     const std::shared_ptr<CoreUnit> core =
-        make_rtl_core(Arith::kBehavioural, MemoryTiming{.latency = latency});
+        make_rtl_core(options_.structural ? Arith::kStructural : Arith::kBehavioural,
+                      MemoryTiming{.latency = latency});
     CheckFinder finder(bvh, std::make_unique<CoreFinder>(bvh, image, core),
                        std::make_unique<CpuFinder>(bvh));
     std::vector<NearestHit> hits(set.rays.size());
@@ -108,13 +110,13 @@ void add_core(CLI::App& lab, Common& common) {
       ->check(CLI::Range(128, 8192));
   app->add_option("--latency", options->latencies, "of memory, in clocks; several may be given")
       ->check(CLI::Range(1, 10'000));
+  app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
   app->callback([options, &common] {
     options->size -= options->size % 128;
     std::printf(
-        "%dx%d pixels; 64 rays in flight, a line of 64 bytes a clock. rays/s: simulated, "
-        "behavioural\n"
+        "%dx%d pixels; 64 rays in flight, a line of 64 bytes a clock. rays/s: simulated, %s\n"
         "arithmetic, the comparison with the cpu engine included.\n",
-        options->size, options->size);
+        options->size, options->size, options->structural ? "structural" : "behavioural");
     CoreBench bench(*options, common.results);
     for (const std::string& scene : options->scenes) bench.scene(scene);
   });
