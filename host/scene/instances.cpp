@@ -127,6 +127,7 @@ void write(Scene& scene, std::span<const Instance> instances) {
   scene.positions.reserve(positions);
   scene.triangles.reserve(triangles);
   std::vector<Run> normals;
+  normals.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) normals.emplace_back(mesh);
   for (const Instance& instance : instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -161,6 +162,7 @@ namespace {
 /// Before all others.
 void write_out_lamps(Scene& scene) {
   std::vector<bool> emits;
+  emits.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     emits.push_back(std::ranges::any_of(mesh.triangles, [&](const Triangle& triangle) {
       return scene.materials[triangle.material].emission != glm::vec3(0.0f);
@@ -217,6 +219,7 @@ PositionBox placed(const double (&rows)[3][4], const PositionBox& box) {
 
 void grow_by_instances(const Scene& scene, PositionBox& box) {
   std::vector<PositionBox> boxes;
+  boxes.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     boxes.push_back(mesh.positions.empty() ? PositionBox{} : box_around(mesh.positions));
   }

@@ -68,6 +68,7 @@ class BvhWriter {
   /// Others, which have no slots, stand between the triangles.
   void number_slots() {
     if (content_.others.empty()) return;
+    slots_.reserve(tree_.size());
     std::uint32_t slots = 0;
     for (const Primitive& primitive : tree_.primitives) {
       slots_.push_back(slots);

@@ -16,6 +16,7 @@ class Runs {
   Runs() = default;
   /// Runs of these lengths from `begin` on; their end is below 2^32.
   Runs(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
+    begins_.reserve(lengths.size() + 1);
     for (const std::uint32_t length : lengths) begins_.push_back(begins_.back() + length);
     if (lengths.empty()) return;
     const std::uint32_t size = end() - begin;

@@ -43,6 +43,7 @@ std::vector<glm::dmat4> places_in(const GltfFile& file, const tinygltf::Node& no
   const std::vector<double> move = numbers("TRANSLATION", 3), turn = numbers("ROTATION", 4),
                             stretch = numbers("SCALE", 3);
   std::vector<glm::dmat4> all;
+  all.reserve(places);
   for (std::size_t i = 0; i < places; ++i) {
     tinygltf::Node one;
     const auto part = [&](const std::vector<double>& from, std::size_t width) {
