@@ -19,7 +19,7 @@ struct RenderJob {
   /// What a triangle, or kNone, sends out as a lamp.
   [[nodiscard]] glm::vec3 emission_of(std::uint32_t slot) const {
     if (slot == NearestHit::kNone) return glm::vec3(0.0f);
-    return scene.materials[scene.triangles[bvh.triangle_of(slot)].material].emission;
+    return scene.materials[face_at(scene, bvh.face_of(slot)).material].emission;
   }
 };
 
