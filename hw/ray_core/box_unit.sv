@@ -67,7 +67,8 @@ module box_unit #(
   localparam int unsigned PlaceWidth = 36;  // of sums, signed
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;
 
-  if (ray_core_pkg::BoxLatency != 7 + hit_test_pkg::AdderLatency + hit_test_pkg::MultiplierLatency) begin : gen_check
+  if (ray_core_pkg::BoxLatency
+      != 7 + hit_test_pkg::AdderLatency + hit_test_pkg::MultiplierLatency) begin : gen_check
     $error("box_unit: ray_core_pkg::BoxLatency is not the number of its stages");
   end
 
@@ -254,7 +255,8 @@ module box_unit #(
     assign step = (step_amount > 11'sd32) ? '0
                 : {1'b1, mul_inverse[32*k +: 23], 9'b0} >> step_amount[5:0];
     assign a = product[32*k+31] ? -$signed({2'b0, size}) : $signed({2'b0, size});
-    assign room = $signed(PlaceWidth'(size[SizeWidth-1:22])) + $signed(PlaceWidth'(step[StepWidth-1:24]))
+    assign room = $signed(PlaceWidth'(size[SizeWidth-1:22]))
+                + $signed(PlaceWidth'(step[StepWidth-1:24]))
                 + $signed(PlaceWidth'(6)) + (mul_capped[k] ? $signed(PlaceWidth'(Whole)) : '0);
     assign says_nothing = mul_open[k] | (&product_field);
 
@@ -271,7 +273,8 @@ module box_unit #(
   logic [UnitBits:0] limit_units;
   assign limit_amount = $signed({2'b0, mul_exponent}) + 11'sd1 - $signed({3'b0, mul_limit[30:23]});
   assign limit_units  = (limit_amount > 11'sd24) ? (UnitBits + 1)'(1)
-                      : (UnitBits + 1)'({1'b1, mul_limit[22:0]} >> limit_amount[4:0]) + (UnitBits + 1)'(1);
+                      : (UnitBits + 1)'({1'b1, mul_limit[22:0]} >> limit_amount[4:0])
+                        + (UnitBits + 1)'(1);
 
   always_ff @(posedge clk_i) begin
     limit_units_q       <= (limit_amount <= 11'sd1) ? Whole : limit_units;
@@ -295,10 +298,12 @@ module box_unit #(
     for (genvar k = 0; k < 3; k++) begin : gen_axis
       logic [7:0] low, high;
       logic [StepWidth-1:0] low_way, high_way;
+      logic [StepWidth+7:0] step;
       assign low  = aligned_node_q[NodeBoxes+48*i+8*k +: 8];
       assign high = aligned_node_q[NodeBoxes+48*i+24+8*k +: 8];
-      assign low_way  = StepWidth'(((StepWidth + 8)'(low) * (StepWidth + 8)'(step_q[StepWidth*k +: StepWidth])) >> 8);
-      assign high_way = StepWidth'(((StepWidth + 8)'(high) * (StepWidth + 8)'(step_q[StepWidth*k +: StepWidth])) >> 8);
+      assign step     = (StepWidth + 8)'(step_q[StepWidth*k +: StepWidth]);
+      assign low_way  = StepWidth'(((StepWidth + 8)'(low) * step) >> 8);
+      assign high_way = StepWidth'(((StepWidth + 8)'(high) * step) >> 8);
       always_ff @(posedge clk_i) begin
         near_way_q[StepWidth*(3*i+k) +: StepWidth] <=
             back_q[k] ? high_way : low_way;
@@ -334,16 +339,16 @@ module box_unit #(
     logic entered;
 
     always_comb begin : planes
-      logic signed [PlaceWidth-1:0] near, far;
+      logic signed [PlaceWidth-1:0] near, far, near_from, far_from, near_way, far_way;
       enter = '0;
       leave = $signed(PlaceWidth'(step_limit_q));
       for (int unsigned k = 0; k < 3; k++) begin
-        near = step_back_q[k]
-             ? $signed(step_near_q[PlaceWidth*k +: PlaceWidth]) - $signed({3'b0, near_way_q[StepWidth*(3*i+k) +: StepWidth]})
-             : $signed(step_near_q[PlaceWidth*k +: PlaceWidth]) + $signed({3'b0, near_way_q[StepWidth*(3*i+k) +: StepWidth]});
-        far  = step_back_q[k]
-             ? $signed(step_far_q[PlaceWidth*k +: PlaceWidth]) - $signed({3'b0, far_way_q[StepWidth*(3*i+k) +: StepWidth]})
-             : $signed(step_far_q[PlaceWidth*k +: PlaceWidth]) + $signed({3'b0, far_way_q[StepWidth*(3*i+k) +: StepWidth]});
+        near_from = $signed(step_near_q[PlaceWidth*k +: PlaceWidth]);
+        far_from  = $signed(step_far_q[PlaceWidth*k +: PlaceWidth]);
+        near_way  = $signed({3'b0, near_way_q[StepWidth*(3*i+k) +: StepWidth]});
+        far_way   = $signed({3'b0, far_way_q[StepWidth*(3*i+k) +: StepWidth]});
+        near = step_back_q[k] ? near_from - near_way : near_from + near_way;
+        far  = step_back_q[k] ? far_from - far_way : far_from + far_way;
         if (near > enter) enter = near;
         if (far < leave) leave = far;
       end
@@ -353,7 +358,8 @@ module box_unit #(
                    & (step_node_q[Kinds+KindWidth*i +: KindWidth] != ray_core_pkg::KindAbsent);
     always_ff @(posedge clk_i) begin
       keys_q[KeyWidth*i +: KeyWidth] <=
-          {~entered, (entered & ~step_every_box_q) ? enter[UnitBits:0] : (UnitBits + 1)'(0), NumberWidth'(i)};
+          {~entered, (entered & ~step_every_box_q) ? enter[UnitBits:0] : (UnitBits + 1)'(0),
+           NumberWidth'(i)};
     end
   end
 
@@ -365,7 +371,8 @@ module box_unit #(
 
   // ---- Sort, in two stages
 
-  function automatic logic [2*KeyWidth-1:0] in_order(logic [KeyWidth-1:0] a, logic [KeyWidth-1:0] b);
+  function automatic logic [2*KeyWidth-1:0] in_order(logic [KeyWidth-1:0] a,
+                                                     logic [KeyWidth-1:0] b);
     in_order = (a > b) ? {a, b} : {b, a};  // the smaller one lowest
   endfunction
 
@@ -412,7 +419,8 @@ module box_unit #(
     for (int unsigned i = 0; i < Children; i++) begin
       offsets[OffsetWidth*i +: OffsetWidth] = next;
       kind = half_head_q[ray_core_pkg::AddressWidth+KindWidth*i +: KindWidth];
-      next = next + ((kind == ray_core_pkg::KindInner) ? OffsetWidth'(1) : OffsetWidth'(kind[CountWidth-1:0]));
+      next = next + ((kind == ray_core_pkg::KindInner) ? OffsetWidth'(1)
+                                                       : OffsetWidth'(kind[CountWidth-1:0]));
     end
     for (int unsigned n = 0; n < Children; n++) begin
       key = sorted[KeyWidth*n +: KeyWidth];
@@ -422,14 +430,16 @@ module box_unit #(
       inner[n] = ~key[KeyWidth-1] & is_inner;
       leaf[n]  = ~key[KeyWidth-1] & ~is_inner;
       entries[EntryWidth*n +: EntryWidth] =
-          {key[NumberWidth+UnitBits] ? {EnterWidth{1'b1}} : key[NumberWidth+UnitBits-1 -: EnterWidth],
+          {key[NumberWidth+UnitBits] ? {EnterWidth{1'b1}}
+                                     : key[NumberWidth+UnitBits-1 -: EnterWidth],
            offsets[OffsetWidth*number +: OffsetWidth],
            is_inner ? CountWidth'(0) : kind[CountWidth-1:0]};
     end
   end
 
   always_ff @(posedge clk_i) begin
-    group_o <= {half_head_q[ray_core_pkg::AddressWidth-1:0], half_head_q[HeadWidth-1 -: 9], entries};
+    group_o <= {half_head_q[ray_core_pkg::AddressWidth-1:0], half_head_q[HeadWidth-1 -: 9],
+                entries};
     inner_o <= inner;
     leaf_o  <= leaf;
   end

@@ -18,7 +18,7 @@ module leaf_walk #(
   output logic [RayWidth-1:0]     limit_ray_o,
   input  logic [30:0]             limit_i,   // of limit_ray_o, in the same clock
   input  logic                    ended_i,   // of limit_ray_o: it needs nothing any more
-  input  logic                    crowded_i, // of limit_ray_o: as many tests on their way as can be counted
+  input  logic                    crowded_i, // of limit_ray_o: no more tests can be counted
   output logic [Rays-1:0]         held_o,    // has a group here
   // triangles asked for
   output logic                    triangle_valid_o,
@@ -77,11 +77,13 @@ module leaf_walk #(
 
   assign limit_ray_o = ray_q;
   assign beyond = ended_i | ray_core_pkg::is_beyond(
-      group_q[Children*EntryWidth +: ray_core_pkg::ExponentWidth], entry[EntryWidth-1 -: EnterWidth], limit_i);
+      group_q[Children*EntryWidth +: ray_core_pkg::ExponentWidth],
+      entry[EntryWidth-1 -: EnterWidth], limit_i);
   assign triangle_valid_o = valid_q & ~beyond & ~crowded_i;
   assign triangle_ray_o   = ray_q;
   assign triangle_line_o  = group_q[GroupWidth-1 -: AddressWidth]
-                          + AddressWidth'(entry[CountWidth +: OffsetWidth]) + AddressWidth'(number_q);
+                          + AddressWidth'(entry[CountWidth +: OffsetWidth])
+                          + AddressWidth'(number_q);
   assign given = triangle_valid_o & triangle_ready_i;
   assign last  = number_q + 1'b1 == entry[CountWidth-1:0];
   assign done  = valid_q & (beyond | (given & last & (rest == '0)));

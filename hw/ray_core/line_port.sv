@@ -146,7 +146,9 @@ module line_port #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) node_last_q <= 1'b0;
-    else if (out_ready & (node_miss_valid | triangle_miss_valid)) node_last_q <= node_miss_valid & node_miss_ready;
+    else if (out_ready & (node_miss_valid | triangle_miss_valid)) begin
+      node_last_q <= node_miss_valid & node_miss_ready;
+    end
   end
 
   fifo #(

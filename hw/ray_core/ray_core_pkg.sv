@@ -43,18 +43,21 @@ package ray_core_pkg;
   localparam int unsigned EnterWidth = 12;
   localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
   localparam int unsigned CountWidth = 3;   // of a leaf's triangles; 0: an inner node
-  localparam int unsigned EntryWidth = EnterWidth + OffsetWidth + CountWidth;  // {enter, offset, count}
+  // {enter, offset, count}
+  localparam int unsigned EntryWidth = EnterWidth + OffsetWidth + CountWidth;
   localparam int unsigned ExponentWidth = 9;
-  localparam int unsigned GroupWidth = AddressWidth + ExponentWidth + Children * EntryWidth;  // {base, exponent, entries}
+  // {base, exponent, entries}
+  localparam int unsigned GroupWidth = AddressWidth + ExponentWidth + Children * EntryWidth;
 
   // Whether a child begins surely beyond the limit, a binary32 number without its sign: the limit in the
   // entry's units, rounded down, is below `enter`.
-  function automatic logic is_beyond(logic [ExponentWidth-1:0] exponent, logic [EnterWidth-1:0] enter,
-                                     logic [30:0] limit);
+  function automatic logic is_beyond(logic [ExponentWidth-1:0] exponent,
+                                     logic [EnterWidth-1:0] enter, logic [30:0] limit);
     logic signed [10:0] amount;
     amount    = $signed({2'b0, exponent}) + 11'sd11 - $signed({3'b0, limit[30:23]});
     is_beyond = (amount > 11'sd11)
-              && (amount > 11'sd23 ? enter != '0 : {12'b0, enter} > ({1'b1, limit[22:0]} >> amount[4:0]));
+              && (amount > 11'sd23 ? enter != '0
+                                   : {12'b0, enter} > ({1'b1, limit[22:0]} >> amount[4:0]));
   endfunction
 
   // From the clock edge that takes a node to the one after which its group is there, see box_unit.
@@ -68,7 +71,7 @@ package ray_core_pkg;
     ResultRest  = 2'd2   // subtrees for which the stack had no room: the host sends the ray there
   } result_e;
 
-  localparam int unsigned NodesWidth = 7 * Children;  // of a rest: bit i stands for the node at line + i
+  localparam int unsigned NodesWidth = 7 * Children;  // of a rest: bit i is the node at line + i
   localparam int unsigned TestsWidth = 16;
 
   // ---- Events of a clock, for counters

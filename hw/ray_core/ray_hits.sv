@@ -10,7 +10,7 @@
 // result_i. P comes later, in the order of the results that were hits, PointDelay clocks at most.
 module ray_hits #(
   parameter int unsigned Rays = 64,
-  parameter int unsigned InFlight = 64,  // tests that may be on their way from when tests_allowed_o was read
+  parameter int unsigned InFlight = 64,  // tests that are on their way when tests_allowed_o falls
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned PlaneErrorWidth = set_up_pkg::PlaneErrorWidth,
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
@@ -26,7 +26,7 @@ module ray_hits #(
   // a test sets out, a ray's triangle was asked for
   input  logic                       test_i,
   input  logic [RayWidth-1:0]        test_ray_i,
-  output logic                       tests_allowed_o,  // there is room for the doubts of what is on its way
+  output logic                       tests_allowed_o,  // room for the doubts of all on their way
   // a test is over
   input  logic                       result_i,
   input  logic [RayWidth-1:0]        result_ray_i,
@@ -94,8 +94,8 @@ module ray_hits #(
   logic [31:0] margin, old_margin, low, high, old_low, sum, old_t, limit;
 
   assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_t_error_i), result_normal_error_i);
-  assign t_error = set_up_pkg::t_error_exponent(TErrorWidth'(result_t_error_i), result_normal_error_i,
-                                                result_distance_error_i);
+  assign t_error = set_up_pkg::t_error_exponent(
+      TErrorWidth'(result_t_error_i), result_normal_error_i, result_distance_error_i);
   assign hit   = result_i & ~result_ignored_i & result_hit_i & good;
   assign doubt = result_i & ~result_ignored_i & (result_doubt_i | (result_hit_i & ~good));
 
@@ -181,7 +181,9 @@ module ray_hits #(
     if (!rst_ni) begin
       testing_o <= '0;
     end else begin
-      if (result_i && !same && counts[result_ray_i] == CountWidth'(1)) testing_o[result_ray_i] <= 1'b0;
+      if (result_i && !same && counts[result_ray_i] == CountWidth'(1)) begin
+        testing_o[result_ray_i] <= 1'b0;
+      end
       if (test_i) testing_o[test_ray_i] <= 1'b1;
     end
   end

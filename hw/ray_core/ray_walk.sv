@@ -65,7 +65,8 @@ module ray_walk #(
 
   assign walking_o = busy_q | waiting_q;
 
-  function automatic logic [PlaceWidth-1:0] place(logic [RayWidth-1:0] slot, logic [LevelWidth-1:0] level);
+  function automatic logic [PlaceWidth-1:0] place(logic [RayWidth-1:0] slot,
+                                                    logic [LevelWidth-1:0] level);
     place = PlaceWidth'(slot) * PlaceWidth'(Depth) + PlaceWidth'(level);
   endfunction
 
@@ -122,7 +123,8 @@ module ray_walk #(
   end
 
   assign beyond = ended_i | ray_core_pkg::is_beyond(
-      group[Children*EntryWidth +: ray_core_pkg::ExponentWidth], entry[OffsetWidth +: EnterWidth], limit_i);
+      group[Children*EntryWidth +: ray_core_pkg::ExponentWidth],
+      entry[OffsetWidth +: EnterWidth], limit_i);
   assign go   = picked_q & ~beyond;
   assign last = beyond | (rest == '0);  // of the group
 
@@ -134,8 +136,9 @@ module ray_walk #(
   end
   always_ff @(posedge clk_i) begin
     node_ray_o  <= picked_q ? ray_q : start_ray_i;
-    node_line_o <= picked_q ? group[GroupWidth-1 -: AddressWidth] + AddressWidth'(entry[OffsetWidth-1:0])
-                            : start_line_i;
+    node_line_o <= picked_q
+        ? group[GroupWidth-1 -: AddressWidth] + AddressWidth'(entry[OffsetWidth-1:0])
+        : start_line_i;
   end
 
   // ---- Push what box_unit found

@@ -233,7 +233,7 @@ module set_up_unit #(
     largest = (z > largest_xy) ? z : largest_xy;
   endfunction
 
-  localparam int unsigned X = FracWidth;  // where the exponent fields of a vector's components begin
+  localparam int unsigned X = FracWidth;  // where exponent fields of a vector's components begin
   localparam int unsigned Y = Width + FracWidth;
   localparam int unsigned Z = 2 * Width + FracWidth;
   localparam int unsigned Normal = 9 * Width;
@@ -265,7 +265,8 @@ module set_up_unit #(
   assign normal_error   = (ExpWidth + 2)'(beside_terms) - (ExpWidth + 2)'(beside_normal);
   assign distance_error = (ExpWidth + 2)'(beside_vertex) + (ExpWidth + 2)'(beside_terms)
                         - (ExpWidth + 2)'(d_field) - Bias;
-  assign fields_good = (beside_terms >= ExpWidth'(LeastField)) & ~(&beside_terms) & ~(&beside_vertex)
+  assign fields_good = (beside_terms >= ExpWidth'(LeastField)) & ~(&beside_terms)
+                     & ~(&beside_vertex)
                      & (d_field >= ExpWidth'(LeastField)) & ~(&d_field);
   assign plane_good = fields_good & (normal_error <= (ExpWidth + 2)'(MostError))
                     & (distance_error[ExpWidth+1] | (distance_error <= (ExpWidth + 2)'(MostError)));
