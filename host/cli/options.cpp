@@ -36,7 +36,7 @@ Engine
                              behavioural: + and *, simulated faster
   --lanes 1|2|4|8            pipelined units side by side, per thread (1)
   --threads N                threads (one per processor)
-  --instances auto|keep|write   a mesh in many places: in memory once, or written
+  --instances auto|keep|write   a mesh in many places: in memory once or written
                              out; auto keeps what has over 4 million triangles
   --point-error X            compute a hit's point on the host if the unit's may
                              be off by X of the distance (2^-16; 0: always, inf)
