@@ -55,8 +55,8 @@ Picture
   --up AXIS                  upwards: x, -x, y ... (a guess: y or z)
   --fov DEGREES              vertical field of view of any camera (35)
   --projection NAME          perspective (default), orthographic, panorama
-  --aperture R               radius of the lens: what is not in focus is blurred,
-                             with several samples per pixel (0)
+  --aperture R               radius of the lens: what is not in focus is blurred
+                             where a pixel has several samples (0)
   --focus D                  distance of what is in focus (the target's)
   --ground on|off            a ground that shows shadows alone (on from above,
                              where there is no camera and no light)
@@ -79,7 +79,7 @@ Light
   --depth, --max-depth N     reflections and refractions in a row (4; path: 64)
   --threshold X              whitted: ignore rays that weigh less (0.00390625)
   --ambient X                whitted: ambient light (from background or lamps)
-  --environment FILE         light from all around: a latitude-longitude EXR or HDR
+  --environment FILE         light from all around: EXR or HDR, latitude-longitude
   --environment-rotation DEG counter-clockwise, seen from above (0)
   --environment-strength X   times what the file has (1)
   --seed N                   seed of the random numbers (0)
