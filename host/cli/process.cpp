@@ -16,6 +16,7 @@ namespace {
 constexpr int kUserError = 2;
 constexpr int kSignalBase = 128;  // as shells report a death by signal
 
+int why_output_failed = 0;  // errno of a failed print; 0: none failed
 std::atomic<int> noted_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
 
@@ -61,7 +62,10 @@ std::string printable(std::string_view text, bool newlines) {
 }
 
 void print(std::string_view text, std::FILE* stream) {
-  std::fputs(printable(text, true).c_str(), stream);
+  errno = 0;
+  if (std::fputs(printable(text, true).c_str(), stream) < 0 && stream == stdout) {
+    why_output_failed = errno;
+  }
 }
 
 void print_warning(std::string_view what) {
@@ -72,7 +76,8 @@ void flush_standard_output() {
   errno = 0;
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
   if (!failed) return;
-  const std::string reason = errno != 0 ? std::strerror(errno) : "an earlier write failed";
+  const int why = why_output_failed != 0 ? why_output_failed : errno;
+  const std::string reason = why != 0 ? std::strerror(why) : "an earlier write failed";
   throw InputError("standard output: cannot write: " + reason);
 }
 

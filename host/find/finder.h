@@ -18,6 +18,12 @@ namespace raygate {
 /// What the search for one ray's hit took.
 struct RayWork {
   std::uint32_t tests = 0, doubts = 0;
+
+  RayWork& operator+=(const RayWork& other) {
+    tests += other.tests;
+    doubts += other.doubts;
+    return *this;
+  }
 };
 
 /// What is wanted of a search, given once. Spans have one element a ray, or are empty; they are

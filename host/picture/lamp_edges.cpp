@@ -4,13 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "host/find/finder.h"
 #include "host/picture/view_pyramid.h"
 
 namespace raygate {
 
 std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
-                            const PixelRect& tile, std::span<LampEdge> is_edge) {
+                            const PixelRect& tile, std::span<LampEdge> is_edge,
+                            std::span<RayWork> work) {
   // Corners of pixels, up to so many beyond the tile's own.
   const int beyond = static_cast<int>(std::ceil(filter_radius(job.options.filter) - 0.5));
   const auto may_see = [&](const AreaLight& lamp) {
@@ -32,9 +32,19 @@ std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& fi
     }
   }
   std::vector<NearestHit> hits(rays.size());
-  finder.find(
-      rays, {.common_origin = job.camera.has_common_origin(), .culling = job.options.skips.culling},
-      hits);
+  std::vector<RayWork> of_rays(work.empty() ? 0 : rays.size());
+  finder.find(rays,
+              {.common_origin = job.camera.has_common_origin(),
+               .culling = job.options.skips.culling,
+               .work = of_rays},
+              hits);
+  for (std::size_t i = 0; i < of_rays.size(); ++i) {  // to the nearest pixel
+    const int x = static_cast<int>(i % std::size_t(columns)) - beyond;
+    const int y = static_cast<int>(i / std::size_t(columns)) - beyond;
+    const int column = std::clamp(x, 0, tile.width() - 1);
+    const int row = std::clamp(y, 0, tile.height() - 1);
+    work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += of_rays[i];
+  }
   const auto emission_at = [&](int x, int y) {
     return job.emission_of(hits[std::size_t(y) * std::size_t(columns) + std::size_t(x)].slot);
   };

@@ -5,11 +5,10 @@
 #include <span>
 
 #include "host/film/film.h"
+#include "host/find/finder.h"
 #include "host/picture/render_job.h"
 
 namespace raygate {
-
-class Finder;
 
 /// Whether a pixel is one of them.
 enum class LampEdge : std::uint8_t { kUnknown, kNo, kYes };
@@ -23,8 +22,10 @@ enum class LampEdge : std::uint8_t { kUnknown, kNo, kYes };
 /// A pixel is one of them if rays through the corners of pixels, as far
 /// as its filter reaches, meet different emission. That depends on no sample, so that more rays
 /// where it is so favour nothing. Lamps between all corners, smaller than pixels, are not found.
-/// Returns how many rays it took.
+/// Returns how many rays it took;
+/// what they cost is added to `work`, by pixel of the tile, unless that is empty.
 std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
-                            const PixelRect& tile, std::span<LampEdge> is_edge);
+                            const PixelRect& tile, std::span<LampEdge> is_edge,
+                            std::span<RayWork> work);
 
 }  // namespace raygate

@@ -125,6 +125,8 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   output_.shadows.clear();
   from_lamps_.assign(samples_, glm::vec3(0.0f));
   sharpened_.assign(pixels_.size(), {});
+  tile_ = tile;
+  lamp_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
   if (job_.options.skips.empty_tiles && job_.lights.environment() == nullptr &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
@@ -152,7 +154,7 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
   Stopwatch watch;
   std::size_t rays = 0;
   if (lamp_edges_[pixels_[0].index] == LampEdge::kUnknown) {
-    rays = find_lamp_edges(job_, finder_, film_, tile, lamp_edges_);
+    rays = find_lamp_edges(job_, finder_, film_, tile, lamp_edges_, lamp_work_);
   }
   wave_.clear();
   for (const Pixel& pixel : pixels_) {
@@ -167,13 +169,15 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
   stats_.camera_rays += rays;
   if (wave_.rays.empty()) return;
   hits_.resize(wave_.rays.size());
+  work_.resize(is_counting_ ? wave_.rays.size() : 0);
   stats_.shade_seconds += watch.lap();
-  finder_.find(
-      wave_.rays,
-      {.common_origin = job_.camera.has_common_origin(), .culling = job_.options.skips.culling},
-      hits_);
+  finder_.find(wave_.rays,
+               {.common_origin = job_.camera.has_common_origin(),
+                .culling = job_.options.skips.culling,
+                .work = work_},
+               hits_);
   watch.lap();
-  auto hit = hits_.begin();
+  std::size_t ray = 0;
   std::size_t sample = 0;
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     const Pixel& pixel = pixels_[p];
@@ -184,7 +188,10 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
       const glm::vec3 emission = job_.emission_of(slot);
       for (int k = 0; k < 3; ++k) sharpened_[p][k].add(share * double{emission[k]});
     };
-    for (std::size_t i = first * kLooks; i < sample * kLooks; ++i) add((hit++)->slot, 1.0 / kLooks);
+    for (std::size_t i = first * kLooks; i < sample * kLooks; ++i, ++ray) {
+      add(hits_[ray].slot, 1.0 / kLooks);
+      if (is_counting_) lamp_work_[place_in_tile(pixel)] += work_[ray];
+    }
     for (std::size_t i = first; i < sample; ++i) add(seen_[i].slot, -1.0);
   }
   stats_.shade_seconds += watch.lap();
@@ -274,6 +281,11 @@ void TileRenderer::write() {
       if (!film_.doubts.empty()) film_.doubts[at] += seen.work.doubts;
     }
     for (int k = 0; k < 3; ++k) color[k] += sharpened_[p][k];
+    if (is_counting_) {
+      const RayWork& work = lamp_work_[place_in_tile(pixel)];
+      if (!film_.tests.empty()) film_.tests[at] += work.tests;
+      if (!film_.doubts.empty()) film_.doubts[at] += work.doubts;
+    }
     const int samples = pixel.end - job_.options.first_sample;
     if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
     if (!kept.color.empty()) kept.color[at] = color;

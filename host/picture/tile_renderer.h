@@ -71,6 +71,11 @@ class TileRenderer {
   ShadowRays shadow_rays_;
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.
+  [[nodiscard]] std::size_t place_in_tile(const Pixel& pixel) const {
+    return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +
+           std::size_t(pixel.x - tile_.x0);
+  }
+
   std::vector<Pixel> pixels_;
   std::size_t samples_ = 0;  // of all of them
   std::vector<Seen> seen_;   // by sample
@@ -78,6 +83,8 @@ class TileRenderer {
   WaveOutput output_;
   std::vector<glm::vec3> from_lamps_;                // by sample: what shadow rays have brought
   std::vector<std::array<SampleSum, 3>> sharpened_;  // by pixel: see sharpen_lamps()
+  PixelRect tile_;
+  std::vector<RayWork> lamp_work_;  // by pixel of the tile: of what sharpen_lamps() traced
   Wave wave_;
   std::vector<NearestHit> hits_;  // of the wave
   std::vector<RayWork> work_;     // of the wave, if it is counted

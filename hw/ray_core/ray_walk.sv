@@ -66,8 +66,8 @@ module ray_walk #(
   assign walking_o = busy_q | waiting_q;
 
   function automatic logic [PlaceWidth-1:0] place(logic [RayWidth-1:0] slot,
-                                                    logic [LevelWidth-1:0] level);
-    place = PlaceWidth'(slot) * PlaceWidth'(Depth) + PlaceWidth'(level);
+                                                    logic [LevelWidth-1:0] depth);
+    place = PlaceWidth'(slot) * PlaceWidth'(Depth) + PlaceWidth'(depth);
   endfunction
 
   // ---- Pick

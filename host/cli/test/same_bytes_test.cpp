@@ -38,13 +38,14 @@ TEST_P(EveryScene, EnginesGiveTheSameBytes) {
   const json cpu = stats_;
   EXPECT_GT(cpu.at("hits"), 0) << "an empty picture shows nothing";
   EXPECT_EQ(cpu.at("clocks"), 0);
-  render({scene, "--size", "64x48", "--engine", "rtl", "-o", "rtl"});
+  render({scene, "--size", "64x48", "--engine", "rtl", "--spp", "1", "-o", "rtl"});
   EXPECT_GT(stats_.at("clocks"), 0);
   EXPECT_GT(stats_.at("quotients"), 0);  // how many each engine needs is its own affair
   expect_same_pictures("cpu", "rtl");
-  render({scene, "--size", "64x48", "--lanes", "4", "-o", "lanes"});
+  render({scene, "--size", "64x48", "--lanes", "4", "--spp", "1", "-o", "lanes"});
   expect_same_pictures("cpu", "lanes");
-  render({scene, "--size", "64x48", "--unit", "serial", "--engine", "model", "-o", "serial"});
+  render({scene, "--size", "64x48", "--unit", "serial", "--engine", "model", "--spp", "1", "-o",
+          "serial"});
   expect_same_pictures("cpu", "serial");
 }
 
