@@ -163,7 +163,7 @@ module box_unit #(
   always_comb begin
     least = (&sub_limit[30:23]) ? NoExponent : $signed({3'b0, sub_limit[30:23]}) + 11'sd1;
     for (int unsigned k = 0; k < 3; k++) begin
-      if ($signed(reaches[11*k +: 11]) < least) least = $signed(reaches[11*k +: 11]);
+      if ($signed(reaches[11*k+:11]) < least) least = $signed(reaches[11*k+:11]);
     end
     scale_exponent = (least < LeastExponent) ? LeastExponent : least;
   end
@@ -357,9 +357,11 @@ module box_unit #(
     assign entered = (step_every_box_q | (enter <= leave))
                    & (step_node_q[Kinds+KindWidth*i +: KindWidth] != ray_core_pkg::KindAbsent);
     always_ff @(posedge clk_i) begin
-      keys_q[KeyWidth*i +: KeyWidth] <=
-          {~entered, (entered & ~step_every_box_q) ? enter[UnitBits:0] : (UnitBits + 1)'(0),
-           NumberWidth'(i)};
+      keys_q[KeyWidth*i+:KeyWidth] <= {
+        ~entered,
+        (entered & ~step_every_box_q) ? enter[UnitBits:0] : (UnitBits + 1)'(0),
+        NumberWidth'(i)
+      };
     end
   end
 

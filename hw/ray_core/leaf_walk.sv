@@ -71,7 +71,7 @@ module leaf_walk #(
   always_comb begin
     entry = '0;
     for (int unsigned n = 0; n < Children; n++) begin
-      if (lowest[n]) entry = group_q[EntryWidth*n +: EntryWidth];
+      if (lowest[n]) entry = group_q[EntryWidth*n+:EntryWidth];
     end
   end
 

@@ -18,11 +18,11 @@ package ray_core_pkg;
   // or as many triangle lines as the leaf has.
 
   localparam int unsigned Children = 7;
-  localparam int unsigned NodeOrigin = 0;       // three binary32, finite
-  localparam int unsigned NodeExponents = 96;   // three e_k of eight bits, 1 to 254
-  localparam int unsigned NodeBase = 120;       // AddressWidth bits
-  localparam int unsigned NodeKinds = 148;      // four bits a child, see below
-  localparam int unsigned NodeBoxes = 176;      // 48 bits a child: low x, y, z, high x, y, z
+  localparam int unsigned NodeOrigin = 0;  // three binary32, finite
+  localparam int unsigned NodeExponents = 96;  // three e_k of eight bits, 1 to 254
+  localparam int unsigned NodeBase = 120;  // AddressWidth bits
+  localparam int unsigned NodeKinds = 148;  // four bits a child, see below
+  localparam int unsigned NodeBoxes = 176;  // 48 bits a child: low x, y, z, high x, y, z
   localparam int unsigned KindWidth = 4;
   localparam int unsigned BoxWidth = 48;
   localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of so many triangles
@@ -30,10 +30,10 @@ package ray_core_pkg;
 
   // ---- Triangle line
 
-  localparam int unsigned TriangleCorners = 0;   // nine binary32: A.x, A.y, A.z, B.x, ... C.z
-  localparam int unsigned TriangleIndex = 288;   // 32 bits, the host's name of the triangle
+  localparam int unsigned TriangleCorners = 0;  // nine binary32: A.x, A.y, A.z, B.x, ... C.z
+  localparam int unsigned TriangleIndex = 288;  // 32 bits, the host's name of the triangle
 
-  localparam int unsigned TriangleWidth = 320;   // what is used of the line
+  localparam int unsigned TriangleWidth = 320;  // what is used of the line
 
   // ---- What box_unit says of a node: a group of children
   //
@@ -42,7 +42,7 @@ package ray_core_pkg;
 
   localparam int unsigned EnterWidth = 12;
   localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
-  localparam int unsigned CountWidth = 3;   // of a leaf's triangles; 0: an inner node
+  localparam int unsigned CountWidth = 3;  // of a leaf's triangles; 0: an inner node
   // {enter, offset, count}
   localparam int unsigned EntryWidth = EnterWidth + OffsetWidth + CountWidth;
   localparam int unsigned ExponentWidth = 9;

@@ -66,7 +66,7 @@ module ray_walk #(
   assign walking_o = busy_q | waiting_q;
 
   function automatic logic [PlaceWidth-1:0] place(logic [RayWidth-1:0] slot,
-                                                    logic [LevelWidth-1:0] depth);
+                                                  logic [LevelWidth-1:0] depth);
     place = PlaceWidth'(slot) * PlaceWidth'(Depth) + PlaceWidth'(depth);
   endfunction
 
@@ -118,7 +118,7 @@ module ray_walk #(
   always_comb begin
     entry = '0;
     for (int unsigned n = 0; n < Children; n++) begin
-      if (lowest[n]) entry = group[EntryWidth*n+CountWidth +: EnterWidth+OffsetWidth];
+      if (lowest[n]) entry = group[EntryWidth*n+CountWidth+:EnterWidth+OffsetWidth];
     end
   end
 
@@ -185,7 +185,7 @@ module ray_walk #(
   always_comb begin
     nodes = '0;
     for (int unsigned n = 0; n < Children; n++) begin
-      if (box_inner_i[n]) nodes[box_group_i[EntryWidth*n+CountWidth +: OffsetWidth]] = 1'b1;
+      if (box_inner_i[n]) nodes[box_group_i[EntryWidth*n+CountWidth+:OffsetWidth]] = 1'b1;
     end
   end
 

@@ -30,8 +30,8 @@ package set_up_pkg;
   endfunction
 
   function automatic logic [TErrorExponentWidth-1:0] t_error_exponent(
-      logic [TErrorExponentWidth-1:0] t_error, logic [PlaneErrorWidth-1:0] normal_error,
-      logic [PlaneErrorWidth-1:0] distance_error);
+    logic [TErrorExponentWidth-1:0] t_error, logic [PlaneErrorWidth-1:0] normal_error,
+    logic [PlaneErrorWidth-1:0] distance_error);
     logic [TErrorExponentWidth-1:0] plane, distance;
     plane    = t_error + TErrorExponentWidth'(normal_error);
     distance = TErrorExponentWidth'(distance_error);

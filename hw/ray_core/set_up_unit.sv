@@ -255,7 +255,7 @@ module set_up_unit #(
     .data_i({vertex_field, normal_field, terms_field}),
     .data_o({beside_vertex, beside_normal, beside_terms})
   );
-  assign d_field = d[FracWidth +: ExpWidth];
+  assign d_field = d[FracWidth+:ExpWidth];
 
   localparam int unsigned MostError = set_up_pkg::MostPlaneError;
   localparam logic [ExpWidth+1:0] Bias = (ExpWidth + 2)'(2 ** (ExpWidth - 1) - 1);
@@ -275,7 +275,7 @@ module set_up_unit #(
 
   // ---- The record: edges and N beside their sums
 
-  localparam logic [Width-1:0] NaN = {1'b0, {ExpWidth{1'b1}}, 1'b1, {(FracWidth-1){1'b0}}};
+  localparam logic [Width-1:0] NaN = {1'b0, {ExpWidth{1'b1}}, 1'b1, {(FracWidth - 1) {1'b0}}};
   logic [12*Width-1:0] planes;  // the edges, N
   logic [3*Width-1:0] delayed_bounds;
 
