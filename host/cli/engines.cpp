@@ -65,7 +65,7 @@ FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh,
   if (options.engine == Engine::kCpu) {
     return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
   }
-  const FinderFactory make_unit = make_unit_factory(options, bvh, skips);
+  FinderFactory make_unit = make_unit_factory(options, bvh, skips);
   if (options.engine != Engine::kCheck) return make_unit;
   return [&bvh, make_unit] {
     return std::make_unique<CheckFinder>(bvh, make_unit(), std::make_unique<CpuFinder>(bvh));

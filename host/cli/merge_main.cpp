@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
   for (const auto& path : options.paths()) require_writable(path);
 
   std::vector<NamedFilm> films;
+  films.reserve(parts.size());
   for (const std::string& part : parts) films.emplace_back(part, read_film(part));
   FilmFile whole = merge(std::move(films));
   const bool is_part = std::ranges::find(whole.metadata.options, kSamplesAttribute,

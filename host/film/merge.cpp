@@ -155,7 +155,7 @@ std::optional<std::string> different_picture(const ExrMetadata& found,
   const auto here = facts(found), there = facts(expected);
   const auto value = [](const auto& all, const std::string& name) {
     const auto at = all.find(name);
-    return at == all.end() ? "no " + name : name + " " + at->second;
+    return at == all.end() ? "no " + name : std::string(name).append(" ").append(at->second);
   };
   for (const auto* side : {&here, &there}) {
     for (const auto& [name, ignored] : *side) {
@@ -173,6 +173,7 @@ FilmFile merge(std::vector<NamedFilm> parts) {
     by_window[edges(part.second.film.window)].push_back(std::move(part));
   }
   std::vector<NamedFilm> windows;
+  windows.reserve(by_window.size());
   for (auto& [ignored, group] : by_window) windows.push_back(joined(group));
   const PixelRect all = bounds(windows);
   require_tiling(windows, all);

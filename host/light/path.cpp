@@ -115,9 +115,9 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
     const Triple<T> light = light_from_direction(
         hits, towards, hits.bsdf.scattered(towards) * share_of(asked, scattered),
         environment.radiance(towards), asked);
-    ask<T>(hits, 0,
-           is_a(Lights::Kind::kEnvironment) & hits.bsdf.scatters() & (asked > kLeastDensity), light,
-           lamps, {towards, zero<T>(), place.slot});
+    const auto is_environment = is_a(Lights::Kind::kEnvironment), scatters = hits.bsdf.scatters();
+    ask<T>(hits, 0, is_environment & scatters & (asked > kLeastDensity), light, lamps,
+           {towards, zero<T>(), place.slot});
   }
   if (!any_area) return;
   for (int k = 0; k < kCount; ++k) {
@@ -132,8 +132,9 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
   const T scattered =
       hits.bsdf.density(way.direction) * LobeChances<T>(hits.bsdf).share_of_scatter();
   const Triple<T> weighted = in.triple(kLight) * (share_of(asked, scattered) / per_area);
-  ask<T>(hits, 0, is_a(Lights::Kind::kArea) & hits.bsdf.scatters() & (cosine > 0.0f),
-         light_from_area(hits, way, point, weighted), lamps, point);
+  const auto is_area = is_a(Lights::Kind::kArea), scatters = hits.bsdf.scatters();
+  ask<T>(hits, 0, is_area & scatters & (cosine > 0.0f), light_from_area(hits, way, point, weighted),
+         lamps, point);
 }
 
 template <class T>

@@ -58,8 +58,9 @@ int main(int argc, char** argv) {
     std::fputs(kUsage, stderr);
     return 2;
   }
-  const auto cores = rtl_float_cores({std::atoi(argv[2]), std::atoi(argv[3])});
-  const int rounding = std::atoi(argv[4]);
+  const auto number = [&](int i) { return static_cast<int>(std::strtol(argv[i], nullptr, 10)); };
+  const auto cores = rtl_float_cores({number(2), number(3)});
+  const int rounding = number(4);
   if (!cores || rounding < 0 || rounding > 4) {
     std::fputs(
         "float_cores: expected a format of 8 and 23, 5 and 10, 8 and 7 or 4 and 3 bits, and "

@@ -166,7 +166,7 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   const double least = is_mask ? cutoff / factor : cutoff;
   if (map.texture == kNoIndex || scene_.textures[map.texture].least_code() >= least) return;
   if (!is_mask) warn_once("textures of opacity without a mask are masks of one half");
-  material.opacity_map = map;
+  material.opacity_map = std::move(map);
   material.opacity_cutoff = static_cast<float>(least);
 }
 
