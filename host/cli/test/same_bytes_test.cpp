@@ -47,6 +47,9 @@ TEST_P(EveryScene, EnginesGiveTheSameBytes) {
   render({scene, "--size", "64x48", "--unit", "serial", "--engine", "model", "--spp", "1", "-o",
           "serial"});
   expect_same_pictures("cpu", "serial");
+  render({scene, "--size", "64x48", "--unit", "core", "--arith", "behavioural", "--spp", "1", "-o",
+          "core"});
+  expect_same_pictures("cpu", "core");
 }
 
 TEST_P(EveryScene, VectorsGiveTheSameBytes) {
