@@ -168,10 +168,12 @@ void write_out_lamps(Scene& scene) {
       return scene.materials[triangle.material].emission != glm::vec3(0.0f);
     }));
   }
-  const auto others = std::ranges::stable_partition(
-      scene.instances, [&](const Instance& instance) { return emits[instance.mesh]; });
-  const std::vector<Instance> lamps(scene.instances.begin(), others.begin());
-  scene.instances.erase(scene.instances.begin(), others.begin());
+  // Clang 14 doesn't compile the library's std::ranges::stable_partition.
+  const auto others =
+      std::stable_partition(scene.instances.begin(), scene.instances.end(),
+                            [&](const Instance& instance) { return emits[instance.mesh]; });
+  const std::vector<Instance> lamps(scene.instances.begin(), others);
+  scene.instances.erase(scene.instances.begin(), others);
   write(scene, lamps);
   for (std::size_t i = 0; i < emits.size(); ++i) {
     if (emits[i]) scene.meshes[i] = {};
