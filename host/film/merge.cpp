@@ -159,8 +159,9 @@ std::optional<std::string> different_picture(const ExrMetadata& found,
   };
   for (const auto* side : {&here, &there}) {
     for (const auto& [name, ignored] : *side) {
-      const std::string a = value(here, name), b = value(there, name);
-      if (a != b) return a + ", expected " + b;
+      std::string a = value(here, name);
+      const std::string b = value(there, name);
+      if (a != b) return a.append(", expected ").append(b);
     }
   }
   return std::nullopt;
