@@ -130,6 +130,11 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
   }
 }
 
+void GltfFile::warn_once(const std::string& what, std::vector<std::string>& warnings) const {
+  const std::string warning = name_ + ": " + what;
+  if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
+}
+
 void GltfFile::fail(const std::string& what) const {
   std::string line = what;
   for (char& c : line) {

@@ -28,6 +28,8 @@ class GltfFile {
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   [[noreturn]] void fail(const std::string& what) const;
+  /// Appends "file: what" to warnings that do not have it yet.
+  void warn_once(const std::string& what, std::vector<std::string>& warnings) const;
 
   /// The element of `list` with this number; `what` is for messages.
   template <class T>

@@ -46,13 +46,6 @@ glm::vec2 pair_in(const tinygltf::Value& value, const char* key, const glm::vec2
 
 }  // namespace
 
-void GltfMaterials::warn_once(const std::string& what) {
-  const std::string warning = file_.name() + ": " + what;
-  if (std::ranges::find(scene_.warnings, warning) == scene_.warnings.end()) {
-    scene_.warnings.push_back(warning);
-  }
-}
-
 std::uint32_t GltfMaterials::number_of(int material) {
   const auto [entry, is_new] =
       numbers_.try_emplace(material, static_cast<std::uint32_t>(scene_.materials.size()));
@@ -76,8 +69,9 @@ int GltfMaterials::texcoord_set(int material) {
     const int its =
         static_cast<int>(number_in(extensions, "KHR_texture_transform", "texCoord", texcoord));
     if (set >= 0 && its != set) {
-      warn_once(
-          "of textures of one material with several sets of coordinates the first has its own");
+      file_.warn_once(
+          "of textures of one material with several sets of coordinates the first has its own",
+          scene_.warnings);
     } else {
       set = its;
     }
@@ -93,12 +87,13 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
   const tinygltf::Model& model = file_.model();
   const int source = file_.at(model.textures, texture, "texture").source;
   if (source < 0) {
-    warn_once("a texture without a PNG or JPEG picture is left out");
+    file_.warn_once("a texture without a PNG or JPEG picture is left out", scene_.warnings);
     return std::nullopt;
   }
   const tinygltf::Image& image = file_.at(model.images, source, "image");
   if (image.image.empty()) {
-    warn_once("the texture " + image.uri + " is missing, its material is plain instead");
+    file_.warn_once("the texture " + image.uri + " is missing, its material is plain instead",
+                    scene_.warnings);
     return std::nullopt;
   }
   const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()),
@@ -147,7 +142,8 @@ MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& ext
   // Their v runs down: 1 - (s v + o) = s (1 - v) + 1 - s - o.
   const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
   map.mapping.offset = {offset.x, 1.0f - map.mapping.scale.y - offset.y};
-  if (transform->second.Has("rotation")) warn_once("a texture's rotation is not read");
+  if (transform->second.Has("rotation"))
+    file_.warn_once("a texture's rotation is not read", scene_.warnings);
   return map;
 }
 
@@ -165,7 +161,8 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   MaterialMap map = map_of(base.index, base.extensions, Texture::Content::kOpacity);
   const double least = is_mask ? cutoff / factor : cutoff;
   if (map.texture == kNoIndex || scene_.textures[map.texture].least_code() >= least) return;
-  if (!is_mask) warn_once("textures of opacity without a mask are masks of one half");
+  if (!is_mask)
+    file_.warn_once("textures of opacity without a mask are masks of one half", scene_.warnings);
   material.opacity_map = std::move(map);
   material.opacity_cutoff = static_cast<float>(least);
 }
@@ -202,7 +199,7 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
     for (int k = 0; k < 3; ++k) {
       material.emission[k] *= static_cast<float>(srgb_to_linear(255.0 * mean[k]));
     }
-    warn_once("textures of emission count by their mean");
+    file_.warn_once("textures of emission count by their mean", scene_.warnings);
   }
   shares.transmission = static_cast<float>(
       in_unit(number_in(from.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0)));

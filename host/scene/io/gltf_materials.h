@@ -34,7 +34,6 @@ class GltfMaterials {
   std::optional<Texture> picture(int texture, Texture::Content content);
   /// Of all its texels, from 0 to 1; of a picture that is missing 1.
   glm::dvec3 mean_codes(int texture);
-  void warn_once(const std::string& what);
 
   const GltfFile& file_;
   Scene& scene_;

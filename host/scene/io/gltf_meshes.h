@@ -1,0 +1,54 @@
+// The meshes of a glTF file as vertices and faces.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "host/scene/io/gltf_file.h"
+#include "host/scene/io/gltf_materials.h"
+#include "host/scene/io/mesh_builder.h"
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// What becomes of the vertices and faces of meshes, and how many it has so far.
+struct GltfGeometry {
+  MeshBuilder builder;
+  std::int32_t positions = 0, normals = 0, texcoords = 0;
+};
+
+/// Reads meshes, with their materials, and counts what they have of vertices and corners.
+class GltfMeshes {
+ public:
+  /// Both must outlive this.
+  GltfMeshes(const GltfFile& file, Scene& scene)
+      : file_(file), scene_(scene), materials_(file, scene) {}
+
+  /// Appends a mesh as `world` places it, faces of an object. Warns and leaves out points, lines
+  /// and what has no positions. Throws InputError: what is no geometry, or too much of it.
+  void read(const tinygltf::Mesh& mesh, const glm::dmat4& world, std::uint32_t object,
+            GltfGeometry& to);
+
+  /// Counts vertices and corners, so that what is written out does not fill the memory. Throws
+  /// InputError where there are too many for a file of this size.
+  void count(std::size_t more);
+
+ private:
+  void read(const tinygltf::Primitive& primitive, const glm::dmat4& world, std::uint32_t object,
+            GltfGeometry& to);
+  /// The triangles' corners, as numbers of the primitive's vertices.
+  [[nodiscard]] std::vector<std::uint32_t> corners_of(const tinygltf::Primitive& primitive,
+                                                      std::size_t vertices);
+  void add_normals(int accessor, const glm::dmat3& world, double sign, std::size_t vertices,
+                   GltfGeometry& to) const;
+  void add_texcoords(int accessor, std::size_t vertices, GltfGeometry& to) const;
+
+  const GltfFile& file_;
+  Scene& scene_;
+  GltfMaterials materials_;
+  std::size_t vertices_ = 0;  // and corners, so far
+};
+
+}  // namespace raygate
