@@ -42,6 +42,13 @@ inline Material lamp(const glm::vec3& emission) {
   return material;
 }
 
+/// glTF's shares of a white material.
+inline Material facets(float metallic, float roughness, float transmission) {
+  Material material = matte(glm::vec3(1.0f));
+  material.metallic_roughness = {metallic, roughness, transmission, {}, {}};
+  return material;
+}
+
 /// Two triangles: the corner `a`, and those at `u` and `v` from it.
 inline std::vector<Corners> rectangle(const glm::vec3& a, const glm::vec3& u, const glm::vec3& v) {
   return {{a, a + u, a + u + v}, {a, a + u + v, a + v}};
@@ -89,6 +96,13 @@ inline Film film_of(const Scene& scene, const Camera& camera, const RenderOption
   return render(scene, bvh, camera, options, pipeline_model(bvh), stats);
 }
 
+/// Of all pixels.
+inline glm::dvec3 mean_colour(const Film& film) {
+  glm::dvec3 sum(0.0);
+  for (const glm::vec4& colour : film.color) sum += glm::dvec3(colour);
+  return sum / static_cast<double>(film.color.size());
+}
+
 template <typename T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
@@ -127,6 +141,16 @@ inline Camera camera_at(const glm::dvec3& eye, const glm::dvec3& target, double 
   const bool vertical = view.x == 0.0 && view.z == 0.0;
   return Camera::look_at(eye, target, vertical ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0), fov,
                          aspect);
+}
+
+/// One pixel that looks straight down at the origin of a white floor.
+inline float floor_radiance(Scene scene, IntegratorKind integrator, int samples) {
+  add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
+  const Camera camera = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
+  RenderOptions options = light(integrator, 1, 1, samples);
+  options.max_depth = 0;
+  options.ambient = 0.0;
+  return film_of(scene, camera, options).color[0].r;
 }
 
 }  // namespace raygate::test

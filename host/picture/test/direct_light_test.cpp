@@ -1,0 +1,204 @@
+// What lamps and lights give a surface, by closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host/light/bsdf.h"
+#include "host/light/test/light_scenes.h"
+
+namespace raygate {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+constexpr double kPi = std::numbers::pi;
+constexpr auto kWhitted = IntegratorKind::kWhitted, kPath = IntegratorKind::kPath;
+
+TEST(DirectLight, PointLightFallsOffWithTheSquare) {
+  for (const glm::dvec3& at : {glm::dvec3(0, 2, 0), glm::dvec3(1, 2, -3), glm::dvec3(40, 9, 0)}) {
+    Scene scene;
+    scene.lights.push_back({glm::vec3(at), glm::vec3(5.0f)});
+    const double squared = glm::dot(at, at), cosine = at.y / std::sqrt(squared);
+    const double expected = 5.0 * cosine / squared / kPi;
+    EXPECT_NEAR(floor_radiance(scene, kWhitted, 1), expected, 1e-5 * expected);
+    EXPECT_NEAR(floor_radiance(scene, kPath, 1), expected, 1e-5 * expected);
+  }
+}
+
+TEST(DirectLight, ADirectionalLightFallsOffWithTheCosineAlone) {
+  for (const glm::dvec3& way :
+       {glm::dvec3(0, -1, 0), glm::dvec3(1, -0.3, 2), glm::dvec3(1, 1, 0)}) {
+    Scene scene;
+    scene.directional_lights.push_back({glm::normalize(way), glm::vec3(3.0f)});
+    const double expected = 3.0 * std::max(0.0, -glm::normalize(way).y) / kPi;
+    EXPECT_NEAR(floor_radiance(scene, kWhitted, 1), expected, 1e-6);
+    EXPECT_NEAR(floor_radiance(scene, kPath, 1), expected, 1e-6);
+  }
+}
+
+// KHR_lights_punctual: the square of a ramp of the cosine.
+TEST(DirectLight, ASpotLightFadesBetweenItsAngles) {
+  const auto seen = [](double degrees, IntegratorKind integrator) {
+    const double angle = degrees * kPi / 180.0;
+    Scene scene;
+    PointLight& light = scene.lights.emplace_back();
+    light.position = {0, 2, 0};
+    light.intensity = glm::dvec3(5.0);
+    light.spot = {{std::sin(angle), -std::cos(angle), 0.0}, 20.0, 40.0};
+    return floor_radiance(scene, integrator, 1);
+  };
+  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+    const double full = 5.0 / 4.0 / kPi;
+    EXPECT_NEAR(seen(0.0, integrator), full, 1e-6);
+    EXPECT_NEAR(seen(19.9, integrator), full, 1e-6);
+    const double inner = std::cos(kPi / 9), outer = std::cos(kPi / 4.5);
+    const double ramp = (std::cos(kPi / 6) - outer) / (inner - outer);
+    EXPECT_NEAR(seen(30.0, integrator), full * ramp * ramp, 1e-5);
+    EXPECT_EQ(seen(40.1, integrator), 0.0f);
+    EXPECT_EQ(seen(180.0, integrator), 0.0f);
+  }
+}
+
+// Which of several kinds of lights is asked, chance says; the mean is the sum of all.
+TEST(DirectLight, LightsOfAllKindsAddUp) {
+  Scene scene;
+  scene.lights.push_back({{1, 2, 0}, glm::dvec3(5.0)});
+  scene.lights.push_back({{0, 2, 1}, glm::dvec3(9.0), SpotCone{{0, -1, 0}, 10.0, 80.0}});
+  scene.directional_lights.push_back({{0.6, -0.8, 0}, glm::vec3(2.0f)});
+  add(scene, rectangle({-1, 1.5f, -1}, {0, 0, 1}, {0.5f, 0, 0}), lamp(glm::vec3(3.0f)));
+  const double sum = floor_radiance(scene, kWhitted, 1024);
+  EXPECT_NEAR(floor_radiance(scene, kPath, 4096), sum, 0.005 * sum);
+}
+
+// A parallel rectangle with one corner straight above (Siegel and Howell's catalogue, B-4).
+TEST(DirectLight, RectangularLampHasItsFormFactor) {
+  const double a = 1.5, b = 0.8, height = 1.2;
+  Scene scene;
+  add(scene, rectangle({0, float(height), 0}, {float(a), 0, 0}, {0, 0, float(b)}),
+      lamp(glm::vec3(3.0f)));
+  const double x = a / height, y = b / height;
+  const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+  const double form = (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
+  EXPECT_NEAR(floor_radiance(scene, kWhitted, 4096), 3.0 * form, 3e-4 * form);
+  EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 3.0 * form, 3e-3 * form);
+}
+
+// Of a rough floor under a lamp, seen at an angle: the integral over the lamp. Whether lamps are
+// asked for or met by chance, wide lobes or narrow ones.
+TEST(DirectLight, FacetsReflectALamp) {
+  for (const float roughness : {0.25f, 0.6f, 1.0f}) {
+    Material material = facets(0.5f, roughness, 0.0f);
+    material.diffuse = glm::vec3(0.8f);
+    Scene scene;
+    add(scene, rectangle({-1, 2, -2}, {2, 0, 0}, {0, 0, 1.5f}), lamp(glm::vec3(3.0f)));
+    add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
+    const Camera camera = camera_at({0, 1, 1.5}, {0, 0, 0}, 1e-3);
+    RenderOptions options = light(kPath, 1, 1, 4096);
+    options.max_depth = 1;
+    const Bvh bvh(scene);
+    const glm::vec3 eye(camera.eye());
+    const Ray ray = {eye, camera.direction(0.5, 0.5)};
+    const Finish finish(material);
+    const Finish* const finishes[] = {&finish};
+    std::uint32_t floor = 0;
+    while (!hits_triangle(ray, bvh.corners_of(floor))) ++floor;
+    const HitPlace places[] = {{&ray, floor, &scene.triangles[bvh.triangle_of(floor)], nullptr}};
+    const HitKind kind = finish.kind | weights_needed(places[0]);
+    const Bsdf<float> bsdf(surface_at<float>(scene, bvh, kind, places), kind, finishes);
+    double integral = 0.0;
+    constexpr int kSteps = 400;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int k = 0; k < kSteps; ++k) {
+        const glm::dvec3 at(-1 + 2 * (i + 0.5) / kSteps, 2.0, -2 + 1.5 * (k + 0.5) / kSteps);
+        const double squared = glm::dot(at, at), cosine = 2.0 / std::sqrt(squared);
+        const glm::vec3 way(glm::normalize(at));
+        integral += 3.0 * bsdf.scattered({way.x, way.y, way.z}).x * cosine * cosine / squared *
+                    (3.0 / kSteps / kSteps);
+      }
+    }
+    EXPECT_NEAR(film_of(scene, camera, options).color[0].r, integral, 0.01 * integral) << roughness;
+    options.integrator = kWhitted;
+    options.max_depth = 0;
+    options.ambient = 0.0;
+    EXPECT_NEAR(film_of(scene, camera, options).color[0].r, integral, 0.01 * integral) << roughness;
+  }
+}
+
+// A disc parallel to the floor, straight above: sin^2 of the angle under which its rim is seen.
+TEST(DirectLight, DiscLampHasItsFormFactor) {
+  std::vector<Corners> disc;
+  constexpr int kParts = 512;
+  const auto rim = [](int i) {
+    const double angle = 2 * kPi * i / kParts;
+    return glm::vec3(0.7 * std::cos(angle), 1.1, 0.7 * std::sin(angle));
+  };
+  for (int i = 0; i < kParts; ++i) disc.push_back({glm::vec3(0, 1.1f, 0), rim(i), rim(i + 1)});
+  Scene scene;
+  add(scene, disc, lamp(glm::vec3(2.0f)));
+  const double form = 0.49 / (0.49 + 1.21);
+  EXPECT_NEAR(floor_radiance(scene, kWhitted, 4096), 2.0 * form, 1e-3 * form);
+  EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 2.0 * form, 4e-3 * form);
+}
+
+// A square between a point light and the floor: every pixel is lit just where the line to the
+// light passes beside the square.
+TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
+  Scene scene;
+  add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
+  add(scene, rectangle({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}), matte(glm::vec3(1.0f)));
+  const glm::dvec3 lamp(0.7, 3, -0.2), way(-0.3, -1.0, 0.2);
+  const Camera camera = camera_at({0, 0.9, 2.5}, {0.2, 0, 0}, 60.0);
+  for (const auto& [integrator, is_far] :
+       {std::pair(kWhitted, false), {kPath, false}, {kWhitted, true}, {kPath, true}}) {
+    scene.lights.clear();
+    scene.directional_lights.clear();
+    if (is_far) {
+      scene.directional_lights.push_back({glm::normalize(way), glm::vec3(1.0f)});
+    } else {
+      scene.lights.push_back({glm::vec3(lamp), glm::vec3(10.0f)});
+    }
+    RenderOptions options = light(integrator, 96, 96, 1);
+    options.max_depth = 0;
+    const Film film = film_of(scene, camera, options);
+    int lit = 0, dark = 0;
+    for (int y = 0; y < 96; ++y) {
+      for (int x = 0; x < 96; ++x) {
+        const std::size_t pixel = std::size_t(y) * 96 + x;
+        if (film.primitive[pixel] > 1) continue;  // the square itself, or nothing
+        const glm::dvec3 view(camera.direction((x + 0.5) / 96, (y + 0.5) / 96));
+        const glm::dvec3 eye(camera.eye()), point = eye - eye.y / view.y * view;
+        const glm::dvec3 crossing =
+            is_far ? point + way / way.y
+                   : lamp + (lamp.y - 1.0) / (lamp.y - point.y) * (point - lamp);
+        const double inside = std::max(std::abs(crossing.x), std::abs(crossing.z)) - 0.5;
+        if (std::abs(inside) < 1e-6) continue;
+        ASSERT_EQ(film.color[pixel].r == 0.0f, inside < 0.0) << x << ", " << y;
+        ++(inside < 0.0 ? dark : lit);
+      }
+    }
+    EXPECT_GT(lit, 1000);
+    EXPECT_GT(dark, 200);
+  }
+}
+
+// Where no light goes from one scattering surface to another both integrators show the same.
+TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
+  Scene scene = everything();
+  scene.background = glm::vec3(0.0f);
+  scene.materials[4] = matte(glm::vec3(0.5f));  // the glass: its shadows differ
+  const Camera camera = camera_at({0.6, 0.2, 5}, {0, -0.3, 0}, 40.0);
+  RenderOptions options = light(kWhitted, 24, 24, 256);
+  options.max_depth = 0;
+  options.ambient = 0.0;
+  const glm::dvec3 whitted = mean_colour(film_of(scene, camera, options));
+  options.integrator = kPath;
+  const glm::dvec3 path = mean_colour(film_of(scene, camera, options));
+  // The path's last rays see lamps in the mirror and through the window, where Whitted stops: those
+  // are few here.
+  EXPECT_NEAR(path.r, whitted.r, 0.02 * whitted.r);
+  EXPECT_NEAR(path.g, whitted.g, 0.02 * whitted.g);
+}
+
+}  // namespace
+}  // namespace raygate

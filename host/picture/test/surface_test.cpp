@@ -1,0 +1,146 @@
+// What materials do beside scattering: masks, normal maps, shadow catchers; and any size of scene.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "host/light/lights.h"
+#include "host/light/test/light_scenes.h"
+
+namespace raygate {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+constexpr auto kWhitted = IntegratorKind::kWhitted, kPath = IntegratorKind::kPath;
+
+// What catches shadows looks like the background, and is darker where something keeps light away.
+TEST(Surface, AShadowCatcherIsSeenWhereItsShadowsAre) {
+  Material catcher = matte(glm::vec3(0.0f));
+  catcher.illumination_model = 10;
+  Scene scene;
+  add(scene, rectangle({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}), catcher);
+  scene.background = {0.2f, 0.3f, 0.4f};
+  scene.lights.push_back({{3, 8, 2}, glm::dvec3(40.0)});
+  const Camera camera = camera_at({0, 5, 9}, {0, 0, 0}, 40.0);
+  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+    const glm::dvec3 mean = mean_colour(film_of(scene, camera, light(integrator, 24, 24, 64)));
+    const double tolerance = integrator == kWhitted ? 1e-6 : 0.01;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], scene.background[k], tolerance) << k;
+  }
+  Scene shaded = scene;
+  add(shaded, rectangle({-1, 4, 1}, {2, 0, 0}, {0, 0, -2}), matte(glm::vec3(0.5f)));
+  const Film film = film_of(shaded, camera, light(kWhitted, 24, 24, 1));
+  int dark = 0;
+  for (std::size_t i = 0; i < film.color.size(); ++i) {
+    if (film.primitive[i] > 1) continue;
+    const bool is_dark = film.color[i].g < 0.29f;
+    EXPECT_TRUE(is_dark || std::abs(film.color[i].g - 0.3f) < 1e-6f);
+    dark += is_dark;
+  }
+  EXPECT_GT(dark, 10);
+}
+
+/// A square at z = 0 from -1 to 1, with texture coordinates from 0 to 1.
+void add_picture(Scene& scene, const Material& material) {
+  add(scene, rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), material);
+  const auto first = static_cast<std::uint32_t>(scene.texcoords.size());
+  for (const glm::vec2 corner : {glm::vec2(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+    scene.texcoords.push_back(corner);
+  }
+  const std::size_t count = scene.triangles.size();
+  scene.triangles[count - 2].texcoords = {first, first + 1, first + 2};
+  scene.triangles[count - 1].texcoords = {first, first + 2, first + 3};
+}
+
+// What a mask hides is not there, for camera rays and for shadows; its triangle is hit all the
+// same.
+TEST(Surface, AMaskHidesHalfOfASquare) {
+  Material masked = matte(glm::vec3(0.5f));
+  masked.opacity_map.texture = 0;
+  masked.opacity_map.mapping.clamp = true;
+  const auto scene_with = [&](bool has_square) {
+    Scene scene;
+    scene.textures.emplace_back(8, 1,
+                                std::vector<Texture::Texel>{{0, 0, 0},
+                                                            {0, 0, 0},
+                                                            {0, 0, 0},
+                                                            {0, 0, 0},
+                                                            {255, 255, 255},
+                                                            {255, 255, 255},
+                                                            {255, 255, 255},
+                                                            {255, 255, 255}});
+    add(scene, rectangle({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}), matte(glm::vec3(0.8f)));
+    if (has_square) add_picture(scene, masked);
+    scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
+    scene.background = glm::vec3(0.1f);
+    return scene;
+  };
+  const Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 25.0);
+  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+    const RenderOptions options = light(integrator, 40, 40, integrator == kPath ? 64 : 1);
+    const Film with = film_of(scene_with(true), camera, options);
+    const Film without = film_of(scene_with(false), camera, options);
+    int hidden = 0, seen = 0;
+    for (int y = 8; y < 32; ++y) {
+      for (int x = 9; x < 31; ++x) {
+        const auto i = static_cast<std::size_t>(40 * y + x);
+        ASSERT_GE(with.primitive[i], 2u) << "the square is hit";
+        const float difference = std::abs(with.color[i].g - without.color[i].g);
+        if (x < 19 && integrator == kWhitted) {
+          ASSERT_LT(difference, 1e-5f) << x << " " << y;
+          ++hidden;
+        } else if (x > 20) {
+          ASSERT_GT(difference, 0.01f) << x << " " << y;
+          ++seen;
+        }
+      }
+    }
+    EXPECT_TRUE(integrator == kPath || hidden > 200);
+    EXPECT_GT(seen, 200);
+  }
+}
+
+// A map that leans along u turns the normal to where u grows.
+TEST(Surface, ANormalMapTurnsTheNormal) {
+  for (const bool is_mirrored : {false, true}) {
+    Material bumpy = matte(glm::vec3(0.5f));
+    bumpy.normal_map.texture = 0;
+    bumpy.normal_map.mapping.scale.x = is_mirrored ? -1.0f : 1.0f;
+    Scene scene;
+    scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{204, 140, 204}});
+    add_picture(scene, bumpy);
+    scene.background = glm::vec3(1.0f);
+    const Film film =
+        film_of(scene, camera_at({0, 0, 6}, {0, 0, 0}, 15.0), light(kWhitted, 5, 5, 1));
+    const glm::vec3 wanted =
+        glm::normalize(glm::vec3(is_mirrored ? -0.6f : 0.6f, 2 * 140 / 255.0f - 1, 0.6f));
+    for (const glm::vec3& normal : film.normal) {
+      EXPECT_LT(glm::length(normal - wanted), 1e-6f) << normal.x << " " << normal.y;
+    }
+  }
+}
+
+// Lengths have no unit: a scene a trillion times as large, or as small, looks the same, to the bit,
+// with the light that a scene without one gets.
+TEST(Surface, SizeDoesNotMatter) {
+  const auto picture = [](float scale, IntegratorKind integrator) {
+    Scene scene;
+    add(scene, sphere(2, 0.8f * scale), matte(glm::vec3(0.7f)));
+    add(scene,
+        rectangle(glm::vec3(-2, -1, -2) * scale, glm::vec3(4, 0, 0) * scale,
+                  glm::vec3(0, 0, 4) * scale),
+        mirror(0.5f));
+    const Camera camera = camera_at(glm::dvec3(0.5, 0.7, 4) * double(scale), glm::dvec3(0), 40.0);
+    light_if_dark(scene, camera);
+    return film_of(scene, camera, light(integrator, 24, 24, 2));
+  };
+  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+    const Film plain = picture(1.0f, integrator);
+    EXPECT_GT(mean_colour(plain).r, 0.1);
+    EXPECT_TRUE(same_bytes(plain.color, picture(0x1p40f, integrator).color));
+    EXPECT_TRUE(same_bytes(plain.color, picture(0x1p-40f, integrator).color));
+  }
+}
+
+}  // namespace
+}  // namespace raygate
