@@ -7,7 +7,7 @@ From whatever state, and whatever comes before and after: what goes in with cloc
 import dataclasses
 import re
 
-from synth import float_proofs, store, tools
+from synth import smt, store, tools
 from synth.float_proofs import ARITHMETIC, FLOAT, FORMATS, OPERATIONS, FloatProof
 
 
@@ -34,7 +34,7 @@ CUTS = [
 def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
     """What can be, and the claim about it: ports of state k have _k behind their names, those of the
     module without registers nothing."""
-    named, wires = float_proofs.ports(uncut, OPERATIONS[cut.uncut].top)
+    named, wires = smt.ports(uncut, OPERATIONS[cut.uncut].top)
     modes = [wire for wire in wires if wire in ("rounding_mode_i", "tininess_after_i")]
     enters = {wire: word(uncut, wire) for wire in wires
               if wire.endswith("_i") or wire == "free_product"}
@@ -42,7 +42,7 @@ def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
     if "|fp_divider_stages_n valid_i|" in stages:
         enters["valid_i"] = "#b1"
     text = ["(set-logic QF_BV)\n", uncut, named, stages]
-    text += [float_proofs.ports(stages, cut.top, f"_{k}", f"state_{k - 1}" if k else "",
+    text += [smt.ports(stages, cut.top, f"_{k}", f"state_{k - 1}" if k else "",
                                 stays if k else enters)[0] for k in range(latency + 1)]
     text.append(f"(define-fun claimed () Bool "
                 f"(and (= result_o result_o_{latency}) (= flags_o flags_o_{latency})))\n")
@@ -77,14 +77,14 @@ def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
                        tools.version("yosys"), parameters, cut.latency[name])
 
     def work() -> dict:
-        stages = float_proofs.write_model(uncut.sources(), cut.top, parameters, folder / "stages")
-        plain = float_proofs.write_model(uncut.sources(), OPERATIONS[cut.uncut].top,
+        stages = smt.write_model(uncut.sources(), cut.top, parameters, folder / "stages")
+        plain = smt.write_model(uncut.sources(), OPERATIONS[cut.uncut].top,
                                          uncut.parameters, folder / "uncut")
         text = question(cut, cut.latency[name], stages, plain)
-        if float_proofs.solve(folder / "assumption.smt2", text)["answer"] != "sat":
+        if smt.solve(folder / "assumption.smt2", text)["answer"] != "sat":
             raise tools.ToolFailed(f"{folder.name}: what it assumes cannot be")
         for claim in [*joints(cut, stages, plain), "claimed"]:
-            answer = float_proofs.solve(folder / "query.smt2", f"{text}(assert (not {claim}))\n")
+            answer = smt.solve(folder / "query.smt2", f"{text}(assert (not {claim}))\n")
             if answer["answer"] != "unsat":
                 raise tools.ToolFailed(f"{folder.name}: {answer['answer']}: {claim}")
             text += f"(assert {claim})\n"

@@ -12,7 +12,7 @@ import pathlib
 import subprocess
 import sys
 
-from synth import float_proofs, store, tables, tools
+from synth import float_proofs, smt, store, tables, tools
 
 CLAIMS = {"add": "add", "multiply": "multiply_whole", "divide": "divide_whole",
           "compare": "compare"}
@@ -82,7 +82,7 @@ class Faulty:
 
         def work() -> dict:
             for wanted in (*LOOK_FIRST.get(self.core, ()), SHOWN_BY_VECTORS.get(self.core, ""), ""):
-                answer = float_proofs.solve(folder / "query.smt2", text + wanted, self.wires, limit)
+                answer = smt.solve(folder / "query.smt2", text + wanted, self.wires, limit)
                 if answer["answer"] == "sat":
                     break
             verdict, vector, number = "open", "", 0
@@ -105,7 +105,7 @@ def put_faults(core: str, count: int, seed: int) -> Faulty:
     one = float_proofs.FloatProof(CLAIMS[core], "binary16", "structural")
     netlist, smt2 = folder / "netlist.il", folder / "faulty.smt2"
     top = float_proofs.OPERATIONS[CLAIMS[core]].top
-    float_proofs.write_model(one.sources(), top, one.parameters, folder, str(netlist))
+    smt.write_model(one.sources(), top, one.parameters, folder, str(netlist))
     tools.run(["yosys", "-c", float_proofs.FLOAT / "faults.tcl"], folder / "faults.log", {
         "NETLIST": str(netlist), "FAULTS": str(count), "SEED": str(seed),
         "LIST": str(folder / "faults.txt"), "SMT2": str(smt2)})

@@ -8,15 +8,11 @@ numbers that follow from the format.
 
 import dataclasses
 import functools
-import importlib.util
-import json
 import pathlib
 import re
 import string
-import struct
-import sys
 
-from synth import cores, store, tools
+from synth import cores, smt, store, tools
 
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
@@ -239,84 +235,12 @@ PROOFS = [
 ]
 
 
-def state(model: str, top: str, name: str, before: str = "",
-          given: dict[str, str] | None = None) -> str:
-    """Declares a state of a module: one that follows `before`, or any. Registers are terms of the state
-    before, inputs in `given` the terms there, and no equations: what two states compute alike is then
-    one term to the solver."""
-    width = int(re.search(rf"\(define-sort \|{re.escape(top)}_s\| \(\) \(_ BitVec (\d+)\)\)", model)[1])
-    fields = re.findall(r"^\(define-fun \|(\S+#\d+)\| .*\(\(_ extract (\d+) (\d+)\) state\).* ; (.*)$",
-                        model, re.M)
-    following = re.findall(r"^  \(= (.*) \(\|(\S+#\d+)\| next_state\)\)", model, re.M)
-    next_of = {field: re.sub(r"\bstate\b", before, term) for term, field in following if before}
-    known = []
-    for field, high, low, called in fields:
-        wire = re.fullmatch(r"(?:.*[.\\])?(\w+)(?: \[(\d+)(?::(\d+))?\])?", called)
-        if field in next_of:
-            known.append((int(high), int(low), next_of[field]))
-        elif given and wire and wire[1] in given:
-            bits = f"(_ extract {wire[2]} {wire[3] or wire[2]})" if wire[2] else ""
-            known.append((int(high), int(low), f"({bits} {given[wire[1]]})" if bits else given[wire[1]]))
-    parts, top_bit = [], width - 1
-    for high, low, term in sorted(known, reverse=True):
-        if high < top_bit:
-            parts.append(f"((_ extract {top_bit} {high + 1}) any_{name})")
-        parts.append(term)
-        top_bit = low - 1
-    if top_bit >= 0:
-        parts.append(f"((_ extract {top_bit} 0) any_{name})")
-    word = functools.reduce(lambda upper, lower: f"(concat {upper} {lower})", parts)
-    return (f"(declare-const any_{name} |{top}_s|)\n"
-            f"(define-fun {name} () |{top}_s| {word})\n")
-
-
-def ports(model: str, top: str, suffix: str = "", before: str = "",
-          given: dict[str, str] | None = None) -> tuple[str, list[str]]:
-    """A state (see `state`), names for a module's ports in it and for what contracts leave free
-    ("free_..."; with the number of its row, where it is in one), and those names without `suffix`, which
-    each gets."""
-    text = [state(model, top, f"state{suffix}", before, given)]
-    names = []
-    pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
-                         r"(\([^)]*\)|Bool)")
-    for function, wire, sort in pattern.findall(model):
-        found = re.fullmatch(r"(?:.*\[(\d+)\])?(?:.*\.)?(free_\w+)", wire)
-        name = wire
-        if found:
-            name = found[2] + (f"_{found[1]}" if found[1] else "")
-        elif not re.fullmatch(r"\w+_[io]", wire):
-            continue
-        text.append(f"(define-fun {name}{suffix} () {sort} (|{function}| state{suffix}))")
-        names.append(name)
-    return "\n".join(text) + "\n", names
-
-
-def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: pathlib.Path,
-                keep: str = "") -> str:
-    """A module as SMT-LIB; its netlist goes to `keep`."""
-    smt2 = folder / "model.smt2"
-    tools.run(["yosys", "-c", FLOAT / "model.tcl"], folder / "yosys.log", {
-        "SOURCES": " ".join(map(str, sources)), "TOP": top, "PARAMETERS": parameters,
-        "SMT2": str(smt2), "KEEP": keep})
-    return smt2.read_text()
-
-
 def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
     """A query but for its last assertions, and the names of the module's ports."""
     *specification, claim = one.texts()
     top = OPERATIONS[one.operation].top
-    named, wires = ports(model, top) if top else ("", [])
+    named, wires = smt.ports(model, top) if top else ("", [])
     return "(set-logic QF_BVFP)\n" + "".join([*specification, model, named, claim, one.case()]), wires
-
-
-def solve(file: pathlib.Path, text: str, terms: tuple[str, ...] = (), limit: float = 0) -> dict:
-    """Bitwuzla's answer to `text`, which is kept in `file`; see proofs/float/solve.py."""
-    if importlib.util.find_spec("bitwuzla") is None:
-        raise tools.MissingTool("Bitwuzla is not installed: pip install -r synth/requirements.txt")
-    file.write_text(text + "(check-sat)\n")
-    out = tools.run([sys.executable, FLOAT / "solve.py", file, limit, *terms],
-                    file.with_suffix(".log"))
-    return json.loads(out.splitlines()[-1])
 
 
 def proven(one: FloatProof) -> tuple[dict, bool]:
@@ -327,83 +251,14 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
 
     def work() -> dict:
         top = OPERATIONS[one.operation].top
-        model = write_model(one.sources(), top, one.parameters, folder) if top else ""
+        model = smt.write_model(one.sources(), top, one.parameters, folder) if top else ""
         text, wires = query(one, model)
-        if solve(folder / "assumption.smt2", text + "(assert assumed)\n")["answer"] != "sat":
+        if smt.solve(folder / "assumption.smt2", text + "(assert assumed)\n")["answer"] != "sat":
             raise tools.ToolFailed(f"{one.name}: what it assumes cannot be")
-        answer = solve(folder / "query.smt2",
+        answer = smt.solve(folder / "query.smt2",
                        text + "(assert assumed)\n(assert (not claimed))\n", tuple(wires))
         if answer["answer"] != "unsat":
             raise tools.ToolFailed(f"{one.name}: {answer['answer']}: {answer['values']}")
-        return {"holds": True}
-
-    return store.cached(folder, wanted, tools.measured(work))
-
-
-SPECIFICATIONS = [FloatProof(operation, name)
-                  for operation in ("add", "multiply", "divide", "compare")
-                  for name in FORMATS | NARROW_FORMATS]
-VECTORS = 125_000  # for each of these
-BATCH = 5000  # evaluated in one query
-
-# What MPFR is asked of each: FloatOp of sim/fp/float_format.h, and `second` of vectors/.
-ASKED = {"add": {0: "false", 1: "true"}, "multiply": {2: "false"}, "divide": {3: "false"},
-         "compare": {4: "false", 6: "true"}}
-CODES = {"binary16": ("<H", "<e", "<f", "<I"), "binary32": ("<I", "<f", "<d", "<Q")}
-
-
-def wide_word(word: int, name: str) -> str:
-    """The word of a number in the next wider format."""
-    if name == "bfloat16":
-        return wide_word(word << 16, "binary32")
-    narrow, as_narrow, as_wide, wide = CODES[name]
-    value = struct.unpack(as_narrow, struct.pack(narrow, word))[0]
-    bits = struct.unpack(wide, struct.pack(as_wide, value))[0]
-    return f"#b{bits:0{8 * struct.calcsize(wide)}b}"
-
-
-def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]:
-    """Evaluates a specification, by the solver, on `count` operations of which MPFR gives the
-    result; and sees that it refuses one of them with a bit of the result changed."""
-    folder = store.OUT / "proofs" / f"float.specification.{one.name}"
-    vectors = FLOAT / "vectors" / f"{one.operation}{'_narrow' if one.is_narrow else ''}.smt2"
-    numbers = one.numbers()
-    width = numbers["W"]
-    wide = "" if one.operation == "divide" else "(define-sort WideWord () (_ BitVec $WW))\n"
-    text = "".join(["(set-logic QF_BVFP)\n", *one.texts()[:-1], wide, vectors.read_text()])
-    text = string.Template(text).substitute(numbers)
-    oracle = [tools.ROOT / "sim" / name for name in ("fp/vectors.cpp", "test/fp/oracle.cpp")]
-    program = FLOAT / "mpfr_vectors.cpp"
-    wanted = store.key([*oracle, program, FLOAT / "solve.py"], text, count)
-
-    def case(line: str, second: str) -> str:
-        mode, after, a, b, result, flags = map(int, line.split())
-        after_text = "true" if after else "false"
-        return (f"(agrees (mode #b{mode:03b}) {after_text} #b{a:0{width}b} #b{b:0{width}b} "
-                f"#b{result:0{width}b} #b{flags:05b} {second} "
-                f"{wide_word(a, one.format)} {wide_word(b, one.format)})")
-
-    def evaluate(cases: list[str]) -> dict:
-        return solve(folder / "cases.smt2",
-                     text + "(assert (not (and true\n" + "\n".join(cases) + ")))\n")
-
-    def work() -> dict:
-        maker = folder / "mpfr_vectors"
-        tools.run(["g++", "-std=c++20", "-O2", "-iquote", tools.ROOT, program, *oracle, "-lmpfr",
-                   "-lgmp", "-o", maker], folder / "build.log")
-        exp, frac, *_ = (FORMATS | NARROW_FORMATS)[one.format]
-        asked = ASKED[one.operation]
-        for op, second in asked.items():
-            lines = tools.run([str(maker), exp, frac, op, count // len(asked)],
-                              folder / "vectors.txt").splitlines()
-            mode, after, a, b, result, flags = lines[0].split()
-            wrong = " ".join((mode, after, a, b, str(int(result) ^ 1), flags))
-            if evaluate([case(wrong, second)])["answer"] != "sat":
-                raise tools.ToolFailed(f"{one.name}: a wrong result passes: {folder}/cases.smt2")
-            for start in range(0, len(lines), BATCH):
-                cases = [case(line, second) for line in lines[start:start + BATCH]]
-                if evaluate(cases)["answer"] != "unsat":
-                    raise tools.ToolFailed(f"{one.name}: differs from MPFR: {folder}/cases.smt2")
         return {"holds": True}
 
     return store.cached(folder, wanted, tools.measured(work))

@@ -8,7 +8,7 @@ import dataclasses
 import pathlib
 import re
 
-from synth import float_proofs, tools
+from synth import smt, tools
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Model:
         lines = ["(set-logic QF_UFBV)", self.text, *declared,
                  f"(define-fun functions ((state |{self.top}_s|)) Bool (and true true {' '.join(equal)}))"]
         for k in range(count):
-            lines.append(float_proofs.state(self.text, self.top, f"s{k}", f"s{k - 1}" if k else ""))
+            lines.append(smt.state(self.text, self.top, f"s{k}", f"s{k - 1}" if k else ""))
             lines.append(f"(assert (and (|{self.top}_u| s{k}) (|{self.top}_h| s{k}) (functions s{k})))")
         return "\n".join(lines) + "\n"
 
@@ -63,7 +63,7 @@ def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
     last = clocks[-1]
     terms = [f"(|{model.top}_a {number}| s{last})" for number, _ in asserts]
     terms += [f"(|{model.top}_n {name}| s{k})" for k in range(last + 1) for name, _ in inputs]
-    answer = float_proofs.solve(file, f"{text}(assert (not {model.always(clocks)}))\n", tuple(terms))
+    answer = smt.solve(file, f"{text}(assert (not {model.always(clocks)}))\n", tuple(terms))
     if answer["answer"] == "unsat":
         return
     values = answer["values"]
@@ -86,7 +86,7 @@ def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
         raise tools.ToolFailed(f"{top}: it assumes something and covers nothing")
     from_start = model.clocks(max(steps, 1)) + (model.first() if steps else "")
     _refuse(model, smt2.with_name("from_start.smt2"), from_start, range(max(steps, 1)))
-    if float_proofs.solve(smt2.with_name("possible.smt2"), from_start)["answer"] != "sat":
+    if smt.solve(smt2.with_name("possible.smt2"), from_start)["answer"] != "sat":
         raise tools.ToolFailed(f"{top}: no run is possible: {smt2.parent}")
     if steps:
         onwards = model.clocks(steps + 1) + f"(assert {model.always(range(steps))})\n"
@@ -94,6 +94,6 @@ def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
     within = model.clocks(max(reach, 1)) + (model.first() if steps else "")
     for number, place in covers:
         reached = " ".join(f"(|{top}_c {number}| s{k})" for k in range(max(reach, 1)))
-        if float_proofs.solve(smt2.with_name(f"cover_{number}.smt2"),
+        if smt.solve(smt2.with_name(f"cover_{number}.smt2"),
                               f"{within}(assert (or false {reached}))\n")["answer"] != "sat":
             raise tools.ToolFailed(f"{place}: not reached in {reach} clocks: {smt2.parent}")

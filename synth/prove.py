@@ -7,7 +7,7 @@ import functools
 import re
 import sys
 
-from synth import catalogue, cores, float_cuts, float_proofs, netlists, runner, store, tables, tools, unit_proofs
+from synth import catalogue, cores, float_cuts, float_proofs, float_specifications, netlists, runner, store, tables, tools, unit_proofs
 from synth.assertions import PROOFS, Proof, holds, rtl
 from synth.catalogue import LIBRARIES, Design
 
@@ -86,9 +86,9 @@ def all_proofs() -> list[Proof]:
     proofs += [Proof(f"float.lemma.{name}", says, "z3",
                      functools.partial(float_proofs.lemma, name), False)
                for name, says in float_proofs.LEMMAS.items()]
-    proofs += [Proof(f"float.specification.{one.name}", f"as MPFR, {float_proofs.VECTORS:,} times",
-                     "evaluation", functools.partial(float_proofs.agrees_with_mpfr, one), False)
-               for one in float_proofs.SPECIFICATIONS]
+    proofs += [Proof(f"float.specification.{one.name}", f"as MPFR, {float_specifications.VECTORS:,} times",
+                     "evaluation", functools.partial(float_specifications.agrees_with_mpfr, one), False)
+               for one in float_specifications.SPECIFICATIONS]
     # The pipelined unit in binary16: Verilator would take an hour for binary32's hundred thousand
     # cells.
     narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)

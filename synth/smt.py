@@ -1,0 +1,84 @@
+"""Modules as SMT-LIB, by Yosys, and what Bitwuzla says of them."""
+
+import functools
+import importlib.util
+import json
+import pathlib
+import re
+import sys
+
+from synth import tools
+
+FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
+
+
+def state(model: str, top: str, name: str, before: str = "",
+          given: dict[str, str] | None = None) -> str:
+    """Declares a state of a module: one that follows `before`, or any. Registers are terms of the state
+    before, inputs in `given` the terms there, and no equations: what two states compute alike is then
+    one term to the solver."""
+    width = int(re.search(rf"\(define-sort \|{re.escape(top)}_s\| \(\) \(_ BitVec (\d+)\)\)", model)[1])
+    fields = re.findall(r"^\(define-fun \|(\S+#\d+)\| .*\(\(_ extract (\d+) (\d+)\) state\).* ; (.*)$",
+                        model, re.M)
+    following = re.findall(r"^  \(= (.*) \(\|(\S+#\d+)\| next_state\)\)", model, re.M)
+    next_of = {field: re.sub(r"\bstate\b", before, term) for term, field in following if before}
+    known = []
+    for field, high, low, called in fields:
+        wire = re.fullmatch(r"(?:.*[.\\])?(\w+)(?: \[(\d+)(?::(\d+))?\])?", called)
+        if field in next_of:
+            known.append((int(high), int(low), next_of[field]))
+        elif given and wire and wire[1] in given:
+            bits = f"(_ extract {wire[2]} {wire[3] or wire[2]})" if wire[2] else ""
+            known.append((int(high), int(low), f"({bits} {given[wire[1]]})" if bits else given[wire[1]]))
+    parts, top_bit = [], width - 1
+    for high, low, term in sorted(known, reverse=True):
+        if high < top_bit:
+            parts.append(f"((_ extract {top_bit} {high + 1}) any_{name})")
+        parts.append(term)
+        top_bit = low - 1
+    if top_bit >= 0:
+        parts.append(f"((_ extract {top_bit} 0) any_{name})")
+    word = functools.reduce(lambda upper, lower: f"(concat {upper} {lower})", parts)
+    return (f"(declare-const any_{name} |{top}_s|)\n"
+            f"(define-fun {name} () |{top}_s| {word})\n")
+
+
+def ports(model: str, top: str, suffix: str = "", before: str = "",
+          given: dict[str, str] | None = None) -> tuple[str, list[str]]:
+    """A state (see `state`), names for a module's ports in it and for what contracts leave free
+    ("free_..."; with the number of its row, where it is in one), and those names without `suffix`, which
+    each gets."""
+    text = [state(model, top, f"state{suffix}", before, given)]
+    names = []
+    pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
+                         r"(\([^)]*\)|Bool)")
+    for function, wire, sort in pattern.findall(model):
+        found = re.fullmatch(r"(?:.*\[(\d+)\])?(?:.*\.)?(free_\w+)", wire)
+        name = wire
+        if found:
+            name = found[2] + (f"_{found[1]}" if found[1] else "")
+        elif not re.fullmatch(r"\w+_[io]", wire):
+            continue
+        text.append(f"(define-fun {name}{suffix} () {sort} (|{function}| state{suffix}))")
+        names.append(name)
+    return "\n".join(text) + "\n", names
+
+
+def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: pathlib.Path,
+                keep: str = "") -> str:
+    """A module as SMT-LIB; its netlist goes to `keep`."""
+    smt2 = folder / "model.smt2"
+    tools.run(["yosys", "-c", FLOAT / "model.tcl"], folder / "yosys.log", {
+        "SOURCES": " ".join(map(str, sources)), "TOP": top, "PARAMETERS": parameters,
+        "SMT2": str(smt2), "KEEP": keep})
+    return smt2.read_text()
+
+
+def solve(file: pathlib.Path, text: str, terms: tuple[str, ...] = (), limit: float = 0) -> dict:
+    """Bitwuzla's answer to `text`, which is kept in `file`; see proofs/float/solve.py."""
+    if importlib.util.find_spec("bitwuzla") is None:
+        raise tools.MissingTool("Bitwuzla is not installed: pip install -r synth/requirements.txt")
+    file.write_text(text + "(check-sat)\n")
+    out = tools.run([sys.executable, FLOAT / "solve.py", file, limit, *terms],
+                    file.with_suffix(".log"))
+    return json.loads(out.splitlines()[-1])
