@@ -1,0 +1,28 @@
+// libFuzzer target: any bytes as a Radiance picture.
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "host/film/radiance_reader.h"
+#include "host/scene/io/input_error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                            ("raygate_fuzz_" + std::to_string(getpid()) + ".hdr");
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  try {
+    for (const glm::vec3& pixel : raygate::read_radiance(file).pixels) {
+      for (int k = 0; k < 3; ++k) {
+        if (!(std::isfinite(pixel[k]) && pixel[k] >= 0.0f)) std::abort();
+      }
+    }
+  } catch (const raygate::InputError&) {
+    // What a bad file deserves.
+  }
+  return 0;
+}
