@@ -10,72 +10,17 @@
 
 #include "host/exact/test/meshes.h"
 #include "host/tree/binary_tree.h"
+#include "host/tree/test/tree_walk.h"
 
 namespace raygate {
 namespace {
 
 using test::Random;
 
-/// Walks the whole tree; counts visits of slots, fails on anything outside its box.
-struct Walk {
-  const Bvh& bvh;
-  std::vector<int> visits = std::vector<int>(bvh.slot_count());
-  std::vector<int> node_visits = std::vector<int>(bvh.nodes().size());
-  int deepest = 0;
-
-  void check_leaf(const Bvh::Child& leaf, const glm::vec3& low, const glm::vec3& high) {
-    ASSERT_LE(leaf.count, Bvh::kMaxLeafSize);
-    ASSERT_LE(leaf.first + leaf.count, bvh.slot_count());
-    for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      ++visits[leaf.first + i];
-      const Corners corners = bvh.corners_of(leaf.first + i);
-      Bvh::LeafRoom room;
-      for (std::uint32_t v = 0; v < 3; ++v) {
-        ASSERT_TRUE(glm::all(glm::lessThan(low, corners[v])));
-        ASSERT_TRUE(glm::all(glm::lessThan(corners[v], high)));
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          ASSERT_EQ(bvh.corners_of(leaf, room)[(3 * v + k) * leaf.count + i], corners[v][k]);
-        }
-      }
-    }
-  }
-
-  void check(std::uint32_t index, const glm::vec3& low, const glm::vec3& high, int depth) {
-    ASSERT_LT(index, bvh.nodes().size());
-    ++node_visits[index];
-    deepest = std::max(deepest, depth);
-    const Bvh::Node& node = bvh.nodes()[index];
-    bool absent = false;  // from here on
-    for (int i = 0; i < Bvh::kWidth; ++i) {
-      const auto [child_low, child_high] = node.box(i);
-      absent = absent || !(child_low.x <= child_high.x);
-      if (absent) {
-        ASSERT_EQ(child_low, glm::vec3(std::numeric_limits<float>::infinity()));
-        ASSERT_EQ(child_high, -child_low);
-        continue;
-      }
-      ASSERT_TRUE(glm::all(glm::lessThanEqual(low, child_low)));  // false for NaN
-      ASSERT_TRUE(glm::all(glm::lessThan(child_low, child_high)));
-      ASSERT_TRUE(glm::all(glm::lessThanEqual(child_high, high)));
-      if (node.child[i].count == 0) {
-        check(node.child[i].first, child_low, child_high, depth + 1);
-      } else {
-        check_leaf(node.child[i], child_low, child_high);
-      }
-    }
-  }
-};
-
-const glm::vec3 kInfinity(std::numeric_limits<float>::infinity());
-
 void expect_sound(const std::vector<Corners>& triangles) {
   const Bvh bvh(test::scene_of(triangles), 2);
   ASSERT_EQ(bvh.slot_count(), triangles.size());
-  Walk walk{bvh};
-  walk.check(0, -kInfinity, kInfinity, 1);
-  EXPECT_LE(walk.deepest, Bvh::kMaxDepth);
-  EXPECT_TRUE(std::ranges::all_of(walk.visits, [](int n) { return n == 1; }));
-  EXPECT_TRUE(std::ranges::all_of(walk.node_visits, [](int n) { return n == 1; }));
+  const test::TreeWalk walk(bvh);
   std::vector<bool> seen(triangles.size());
   for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
     seen[bvh.triangle_of(slot)] = true;

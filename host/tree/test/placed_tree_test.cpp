@@ -9,6 +9,7 @@
 #include "host/scene/test/instanced_scene.h"
 #include "host/tree/bvh.h"
 #include "host/tree/runs.h"
+#include "host/tree/test/tree_walk.h"
 
 namespace raygate {
 namespace {
@@ -28,60 +29,6 @@ TEST(Runs, FindWhatEachNumberIsIn) {
   }
 }
 
-/// Walks the whole tree; fails on a corner that is not strictly inside its boxes.
-struct Walk {
-  const Bvh& bvh;
-  std::vector<int> visits;  // of triangles
-  int deepest = 0;
-
-  explicit Walk(const Bvh& tree) : bvh(tree), visits(tree.triangle_count()) {}
-
-  void check_leaf(const Bvh::Child& leaf, const glm::vec3& low, const glm::vec3& high) {
-    ASSERT_LE(leaf.count, Bvh::kMaxLeafSize);
-    Bvh::LeafRoom room;
-    const float* const from = bvh.corners_of(leaf, room);
-    for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      const std::uint32_t slot = leaf.first + i;
-      ++visits[bvh.triangle_of(slot)];
-      const Corners corners = bvh.corners_of(slot);
-      for (std::uint32_t v = 0; v < 3; ++v) {
-        ASSERT_TRUE(glm::all(glm::lessThan(low, corners[v])));
-        ASSERT_TRUE(glm::all(glm::lessThan(corners[v], high)));
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          ASSERT_EQ(from[(3 * v + k) * leaf.count + i], corners[v][k]);
-        }
-      }
-    }
-  }
-
-  void check(std::uint32_t index, const glm::vec3& low, const glm::vec3& high, int depth = 1) {
-    deepest = std::max(deepest, depth);
-    Bvh::Node room;
-    const Bvh::Node& node = bvh.node(index, room);
-    bool absent = false;
-    for (int i = 0; i < Bvh::kWidth; ++i) {
-      const auto [child_low, child_high] = node.box(i);
-      absent = absent || !(child_low.x <= child_high.x);
-      if (absent) {
-        ASSERT_EQ(child_low, glm::vec3(std::numeric_limits<float>::infinity()));
-        ASSERT_EQ(child_high, -child_low);
-        continue;
-      }
-      ASSERT_TRUE(glm::all(glm::lessThanEqual(low, child_low)));  // false for NaN
-      ASSERT_TRUE(glm::all(glm::lessThan(child_low, child_high)));
-      ASSERT_TRUE(glm::all(glm::lessThanEqual(child_high, high)));
-      const Bvh::Child child = bvh.child_of(index, i);
-      ASSERT_EQ(child.first, node.child[i].first);
-      ASSERT_EQ(child.count, node.child[i].count);
-      if (child.count == 0) {
-        check(child.first, child_low, child_high, depth + 1);
-      } else {
-        check_leaf(child, child_low, child_high);
-      }
-    }
-  }
-};
-
 void expect_sound(const Scene& scene) {
   const Scene flat = test::written_out(scene);
   for (const Vectors vectors : machine_vectors()) {
@@ -89,11 +36,7 @@ void expect_sound(const Scene& scene) {
     const Bvh bvh(scene, 2);
     ASSERT_EQ(bvh.triangle_count(), flat.triangles.size());
     EXPECT_TRUE(bvh.has_instances());
-    const glm::vec3 infinity(std::numeric_limits<float>::infinity());
-    Walk walk(bvh);
-    walk.check(0, -infinity, infinity);
-    EXPECT_LE(walk.deepest, Bvh::kMaxDepth);
-    EXPECT_TRUE(std::ranges::all_of(walk.visits, [](int n) { return n == 1; }));
+    const test::TreeWalk walk(bvh);
     std::size_t in_leaves = 0;
     for (const Bvh::Child& leaf : bvh.leaves()) {
       for (std::uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot, ++in_leaves) {
