@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "host/scene/instances.h"
 #include "host/scene/io/input_error.h"
@@ -173,6 +174,24 @@ TEST_F(LoadGltf, CamerasAndLights) {
   ASSERT_EQ(scene.directional_lights.size(), 1u);
   EXPECT_EQ(scene.directional_lights[0].direction, glm::dvec3(0, 0, -1));
   EXPECT_EQ(scene.directional_lights[0].irradiance, glm::vec3(1));
+}
+
+// Parallel rays show 2 ymag from the lower to the upper edge, whatever the target's distance.
+TEST_F(LoadGltf, OrthographicCameras) {
+  const auto with_size = [](const std::string& ymag) {
+    return square_json(
+        R"([{"mesh": 0, "children": [1]}, {"camera": 0, "translation": [0.5, 0.5, 4]}])",
+        R"(, "cameras": [{"type": "orthographic", "orthographic":
+                           {"xmag": 1, "ymag": )" +
+            ymag + R"(, "zfar": 9, "znear": 0}}])");
+  };
+  const Scene scene = load(with_size("3"));
+  ASSERT_TRUE(scene.camera);
+  EXPECT_EQ(scene.camera->lens.projection, Projection::kOrthographic);
+  EXPECT_EQ(scene.camera->target, glm::dvec3(0.5, 0.5, 0));
+  EXPECT_NEAR(4.0 * std::tan(*scene.camera->fov / 360.0 * std::numbers::pi), 3.0, 1e-12);
+  EXPECT_TRUE(scene.warnings.empty());
+  expect_error(with_size("0"), "a camera's ymag: expected a positive number");
 }
 
 TEST_F(LoadGltf, Materials) {
