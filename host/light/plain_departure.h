@@ -64,8 +64,8 @@ struct PlainNumbers<kLanes> {
 /// Hits to depart from, so many at a time.
 template <int kWidth>
 struct PlainHits {
-  using Single = PlainNumbers<kWidth>::Single;
-  using Real = PlainNumbers<kWidth>::Real;
+  using Single = typename PlainNumbers<kWidth>::Single;
+  using Real = typename PlainNumbers<kWidth>::Real;
 
   Real normal[3];
   Single length, corner[3], gradient[2][3];  ///< as Clearance has them
@@ -212,8 +212,8 @@ RAYGATE_INLINE void depart_plainly(const PlainHits<kWidth>& hits,
                                    typename PlainNumbers<kWidth>::Single (&point)[3],
                                    typename PlainNumbers<kWidth>::Single& reach,
                                    typename PlainNumbers<kWidth>::SingleMask& is_clear) {
-  using Single = PlainNumbers<kWidth>::Single;
-  using Real = PlainNumbers<kWidth>::Real;
+  using Single = typename PlainNumbers<kWidth>::Single;
+  using Real = typename PlainNumbers<kWidth>::Real;
   // X = O + t I, and u.
   Real corner[3], origin[3], direction[3], from_origin[3];
   plain::convert<kCode>(hits.corner, corner);

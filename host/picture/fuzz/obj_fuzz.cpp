@@ -1,4 +1,5 @@
-// libFuzzer target: any bytes as an OBJ file, and what follows a byte 0x1E as its s.mtl.
+// libFuzzer target: a picture of any bytes as an OBJ file, and what follows a byte 0x1E as its
+// s.mtl.
 #include <unistd.h>
 
 #include <cstdint>
@@ -6,6 +7,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "host/picture/fuzz/draw.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/obj_loader.h"
 
@@ -30,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   write(folder / "s.mtl", split < size ? bytes.substr(split + 1) : std::string_view());
   try {
     // In parts of a line or a few.
-    (void)raygate::load_obj(folder / "s.obj", {.threads = 2, .part_size = 1});
+    raygate::test::draw(raygate::load_obj(folder / "s.obj", {.threads = 2, .part_size = 1}));
   } catch (const raygate::InputError&) {
     // What a bad file deserves.
   }

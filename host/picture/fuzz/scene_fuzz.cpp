@@ -1,4 +1,4 @@
-// libFuzzer target: any bytes as a file of the kind that RAYGATE_FUZZED names, "ply".
+// libFuzzer target: a picture of any bytes as a file of the kind that RAYGATE_FUZZED names, "ply".
 #include <unistd.h>
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "host/picture/fuzz/draw.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_loader.h"
 
@@ -16,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
-    (void)raygate::load_scene(file);
+    raygate::test::draw(raygate::load_scene(file));
   } catch (const raygate::InputError&) {
     // What a bad file deserves.
   }

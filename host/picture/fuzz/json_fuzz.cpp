@@ -1,10 +1,13 @@
-// libFuzzer target: any bytes as a scene file beside a model, "model.obj", that it may place.
+// libFuzzer target: a picture of any bytes as a scene file beside a model, "model.obj", that it may
+// place.
 #include <unistd.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
+#include "host/picture/fuzz/draw.h"
 #include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_file.h"
 
@@ -21,8 +24,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
     const raygate::SceneFile read = raygate::read_scene_file(file);
-    raygate::Scene scene = raygate::load_scene(read);
+    raygate::Scene scene = raygate::load_scene(read, {.keep_instances = true});
     raygate::add_lights(read, scene);
+    raygate::test::draw(std::move(scene));
   } catch (const raygate::InputError&) {
     // What a bad file deserves.
   }

@@ -1,0 +1,40 @@
+// A picture of whatever a reader accepted.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include "host/find/cpu/cpu_finder.h"
+#include "host/light/lights.h"
+#include "host/picture/renderer.h"
+#include "host/scene/camera.h"
+#include "host/scene/instances.h"
+#include "host/scene/view.h"
+
+namespace raygate::test {
+
+/// Draws a few pixels of a scene by its first view, if it has up to 100,000 triangles; aborts where
+/// a pixel is no colour. Throws InputError: a scene too large for float.
+inline void draw(Scene scene) {
+  if (triangle_count(scene) > 100'000) return;
+  const glm::dvec3 up = scene.up.value_or(glm::dvec3(0.0, 1.0, 0.0));
+  const Camera camera =
+      Camera::look_at(framing(scene, 1.0, Camera::kDefaultFov, first_view(scene, up)), 1.0);
+  light_if_dark(scene, camera);
+  const Bvh bvh(scene);
+  RenderOptions options;
+  options.width = options.height = 4;
+  options.samples = 2;
+  options.integrator = IntegratorKind::kPath;
+  RenderStats stats;
+  const Film film = render(
+      scene, bvh, camera, options, [&] { return std::make_unique<CpuFinder>(bvh); }, stats);
+  for (const glm::vec4& colour : film.color) {
+    for (int k = 0; k < 4; ++k) {
+      if (!(std::isfinite(colour[k]) && colour[k] >= 0.0f)) std::abort();
+    }
+  }
+}
+
+}  // namespace raygate::test
