@@ -2,6 +2,7 @@
 # what it needs (.ci/setup) and works on its own, in any order.
 JOBS ?= $(shell nproc)
 SCENE ?= scenes/cornell.obj
+PIXEL ?= 64,64
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
 # With the packages that $(SETUP) puts beside it.
@@ -16,7 +17,7 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help verilate example render gallery contact-sheet frames test python check soak mutate fuzz lint analyze format clean
+.PHONY: help verilate example wave render gallery contact-sheet frames test python check soak mutate fuzz lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z-]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
@@ -41,6 +42,13 @@ gallery: verilate ## render the pictures of the gallery again, each by the comma
 contact-sheet: verilate ## models by their default view on one sheet: make contact-sheet [MODELS='a.obj b.glb']
 	@$(SETUP) lab
 	@$(PYTHON) -B scenes/contact_sheet.py ./render build/contact_sheet.png $(MODELS)
+
+# The program keeps its second model of the ray core until cmake -DRAYGATE_WAVES=OFF build.
+wave: configure += -DRAYGATE_WAVES=ON
+wave: ## the wave of one pixel's ray through the ray core: make wave PIXEL=64,64 [SCENE=... ARGS='--size 640x480']
+	$(call build,build,render)
+	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd
+	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw'
 
 frames: verilate ## the paper's frame at 10 MHz: clocks, frames a second, bytes read; every polygon, and with culling
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj

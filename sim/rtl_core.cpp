@@ -11,11 +11,11 @@
 namespace raygate {
 
 std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
-                                        const CoreStalls& stalls) {
+                                        const CoreStalls& stalls, const CoreSet& set) {
   if (arith == Arith::kStructural) {
-    return std::make_unique<CoreModel<Vray_core_structural>>(timing, stalls);
+    return std::make_unique<CoreModel<Vray_core_structural>>(timing, stalls, set);
   }
-  return std::make_unique<CoreModel<Vray_core_behavioural>>(timing, stalls);
+  return std::make_unique<CoreModel<Vray_core_behavioural>>(timing, stalls, set);
 }
 
 }  // namespace raygate

@@ -15,10 +15,17 @@ struct CoreStalls {
   std::uint64_t seed = 0;
 };
 
+/// Cores behind one port to memory.
+struct CoreSet {
+  int cores = 1;
+  int rays = 0;  ///< in flight in each core at most; 0: as many as its table holds
+};
+
 /// ray_core, Verilated, and the memory behind it. Not for use by two threads at once: each thread
 /// makes its own.
 [[nodiscard]] std::unique_ptr<CoreUnit> make_rtl_core(Arith arith = Arith::kStructural,
                                                       const MemoryTiming& timing = {},
-                                                      const CoreStalls& stalls = {});
+                                                      const CoreStalls& stalls = {},
+                                                      const CoreSet& set = {});
 
 }  // namespace raygate

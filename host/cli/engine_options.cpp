@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <thread>
+#include <utility>
 
 #include "host/cli/option_text.h"
 #include "host/scene/io/input_error.h"
@@ -69,6 +70,25 @@ MemoryTiming parse_memory(const std::string& text) {
   return timing;
 }
 
+int parse_cores(const std::string& text) {
+  const auto cores = parse_number<int>(text);
+  if (!cores || *cores < 1 || *cores > 64) fail_value("--cores", text, "a whole number, 1 to 64");
+  return *cores;
+}
+
+/// --memory and --cores, which a simulated ray core alone has.
+void parse_core_options(const RawEngineOptions& raw, EngineOptions& options) {
+  const bool simulated = options.has_core() && options.engine != Engine::kModel;
+  for (const auto& [name, text] : {std::pair{"--memory", raw.memory}, {"--cores", raw.cores}}) {
+    if (!simulated && !text.empty()) {
+      throw InputError(std::string(name) +
+                       ": expected with --unit core and --engine rtl or check, got " + text);
+    }
+  }
+  if (!raw.memory.empty()) options.memory = parse_memory(raw.memory);
+  if (!raw.cores.empty()) options.cores = parse_cores(raw.cores);
+}
+
 unsigned parse_threads(const std::string& text) {
   const auto threads = parse_number<unsigned>(text);
   if (!threads || *threads < 1 || *threads > 1024) {
@@ -85,6 +105,7 @@ void declare_engine_options(CLI::App& app, RawEngineOptions& raw) {
   app.add_option("--arith", raw.arith)->take_last();
   app.add_option("--lanes", raw.lanes)->take_last();
   app.add_option("--memory", raw.memory)->take_last();
+  app.add_option("--cores", raw.cores)->take_last();
   app.add_option("--threads", raw.threads)->take_last();
   app.add_option("--instances", raw.instances)->take_last();
 }
@@ -95,19 +116,14 @@ EngineOptions parse_engine_options(const RawEngineOptions& raw, EngineOptions de
   if (!raw.unit.empty()) options.unit = parse_unit(raw.unit);
   if (!raw.arith.empty()) options.arith = parse_arith(raw.arith);
   if (!raw.lanes.empty()) options.lanes = parse_lanes(raw.lanes);
-  if (!raw.memory.empty()) options.memory = parse_memory(raw.memory);
-  if (!raw.memory.empty() && (options.unit != "core" || options.engine == Engine::kCpu ||
-                              options.engine == Engine::kModel)) {
-    throw InputError("--memory: expected with --unit core and --engine rtl or check, got " +
-                     raw.memory);
-  }
+  parse_core_options(raw, options);
   if (options.unit != "pipeline" && options.lanes != 1) {
     throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " + raw.lanes);
   }
   options.threads = raw.threads.empty() ? std::max(1u, std::thread::hardware_concurrency())
                                         : parse_threads(raw.threads);
   if (!raw.instances.empty()) options.instances = parse_instances(raw.instances);
-  if (options.unit == "core" && options.engine != Engine::kCpu) {
+  if (options.has_core()) {
     if (options.instances == InstanceUse::kKept) {
       throw InputError("--instances: expected auto or write with --unit core, got keep");
     }

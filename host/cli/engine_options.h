@@ -28,13 +28,17 @@ struct EngineOptions {
   Arith arith = Arith::kStructural;
   int lanes = 1;          ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
   MemoryTiming memory{};  ///< of a simulated core
+  int cores = 1;          ///< behind one memory, for each thread; 1 for other units
   unsigned threads = 1;
   InstanceUse instances = InstanceUse::kAutomatic;  ///< what is in the tree
+
+  /// Whether rays go to ray cores, simulated or not.
+  [[nodiscard]] bool has_core() const { return unit == "core" && engine != Engine::kCpu; }
 };
 
 /// As they were typed; empty where they were not given.
 struct RawEngineOptions {
-  std::string engine, unit, arith, lanes, memory, threads, instances;
+  std::string engine, unit, arith, lanes, memory, cores, threads, instances;
 };
 
 void declare_engine_options(CLI::App& app, RawEngineOptions& raw);

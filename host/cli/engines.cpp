@@ -1,10 +1,10 @@
 #include "host/cli/engines.h"
 
 #include <memory>
+#include <utility>
 
 #include "host/find/check_finder.h"
 #include "host/find/core/core_finder.h"
-#include "host/find/core/memory_image.h"
 #include "host/find/core/reference_core.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
@@ -35,23 +35,27 @@ std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips
   return std::make_unique<PipelineHitTester>(std::move(unit));
 }
 
-/// A core for each thread, all of one image.
-FinderFactory make_core_factory(const EngineOptions& options, const Bvh& bvh) {
-  const auto image = std::make_shared<const MemoryImage>(bvh, static_cast<int>(options.threads));
+/// Cores for each thread, all of one image.
+FinderFactory make_core_factory(const EngineOptions& options, const Bvh& bvh,
+                                std::shared_ptr<const MemoryImage> image) {
+  if (!image) {
+    image = std::make_shared<const MemoryImage>(bvh, static_cast<int>(options.threads));
+  }
   return [options, &bvh, image]() -> std::unique_ptr<Finder> {
     std::unique_ptr<CoreUnit> core;
     if (options.engine == Engine::kModel) {
       core = std::make_unique<ReferenceCore>();
     } else {
-      core = make_rtl_core(options.arith, options.memory);
+      core = make_rtl_core(options.arith, options.memory, {}, {.cores = options.cores});
     }
     return std::make_unique<CoreFinder>(bvh, image, std::move(core));
   };
 }
 
 /// Of the unit in `options`.
-FinderFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh, const Skips& skips) {
-  if (options.unit == "core") return make_core_factory(options, bvh);
+FinderFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh, const Skips& skips,
+                                std::shared_ptr<const MemoryImage> image) {
+  if (options.unit == "core") return make_core_factory(options, bvh, std::move(image));
   const auto caches = std::make_shared<RecordCaches>(bvh, skips.records);
   return [options, &bvh, skips, caches] {
     return std::make_unique<UnitFinder>(bvh, make_tester(options, skips), caches);
@@ -60,12 +64,12 @@ FinderFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh, co
 
 }  // namespace
 
-FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh,
-                                  const Skips& skips) {
+FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh, const Skips& skips,
+                                  std::shared_ptr<const MemoryImage> image) {
   if (options.engine == Engine::kCpu) {
     return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
   }
-  FinderFactory make_unit = make_unit_factory(options, bvh, skips);
+  FinderFactory make_unit = make_unit_factory(options, bvh, skips, std::move(image));
   if (options.engine != Engine::kCheck) return make_unit;
   return [&bvh, make_unit] {
     return std::make_unique<CheckFinder>(bvh, make_unit(), std::make_unique<CpuFinder>(bvh));

@@ -32,6 +32,10 @@ Engine
                              tree by itself
   --memory latency=N,bytes=N,cache=N   of the ray core: clocks to a line (50),
                              bytes a clock (64), lines of a cache before it (0)
+  --cores N                  ray cores behind one memory, per thread (1)
+  --dump-image FILE          the memory that ray cores read, as it is
+  --trace-pixel X,Y --trace FILE.vcd   in place of a picture: the wave of that
+                             pixel's ray in the ray core (make wave)
   --arith NAME               structural: Booth trees, carry-select (default); or
                              behavioural: + and *, simulated faster
   --lanes 1|2|4|8            pipelined units side by side, per thread (1)
@@ -103,6 +107,7 @@ line, the scene or an output cannot be used; 130 interrupted (partial pictures).
 struct RawValues {
   std::string scene, size, camera, view, up, fov, ground, crop, seed, smooth, resume;
   RawEngineOptions engine;
+  RawCoreFileOptions core_files;
   RawOutputOptions output;
   RawLightOptions light;
   RawSkyLensOptions sky_lens;
@@ -129,6 +134,7 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   declare_light_options(app, raw.light);
   declare_sky_lens_options(app, raw.sky_lens);
   declare_engine_options(app, raw.engine);
+  declare_core_file_options(app, raw.core_files);
   value("--seed", raw.seed);
   value("--smooth", raw.smooth);
   value("--resume", raw.resume);
@@ -173,6 +179,8 @@ void check_values(const RawValues& raw, Options& options) {
     options.ground = choose<bool>("--ground", raw.ground, {{"on", true}, {"off", false}});
   }
   static_cast<EngineOptions&>(options) = parse_engine_options(raw.engine);
+  options.core_files =
+      parse_core_file_options(raw.core_files, options, {options.width, options.height});
   if (raw.light.samples.empty() && options.engine == Engine::kCpu) {
     options.light.samples = kCpuSamples;
   }
@@ -238,7 +246,9 @@ void require_distinct(const Options& options) {
   // A file of this name would be read with the scene next time.
   paths.push_back(std::filesystem::path(options.obj()).replace_extension(".json"));
   if (options.scene_file) paths.push_back(options.scene_file->file);
-  for (const std::filesystem::path& output : options.output.paths()) {
+  std::vector<std::filesystem::path> outputs = options.output.paths();
+  for (const auto& path : options.core_files.paths()) outputs.push_back(path);
+  for (const std::filesystem::path& output : outputs) {
     const std::filesystem::path resolved = resolve(output);
     for (const auto& other : paths) {
       if (!resolved.empty() && resolved == resolve(other)) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/cli/core_files.h"
 #include "host/cli/engine_options.h"
 #include "host/cli/light_options.h"
 #include "host/cli/output_options.h"
@@ -34,6 +35,7 @@ struct Options : EngineOptions {
   std::filesystem::path scene;          ///< as it was named: an OBJ or a scene file
   std::optional<SceneFile> scene_file;  ///< named, or found beside the OBJ
   OutputOptions output;
+  CoreFileOptions core_files;
   int width = 640, height = 480;        ///< of the whole frame, in pixels
   PixelRect window;                     ///< to be rendered: the frame or --crop
   std::optional<CameraSetting> camera;  ///< in the file's coordinates; none: its own, or a view

@@ -33,6 +33,7 @@ namespace raygate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using CoreImage = std::shared_ptr<const MemoryImage>;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -69,6 +70,7 @@ void require_inputs_kept(const Options& options, const Scene& scene) {
     require_others(frame == 0 ? options.output.paths() : options.output.numbered(frame).paths(),
                    inputs);
   }
+  require_others(options.core_files.paths(), inputs);
 }
 
 ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shots& shots,
@@ -152,8 +154,8 @@ class Saver {
 
 /// Renders with a progress bar, until a signal comes.
 Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                 const Clearances& clearances, const Camera& camera, const ExrMetadata& metadata,
-                 const Film* begun, RenderStats& stats) {
+                 const Clearances& clearances, const CoreImage& image, const Camera& camera,
+                 const ExrMetadata& metadata, const Film* begun, RenderStats& stats) {
   const SampleRange all{0, options.light.samples};
   RenderOptions render_options{.width = options.width,
                                .height = options.height,
@@ -184,8 +186,8 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
     std::_Exit(run_guarded([&]() -> int { end_interrupted(outputs, film, metadata); }, 1));
   };
   Film film = render(scene, clearances, camera, render_options,
-                     make_finder_factory(options, clearances.bvh(), options.light.skips), stats,
-                     [&](double fraction) {
+                     make_finder_factory(options, clearances.bvh(), options.light.skips, image),
+                     stats, [&](double fraction) {
                        // Before there is something to save, a signal simply ends the program.
                        if (interruption() == 0) note_interruptions();
                        bar.update(fraction);
@@ -201,11 +203,11 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
 
 /// Renders one picture and writes it with `report` completed.
 void render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                    const Clearances& clearances, const Shots& shots, const Camera& camera,
-                    Clock::time_point start, Report& report) {
+                    const Clearances& clearances, const CoreImage& image, const Shots& shots,
+                    const Camera& camera, Clock::time_point start, Report& report) {
   const ExrMetadata metadata = make_metadata(options, scene, shots, camera);
   const std::optional<Film> begun = begun_film(options, metadata);
-  const Film film = render_film(options, outputs, scene, clearances, camera, metadata,
+  const Film film = render_film(options, outputs, scene, clearances, image, camera, metadata,
                                 begun ? &*begun : nullptr, report.render);
   if (report.render.cancelled) end_interrupted(outputs, film, metadata);
 
@@ -222,11 +224,12 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
 
 /// One picture after the other; a line for each.
 void render_film_of_frames(const Options& options, Scene& scene, const Clearances& clearances,
-                           const Shots& shots, Report& report, std::FILE* console) {
+                           const CoreImage& image, const Shots& shots, Report& report,
+                           std::FILE* console) {
   const int frames = options.output.frames;
   for (int frame = 1; frame <= frames; ++frame) {
     const Clock::time_point start = Clock::now();
-    render_picture(options, options.output.numbered(frame), scene, clearances, shots,
+    render_picture(options, options.output.numbered(frame), scene, clearances, image, shots,
                    shots.light(frame, scene), start, report);
     if (options.quiet) continue;
     print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
@@ -257,6 +260,7 @@ void run(const Options& options) {
       if (is_standard_output(path)) console = stderr;
     }
   }
+  for (const auto& path : options.core_files.paths()) require_writable(path);
   Report report;
   report.options = options;
 
@@ -286,12 +290,19 @@ void run(const Options& options) {
   const Bvh bvh(scene, static_cast<int>(options.threads));
   report.tree_seconds = seconds_since(tree_start);
   const Clearances clearances(bvh);
+  const CoreImage image = make_memory_image(options, options.core_files, bvh);
+  if (const auto& pixel = options.core_files.pixel) {
+    const Ray ray = shots.light(1, scene).ray((pixel->x + 0.5) / options.width,
+                                              (pixel->y + 0.5) / options.height, glm::dvec2(0.0));
+    print(trace_pixel(options, options.core_files, bvh, image, ray), console);
+    return;
+  }
 
   if (frames > 0) {
-    render_film_of_frames(options, scene, clearances, shots, report, console);
+    render_film_of_frames(options, scene, clearances, image, shots, report, console);
   } else {
-    render_picture(options, options.output, scene, clearances, shots, shots.light(1, scene), start,
-                   report);
+    render_picture(options, options.output, scene, clearances, image, shots, shots.light(1, scene),
+                   start, report);
     if (!options.quiet) print(to_text(report), console);
   }
 }

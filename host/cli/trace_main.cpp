@@ -48,7 +48,8 @@ are the origin, the direction and, where wanted, a limit:
                              doubts,unit-point,unit-error (all but material and
                              the last two; of any: ray,hit)
   --engine NAME              cpu (default), rtl, model or check: as in ./render
-  --unit, --arith, --lanes, --memory, --threads, --instances     as in ./render
+  --unit, --arith, --lanes, --memory, --cores, --threads, --instances
+                             as in ./render
   --strict                   refuse faces without area (they are left out)
   -q, --quiet                print no summary (on standard error)
   -h, --help; --version

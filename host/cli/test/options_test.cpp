@@ -207,6 +207,10 @@ TEST(Options, OtherValuesThatAreImpossible) {
     expect_error({"a.obj", "--unit", "core", "--memory", memory}, "--memory: expected latency=1");
   }
   expect_error({"a.obj", "--memory", "latency=9"}, "--memory: expected with --unit core");
+  expect_error({"a.obj", "--cores", "2"}, "--cores: expected with --unit core");
+  for (const char* cores : {"0", "65", "two"}) {
+    expect_error({"a.obj", "--unit", "core", "--cores", cores}, "--cores: expected a whole number");
+  }
   for (const char* threads : {"0", "-1", "1025", "two", "1.5"}) {
     expect_error({"a.obj", "--threads", threads}, "--threads: expected a whole number");
   }
@@ -269,6 +273,28 @@ TEST(Options, Views) {
   expect_error({"a.obj", "--view", "top", "--camera", "0,0,9,0,0,0"}, "--view: expected no");
 }
 
+TEST(Options, FilesOfTheRayCore) {
+  const auto core = [](std::initializer_list<const char*> more) {
+    std::vector<const char*> words{"render", "a.obj", "--unit", "core", "--size", "64x48"};
+    words.insert(words.end(), more);
+    return parse_options(static_cast<int>(words.size()), words.data());
+  };
+  EXPECT_EQ(core({"--cores", "4"}).cores, 4);
+  EXPECT_TRUE(core({}).core_files.paths().empty());
+  EXPECT_EQ(core({"--dump-image", "a.bin"}).core_files.image, "a.bin");
+  EXPECT_EQ(core({"--trace-pixel", "63,47", "--trace", "a.vcd"}).core_files.pixel,
+            glm::ivec2(63, 47));
+  for (const char* pixel : {"64,0", "0,48", "-1,0", "1", "1,2,3", "x,y"}) {
+    EXPECT_THROW((void)core({"--trace-pixel", pixel, "--trace", "a.vcd"}), InputError) << pixel;
+  }
+  EXPECT_THROW((void)core({"--trace", "a.vcd"}), InputError);
+  EXPECT_THROW((void)core({"--trace-pixel", "1,1"}), InputError);
+  EXPECT_THROW((void)core({"--dump-image", "a.obj"}), InputError);
+  expect_error({"a.obj", "--dump-image", "a.bin"}, "--dump-image: expected with --unit core");
+  expect_error({"a.obj", "--trace-pixel", "1,1", "--trace", "a.vcd"},
+               "--trace: expected with --unit core");
+}
+
 TEST(Options, NamesThatPeopleType) {
   EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).light.max_depth(), 7);
 }
@@ -293,6 +319,8 @@ TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {
                              "--strict",        "--no-scene-file",
                              "-q, --quiet",     "-v, --verbose",
                              "--arith",         "--point-error",
+                             "--cores",         "--dump-image",
+                             "--trace",         "--trace-pixel",
                              "-h, --help",      "--version"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }

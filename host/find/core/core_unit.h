@@ -56,7 +56,23 @@ struct CoreCounters {
   std::uint64_t near_ties = 0;                     ///< sure hits that leave as doubts
   std::uint64_t rests = 0;                         ///< words of kind kRest
   std::uint64_t lines = 0;                         ///< read from memory
+  std::uint64_t waits = 0;  ///< clocks in which memory did not take what was asked for
   std::uint64_t clocks = 0;
+
+  CoreCounters& operator+=(const CoreCounters& other) {
+    rays += other.rays;
+    nodes += other.nodes;
+    triangles += other.triangles;
+    hits += other.hits;
+    misses += other.misses;
+    doubts += other.doubts;
+    near_ties += other.near_ties;
+    rests += other.rests;
+    lines += other.lines;
+    waits += other.waits;
+    clocks += other.clocks;
+    return *this;
+  }
 };
 
 /// Walks rays through a memory image.

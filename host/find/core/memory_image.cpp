@@ -1,6 +1,7 @@
 #include "host/find/core/memory_image.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -188,6 +189,11 @@ MemoryImage::MemoryImage(const Bvh& bvh, int threads) {
   const Scene scene = scene_of(bvh);
   const BinaryTree tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, threads);
   ImageWriter(*this, bvh, tree).write();
+}
+
+std::string_view MemoryImage::bytes() const {
+  static_assert(std::endian::native == std::endian::little, "the lowest bits come first");
+  return {reinterpret_cast<const char*>(lines_.data()), lines_.size() * sizeof(MemoryLine)};
 }
 
 }  // namespace raygate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "host/find/core/memory_line.h"
@@ -19,6 +20,8 @@ class MemoryImage {
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
 
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }
+  /// The memory byte by byte, as --dump-image writes it: line n is at byte 64 n.
+  [[nodiscard]] std::string_view bytes() const;
   [[nodiscard]] std::size_t node_count() const { return node_count_; }
   /// Nodes on the longest way from the root to a leaf; 1 at least.
   [[nodiscard]] int depth() const { return depth_; }

@@ -55,6 +55,22 @@ TEST_F(RayCoreTest, NearestHitsAreTheCpuFinders) {
   EXPECT_LT(counters_.clocks, counters_.nodes * 5 / 4) << "a node in nearly every clock";
 }
 
+TEST_F(RayCoreTest, CoresShareAMemory) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 3'000);
+  const auto clocks = [&](const MemoryTiming& timing, const CoreSet& set) {
+    check(rays, {}, make_rtl_core(Arith::kBehavioural, timing, {}, set));
+    EXPECT_GE(counters_.rays, rays.size());
+    return static_cast<double>(counters_.clocks);
+  };
+  const double one = clocks({}, {}), three = clocks({}, {.cores = 3});
+  EXPECT_LT(three, 0.45 * one);
+  const MemoryTiming narrow{.bytes = 1};  // a line every 64 clocks
+  const double alone = clocks(narrow, {});
+  EXPECT_GT(clocks(narrow, {.cores = 3}), 0.45 * alone) << "there is contention";
+  EXPECT_GT(counters_.waits, counters_.lines);
+  EXPECT_GT(clocks({}, {.rays = 1}), 10.0 * one) << "rays wait for each other";
+}
+
 TEST_F(RayCoreTest, ArithmeticsGiveTheSame) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 500);
   check(rays, {}, core(Arith::kBehavioural));

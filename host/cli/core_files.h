@@ -1,0 +1,51 @@
+// What is written of a ray core: the memory that it reads, and the wave of a pixel's ray.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/cli/engine_options.h"
+#include "host/find/core/memory_image.h"
+#include "host/tree/bvh.h"
+
+namespace raygate {
+
+struct CoreFileOptions {
+  std::filesystem::path image;      ///< where the memory image goes; empty: nowhere
+  std::filesystem::path wave;       ///< where the wave of `pixel`'s ray goes, in place of a picture
+  std::optional<glm::ivec2> pixel;  ///< there exactly with `wave`
+
+  /// The files that are written.
+  [[nodiscard]] std::vector<std::filesystem::path> paths() const;
+};
+
+/// As they were typed; empty where they were not given.
+struct RawCoreFileOptions {
+  std::string image, wave, pixel;
+};
+
+void declare_core_file_options(CLI::App& app, RawCoreFileOptions& raw);
+
+/// Throws InputError, one line, where `engine` has no ray core, or the pixel is none of a frame of
+/// `size`.
+[[nodiscard]] CoreFileOptions parse_core_file_options(const RawCoreFileOptions& raw,
+                                                      const EngineOptions& engine,
+                                                      const glm::ivec2& size);
+
+/// The image of `bvh` that the engine's cores read, and its file, if that is wanted; null for an
+/// engine without cores.
+[[nodiscard]] std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine,
+                                                                   const CoreFileOptions& files,
+                                                                   const Bvh& bvh);
+
+/// Sends the ray through the middle of `files.pixel` into a core that writes its wave. What it
+/// found, one line. Throws InputError as make_core_wave does.
+[[nodiscard]] std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& files,
+                                      const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
+                                      const Ray& ray);
+
+}  // namespace raygate

@@ -1,0 +1,76 @@
+// What ./render writes of a ray core.
+#include "host/cli/test/render_run.h"
+
+namespace raygate {
+namespace {
+
+class CoreFiles : public Render {
+ protected:
+  Outcome run(std::vector<std::string> more) {
+    std::vector<std::string> words{kCornell, "--unit", "core", "--arith", "behavioural",
+                                   "--size", "16x16",  "-o",   "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program({.arguments = words, .folder = folder_.path()});
+  }
+  Outcome read_image(std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"-B", RAYGATE_READ_IMAGE, "image"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(
+        {.arguments = words, .folder = folder_.path(), .program = "/usr/bin/python3"});
+  }
+};
+
+TEST_F(CoreFiles, TheMemoryImageIsWhatItsReaderExpects) {
+  ASSERT_EQ(run({"--engine", "model", "--dump-image", "image"}).status, 0);
+  const std::string image = folder_.read("image");
+  EXPECT_EQ(image.size(), 42u * 64u);
+  const Outcome whole = read_image({"--hex", "image.hex"});
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_EQ(whole.out, "42 lines, 4 nodes, 38 triangles, 2 depth\n");
+  EXPECT_EQ(folder_.read("image.hex").size(), 42u * 129u);
+
+  folder_.write("image", image.substr(0, image.size() - 1));
+  EXPECT_EQ(read_image().status, 2);
+  folder_.write("image", image.substr(0, image.size() - 64));
+  EXPECT_NE(read_image().err.find("found none"), std::string::npos);
+  std::string moved = image;
+  moved[64 * 41 + 3] = '~';  // a corner's x is far away
+  folder_.write("image", moved);
+  EXPECT_NE(read_image().err.find("outside the box"), std::string::npos);
+  EXPECT_EQ(read_image({"--hex", "image.hex"}).status, 2);
+}
+
+TEST_F(CoreFiles, NoImageThatCannotBeWrittenIsBegun) {
+  EXPECT_EQ(run({"--dump-image", "absent/image"}).status, 2);
+  EXPECT_TRUE(folder_.list().empty());
+}
+
+TEST_F(CoreFiles, CoresBehindOneMemoryDrawTheSamePicture) {
+  render({kCornell, "--size", "32x24", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
+  std::vector<double> clocks;
+  for (const char* cores : {"1", "3"}) {
+    render({kCornell, "--size", "32x24", "--unit", "core", "--arith", "behavioural", "--threads",
+            "1", "--cores", cores, "-o", "core"});
+    expect_same_pictures("cpu", "core");
+    clocks.push_back(stats_.at("clocks"));
+  }
+  EXPECT_LT(clocks[1], clocks[0]);
+}
+
+/// With RAYGATE_WAVES, or a word about it without.
+TEST_F(CoreFiles, TheWaveOfAPixelsRay) {
+  const Outcome outcome = run({"--trace-pixel", "8,8", "--trace", "pixel.vcd"});
+#ifdef RAYGATE_WAVES
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("the ray of pixel 8,8 hits triangle "), std::string::npos);
+  EXPECT_EQ(folder_.list(), std::vector{"pixel.vcd"s});
+  EXPECT_NE(folder_.read("pixel.vcd").find("ray_core"), std::string::npos);
+#else
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("RAYGATE_WAVES"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(folder_.list().empty());
+#endif
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,128 @@
+// One Verilated ray_core and the words at its ports, clock by clock.
+#pragma once
+
+#include <bit>
+#include <cstring>
+
+#include "host/find/core/core_unit.h"
+#include "sim/model.h"
+
+namespace raygate {
+
+/// The core `Top` (a class that Verilator made), held by a `Holder`: Model, or WaveModel for waves.
+template <class Top, template <class> class Holder = Model>
+class CorePort {
+ public:
+  CorePort() {
+    model_->invalidate_i = 0;
+    model_->ray_valid_i = 0;
+    model_->result_ready_i = 0;
+    model_->read_ready_i = 0;
+    model_->line_valid_i = 0;
+    model_.reset();
+  }
+
+  Holder<Top>& model() { return model_; }
+  [[nodiscard]] const CoreCounters& counters() const { return counters_; }
+  [[nodiscard]] std::uint64_t clocks() const { return model_.clocks(); }
+
+  /// Empties the core's caches: a clock.
+  void invalidate() {
+    model_->invalidate_i = 1;
+    model_.clock();
+    model_->invalidate_i = 0;
+  }
+
+  // ---- Rays
+
+  [[nodiscard]] bool is_offering() const { return model_->ray_valid_i != 0; }
+  /// Offers a ray until it is taken; only while none is on offer.
+  void offer(const CoreRay& ray) {
+    std::memcpy(&model_->ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
+    std::memcpy(&model_->ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
+    model_->ray_limit_i = std::bit_cast<std::uint32_t>(ray.limit);
+    model_->ray_ignored_i = ray.ignored;
+    model_->ray_start_i = ray.start;
+    model_->ray_any_hit_i = ray.any_hit;
+    model_->ray_every_box_i = ray.every_box;
+    model_->ray_tag_i = ray.tag;
+    model_->ray_valid_i = 1;
+    ++rays_;
+  }
+  /// Rays offered whose ends were not taken.
+  [[nodiscard]] int rays() const { return rays_; }
+
+  // ---- Results
+
+  /// Whether a result is taken in this clock.
+  bool take_result(bool ready) {
+    model_->result_ready_i = ready;
+    const bool taken = ready && model_->result_valid_o != 0;
+    if (taken && model_->result_kind_o == static_cast<unsigned>(CoreResult::Kind::kEnd)) --rays_;
+    return taken;
+  }
+  [[nodiscard]] bool has_result() const { return model_->result_valid_o != 0; }
+  [[nodiscard]] CoreResult result() const {
+    CoreResult result;
+    result.kind = static_cast<CoreResult::Kind>(model_->result_kind_o);
+    result.found = model_->result_found_o != 0;
+    result.tag = model_->result_tag_o;
+    result.triangle = model_->result_triangle_o;
+    result.t = std::bit_cast<float>(model_->result_t_o);
+    result.t_error = model_->result_t_error_o;
+    std::memcpy(&result.point, &model_->result_point_o, sizeof result.point);
+    result.tests = model_->result_tests_o;
+    result.line = model_->result_line_o;
+    result.nodes = model_->result_nodes_o;
+    return result;
+  }
+
+  // ---- Memory
+
+  /// Whether a line is asked for; of which number, with which tag.
+  [[nodiscard]] bool is_reading() const { return model_->read_valid_o != 0; }
+  [[nodiscard]] std::uint32_t line() const { return model_->read_line_o; }
+  [[nodiscard]] std::uint64_t tag() const { return model_->read_tag_o; }
+  void set_read_ready(bool ready) { model_->read_ready_i = ready; }
+  /// Whether a line can be put at the port.
+  [[nodiscard]] bool has_room() const { return model_->line_valid_i == 0; }
+  void put(const MemoryLine& line, std::uint64_t tag) {
+    model_->line_valid_i = 1;
+    model_->line_tag_i = tag;
+    std::memcpy(&model_->line_i, &line, sizeof line);
+  }
+
+  // ---- The clock
+
+  void clock() {
+    const bool ray_taken = (model_->ray_valid_i & model_->ray_ready_o) != 0;
+    const bool line_taken = (model_->line_valid_i & model_->line_ready_o) != 0;
+    model_.eval();  // events follow the inputs of this clock
+    count();
+    model_.clock();
+    if (ray_taken) model_->ray_valid_i = 0;
+    if (line_taken) model_->line_valid_i = 0;
+  }
+
+ private:
+  /// ray_core_pkg::event_e.
+  void count() {
+    const unsigned events = model_->events_o;
+    counters_.rays += events & 1;
+    counters_.nodes += events >> 1 & 1;
+    counters_.triangles += events >> 2 & 1;
+    counters_.hits += events >> 3 & 1;
+    counters_.misses += events >> 4 & 1;
+    counters_.doubts += events >> 5 & 1;
+    counters_.near_ties += events >> 6 & 1;
+    counters_.rests += events >> 7 & 1;
+    counters_.lines += events >> 8 & 1;
+    counters_.waits += events >> 9 & 1;
+  }
+
+  Holder<Top> model_;
+  CoreCounters counters_;
+  int rays_ = 0;
+};
+
+}  // namespace raygate
