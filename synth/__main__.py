@@ -4,54 +4,28 @@ import argparse
 import resource
 import sys
 
-from synth import (adder_study, catalogue, final_adder, measure, pictures, prove, report, store,
-                   throughput, tools, unit_delay)
+from synth import (adder_study, catalogue, chosen, final_adder, measure, pictures, prove, report,
+                   store, throughput, tools, unit_delay)
 
 
 def arguments() -> argparse.Namespace:
-    """The command line; an empty value counts as not given, so that a Makefile can pass all."""
+    """The command line."""
     parser = argparse.ArgumentParser(prog="synth", description=(
         "Synthesises hw/ for standard cells and FPGAs. Without --top: everything, and one report in "
         "build/synth/. With it: one design, its area, delay, critical path and, for an adder, "
         "its unit delays and the proof that it adds."))
     parser.add_argument("--top", help="module of hw/ (adder, booth_multiplier, fp_adder, ...), or "
                         "adders: the adders' part of the report alone")
-    parser.add_argument("--adder", help="ripple, uniform, graded, prefix or tool")
-    parser.add_argument("--width", help="bits of an adder or a multiplier")
-    parser.add_argument("--groups", help="carry-select groups, least significant first: 4,5,7,...")
-    parser.add_argument("--look-ahead", help="1: groups add by carry look-ahead, 0: by ripple carry")
-    parser.add_argument("--exp-width", help="exponent bits of a float core")
-    parser.add_argument("--frac-width", help="fraction bits of a float core")
+    chosen.add_arguments(parser)
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; those installed if not given")
     parser.add_argument("--budget", default="16", help="groupings tried in each search (%(default)s)")
     parser.add_argument("--jobs", default="2", help="at once (%(default)s)")
-    given = parser.parse_args()
-    for name, value in vars(given).items():
-        setattr(given, name, value or None)
-    return given
-
-
-def one_design(given: argparse.Namespace) -> catalogue.Design:
-    """The design that the command line describes."""
-    parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width}
-    widths = [int(width) for width in given.groups.split(",")] if given.groups else None
-    kind = given.adder or ("graded" if widths else "")
-    kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
-    if kind and kind not in kinds:
-        raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}")
-    if widths and given.width and given.top == "adder" and sum(widths) != int(given.width):
-        raise ValueError(f"the groups have {sum(widths)} bits together, the adder {given.width}")
-    if widths and not given.width and given.top == "adder":
-        parameters["Width"] = sum(widths)
-    return catalogue.design(
-        given.top, adder=kind, widths=widths,
-        look_ahead=bool(int(given.look_ahead)) if given.look_ahead else None,
-        **{name: int(value) for name, value in parameters.items() if value})
+    return chosen.parse(parser)
 
 
 def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     """Measures one design and prints it."""
-    design = one_design(given)
+    design = chosen.design(given)
     cells = design.top == "adder"
     flows = (("cells", "kept", "default", "fast") if cells else
              ("small", "parts") if design.clock else ("area", "small", "fast"))

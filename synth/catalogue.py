@@ -73,6 +73,27 @@ class Library:
         return kept
 
     @property
+    def volts(self) -> float:
+        """The supply that the library is characterised at."""
+        return float(re.search(r"nom_voltage : ([\d.]+)", self._file("lib").read_text()).group(1))
+
+    @property
+    def lef(self) -> pathlib.Path:
+        """The cells' outlines and pins, and the metals."""
+        return self._file("lef")
+
+    @property
+    def graywolf(self) -> pathlib.Path:
+        """qflow's parameters of the placer."""
+        return self.lef.with_name(f"{self.name}.par")
+
+    @property
+    def magic(self) -> tuple[pathlib.Path, pathlib.Path]:
+        """magic's start-up file and the technology file that it names."""
+        (technology,) = self.lef.parent.glob("*.tech")
+        return self.lef.with_name(f"{self.name}.magicrc"), technology
+
+    @property
     def models(self) -> pathlib.Path:
         """The cells as Verilog, for simulation and proof."""
         return self._file("v")
@@ -127,6 +148,7 @@ FLOWS = {
     "fast": "structure preserved by Yosys, then restructured for speed by ABC",
     "faster": "fast, restructured twice",
     "parts": "fast, each float core on its own, then joined",
+    "modules": "fast, each larger module on its own, so that a layout shows which cells are whose",
 }
 
 

@@ -9,7 +9,8 @@ from synth import store, tools
 from synth.catalogue import Design, Library
 
 ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "small": "small.abc",
-               "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc"}
+               "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc",
+               "modules": "fast.abc"}
 
 # One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
 PATH_STEP = re.compile(
@@ -26,7 +27,7 @@ def flow_facts() -> tuple[str, ...]:
 def scripts() -> list[pathlib.Path]:
     """The files that say how a netlist is made and timed."""
     names = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "structure.v",
-             "known_inputs.v", "osu_cells.v", "timing.tcl", *set(ABC_SCRIPTS.values()))
+             "known_inputs.v", "osu_cells.v", "timing.tcl", "constraints.sdc", *set(ABC_SCRIPTS.values()))
     return sorted(tools.FLOWS / name for name in names)
 
 
@@ -72,15 +73,7 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
         "OUT": str(prefix),
     })
     area, cells = cell_counts(prefix.with_suffix(".stat").read_text())
-    timing = tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], folder / "timing.txt", {
-        "LIBERTY": str(library.liberty),
-        "NETLIST": str(prefix.with_suffix(".timed.v")),
-        "TOP": design.top,
-        "DRIVER": library.driver,
-        "LOAD": f"{library.load_pf}",
-        "CLOCK": design.clock,
-        "ENDS": f"{bool(design.cut):d}",
-    })
+    timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt", bool(design.cut))
     delay, path = critical_path(timing)
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
     return {
@@ -91,6 +84,18 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
         "cells": cells,
         "path": path,
     }
+
+
+def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Path,
+        ends: bool = False, spef: pathlib.Path | None = None, clock: str = "") -> str:
+    """OpenSTA's report of the slowest path of `netlist`, and of all its ends if so wished.
+
+    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does.
+    """
+    return tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], log, {
+        "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
+        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}", "CLOCK": clock or design.clock,
+        "ENDS": f"{ends:d}", "SPEF": str(spef or "")})
 
 
 def cell_counts(stat: str) -> tuple[int, dict[str, int]]:

@@ -2,7 +2,7 @@
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth prove refute verilog fpga datasheet
+.PHONY: synth prove refute verilog fpga datasheet layout
 
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
@@ -34,3 +34,10 @@ datasheet: ## fill hw/README.md from the sources and from what synth and fpga me
 	$(call build,build,worked_example)
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.datasheet
+
+layout: ## place, route, time with wires and draw: make layout [TOP=adders|multipliers|cores|a module ...] [SEEDS=3] [DENSITY=0.8 ASPECT=2 FLOW=fast]
+	@$(SETUP) layout
+	@$(PYTHON) -m synth.layout --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
+	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
+	  --frac-width '$(FRAC_WIDTH)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' \
+	  --jobs '$(SYNTH_JOBS)'

@@ -23,6 +23,11 @@ TOOLS = {
     "yosys-abc": ("sudo apt-get install yosys", None),
     "z3": ("sudo apt-get install z3", ["--version"]),
     "dot": ("sudo apt-get install graphviz", ["-V"]),
+    "graywolf": ("sudo apt-get install graywolf", None),
+    "qrouter": ("sudo apt-get install qrouter", ["-v", "0", "-h"]),
+    "iverilog": ("sudo apt-get install iverilog", ["-V"]),
+    "vvp": ("sudo apt-get install iverilog", ["-V"]),
+    "magic": ("sudo apt-get install magic", ["--version"]),
 }
 
 
@@ -66,13 +71,14 @@ def version(tool: str) -> str:
 _costs = threading.local()  # .list: (processor seconds, megabytes) of each command of this thread
 
 
-def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None) -> str:
-    """Runs `command` from the repository's root, writes its output to `log` and returns it."""
+def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None,
+        folder: pathlib.Path = ROOT) -> str:
+    """Runs `command` in `folder`, writes its output to `log` and returns it."""
     command = [find(command[0]), *map(str, command[1:])]
     environment = {**os.environ, "LC_ALL": "C", **(env or {})}
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w") as out:
-        process = subprocess.Popen(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL,
+        process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                    stdout=out, stderr=subprocess.STDOUT)
         _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)

@@ -1,6 +1,6 @@
 # Maps one design to a standard-cell library. Everything comes in through the environment:
 #   SOURCES   files to read, packages first        TOP, PARAMETERS   the design
-#   FLOW      cells | kept | default | area | small | fast | faster | parts
+#   FLOW      cells | kept | default | area | small | fast | faster | parts | modules
 #   ABC_SCRIPT  what ABC does, as -script FILE, or "" for Yosys's own
 #   LIBERTY   the library                          CONSTRAINTS       driver and load, for ABC
 #   OUT       prefix of the files written
@@ -12,12 +12,19 @@ switch $::env(FLOW) {
     # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
     yosys synth -flatten -noshare -noabc -top $::env(TOP)
   }
-  fast - faster - kept - parts {
+  fast - faster - kept - parts - modules {
     # Nothing here looks across a multiplexer, so carry-select stays carry-select.
     yosys proc
     if {$::env(FLOW) eq "parts"} {
       # ABC maps each float core on its own, and once, however often it is instantiated.
       yosys setattr -mod -set keep_hierarchy 1 *fp_*_stages*
+    }
+    if {$::env(FLOW) eq "modules"} {
+      # So that a picture of the layout can tell them apart.
+      foreach module {booth_encoder booth_row carry_save_tree adder fp_unpack fp_round fp_normalize
+          srt_first_row srt_row sticky_right_shift leading_zero_counter comparator} {
+        yosys setattr -mod -set keep_hierarchy 1 *\\\\$module
+      }
     }
     yosys flatten
     yosys opt_expr
@@ -54,3 +61,4 @@ yosys write_verilog -noattr -noexpr -nohex $::env(OUT).v
 yosys splitnets -ports
 yosys opt_clean -purge
 yosys write_verilog -noattr -noexpr -nohex $::env(OUT).timed.v
+yosys write_json $::env(OUT).json

@@ -1,0 +1,41 @@
+"""One design of hw/, as a command line describes it."""
+
+import argparse
+
+from synth import catalogue
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options that `design` reads; an empty value counts as not given, so that a Makefile can pass all."""
+    parser.add_argument("--adder", help="ripple, uniform, graded, prefix or tool")
+    parser.add_argument("--width", help="bits of an adder or a multiplier")
+    parser.add_argument("--groups", help="carry-select groups, least significant first: 4,5,7,...")
+    parser.add_argument("--look-ahead", help="1: groups add by carry look-ahead, 0: by ripple carry")
+    parser.add_argument("--exp-width", help="exponent bits of a float core")
+    parser.add_argument("--frac-width", help="fraction bits of a float core")
+
+
+def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """The command line, None in place of what is empty."""
+    given = parser.parse_args()
+    for name, value in vars(given).items():
+        setattr(given, name, value or None)
+    return given
+
+
+def design(given: argparse.Namespace) -> catalogue.Design:
+    """The design that `given.top` and the options describe."""
+    parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width}
+    widths = [int(width) for width in given.groups.split(",")] if given.groups else None
+    kind = given.adder or ("graded" if widths else "")
+    kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
+    if kind and kind not in kinds:
+        raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}")
+    if widths and given.width and given.top == "adder" and sum(widths) != int(given.width):
+        raise ValueError(f"the groups have {sum(widths)} bits together, the adder {given.width}")
+    if widths and not given.width and given.top == "adder":
+        parameters["Width"] = sum(widths)
+    return catalogue.design(
+        given.top, adder=kind, widths=widths,
+        look_ahead=bool(int(given.look_ahead)) if given.look_ahead else None,
+        **{name: int(value) for name, value in parameters.items() if value})

@@ -1,0 +1,13 @@
+# What every design is timed under, before and after layout. CLOCK: its port, or "" for a design without one;
+# DRIVER: the cell at its inputs; LOAD: pF at its outputs. The clock is the paper's, 10 MHz.
+if {$::env(CLOCK) ne ""} {
+  create_clock -name clock -period 100 [get_ports $::env(CLOCK)]
+} else {
+  create_clock -name clock -period 100
+}
+set_driving_cell -lib_cell $::env(DRIVER) [all_inputs]
+foreach input [all_inputs] {
+  if {[get_property $input full_name] ne $::env(CLOCK)} { set_input_delay 0 -clock clock $input }
+}
+set_output_delay 0 -clock clock [all_outputs]
+set_load $::env(LOAD) [all_outputs]

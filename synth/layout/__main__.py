@@ -1,0 +1,125 @@
+"""`python3 -m synth.layout`: see `--help`, or synth/README.md."""
+
+import argparse
+import sys
+
+from synth import chosen, runner, store, tables, tools
+from synth.layout import flow, jobs, parts, picture
+
+OUT = store.OUT / "layouts"
+
+
+def arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="synth.layout", description=(
+        "Places and routes netlists of make synth in OSU 0.35 um, times them with their wires and draws "
+        "them; the report is build/synth/layouts/report.md."))
+    parser.add_argument("--top", help=f"{', '.join(jobs.SECTIONS)}, or a module of hw/; all sections if none")
+    chosen.add_arguments(parser)
+    parser.add_argument("--flow", help="of a module (see synth/README.md; fast)")
+    parser.add_argument("--density", help="the share of the rows that cells of a module take (1)")
+    parser.add_argument("--aspect", help="the core's height by its width, of a module (0.75)")
+    parser.add_argument("--seeds", help="placements of each adder, of which the median counts (3)")
+    parser.add_argument("--jobs", help="at once (2)")
+    return chosen.parse(parser)
+
+
+def wanted(given: argparse.Namespace) -> list[jobs.Row]:
+    """The rows that the command line asks for."""
+    seeds = int(given.seeds or 3)
+    if given.top is None or given.top in jobs.SECTIONS:
+        return [row for section in jobs.SECTIONS if given.top in (None, section)
+                for row in jobs.rows(section, seeds)]
+    return [jobs.Row(given.top, chosen.design(given), given.flow or "fast", float(given.density or 1),
+                     float(given.aspect or 0.75), int(given.seeds or 1))]
+
+
+def measure(rows: list[jobs.Row], workers: int) -> tuple[list[dict], list[str]]:
+    """Makes all layouts; one record for each row whose layouts were made, of the median seed."""
+    all_jobs = [(row, job) for row in rows for job in row.jobs()]
+    results, failures = runner.run_all([runner.Job(
+        f"{job.design.name} {job.flow} seed {job.seed}", lambda j=job: flow.make(j), told)
+        for _, job in all_jobs], workers)
+    records = []
+    for row in rows:
+        mine = [(job, result) for (of, job), result in zip(all_jobs, results, strict=True)
+                if of is row and result]
+        routed = sorted(((job, result) for job, result in mine if not result["failed"]),
+                        key=lambda pair: pair[1]["wires_ns"])
+        if mine:
+            job, result = routed[len(routed) // 2] if routed else mine[0]
+            records.append({"section": row.section, "design": row.design.name, "flow": row.flow,
+                            "seed": job.seed, "job": job, **result,
+                            "spread": [got["wires_ns"] for _, got in routed],
+                            "failed": [got["failed"] for _, got in mine]})
+    return records, failures
+
+
+def told(result: dict) -> str:
+    """A few words of a result."""
+    delay = f"{result['wires_ns']:.2f} ns with wires" if "wires_ns" in result else ""
+    return f"{result['cells_ns']:.2f} ns, {delay or str(result['failed']) + ' nets failed'}"
+
+
+def table(records: list[dict]) -> str:
+    """Cells alone, with wires, their ratio, areas and wires."""
+    rows = []
+    for got in records:
+        spread = got["spread"]
+        delays = ["-", "-", "-", "-"]
+        if spread:
+            delays = [f"{min(spread):.2f}", f"{got['wires_ns']:.2f}", f"{max(spread):.2f}",
+                      f"{got['wires_ns'] / got['cells_ns']:.3f}"]
+        rows.append([got["design"], got["flow"], got["cells"], f"{got['area']:,}", f"{got['core']:,}",
+                     f"{got['area'] / got['core']:.2f}", f"{got['wire_um'] / 1000:.1f}",
+                     f"{got['wire_pf']:.2f}", f"{got['cells_ns']:.2f}", *delays,
+                     " ".join(map(str, got["failed"]))])
+    return tables.markdown(
+        ["design", "flow", "cells", "cells, um2", "core, um2", "density", "wires, mm", "wires, pF",
+         "cells alone, ns", "with wires, least", "median", "most", "median / alone", "nets failed"], rows)
+
+
+def draw(records: list[dict]) -> list[str]:
+    """The median layout of each row, and its slacks; the pictures' names."""
+    names = []
+    for got in records:
+        job = got["job"]
+        made = flow.load(job)
+        name = f"{got['design']}-{got['flow']}"
+        picture.draw(made, parts.of(job.design, made.netlist, flow.outputs(job.library)),
+                     got.get("path", []), f"{got['design']}, flow {got['flow']}, {job.library.title}",
+                     OUT / name)
+        names.append(name)
+    routed = [got for got in records if "slacks" in got]
+    for section in dict.fromkeys(got["section"] for got in routed):
+        picture.slacks([got for got in routed if got["section"] == section],
+                       OUT / f"slacks-{section}")
+        names.append(f"slacks-{section}")
+    return names
+
+
+def main() -> int:
+    """1 where a layout fails, 2 for what the user can mend."""
+    given = arguments()
+    try:
+        for tool in ("yosys", "sta", "graywolf", "qrouter", "magic"):
+            tools.find(tool)
+        _ = jobs.LIBRARY.liberty, jobs.LIBRARY.lef
+        records, failures = measure(wanted(given), int(given.jobs or 2))
+    except (tools.MissingTool, FileNotFoundError, ValueError) as error:
+        print(f"layout: {error}", file=sys.stderr)
+        return 2
+    OUT.mkdir(parents=True, exist_ok=True)
+    text = table(records)
+    pictures = draw(records)
+    (OUT / "report.md").write_text("\n".join(
+        ["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
+    print(text)
+    print(f"Report: {(OUT / 'report.md').relative_to(tools.ROOT)}")
+    for failure in failures:
+        print("failed:", failure, file=sys.stderr)
+    return 1 if failures or any(any(got["failed"]) for got in records) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

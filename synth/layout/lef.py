@@ -1,0 +1,89 @@
+"""Reads LEF: the outlines and pins of a library's cells, the tracks and the sheets of its metal."""
+
+import dataclasses
+import pathlib
+import re
+
+
+@dataclasses.dataclass(frozen=True)
+class Rect:
+    """A rectangle on a layer, um."""
+
+    layer: str
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """x, y."""
+        return (self.left + self.right) / 2, (self.bottom + self.top) / 2
+
+
+@dataclasses.dataclass(frozen=True)
+class Macro:
+    """A cell: its size, and the metal of each signal pin."""
+
+    width: float
+    height: float
+    pins: dict[str, list[Rect]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Layer:
+    """A layer of wires: the pitch of its tracks and the width of a wire, um; ohms a square."""
+
+    pitch: float
+    offset: float
+    width: float
+    ohms: float
+    vertical: bool
+
+
+@dataclasses.dataclass(frozen=True)
+class Technology:
+    """What placing and routing need to know of a library."""
+
+    layers: dict[str, Layer]  # lowest first
+    macros: dict[str, Macro]
+
+
+def read(file: pathlib.Path) -> Technology:
+    """Raises ValueError where the file has no routing layers or no cells."""
+    text = file.read_text()
+    layers = {name: _layer(body) for name, body in
+              re.findall(r"^LAYER (\w+)\n(.*?)^END \1", text, re.M | re.S) if "ROUTING" in body}
+    macros = {name: _macro(body) for name, body in
+              re.findall(r"^MACRO (\w+)\n(.*?)^END \1\b", text, re.M | re.S)}
+    if not layers or not macros:
+        raise ValueError(f"{file}: {len(layers)} routing layers and {len(macros)} cells, expected some")
+    return Technology(layers, macros)
+
+
+def _layer(body: str) -> Layer:
+    def number(word: str) -> float:
+        return float(re.search(rf"^\s*{word}\s+([\d.e-]+)", body, re.M).group(1))
+
+    return Layer(number("PITCH"), number("OFFSET"), number("WIDTH"), number("RESISTANCE\\s+RPERSQ"),
+                 re.search(r"DIRECTION\s+VERTICAL", body) is not None)
+
+
+def _macro(body: str) -> Macro:
+    width, height = re.search(r"SIZE\s+([\d.]+)\s+BY\s+([\d.]+)", body).groups()
+    pins = {}
+    for name, pin in re.findall(r"^\s*PIN (\w+)\n(.*?)^\s*END \1\b", body, re.M | re.S):
+        if not re.search(r"USE\s+(POWER|GROUND)", pin):
+            pins[name] = rects(pin)
+    return Macro(float(width), float(height), pins)
+
+
+def rects(body: str) -> list[Rect]:
+    """All RECTs, each on the LAYER named last before it."""
+    layer, found = "", []
+    for name, box in re.findall(r"^\s*(?:LAYER\s+(\w+)|RECT\s+([-\d. ]+?))\s*;", body, re.M):
+        if name:
+            layer = name
+        else:
+            found.append(Rect(layer, *map(float, box.split())))
+    return found

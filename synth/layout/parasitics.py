@@ -1,0 +1,173 @@
+"""Wires as resistors and capacitors: magic's extraction and the routed DEF in, SPEF out.
+
+A net's capacitance is magic's: area, edge and overlap to what lies below and neighbours at each side, by the
+coefficients of its technology file; coupling to neighbours counts once, as if they stood still. It is spread
+over the net's wires by their length. Resistances are LEF's sheets and the technology file's contacts.
+"""
+
+import dataclasses
+import itertools
+import pathlib
+import re
+
+from synth import tools
+from synth.layout.lef import Rect, Technology
+from synth.layout.netlist import Netlist
+from synth.layout.place import Placement
+from synth.layout.route import RAILS, Routing, Wire, origin
+
+Node = tuple[str, float, float]  # layer, x, y
+TOUCH = 0.8  # um: the side of a contact's metal; what is no further apart than that touches
+
+
+def extract(netlist: Netlist, lef: pathlib.Path, rc: pathlib.Path, folder: pathlib.Path) -> dict[str, float]:
+    """The capacitance of each net, pF; leaves the layout as GDS in `folder`. `rc`: magic's start-up file."""
+    tools.run(["magic", "-dnull", "-noconsole", "-rcfile", rc, pathlib.Path(__file__).with_name("magic.tcl")],
+              folder / "magic.log", {"LEF": str(lef), "DEF": "routed.def", "TOP": netlist.top}, folder)
+    return capacitances((folder / f"{netlist.top}.ext").read_text(), set(netlist.nets()))
+
+
+def capacitances(text: str, nets: set[str]) -> dict[str, float]:
+    """pF of each of `nets` in a cell's .ext file, whose unit is stated in attofarads.
+
+    What merges with a cell's pin isn't counted again: the library's input capacitance holds it.
+    """
+    unit = int(re.search(r"^scale \d+ (\d+)", text, re.M).group(1)) * 1e-6
+    found = dict.fromkeys(nets, 0.0)
+    for name, farads in re.findall(r'^node "([^"]+)" \S+ (\S+)', text, re.M):
+        if name in nets:
+            found[name] += float(farads) * unit
+    for one, other, farads in re.findall(r'^cap "([^"]+)" "([^"]+)" (\S+)', text, re.M):
+        for name in (one, other):
+            if name in nets:
+                found[name] += float(farads) * unit
+    return {name: max(farads, 0.0) for name, farads in found.items()}
+
+
+def contacts(tech: pathlib.Path, layers: list[str]) -> dict[str, float]:
+    """Ohms of the contact on top of each layer but the last, by magic's technology file."""
+    text = tech.read_text()
+    found = {}
+    for place, layer in enumerate(layers[:-1], 2):
+        ohms = re.search(rf"^\s*contact\s+m{place}c\s+\d+\s+(\d+)", text, re.M)
+        found[layer] = int(ohms.group(1)) / 1000
+    return found
+
+
+def turned(rect: Rect, cell: tuple[float, float], at: tuple[float, float], how: str) -> Rect:
+    """A rectangle of a cell of that width and height, placed at `at` and turned N, FN, S or FS."""
+    width, height = cell
+    left, right = (width - rect.right, width - rect.left) if how in ("FN", "S") else (rect.left, rect.right)
+    low, high = (height - rect.top, height - rect.bottom) if how in ("FS", "S") else (rect.bottom, rect.top)
+    return Rect(rect.layer, at[0] + left, at[1] + low, at[0] + right, at[1] + high)
+
+
+@dataclasses.dataclass
+class Tree:
+    """The resistors of one net between its nodes and pins, and how much wire hangs at each node, um."""
+
+    resistors: list[tuple[Node | str, Node | str, float]]
+    length: dict[Node, float]
+
+
+def tree(wires: list[Wire], taps: dict[str, list[Rect]], technology: Technology,
+         ohms: dict[str, float]) -> Tree:
+    """Wires are split wherever another one ends on them. `taps`: the metal of each pin.
+
+    Raises ToolFailed where the net is in several pieces.
+    """
+    layers = list(technology.layers)
+    points = {(wire.layer, x, y) for wire in wires for x, y in ((wire.x0, wire.y0), (wire.x1, wire.y1))}
+    points |= {(wire.to, wire.x0, wire.y0) for wire in wires if wire.to}
+    resistors: list[tuple[Node | str, Node | str, float]] = []
+    length = dict.fromkeys(sorted(points), 0.0)
+    for wire in wires:
+        if wire.to:
+            below = min(wire.layer, wire.to, key=layers.index)
+            resistors.append(((wire.layer, wire.x0, wire.y0), (wire.to, wire.x0, wire.y0), ohms[below]))
+            continue
+        low, high = sorted([(wire.x0, wire.y0), (wire.x1, wire.y1)])
+        on = sorted((x, y) for layer, x, y in points if layer == wire.layer
+                    and low[0] <= x <= high[0] and low[1] <= y <= high[1])
+        layer = technology.layers[wire.layer]
+        for one, other in zip(on, on[1:]):
+            far = abs(one[0] - other[0]) + abs(one[1] - other[1])
+            ends = ((wire.layer, *one), (wire.layer, *other))
+            resistors.append((*ends, layer.ohms * far / layer.width))
+            for end in ends:
+                length[end] += far / 2
+    return Tree(resistors + joints(list(length), taps, resistors), length)
+
+
+def joints(nodes: list[Node], taps: dict[str, list[Rect]],
+           resistors: list[tuple]) -> list[tuple[Node | str, Node | str, float]]:
+    """What joins pins and pieces of wire that touch: the ends of pieces lie beside each other where
+    qrouter has moved a contact to fit a pin, and a pin's metal joins what arrives at its ends."""
+    piece: dict[Node | str, Node | str] = {node: node for node in [*nodes, *taps]}
+
+    def root(node: Node | str) -> Node | str:
+        while piece[node] != node:
+            piece[node] = node = piece[piece[node]]
+        return node
+
+    for one, other, _ in resistors:
+        piece[root(one)] = root(other)
+    touching = [(max(abs(one[1] - other[1]), abs(one[2] - other[2])), one, other)
+                for one, other in itertools.combinations(nodes, 2) if one[0] == other[0]]
+    touching += [(distance(rects, node), name, node) for name, rects in taps.items() for node in nodes]
+    found = []
+    for far, one, other in sorted(touching, key=lambda entry: entry[0]):
+        if far <= TOUCH and root(one) != root(other):
+            piece[root(one)] = root(other)
+            found.append((one, other, 0.001))
+    pieces = {root(node) for node in piece}
+    if len(pieces) > 1:
+        raise tools.ToolFailed(f"a net is in {len(pieces)} pieces: {nodes[:1]}, {', '.join(taps)}")
+    return found
+
+
+def distance(rects: list[Rect], node: Node) -> float:
+    """From a node to the nearest of the rectangles on its layer, um."""
+    layer, x, y = node
+    return min((max(rect.left - x, x - rect.right, rect.bottom - y, y - rect.top, 0)
+                for rect in rects if rect.layer == layer), default=float("inf"))
+
+
+def spef(netlist: Netlist, placement: Placement, routing: Routing, technology: Technology,
+         farads: dict[str, float], ohms: dict[str, float], outputs: dict[str, set[str]]) -> str:
+    """`farads` of each net, pF; `ohms` of contacts; `outputs`: the output pins of each type of cell."""
+    head = {"DATE": "", "VENDOR": "", "PROGRAM": "magic, qrouter", "VERSION": "", "DESIGN_FLOW": ""}
+    lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.top}"',
+             *(f'*{name} "{value}"' for name, value in head.items()), "*DIVIDER /", "*DELIMITER :",
+             "*BUS_DELIMITER [ ]", "*T_UNIT 1 NS", "*C_UNIT 1 PF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY", ""]
+    corner = origin(technology)
+    for net, ends in netlist.nets().items():
+        wires = routing.wires.get(net, [])
+        if net in RAILS or not wires:
+            continue
+        body, taps = ["*CONN"], {}
+        for cell, pin in ends:
+            if cell == "PIN":
+                x, y, layer = routing.ports[pin]
+                name, word, drives = pin, "P", netlist.ports[pin].output
+                taps[name] = [Rect(layer, x, y, x, y)]
+            else:
+                kind, site = netlist.cells[cell].kind, placement.cells[cell]
+                macro = technology.macros[kind]
+                name, word, drives = f"{cell}:{pin}", "I", pin in outputs[kind]
+                taps[name] = [turned(rect, (macro.width, macro.height),
+                                     (site.x + corner[0], site.y + corner[1]), site.turned)
+                              for rect in macro.pins[pin]]
+            body.append(f"*{word} {name} {'O' if drives else 'I'}")
+        wired = tree(wires, taps, technology, ohms)
+        names = {node: f"{net}:{place}" for place, node in enumerate(wired.length, 1)}
+        total = sum(wired.length.values())
+        body.append("*CAP")
+        for place, (node, name) in enumerate(names.items(), 1):
+            share = wired.length[node] / total if total else 1 / len(names)
+            body.append(f"{place} {name} {farads[net] * share:.8f}")
+        body.append("*RES")
+        body += [f"{place} {names.get(one, one)} {names.get(other, other)} {value:.4f}"
+                 for place, (one, other, value) in enumerate(wired.resistors, 1)]
+        lines += [f"*D_NET {net} {farads[net]:.8f}", *body, "*END", ""]
+    return "\n".join(lines)

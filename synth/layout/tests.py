@@ -1,0 +1,93 @@
+"""A thousand tests of equation 10 as operands for simulation: what the units' cores are given.
+
+Rays from one origin over a scene, each against one of its triangles in turn, in binary32 to nearest:
+N = (B - A) x (C - A), d = N.A, I scaled so that its largest component is in [1, 2); I.N by three
+multiplications and two additions, t = d / I.N, and P = t I by three more multiplications.
+"""
+
+import pathlib
+
+import numpy as np
+
+from synth import tools
+
+SCENE = tools.ROOT / "scenes" / "teapot.obj"
+COUNT = 1000
+
+
+def triangles(file: pathlib.Path) -> np.ndarray:
+    """The corners of an OBJ file's triangles, polygons as fans: [triangle, corner, axis]."""
+    corners, found = [], []
+    for line in file.read_text().splitlines():
+        word, *rest = line.split() or [""]
+        if word == "v":
+            corners.append([float(value) for value in rest[:3]])
+        elif word == "f":
+            names = [int(name.split("/")[0]) for name in rest]
+            points = [corners[name - 1 if name > 0 else name] for name in names]
+            found += [[points[0], one, other] for one, other in zip(points[1:], points[2:])]
+    return np.array(found, np.float32)
+
+
+def operands(file: pathlib.Path = SCENE, count: int = COUNT) -> dict[str, list[tuple[np.float32, np.float32]]]:
+    """The operand pairs of each core, in the order of the tests: "multiply", "add", "divide"."""
+    scene = triangles(file)
+    low, high = scene.min(axis=(0, 1)), scene.max(axis=(0, 1))
+    # From before the middle of the scene's box, over a square of directions.
+    origin = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + (high[2] - low[2])], np.float32)
+    side = int(np.ceil(count ** 0.5))
+    found: dict[str, list] = {"multiply": [], "add": [], "divide": []}
+    for test in range(count):
+        aim = np.array([low[0] + (high[0] - low[0]) * (test % side + 0.5) / side,
+                        low[1] + (high[1] - low[1]) * (test // side + 0.5) / side, (low[2] + high[2]) / 2])
+        i = (aim - origin).astype(np.float32)
+        i = np.ldexp(i, 1 - np.frexp(np.abs(i).max())[1]).astype(np.float32)
+        a, b, c = scene[test * 7 % len(scene)] - origin
+        n = np.cross(b - a, c - a).astype(np.float32)
+        d = np.float32(np.dot(n, a))
+        products = [multiply(found, x, y) for x, y in zip(i, n)]
+        within = add(found, add(found, products[0], products[1]), products[2])
+        if within == 0:
+            continue
+        found["divide"].append((d, within))
+        t = np.float32(d / within)
+        for x in i:
+            multiply(found, x, t)
+    return found
+
+
+def multiply(found: dict[str, list], x: np.float32, y: np.float32) -> np.float32:
+    """x y, noted down."""
+    found["multiply"].append((x, y))
+    return np.float32(x * y)
+
+
+def add(found: dict[str, list], x: np.float32, y: np.float32) -> np.float32:
+    """x + y, noted down."""
+    found["add"].append((x, y))
+    return np.float32(x + y)
+
+
+def significand(value: np.float32) -> int:
+    """Its 24 bits, the leading one among them."""
+    bits = int(np.float32(value).view(np.uint32))
+    return bits & 0x7FFFFF | (0x800000 if bits >> 23 & 255 else 0)
+
+
+def words(top: str, file: pathlib.Path = SCENE, count: int = COUNT) -> list[dict[str, int]]:
+    """What the inputs of a core are in each of `count` of its operations. An adder of 48 bits is given the
+    multiplier's exact products, two in a row; ValueError for a core whose operands the tests don't have."""
+    found = operands(file, count)
+    bits = {name: [tuple(int(np.float32(value).view(np.uint32)) for value in pair) for pair in pairs]
+            for name, pairs in found.items()}
+    significands = [tuple(map(significand, pair)) for pair in found["multiply"]]
+    if top in ("booth_multiplier", "multiplier"):
+        pairs = significands
+    elif top == "adder":
+        products = [a * b for a, b in significands]
+        pairs = list(zip(products, products[1:]))
+    elif top in ("fp_multiplier", "fp_adder", "fp_divider"):
+        pairs = bits[{"fp_multiplier": "multiply", "fp_adder": "add", "fp_divider": "divide"}[top]]
+    else:
+        raise ValueError(f"no tests for {top}, expected an adder, a multiplier or a float core")
+    return [{"a_i": a, "b_i": b} for a, b in pairs[:count]]

@@ -1,0 +1,171 @@
+"""Layouts: what is read from LEF, DEF and magic, and one adder from netlist to delay with wires."""
+
+import pathlib
+import tempfile
+import unittest
+from unittest import mock
+
+from synth import catalogue, store, tools
+from synth.layout import flow, lef, parasitics, parts, place, route
+from synth.layout.lef import Layer, Rect, Technology
+from synth.layout.netlist import Cell, Netlist, Port
+from synth.layout.route import Wire
+
+LAYERS = {"metal1": Layer(2, 1, 0.6, 0.07, False), "metal2": Layer(1.6, 0.8, 0.6, 0.07, True),
+          "metal3": Layer(2, 1, 0.6, 0.07, False)}
+TECHNOLOGY = Technology(LAYERS, {"INVX1": lef.Macro(4.8, 20, {"A": [], "Y": []})})
+
+LEF = """\
+LAYER metal1
+  TYPE		ROUTING ;
+  DIRECTION	HORIZONTAL ;
+  PITCH		2  ;
+  OFFSET	1  ;
+  WIDTH		0.6 ;
+  RESISTANCE	RPERSQ 0.07 ;
+END metal1
+MACRO INVX1
+  SIZE 4.800 BY 20.000 ;
+  PIN A
+    DIRECTION INPUT ;
+    PORT
+      LAYER metal1 ;
+        RECT 0.400 6.800 1.200 7.600 ;
+    END
+  END A
+  PIN gnd
+    USE GROUND ;
+    PORT
+      LAYER metal1 ;
+        RECT -0.400 -0.600 5.200 0.600 ;
+    END
+  END gnd
+END INVX1
+"""
+
+ROUTED = """\
+UNITS DISTANCE MICRONS 100 ;
+NETS 2 ;
+- n1
+  ( c0 Y )
+  ( c1 A )
+
++ ROUTED metal1 ( 160 400 ) M2_M1 
+  NEW metal2 ( 160 400 ) ( * 800 ) M3_M2 
+  NEW metal3 ( 160 800 ) ( 480 * ) ;
+- n2
+  ( c1 Y )
+;
+END NETS
+"""
+
+
+class Reading(unittest.TestCase):
+    """What the tools' files say."""
+
+    def test_lef(self):
+        """A cell's size and signal pins; the rails are none."""
+        with tempfile.TemporaryDirectory() as name:
+            file = pathlib.Path(name) / "tiny.lef"
+            file.write_text(LEF)
+            found = lef.read(file)
+            self.assertEqual(found.layers, {"metal1": LAYERS["metal1"]})
+            self.assertEqual(found.macros["INVX1"],
+                             lef.Macro(4.8, 20, {"A": [Rect("metal1", 0.4, 6.8, 1.2, 7.6)]}))
+            file.write_text("VERSION 5.4 ;\n")
+            with self.assertRaisesRegex(ValueError, "0 routing layers and 0 cells"):
+                lef.read(file)
+
+    def test_routed(self):
+        """Wires with vias, in um; a net without wires has none."""
+        self.assertEqual(route.wires(ROUTED, list(LAYERS)), {"n2": [], "n1": [
+            Wire("metal1", 1.6, 4, 1.6, 4, "metal2"), Wire("metal2", 1.6, 4, 1.6, 8),
+            Wire("metal2", 1.6, 8, 1.6, 8, "metal3"), Wire("metal3", 1.6, 8, 4.8, 8)]})
+
+    def test_capacitances(self):
+        """To ground and to neighbours; what belongs to a cell's pin is left out."""
+        text = ('scale 1000 1 5\nnode "n1" 2 1000 0 0 m2\nnode "c0/A" 2 9 0 0 m1\n'
+                'cap "n1" "n2" 500\nmerge "c0/A" "n1" -70\n')
+        found = parasitics.capacitances(text, {"n1", "n2"})
+        self.assertAlmostEqual(found["n1"], 0.0015)
+        self.assertAlmostEqual(found["n2"], 0.0005)
+
+    def test_placement(self):
+        """The core's corner is the origin; a turned cell has its gap on the left; a lost cell fails."""
+        nets = Netlist("top", {"c0": Cell("a", "INVX1", {}), "c1": Cell("b", "INVX1", {})}, {})
+        text = "c0 -400 -200  240 1800  0 1\nc1 240 -200  880 1800  2 1\ntwpin_p0 100 1900 260 2100 0 -3\n"
+        found = place.read(text, TECHNOLOGY, nets)
+        self.assertEqual(found.cells, {"c0": place.Site(0, 0, "N"), "c1": place.Site(8, 0, "FN")})
+        self.assertEqual((found.width, found.height), (12.8, 20))
+        with self.assertRaisesRegex(tools.ToolFailed, "1 of 2 cells"):
+            place.read(text.replace("c1", "c7"), TECHNOLOGY, nets)
+
+    def test_slacks(self):
+        """Of outputs and registers, the least first."""
+        self.assertEqual(flow.slacks("p9 (output)   100.000   16.983   83.017 (MET)\n"
+                                     "c1/D (DFFPOSX1)  99.9   20.0   79.9 (MET)\n"), [79.9, 83.017])
+
+
+class Trees(unittest.TestCase):
+    """A net's resistors."""
+
+    TAPS = {"c0:Y": [Rect("metal1", 1.4, 3.8, 1.8, 4.2)], "c1:A": [Rect("metal3", 4.6, 7.8, 5, 8.2)]}
+
+    def ohms(self, wires: list[Wire]) -> float:
+        """All resistors of a net in series."""
+        found = parasitics.tree(wires, self.TAPS, TECHNOLOGY, {"metal1": 1.3, "metal2": 1.2})
+        return sum(value for _, _, value in found.resistors if value > 0.01)
+
+    def test_series(self):
+        """Sheets by length over width, and contacts."""
+        wires = route.wires(ROUTED, list(LAYERS))["n1"]
+        self.assertAlmostEqual(self.ohms(wires), 1.3 + 1.2 + 0.07 * 7.2 / 0.6)
+        with self.assertRaisesRegex(tools.ToolFailed, "2 pieces"):
+            self.ohms([wire for wire in wires if wire.to != "metal3"])
+
+    def test_turned(self):
+        """A cell's metal where the cell is turned both ways."""
+        self.assertEqual(parasitics.turned(Rect("metal1", 1, 2, 3, 4), (10, 20), (100, 200), "S"),
+                         Rect("metal1", 107, 216, 109, 218))
+
+
+class Parts(unittest.TestCase):
+    """parts.of."""
+
+    def test_groups(self):
+        """A cell is of the group of the highest operand bit before it."""
+        design = catalogue.design("adder", adder="graded", widths=[1, 2], Width=3)
+        nets = Netlist("adder", {"c0": Cell("x", "INVX1", {"A": "p2", "Y": "n1"}),
+                                 "c1": Cell("y", "NAND2X1", {"A": "n1", "B": "p0", "Y": "p3"}),
+                                 "c2": Cell("z", "INVX1", {"A": "p0", "Y": "n2"})},
+                       {"p0": Port("a_i[0]", False, "p0"), "p1": Port("a_i[1]", False, "p1"),
+                        "p2": Port("a_i[2]", False, "p2"), "p3": Port("sum_o[0]", True, "p3")})
+        found = parts.of(design, nets, {"INVX1": {"Y"}, "NAND2X1": {"Y"}})
+        self.assertEqual(found, {"c2": "group 1: bits 0 to 0", "c0": "group 2: bits 1 to 2",
+                                 "c1": "group 2: bits 1 to 2"})
+
+
+@unittest.skipUnless(all(map(tools.installed, ("graywolf", "qrouter", "magic", "sta", "yosys"))),
+                     ".ci/setup layout installs the tools")
+class Adder(unittest.TestCase):
+    """An 8-bit ripple adder, from RTL to its delay with wires."""
+
+    def test_laid_out(self):
+        """All nets are routed; wires add to the delay of the cells, and not much in so small an adder."""
+        design = catalogue.design("adder", adder="ripple", Width=8)
+        with (tempfile.TemporaryDirectory() as name,
+              mock.patch.object(store, "OUT", pathlib.Path(name))):
+            job = flow.Job(design, catalogue.library("osu035"), "cells")
+            got, _ = flow.make(job)
+            self.assertEqual((got["cells"], got["failed"], len(got["slacks"])), (8, 0, 9))
+            self.assertGreater(got["wires_ns"], got["cells_ns"])
+            self.assertLess(got["wires_ns"], 1.1 * got["cells_ns"])
+            self.assertGreater(got["wire_um"], 300)
+            made = flow.load(job)
+            self.assertTrue(all(pieces for net, pieces in made.routing.wires.items()
+                                if net not in route.RAILS))
+            self.assertTrue((job.folder / "adder.gds").stat().st_size > 10000)
+
+
+if __name__ == "__main__":
+    unittest.main()
