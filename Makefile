@@ -17,13 +17,13 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help verilate example wave render gallery contact-sheet frames test python check soak mutate fuzz lint analyze format clean
+.PHONY: help verilate example wave render gallery contact-sheet frames test python check kill-ranks soak mutate fuzz lint analyze format clean
 
 help: ## list these targets
 	@sed -nE 's/^([a-z-]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
 
-verilate: ## build ./render, with the simulated hardware in it, ./trace, ./compare and ./merge
-	$(call build,build,render trace compare merge scenes)
+verilate: ## build ./render, ./trace, ./compare and ./merge, with the simulated hardware: make verilate [MPI=1]
+	$(call build,$(if $(filter-out 0,$(MPI)),mpi,build),render trace compare merge scenes)
 
 example: ## the paper's worked example, its words and its waveform for GTKWave
 	$(call build,build,worked_example)
@@ -114,8 +114,18 @@ format: ## lay all sources out as lint wants them
 clean: ## remove what was built (scenes and pictures stay)
 	rm -rf build render trace compare
 
+# What was chosen once stays, until `make MPI=0 ...` or 1.
+ifdef MPI
+configure += -DRAYGATE_MPI=$(if $(filter 0,$(MPI)),OFF,ON)
+endif
+
+KILLS ?= 20
+kill-ranks: ## kill -9 of a rank, of rank 0, of all, KILLS times each: --resume gives the bytes of an undisturbed run
+	$(call build,test,ranks_test)
+	@RAYGATE_KILLS=$(KILLS) build/ranks_test --gtest_filter='KilledRanks.*'
+
 .PHONY: everything
-everything: configure += -DBUILD_TESTING=ON
+everything kill-ranks: configure += -DBUILD_TESTING=ON
 everything:
 	$(call build,test,all)
 

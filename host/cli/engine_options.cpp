@@ -120,8 +120,13 @@ EngineOptions parse_engine_options(const RawEngineOptions& raw, EngineOptions de
   if (options.unit != "pipeline" && options.lanes != 1) {
     throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " + raw.lanes);
   }
-  options.threads = raw.threads.empty() ? std::max(1u, std::thread::hardware_concurrency())
-                                        : parse_threads(raw.threads);
+  if (!raw.threads.empty()) {
+    options.threads = parse_threads(raw.threads);
+  } else if (options.processors > 0) {
+    options.threads = options.processors;
+  } else {
+    options.threads = std::max(1u, std::thread::hardware_concurrency());
+  }
   if (!raw.instances.empty()) options.instances = parse_instances(raw.instances);
   if (options.has_core()) {
     if (options.instances == InstanceUse::kKept) {

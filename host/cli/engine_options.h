@@ -30,6 +30,7 @@ struct EngineOptions {
   MemoryTiming memory{};  ///< of a simulated core
   int cores = 1;          ///< behind one memory, for each thread; 1 for other units
   unsigned threads = 1;
+  unsigned processors = 0;  ///< for a thread each where --threads is not given; 0: the machine's
   InstanceUse instances = InstanceUse::kAutomatic;  ///< what is in the tree
 
   /// Whether rays go to ray cores, simulated or not.
@@ -43,7 +44,8 @@ struct RawEngineOptions {
 
 void declare_engine_options(CLI::App& app, RawEngineOptions& raw);
 
-/// What is not given is as in `defaults`; threads one per processor. Throws InputError, one line.
+/// What is not given is as in `defaults`; threads one per processor.
+/// Throws InputError, one line.
 [[nodiscard]] EngineOptions parse_engine_options(const RawEngineOptions& raw,
                                                  EngineOptions defaults = {});
 

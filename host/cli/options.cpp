@@ -178,7 +178,8 @@ void check_values(const RawValues& raw, Options& options) {
   if (!raw.ground.empty()) {
     options.ground = choose<bool>("--ground", raw.ground, {{"on", true}, {"off", false}});
   }
-  static_cast<EngineOptions&>(options) = parse_engine_options(raw.engine);
+  static_cast<EngineOptions&>(options) =
+      parse_engine_options(raw.engine, {.processors = options.processors});
   options.core_files =
       parse_core_file_options(raw.core_files, options, {options.width, options.height});
   if (raw.light.samples.empty() && options.engine == Engine::kCpu) {
@@ -261,9 +262,10 @@ void require_distinct(const Options& options) {
 
 }  // namespace
 
-Options parse_options(int argc, const char* const* argv) {
+Options parse_options(int argc, const char* const* argv, unsigned processors) {
   std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
+  options.processors = processors;
   RawValues raw = read_line(words, options);
   if (!options.information.empty()) return options;
   if (raw.scene.empty()) throw InputError("no scene given; try ./render scenes/cornell.obj");

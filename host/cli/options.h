@@ -56,8 +56,9 @@ struct Options : EngineOptions {
 };
 
 /// Reads the command line of `main`, and before it the scene file's options, if there is one: the
-/// command line has the last word. Throws InputError, one line that names the option (or the file
-/// and the line), what was given and what is allowed.
-[[nodiscard]] Options parse_options(int argc, const char* const* argv);
+/// command line has the last word. There are
+/// so many `processors`; 0: the machine's. Throws InputError, one line that names the option (or
+/// the file and the line), what was given and what is allowed.
+[[nodiscard]] Options parse_options(int argc, const char* const* argv, unsigned processors = 0);
 
 }  // namespace raygate

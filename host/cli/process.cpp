@@ -20,7 +20,10 @@ int why_output_failed = 0;  // errno of a failed print; 0: none failed
 std::atomic<int> noted_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
 
+std::atomic<bool> noted_warning = false;
+
 void note(int signal) { noted_signal = signal; }
+void note_warning(int /*signal*/) { noted_warning = true; }
 
 int fail(int status, const char* message) {
   std::fprintf(stderr, "error: %s\n", printable(message).c_str());
@@ -122,5 +125,14 @@ void note_interruptions() {
 }
 
 int interruption() { return noted_signal; }
+
+void note_warnings() {
+  struct sigaction action {};
+  action.sa_handler = note_warning;
+  action.sa_flags = SA_RESTART;
+  ::sigaction(SIGCONT, &action, nullptr);
+}
+
+bool take_warning() { return noted_warning.exchange(false); }
 
 }  // namespace raygate

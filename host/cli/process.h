@@ -35,6 +35,13 @@ void choose_vectors();
 /// Signals that the program was started to ignore stay ignored.
 void note_interruptions();
 
+/// From now on SIGCONT is noted. mpirun sends it to all ranks when one of them has died, a second
+/// before SIGTERM, which SIGKILL may follow within milliseconds.
+void note_warnings();
+
+/// Whether one came since this was asked last: time to save.
+[[nodiscard]] bool take_warning();
+
 /// The signal that was noted, or 0.
 [[nodiscard]] int interruption();
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "host/cli/format.h"
 
@@ -31,10 +32,8 @@ std::string time_left(double seconds) {
   return seconds < 59.5 ? std::to_string(std::lround(seconds)) + " s" : format_duration(seconds);
 }
 
-}  // namespace
-
-std::string progress_line(double fraction, double elapsed, int columns) {
-  fraction = std::clamp(fraction, 0.0, 1.0);
+/// " 45 %, 12 s left".
+std::string state_of(double fraction, double elapsed) {
   std::string percent = std::to_string(static_cast<int>(100.0 * fraction));
   percent.insert(0, 3 - percent.size(), ' ');
   std::string state = percent + " %";
@@ -42,6 +41,14 @@ std::string progress_line(double fraction, double elapsed, int columns) {
   if (fraction >= 0.01) {
     state += ", " + time_left(elapsed * (1.0 - fraction) / fraction) + " left";
   }
+  return state;
+}
+
+}  // namespace
+
+std::string progress_line(double fraction, double elapsed, int columns) {
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  const std::string state = state_of(fraction, elapsed);
   const std::string title = "rendering ";
   // Room is kept for the usual lengths of the state, so that the bar doesn't change its own.
   const int taken = static_cast<int>(title.size() + 3 + std::max<std::size_t>(state.size(), 24));
@@ -54,7 +61,9 @@ std::string progress_line(double fraction, double elapsed, int columns) {
   return title + "[" + bar + "] " + state;
 }
 
-ProgressBar::ProgressBar(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) != 0) {}
+ProgressBar::ProgressBar(bool enabled, Style style)
+    : enabled_(enabled && (style == Style::kLines || ::isatty(STDERR_FILENO) != 0)),
+      style_(style) {}
 
 void ProgressBar::erase() {
   if (drawn_) print(kEraseLine);
@@ -64,10 +73,16 @@ void ProgressBar::erase() {
 void ProgressBar::update(double fraction) {
   if (!enabled_) return;
   const Clock::time_point now = Clock::now();
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  if (style_ == Style::kLines) {
+    const int tenths = static_cast<int>(10.0 * fraction);
+    if (tenths > std::exchange(tenths_, tenths))
+      print("rendering: " + state_of(fraction, elapsed) + "\n");
+    return;
+  }
   if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   drawn_ = true;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
   print(std::string(kEraseLine) + progress_line(fraction, elapsed, terminal_columns()));
 }
 

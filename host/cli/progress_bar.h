@@ -1,4 +1,4 @@
-// How far the render is, on a terminal.
+// How far the render is.
 #pragma once
 
 #include <chrono>
@@ -11,11 +11,14 @@ namespace raygate {
 [[nodiscard]] std::string progress_line(double fraction, double elapsed, int columns);
 
 /// A line on standard error that is redrawn as the work goes on, and gone when it is over. Silent
-/// where standard error is no terminal.
+/// where standard error is no terminal. Or, through a launcher that hands lines on, one at the
+/// beginning and one for each tenth of the work.
 class ProgressBar {
  public:
+  enum class Style { kBar, kLines };
+
   /// `enabled` false: silent on terminals too. The clock starts here.
-  explicit ProgressBar(bool enabled);
+  explicit ProgressBar(bool enabled, Style style = Style::kBar);
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() { erase(); }
@@ -30,6 +33,8 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
 
   bool enabled_;
+  Style style_;
+  int tenths_ = -1;  // printed
   bool drawn_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_;

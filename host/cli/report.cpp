@@ -41,7 +41,11 @@ std::string headline(const Report& report) {
     if (options.lanes > 1) line += ", " + std::to_string(options.lanes) + " lanes";
     line += ')';
   }
-  return line + ", " + format_count(options.threads, "thread") + "\n";
+  if (report.ranks > 1)
+    line += ", " + format_count(report.ranks, "rank") + " of";
+  else
+    line += ",";
+  return line + " " + format_count(options.threads, "thread") + "\n";
 }
 
 /// "hit tests 80 %, boxes 15 %, ...": of the time of all threads.
@@ -221,6 +225,7 @@ std::string to_json(const Report& report) {
       {"unit", options.unit},
       {"arith", to_string(options.arith)},
       {"lanes", options.lanes},
+      {"ranks", report.ranks},
       {"threads", options.threads},
       {"seed", options.seed},
       {"pictures", pictures},

@@ -14,6 +14,7 @@ namespace raygate {
 /// Everything there is to say of a finished run. Times are seconds on the wall.
 struct Report {
   Options options;
+  int ranks = 1;  ///< that shared the run
   std::size_t triangles = 0;
   RenderStats render;
   double load_seconds = 0.0;   ///< reading OBJ and MTL

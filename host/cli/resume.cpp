@@ -66,7 +66,6 @@ std::optional<Film> begun_film(const Options& options, const ExrMetadata& metada
   keep(needed.object, film.object, "objectId", name);
   keep(needed.tests, film.tests, "tests", name);
   keep(needed.doubts, film.doubts, "doubts", name);
-  film.keeps_sums = needed.sums;
   return film;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "host/film/environment_file.h"
 #include "host/light/clearance.h"
 #include "host/picture/renderer.h"
+#include "host/ranks/shared_jobs.h"
 #include "host/scene/camera.h"
 #include "host/scene/ground.h"
 #include "host/scene/instances.h"
@@ -96,9 +98,10 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shot
   return metadata;
 }
 
-void write_partial(const OutputOptions& outputs, const Film& film, ExrMetadata metadata) {
+void write_partial(const OutputOptions& outputs, const Film& film, ExrMetadata metadata,
+                   int threads) {
   metadata.partial = true;
-  for (PendingFile& file : make_ready(outputs, film, metadata).files) file.commit();
+  for (PendingFile& file : make_ready(outputs, film, metadata, threads).files) file.commit();
 }
 
 std::string listed(const std::vector<std::filesystem::path>& paths) {
@@ -112,29 +115,45 @@ bool is_empty(const Film& film) {
   return std::ranges::all_of(film.color, [](const glm::vec4& color) { return color.a == 0.0f; });
 }
 
+std::string going_on(const OutputOptions& outputs) {
+  return "--resume " + outputs.exr->string() + " goes on from there";
+}
+
 /// Writes what had been rendered when a signal came, if that is anything.
 [[noreturn]] void end_interrupted(const OutputOptions& outputs, const Film& film,
-                                  const ExrMetadata& metadata) {
+                                  const ExrMetadata& metadata, int threads) {
   const int signal = interruption();
   if (is_empty(film)) {
     throw Interrupted(signal, "no file was changed");
   }
-  write_partial(outputs, film, metadata);
+  write_partial(outputs, film, metadata, threads);
   OutputOptions pictures = outputs;
   pictures.stats.reset();
-  throw Interrupted(signal, "wrote what there was: " + listed(pictures.paths()));
+  throw Interrupted(signal, "wrote what there was: " + listed(pictures.paths()) +
+                                (film.keeps_sums && outputs.exr ? "; " + going_on(outputs) : ""));
 }
 
 /// Saves what there is now and then. What goes wrong is said once and tried again.
 class Saver {
  public:
-  Saver(const OutputOptions& outputs, const ExrMetadata& metadata, ProgressBar& bar)
-      : outputs_(outputs), metadata_(metadata), bar_(bar) {}
+  Saver(const OutputOptions& outputs, const ExrMetadata& metadata, int threads, ProgressBar& bar)
+      : outputs_(outputs), metadata_(metadata), threads_(threads), bar_(bar) {}
 
-  void save(const Film& film) {
+  /// What a rank that has died has not brought down, without pictures that nothing goes on from.
+  void save_urgently(const Film& film) {
+    if (!outputs_.exr) return;
+    OutputOptions film_alone = outputs_;
+    film_alone.png.reset();
+    film_alone.false_colors.clear();
+    save(film, film_alone);
+    bar_.erase();
+    print_warning("a rank may have died; " + going_on(outputs_));
+  }
+
+  void save(const Film& film, const OutputOptions& outputs) {
     std::string trouble;
     try {
-      write_partial(outputs_, film, metadata_);
+      write_partial(outputs, film, metadata_, threads_);
     } catch (const std::exception& error) {
       trouble = error.what();
     }
@@ -148,6 +167,7 @@ class Saver {
  private:
   const OutputOptions& outputs_;
   const ExrMetadata& metadata_;
+  int threads_;
   ProgressBar& bar_;
   std::string last_trouble_;
 };
@@ -155,12 +175,14 @@ class Saver {
 /// Renders with a progress bar, until a signal comes.
 Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
                  const Clearances& clearances, const CoreImage& image, const Camera& camera,
-                 const ExrMetadata& metadata, const Film* begun, RenderStats& stats) {
+                 const ExrMetadata& metadata, const Film* begun, Ranks& ranks, RenderStats& stats) {
   const SampleRange all{0, options.light.samples};
+  const auto threads = static_cast<int>(options.threads);
   RenderOptions render_options{.width = options.width,
                                .height = options.height,
                                .window = options.window,
-                               .threads = static_cast<int>(options.threads),
+                               .threads = threads,
+                               .ranks = &ranks,
                                .samples = options.light.samples,
                                .first_sample = options.light.range.value_or(all).first,
                                .end_sample = options.light.range.value_or(all).end,
@@ -174,16 +196,24 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                                .ambient = options.light.ambient,
                                .skips = options.light.skips,
                                .point_error = options.light.point_error};
-  ProgressBar bar(!options.quiet);
-  Saver saver(outputs, metadata, bar);
+  // What a rank that dies has not brought down is there to go on from.
+  if (ranks.count() > 1) render_options.channels.sums = true;
+  ProgressBar bar(!options.quiet && ranks.index() == 0,
+                  ranks.count() > 1 ? ProgressBar::Style::kLines : ProgressBar::Style::kBar);
+  Saver saver(outputs, metadata, threads, bar);
   if (outputs.save_seconds > 0.0) {
-    render_options.snapshot = [&](const Film& film) { saver.save(film); };
+    render_options.snapshot = [&](const Film& film) { saver.save(film, outputs); };
     render_options.snapshot_seconds = outputs.save_seconds;
+  }
+  if (ranks.count() > 1) {
+    note_warnings();
+    render_options.is_urgent = take_warning;
+    render_options.urgent_snapshot = [&](const Film& film) { saver.save_urgently(film); };
   }
   // The threads are deep in a search and will not stop soon: end without them.
   render_options.abandon = [&](const Film& film) {
     bar.erase();
-    std::_Exit(run_guarded([&]() -> int { end_interrupted(outputs, film, metadata); }, 1));
+    std::_Exit(run_guarded([&]() -> int { end_interrupted(outputs, film, metadata, threads); }, 1));
   };
   Film film = render(scene, clearances, camera, render_options,
                      make_finder_factory(options, clearances.bvh(), options.light.skips, image),
@@ -204,12 +234,18 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
 /// Renders one picture and writes it with `report` completed.
 void render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
                     const Clearances& clearances, const CoreImage& image, const Shots& shots,
-                    const Camera& camera, Clock::time_point start, Report& report) {
+                    const Camera& camera, Clock::time_point start, Ranks& ranks, Report& report) {
   const ExrMetadata metadata = make_metadata(options, scene, shots, camera);
-  const std::optional<Film> begun = begun_film(options, metadata);
-  const Film film = render_film(options, outputs, scene, clearances, image, camera, metadata,
-                                begun ? &*begun : nullptr, report.render);
-  if (report.render.cancelled) end_interrupted(outputs, film, metadata);
+  const bool is_ours = ranks.index() == 0;
+  const std::optional<Film> begun = is_ours ? begun_film(options, metadata) : std::nullopt;
+  Film film = render_film(options, outputs, scene, clearances, image, camera, metadata,
+                          begun ? &*begun : nullptr, ranks, report.render);
+  if (report.render.cancelled) {
+    end_interrupted(outputs, film, metadata, static_cast<int>(options.threads));
+  }
+  ranks.leave();
+  if (!is_ours) return;
+  film.keeps_sums = outputs.needed_channels().sums;
 
   // All files are made ready before the first takes its name: a full disk changes none of them.
   const Clock::time_point write_start = Clock::now();
@@ -222,15 +258,18 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
   for (PendingFile& file : ready.files) file.commit();
 }
 
-/// One picture after the other; a line for each.
+/// One picture after the other, each by the rank that is free; a line for each.
 void render_film_of_frames(const Options& options, Scene& scene, const Clearances& clearances,
-                           const CoreImage& image, const Shots& shots, Report& report,
+                           const CoreImage& image, const Shots& shots, Ranks& ranks, Report& report,
                            std::FILE* console) {
   const int frames = options.output.frames;
-  for (int frame = 1; frame <= frames; ++frame) {
+  SharedJobs jobs(ranks, frames);
+  while (const auto job = jobs.next()) {
+    const int frame = *job + 1;
     const Clock::time_point start = Clock::now();
+    Ranks alone;
     render_picture(options, options.output.numbered(frame), scene, clearances, image, shots,
-                   shots.light(frame, scene), start, report);
+                   shots.light(frame, scene), start, alone, report);
     if (options.quiet) continue;
     print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
               format_duration(report.total_seconds) + ", wrote " + listed(report.pictures) + "\n",
@@ -248,11 +287,12 @@ glm::dvec3 environment_up(const Options& options, const Scene& scene) {
 
 }  // namespace
 
-void run(const Options& options) {
+void run(const Options& options, Ranks& ranks) {
   const Clock::time_point start = Clock::now();
   const int frames = options.output.frames;
   std::FILE* console = stdout;
-  for (int frame = frames == 0 ? 0 : 1; frame <= frames; ++frame) {
+  const bool writes = ranks.index() == 0 || frames > 0;
+  for (int frame = frames == 0 ? 0 : 1; writes && frame <= frames; ++frame) {
     const OutputOptions outputs = frame == 0 ? options.output : options.output.numbered(frame);
     for (const auto& path : outputs.paths()) {
       require_writable(path);
@@ -263,6 +303,7 @@ void run(const Options& options) {
   for (const auto& path : options.core_files.paths()) require_writable(path);
   Report report;
   report.options = options;
+  report.ranks = ranks.count();
 
   require_scene(options);
   const LoadOptions load_options{.strict = options.strict,
@@ -277,7 +318,7 @@ void run(const Options& options) {
   }
   report.load_seconds = seconds_since(start);
   report.triangles = triangle_count(scene);
-  print_warnings(scene);
+  if (ranks.index() == 0) print_warnings(scene);
   require_inputs_kept(options, scene);
 
   // Cameras and lamps are found before there is a ground, which is not to be framed.
@@ -294,16 +335,18 @@ void run(const Options& options) {
   if (const auto& pixel = options.core_files.pixel) {
     const Ray ray = shots.light(1, scene).ray((pixel->x + 0.5) / options.width,
                                               (pixel->y + 0.5) / options.height, glm::dvec2(0.0));
-    print(trace_pixel(options, options.core_files, bvh, image, ray), console);
+    if (ranks.index() == 0) {
+      print(trace_pixel(options, options.core_files, bvh, image, ray), console);
+    }
     return;
   }
 
   if (frames > 0) {
-    render_film_of_frames(options, scene, clearances, image, shots, report, console);
+    render_film_of_frames(options, scene, clearances, image, shots, ranks, report, console);
   } else {
     render_picture(options, options.output, scene, clearances, image, shots, shots.light(1, scene),
-                   start, report);
-    if (!options.quiet) print(to_text(report), console);
+                   start, ranks, report);
+    if (!options.quiet && ranks.index() == 0) print(to_text(report), console);
   }
 }
 

@@ -16,10 +16,13 @@
 
 #include "host/light/clearance.h"
 #include "host/light/lights.h"
+#include "host/picture/helpers.h"
+#include "host/picture/helping.h"
 #include "host/picture/lamp_edges.h"
 #include "host/picture/schedule.h"
 #include "host/picture/tile_renderer.h"
 #include "host/picture/tiles.h"
+#include "host/ranks/ranks.h"
 #include "host/scene/camera.h"
 #include "host/stopwatch.h"
 
@@ -66,13 +69,20 @@ class Crew {
         film_(film),
         lamp_edges_(lamp_edges),
         stats_(stats),
-        schedule_(tiles.count, tiles.passes()) {}
+        schedule_(tiles.count, tiles.passes(), job.options.begun != nullptr) {
+    Ranks* const ranks = job.options.ranks;
+    if (ranks == nullptr || ranks->count() == 1) return;
+    helpers_.emplace(*ranks, tiles, job.options.first_sample, film);
+    grace_ = {};
+  }
 
   /// Returns when all is traced, or the caller wants no more.
   void run() {
     look();
     {
       const int wanted = std::min(job_.options.threads, tiles_.count);
+      std::jthread server;
+      if (helpers_) server = std::jthread([this] { serve(); });
       std::vector<std::jthread> threads;
       try {
         while (static_cast<int>(threads.size()) < wanted) threads.emplace_back([this] { work(); });
@@ -85,15 +95,18 @@ class Crew {
       }
       watch(static_cast<int>(threads.size()));
     }
-    if (error_) std::rethrow_exception(error_);
+    if (error_) {
+      if (helpers_ && job_.options.urgent_snapshot) job_.options.urgent_snapshot(film_);
+      std::rethrow_exception(error_);
+    }
     stats_.cancelled = !schedule_.all_ended();
     if (!stats_.cancelled && report_) report_(1.0);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kLook{50};    // between reports, at most
-  static constexpr std::chrono::milliseconds kGrace{500};  // for threads that are to stop
+  static constexpr std::chrono::milliseconds kLook{50};  // between reports, at most
+  static constexpr std::chrono::milliseconds kServe{1};  // between looks for messages
 
   /// A thread's: until there is nothing left to begin.
   void work() {
@@ -124,6 +137,22 @@ class Crew {
     changed_.notify_all();
   }
 
+  /// The other ranks', on a thread of its own: a save or a terminal keeps none of them waiting.
+  void serve() {
+    try {
+      std::unique_lock lock(mutex_);
+      while (!stopped_ && !(schedule_.all_ended() && helpers_->finish(stats_))) {
+        if (!schedule_.all_ended() && helpers_->serve(schedule_)) changed_.notify_all();
+        changed_.wait_for(lock, kServe);
+      }
+    } catch (...) {
+      fail(std::current_exception());
+    }
+    const std::scoped_lock lock(mutex_);
+    served_ = true;
+    changed_.notify_all();
+  }
+
   std::unique_ptr<Finder> take_first_finder() {
     const std::scoped_lock lock(mutex_);
     return std::move(first_finder_);
@@ -141,10 +170,10 @@ class Crew {
     return step;
   }
 
-  /// Until so many threads are gone.
+  /// Until so many threads are gone, and all other ranks have said their last word.
   void watch(int threads) {
     std::unique_lock lock(mutex_);
-    while (gone_ < threads) {
+    while (gone_ < threads || (helpers_ && !served_)) {
       changed_.wait_for(lock, kLook);
       lock.unlock();
       look();
@@ -157,7 +186,7 @@ class Crew {
     try {
       std::unique_lock lock(mutex_);
       if (stopped_) {
-        if (job_.options.abandon && !error_ && Clock::now() - stopped_at_ > kGrace) {
+        if (job_.options.abandon && !error_ && Clock::now() - stopped_at_ > grace_) {
           const Film film = film_;
           lock.unlock();
           job_.options.abandon(film);
@@ -168,6 +197,12 @@ class Crew {
       lock.unlock();
       if (report_ && !report_(fraction)) stop();
       lock.lock();
+      if (helpers_ && job_.options.is_urgent && job_.options.is_urgent()) {
+        const Film film = film_;
+        lock.unlock();
+        job_.options.urgent_snapshot(film);
+        return;
+      }
       if (stopped_ || schedule_.all_ended() || !job_.options.snapshot) return;
       since_snapshot_ += watch_.lap();
       if (since_snapshot_ < job_.options.snapshot_seconds) return;
@@ -207,17 +242,30 @@ class Crew {
   std::span<LampEdge> lamp_edges_;
   RenderStats& stats_;
   Schedule schedule_;
+  std::optional<Helpers> helpers_;  // none: there is one rank
+  bool served_ = false;
   int gone_ = 0;
   bool stopped_ = false;
   Clock::time_point stopped_at_;
   std::exception_ptr error_;
   // Of the watching thread alone.
+  std::chrono::milliseconds grace_{500};  // for threads that are to stop
   bool is_alone_ = false;
   Stopwatch watch_;
   double since_snapshot_ = 0.0;
 };
 
 }  // namespace
+
+void add(RenderStats& stats, const RenderStats& of_helper) {
+  stats.rays += of_helper.rays;
+  stats.camera_rays += of_helper.camera_rays;
+  stats.shadow_rays += of_helper.shadow_rays;
+  stats.point_doubts += of_helper.point_doubts;
+  stats.skipped += of_helper.skipped;
+  stats.find += of_helper.find;
+  stats.shade_seconds += of_helper.shade_seconds;
+}
 
 Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
             const RenderOptions& options, const FinderFactory& make_finder, RenderStats& stats,
@@ -230,12 +278,14 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
   Film film = empty_film(options);
   auto first_finder = make_finder();
   const int end = options.end_sample > 0 ? options.end_sample : options.samples;
+  const int ranks = options.ranks == nullptr ? 1 : options.ranks->count();
   const Tiles tiles(film.window, end - options.first_sample, first_finder->preferred_batch(),
-                    options.threads);
+                    options.threads * ranks);
   if (options.begun != nullptr) {
     film = *options.begun;
+    film.keeps_sums = options.channels.sums;
     assert(film.sums.samples.size() == film.color.size());
-  } else if (tiles.passes() > 1 || film.keeps_sums) {
+  } else if (tiles.passes() > 1 || film.keeps_sums || ranks > 1) {
     film.sums.samples.assign(film.color.size(), 0);
     film.sums.color.resize(film.color.size());
     film.sums.albedo.resize(film.albedo.size());
@@ -248,10 +298,16 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     lamp_edges.assign(film.color.size(), LampEdge::kUnknown);
   }
   const RenderJob job{scene, bvh, camera, options, lights, clearances};
+  if (ranks > 1 && options.ranks->index() != 0) {
+    help(*options.ranks, job, std::move(first_finder), make_finder, progress, film, lamp_edges,
+         stats);
+    return film;
+  }
   Crew(job, tiles, std::move(first_finder), make_finder, progress, film, lamp_edges, stats).run();
   if (stats.find.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
-    stats.skipped.records = bvh.slot_count() * origins - stats.find.common_records;
+    const std::uint64_t every_record = bvh.slot_count() * origins * std::uint64_t(ranks);
+    stats.skipped.records = every_record - stats.find.common_records;
   }
   const std::uint64_t every_test = stats.rays * bvh.triangle_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);

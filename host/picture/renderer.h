@@ -18,15 +18,21 @@
 namespace raygate {
 
 class Camera;
+class Ranks;
 
 /// What to render. Impossible values are bugs of the caller.
 struct RenderOptions {
   int width = 0, height = 0;  ///< of the whole frame, at least 1
   PixelRect window;           ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;            ///< at least 1; the film does not depend on it
-  int samples = 1;            ///< of each pixel, at least 1; a single one is its middle
-  int first_sample = 0;       ///< those from this one ...
-  int end_sample = 0;         ///< ... to before this one are rendered; 0: all
+  /// Those that share this render, each called with the same of everything that the film depends
+  /// on; null: nobody else. Rank 0 has the film in the end; the others have parts, and call back
+  /// for nothing but progress, to be told to stop. If one of them cannot go on, rank 0 calls
+  /// `urgent_snapshot` and throws InputError.
+  Ranks* ranks = nullptr;
+  int samples = 1;       ///< of each pixel, at least 1; a single one is its middle
+  int first_sample = 0;  ///< those from this one ...
+  int end_sample = 0;    ///< ... to before this one are rendered; 0: all
   /// What there is of this picture, of the same window, options and samples from first_sample on,
   /// with its sums: the render goes on from there. Null: nothing.
   const Film* begun = nullptr;
@@ -45,8 +51,13 @@ struct RenderOptions {
   /// called render(); the others go on.
   std::function<void(const Film&)> snapshot{};
   double snapshot_seconds = 10.0;
+  /// With other ranks: asked now and then whether one of them may have died, and called if so, as
+  /// `snapshot` is.
+  std::function<bool()> is_urgent{};
+  std::function<void(const Film&)> urgent_snapshot{};
   /// If not empty: called with a copy of the film so far when the threads have not stopped half a
-  /// second after they were told to, deep in a search as they are. Must end the process.
+  /// second after they were told to, deep in a search as they are; at once where there are other
+  /// ranks, as a launcher that ends them ends this one, too, in a second. Must end the process.
   std::function<void(const Film&)> abandon{};
 };
 
@@ -66,6 +77,9 @@ struct RenderStats {
   int missing_threads = 0;  ///< that could not be started; the others did their work
   bool cancelled = false;   ///< the progress function said stop: the film has what there was
 };
+
+/// What another rank has counted. Its clock is not.
+void add(RenderStats& stats, const RenderStats& of_helper);
 
 /// Called with the fraction done, in [0, 1], now and then on the thread that called render(); false
 /// stops the render. May be empty.

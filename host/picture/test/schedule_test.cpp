@@ -48,6 +48,43 @@ TEST(Schedule, ATileGoesOnWhileAnotherIsSlow) {
   EXPECT_TRUE(schedule.begin());
 }
 
+/// A rank goes on with its own tiles, begins new ones, and takes another's where it must.
+TEST(Schedule, TilesStayWithTheirRank) {
+  Schedule schedule(3, 4);
+  const auto expect_step = [&](int rank, int most, int tile, int pass, int end, bool moves) {
+    const auto step = schedule.begin(rank, most);
+    ASSERT_TRUE(step);
+    EXPECT_EQ(step->tile, tile);
+    EXPECT_EQ(step->pass, pass);
+    EXPECT_EQ(step->end_pass, end);
+    EXPECT_EQ(step->moves, moves);
+  };
+  expect_step(0, 1, 0, 0, 1, false);
+  expect_step(7, 2, 1, 0, 2, false);
+  schedule.end(0);
+  schedule.end(1);
+  expect_step(7, 9, 2, 0, 4, false);  // before rank 0's tile, though that waits for longer
+  expect_step(7, 1, 1, 2, 3, false);
+  schedule.end(1);
+  EXPECT_DOUBLE_EQ(schedule.fraction(), 4.0 / 12.0);
+  expect_step(7, 1, 1, 3, 4, false);
+  expect_step(7, 1, 0, 1, 2, true);
+  schedule.end(0);
+  expect_step(7, 1, 0, 2, 3, false);
+  schedule.end(0);
+  expect_step(0, 9, 0, 3, 4, true);
+  EXPECT_EQ(schedule.left(), 0);
+  for (const int tile : {0, 1, 2}) schedule.end(tile);
+  EXPECT_TRUE(schedule.all_ended());
+}
+
+/// What an earlier run has left is with rank 0.
+TEST(Schedule, ABegunPictureIsWithRank0) {
+  Schedule schedule(2, 1, true);
+  EXPECT_FALSE(schedule.begin(0)->moves);
+  EXPECT_TRUE(schedule.begin(1)->moves);
+}
+
 /// 8192 x 8192 pixels and 2^20 samples: 2^32 steps.
 TEST(Schedule, CountsBeyond32Bits) {
   Schedule schedule(1 << 14, 1 << 18);

@@ -1,0 +1,206 @@
+// Pictures that ranks share, whole, broken off and gone on with: the bytes of one process.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "host/cli/test/render_run.h"
+
+namespace raygate {
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// Processes that `parent` has started.
+std::vector<int> children_of(int parent) {
+  std::vector<int> children;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (!std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c) != 0; })) continue;
+    std::ifstream file(entry.path() / "stat");
+    std::string stat(std::istreambuf_iterator<char>(file), {});
+    const std::size_t end = stat.rfind(')');  // of the program's name
+    if (end != std::string::npos && std::atoi(stat.c_str() + end + 4) == parent) {
+      children.push_back(std::stoi(name));
+    }
+  }
+  return children;
+}
+
+int rank_of(int process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/environ");
+  const std::string environment(std::istreambuf_iterator<char>(file), {});
+  const std::string name = "OMPI_COMM_WORLD_RANK=";
+  const std::size_t at = environment.find(name);
+  return at == std::string::npos ? -1 : std::atoi(environment.c_str() + at + name.size());
+}
+
+class Ranks : public Render {
+ protected:
+  Ranks() {
+    ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  }
+
+  Outcome on_ranks(int count, const Words& arguments,
+                   std::vector<std::pair<std::string, std::function<void(int)>>> when_said = {}) {
+    return run_program({.arguments = Words{"--oversubscribe", "--bind-to", "none", "-n",
+                                           std::to_string(count), RAYGATE_PROGRAM} +
+                                     arguments,
+                        .folder = folder_.path(),
+                        .when_said = std::move(when_said),
+                        .program = RAYGATE_MPIRUN});
+  }
+  void alone(const Words& arguments) {
+    const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+};
+
+const Words kSmall = {kCornell, "--size", "60x44", "--integrator", "path", "--threads", "1"};
+
+TEST_F(Ranks, ShareAPicture) {
+  const Words arguments = kSmall + Words{"--spp", "9", "--channels", "Albedo,objectId"};
+  alone(arguments + Words{"--engine", "cpu", "-o", "whole"});
+  for (const int count : {1, 2, 4}) {
+    const Outcome outcome = on_ranks(count, arguments + Words{"--engine", "cpu", "-o", "shared"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    expect_same_pictures("shared", "whole");
+    if (count == 1) continue;
+    EXPECT_NE(outcome.out.find(std::to_string(count) + " ranks of 1 thread"), std::string::npos)
+        << outcome.out;
+    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << "of rank 0 alone:\n" << outcome.out;
+    EXPECT_NE(outcome.err.find("rendering: 100 %"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(Ranks, ShareAPictureOfTheHardware) {
+  const Words arguments = {kCornell, "--size", "24x16", "--spp", "4", "--threads", "1"};
+  alone(arguments + Words{"--engine", "cpu", "-o", "whole"});
+  for (const int count : {1, 2, 4}) {
+    const Outcome outcome = on_ranks(count, arguments + Words{"--engine", "rtl", "-o", "shared"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    expect_same_pictures("shared", "whole");
+  }
+}
+
+TEST_F(Ranks, ShareOneSampleCropsAndRanges) {
+  const Words one = {kCornell, "--size", "300x200", "--engine", "cpu", "--spp", "1"};
+  alone(one + Words{"-o", "whole"});
+  EXPECT_EQ(on_ranks(3, one + Words{"-o", "shared"}).status, 0);
+  expect_same_pictures("shared", "whole");
+  const Words part =
+      kSmall + Words{"--engine", "cpu", "--spp", "12", "--crop", "9,7,50,41", "--samples", "3:11"};
+  alone(part + Words{"-o", "whole"});
+  EXPECT_EQ(on_ranks(2, part + Words{"-o", "shared"}).status, 0);
+  expect_same_pictures("shared", "whole");
+}
+
+TEST_F(Ranks, GoOnWhereAnotherNumberOfThemWas) {
+  const Words arguments = kSmall + Words{"--engine", "cpu"};
+  alone(arguments + Words{"--spp", "13", "-o", "whole"});
+  const Words begun = arguments + Words{"--spp", "5", "--channels", "sums", "-o", "a.exr"};
+  EXPECT_EQ(on_ranks(3, begun).status, 0);
+  const Words resumed = arguments + Words{"--spp", "13", "--resume", "a.exr", "-o", "resumed"};
+  EXPECT_EQ(on_ranks(2, resumed).status, 0);
+  expect_same_pictures("resumed", "whole");
+  alone(resumed);
+  expect_same_pictures("resumed", "whole");
+}
+
+TEST_F(Ranks, ShareTheFramesOfAFilm) {
+  const Words arguments = {kCornell, "--size", "40x30", "--engine", "cpu", "--frames", "5"};
+  alone(arguments + Words{"-o", "a"});
+  const Outcome outcome = on_ranks(3, arguments + Words{"-o", "b"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << outcome.out;
+  for (int frame = 1; frame <= 5; ++frame) {
+    expect_same_pictures("a-000" + std::to_string(frame), "b-000" + std::to_string(frame));
+  }
+}
+
+TEST_F(Ranks, SayOnceWhatIsWrong) {
+  const auto refused = [&](const Words& arguments, const std::string& line) {
+    const Outcome outcome = on_ranks(3, arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    const std::size_t at = outcome.err.find("error: ");
+    ASSERT_NE(at, std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.compare(at, line.size(), line), 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("error: ", at + 1), std::string::npos) << outcome.err;
+  };
+  refused({"none.obj"}, "error: none.obj: ");
+  refused({kCornell, "--spp", "-3"}, "error: --spp: ");
+  refused({kCornell, "-o", "no/such/folder/a.exr"}, "error: no/such/folder/a.exr: ");
+  EXPECT_TRUE(folder_.list().empty());
+}
+
+/// Killed at any time, a film is there to go on from: of a rank's death, without --save-every, all
+/// but the tiles in flight. RAYGATE_KILLS says how often; each takes up what the last one left.
+class KilledRanks : public Ranks {
+ protected:
+  enum class Who { kHelper, kRank0, kAll };
+  void kill_at_random(Who who, const Words& more) {
+    const Words arguments = {kCornell,   "--size",   "200x150",      "--spp", "128",
+                             "--engine", "cpu",      "--integrator", "path",  "--threads",
+                             "1",        "--filter", "box"};
+    const Words begun = arguments + Words{"-o", "a.exr"} + more;
+    const char* const wanted = std::getenv("RAYGATE_KILLS");
+    const int kills = wanted != nullptr ? std::atoi(wanted) : 2;
+    constexpr unsigned kSeed = 20261122;
+    std::mt19937 random(kSeed + static_cast<unsigned>(who));
+    int killed = 0, saved = 0;
+    int runs = 0;
+    for (; runs < kills || (saved == 0 && runs < 10 * kills); ++runs) {
+      const std::string before = folder_.read("a.exr");
+      const auto kill_some = [&](int launcher) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(250 + random() % 600));
+        std::vector<int> ranks = children_of(launcher);
+        std::ranges::sort(ranks, {}, rank_of);
+        if (ranks.size() != 3) return;  // it is over
+        if (who == Who::kAll) {
+          ranks.push_back(launcher);
+        } else {
+          ranks = {who == Who::kRank0 ? ranks[0] : ranks[1 + random() % 2]};
+        }
+        for (const int rank : ranks) ::kill(rank, SIGKILL);
+        ++killed;
+      };
+      const Outcome outcome =
+          on_ranks(3, begun + (before.empty() ? Words{} : Words{"--resume", "a.exr"}),
+                   {{"rendering: ", kill_some}});
+      if (outcome.status == 0)
+        fs::remove(folder_.path() / "a.exr");  // from the beginning again
+      else
+        saved += folder_.read("a.exr") != before;
+      if (who == Who::kHelper && outcome.status != 0) {
+        EXPECT_NE(outcome.err.find("--resume a.exr goes on from there"), std::string::npos)
+            << outcome.err;
+      }
+    }
+    std::printf("%d runs of 3 ranks, %d killed (seed %u), %d saved something\n", runs, killed,
+                kSeed, saved);
+    EXPECT_GT(killed, 0);
+    EXPECT_GT(saved, 0);
+    if (folder_.read("a.exr").empty()) return;
+    alone(arguments + Words{"--resume", "a.exr", "-o", "resumed"});
+    alone(arguments + Words{"-o", "whole"});
+    expect_same_pictures("resumed", "whole");
+  }
+};
+
+TEST_F(KilledRanks, OneOfThem) { kill_at_random(Who::kHelper, {}); }
+TEST_F(KilledRanks, Rank0) { kill_at_random(Who::kRank0, {"--save-every", "0.2"}); }
+TEST_F(KilledRanks, AllAndTheLauncher) { kill_at_random(Who::kAll, {"--save-every", "0.2"}); }
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,43 @@
+#include "host/film/film_slice.h"
+
+#include <cassert>
+#include <cstring>
+#include <type_traits>
+
+namespace raygate {
+namespace {
+
+/// Calls `visit` with the first pixel of each row of `rect` in each array that is there, and how
+/// many bytes the row has.
+template <class AnyFilm, class Visit>
+void for_each_row(AnyFilm& film, const PixelRect& rect, const Visit& visit) {
+  for_each_array(film, [&](auto& values) {
+    using Value = std::remove_cvref_t<decltype(values.front())>;
+    static_assert(std::is_trivially_copyable_v<Value>);
+    if (values.empty()) return;
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      visit(values.data() + film.index_of(rect.x0, y), sizeof(Value) * std::size_t(rect.width()));
+    }
+  });
+}
+
+}  // namespace
+
+std::string slice_of(const Film& film, const PixelRect& rect) {
+  std::string slice;
+  for_each_row(film, rect, [&](const auto* row, std::size_t size) {
+    slice.append(reinterpret_cast<const char*>(row), size);
+  });
+  return slice;
+}
+
+void put_slice(Film& film, const PixelRect& rect, std::string_view slice) {
+  for_each_row(film, rect, [&](auto* row, std::size_t size) {
+    assert(slice.size() >= size);
+    std::memcpy(static_cast<void*>(row), slice.data(), size);
+    slice.remove_prefix(size);
+  });
+  assert(slice.empty());
+}
+
+}  // namespace raygate

@@ -1,0 +1,52 @@
+// A rectangle of a film, there and back.
+#include "host/film/film_slice.h"
+
+#include <gtest/gtest.h>
+
+#include "host/film/test/sample_film.h"
+
+namespace raygate {
+namespace {
+
+Film with_sums(Film film) {
+  film.sums.samples.assign(film.color.size(), 3);
+  film.sums.color.resize(film.color.size());
+  film.sums.albedo.resize(film.albedo.size());
+  for (std::size_t i = 0; i < film.color.size(); ++i) {
+    film.sums.color[i][2].add(double(i) / 3.0);
+    film.sums.albedo[i][1].add(-double(i));
+  }
+  return film;
+}
+
+TEST(FilmSlice, BringsAllChannelsOfItsPixelsAndNoOthers) {
+  const PixelRect window{3, 5, 16, 14};
+  const Film source = with_sums(make_sample_film(20, 18, window, true));
+  Film target = source;
+  for_each_array(target, [](auto& values) {
+    ASSERT_FALSE(values.empty());
+    values.assign(values.size(), {});
+  });
+  const Film blank = target;
+  const PixelRect rect{4, 7, 9, 14};
+  put_slice(target, rect, slice_of(source, rect));
+  int inside = 0;
+  for (int y = window.y0; y < window.y1; ++y) {
+    for (int x = window.x0; x < window.x1; ++x) {
+      const bool is_in = x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1;
+      const PixelRect pixel{x, y, x + 1, y + 1};
+      EXPECT_EQ(slice_of(target, pixel), slice_of(is_in ? source : blank, pixel));
+      inside += static_cast<int>(is_in);
+    }
+  }
+  EXPECT_EQ(inside, 35);
+}
+
+TEST(FilmSlice, LeavesOutWhatAFilmDoesNotHave) {
+  const Film film = make_sample_film(4, 4, {0, 0, 4, 4});
+  const std::size_t bytes = sizeof(glm::vec4) + sizeof(float) + sizeof(glm::vec3) + 4;
+  EXPECT_EQ(slice_of(film, {1, 1, 3, 2}).size(), 2 * bytes);
+}
+
+}  // namespace
+}  // namespace raygate

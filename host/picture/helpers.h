@@ -1,0 +1,44 @@
+// The other ranks, as rank 0 sees them: who traces which tiles.
+#pragma once
+
+#include <vector>
+
+#include "host/film/film.h"
+#include "host/picture/renderer.h"
+#include "host/picture/schedule.h"
+#include "host/picture/tiles.h"
+#include "host/ranks/ranks.h"
+
+namespace raygate {
+
+/// Hands out tiles and puts what comes back into the film. For one thread at a time, which also
+/// has the film and the schedule to itself meanwhile.
+class Helpers {
+ public:
+  /// `first_sample`: of the render. All else must outlive this.
+  Helpers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film);
+
+  /// Takes what has come and gives everyone with room for it more to do. True if a tile came back.
+  bool serve(Schedule& schedule);
+
+  /// Says that all is traced, and waits for what everyone has to say about it: true once that is
+  /// in `stats`. False: not yet.
+  bool finish(RenderStats& stats);
+
+ private:
+  [[nodiscard]] int most_passes(const Schedule& schedule) const;
+  void give(int rank, const Schedule::Step& step);
+
+  Ranks& ranks_;
+  const Tiles& tiles_;
+  int first_sample_;
+  Film& film_;
+  std::vector<int> room_;  // by rank: for so many more tiles
+  int most_room_ = 0;      // of all of them, when they had nothing to do
+  double seconds_ = 0.0;   // of threads, for ...
+  std::int64_t passes_ = 0;
+  bool told_ = false;
+  int heard_ = 0;  // statistics that have come
+};
+
+}  // namespace raygate

@@ -1,0 +1,163 @@
+#include "host/picture/helping.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "host/film/film_slice.h"
+#include "host/picture/shared_tile.h"
+#include "host/picture/tile_renderer.h"
+#include "host/stopwatch.h"
+
+namespace raygate {
+namespace {
+
+/// Threads that trace, and the one that called, which talks with rank 0.
+class Helper {
+ public:
+  Helper(const RenderJob& job, std::unique_ptr<Finder> first_finder,
+         const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
+         std::span<LampEdge> lamp_edges, RenderStats& stats)
+      : job_(job),
+        first_finder_(std::move(first_finder)),
+        make_finder_(make_finder),
+        progress_(progress),
+        film_(film),
+        lamp_edges_(lamp_edges),
+        stats_(stats) {}
+  Helper(const Helper&) = delete;
+  Helper& operator=(const Helper&) = delete;
+  ~Helper() { stop(); }
+
+  void run(Ranks& ranks) {
+    try {
+      while (static_cast<int>(threads_.size()) < job_.options.threads) {
+        threads_.emplace_back([this] { work(); });
+      }
+    } catch (const std::system_error&) {
+      if (threads_.empty()) throw;  // else these will do
+    }
+    // One tile more than threads: there is something to do while messages travel.
+    ranks.send(0, About::kRoom, bytes_of(static_cast<int>(threads_.size()) + 1));
+    while (talk(ranks)) {
+    }
+    stop();
+    threads_.clear();
+    ranks.send(0, About::kCounts, bytes_of(stats_));
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kLook{1};  // between looks for messages
+
+  /// False when rank 0 has said that all is traced.
+  bool talk(Ranks& ranks) {
+    while (auto message = ranks.receive()) {
+      if (message->about == About::kFinish) return false;
+      const auto tile = value_of<SharedTile>(message->bytes);
+      if (const auto slice = slice_in(message->bytes); !slice.empty()) {
+        put_slice(film_, tile.rect, slice);
+      }
+      const std::scoped_lock lock(mutex_);
+      to_do_.push_back(tile);
+      changed_.notify_all();
+    }
+    if (progress_ && !progress_(0.0)) throw std::runtime_error("interrupted");
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLook, [this] { return error_ || !traced_.empty(); });
+    if (error_) std::rethrow_exception(error_);
+    for (const SharedTile& tile : std::exchange(traced_, {})) {
+      ranks.send(0, About::kTraced, message_of(tile, slice_of(film_, tile.rect)));
+    }
+    return true;
+  }
+
+  /// A thread's.
+  void work() {
+    try {
+      auto finder = take_first_finder();
+      if (!finder) finder = make_finder_();
+      TileRenderer renderer(job_, *finder, film_, lamp_edges_);
+      while (auto tile = next()) {
+        Stopwatch watch;
+        if (!trace(renderer, *tile)) break;
+        tile->seconds = watch.lap();
+        const std::scoped_lock lock(mutex_);
+        traced_.push_back(*tile);
+        changed_.notify_all();
+      }
+      const std::scoped_lock lock(mutex_);
+      renderer.add_to(stats_);
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+    }
+  }
+
+  /// False if it was to stop. Nobody else has this tile's pixels meanwhile.
+  bool trace(TileRenderer& renderer, const SharedTile& tile) {
+    const auto keep_going = [this] {
+      const std::scoped_lock lock(mutex_);
+      return !stopped_;
+    };
+    for (int end = tile.end;; end = std::min(end + tile.step, tile.last)) {
+      if (!renderer.trace(tile.rect, end, keep_going)) return false;
+      renderer.write();
+      if (end == tile.last) return true;
+    }
+  }
+
+  std::unique_ptr<Finder> take_first_finder() {
+    const std::scoped_lock lock(mutex_);
+    return std::move(first_finder_);
+  }
+
+  std::optional<SharedTile> next() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return stopped_ || !to_do_.empty(); });
+    if (stopped_) return std::nullopt;
+    const SharedTile tile = to_do_.front();
+    to_do_.pop_front();
+    return tile;
+  }
+
+  void stop() {
+    const std::scoped_lock lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+  }
+
+  const RenderJob& job_;
+  std::mutex mutex_;  // of what follows, but for the film
+  std::condition_variable changed_;
+  std::unique_ptr<Finder> first_finder_;
+  const FinderFactory& make_finder_;
+  const ProgressFunction& progress_;
+  Film& film_;
+  std::span<LampEdge> lamp_edges_;
+  RenderStats& stats_;
+  std::deque<SharedTile> to_do_;
+  std::vector<SharedTile> traced_;
+  bool stopped_ = false;
+  std::exception_ptr error_;
+  std::vector<std::jthread> threads_;  // last: they use the others
+};
+
+}  // namespace
+
+void help(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
+          const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
+          std::span<LampEdge> lamp_edges, RenderStats& stats) {
+  Helper(job, std::move(first_finder), make_finder, progress, film, lamp_edges, stats).run(ranks);
+}
+
+}  // namespace raygate

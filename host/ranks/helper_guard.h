@@ -1,0 +1,14 @@
+// How a rank other than 0 ends.
+#pragma once
+
+#include <functional>
+
+#include "host/ranks/ranks.h"
+
+namespace raygate {
+
+/// Runs `work` of a rank other than 0. Of what it throws rank 0 hears, and has the last word: to
+/// the user, and about the exit status.
+void run_helper(Ranks& ranks, const std::function<void()>& work);
+
+}  // namespace raygate

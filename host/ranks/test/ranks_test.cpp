@@ -1,0 +1,122 @@
+// What ranks are told without MPI, and jobs that ranks of one process share.
+#include "host/ranks/ranks.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "host/ranks/helper_guard.h"
+#include "host/ranks/shared_jobs.h"
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+namespace {
+
+/// Threads in the place of processes.
+class Post {
+ public:
+  explicit Post(int count) : boxes_(static_cast<std::size_t>(count)) {}
+  void put(int to, Message message) {
+    const std::scoped_lock lock(mutex_);
+    boxes_[static_cast<std::size_t>(to)].push_back(std::move(message));
+  }
+  std::optional<Message> take(int of) {
+    const std::scoped_lock lock(mutex_);
+    auto& box = boxes_[static_cast<std::size_t>(of)];
+    if (box.empty()) return std::nullopt;
+    Message message = std::move(box.front());
+    box.pop_front();
+    return message;
+  }
+  [[nodiscard]] int count() const { return static_cast<int>(boxes_.size()); }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::deque<Message>> boxes_;
+};
+
+class ThreadRanks : public Ranks {
+ public:
+  ThreadRanks(Post& post, int index) : post_(post), index_(index) {}
+  [[nodiscard]] int index() const override { return index_; }
+  [[nodiscard]] int count() const override { return post_.count(); }
+  void send(int to, About about, std::string bytes) override {
+    post_.put(to, {index_, about, std::move(bytes)});
+  }
+  [[nodiscard]] std::optional<Message> receive() override {
+    auto message = post_.take(index_);
+    if (message && message->about == About::kTrouble) throw InputError(message->bytes);
+    return message;
+  }
+
+ private:
+  Post& post_;
+  int index_;
+};
+
+TEST(SharedJobs, EachIsTakenOnce) {
+  for (const int count : {1, 2, 5}) {
+    for (const int jobs : {0, 1, 40}) {
+      Post post(count);
+      std::vector<std::atomic<int>> taken(static_cast<std::size_t>(jobs));
+      {
+        std::vector<std::jthread> ranks;
+        for (int rank = 0; rank < count; ++rank) {
+          ranks.emplace_back([&, rank] {
+            ThreadRanks own(post, rank);
+            SharedJobs shared(own, jobs);
+            while (const auto job = shared.next()) ++taken[static_cast<std::size_t>(*job)];
+          });
+        }
+      }
+      for (const auto& times : taken) EXPECT_EQ(times, 1);
+    }
+  }
+}
+
+TEST(SharedJobs, TroubleOfOneEndsRank0) {
+  Post post(2);
+  ThreadRanks first(post, 0), second(post, 1);
+  run_helper(second, [] { throw InputError("no memory"); });
+  SharedJobs shared(first, 1);
+  EXPECT_EQ(shared.next(), 0);
+  EXPECT_THROW((void)shared.next(), InputError);
+}
+
+TEST(HelperGuard, TheEndOfARunIsNoTrouble) {
+  Post post(2);
+  ThreadRanks ranks(post, 1);
+  run_helper(ranks, [] { throw RunIsOver(); });
+  EXPECT_FALSE(post.take(0));
+}
+
+TEST(Ranks, OneProcessIsAlone) {
+  const auto ranks = join_ranks();
+  EXPECT_EQ(ranks->index(), 0);
+  EXPECT_EQ(ranks->count(), 1);
+  EXPECT_GE(ranks->processors(), 1u);
+  EXPECT_FALSE(ranks->receive());
+}
+
+TEST(Ranks, SeveralWithoutMpiAreRefused) {
+  ::setenv("OMPI_COMM_WORLD_SIZE", "1", 1);
+  EXPECT_EQ(join_ranks()->count(), 1);
+  ::setenv("OMPI_COMM_WORLD_SIZE", "3", 1);
+  try {
+    (void)join_ranks();
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "found 3 ranks, expected one: this program was built without MPI; "
+                 "`make verilate MPI=1` builds it with it");
+  }
+  ::unsetenv("OMPI_COMM_WORLD_SIZE");
+}
+
+}  // namespace
+}  // namespace raygate

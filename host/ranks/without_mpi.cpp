@@ -1,0 +1,20 @@
+// Of a program that was built without MPI.
+#include <string>
+
+#include "host/ranks/launcher.h"
+#include "host/ranks/ranks.h"
+#include "host/scene/io/input_error.h"
+
+namespace raygate {
+
+std::unique_ptr<Ranks> join_ranks() {
+  const int count = launched_count();
+  if (count > 1) {
+    throw InputError("found " + std::to_string(count) +
+                     " ranks, expected one: this program was built without MPI; "
+                     "`make verilate MPI=1` builds it with it");
+  }
+  return std::make_unique<Ranks>();
+}
+
+}  // namespace raygate
