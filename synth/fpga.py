@@ -35,6 +35,18 @@ def placed(design: Design, fpga: Fpga) -> dict | None:
     return {**median(runs), "seeds": len(runs)} if runs else None
 
 
+def placement(design: Design, fpga: Fpga) -> pathlib.Path:
+    """The folder of the first seed's placement: nextpnr's placed.json and written.json; made if need be."""
+    folder, wanted, seeds = _keys(design, fpga)
+    seed, key = next(iter(seeds.items()))
+    there = folder / f"seed-{seed}"
+    if store.kept(there, key) is None or not (there / "written.json").exists():
+        store.cached(folder, wanted, lambda: _map(design, fpga, folder))
+        (there / "result.json").unlink(missing_ok=True)
+        store.cached(there, key, lambda: _place(fpga, folder, seed))
+    return there
+
+
 def median(runs: list[dict]) -> dict:
     """The run of the median clock rate."""
     return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
@@ -67,10 +79,10 @@ def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
 
 def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
     # Relative names, for the ECP5's nextpnr runs in a sandbox with a /tmp of its own.
-    netlist, report = ((folder / name).relative_to(tools.ROOT) for name in
-                       ("netlist.json", f"seed-{seed}/placed.json"))
+    netlist, report, written = ((folder / name).relative_to(tools.ROOT) for name in (
+        "netlist.json", f"seed-{seed}/placed.json", f"seed-{seed}/written.json"))
     tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz,
-               "--timing-allow-fail", "--report", report, "--quiet"], folder / f"seed-{seed}" / "nextpnr.log")
+               "--timing-allow-fail", "--report", report, "--write", written, "--quiet"], folder / f"seed-{seed}" / "nextpnr.log")
     placed = json.loads((tools.ROOT / report).read_text())
     used = {name: count["used"] for name, count in placed["utilization"].items() if count["used"]}
     luts, registers, multipliers = (used.get(cell, 0) for cell in fpga.cells)

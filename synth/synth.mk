@@ -35,9 +35,9 @@ datasheet: ## fill hw/README.md from the sources and from what synth and fpga me
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.datasheet
 
-layout: ## place, route, time with wires and draw: make layout [TOP=adders|multipliers|cores|a module ...] [SEEDS=3] [DENSITY=0.8 ASPECT=2 FLOW=fast]
+layout: ## place, route, time with wires and draw: make layout [TOP=adders|multipliers|cores|a module ...] [SEEDS=3] [TARGETS=osu018] [DENSITY=0.8 ASPECT=2 FLOW=fast]
 	@$(SETUP) layout
 	@$(PYTHON) -m synth.layout --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' \
+	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' \
 	  --jobs '$(SYNTH_JOBS)'

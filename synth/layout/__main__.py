@@ -1,10 +1,11 @@
 """`python3 -m synth.layout`: see `--help`, or synth/README.md."""
 
 import argparse
+import dataclasses
 import sys
 
-from synth import chosen, runner, store, tables, tools
-from synth.layout import flow, jobs, parts, picture
+from synth import catalogue, chosen, runner, store, tables, tools
+from synth.layout import energy, flow, jobs, parts, picture, tests
 
 OUT = store.OUT / "layouts"
 
@@ -12,10 +13,11 @@ OUT = store.OUT / "layouts"
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="synth.layout", description=(
-        "Places and routes netlists of make synth in OSU 0.35 um, times them with their wires and draws "
-        "them; the report is build/synth/layouts/report.md."))
+        "Places and routes netlists of make synth in OSU 0.35 um, or 0.18, times them with their wires and draws "
+        "them; the report is build/synth/layouts/report-*.md."))
     parser.add_argument("--top", help=f"{', '.join(jobs.SECTIONS)}, or a module of hw/; all sections if none")
     chosen.add_arguments(parser)
+    parser.add_argument("--targets", help="osu035 or osu018 (osu035)")
     parser.add_argument("--flow", help="of a module (see synth/README.md; fast)")
     parser.add_argument("--density", help="the share of the rows that cells of a module take (1)")
     parser.add_argument("--aspect", help="the core's height by its width, of a module (0.75)")
@@ -26,10 +28,19 @@ def arguments() -> argparse.Namespace:
 
 def wanted(given: argparse.Namespace) -> list[jobs.Row]:
     """The rows that the command line asks for."""
+    library = {entry.name: entry for entry in catalogue.LIBRARIES}.get(given.targets or "osu035")
+    if library is None:
+        raise ValueError(f"no library {given.targets}, expected one of "
+                         f"{', '.join(entry.name for entry in catalogue.LIBRARIES)}")
+    _ = library.liberty, library.lef
+    return [dataclasses.replace(row, library=library) for row in _rows(given)]
+
+
+def _rows(given: argparse.Namespace) -> list[jobs.Row]:
     seeds = int(given.seeds or 3)
     if given.top is None or given.top in jobs.SECTIONS:
         return [row for section in jobs.SECTIONS if given.top in (None, section)
-                for row in jobs.rows(section, seeds)]
+                for row in jobs.rows(section, seeds, workers=int(given.jobs or 2))]
     return [jobs.Row(given.top, chosen.design(given), given.flow or "fast", float(given.density or 1),
                      float(given.aspect or 0.75), int(given.seeds or 1))]
 
@@ -79,13 +90,36 @@ def table(records: list[dict]) -> str:
          "cells alone, ns", "with wires, least", "median", "most", "median / alone", "nets failed"], rows)
 
 
+def energy_table(records: list[dict]) -> str:
+    """What an operation of the tests takes, of each layout that was routed."""
+    rows = []
+    for got in records:
+        if got["spread"] and (spent := got.get("energy")):
+            rows.append([got["design"], got["flow"], f"{spent['pj']:.1f}", f"{spent['wires_pj']:.1f}",
+                         f"{spent['toggles']:.0f}", f"{spent['settled_ns']:.2f}", f"{got['wires_ns']:.2f}",
+                         f"{spent['pj'] * got['wires_ns']:,.0f}"])
+    return tables.markdown(["design", "flow", "pJ an operation", "in wires, pJ", "toggles", "last toggle, ns",
+                            "slowest path, ns", "pJ ns"], rows)
+
+
+def spend(records: list[dict], workers: int) -> list[str]:
+    """Simulates each layout that was routed and whose operands tests know; what failed."""
+    mine = [got for got in records if got["spread"] and tests.fit(got["job"].design)]
+    results, failures = runner.run_all([runner.Job(
+        f"{got['design']} {got['flow']} energy", lambda j=got["job"]: energy.measure(j),
+        lambda spent: f"{spent['pj']:.1f} pJ") for got in mine], workers)
+    for got, spent in zip(mine, results, strict=True):
+        got["energy"] = spent
+    return failures
+
+
 def draw(records: list[dict]) -> list[str]:
     """The median layout of each row, and its slacks; the pictures' names."""
     names = []
     for got in records:
         job = got["job"]
         made = flow.load(job)
-        name = f"{got['design']}-{got['flow']}"
+        name = f"{got['design']}-{job.library.name}-{got['flow']}"
         picture.draw(made, parts.of(job.design, made.netlist, flow.outputs(job.library)),
                      got.get("path", []), f"{got['design']}, flow {got['flow']}, {job.library.title}",
                      OUT / name)
@@ -93,8 +127,8 @@ def draw(records: list[dict]) -> list[str]:
     routed = [got for got in records if "slacks" in got]
     for section in dict.fromkeys(got["section"] for got in routed):
         picture.slacks([got for got in routed if got["section"] == section],
-                       OUT / f"slacks-{section}")
-        names.append(f"slacks-{section}")
+                       OUT / f"slacks-{section}-{routed[0]['job'].library.name}")
+        names.append(f"slacks-{section}-{routed[0]['job'].library.name}")
     return names
 
 
@@ -102,20 +136,21 @@ def main() -> int:
     """1 where a layout fails, 2 for what the user can mend."""
     given = arguments()
     try:
-        for tool in ("yosys", "sta", "graywolf", "qrouter", "magic"):
+        for tool in ("yosys", "sta", "graywolf", "qrouter", "magic", "iverilog"):
             tools.find(tool)
-        _ = jobs.LIBRARY.liberty, jobs.LIBRARY.lef
         records, failures = measure(wanted(given), int(given.jobs or 2))
+        failures += spend(records, int(given.jobs or 2))
     except (tools.MissingTool, FileNotFoundError, ValueError) as error:
         print(f"layout: {error}", file=sys.stderr)
         return 2
     OUT.mkdir(parents=True, exist_ok=True)
-    text = table(records)
+    text = f"{table(records)}\n{energy_table(records)}"
     pictures = draw(records)
-    (OUT / "report.md").write_text("\n".join(
+    report = OUT / f"report-{given.top or 'all'}-{given.targets or 'osu035'}.md"
+    report.write_text("\n".join(
         ["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
     print(text)
-    print(f"Report: {(OUT / 'report.md').relative_to(tools.ROOT)}")
+    print(f"Report: {report.relative_to(tools.ROOT)}")
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
     return 1 if failures or any(any(got["failed"]) for got in records) else 0

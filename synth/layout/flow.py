@@ -41,16 +41,20 @@ class Layout:
     routing: route.Routing
 
 
-def make(job: Job) -> tuple[dict, bool]:
-    """Delay of the cells alone and with wires (ns), areas (um2), wires (um, pF), failed nets, slacks;
-    and whether it was kept. Where nets failed there is no delay with wires."""
+def key(job: Job) -> str:
+    """Of all that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
              job.library.graywolf, *job.library.magic, *mapping.scripts(),
              *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "route.py", "parasitics.py",
                                         "magic.tcl"))]
-    wanted = store.key(files, mapping.flow_facts(), *(tools.version(tool) for tool in ("qrouter", "magic")),
-                       job.design.facts, job.library, job.flow, job.density, job.aspect, job.seed)
-    return store.cached(job.folder, wanted, tools.measured(lambda: _make(job)))
+    return store.key(files, mapping.flow_facts(), *(tools.version(tool) for tool in ("qrouter", "magic")),
+                     job.design.facts, job.library, job.flow, job.density, job.aspect, job.seed)
+
+
+def make(job: Job) -> tuple[dict, bool]:
+    """Delay of the cells alone and with wires (ns), areas (um2), wires (um, pF), failed nets, slacks;
+    and whether it was kept. Where nets failed there is no delay with wires."""
+    return store.cached(job.folder, key(job), tools.measured(lambda: _make(job)))
 
 
 def _make(job: Job) -> dict:

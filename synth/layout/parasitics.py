@@ -45,12 +45,13 @@ def capacitances(text: str, nets: set[str]) -> dict[str, float]:
 
 
 def contacts(tech: pathlib.Path, layers: list[str]) -> dict[str, float]:
-    """Ohms of the contact on top of each layer but the last, by magic's technology file."""
+    """Ohms of the contact on top of each layer but the last, by magic's technology file; of one that it does
+    not state those of the one below."""
     text = tech.read_text()
-    found = {}
+    found: dict[str, float] = {}
     for place, layer in enumerate(layers[:-1], 2):
         ohms = re.search(rf"^\s*contact\s+m{place}c\s+\d+\s+(\d+)", text, re.M)
-        found[layer] = int(ohms.group(1)) / 1000
+        found[layer] = int(ohms.group(1)) / 1000 if ohms else list(found.values())[-1]
     return found
 
 

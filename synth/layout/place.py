@@ -35,8 +35,7 @@ def place(netlist: Netlist, technology: Technology, parameters: pathlib.Path, se
           density: float, aspect: float, folder: pathlib.Path) -> Placement:
     """`density`: the share of the rows that cells take; `aspect`: the core's height by its width;
     `parameters`: qflow's .par of the library."""
-    pitch = next(layer.pitch for layer in technology.layers.values() if layer.vertical)
-    (folder / "placed.cel").write_text(cells_text(netlist, technology, pitch, density))
+    (folder / "placed.cel").write_text(cells_text(netlist, technology, density))
     text = re.sub(r"(\*random\.seed\s*:\s*)\d+", rf"\g<1>{seed}", parameters.read_text())
     text = re.sub(r"(chip\.aspect\.ratio\s*:\s*)[\d.]+", rf"\g<1>{aspect}", text)
     (folder / "placed.par").write_text(text)
@@ -44,9 +43,13 @@ def place(netlist: Netlist, technology: Technology, parameters: pathlib.Path, se
     return read((folder / "placed.pl1").read_text(), technology, netlist)
 
 
-def cells_text(netlist: Netlist, technology: Technology, pitch: float, density: float) -> str:
+def cells_text(netlist: Netlist, technology: Technology, density: float) -> str:
     """graywolf's input. Every cell is one piece with the gap that goes with it, to its right."""
     lines, credit = [], 0.0
+    layers = technology.layers.values()
+    pitch = next(layer.pitch for layer in layers if layer.vertical)
+    x, y = round(pitch * UNITS / 2), round(next(layer.pitch for layer in layers if not layer.vertical) * UNITS / 2)
+    pad = f"corners 4 -{x} -{y} -{x} {y} {x} {y} {x} -{y}"
     for place, (name, cell) in enumerate(netlist.cells.items()):
         macro = technology.macros[cell.kind]
         credit += macro.width * (1 / density - 1)
@@ -66,7 +69,7 @@ def cells_text(netlist: Netlist, technology: Technology, pitch: float, density: 
                              f"{left + round(x * UNITS)} {bottom + round(y * UNITS)}")
     for place, (name, port) in enumerate(netlist.ports.items(), 1):
         if port.net == name:
-            lines += [f"pad {place} name twpin_{name}", "corners 4 -80 -100 -80 100 80 100 80 -100",
+            lines += [f"pad {place} name twpin_{name}", pad,
                       f"pin name {name} signal {port.net} layer 1 0 0", ""]
     return "\n".join(lines) + "\n"
 

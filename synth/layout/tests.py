@@ -10,9 +10,12 @@ import pathlib
 import numpy as np
 
 from synth import tools
+from synth.catalogue import Design
 
 SCENE = tools.ROOT / "scenes" / "teapot.obj"
 COUNT = 1000
+# The cores whose operands the tests have, and the width that those are of.
+WIDTHS = {"adder": 48, "booth_multiplier": 24, "multiplier": 24, "fp_multiplier": 0, "fp_adder": 0, "fp_divider": 0}
 
 
 def triangles(file: pathlib.Path) -> np.ndarray:
@@ -72,6 +75,13 @@ def significand(value: np.float32) -> int:
     """Its 24 bits, the leading one among them."""
     bits = int(np.float32(value).view(np.uint32))
     return bits & 0x7FFFFF | (0x800000 if bits >> 23 & 255 else 0)
+
+
+def fit(design: Design) -> bool:
+    """Whether the tests have operands for this design; of float cores for binary32 alone."""
+    parameters = dict(design.parameters)
+    return (design.top in WIDTHS and not parameters.keys() & {"ExpWidth", "FracWidth"}
+            and int(parameters.get("Width", 0)) == WIDTHS[design.top])
 
 
 def words(top: str, file: pathlib.Path = SCENE, count: int = COUNT) -> list[dict[str, int]]:

@@ -6,7 +6,7 @@ import unittest
 from unittest import mock
 
 from synth import catalogue, store, tools
-from synth.layout import flow, lef, parasitics, parts, place, route
+from synth.layout import energy, flow, lef, parasitics, parts, place, route, tests
 from synth.layout.lef import Layer, Rect, Technology
 from synth.layout.netlist import Cell, Netlist, Port
 from synth.layout.route import Wire
@@ -127,6 +127,62 @@ class Trees(unittest.TestCase):
         """A cell's metal where the cell is turned both ways."""
         self.assertEqual(parasitics.turned(Rect("metal1", 1, 2, 3, 4), (10, 20), (100, 200), "S"),
                          Rect("metal1", 107, 216, 109, 218))
+
+
+class Energy(unittest.TestCase):
+    """energy's counts and tables."""
+
+    VCD = """$var wire 1 ! n1 $end
+$var wire 1 " p0 $end
+$enddefinitions $end
+#100000
+0!
+x"
+#100300
+1!
+1"
+#101200
+0!
+#201500
+1!
+"""
+
+    def test_toggles(self):
+        """Rises and falls from one known state to another, and the latest within a period."""
+        counts, latest = energy.toggles(self.VCD.splitlines(), 100_000)
+        self.assertEqual(counts, {"n1": (2, 1), "p0": (0, 0)})
+        self.assertEqual(latest, 1500)
+
+    def test_curve(self):
+        """Tables at the slew, between their points, and the mean of two; none for an input."""
+        table = ('rise_power(t) {\n index_1 ("0.1, 0.3");\n index_2 ("0.08, 0.28");\n'
+                 ' values ( \\\n "1, 3", \\\n "2, 4");\n}\n')
+        xs, ys = energy.curve(table + table.replace('"1, 3"', '"3, 5"'), "rise_power")
+        self.assertEqual(xs, [0.1, 0.3])
+        self.assertAlmostEqual(ys[0], 3)
+        self.assertAlmostEqual(energy.at((xs, ys), 0.2), 3)
+        self.assertIsNone(energy.curve("direction : input;", "rise_power"))
+
+    def test_energies(self):
+        """Half of C V^2 a toggle, and what the driver takes inside."""
+        nets = Netlist("top", {"c0": Cell("a", "INVX1", {"A": "p0", "Y": "n1"}),
+                               "c1": Cell("b", "INVX1", {"A": "n1", "Y": "n2"})},
+                       {"p0": Port("a_i", False, "p0")})
+        curve = ([0.0, 1.0], [0.5, 1.5])
+        kinds = {"INVX1": {"A": energy.Pin(0.02), "Y": energy.Pin(0, curve, ([0.0, 1.0], [0.0, 0.0]))}}
+        found = energy.energies(nets, {"n1": (1, 1)}, {"n1": 0.03}, kinds, catalogue.library("osu035"))
+        self.assertAlmostEqual(found["n1"], 2 * 0.05 * 3.3 ** 2 / 2 + 0.55)
+
+    def test_words(self):
+        """Operands of each core, as many as asked for; their product is what the tests computed."""
+        (first, *_), found = tests.words("fp_multiplier", count=4), tests.operands(count=4)
+        x, y = found["multiply"][0]
+        self.assertEqual(first, {"a_i": int(x.view("uint32")), "b_i": int(y.view("uint32"))})
+        self.assertEqual(len(found["multiply"]) - 3 * len(found["divide"]), 12)
+        with self.assertRaisesRegex(ValueError, "no tests for"):
+            tests.words("leading_zero_counter")
+        self.assertTrue(tests.fit(catalogue.design("adder", Width=48)))
+        self.assertFalse(tests.fit(catalogue.design("adder", Width=8)))
 
 
 class Parts(unittest.TestCase):

@@ -1,0 +1,86 @@
+"""Draws where nextpnr put a unit on an FPGA, by part, and its slowest path.
+
+`python3 -m synth.floorplan [UNIT]` draws a unit of `make fpga` (the paper's on ECP5 if none) from its first
+seed's placement, which it makes where that is not kept: build/synth/floorplan-UNIT.png.
+"""
+
+import collections
+import json
+import pathlib
+import re
+import sys
+
+from synth import catalogue, fpga, store, tools
+from synth.drawing import plt
+
+# What a cell's name in the hierarchy says, the first that matches.
+PARTS = [(r"^u_multiplier", "multiplier"), (r"^u_adder", "adder"), (r"^u_divider", "divider"),
+         (r"", "registers, multiplexers, control")]
+UNIT = "hit_test_unit-binary32-behavioural"
+
+
+def cells(written: dict) -> list[tuple[str, int, int]]:
+    """Name and place (column, row) of each cell that nextpnr placed, of the JSON that it writes."""
+    (module,) = [body for body in written["modules"].values() if body["cells"]]
+    found = []
+    for name, cell in module["cells"].items():
+        place = re.match(r"X(\d+)/Y(\d+)", cell["attributes"].get("NEXTPNR_BEL", ""))
+        if place:
+            found.append((name, int(place.group(1)), int(place.group(2))))
+    return found
+
+
+def part(name: str) -> str:
+    """The part of the unit that a cell belongs to."""
+    return next(label for pattern, label in PARTS if re.search(pattern, name))
+
+
+def slowest(report: dict) -> list[tuple[int, int]]:
+    """The places along the slowest path between registers, in the JSON that nextpnr reports."""
+    path = next(path["path"] for path in report["critical_paths"]
+                if path["from"] == path["to"] and "<async>" not in path["from"])
+    return [tuple(step["to"]["loc"]) for step in path]
+
+
+def draw(placed: list[tuple[str, int, int]], path: list[tuple[int, int]], title: str, out: pathlib.Path) -> None:
+    """Writes OUT.png: a tile is as dark as it is full."""
+    figure, axes = plt.subplots(figsize=(10, 8), layout="constrained")
+    for place, (_, label) in enumerate(PARTS):
+        mine = [(x, y) for name, x, y in placed if part(name) == label]
+        counts = collections.Counter(mine)
+        axes.scatter([x for x, _ in counts], [y for _, y in counts], s=34, marker="s", linewidths=0,
+                     color=plt.get_cmap("tab10").colors[place],
+                     alpha=[min(1.0, 0.25 + count / 10) for count in counts.values()],
+                     label=f"{label}: {len(mine):,} cells")
+    axes.plot(*zip(*path), color="black", linewidth=0.8, label=f"the slowest path, {len(path):,} steps")
+    axes.invert_yaxis()
+    axes.set(title=title, xlabel="column of tiles", ylabel="row of tiles", aspect="equal")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.07), ncols=2, frameon=False, fontsize="small")
+    figure.savefig(out.with_name(out.name + ".png"), dpi=120)
+    plt.close(figure)
+
+
+def main() -> int:
+    """2 for what the user can mend."""
+    name = (sys.argv[1:] or [UNIT])[0]
+    units = {design.name: (design, device) for design, _, _, device in catalogue.fpga_units()}
+    try:
+        if name not in units:
+            raise ValueError(f"no unit {name}, expected one of {', '.join(units)}")
+        design, device = units[name]
+        tools.find(device.tool)
+        folder = fpga.placement(design, device)
+    except (tools.MissingTool, tools.ToolFailed, ValueError) as error:
+        print(f"floorplan: {error}", file=sys.stderr)
+        return 2
+    report = json.loads((folder / "placed.json").read_text())
+    mhz = max(clock["achieved"] for clock in report["fmax"].values())
+    out = store.OUT / f"floorplan-{name}"
+    draw(cells(json.loads((folder / "written.json").read_text())), slowest(report),
+         f"{name} on {device.title}, {mhz:.1f} MHz", out)
+    print(out.with_name(out.name + ".png").relative_to(tools.ROOT))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
