@@ -48,6 +48,8 @@ def draw(placed: list[tuple[str, int, int]], path: list[tuple[int, int]], title:
     for place, (_, label) in enumerate(PARTS):
         mine = [(x, y) for name, x, y in placed if part(name) == label]
         counts = collections.Counter(mine)
+        if not mine:
+            continue
         axes.scatter([x for x, _ in counts], [y for _, y in counts], s=34, marker="s", linewidths=0,
                      color=plt.get_cmap("tab10").colors[place],
                      alpha=[min(1.0, 0.25 + count / 10) for count in counts.values()],

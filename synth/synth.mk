@@ -2,7 +2,7 @@
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth prove refute verilog fpga datasheet layout
+.PHONY: synth prove refute verilog fpga datasheet layout energy floorplan
 
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
@@ -41,3 +41,11 @@ layout: ## place, route, time with wires and draw: make layout [TOP=adders|multi
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
 	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' \
 	  --jobs '$(SYNTH_JOBS)'
+
+energy: ## energy of a test in each format, from timed gate-level simulation of real operands; make bench takes it from here
+	@$(SETUP) layout
+	@$(PYTHON) -m synth.layout.formats
+
+floorplan: ## where nextpnr puts a unit on an FPGA, and its slowest path: make floorplan [UNITS=hit_test_unit-binary32-behavioural]
+	@$(SETUP) synth
+	@$(PYTHON) -m synth.floorplan $(UNITS)

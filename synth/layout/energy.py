@@ -11,9 +11,9 @@ import dataclasses
 import pathlib
 import re
 
-from synth import store, tools
-from synth.catalogue import Library
-from synth.layout import flow, parasitics, tests
+from synth import mapping, store, tools
+from synth.catalogue import Design, Library
+from synth.layout import flow, netlist, parasitics, tests
 from synth.layout.flow import Job
 from synth.layout.netlist import Netlist
 from synth.layout.route import RAILS
@@ -33,47 +33,77 @@ class Pin:
 
 def measure(job: Job) -> tuple[dict, bool]:
     """pJ an operation of a layout that was made, toggles, and when the last net settles, ns; whether kept."""
-    files = [HERE / name for name in ("energy.py", "tests.py", "sdf.tcl")] + [tests.SCENE, job.library.models]
-    wanted = store.key(files, (job.folder / "result.json").read_text(), tools.version("iverilog"))
-    return store.cached(job.folder / "energy", wanted, tools.measured(lambda: _measure(job)))
-
-
-def _measure(job: Job) -> dict:
     folder = job.folder / "energy"
-    made = flow.load(job)
-    words = tests.words(job.design.top)
+    wanted = store.key(_files(job.library), (job.folder / "result.json").read_text(), *_versions())
+
+    def work() -> dict:
+        made = flow.load(job)
+        farads = parasitics.capacitances((job.folder / f"{job.design.top}.ext").read_text(),
+                                         set(made.netlist.nets()))
+        return _spent(job.design, job.library, made.netlist, farads, folder, job.folder / "wires.spef")
+
+    return store.cached(folder, wanted, tools.measured(work))
+
+
+def of_cells(design: Design, library: Library, how: str) -> tuple[dict, bool]:
+    """The same of a netlist of make synth by the flow `how`, without wires."""
+    folder = store.OUT / "energies" / f"{design.name}.{library.name}.{how}"
+    files = [*_files(library), *design.sources(how == "cells"), *mapping.scripts(), HERE / "netlist.py"]
+    wanted = store.key(files, mapping.flow_facts(), *_versions(), design.facts, library, how)
+
+    def work() -> dict:
+        mapping.synthesise(design, library, how)
+        mapped = store.OUT / "runs" / folder.name / "netlist.json"
+        nets = netlist.parse(mapping.top_module(mapped), design.top)
+        return _spent(design, library, nets, dict.fromkeys(nets.nets(), 0.0), folder)
+
+    return store.cached(folder, wanted, tools.measured(work))
+
+
+def _files(library: Library) -> list[pathlib.Path]:
+    return [*(HERE / name for name in ("energy.py", "tests.py", "sdf.tcl")), tests.SCENE, library.models,
+            library.liberty, tools.FLOWS / "constraints.sdc"]
+
+
+def _versions() -> tuple[str, ...]:
+    return tools.version("iverilog"), tools.version("sta")
+
+
+def _spent(design: Design, library: Library, nets: Netlist, farads: dict[str, float], folder: pathlib.Path,
+           spef: pathlib.Path | None = None) -> dict:
+    words = tests.words(design)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "netlist.v").write_text(nets.verilog())
     tools.run(["sta", "-exit", HERE / "sdf.tcl"], folder / "sta.log", {
-        "LIBERTY": str(job.library.liberty), "NETLIST": str(job.folder / "placed.v"), "TOP": job.design.top,
-        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": job.library.driver, "CLOCK": "",
-        "LOAD": f"{job.library.load_pf}", "SPEF": str(job.folder / "wires.spef"),
-        "OUT": str(folder / "delays.sdf")})
+        "LIBERTY": str(library.liberty), "NETLIST": str(folder / "netlist.v"), "TOP": design.top,
+        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "CLOCK": "",
+        "LOAD": f"{library.load_pf}", "SPEF": str(spef or ""), "OUT": str(folder / "delays.sdf")})
     # Icarus takes the typical of three delays, and OpenSTA states the least and the most alone.
     delays = (folder / "delays.sdf").read_text()
     (folder / "delays.sdf").write_text(re.sub(r"\(([\d.]+)::([\d.]+)\)", r"(\2)", delays))
-    (folder / "cells.v").write_text(re.sub(r"`timescale.*", "`timescale 1ns/1ps", job.library.models.read_text()))
-    (folder / "bench.v").write_text(bench(made.netlist, words))
-    tools.run(["iverilog", "-g2012", "-gspecify", "-Ttyp", "-o", "bench", "bench.v", job.folder / "placed.v",
-               "cells.v"], folder / "iverilog.log", folder=folder)
+    (folder / "cells.v").write_text(re.sub(r"`timescale.*", "`timescale 1ns/1ps", library.models.read_text()))
+    (folder / "bench.v").write_text(bench(nets, words))
+    tools.run(["iverilog", "-g2012", "-gspecify", "-Ttyp", "-o", "bench", "bench.v", "netlist.v", "cells.v"],
+              folder / "iverilog.log", folder=folder)
     tools.run(["vvp", "-n", "bench"], folder / "vvp.log", folder=folder)
-    counts, settled = toggles((folder / "toggles.vcd").open(), 100_000)
+    with (folder / "toggles.vcd").open() as trace:
+        counts, settled = toggles(trace, 100_000)
     (folder / "toggles.vcd").unlink()
-    farads = parasitics.capacitances((job.folder / f"{job.design.top}.ext").read_text(),
-                                     set(made.netlist.nets()))
-    joules = energies(made.netlist, counts, farads, pins(job.library), job.library)
+    joules = energies(nets, counts, farads, pins(library), library)
     return {"operations": len(words), "pj": round(sum(joules.values()) / len(words), 4),
-            "wires_pj": round(wires(counts, farads, job.library) / len(words), 4),
+            "wires_pj": round(wires(counts, farads, library) / len(words), 4),
             "toggles": round(sum(sum(count) for count in counts.values()) / len(words), 1),
             "settled_ns": settled / 1000}
 
 
-def bench(netlist: Netlist, words: list[dict[str, int]]) -> str:
+def bench(nets: Netlist, words: list[dict[str, int]]) -> str:
     """A test bench that gives the inputs of each operation 100 ns and notes all toggles from the second on."""
-    inputs = [(name, port.name) for name, port in netlist.ports.items() if not port.output]
+    inputs = [(name, port.name) for name, port in nets.ports.items() if not port.output]
     lines = ["`timescale 1ns/1ps", "module bench;", f"  reg [{len(inputs) - 1}:0] in;"]
-    lines += [f"  wire {name};" for name, port in netlist.ports.items() if port.output]
+    lines += [f"  wire {name};" for name, port in nets.ports.items() if port.output]
     connections = [f".{name}(in[{place}])" for place, (name, _) in enumerate(inputs)]
-    connections += [f".{name}({name})" for name, port in netlist.ports.items() if port.output]
-    lines += [f"  {netlist.top} dut ({', '.join(connections)});", "  initial begin",
+    connections += [f".{name}({name})" for name, port in nets.ports.items() if port.output]
+    lines += [f"  {nets.top} dut ({', '.join(connections)});", "  initial begin",
               '    $sdf_annotate("delays.sdf", dut);']
     for place, word in enumerate([words[-1], *words]):
         value = 0
@@ -109,19 +139,19 @@ def toggles(trace, period: int) -> tuple[dict[str, tuple[int, int]], int]:
     return {name: tuple(counts[key]) for key, all_names in names.items() for name in all_names}, latest
 
 
-def energies(netlist: Netlist, counts: dict[str, tuple[int, int]], farads: dict[str, float],
+def energies(nets: Netlist, counts: dict[str, tuple[int, int]], farads: dict[str, float],
              kinds: dict[str, dict[str, Pin]], library: Library) -> dict[str, float]:
     """pJ of each net's toggles, those inside the cell that drives it among them."""
     found = {}
-    for net, ends in netlist.nets().items():
+    for net, ends in nets.nets().items():
         if net in RAILS or net not in counts:
             continue
         load, drivers = farads[net], []
         for cell, pin in ends:
             if cell == "PIN":
-                load += library.load_pf if netlist.ports[pin].output else 0
+                load += library.load_pf if nets.ports[pin].output else 0
                 continue
-            here = kinds[netlist.cells[cell].kind][pin]
+            here = kinds[nets.cells[cell].kind][pin]
             load += here.farads
             if here.rise:
                 drivers.append(here)

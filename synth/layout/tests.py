@@ -14,8 +14,12 @@ from synth.catalogue import Design
 
 SCENE = tools.ROOT / "scenes" / "teapot.obj"
 COUNT = 1000
-# The cores whose operands the tests have, and the width that those are of.
-WIDTHS = {"adder": 48, "booth_multiplier": 24, "multiplier": 24, "fp_multiplier": 0, "fp_adder": 0, "fp_divider": 0}
+# The cores whose operands the tests have: how many operations are simulated (a divider toggles the most),
+# and the width that the operands are of.
+TOPS = {"adder": (COUNT, 48), "booth_multiplier": (COUNT, 24), "multiplier": (COUNT, 24),
+        "fp_multiplier": (COUNT, None), "fp_adder": (COUNT, None), "fp_divider": (COUNT // 5, None)}
+# Operations of a float core in a test of equation 10.
+OPERATIONS = {"fp_multiplier": 6, "fp_adder": 2, "fp_divider": 1}
 
 
 def triangles(file: pathlib.Path) -> np.ndarray:
@@ -78,26 +82,31 @@ def significand(value: np.float32) -> int:
 
 
 def fit(design: Design) -> bool:
-    """Whether the tests have operands for this design; of float cores for binary32 alone."""
+    """Whether the tests have operands for this design: of float cores whose exponents have 8 bits."""
     parameters = dict(design.parameters)
-    return (design.top in WIDTHS and not parameters.keys() & {"ExpWidth", "FracWidth"}
-            and int(parameters.get("Width", 0)) == WIDTHS[design.top])
+    width = int(parameters.get("Width", 0)) or None
+    return (design.top in TOPS and not design.tied and TOPS[design.top][1] == width
+            and parameters.get("ExpWidth", "8") == "8" and "QuotientBits" not in parameters)
 
 
-def words(top: str, file: pathlib.Path = SCENE, count: int = COUNT) -> list[dict[str, int]]:
-    """What the inputs of a core are in each of `count` of its operations. An adder of 48 bits is given the
-    multiplier's exact products, two in a row; ValueError for a core whose operands the tests don't have."""
+def words(design: Design, file: pathlib.Path = SCENE) -> list[dict[str, int]]:
+    """What the inputs of a core are in each of its operations; the others are 0, which is to nearest.
+
+    A float core of fewer bits is given the same operands, cut off; an adder of 48 bits the multiplier's
+    exact products, two in a row. ValueError for a design that does not `fit`.
+    """
+    if not fit(design):
+        raise ValueError(f"no tests for {design.name}, expected one of {', '.join(TOPS)}, of binary32's width")
+    count = TOPS[design.top][0]
     found = operands(file, count)
-    bits = {name: [tuple(int(np.float32(value).view(np.uint32)) for value in pair) for pair in pairs]
-            for name, pairs in found.items()}
-    significands = [tuple(map(significand, pair)) for pair in found["multiply"]]
-    if top in ("booth_multiplier", "multiplier"):
-        pairs = significands
-    elif top == "adder":
-        products = [a * b for a, b in significands]
-        pairs = list(zip(products, products[1:]))
-    elif top in ("fp_multiplier", "fp_adder", "fp_divider"):
-        pairs = bits[{"fp_multiplier": "multiply", "fp_adder": "add", "fp_divider": "divide"}[top]]
+    if design.top in OPERATIONS:
+        kind = {"fp_multiplier": "multiply", "fp_adder": "add", "fp_divider": "divide"}[design.top]
+        drop = 23 - int(dict(design.parameters).get("FracWidth", 23))
+        pairs = [tuple(int(np.float32(value).view(np.uint32)) >> drop for value in pair)
+                 for pair in found[kind]]
     else:
-        raise ValueError(f"no tests for {top}, expected an adder, a multiplier or a float core")
+        pairs = [tuple(map(significand, pair)) for pair in found["multiply"]]
+        if design.top == "adder":
+            products = [a * b for a, b in pairs]
+            pairs = list(zip(products, products[1:]))
     return [{"a_i": a, "b_i": b} for a, b in pairs[:count]]

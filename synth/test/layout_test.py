@@ -175,14 +175,18 @@ x"
 
     def test_words(self):
         """Operands of each core, as many as asked for; their product is what the tests computed."""
-        (first, *_), found = tests.words("fp_multiplier", count=4), tests.operands(count=4)
-        x, y = found["multiply"][0]
-        self.assertEqual(first, {"a_i": int(x.view("uint32")), "b_i": int(y.view("uint32"))})
-        self.assertEqual(len(found["multiply"]) - 3 * len(found["divide"]), 12)
-        with self.assertRaisesRegex(ValueError, "no tests for"):
-            tests.words("leading_zero_counter")
-        self.assertTrue(tests.fit(catalogue.design("adder", Width=48)))
-        self.assertFalse(tests.fit(catalogue.design("adder", Width=8)))
+        found = tests.operands()
+        x, y = found["multiply"][1]
+        whole = tests.words(catalogue.design("fp_multiplier"))
+        self.assertEqual(len(whole), 1000)
+        self.assertEqual(whole[1], {"a_i": int(x.view("uint32")), "b_i": int(y.view("uint32"))})
+        short = tests.words(catalogue.design("fp_multiplier", FracWidth=15))
+        self.assertEqual(short[1]["a_i"], whole[1]["a_i"] >> 8)
+        factors = tests.words(catalogue.design("booth_multiplier", Width=24))
+        sums = tests.words(catalogue.design("adder", Width=48))
+        self.assertEqual(sums[0]["b_i"], factors[1]["a_i"] * factors[1]["b_i"])
+        with self.assertRaisesRegex(ValueError, "no tests for adder-Width8"):
+            tests.words(catalogue.design("adder", Width=8))
 
 
 class Parts(unittest.TestCase):

@@ -77,6 +77,7 @@ def measure(quick: bool) -> list[dict]:
     found += [] if quick else simulation()
     found += claims.table(ROOT, found)
     found += costs.synthesis(variants, machine.processors(), measure=not quick)
+    found += costs.energies()
     return [{**about, "seconds": time.monotonic() - start}, *found]
 
 
@@ -87,12 +88,13 @@ def frames(rows: list[dict]) -> list[dict]:
                 simulation (of binary32's where it has no hardware: then `clocks_modelled`)
     wrong, doubtful          tests per million
     area, period_ns, frame_ms, area_time    where synthesis knows the unit
+    energy_uj   of the cores, where it was simulated
     """
     pictures = kept.of(rows, "pictures", section="variants")
     rate = {row["variant"]: row["clocks"] / row["unit_tests"] for row in pictures
             if row["engine"] == "unit" and row["unit_tests"]}
     variants = {row["variant"]: row for row in kept.of(rows, "variants")}
-    synthesis = kept.of(rows, "synthesis")
+    synthesis, energies = kept.of(rows, "synthesis"), kept.of(rows, "energy")
     found = []
     for row in pictures:
         if row["engine"] == "unit":
@@ -114,6 +116,9 @@ def frames(rows: list[dict]) -> list[dict]:
             frame |= {"area": cost.area, "period_ns": cost.period_ns,
                       "frame_ms": frame["clocks"] * cost.period_ns * 1e-6}
             frame["area_time"] = cost.area * frame["frame_ms"]
+        spent = costs.energy(energies, variant)
+        if spent is not None:
+            frame["energy_uj"] = spent * row["unit_tests"] / 1000
         found.append(frame)
     return found
 

@@ -11,7 +11,8 @@ from host.lab.report.statistics import spread, times
 
 # The axes of the Pareto plots: key of a frame, label.
 COSTS = {"clocks": "clocks per frame", "frame_ms": "ms per frame at the clock of synthesis",
-         "area": "area, OSU 0.35 um units", "area_time": "area x ms per frame"}
+         "area": "area, OSU 0.35 um units", "area_time": "area x ms per frame",
+         "energy_uj": "uJ per frame in the cores, OSU 0.35 um"}
 ERRORS = {"point": "error of P, 99th percentile, ulp of binary32",
           "wrong": "wrong hit decisions per million tests",
           "rmse": "RMSE of the picture, scene-linear"}
@@ -35,11 +36,12 @@ def costs_table(mine: list[dict]) -> str:
     """Every variant's picture and costs on one scene."""
     return table({"variant": "", "RMSE": ".3g", "PSNR, dB": ".1f", "SSIM": ".4f", "FLIP": ".4f",
                   "clocks": "", "area": ",.0f", "period, ns": ".2f", "ms per frame": ".3f",
-                  "area x ms": ".3g"},
+                  "area x ms": ".3g", "uJ in the cores": ".3g"},
                  [[f["variant"], *([f["rmse"], f["psnr_db"], f["ssim"], f["flip"]]
                                    if f["differing_pixels"] else [None] * 4),
                    f"{f['clocks']:,.0f}{' *' if f['clocks_modelled'] else ''}", f.get("area"),
-                   f.get("period_ns"), f.get("frame_ms"), f.get("area_time")] for f in mine])
+                   f.get("period_ns"), f.get("frame_ms"), f.get("area_time"),
+                   f.get("energy_uj")] for f in mine])
 
 
 def variants(rows: list[dict], folder: pathlib.Path) -> dict:

@@ -1,4 +1,4 @@
-"""Area and delay of each variant's unit, from what `make synth` has measured.
+"""Area, delay and energy of each variant's unit, from what `make synth` and `make energy` have measured.
 
 A unit that synthesis has measured in the variant's format counts as it is. For others the cores
 are added up: multiplier, adder and divider for the paper's unit, whose slowest path is a
@@ -57,6 +57,23 @@ def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
             print(error, file=sys.stderr)
     return [{"table": "synthesis", **record} for record in records
             if record.get("target") == LIBRARY and "area" in record]
+
+
+def energies() -> list[dict]:
+    """Rows of what `make energy` has kept: a core's operation in a format, pJ, and how many a test has."""
+    file = ROOT / "build" / "synth" / "energies.json"
+    kept = json.loads(file.read_text()) if file.exists() else {"results": []}
+    return [{"table": "energy", **record, "a_test": kept["operations"][record["top"]]}
+            for record in kept["results"]]
+
+
+def energy(records: list[dict], variant: dict) -> float | None:
+    """nJ that the cores take for a test of the paper's unit in the variant's format, where that is known."""
+    if variant["unit"] != "serial" or variant["flush"] or variant["fused"] or variant["quotient_digits"]:
+        return None
+    mine = {record["top"]: record["pj"] * record["a_test"] for record in records
+            if (record["exponent"], record["significand"]) == (variant["exponent_bits"], variant["digits"])}
+    return sum(mine.values()) / 1000 if mine.keys() == set(CORES) else None
 
 
 def _number(record: dict, name: str) -> int:

@@ -120,6 +120,20 @@ class Costs(unittest.TestCase):
         self.assertIsNone(costs.cost([core("fp_multiplier", 1, 1.0, Adder="0")], VARIANT))
 
 
+ENERGIES = [{"table": "energy", "top": top, "exponent": 8, "significand": 24, "pj": pj, "a_test": count}
+            for top, pj, count in (("fp_multiplier", 100, 6), ("fp_adder", 50, 2), ("fp_divider", 300, 1))]
+
+
+class Energies(unittest.TestCase):
+    def test_operations_add_up(self):
+        self.assertEqual(costs.energy(ENERGIES, VARIANT), 1.0)
+
+    def test_what_was_not_simulated_is_not_known(self):
+        self.assertIsNone(costs.energy(ENERGIES[:2], VARIANT))
+        for change in ({"digits": 16}, {"unit": "pipeline"}, {"quotient_digits": 21}, {"fused": True}):
+            self.assertIsNone(costs.energy(ENERGIES, {**VARIANT, **change}))
+
+
 class Frames(unittest.TestCase):
     def test_a_frame(self):
         row = {"table": "pictures", "section": "variants", "scene": "scenes/a.obj",
@@ -128,11 +142,12 @@ class Frames(unittest.TestCase):
                              "point_ulp": {"p99": 2.0}}}
         simulated = {**row, "engine": "unit", "unit_tests": 100, "clocks": 700}
         (frame,) = bench.frames([row, simulated, {**VARIANT, "variant": "serial"}, VARIANT,
-                                 core("hit_test_unit", 50, 20.0)])
+                                 core("hit_test_unit", 50, 20.0), *ENERGIES])
         self.assertEqual((frame["scene"], frame["clocks"], frame["wrong"]), ("a", 7000, 4000))
         self.assertFalse(frame["clocks_modelled"])
         self.assertAlmostEqual(frame["frame_ms"], 0.14)
         self.assertAlmostEqual(frame["area_time"], 7.0)
+        self.assertAlmostEqual(frame["energy_uj"], 1.0)
 
 
 class Claims(unittest.TestCase):
