@@ -48,7 +48,9 @@ wave: configure += -DRAYGATE_WAVES=ON
 wave: ## the wave of one pixel's ray through the ray core: make wave PIXEL=64,64 [SCENE=... ARGS='--size 640x480']
 	$(call build,build,render)
 	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd
-	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw'
+	@$(SETUP) synth
+	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
+	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
 
 frames: verilate ## the paper's frame at 10 MHz: clocks, frames a second, bytes read; every polygon, and with culling
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj

@@ -28,10 +28,15 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     design = chosen.design(given)
     cells = design.top == "adder"
     flows = (("cells", "kept", "default", "fast") if cells else
+             ("blocks",) if design.clock and design.folder == "ray_core" else
              ("small", "parts") if design.clock else ("area", "small", "fast"))
     plan = {name: flows if name.startswith("osu") else catalogue.PLACED for name in targets.names}
     records, failures = measure.measure([catalogue.Row(design.name, design, plan)], targets)
     print(report.section_tables(records, design.name))
+    for record in records:
+        if "blocks" in record:
+            print(report.blocks_table(record))
+            print(throughput.ray_table(record))
     timed = [record for record in records if "path" in record]
     if timed:
         best = min((record for record in timed if record["target"] == timed[0]["target"]),

@@ -149,6 +149,7 @@ FLOWS = {
     "faster": "fast, restructured twice",
     "parts": "fast, each float core on its own, then joined",
     "modules": "fast, each larger module on its own, so that a layout shows which cells are whose",
+    "blocks": "parts, each module of hw/ray_core on its own, too; memories left out and stated in bits",
 }
 
 
@@ -198,8 +199,8 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
                  {None: "", True: "look_ahead", False: "ripple_groups"}[look_ahead],
                  *(f"{key}{value}" for key, value in parameters.items())]
         name = "-".join(word for word in words if word)
-    return Design(name, top, folder, tuple(text.items()),
-                  clock="clk_i" if folder == "hit_test" else "")
+    clocked = folder in ("hit_test", "ray_core") and " clk_i," in (HW / folder / f"{top}.sv").read_text()
+    return Design(name, top, folder, tuple(text.items()), clock="clk_i" if clocked else "")
 
 
 # The adders of the report: name, kind, groups (none: the kind's own), and how the groups add.
@@ -257,7 +258,8 @@ def report_rows() -> list[Row]:
     parts = {"osu035": ("parts",), "osu018": ("parts",)}
     rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
              Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
-             Row("units", design("hit_test_pipeline"), parts)]
+             Row("units", design("hit_test_pipeline"), parts),
+             Row("ray core", design("ray_core"), {"osu035": ("blocks",)})]
     return rows
 
 

@@ -161,6 +161,8 @@ def write() -> None:
     for unit in ("hit_test_unit", "hit_test_pipeline"):
         diagram.draw(unit, store.OUT / unit)
         (DIAGRAMS / f"{unit}.svg").write_text((store.OUT / f"{unit}.svg").read_text())
+    diagram.draw("ray_core", store.OUT / "ray_core", 28, diagram.units)  # a line's number has 28 bits
+    (DIAGRAMS / "ray_core.svg").write_text((store.OUT / "ray_core.svg").read_text())
 
 
 def check() -> list[str]:

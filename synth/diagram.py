@@ -1,6 +1,7 @@
-"""Draws a block diagram of a module from its elaborated netlist: registers, cores and multiplexers.
+"""Draws a block diagram of a module from its elaborated netlist: registers, cores and multiplexers, or,
+of one made of units, those and the memories between them.
 
-`python3 -m synth.diagram TOP OUT`: OUT.svg and OUT.png, by graphviz.
+`python3 -m synth.diagram TOP OUT [--units]`: OUT.svg and OUT.png, by graphviz.
 """
 
 import collections
@@ -10,7 +11,9 @@ import sys
 
 from synth import catalogue, mapping, store, tools
 
-SHAPES = {"register": "box", "multiplexer": "invtrapezium", "core": "box3d", "port": "oval"}
+SHAPES = {"register": "box", "multiplexer": "invtrapezium", "core": "box3d", "port": "oval", "memory": "cylinder"}
+# Inputs of cells that say when or which, not what.
+CONTROLS = {"S", "EN", "CLK", "ARST", "SRST", "RD_EN", "WR_EN", "RD_CLK", "WR_CLK", "RD_ADDR", "WR_ADDR"}
 
 
 def blocks(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tuple[str, str]]]:
@@ -52,13 +55,59 @@ def blocks(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tu
     return {name: node for name, node in nodes.items() if name in met}, arrows
 
 
-def draw(top: str, out: pathlib.Path, width: int = 32) -> None:
-    """Writes OUT.dot, OUT.svg and OUT.png."""
+def units(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tuple[str, str]]]:
+    """Units, memories and the module's ports, and arrows of the words of at least `width` bits that get from one
+    to another, whatever registers and gates are on the way."""
+    nodes, starts, ends, passes = {}, {}, {}, []
+    for name, port in module["ports"].items():
+        if len(port["bits"]) >= width:
+            nodes[name] = ("port", name)
+            side = starts if port["direction"] == "input" else ends
+            side.setdefault(name, []).append(port["bits"])
+    for name, cell in module["cells"].items():
+        is_unit = cell["type"].startswith("$paramod") or not cell["type"].startswith("$")
+        is_memory = cell["type"].startswith("$mem")
+        words = [(bits, cell["port_directions"][port]) for port, bits in cell["connections"].items()
+                 if port not in CONTROLS]
+        if not is_unit and not is_memory:
+            passes.append(words)
+            continue
+        label = re.sub(r"\bu_|\bgen_", "", name) if is_unit else cell["parameters"]["MEMID"].lstrip("\\")
+        if is_unit and "delay_line" in cell["type"]:  # no more than registers
+            passes.append(words)
+            continue
+        nodes[name] = ("core" if is_unit else "memory", label)
+        for bits, direction in words:
+            (starts if direction == "output" else ends).setdefault(name, []).append(bits)
+    follow = collections.defaultdict(set)  # bit -> bits that it gets to
+    for words in passes:
+        into = [bits for bits, direction in words if direction == "input"]
+        for out in (bits for bits, direction in words if direction == "output"):
+            for bits in into:  # bit by bit: nearly all that is between units is as wide as its words
+                for place, bit in enumerate(out):
+                    if bits:
+                        follow[bits[place % len(bits)]].add(bit)
+    arrows = set()
+    for name, words in starts.items():
+        reached = {bit for word in words if len(word) >= width for bit in word}
+        edge = list(reached)
+        while edge:
+            fresh = follow[edge.pop()] - reached
+            reached |= fresh
+            edge += fresh
+        arrows |= {(name, other) for other, words in ends.items() if other != name and any(
+            sum(bit in reached for bit in word) >= width for word in words)}
+    met = {name for arrow in arrows for name in arrow}
+    return {name: node for name, node in nodes.items() if name in met}, arrows
+
+
+def draw(top: str, out: pathlib.Path, width: int = 32, seen: object = blocks) -> None:
+    """Writes OUT.dot, OUT.svg and OUT.png; `seen`: blocks, or units."""
     design = catalogue.design(top)
     file = out.with_suffix(".json")
     tools.run(["yosys", "-c", tools.FLOWS / "blocks.tcl"], out.with_suffix(".log"),
               {**mapping.elaboration(design), "OUT": str(file)})
-    nodes, arrows = blocks(mapping.top_module(file), width)
+    nodes, arrows = seen(mapping.top_module(file), width)
     names = {name: f"n{place}" for place, name in enumerate(sorted(nodes))}
     lines = [f"digraph {top} {{", "  rankdir=LR; node [fontname=sans]; edge [arrowsize=0.7];"]
     lines += [f'  {names[name]} [shape={SHAPES[kind]}, label="{label}"];'
@@ -71,4 +120,6 @@ def draw(top: str, out: pathlib.Path, width: int = 32) -> None:
 
 
 if __name__ == "__main__":
-    draw(sys.argv[1], pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else store.OUT / sys.argv[1])
+    names = [word for word in sys.argv[1:] if word != "--units"]
+    draw(names[0], pathlib.Path(names[1]) if len(names) > 1 else store.OUT / names[0],
+         *((28, units) if "--units" in sys.argv else ()))

@@ -1,5 +1,6 @@
 """Maps one design to one standard-cell library by one flow, and times it."""
 
+import collections
 import functools
 import json
 import pathlib
@@ -10,7 +11,7 @@ from synth.catalogue import Design, Library
 
 ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "small": "small.abc",
                "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc",
-               "modules": "fast.abc"}
+               "modules": "fast.abc", "blocks": "fast.abc"}
 
 # One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
 PATH_STEP = re.compile(
@@ -27,7 +28,8 @@ def flow_facts() -> tuple[str, ...]:
 def scripts() -> list[pathlib.Path]:
     """The files that say how a netlist is made and timed."""
     names = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "structure.v",
-             "known_inputs.v", "osu_cells.v", "timing.tcl", "constraints.sdc", *set(ABC_SCRIPTS.values()))
+             "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "timing.tcl", "constraints.sdc",
+             *set(ABC_SCRIPTS.values()))
     return sorted(tools.FLOWS / name for name in names)
 
 
@@ -67,6 +69,7 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
     tools.run(["yosys", "-c", tools.FLOWS / "standard_cells.tcl"], folder / "yosys.log", {
         **elaboration(design, flow == "cells"),
         "FLOW": flow,
+        "BLOCKS": " ".join(blocks(design)) if flow == "blocks" else "",
         "LIBERTY": str(library.liberty),
         "CONSTRAINTS": str(constraints),
         "ABC_SCRIPT": f"-script {tools.FLOWS / script}" if script else "",
@@ -76,8 +79,11 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
     timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt", bool(design.cut))
     delay, path = critical_path(timing)
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
+    parts = {"blocks": block_costs(prefix.with_suffix(".blocks").read_text(), kept_memories(
+        prefix.with_suffix(".memories").read_text()))} if flow == "blocks" else {}
     return {
         **clocked,
+        **parts,
         **({"ends": ends(timing)} if design.cut else {}),
         "area": area,
         "delay_ns": delay,
@@ -96,6 +102,53 @@ def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Pa
         "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
         "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}", "CLOCK": clock or design.clock,
         "ENDS": f"{ends:d}", "SPEF": str(spef or "")})
+
+
+def blocks(design: Design) -> list[str]:
+    """The modules that flow `blocks` maps on their own: those of the design's folder, and the units below it."""
+    return [file.stem for file in design.sources() if file.stem != design.top and not file.stem.endswith("_pkg")
+            and (file.parent.name == design.folder or file.stem == "hit_test_pipeline")]
+
+
+def kept_memories(dump: str) -> dict[str, int]:
+    """Bits of the memories in a dump of cells, by module; "" where the dump is of one module and names none."""
+    bits, module = collections.Counter(), ""
+    for header, size in re.findall(r"^module \\?(\S+)|parameter \\BITS (\d+)", dump, re.M):
+        module = header or module
+        bits[module] += int(size or 0)
+    return dict(bits)
+
+
+def base_name(module: str) -> str:
+    """box_unit of $paramod$HASH\\box_unit and $paramod\\box_unit\\Name=Value."""
+    return re.match(r"(?:\$paramod(?:\$\w+)?)?\\?(\w+)", module)[1]
+
+
+def block_costs(stat: str, memories: dict[str, int]) -> dict[str, dict]:
+    """Of each kind of block in the top: how many there are, and the area (liberty units) and the bits of memory of
+    all of them, with what is in them.
+
+    `stat`: Yosys's statistics of every module, before they are joined; `memories`: of kept_memories.
+    """
+    area, inside = {}, {}
+    for name, text in re.findall(r"^=== (\S+) ===\n(.*?)(?=^=== |\Z)", stat, re.M | re.S):
+        if own := re.search(r"Chip area for (?:top )?module '[^']*': ([\d.]+)", text):
+            area[name] = float(own[1])
+            inside[name] = [(cell, int(count)) for cell, count in re.findall(r"^ {5}(\S+) +(\d+)$", text, re.M)]
+
+    def whole(name: str, own: dict) -> float:
+        return own.get(name, 0) + sum(count * whole(cell, own) for cell, count in inside[name] if cell in area)
+
+    (top,) = area.keys() - {cell for cells in inside.values() for cell, _ in cells}
+    bits = {top: memories[""]} if "" in memories else memories
+    found = {"the rest": {"count": 1, "area": round(area[top]), "bits": bits.get(top, 0)}}
+    for cell, count in inside[top]:
+        if cell in area:
+            block = found.setdefault(base_name(cell), {"count": 0, "area": 0, "bits": 0})
+            block["count"] += count
+            block["area"] += round(count * whole(cell, area))
+            block["bits"] += int(count * whole(cell, bits))
+    return found
 
 
 def cell_counts(stat: str) -> tuple[int, dict[str, int]]:

@@ -6,7 +6,7 @@ from synth import drawing, store
 from synth.catalogue import FLOWS, LIBRARIES
 from synth.drawing import plt
 
-MARKERS = dict(zip(FLOWS, "soXvD^<P*", strict=True))
+MARKERS = dict(zip(FLOWS, "soXvD^<P*d", strict=True))
 
 
 def draw(records: list[dict]) -> list[str]:

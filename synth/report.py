@@ -69,6 +69,15 @@ def path_table(record: dict) -> str:
     return tables.markdown(["instance", "cell", "through", "ns", "arrival, ns"], rows)
 
 
+def blocks_table(record: dict) -> str:
+    """Area and memories of each block of flow `blocks`, the largest first."""
+    blocks = sorted(record["blocks"].items(), key=lambda item: -item[1]["area"])
+    rows = [[name, f"{block['count']}", f"{block['area'] / 1e6:.2f}", f"{block['bits']:,}"] for name, block in blocks]
+    rows.append([record["design"], "", f"{sum(block['area'] for _, block in blocks) / 1e6:.2f}",
+                 f"{sum(block['bits'] for _, block in blocks):,}"])
+    return tables.markdown(["block", "instances", "cells, mm2", "bits of memories, not in the area"], rows)
+
+
 def versions() -> str:
     """The tools and their versions, one line."""
     names = ["yosys", "sta", *dict.fromkeys(device.tool for device in FPGAS)]

@@ -59,3 +59,19 @@ def table(records: list[dict], clocks: dict[str, float] | None = None) -> str:
                 "./render, which count them.\n")
     return tables.markdown(["unit", "library", "flow", "MHz", "clocks a test", "tests/s",
                             "gates (NAND2)", "tests/s and gate", "tests/s and mm2 of cells"], rows)
+
+
+def ray_table(record: dict, rows: list[dict] | None = None) -> str:
+    """Rays a second of the ray core at the clock rate of `record`, by scene and kind of ray; `rows`: of `make core`."""
+    file = tools.ROOT / "build" / "results" / "core.jsonl"
+    if record["top"] != "ray_core":
+        return ""
+    if rows is None and not file.exists():
+        return "No clocks a ray: `make core` counts them.\n"
+    rows = rows or [json.loads(line) for line in file.read_text().splitlines()]
+    clock = 1e9 / record["delay_ns"]
+    return tables.markdown(["scene", "rays", "memory, clocks away", "clocks/ray", "million rays/s", "a mm2 of cells"], [
+        [row["scene"], row["rays"], f"{row['latency']}", f"{row['clocks_per_ray']:.2f}",
+         f"{clock / row['clocks_per_ray'] / 1e6:.2f}",
+         f"{clock / row['clocks_per_ray'] / record['area']:.3f}"]
+        for row in rows if row["latency"] == 50])

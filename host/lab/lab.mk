@@ -39,11 +39,17 @@ rays: ## rays per second of the cpu engine next to Embree 3
 	@$(LAB) --results $(LAB_ROWS)/rays.jsonl rays scenes/cornell.obj scenes/teapot.obj \
 	  scenes/paper.obj $(LARGE_SCENES) build/scenes/landscape.obj
 
-core: ## clocks, lines and bytes a ray of the simulated ray core, by kind of ray and memory's latency
-	$(call build,build,lab scenes)
+CORE_SCENES := scenes/cornell.obj scenes/teapot.obj build/scenes/sphereflake.obj
+core: ## the simulated ray core: clocks, lines, bytes a ray by kind, latency, rays in flight, cores: make core [PUBLISH=1]
+	$(call build,lab,lab scenes)
 	@$(LAB) --results $(LAB_ROWS)/core.jsonl core scenes/cornell.obj scenes/paper.obj scenes/teapot.obj \
 	  build/scenes/cornell_spheres.obj build/scenes/still_life.obj build/scenes/columns.obj \
 	  build/scenes/sphereflake.obj
+	@$(LAB) --results $(LAB_ROWS)/core-in-flight.jsonl core $(CORE_SCENES) --kinds camera scattered \
+	  --in-flight 1 2 4 8 16 32 64 --every 8
+	@$(LAB) --results $(LAB_ROWS)/core-cores.jsonl core $(CORE_SCENES) --kinds camera scattered \
+	  --latency 50 --cores 1 2 4 8 --every 2
+	@$(LAB_REPORT) core $(if $(PUBLISH),--publish)
 
 skips: ## tests and time that each skip saves
 	$(call build,build,lab scenes)

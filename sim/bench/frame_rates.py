@@ -3,8 +3,8 @@
 The paper's frame is scenes/paper.obj at 320 x 200, 4 bounces. The paper tests every ray on every polygon;
 so do the first rows, those that follow leave out what culling does. Clocks and bytes are those that `render`
 counts in simulation; ~9 lanes are calculated: the tests, evenly shared, with as many idle clocks for each
-lane as 8 lanes have. The paper's own figures stand beside them: 5,120,000 clocks on one chip, 18 frames a
-second on nine.
+lane as 8 lanes have. Ray cores walk the tree by themselves. The paper's own figures stand beside them:
+5,120,000 clocks on one chip, 18 frames a second on nine.
 
 usage: frame_rates.py RENDER SCENE
 """
@@ -21,6 +21,7 @@ CLOCK_HZ = 10e6
 PAPER_CLOCKS = 5_120_000
 SIMULATED = (1, 2, 4, 8)
 PAPER_CHIPS = 9
+CORES = (1, 2, 4)
 VIEW = "0,8.0625"  # into the room, a little from above: of the published figures
 WHOLE = ["--no-skip", "culling,empty-tiles,divisions"]
 
@@ -60,6 +61,8 @@ def main():
     plans = {(skips, lanes): ["--lanes", str(lanes), *(WHOLE if skips == "whole" else [])]
              for skips in ("whole", "culled") for lanes in SIMULATED}
     plans["serial"] = ["--unit", "serial", *WHOLE]
+    for cores in CORES:
+        plans["core", cores] = ["--unit", "core", "--arith", "behavioural", "--cores", str(cores)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         runs = dict(zip(plans, pool.map(lambda plan: simulate(render, scene, plan), plans.values())))
     whole, culled = ({lanes: runs[skips, lanes] for lanes in SIMULATED} for skips in ("whole", "culled"))
@@ -69,7 +72,9 @@ def main():
              row(f"the paper, {PAPER_CHIPS} chips", CLOCK_HZ / 18),
              [f"every ray on each of {serial['triangles']} polygons:"],
              row("  the paper's unit", serial["clocks"], serial["unit_tests"], serial["input_bytes"]),
-             *pipelined(whole), ["with culling:"], *pipelined(culled)]
+             *pipelined(whole), ["with culling:"], *pipelined(culled), ["the tree walked in hardware:"],
+             *(row(f"  ray core{f's, {cores}' * (cores > 1)}", run["clocks"], run["unit_tests"], run["input_bytes"])
+               for cores in CORES for run in [runs["core", cores]])]
     widths = [max(len(line[k]) for line in [head, *table] if len(line) == len(head)) for k in range(len(head))]
     for line in [head, *table]:
         print(line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:])),

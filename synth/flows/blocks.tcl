@@ -5,5 +5,6 @@ source [file join $flows elaborate.tcl]
 yosys proc
 yosys opt_expr
 yosys opt_dff
+yosys memory_collect
 yosys opt_clean
 yosys write_json $::env(OUT)

@@ -1,6 +1,7 @@
 # Maps one design to a standard-cell library. Everything comes in through the environment:
 #   SOURCES   files to read, packages first        TOP, PARAMETERS   the design
-#   FLOW      cells | kept | default | area | small | fast | faster | parts | modules
+#   FLOW      cells | kept | default | area | small | fast | faster | parts | modules | blocks
+#   BLOCKS    flow blocks: modules, beside the float cores, that ABC maps on their own
 #   ABC_SCRIPT  what ABC does, as -script FILE, or "" for Yosys's own
 #   LIBERTY   the library                          CONSTRAINTS       driver and load, for ABC
 #   OUT       prefix of the files written
@@ -12,10 +13,10 @@ switch $::env(FLOW) {
     # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
     yosys synth -flatten -noshare -noabc -top $::env(TOP)
   }
-  fast - faster - kept - parts - modules {
+  fast - faster - kept - parts - modules - blocks {
     # Nothing here looks across a multiplexer, so carry-select stays carry-select.
     yosys proc
-    if {$::env(FLOW) eq "parts"} {
+    if {$::env(FLOW) in {parts blocks}} {
       # ABC maps each float core on its own, and once, however often it is instantiated.
       yosys setattr -mod -set keep_hierarchy 1 *fp_*_stages*
     }
@@ -26,10 +27,21 @@ switch $::env(FLOW) {
         yosys setattr -mod -set keep_hierarchy 1 *\\\\$module
       }
     }
+    if {$::env(FLOW) eq "blocks"} {
+      foreach block $::env(BLOCKS) {
+        yosys setattr -mod -set keep_hierarchy 1 $block *\\$block *\\$block\\*
+      }
+    }
     yosys flatten
     yosys opt_expr
     yosys opt_merge
     yosys opt_clean
+    if {$::env(FLOW) eq "blocks"} {
+      yosys memory -nomap
+      yosys read_verilog -lib [file join $flows kept_memory.v]
+      yosys techmap -map [file join $flows kept_memories.v]
+      yosys tee -q -o $::env(OUT).memories dump t:kept_memory
+    }
     yosys memory
     yosys wreduce
     yosys alumacc
@@ -52,7 +64,9 @@ switch $::env(FLOW) {
 yosys dfflibmap -liberty $::env(LIBERTY)
 yosys abc -liberty $::env(LIBERTY) -constr $::env(CONSTRAINTS) {*}$::env(ABC_SCRIPT)
 yosys setattr -mod -unset keep_hierarchy *
+if {$::env(FLOW) eq "blocks"} { yosys tee -q -o $::env(OUT).blocks stat -liberty $::env(LIBERTY) }
 yosys flatten
+if {$::env(FLOW) eq "blocks"} { yosys expose -evert $::env(TOP)/t:kept_memory }
 yosys splitnets
 yosys opt_clean -purge
 yosys tee -q -o $::env(OUT).stat stat -liberty $::env(LIBERTY)

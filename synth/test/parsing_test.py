@@ -94,6 +94,67 @@ class Parsing(unittest.TestCase):
             mapping.cell_counts(f"   Area for cell type $memrd is unknown!\n{stat}")
 
 
+STAT = r"""
+=== $paramod$12ab\line_cache ===
+
+     DFFPOSX1                       10
+
+   Chip area for module '$paramod$12ab\line_cache': 100.000000
+
+=== $paramod$34cd\line_port ===
+
+     $paramod$12ab\line_cache       2
+     NAND2X1                        3
+
+   Chip area for module '$paramod$34cd\line_port': 30.500000
+
+=== ray_core ===
+
+     $paramod$34cd\line_port        2
+     kept_memory                    1
+
+   Area for cell type \kept_memory is unknown!
+
+   Chip area for module '\ray_core': 7.000000
+
+=== design hierarchy ===
+
+   ray_core                          1
+
+   Chip area for top module '\ray_core': 468.000000
+"""
+DUMP = r"""
+module $paramod$12ab\line_cache
+  cell \kept_memory \words
+    parameter \BITS 4096
+  end
+  cell \kept_memory \labels
+    parameter \BITS 2048
+  end
+end
+module \ray_core
+  cell \kept_memory \origins
+    parameter \BITS 6144
+  end
+end
+"""
+
+
+class Blocks(unittest.TestCase):
+    """mapping.block_costs and mapping.kept_memories."""
+
+    def test_blocks_count_what_is_in_them(self):
+        memories = mapping.kept_memories(DUMP)
+        self.assertEqual(memories, {r"$paramod$12ab\line_cache": 6144, "ray_core": 6144})
+        self.assertEqual(mapping.block_costs(STAT, memories), {
+            "the rest": {"count": 1, "area": 7, "bits": 6144},
+            "line_port": {"count": 2, "area": 461, "bits": 4 * 6144}})
+
+    def test_a_dump_of_one_module_names_none(self):
+        text = "  cell \\kept_memory \\words\n    parameter \\BITS 40\n  end\n"
+        self.assertEqual(mapping.kept_memories(text), {"": 40})
+
+
 class Wrappers(unittest.TestCase):
     """The Verilog that is written around a design."""
 

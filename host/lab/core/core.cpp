@@ -2,6 +2,7 @@
 // passes or fails here: each ray's answer is compared with the cpu engine's, and a difference ends
 // the run.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -22,8 +23,9 @@ namespace {
 
 struct Options {
   std::vector<std::string> scenes;
-  std::vector<int> latencies = {1, 50, 200};
-  int size = 128;
+  std::vector<int> latencies = {1, 50, 200}, in_flight = {0}, cores = {1};
+  std::vector<std::string> kinds = {"camera", "light", "scattered"};
+  int size = 128, every = 1;
   bool structural = false;
 };
 
@@ -46,16 +48,37 @@ class CoreBench {
     cpu->run(seen);
     for (const RaySet& set :
          {camera, light_rays(scene, camera, seen), scattered_rays(scene, camera, seen)}) {
-      for (const int latency : options_.latencies) run(bvh, image, set, latency);
+      if (std::ranges::find(options_.kinds, set.name) == options_.kinds.end()) continue;
+      const RaySet chosen = every(set);
+      for (const int latency : options_.latencies) {
+        for (const int cores : options_.cores) {
+          for (const int rays : options_.in_flight) {
+            run(bvh, image, chosen, {.latency = latency}, {.cores = cores, .rays = rays});
+          }
+        }
+      }
     }
   }
 
  private:
+  static constexpr int kTable = 64;  // rays in a core's table
+
+  /// One of `options_.every` rays.
+  [[nodiscard]] RaySet every(const RaySet& set) const {
+    RaySet some = set;
+    some.rays.clear();
+    some.limits.clear();
+    for (std::size_t i = 0; i < set.rays.size(); i += static_cast<std::size_t>(options_.every)) {
+      some.rays.push_back(set.rays[i]);
+      if (!set.limits.empty()) some.limits.push_back(set.limits[i]);
+    }
+    return some;
+  }
+
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const RaySet& set,
-           int latency) {
-    const std::shared_ptr<CoreUnit> core =
-        make_rtl_core(options_.structural ? Arith::kStructural : Arith::kBehavioural,
-                      MemoryTiming{.latency = latency});
+           const MemoryTiming& timing, const CoreSet& cores) {
+    const std::shared_ptr<CoreUnit> core = make_rtl_core(
+        options_.structural ? Arith::kStructural : Arith::kBehavioural, timing, {}, cores);
     CheckFinder finder(bvh, std::make_unique<CoreFinder>(bvh, image, core),
                        std::make_unique<CpuFinder>(bvh));
     std::vector<NearestHit> hits(set.rays.size());
@@ -67,16 +90,20 @@ class CoreBench {
     const CoreCounters counters = core->counters();
     const auto rays = static_cast<double>(set.rays.size());
     const auto clocks = static_cast<double>(counters.clocks);
+    const double core_clocks = clocks * cores.cores;
     const Row row = {
         {"table", "core"},
         {"scene", name_},
         {"rays", set.name},
-        {"latency", latency},
+        {"latency", timing.latency},
+        {"cores", cores.cores},
+        {"in_flight", cores.rays == 0 ? kTable : cores.rays},
         {"clocks_per_ray", clocks / rays},
         {"lines_per_ray", static_cast<double>(counters.lines) / rays},
         {"bytes_per_ray", 64.0 * static_cast<double>(counters.lines) / rays},
-        {"nodes_percent", 100.0 * static_cast<double>(counters.nodes) / clocks},
-        {"triangles_percent", 100.0 * static_cast<double>(counters.triangles) / clocks},
+        {"nodes_percent", 100.0 * static_cast<double>(counters.nodes) / core_clocks},
+        {"triangles_percent", 100.0 * static_cast<double>(counters.triangles) / core_clocks},
+        {"waits_percent", 100.0 * static_cast<double>(counters.waits) / core_clocks},
         {"doubts_per_1000", 1e3 * static_cast<double>(counters.doubts) / rays},
         {"near_ties_per_1000", 1e3 * static_cast<double>(counters.near_ties) / rays},
         {"rays_per_second", rays / seconds}};
@@ -90,6 +117,8 @@ class CoreBench {
   TextTable table_{{{"scene", "scene", -1, 16},
                     {"rays", "rays", -1, 10},
                     {"latency", "latency", -1},
+                    {"cores", "cores", -1},
+                    {"in_flight", "in flight", -1},
                     {"clocks_per_ray", "clocks/ray", 2},
                     {"lines_per_ray", "lines/ray", 2},
                     {"bytes_per_ray", "bytes/ray", 0},
@@ -110,11 +139,19 @@ void add_core(CLI::App& lab, Common& common) {
       ->check(CLI::Range(128, 8192));
   app->add_option("--latency", options->latencies, "of memory, in clocks; several may be given")
       ->check(CLI::Range(1, 10'000));
+  app->add_option("--in-flight", options->in_flight, "rays in each core at most; several; 0: all")
+      ->check(CLI::Range(0, 64));
+  app->add_option("--cores", options->cores, "behind one port to memory; several may be given")
+      ->check(CLI::Range(1, 64));
+  app->add_option("--kinds", options->kinds, "of rays: camera, light, scattered")
+      ->check(CLI::IsMember({"camera", "light", "scattered"}));
+  app->add_option("--every", options->every, "of the rays only each so-manieth")
+      ->check(CLI::Range(1, 1024));
   app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
   app->callback([options, &common] {
     options->size -= options->size % 128;
     std::printf(
-        "%dx%d pixels; 64 rays in flight, a line of 64 bytes a clock. rays/s: simulated, %s\n"
+        "%dx%d pixels; a line of 64 bytes a clock. rays/s: simulated, %s\n"
         "arithmetic, the comparison with the cpu engine included.\n",
         options->size, options->size, options->structural ? "structural" : "behavioural");
     CoreBench bench(*options, common.results);

@@ -1,12 +1,12 @@
-"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make shares`, `make stages` and
-`make trace-rates` run."""
+"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make core`, `make shares`, `make stages`
+and `make trace-rates` run."""
 
 import argparse
 import pathlib
 import shutil
 import sys
 
-from host.lab.report import bench, bench_report, compare, document, shares, stages, stress_report, trace_rates
+from host.lab.report import bench, bench_report, compare, core_report, document, shares, stages, stress_report, trace_rates
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
 
@@ -27,7 +27,8 @@ def arguments() -> argparse.Namespace:
     command.add_argument("--report-only", action="store_true",
                          help="draw build/results/bench.jsonl again, measuring nothing")
     stress = commands.add_parser("stress", help="build/results/stress.jsonl as a report")
-    for publishing in (command, stress):
+    core = commands.add_parser("core", help="build/results/core-*.jsonl as a report")
+    for publishing in (command, stress, core):
         publishing.add_argument("--publish", action="store_true",
                                 help="write the report into host/lab/results/ as well")
     command = commands.add_parser("shares", help="hit tests, departures and shading in pictures by ./render")
@@ -98,6 +99,15 @@ def run_stress(given: argparse.Namespace) -> int:
     return 0
 
 
+def run_core(given: argparse.Namespace) -> int:
+    """The rows of the runs that `make core` makes, by the names of their files."""
+    rows = [{**row, "run": run} for run, file in (("scenes", "core"), ("in flight", "core-in-flight"),
+                                                  ("cores", "core-cores"))
+            for row in kept.read(KEPT / f"{file}.jsonl")]
+    write(rows, core_report.build, "core", given.publish)
+    return 0
+
+
 def run_shares(given: argparse.Namespace) -> int:
     """Prints the table and keeps its rows."""
     light = ["--integrator", "path", "--size", given.size, "--spp", given.spp]
@@ -142,8 +152,8 @@ def run_trace(given: argparse.Namespace) -> int:
 def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
-    commands = {"bench": run_bench, "stress": run_stress, "shares": run_shares, "stages": run_stages,
-                "trace": run_trace}
+    commands = {"bench": run_bench, "stress": run_stress, "core": run_core, "shares": run_shares,
+                "stages": run_stages, "trace": run_trace}
     try:
         return commands[given.command](given)
     except (OSError, ValueError) as error:

@@ -1,0 +1,33 @@
+"""The report of `make core`."""
+
+import pathlib
+import tempfile
+import unittest
+
+from host.lab.report import core_report
+
+
+def row(run, rays, latency, **values):
+    """A row of `lab core`."""
+    return {"table": "core", "run": run, "scene": "a", "rays": rays, "latency": latency, "cores": 1, "in_flight": 64,
+            "clocks_per_ray": latency / 10, "lines_per_ray": 0.5, "bytes_per_ray": 32.0, "nodes_percent": 70.0,
+            "triangles_percent": 80.0, "waits_percent": 1.5, "doubts_per_1000": 0.25, **values}
+
+
+class CoreReport(unittest.TestCase):
+    def test_a_row_has_the_clocks_of_all_latencies(self):
+        with tempfile.TemporaryDirectory() as name:
+            text = core_report.build(
+                [*(row("scenes", "camera", latency) for latency in (1, 50, 200)),
+                 *(row("in flight", "camera", 1, in_flight=rays, clocks_per_ray=64 / rays) for rays in (1, 64)),
+                 *(row("cores", "camera", 50, cores=cores, clocks_per_ray=6 / cores) for cores in (1, 2))],
+                pathlib.Path(name))
+            self.assertGreater((pathlib.Path(name) / "core.png").stat().st_size, 1000)
+        rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| a ")]
+        self.assertEqual(rows, [
+            ["a", "camera", "0.10", "5.00", "20.00", "0.50", "32", "70.0", "80.0", "80.0", "0.25"],
+            ["a", "camera", "6.00", "3.00", "1.5", "1.5"]])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,55 @@
+// Arrays of 2,048 bits and more stay memories, whose ports become the design's: nobody here has SRAM to map
+// them to. Smaller ones become registers.
+(* techmap_celltype = "$mem_v2" *)
+module keep_large_memory #(
+  parameter MEMID = "",
+  parameter SIZE = 0,
+  parameter OFFSET = 0,
+  parameter ABITS = 0,
+  parameter WIDTH = 0,
+  parameter INIT = 0,
+  parameter RD_PORTS = 0,
+  parameter RD_CLK_ENABLE = 0,
+  parameter RD_CLK_POLARITY = 0,
+  parameter RD_TRANSPARENCY_MASK = 0,
+  parameter RD_COLLISION_X_MASK = 0,
+  parameter RD_WIDE_CONTINUATION = 0,
+  parameter RD_CE_OVER_SRST = 0,
+  parameter RD_ARST_VALUE = 0,
+  parameter RD_SRST_VALUE = 0,
+  parameter RD_INIT_VALUE = 0,
+  parameter WR_PORTS = 0,
+  parameter WR_CLK_ENABLE = 0,
+  parameter WR_CLK_POLARITY = 0,
+  parameter WR_PRIORITY_MASK = 0,
+  parameter WR_WIDE_CONTINUATION = 0
+) (
+  input  [RD_PORTS-1:0]       RD_CLK,
+  input  [RD_PORTS-1:0]       RD_EN,
+  input  [RD_PORTS-1:0]       RD_ARST,
+  input  [RD_PORTS-1:0]       RD_SRST,
+  input  [RD_PORTS*ABITS-1:0] RD_ADDR,
+  output [RD_PORTS*WIDTH-1:0] RD_DATA,
+  input  [WR_PORTS-1:0]       WR_CLK,
+  input  [WR_PORTS*WIDTH-1:0] WR_EN,
+  input  [WR_PORTS*ABITS-1:0] WR_ADDR,
+  input  [WR_PORTS*WIDTH-1:0] WR_DATA
+);
+
+  wire _TECHMAP_FAIL_ = SIZE * WIDTH < 2048;
+
+  kept_memory #(
+    .BITS(SIZE * WIDTH),
+    .READ_ADDRESS(RD_PORTS * ABITS),
+    .READ_DATA(RD_PORTS * WIDTH),
+    .WRITE_ENABLE(WR_PORTS * WIDTH),
+    .WRITE_ADDRESS(WR_PORTS * ABITS)
+  ) _TECHMAP_REPLACE_ (
+    .read_address_i (RD_ADDR),
+    .read_data_o    (RD_DATA),
+    .write_enable_i (WR_EN),
+    .write_address_i(WR_ADDR),
+    .write_data_i   (WR_DATA)
+  );
+
+endmodule
