@@ -41,6 +41,8 @@ Compares an OpenEXR picture with a reference, over the pixels that both hold.
 Measures of PICTURE minus REFERENCE
   rmse, mse                   root of the mean square; mean square
   mae, max                    mean and greatest magnitude
+  bias                        sum / that of REFERENCE: -0.01 is 1 % too dark;
+                              a threshold is of its magnitude
   relative_mse                mean of square / (REFERENCE squared + 0.01)
   psnr                        decibels of a peak of 1; infinite if equal
   ssim                        structural similarity (Wang et al., 2004) of what
@@ -71,6 +73,7 @@ std::vector<Measure> measures_of(const Comparison& c) {
   return {{"rmse", c.rmse, false},
           {"mse", c.mse, false},
           {"mae", c.mae, false},
+          {"bias", c.bias, false},
           {"max", c.max, false},
           {"relative_mse", c.relative_mse, false},
           {"psnr", c.psnr, true},
@@ -94,7 +97,7 @@ bool is_kept(const std::string& text, const std::vector<Measure>& measures) {
     if (!measure.value) {
       throw InputError("--threshold: " + name + " needs channels R,G,B and 11x11 pixels");
     }
-    return measure.more_is_better ? *measure.value >= *limit : *measure.value <= *limit;
+    return measure.more_is_better ? *measure.value >= *limit : std::abs(*measure.value) <= *limit;
   }
   const bool is_known = std::ranges::find(names, name) != names.end();
   fail_value("--threshold", text, "MEASURE=NUMBER with one of " + list,

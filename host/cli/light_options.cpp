@@ -99,6 +99,7 @@ void declare_light_options(CLI::App& app, RawLightOptions& raw) {
   };
   value("--integrator", raw.integrator);
   value("--spp", raw.samples);
+  value("--error", raw.error);
   value("--samples", raw.range);
   value("--filter", raw.filter);
   value("--depth,--max-depth", raw.depth);
@@ -113,6 +114,13 @@ LightOptions parse_light_options(const RawLightOptions& raw) {
   if (!raw.integrator.empty()) options.integrator = parse_integrator(raw.integrator);
   if (!raw.depth.empty()) options.depth = parse_count("--depth", raw.depth, 0, 1000);
   if (!raw.samples.empty()) options.samples = parse_count("--spp", raw.samples, 1, 1 << 20);
+  if (!raw.error.empty()) {
+    const auto error = parse_number<double>(raw.error);
+    if (!error || !(*error > 0.0 && *error <= 255.0)) {
+      fail_value("--error", raw.error, "steps of an 8-bit display, above 0 and up to 255");
+    }
+    options.error = *error;
+  }
   if (!raw.range.empty()) {
     options.range = parse_sample_range(raw.range);
     if (!options.range)

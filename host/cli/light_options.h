@@ -18,6 +18,8 @@ namespace raygate {
 
 /// Samples per pixel where nobody says how many: of an engine that simulates nothing.
 inline constexpr int kCpuSamples = 4;
+/// The most, where --error says how many.
+inline constexpr int kMostSamples = 1024;
 
 /// How light is followed; all values are possible.
 struct LightOptions {
@@ -26,6 +28,7 @@ struct LightOptions {
   double threshold = 1.0 / 256.0;
   std::optional<double> ambient;  ///< radiance; none: Lights::ambient
   int samples = 1;
+  double error = 0.0;  ///< RenderOptions::error: `samples` is the most; 0: is what all pixels get
   std::optional<SampleRange> range;  ///< those of them that are rendered; none: all
   PixelFilter filter = PixelFilter::kBlackmanHarris;
   Skips skips;
@@ -39,7 +42,8 @@ struct LightOptions {
 
 /// As they were typed; empty where they were not given.
 struct RawLightOptions {
-  std::string integrator, depth, threshold, ambient, samples, range, filter, no_skip, point_error;
+  std::string integrator, depth, threshold, ambient, samples, error, range, filter, no_skip,
+      point_error;
 };
 
 void declare_light_options(CLI::App& app, RawLightOptions& raw);

@@ -7,6 +7,7 @@
 #include "host/cli/option_text.h"
 #include "host/cli/sky_lens_options.h"
 #include "host/cli/values.h"
+#include "host/picture/sample_choice.h"
 #include "host/scene/io/input_error.h"
 
 namespace raygate {
@@ -77,6 +78,9 @@ Light
                              whitted: shadows, reflection, refraction (default);
                              path: full global illumination
   --spp N                    samples per pixel (1; 4 with --engine cpu)
+  --error X                  samples only where the picture needs them, --spp at
+                             most (1024): 16 are enough where the error is X
+                             steps of an 8-bit display, n where it is X n / 16
   --samples A:B              of these only A to B-1, for ./merge to add the rest
   --filter NAME              reconstruction filter: box, tent, gauss or
                              blackman-harris (default)
@@ -154,6 +158,22 @@ RawValues read_line(const std::vector<std::string>& words, Options& options) {
   return raw;
 }
 
+/// What --error asks for beside it.
+void check_error(const RawValues& raw, Options& options) {
+  if (raw.light.samples.empty()) options.light.samples = kMostSamples;
+  if (options.light.samples <= kFirstJudged) {
+    fail_value("--spp", raw.light.samples,
+               "more than the " + std::to_string(kFirstJudged) + " that --error begins with");
+  }
+  if (options.light.range) throw InputError("--samples: expected no --error beside it");
+  const PixelRect& window = options.window;
+  const auto is_edge = [](int at, int end) { return at % kErrorBlock == 0 || at == end; };
+  if (!is_edge(window.x0, 0) || !is_edge(window.y0, 0) || !is_edge(window.x1, options.width) ||
+      !is_edge(window.y1, options.height)) {
+    fail_value("--crop", raw.crop, "multiples of 4, or the frame's edge, beside --error");
+  }
+}
+
 void check_values(const RawValues& raw, Options& options) {
   options.output = parse_output_options(raw.output, options.scene);
   options.light = parse_light_options(raw.light);
@@ -185,6 +205,7 @@ void check_values(const RawValues& raw, Options& options) {
   if (raw.light.samples.empty() && options.engine == Engine::kCpu) {
     options.light.samples = kCpuSamples;
   }
+  if (options.light.error > 0.0) check_error(raw, options);
   if (const auto& range = options.light.range) {
     if (range->end > options.light.samples) {
       fail_value("--samples", raw.light.range,
@@ -192,6 +213,11 @@ void check_values(const RawValues& raw, Options& options) {
     }
     if (!options.output.exr) throw InputError("--samples: expected an EXR among the outputs");
     options.output.channels.sums = true;
+  }
+  for (const FalseColorOutput& output : options.output.false_colors) {
+    if (options.light.error == 0.0 && (output.channel == "samples" || output.channel == "error")) {
+      throw InputError("--false-colour: expected --error beside the channel " + output.channel);
+    }
   }
   if (!raw.resume.empty()) {
     options.resume = raw.resume;

@@ -99,8 +99,9 @@ double parse_save_every(const std::string& text) {
 
 FalseColorOutput parse_false_color(const std::string& text) {
   static constexpr std::string_view kChannels[] = {
-      "R",   "G",   "B",   "A",        "Z",        "N.X",      "N.Y",      "N.Z",   "id",
-      "P.X", "P.Y", "P.Z", "Albedo.R", "Albedo.G", "Albedo.B", "objectId", "tests", "doubts"};
+      "R",        "G",        "B",     "A",      "Z",       "N.X",      "N.Y",
+      "N.Z",      "id",       "P.X",   "P.Y",    "P.Z",     "Albedo.R", "Albedo.G",
+      "Albedo.B", "objectId", "tests", "doubts", "samples", "error"};
   constexpr const char* kOption = "--false-colour";
   const std::size_t equals = std::min(text.find('='), text.size() - 1);
   FalseColorOutput output;
@@ -115,7 +116,8 @@ FalseColorOutput parse_false_color(const std::string& text) {
   if (std::ranges::find(kChannels, output.channel) == std::end(kChannels)) {
     fail_value(
         kOption, text,
-        "one of the EXR's channels, such as Z, N.X, P.X, Albedo.R, id, objectId, tests, doubts");
+        "one of the EXR's channels, such as Z, N.X, P.X, Albedo.R, id, objectId, tests, doubts, "
+        "samples, error");
   }
   if (name_end == what.size()) return output;
   const auto limits = parse_list<double>(what.substr(name_end + 1));

@@ -1,12 +1,12 @@
 #include "host/cli/outputs.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include "host/film/channels.h"
 #include "host/film/display.h"
 #include "host/film/false_color.h"
 #include "host/film/png.h"
+#include "host/scene/io/input_error.h"
 
 namespace raygate {
 
@@ -26,7 +26,10 @@ ReadyPictures make_ready(const OutputOptions& options, const Film& film,
   const std::vector<Channel> channels = channels_of(film);
   for (const FalseColorOutput& output : options.false_colors) {
     const auto channel = std::ranges::find(channels, output.channel, &Channel::name);
-    assert(channel != channels.end());
+    if (channel == channels.end()) {
+      throw InputError("--false-colour: found no channel " + output.channel +
+                       " in the picture, expected one that it has");
+    }
     const Picture8 picture =
         false_color(film.width, film.height, film.window, *channel, output.scale);
     add_png(output.path, picture);

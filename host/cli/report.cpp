@@ -121,6 +121,18 @@ std::vector<Skipped> skipped(const Report& report) {
   return all;
 }
 
+/// "1,234,567, 12.3 % of 1,024 per pixel; the others where ...".
+std::string samples_line(const Report& report) {
+  const LightOptions& light = report.options.light;
+  const PixelRect& window = report.options.window;
+  const double all = static_cast<double>(window.width()) * window.height() * light.samples;
+  const double taken = all - static_cast<double>(report.render.spare_samples);
+  return row("samples", format_fixed(100.0 * taken / all, 1) + " % of " +
+                            format_count(static_cast<std::uint64_t>(light.samples)) +
+                            " per pixel; skipped " + format_count(report.render.spare_samples) +
+                            " that --error did not need");
+}
+
 /// One line of all that --verbose lists.
 std::string skipped_line(const Report& report) {
   double seconds = 0.0;
@@ -195,6 +207,7 @@ std::string to_text(const Report& report) {
                                 format_fixed(clocks_per_test(hit), 2) + " per test"
                           : "") +
           ": " + rate(hit.tests, render.wall_seconds, "tests"));
+  if (report.options.light.error > 0.0) text += samples_line(report);
   text += skipped_line(report);
   std::string pictures;
   for (const auto& path : report.pictures) {
@@ -231,6 +244,7 @@ std::string to_json(const Report& report) {
       {"pictures", pictures},
       {"integrator", to_string(options.light.integrator)},
       {"spp", options.light.samples},
+      {"error", options.light.error},
       {"depth", options.light.max_depth()},
       {"rays", render.rays},
       {"camera_rays", render.camera_rays},
@@ -260,7 +274,8 @@ std::string to_json(const Report& report) {
         {"weightless", render.skipped.weightless},
         {"dim", render.skipped.dim},
         {"empty_tile_rays", render.skipped.empty_tile_rays},
-        {"first_occluders", render.skipped.first_occluders}}},
+        {"first_occluders", render.skipped.first_occluders},
+        {"spare_samples", render.spare_samples}}},
       {"seconds",
        {{"load", report.load_seconds},
         {"tree", report.tree_seconds},

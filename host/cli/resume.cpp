@@ -66,6 +66,8 @@ std::optional<Film> begun_film(const Options& options, const ExrMetadata& metada
   keep(needed.object, film.object, "objectId", name);
   keep(needed.tests, film.tests, "tests", name);
   keep(needed.doubts, film.doubts, "doubts", name);
+  keep(options.light.error > 0.0, film.sums.error, "error", name);
+  keep(options.light.error > 0.0, film.sums.shown, "sums.shown", name);
   return film;
 }
 

@@ -187,6 +187,8 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                                .first_sample = options.light.range.value_or(all).first,
                                .end_sample = options.light.range.value_or(all).end,
                                .begun = begun,
+                               .error = options.light.error,
+                               .exposure = options.output.display.exposure,
                                .filter = options.light.filter,
                                .seed = options.seed,
                                .channels = options.output.needed_channels(),

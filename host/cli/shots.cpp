@@ -111,6 +111,11 @@ std::vector<std::pair<std::string, std::string>> Shots::options() const {
       {"depth", std::to_string(light.max_depth())},
       {"threshold", format_exactly(light.threshold)},
       {"pointError", format_exactly(light.point_error)}};
+  if (light.error > 0.0) {
+    all.emplace_back("error", format_exactly(light.error));
+    const double exposure = options_.output.display.exposure;
+    if (exposure != 0.0) all.emplace_back("exposure", format_exactly(exposure));
+  }
   if (light.ambient) all.emplace_back("ambient", format_exactly(*light.ambient));
   const auto numbers = [](std::initializer_list<double> values) {
     std::string text;

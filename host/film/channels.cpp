@@ -21,6 +21,12 @@ void add_numbers(std::vector<Channel>& channels, const char* name,
   channels.push_back({name, Channel::Type::kUint, values.data(), sizeof(std::uint32_t)});
 }
 
+void add_numbers(std::vector<Channel>& channels, const char* name,
+                 const std::vector<float>& values) {
+  if (values.empty()) return;
+  channels.push_back({name, Channel::Type::kFloat, values.data(), sizeof(float)});
+}
+
 /// "sums.R.0" to "sums.R.5" and so on.
 template <std::size_t N>
 void add_sums(std::vector<Channel>& channels, const std::string& layer, const char* parts,
@@ -44,7 +50,7 @@ std::vector<Channel> channels_of(const Film& film) {
     channels.push_back({std::string(1, "RGBA"[k]), Channel::Type::kFloat, &film.color.front()[k],
                         sizeof(glm::vec4)});
   }
-  channels.push_back({"Z", Channel::Type::kFloat, film.depth.data(), sizeof(float)});
+  add_numbers(channels, "Z", film.depth);
   add_vector(channels, "N", "XYZ", film.normal);
   add_numbers(channels, "id", film.primitive);
   add_vector(channels, "P", "XYZ", film.position);
@@ -52,8 +58,12 @@ std::vector<Channel> channels_of(const Film& film) {
   add_numbers(channels, "objectId", film.object);
   add_numbers(channels, "tests", film.tests);
   add_numbers(channels, "doubts", film.doubts);
-  if (film.keeps_sums) {
+  if (film.keeps_sums || !film.sums.error.empty()) {
     add_numbers(channels, "samples", film.sums.samples);
+  }
+  add_numbers(channels, "error", film.sums.error);
+  if (film.keeps_sums) {
+    add_numbers(channels, "sums.shown", film.sums.shown);
     add_sums(channels, "sums", "RGBA", film.sums.color);
     add_sums(channels, "sums.Albedo", "RGB", film.sums.albedo);
   }

@@ -58,7 +58,7 @@ Comparison compare(const ChannelPicture& picture, const ChannelPicture& referenc
   if (window.width() <= 0 || window.height() <= 0) {
     throw InputError("the pictures have no pixel in common: their data windows do not overlap");
   }
-  double squares = 0.0, absolutes = 0.0, relatives = 0.0;
+  double squares = 0.0, absolutes = 0.0, relatives = 0.0, sum = 0.0, references = 0.0;
   for (int y = window.y0; y < window.y1; ++y) {
     for (int x = window.x0; x < window.x1; ++x) {
       const std::size_t i = place(picture, x, y), j = place(reference, x, y);
@@ -66,6 +66,7 @@ Comparison compare(const ChannelPicture& picture, const ChannelPicture& referenc
       bool differs = false;
       for (std::size_t c = 0; c < picture.channels.size(); ++c) {
         const double a = picture.channels[c][i], b = reference.channels[c][j];
+        if (std::isfinite(b)) references += b;
         if (equal(a, b)) continue;
         differs = true;
         const double d = a - b;
@@ -76,6 +77,7 @@ Comparison compare(const ChannelPicture& picture, const ChannelPicture& referenc
         largest = std::max(largest, std::abs(d));
         squares += d * d;
         absolutes += std::abs(d);
+        sum += d;
         relatives += d * d / (b * b + 0.01);
       }
       ++result.pixels;
@@ -89,6 +91,8 @@ Comparison compare(const ChannelPicture& picture, const ChannelPicture& referenc
   const bool comparable = result.not_finite == 0;
   result.mse = comparable ? squares / n : kInfinity;
   result.mae = comparable ? absolutes / n : kInfinity;
+  if (sum != 0.0) result.bias = sum / references;
+  if (!comparable) result.bias = kInfinity;
   result.relative_mse = comparable ? relatives / n : kInfinity;
   result.rmse = std::sqrt(result.mse);
   result.psnr = -10.0 * std::log10(result.mse);

@@ -22,6 +22,7 @@ struct Comparison {
   double mse = 0.0;              ///< sum d^2 / n
   double rmse = 0.0;             ///< its root
   double mae = 0.0;              ///< sum |d| / n
+  double bias = 0.0;             ///< sum d / sum reference: -0.01 is 1 % too dark; 0 for equal ones
   double max = 0.0;              ///< largest |d|
   /// sum d^2 / (reference^2 + 0.01) / n: errors of dark parts count as the eye sees them
   double relative_mse = 0.0;

@@ -7,6 +7,11 @@
 #include "host/scene/srgb.h"
 
 namespace raygate {
+namespace {
+
+double gain_of(double exposure) { return binary_power(std::clamp(exposure, -126.0, 127.0)); }
+
+}  // namespace
 
 float toned(float light, Tone tone) {
   if (tone == Tone::kClip) return light;
@@ -16,10 +21,16 @@ float toned(float light, Tone tone) {
   return static_cast<float>(std::min(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0));
 }
 
+float display_steps(const glm::vec3& light, double exposure) {
+  const glm::dvec3 c(light);
+  return static_cast<float>(
+      255.0 * srgb_curve_above(gain_of(exposure) * (0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b)));
+}
+
 Picture8 to_display(const Film& film, const DisplayOptions& options) {
   Picture8 picture{film.width, film.height, film.window, {}, {}};
   picture.pixels.reserve(film.color.size());
-  const auto gain = static_cast<float>(binary_power(std::clamp(options.exposure, -126.0, 127.0)));
+  const auto gain = static_cast<float>(gain_of(options.exposure));
   for (const glm::vec4& color : film.color) {
     Rgb8& codes = picture.pixels.emplace_back();
     for (int k = 0; k < 3; ++k) {

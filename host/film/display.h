@@ -21,6 +21,11 @@ struct DisplayOptions {
 /// kFilmic; NaN stays. Source of the curve: K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
 [[nodiscard]] float toned(float light, Tone tone);
 
+/// Luminance as a display shows it after `exposure` stops, in steps of its 8 bits: 255 is white.
+/// The sRGB curve goes on above white, which another exposure may bring into sight. What errors of
+/// a pixel are measured in.
+[[nodiscard]] float display_steps(const glm::vec3& light, double exposure);
+
 /// The film over black, channel by channel. Each code is the one nearest to the exact value.
 [[nodiscard]] Picture8 to_display(const Film& film, const DisplayOptions& options = {});
 

@@ -42,6 +42,7 @@ inline constexpr const char* kPartial = "not finished when it was saved";
 ///   Albedo.R .G .B float   diffuse colour, 0 for a miss
 ///   objectId       uint    object index, 4294967295 for a miss
 ///   tests doubts   uint    counts
+///   samples error  uint, float    how many samples, and the error that is left (FilmSums)
 /// The display window is the frame, the data window the film's window within it. Equal arguments
 /// give equal bytes, whatever the number of threads. Throws std::runtime_error if the library
 /// fails.

@@ -121,7 +121,7 @@ void read_windows(const Imf::Header& header, int& width, int& height, PixelRect&
 Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
   const Imf::ChannelList& channels = header.channels();
   const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
-  if (!has("samples")) {
+  if (!has("sums.R.0")) {
     throw InputError(path.string() +
                      ": found no sums of samples, expected a picture of `render --channels sums`");
   }
@@ -135,6 +135,10 @@ Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
   film.primitive.resize(pixels);
   film.sums.samples.resize(pixels);
   film.sums.color.resize(pixels);
+  if (has("error")) {
+    film.sums.error.resize(pixels);
+    film.sums.shown.resize(pixels);
+  }
   if (has("P.X")) film.position.resize(pixels);
   if (has("Albedo.R")) film.albedo.resize(pixels);
   film.sums.albedo.resize(film.albedo.size());

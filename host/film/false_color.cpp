@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 
 #include "host/elementary.h"
@@ -63,7 +64,8 @@ Rgb8 label_color(std::uint32_t label) {
 Scale scale_of(const Channel& channel, std::size_t count) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Scale scale{kInfinity, -kInfinity};
-  if (channel.name == "tests" || channel.name == "doubts") scale = {0.0, 0.0};
+  constexpr const char* kFromZero[] = {"tests", "doubts", "samples", "error"};
+  if (std::ranges::find(kFromZero, channel.name) != std::end(kFromZero)) scale = {0.0, 0.0};
   for (std::size_t i = 0; i < count; ++i) {
     const double value = value_at(channel, i);
     if (!std::isfinite(value)) continue;

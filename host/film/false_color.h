@@ -23,7 +23,7 @@ struct Scale {
 [[nodiscard]] Rgb8 label_color(std::uint32_t label);
 
 /// The least and the greatest finite number among `count` pixels; 0 to 0 if there is none. Counts
-/// (tests, doubts) begin at 0.
+/// (tests, doubts, samples) and errors begin at 0.
 [[nodiscard]] Scale scale_of(const Channel& channel, std::size_t count);
 
 /// One number for each pixel of `window`, within a `width` x `height` frame, in colours. Numbers

@@ -23,6 +23,8 @@ void for_each_array(AnyFilm& film, const Visit& visit) {
   visit(film.sums.samples);
   visit(film.sums.color);
   visit(film.sums.albedo);
+  visit(film.sums.error);
+  visit(film.sums.shown);
 }
 
 /// All that `film` has of `rect`, a part of its window.

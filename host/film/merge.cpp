@@ -35,7 +35,7 @@ void require_like(const NamedFilm& part, const NamedFilm& first) {
   }
   const auto layout = [](const Film& f) {
     return std::tuple(f.width, f.height, f.position.empty(), f.albedo.empty(), f.object.empty(),
-                      f.tests.empty(), f.doubts.empty());
+                      f.tests.empty(), f.doubts.empty(), f.sums.error.empty());
   };
   if (layout(film) != layout(other)) {
     throw InputError(name + ": found another frame or other channels than in " + first.first +
@@ -201,6 +201,8 @@ FilmFile merge(std::vector<NamedFilm> parts) {
     put(part.sums.samples, film.sums.samples);
     put(part.sums.color, film.sums.color);
     put(part.sums.albedo, film.sums.albedo);
+    put(part.sums.error, film.sums.error);
+    put(part.sums.shown, film.sums.shown);
   }
   return result;
 }

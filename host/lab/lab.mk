@@ -7,7 +7,7 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers gltf-pictures rays core skips predicates shares stages trace-rates claims
+.PHONY: stress bench peers gltf-pictures rays core skips predicates shares stages adaptive coverage trace-rates claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -69,6 +69,14 @@ stages: ## load, tree, render, write: milliseconds of a small and two large scen
 	$(call build,lab,render scenes)
 	@$(LAB_REPORT) stages scenes/cornell.obj scenes/teapot.obj build/scenes/sphereflake.obj \
 	  build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)')
+
+adaptive: ## time with --error beside uniform --spp, at equal RMSE and equal FLIP: make adaptive [SCENES='scenes/cornell.obj']
+	$(call build,lab,render compare scenes)
+	@$(LAB_REPORT) adaptive $(or $(SCENES),$(GALLERY)) $(if $(RENDER),--render '$(RENDER)')
+
+coverage: ## how often the estimated error of --error holds, pixels of known value, 1,000 seeds: make coverage [SEEDS=1000]
+	$(call build,test,picture_test)
+	@RAYGATE_SEEDS=$(or $(SEEDS),1000) build/picture_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
 
 trace-rates: ## rays per second of ./trace: nearest, any and all hits, tables in and out included
 	$(call build,lab,trace scenes)

@@ -19,6 +19,7 @@
 #include "host/picture/helpers.h"
 #include "host/picture/helping.h"
 #include "host/picture/lamp_edges.h"
+#include "host/picture/sample_choice.h"
 #include "host/picture/schedule.h"
 #include "host/picture/tile_renderer.h"
 #include "host/picture/tiles.h"
@@ -105,8 +106,9 @@ class Crew {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kLook{50};  // between reports, at most
-  static constexpr std::chrono::milliseconds kServe{1};  // between looks for messages
+  static constexpr std::chrono::milliseconds kLook{50};    // between reports, at most
+  static constexpr std::chrono::milliseconds kServe{1};    // between looks for messages
+  static constexpr std::chrono::milliseconds kShare{500};  // between looks for what is left
 
   /// A thread's: until there is nothing left to begin.
   void work() {
@@ -193,7 +195,7 @@ class Crew {
         }
         return;
       }
-      const double fraction = schedule_.fraction();
+      const double fraction = share_done();
       lock.unlock();
       if (report_ && !report_(fraction)) stop();
       lock.lock();
@@ -214,6 +216,18 @@ class Crew {
     } catch (...) {
       fail(std::current_exception());
     }
+  }
+
+  /// Looks at the film now and then, if that tells.
+  double share_done() {
+    const double wanted = job_.options.error;
+    if (wanted == 0.0) return schedule_.fraction();
+    const Clock::time_point now = Clock::now();
+    if (now >= next_share_) {
+      share_ = raygate::share_done(film_, job_.options.samples, wanted);
+      next_share_ = now + kShare;
+    }
+    return share_;
   }
 
   void stop() {
@@ -253,6 +267,8 @@ class Crew {
   bool is_alone_ = false;
   Stopwatch watch_;
   double since_snapshot_ = 0.0;
+  double share_ = 0.0;
+  Clock::time_point next_share_;
 };
 
 }  // namespace
@@ -285,10 +301,14 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     film = *options.begun;
     film.keeps_sums = options.channels.sums;
     assert(film.sums.samples.size() == film.color.size());
-  } else if (tiles.passes() > 1 || film.keeps_sums || ranks > 1) {
+  } else if (tiles.passes() > 1 || film.keeps_sums || options.error > 0.0 || ranks > 1) {
     film.sums.samples.assign(film.color.size(), 0);
     film.sums.color.resize(film.color.size());
     film.sums.albedo.resize(film.albedo.size());
+    if (options.error > 0.0) {
+      film.sums.error.assign(film.color.size(), std::numeric_limits<float>::infinity());
+      film.sums.shown.assign(film.color.size(), 0.0f);
+    }
   }
   const Lights lights(scene, bvh);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lamps
@@ -311,6 +331,11 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
   }
   const std::uint64_t every_test = stats.rays * bvh.triangle_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);
+  if (options.error > 0.0) {
+    for (const std::uint32_t samples : film.sums.samples) {
+      stats.spare_samples += static_cast<std::uint32_t>(options.samples) - samples;
+    }
+  }
   stats.wall_seconds = wall.lap();
   stats.processor_seconds = processor_seconds() - busy;
   return film;

@@ -36,6 +36,12 @@ struct RenderOptions {
   /// What there is of this picture, of the same window, options and samples from first_sample on,
   /// with its sums: the render goes on from there. Null: nothing.
   const Film* begun = nullptr;
+  /// Above 0: `samples` is the most, and pixels go without those that their error does not need
+  /// (is_done in sample_choice.h); in steps of an 8-bit display after `exposure` stops. The window
+  /// then begins and ends at multiples of kErrorBlock, or with the frame, and all samples are
+  /// rendered. The film has FilmSums::error.
+  double error = 0.0;
+  double exposure = 0.0;
   PixelFilter filter = PixelFilter::kBlackmanHarris;  ///< with more than one sample
   std::uint64_t seed = 0;                             ///< of everything random
   ExtraChannels channels{};  ///< besides colour, depth, normal and primitive
@@ -74,8 +80,9 @@ struct RenderStats {
   double shade_seconds = 0.0;  ///< making the rays and shading them
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
-  int missing_threads = 0;  ///< that could not be started; the others did their work
-  bool cancelled = false;   ///< the progress function said stop: the film has what there was
+  std::uint64_t spare_samples = 0;  ///< not taken, as RenderOptions::error had no need of them
+  int missing_threads = 0;          ///< that could not be started; the others did their work
+  bool cancelled = false;  ///< the progress function said stop: the film has what there was
 };
 
 /// What another rank has counted. Its clock is not.

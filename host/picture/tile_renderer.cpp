@@ -6,6 +6,7 @@
 
 #include "host/film/film_sums.h"
 #include "host/picture/lamp_edges.h"
+#include "host/picture/sample_choice.h"
 #include "host/picture/view_pyramid.h"
 #include "host/stopwatch.h"
 
@@ -19,6 +20,7 @@ constexpr int kSquare = 8;
 // The integrators' streams are made from others.
 constexpr std::uint32_t kFilterStream = 0, kLampStream = 7, kLensStream = 8;
 constexpr int kLooks = 8;                         // at a lamp's edge, for each sample
+constexpr std::size_t kManySamples = 1 << 14;     // at once
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
 /// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
@@ -56,20 +58,41 @@ TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film,
                    integrator_->shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
+/// By RenderOptions::error.
+bool TileRenderer::is_done(std::size_t index) const {
+  const double wanted = job_.options.error;
+  return wanted > 0.0 && raygate::is_done(film_.sums.error[index],
+                                          static_cast<int>(film_.sums.samples[index]), wanted);
+}
+
+/// How many samples each pixel that needs more may take at once, for a wave to have many rays.
+int TileRenderer::samples_ahead(const PixelRect& tile, int end) const {
+  if (job_.options.error == 0.0) return 0;
+  std::size_t pixels = 0;
+  for_blocks(tile, 1, 1, [&](const PixelRect& pixel) {
+    const std::size_t index = film_.index_of(pixel.x0, pixel.y0);
+    pixels += static_cast<int>(film_.sums.samples[index]) < end && !is_done(index);
+  });
+  return static_cast<int>(kManySamples / std::max<std::size_t>(1, pixels));
+}
+
 /// Square by square, and in them block by block: finders' packets are blocks, their cones squares.
 void TileRenderer::list_pixels(const PixelRect& tile, int end) {
   pixels_.clear();
   samples_ = 0;
   const int begin = job_.options.first_sample;
+  const int ahead = samples_ahead(tile, end);
   const std::vector<std::uint32_t>& done = film_.sums.samples;
   for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
     for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
       for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
         const std::size_t index = film_.index_of(pixel.x0, pixel.y0);
         const int first = begin + (done.empty() ? 0 : static_cast<int>(done[index]));
-        if (first >= end) return;
-        pixels_.push_back({pixel.x0, pixel.y0, index, first, end});
-        samples_ += static_cast<std::size_t>(end - first);
+        if (first >= end || is_done(index)) return;
+        const int last =
+            std::max(end, std::min({first + ahead, next_look(first), job_.options.samples}));
+        pixels_.push_back({pixel.x0, pixel.y0, index, first, last});
+        samples_ += static_cast<std::size_t>(last - first);
       });
     });
   });
@@ -119,6 +142,7 @@ void TileRenderer::make_camera_rays() {
 bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going) {
   Stopwatch watch;
   list_pixels(tile, end);
+  if (pixels_.empty()) return true;
   seen_.assign(samples_, {});
   output_.radiance.assign(samples_, glm::vec3(0.0f));
   output_.first_surface.assign(samples_, {});
@@ -150,7 +174,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
 /// mean of that takes the place of what the samples have seen. A lamp's own light is all that is
 /// exchanged, whatever else the samples brought; and that is so whatever emission_of() says.
 void TileRenderer::sharpen_lamps(const PixelRect& tile) {
-  if (lamp_edges_.empty() || pixels_.empty()) return;
+  if (lamp_edges_.empty()) return;
   Stopwatch watch;
   std::size_t rays = 0;
   if (lamp_edges_[pixels_[0].index] == LampEdge::kUnknown) {
@@ -293,7 +317,16 @@ void TileRenderer::write() {
     film_.color[at] = mean_of(color, samples);
     if (!film_.albedo.empty()) film_.albedo[at] = mean_of(albedo, samples);
   }
+  if (job_.options.error > 0.0) look();
   stats_.shade_seconds += watch.lap();
+}
+
+/// At blocks whose samples that were traced last are enough for that.
+void TileRenderer::look() {
+  for (const Pixel& pixel : pixels_) {
+    if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_look(pixel.end)) continue;
+    look_at_block(film_, pixel.x, pixel.y, job_.options.exposure);
+  }
 }
 
 /// Those that are the first sample's.

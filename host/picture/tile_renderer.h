@@ -27,7 +27,9 @@ class TileRenderer {
   /// `lamp_edges`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
   TileRenderer(const RenderJob& job, Finder& finder, Film& film, std::span<LampEdge> lamp_edges);
 
-  /// Traces those samples of each pixel that it lacks for having all up to number `end`.
+  /// Traces those samples of each pixel that it lacks for having all up to number `end`; with
+  /// RenderOptions::error, none of pixels that need no more, and some beyond `end` where few
+  /// pixels do.
   /// `keep_going` is asked between waves; when it says no, what was traced is not worth writing,
   /// and false is returned.
   [[nodiscard]] bool trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going);
@@ -52,6 +54,8 @@ class TileRenderer {
     int first, end;     // its samples
   };
 
+  [[nodiscard]] bool is_done(std::size_t index) const;
+  [[nodiscard]] int samples_ahead(const PixelRect& tile, int end) const;
   void list_pixels(const PixelRect& tile, int end);
   void add_camera_ray(const Pixel& pixel, const Sampler& sampler, std::uint32_t index,
                       std::uint32_t stream);
@@ -62,6 +66,7 @@ class TileRenderer {
   void see();
   void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, std::size_t sample);
+  void look();
 
   RenderJob job_;
   Finder& finder_;

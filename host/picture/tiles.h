@@ -28,9 +28,10 @@ struct Tiles {
     const int pixels = static_cast<int>(
         std::clamp(share, std::int64_t{square}, std::max<std::int64_t>(square, many)));
     width = pixels / edge;
+    // Whole squares of 8 x 8 pixels, which are traced together.
+    width = (width + 7) / 8 * 8;
     if (2 * width > window.width()) width = window.width();
-    height =
-        (pixels / width + 7) / 8 * 8;  // whole squares of 8 x 8 pixels, which are traced together
+    height = (pixels / width + 7) / 8 * 8;
     columns = (window.width() + width - 1) / width;
     count = columns * ((window.height() + height - 1) / height);
   }

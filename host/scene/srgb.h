@@ -11,6 +11,8 @@ namespace raygate {
 
 /// The continuous curve that those codes are steps of: from light clamped to [0, 1] to [0, 1].
 [[nodiscard]] double srgb_curve(double linear);
+/// The same curve for any light from 0 on, more than 1 for more than white.
+[[nodiscard]] double srgb_curve_above(double linear);
 
 /// The scene-linear value of sRGB code `code` (a whole number 0..255, or between two of them).
 [[nodiscard]] double srgb_to_linear(double code);

@@ -37,6 +37,36 @@ class Parts : public Render {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     expect_same_pictures("merged", "whole");
   }
+  /// Renders, is killed at any time, goes on from what was saved last, and so on.
+  void expect_to_survive(const std::vector<std::string>& long_run) {
+    std::vector<std::string> arguments = long_run;
+    arguments.insert(arguments.end(), {"-o", "whole"});
+    make(arguments);
+    std::mt19937 random(20261122);
+    int killed = 0;
+    for (int i = 0; i < 4; ++i) {
+      arguments = {kCornell, "--integrator", "path", "--threads", "2",    "--engine",
+                   "cpu",    "--save-every", "0.1",  "-o",        "a.exr"};
+      arguments.insert(arguments.end(), long_run.begin(), long_run.end());
+      if (!folder_.read("a.exr").empty()) arguments.insert(arguments.end(), {"--resume", "a.exr"});
+      const Outcome outcome =
+          run_program({.arguments = arguments,
+                       .folder = folder_.path(),
+                       .terminal = true,
+                       .when_said = {{"rendering [", [&](int process) {
+                                        std::this_thread::sleep_for(
+                                            std::chrono::milliseconds(150 + random() % 300));
+                                        ::kill(process, SIGKILL);
+                                      }}}});
+      killed += outcome.signal == SIGKILL;
+    }
+    EXPECT_GT(killed, 0);
+    ASSERT_NE(folder_.read("a.exr"), "");
+    arguments = long_run;
+    arguments.insert(arguments.end(), {"--resume", "a.exr", "-o", "resumed"});
+    make(arguments);
+    expect_same_pictures("resumed", "whole");
+  }
   void expect_refused(const Outcome& outcome, const std::string& line) const {
     EXPECT_EQ(outcome.status, 2) << outcome.err;
     EXPECT_NE(outcome.err.find("error: " + line), std::string::npos) << outcome.err;
@@ -97,37 +127,54 @@ TEST_F(Parts, GoOnWhereTheyWere) {
   expect_same_pictures("more", "whole");
 }
 
-/// Killed at any time, what was saved last is a picture to go on with.
 TEST_F(Parts, SurviveBeingKilled) {
-  const std::vector<std::string> long_run = {"--size", "200x150",    "--spp",
-                                             "48",     "--channels", "sums"};
-  std::vector<std::string> arguments = long_run;
-  arguments.insert(arguments.end(), {"-o", "whole"});
-  make(arguments);
-  std::mt19937 random(20261122);
-  int killed = 0;
-  for (int i = 0; i < 4; ++i) {
-    arguments = {kCornell, "--integrator", "path", "--threads", "2",    "--engine",
-                 "cpu",    "--save-every", "0.1",  "-o",        "a.exr"};
-    arguments.insert(arguments.end(), long_run.begin(), long_run.end());
-    if (folder_.read("a.exr") != "") arguments.insert(arguments.end(), {"--resume", "a.exr"});
-    const Outcome outcome =
-        run_program({.arguments = arguments,
-                     .folder = folder_.path(),
-                     .terminal = true,
-                     .when_said = {{"rendering [", [&](int process) {
-                                      std::this_thread::sleep_for(
-                                          std::chrono::milliseconds(150 + random() % 300));
-                                      ::kill(process, SIGKILL);
-                                    }}}});
-    killed += outcome.signal == SIGKILL;
+  expect_to_survive({"--size", "200x150", "--spp", "48", "--channels", "sums"});
+}
+
+TEST_F(Parts, WithSamplesByErrorSurviveBeingKilled) {
+  expect_to_survive({"--size", "200x150", "--spp", "256", "--error", "0.6", "--channels", "sums"});
+}
+
+TEST_F(Parts, WithSamplesByErrorMakeThePicture) {
+  const std::vector<std::string> by_error = {"--error", "0.5", "--channels", "sums"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), by_error.begin(), by_error.end());
+    return more;
+  };
+  make(with({"-o", "whole", "--spp", "70"}));
+  make(with({"-o", "a.exr", "--spp", "70", "--crop", "0,0,32,20"}));
+  make(with({"-o", "b.exr", "--spp", "70", "--crop", "32,0,60,20", "--engine", "model"}));
+  make(with({"-o", "c.exr", "--spp", "70", "--crop", "0,20,60,44", "--threads", "3"}));
+  const Outcome outcome = merge({"c.exr", "a.exr", "b.exr", "--channels", "sums", "-o", "merged",
+                                 "--false-colour", "samples=samples.png"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expect_same_pictures("merged", "whole");
+  EXPECT_NE(folder_.read("samples.png"), "");
+  // With fewer samples at most, which some pixels all have and some have not, and with more.
+  make(with({"-o", "few.exr", "--spp", "37"}));
+  make(with({"-o", "more", "--spp", "70", "--resume", "few.exr"}));
+  expect_same_pictures("more", "whole");
+}
+
+TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
+  make({"-o", "a.exr", "--spp", "20", "--error", "2", "--channels", "sums"});
+  expect_refused(part({"--resume", "a.exr", "--spp", "20", "--error", "3"}),
+                 "a.exr: found error 2, expected error 3 as this run has it");
+  expect_refused(part({"--resume", "a.exr", "--spp", "20"}),
+                 "a.exr: found error 2, expected no error as this run has it");
+  expect_refused(part({"--spp", "20", "--error", "2", "--crop", "0,0,30,44"}),
+                 "--crop: expected multiples of 4, or the frame's edge, beside --error");
+  expect_refused(part({"--spp", "20", "--error", "2", "--samples", "0:18"}),
+                 "--samples: expected no --error beside it");
+  expect_refused(part({"--error", "2"}), "--spp: expected more than the 16 that --error begins");
+  for (const char* error : {"0", "-1", "256", "nan", "few"}) {
+    expect_refused(part({"--error", error}), "--error: expected steps of an 8-bit display");
   }
-  EXPECT_GT(killed, 0);
-  ASSERT_NE(folder_.read("a.exr"), "");
-  arguments = long_run;
-  arguments.insert(arguments.end(), {"--resume", "a.exr", "-o", "resumed"});
-  make(arguments);
-  expect_same_pictures("resumed", "whole");
+  expect_refused(part({"--false-colour", "samples=b.png"}),
+                 "--false-colour: expected --error beside the channel samples");
+  make({"-o", "b.exr", "--samples", "0:5"});
+  expect_refused(merge({"b.exr", "-o", "merged", "--false-colour", "error=b.png"}),
+                 "--false-colour: found no channel error in the picture");
 }
 
 TEST_F(Parts, OfDifferentPicturesAreRefused) {

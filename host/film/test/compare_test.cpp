@@ -35,6 +35,7 @@ TEST(Compare, MeasuresAreAsDefined) {
   EXPECT_DOUBLE_EQ(c.mse, 1.25 / 6.0);
   EXPECT_DOUBLE_EQ(c.rmse, std::sqrt(1.25 / 6.0));
   EXPECT_DOUBLE_EQ(c.mae, 1.5 / 6.0);
+  EXPECT_DOUBLE_EQ(c.bias, 0.5 / 4.5);
   EXPECT_DOUBLE_EQ(c.max, 1.0);
   EXPECT_DOUBLE_EQ(c.relative_mse, (0.25 / 2.26 + 1.0 / 4.01) / 6.0);
   EXPECT_DOUBLE_EQ(c.psnr, 10.0 * std::log10(6.0 / 1.25));

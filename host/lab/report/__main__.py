@@ -1,12 +1,14 @@
-"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make core`, `make shares`, `make stages`
-and `make trace-rates` run."""
+"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make core`, `make shares`, `make stages`,
+`make adaptive` and `make trace-rates` run."""
 
 import argparse
 import pathlib
 import shutil
+import statistics
 import sys
 
-from host.lab.report import bench, bench_report, compare, core_report, document, shares, stages, stress_report, trace_rates
+from host.lab.report import (adaptive, bench, bench_report, compare, core_report, document, shares, stages,
+                             stress_report, trace_rates)
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
 
@@ -42,6 +44,15 @@ def arguments() -> argparse.Namespace:
     command.add_argument("--before", type=pathlib.Path, metavar="PROGRAM", help="an older one to print in brackets")
     command.add_argument("--size", default="640x480")
     command.add_argument("--repeats", type=int, default=9)
+    command = commands.add_parser("adaptive", help="time with --error beside uniform --spp, at equal errors")
+    command.add_argument("scenes", nargs="+")
+    command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
+    command.add_argument("--size", default="96x72")
+    command.add_argument("--error", type=float, default=2.0, help="of ./render, with --most as its --spp")
+    command.add_argument("--most", type=int, default=256)
+    command.add_argument("--counts", type=int, nargs="+", default=[16, 32, 64, 128, 256], help="uniform samples")
+    command.add_argument("--reference", type=int, default=2048, help="samples of the picture that is the truth")
+    command.add_argument("--seeds", type=int, default=2)
     command = commands.add_parser("trace", help="rays per second of ./trace")
     command.add_argument("scenes", nargs="+", help="OBJ files")
     command.add_argument("--trace", type=pathlib.Path, default=ROOT / "trace", metavar="PROGRAM")
@@ -149,11 +160,30 @@ def run_trace(given: argparse.Namespace) -> int:
     return 0
 
 
+def run_adaptive(given: argparse.Namespace) -> int:
+    """Prints the table and keeps its rows."""
+    wanted = {key: getattr(given, key) for key in ("size", "error", "most", "counts", "reference", "seeds")}
+    rows = []
+    for scene in given.scenes:
+        rows.append(adaptive.row(given.render.resolve(), scene, wanted))
+        kept.write(KEPT / "adaptive.jsonl", rows)
+    ratios = [[row[f"{measure}_ratio"] for row in rows] for measure in adaptive.MEASURES]
+    print(document.table(
+        {"scene": "", "samples a pixel": ".1f", "seconds": ".3g", "RMSE": ".5f", "FLIP": ".4f", "bias, %": ".2f",
+         "samples of equal RMSE": ".0f", "of equal FLIP": ".0f", "time over that of equal RMSE": ".2f",
+         "over that of equal FLIP": ".2f"},
+        [[kept.scene_name(row), row["adaptive"]["samples"], row["adaptive"]["seconds"], row["adaptive"]["rmse"],
+          row["adaptive"]["flip"], 100 * row["adaptive"]["bias"], row["rmse_samples"], row["flip_samples"], row["rmse_ratio"], row["flip_ratio"]]
+         for row in rows] + [["median", *[None] * 7, *map(statistics.median, ratios)],
+                             ["most", *[None] * 7, *map(max, ratios)]]))
+    return 0
+
+
 def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
     commands = {"bench": run_bench, "stress": run_stress, "core": run_core, "shares": run_shares,
-                "stages": run_stages, "trace": run_trace}
+                "stages": run_stages, "adaptive": run_adaptive, "trace": run_trace}
     try:
         return commands[given.command](given)
     except (OSError, ValueError) as error:

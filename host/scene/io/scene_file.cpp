@@ -17,8 +17,9 @@ namespace {
 using Kind = JsonValue::Kind;
 
 /// What may stand in "render": the options that change the picture.
-constexpr const char* kOptions[] = {"size",    "integrator", "spp",  "depth",    "threshold",
-                                    "ambient", "filter",     "seed", "exposure", "tone"};
+constexpr const char* kOptions[] = {"size",      "integrator", "spp",     "depth",
+                                    "threshold", "error",      "ambient", "filter",
+                                    "seed",      "exposure",   "tone"};
 
 std::optional<glm::dvec3> read_up(const JsonReader& reader, const JsonValue& camera,
                                   const std::string& name) {

@@ -1,0 +1,83 @@
+"""Samples by error (`--error`) beside the same number everywhere: time at equal RMSE, and at equal FLIP."""
+
+import json
+import math
+import pathlib
+import statistics
+import subprocess
+import tempfile
+
+import numpy
+
+from host.lab.report.rows import ROOT
+
+MEASURES = ("rmse", "flip")
+
+
+def flip(picture: pathlib.Path, reference: pathlib.Path) -> float:
+    """Mean FLIP of two PNGs, as report/bench.py has it."""
+    import flip_evaluator  # which tests of the tables do without
+    from matplotlib import image
+
+    shown = [numpy.asarray(image.imread(file), dtype=numpy.float32)[..., :3] for file in (reference, picture)]
+    return float(flip_evaluator.evaluate(*shown, "LDR")[1])
+
+
+def interpolated(errors: list[float], values: list[float], error: float) -> float:
+    """The value at `error` on a line through logarithms; errors fall. Beyond the ends, as 1 / error²."""
+    if error > errors[0] or error < errors[-1]:
+        end = 0 if error > errors[0] else -1
+        return values[end] * (errors[end] / error) ** 2
+    found = numpy.interp(-math.log(error), [-math.log(e) for e in errors], [math.log(v) for v in values])
+    return math.exp(float(found))
+
+
+class Pictures:
+    """Of one scene, by one program, in a folder that is removed."""
+
+    def __init__(self, program: pathlib.Path, scene: str, size: str, folder: pathlib.Path) -> None:
+        self.command = [program, scene, "--engine", "cpu", "--integrator", "path", "--size", size, "--threads", "1",
+                        "--quiet", "--stats", folder / "stats.json"]
+        self.folder = folder
+
+    def render(self, name: str, *words: str) -> dict:
+        """Statistics of a run that writes NAME.exr and NAME.png."""
+        subprocess.run([*self.command, *words, "-o", self.folder / name], cwd=ROOT, check=True)
+        return json.loads((self.folder / "stats.json").read_text())
+
+    def errors(self, name: str) -> dict:
+        """RMSE, FLIP and bias against the reference."""
+        files = [self.folder / f"{which}.exr" for which in (name, "reference")]
+        said = subprocess.run([ROOT / "compare", *files, "--json"], cwd=ROOT, check=True, capture_output=True, text=True)
+        pngs = [file.with_suffix(".png") for file in files]
+        measures = json.loads(said.stdout)
+        return {"rmse": measures["rmse"], "flip": flip(*pngs), "bias": measures["bias"]}
+
+    def measured(self, seeds: int, *words: str) -> dict:
+        """Processor seconds of rendering, samples a pixel and errors, over seeds: the root mean square of RMSE,
+        the mean of the others."""
+        found = []
+        for seed in range(1, seeds + 1):
+            stats = self.render("picture", "--seed", str(seed), *words)
+            pixels = stats["width"] * stats["height"]
+            found.append({"seconds": stats["seconds"]["processor"],
+                          "samples": stats["spp"] - stats["skipped"]["spare_samples"] / pixels,
+                          **self.errors("picture")})
+        mean = {key: statistics.fmean(row[key] for row in found) for key in found[0]}
+        return mean | {"rmse": math.sqrt(statistics.fmean(row["rmse"] ** 2 for row in found))}
+
+
+def row(program: pathlib.Path, scene: str, given: dict) -> dict:
+    """`given`: size, error, most, counts (of samples), reference (samples), seeds."""
+    with tempfile.TemporaryDirectory() as name:
+        pictures = Pictures(program, scene, given["size"], pathlib.Path(name))
+        pictures.render("reference", "--seed", "99", "--spp", str(given["reference"]))
+        adaptive = pictures.measured(given["seeds"], "--spp", str(given["most"]), "--error", str(given["error"]))
+        uniform = [pictures.measured(given["seeds"], "--spp", str(count)) for count in given["counts"]]
+    found = {"table": "adaptive", "scene": scene, **given, "uniform": uniform, "adaptive": adaptive}
+    for measure in MEASURES:
+        errors = [each[measure] for each in uniform]
+        found[f"{measure}_samples"] = interpolated(errors, [each["samples"] for each in uniform], adaptive[measure])
+        found[f"{measure}_ratio"] = adaptive["seconds"] / interpolated(
+            errors, [each["seconds"] for each in uniform], adaptive[measure])
+    return found

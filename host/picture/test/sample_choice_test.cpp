@@ -1,0 +1,272 @@
+// Samples by error: the estimate holds, and the film does not depend on how it came about.
+#include "host/picture/sample_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+#include <set>
+
+#include "host/film/display.h"
+#include "host/find/cpu/cpu_finder.h"
+#include "host/light/test/light_scenes.h"
+
+namespace raygate {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+constexpr double kStudent = 2.12;  // of 95 % and 16 numbers
+constexpr double kNever = 1e-9;    // an error that no pixel reaches
+
+/// How many seeds the estimate is tried with: RAYGATE_SEEDS, or 100.
+int seeds() {
+  const char* const given = std::getenv("RAYGATE_SEEDS");
+  return given == nullptr ? 100 : std::max(1, std::atoi(given));
+}
+
+RenderOptions adaptive(int width, int height, int most, double error) {
+  RenderOptions options = light(IntegratorKind::kPath, width, height, most);
+  options.error = error;
+  return options;
+}
+
+FinderFactory cpu(const Bvh& bvh) {
+  return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
+}
+
+/// Of one scene, with each seed.
+void with_seeds(const Scene& scene, const Camera& camera, RenderOptions options,
+                const std::function<void(const Film&)>& each) {
+  const Bvh bvh(scene);
+  const Clearances clearances(bvh);
+  for (int seed = 0; seed < seeds(); ++seed) {
+    options.seed = static_cast<std::uint64_t>(seed);
+    RenderStats stats;
+    each(render(scene, clearances, camera, options, cpu(bvh), stats));
+  }
+}
+
+/// A closed room of walls that send out 1 and reflect `albedo`: 1 / (1 - albedo) from everywhere.
+Scene furnace(float albedo) {
+  Scene scene;
+  Material wall = matte(glm::vec3(albedo));
+  wall.emission = glm::vec3(1.0f);
+  add(scene, box(glm::vec3(-1.0f), glm::vec3(1.0f, 1.5f, 2.0f)), wall);
+  return scene;
+}
+
+const Camera kInside = camera_at({0.2, 0.1, 0.3}, {-1, -0.4, -0.7}, 5.0);
+
+/// How often `known`, in percent, is within the interval of 95 % of a pixel, in a block that is all
+/// there is of the picture; and the least and the most of any pixel.
+struct Coverage {
+  double all, least, most;
+};
+
+Coverage coverage_of(const Scene& scene, const Camera& camera, int samples, double known) {
+  int held[kErrorBlock * kErrorBlock] = {};
+  RenderOptions options = adaptive(kErrorBlock, kErrorBlock, samples, kNever);
+  const double truth = display_steps(glm::vec3(static_cast<float>(known)), 0.0);
+  with_seeds(scene, camera, options, [&](const Film& film) {
+    for (std::size_t i = 0; i < film.color.size(); ++i) {
+      EXPECT_EQ(film.sums.samples[i], static_cast<std::uint32_t>(samples));
+      const double off = display_steps(glm::vec3(film.color[i]), 0.0) - truth;
+      held[i] += std::abs(off) <= kStudent * double{film.sums.error[i]};
+    }
+  });
+  Coverage coverage{0.0, 100.0, 0.0};
+  for (const int count : held) {
+    const double percent = 100.0 * count / seeds();
+    coverage.all += percent / (kErrorBlock * kErrorBlock);
+    coverage.least = std::min(coverage.least, percent);
+    coverage.most = std::max(coverage.most, percent);
+  }
+  return coverage;
+}
+
+/// A white floor, seen from so near that all of the picture is its middle.
+Scene floor_under(Scene lights) {
+  add(lights, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
+  return lights;
+}
+
+const Camera kAtFloor = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
+
+/// Prints how often the interval held; that must be 93 to 97 %, or up to `most`.
+void expect_coverage(const char* name, int samples, double most, const Coverage& coverage) {
+  std::printf("%-22s %4d samples: %5.1f %% (pixels: %.1f to %.1f), %d seeds\n", name, samples,
+              coverage.all, coverage.least, coverage.most, seeds());
+  EXPECT_GE(coverage.all, 93.0) << name << " " << samples;
+  EXPECT_LE(coverage.all, most) << name << " " << samples;
+}
+
+TEST(ErrorEstimate, HoldsInAFurnace) {
+  for (const float albedo : {0.5f, 0.8f}) {
+    for (const int samples : {64, 256}) {
+      expect_coverage(albedo == 0.5f ? "furnace, albedo 0.5" : "furnace, albedo 0.8", samples, 97.0,
+                      coverage_of(furnace(albedo), kInside, samples, 1.0 / (1.0 - albedo)));
+    }
+  }
+}
+
+// Where few dimensions of evenly spread samples matter, the error falls faster than its estimate.
+TEST(ErrorEstimate, IsCarefulWhereSamplesAreEvenlySpread) {
+  constexpr double kPi = std::numbers::pi;
+  Scene lamps;
+  double sum = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    const double side = 0.3 * i, height = 1.0 + 0.2 * i, intensity = 1.0 + i * i;
+    lamps.lights.push_back({{side, height, 0}, glm::dvec3(intensity)});
+    const double squared = side * side + height * height;
+    sum += intensity * height / (squared * std::sqrt(squared)) / kPi;
+  }
+  // A corner is straight above (Siegel and Howell's catalogue, B-4).
+  Scene panel;
+  const double a = 1.5, b = 0.8, height = 1.2, x = a / height, y = b / height;
+  add(panel, rectangle({0, float(height), 0}, {float(a), 0, 0}, {0, 0, float(b)}),
+      lamp(glm::vec3(3.0f)));
+  const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+  const double form = (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
+  for (const int samples : {16, 64, 256}) {
+    expect_coverage("twelve point lights", samples, 100.0,
+                    coverage_of(floor_under(lamps), kAtFloor, samples, sum));
+    expect_coverage("rectangular lamp", samples, 100.0,
+                    coverage_of(floor_under(panel), kAtFloor, samples, 3.0 * form));
+  }
+}
+
+TEST(SampleChoice, LooksAreAtPowersOfTwo) {
+  EXPECT_EQ(next_look(0), 8);
+  EXPECT_EQ(next_look(7), 8);
+  EXPECT_EQ(next_look(8), 16);
+  EXPECT_EQ(next_look(100), 128);
+  EXPECT_TRUE(is_look(8) && is_look(16) && is_look(1024));
+  EXPECT_FALSE(is_look(4) || is_look(12) || is_look(0));
+  EXPECT_TRUE(is_done(2.0f, 16, 2.0));
+  EXPECT_FALSE(is_done(2.1f, 16, 2.0));
+  EXPECT_TRUE(is_done(4.0f, 32, 2.0));
+  EXPECT_FALSE(is_done(0.0f, 8, 2.0)) << "it has not been judged";
+  EXPECT_FALSE(is_done(0.0f, 24, 2.0)) << "no look";
+}
+
+/// Blocks that need many samples and such that need few.
+struct Uneven {
+  Scene scene = everything();
+  Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 45.0, 44.0 / 34.0);
+  Bvh bvh{scene};
+  Film film(RenderOptions options, const FinderFactory& finders, RenderStats& stats) const {
+    options.channels.sums = true;
+    return render(scene, bvh, camera, options, finders, stats);
+  }
+  Film film(const RenderOptions& options) const {
+    RenderStats stats;
+    return film(options, cpu(bvh), stats);
+  }
+};
+
+bool same_film(const Film& a, const Film& b) {
+  return same(a, b) && same_bytes(a.sums.samples, b.sums.samples) &&
+         same_bytes(a.sums.error, b.sums.error) && same_bytes(a.sums.shown, b.sums.shown) &&
+         same_bytes(a.sums.color, b.sums.color);
+}
+
+TEST(SampleChoice, GivesSamplesWhereTheErrorIs) {
+  const Uneven uneven;
+  RenderStats stats;
+  const Film film = uneven.film(adaptive(44, 34, 200, 0.4), cpu(uneven.bvh), stats);
+  std::set<std::uint32_t> counts;
+  std::uint64_t taken = 0;
+  for (int y = 0; y < 34; ++y) {
+    for (int x = 0; x < 44; ++x) {
+      const std::size_t i = film.index_of(x, y);
+      const std::size_t first =
+          film.index_of(x / kErrorBlock * kErrorBlock, y / kErrorBlock * kErrorBlock);
+      const std::uint32_t samples = film.sums.samples[i];
+      EXPECT_EQ(samples, film.sums.samples[first]) << "a block is judged as one";
+      counts.insert(samples);
+      taken += samples;
+      if (samples < 200) {
+        EXPECT_TRUE(is_done(film.sums.error[i], static_cast<int>(samples), 0.4)) << x << " " << y;
+      }
+    }
+  }
+  EXPECT_EQ(*counts.begin(), 16u) << "the sky needs none";
+  EXPECT_EQ(*counts.rbegin(), 200u);
+  EXPECT_GE(counts.size(), 4u);
+  EXPECT_EQ(stats.spare_samples, 44u * 34u * 200u - taken);
+  EXPECT_EQ(share_done(film, 200, 0.4), 1.0);
+  EXPECT_LT(share_done(film, 400, 0.4), 1.0);
+}
+
+TEST(SampleChoice, FilmDoesNotDependOnThreadsTilesOrEngine) {
+  const Uneven uneven;
+  const RenderOptions options = adaptive(44, 34, 72, 1.0);
+  const Film whole = uneven.film(options);
+  for (const int threads : {3, 8}) {  // which changes the tiles, too
+    RenderOptions other = options;
+    other.threads = threads;
+    EXPECT_TRUE(same_film(whole, uneven.film(other)));
+  }
+  RenderStats stats;
+  EXPECT_TRUE(same_film(whole, uneven.film(options, pipeline_model(uneven.bvh), stats)));
+  RenderOptions part = options;
+  part.window = {8, 12, 44, 32};
+  const Film window = uneven.film(part);
+  for (int y = part.window.y0; y < part.window.y1; ++y) {
+    for (int x = part.window.x0; x < part.window.x1; ++x) {
+      const std::size_t i = window.index_of(x, y), k = whole.index_of(x, y);
+      EXPECT_EQ(window.color[i], whole.color[k]);
+      EXPECT_EQ(window.sums.samples[i], whole.sums.samples[k]);
+      EXPECT_EQ(window.sums.error[i], whole.sums.error[k]);
+    }
+  }
+}
+
+TEST(SampleChoice, GoesOnFromAnyFilm) {
+  const Uneven uneven;
+  const RenderOptions options = adaptive(44, 34, 150, 0.5);
+  const Film whole = uneven.film(options);
+  for (const int fewer : {17, 22, 64, 90}) {
+    RenderOptions first = options;
+    first.samples = fewer;
+    const Film begun = uneven.film(first);
+    RenderOptions rest = options;
+    rest.begun = &begun;
+    EXPECT_TRUE(same_film(whole, uneven.film(rest))) << fewer;
+  }
+  int reports = 0;
+  RenderStats stats;
+  const Film broken_off = render(uneven.scene, uneven.bvh, uneven.camera, options, cpu(uneven.bvh),
+                                 stats, [&](double) { return ++reports < 3; });
+  RenderOptions rest = options;
+  rest.begun = &broken_off;
+  EXPECT_TRUE(same_film(whole, uneven.film(rest)));
+}
+
+// Blocks stop where they happen to have a small error, which could favour values on one side.
+TEST(SampleChoice, StoppingFavoursNoSideInTheLarge) {
+  double sum = 0.0, squares = 0.0, samples = 0.0;
+  int blocks = 0;
+  with_seeds(furnace(0.8f), kInside, adaptive(8, 8, 512, 1.5), [&](const Film& film) {
+    const double mean = mean_colour(film).g;
+    sum += mean;
+    squares += mean * mean;
+    for (const std::uint32_t count : film.sums.samples) samples += count;
+    blocks += 64;
+  });
+  const double n = seeds(), mean = sum / n;
+  const double deviation = std::sqrt(std::max(0.0, squares / n - mean * mean) / n);
+  std::printf("furnace: %.5f +- %.5f of 5, %.1f samples a pixel\n", mean, deviation,
+              samples / blocks);
+  EXPECT_NEAR(mean, 5.0, 4.0 * deviation + 0.01);
+  EXPECT_GT(samples / blocks, 17.0);
+  EXPECT_LT(samples / blocks, 500.0);
+}
+
+}  // namespace
+}  // namespace raygate
