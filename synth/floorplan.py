@@ -14,18 +14,19 @@ from synth import catalogue, fpga, store, tools
 from synth.drawing import plt
 
 # What a cell's name in the hierarchy says, the first that matches.
-PARTS = [(r"^u_multiplier", "multiplier"), (r"^u_adder", "adder"), (r"^u_divider", "divider"),
-         (r"", "registers, multiplexers, control")]
+# A core's last gates are named after the unit's wires that they drive.
+PARTS = [(r"^(u_multiplier|product_)", "multiplier"), (r"^(u_adder|sum_)", "adder"),
+         (r"^(u_divider|quotient_)", "divider"), (r"", "registers, multiplexers, control")]
 UNIT = "hit_test_unit-binary32-behavioural"
 
 
 def cells(written: dict) -> list[tuple[str, int, int]]:
-    """Name and place (column, row) of each cell that nextpnr placed, of the JSON that it writes."""
+    """Name and place (column, row) of each cell that nextpnr placed, of the JSON that it writes; no pins."""
     (module,) = [body for body in written["modules"].values() if body["cells"]]
     found = []
     for name, cell in module["cells"].items():
         place = re.match(r"X(\d+)/Y(\d+)", cell["attributes"].get("NEXTPNR_BEL", ""))
-        if place:
+        if place and cell.get("type") != "TRELLIS_IO":
             found.append((name, int(place.group(1)), int(place.group(2))))
     return found
 
@@ -45,16 +46,18 @@ def slowest(report: dict) -> list[tuple[int, int]]:
 def draw(placed: list[tuple[str, int, int]], path: list[tuple[int, int]], title: str, out: pathlib.Path) -> None:
     """Writes OUT.png: a tile is as dark as it is full."""
     figure, axes = plt.subplots(figsize=(10, 8), layout="constrained")
+    columns, rows = ([spot[axis] for spot in [entry[1:] for entry in placed] + path] for axis in (0, 1))
+    side = 560 / max(max(columns) - min(columns) + 2, 1.25 * (max(rows) - min(rows) + 2))  # points
     for place, (_, label) in enumerate(PARTS):
         mine = [(x, y) for name, x, y in placed if part(name) == label]
         counts = collections.Counter(mine)
         if not mine:
             continue
-        axes.scatter([x for x, _ in counts], [y for _, y in counts], s=34, marker="s", linewidths=0,
+        axes.scatter([x for x, _ in counts], [y for _, y in counts], s=side ** 2, marker="s", linewidths=0,
                      color=plt.get_cmap("tab10").colors[place],
                      alpha=[min(1.0, 0.25 + count / 10) for count in counts.values()],
                      label=f"{label}: {len(mine):,} cells")
-    axes.plot(*zip(*path), color="black", linewidth=0.8, label=f"the slowest path, {len(path):,} steps")
+    axes.plot(*zip(*path), color="black", linewidth=1, label=f"the slowest path, {len(path):,} steps")
     axes.invert_yaxis()
     axes.set(title=title, xlabel="column of tiles", ylabel="row of tiles", aspect="equal")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.07), ncols=2, frameon=False, fontsize="small")

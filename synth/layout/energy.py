@@ -3,7 +3,9 @@
 OpenSTA writes the delay of each cell with its wires as SDF; Icarus simulates the netlist with them, glitches
 and all, one operation every 100 ns. A toggle of a net costs half of C V^2, where C is its wires and the pins
 that it drives, and what Liberty says that its driver takes inside, at that load and a slew of 0.18 ns.
-Leakage is left out: a ten-thousandth at 10 MHz. OpenSTA 2.0.17's own report_power takes no counts.
+Leakage is left out: a ten-thousandth at 10 MHz. OpenSTA 2.0.17's own report_power takes no counts of nets; at one
+rate for all nets its switching power is this one, and inside a cell of n inputs it counts n times what is counted here, each
+input's table at the output's rate.
 """
 
 import bisect

@@ -43,18 +43,36 @@ def place(netlist: Netlist, technology: Technology, parameters: pathlib.Path, se
     return read((folder / "placed.pl1").read_text(), technology, netlist)
 
 
+def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float) -> dict[str, float]:
+    """The room to leave beside each cell, um, whole pitches: the more, the more pins it has for its width.
+
+    Wires crowd where pins do. Every cell gets what it lacks of a width that is the same for each of its pins.
+    """
+    widths = {name: technology.macros[cell.kind].width for name, cell in netlist.cells.items()}
+    room = sum(widths.values()) * (1 / density - 1)
+    low, high = 0.0, sum(widths.values()) / density  # um a pin
+    for _ in range(60):
+        middle = (low + high) / 2
+        taken = sum(max(0.0, middle * len(cell.pins) - widths[name]) for name, cell in netlist.cells.items())
+        low, high = (middle, high) if taken < room else (low, middle)
+    found, credit = {}, 0.0
+    for name, cell in netlist.cells.items():
+        credit += max(0.0, low * len(cell.pins) - widths[name]) if room else 0.0
+        found[name] = int(credit / pitch) * pitch
+        credit -= found[name]
+    return found
+
+
 def cells_text(netlist: Netlist, technology: Technology, density: float) -> str:
     """graywolf's input. Every cell is one piece with the gap that goes with it, to its right."""
-    lines, credit = [], 0.0
     layers = technology.layers.values()
     pitch = next(layer.pitch for layer in layers if layer.vertical)
     x, y = round(pitch * UNITS / 2), round(next(layer.pitch for layer in layers if not layer.vertical) * UNITS / 2)
     pad = f"corners 4 -{x} -{y} -{x} {y} {x} {y} {x} -{y}"
+    lines, beside = [], gaps(netlist, technology, density, pitch)
     for place, (name, cell) in enumerate(netlist.cells.items()):
         macro = technology.macros[cell.kind]
-        credit += macro.width * (1 / density - 1)
-        gap = int(credit / pitch) * pitch
-        credit -= gap
+        gap = beside[name]
         left, bottom = -round((macro.width + gap) * UNITS / 2), -round(macro.height * UNITS / 2)
         right, top = left + round((macro.width + gap) * UNITS), bottom + round(macro.height * UNITS)
         lines += [f"cell {place} {name}", f"left {left} right {right} bottom {bottom} top {top}"]

@@ -100,6 +100,17 @@ class Reading(unittest.TestCase):
         with self.assertRaisesRegex(tools.ToolFailed, "1 of 2 cells"):
             place.read(text.replace("c1", "c7"), TECHNOLOGY, nets)
 
+    def test_gaps(self):
+        """Room by pins: none in full rows; else what is asked for, most beside the narrow cell of many pins."""
+        wide = {"c0": Cell("a", "WIDE", {"A": "p0", "Y": "n1"})}
+        narrow = {f"c{place}": Cell("b", "NARROW", dict.fromkeys("ABCY", "n1")) for place in range(1, 9)}
+        technology = Technology(LAYERS, {"WIDE": lef.Macro(48, 20, {}), "NARROW": lef.Macro(8, 20, {})})
+        nets = Netlist("top", wide | narrow, {})
+        self.assertEqual(sum(place.gaps(nets, technology, 1.0, 1.6).values()), 0)
+        found = place.gaps(nets, technology, 0.5, 1.6)
+        self.assertEqual(found["c0"], 0)
+        self.assertAlmostEqual(sum(found.values()), 48 + 8 * 8, delta=1.6)
+
     def test_slacks(self):
         """Of outputs and registers, the least first."""
         self.assertEqual(flow.slacks("p9 (output)   100.000   16.983   83.017 (MET)\n"
