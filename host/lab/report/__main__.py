@@ -71,7 +71,7 @@ def write(rows: list[dict], build: object, name: str, publish: bool) -> None:
         (PUBLISHED / f"{name}.md").write_text(text)
         for file in folder.glob("*.png"):
             shutil.copy(file, PUBLISHED)
-        shown = "".join(page.read_text() for page in PUBLISHED.glob("*.md"))
+        shown = "".join(page.read_text() for page in [PUBLISHED.parent / "README.md", *PUBLISHED.glob("*.md")])
         for file in PUBLISHED.glob("*.*g"):  # pictures of older reports
             if file.name not in shown:
                 file.unlink()
