@@ -41,8 +41,12 @@ def _rows(given: argparse.Namespace) -> list[jobs.Row]:
     if given.top is None or given.top in jobs.SECTIONS:
         return [row for section in jobs.SECTIONS if given.top in (None, section)
                 for row in jobs.rows(section, seeds, workers=int(given.jobs or 2))]
-    return [jobs.Row(given.top, chosen.design(given), given.flow or "fast", float(given.density or 1),
-                     float(given.aspect or 0.75), int(given.seeds or 1))]
+    flow_name, density, aspect = given.flow or "fast", float(given.density or 1), float(given.aspect or 0.75)
+    if flow_name not in catalogue.FLOWS:
+        raise ValueError(f"no flow {flow_name}, expected one of {', '.join(catalogue.FLOWS)}")
+    if not 0 < density <= 1 or not 0 < aspect:
+        raise ValueError(f"density {density:g} and aspect {aspect:g}, expected 0 < density <= 1 and 0 < aspect")
+    return [jobs.Row(given.top, chosen.design(given), flow_name, density, aspect, int(given.seeds or 1))]
 
 
 def measure(rows: list[jobs.Row], workers: int) -> tuple[list[dict], list[str]]:

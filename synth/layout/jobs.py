@@ -6,7 +6,7 @@ from synth import adder_study, catalogue, final_adder, grading
 from synth.catalogue import Design, Library
 from synth.layout.flow import Job
 
-SPARSE = 0.6, 2.0  # density and aspect with which a multiplier's nets all find their way
+SPARSE = 0.5, 2.5  # density and aspect with which a multiplier's nets all find their way
 
 
 @dataclasses.dataclass(frozen=True)

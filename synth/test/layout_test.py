@@ -6,6 +6,7 @@ import unittest
 from unittest import mock
 
 from synth import catalogue, store, tools
+from synth.layout import __main__ as command
 from synth.layout import energy, flow, lef, parasitics, parts, place, route, tests
 from synth.layout.lef import Layer, Rect, Technology
 from synth.layout.netlist import Cell, Netlist, Port
@@ -214,6 +215,22 @@ class Parts(unittest.TestCase):
         found = parts.of(design, nets, {"INVX1": {"Y"}, "NAND2X1": {"Y"}})
         self.assertEqual(found, {"c2": "group 1: bits 0 to 0", "c0": "group 2: bits 1 to 2",
                                  "c1": "group 2: bits 1 to 2"})
+
+
+class Report(unittest.TestCase):
+    """The tables of make layout."""
+
+    RECORD = {"design": "d", "flow": "fast", "cells": 2, "area": 100, "core": 200, "wire_um": 1500, "wire_pf": 0.1,
+              "cells_ns": 2.0}
+
+    def test_table(self):
+        """The median with its spread and the ratio; nets that failed, and no delay then."""
+        routed = {**self.RECORD, "wires_ns": 3.0, "spread": [2.9, 3.0, 3.2], "failed": [0, 0, 0]}
+        failed = {**self.RECORD, "spread": [], "failed": [7]}
+        rows = [[cell.strip() for cell in line.strip("|").split("|")]
+                for line in command.table([routed, failed]).splitlines()[2:]]
+        self.assertEqual(rows[0][5:], ["0.50", "1.5", "0.10", "2.00", "2.90", "3.00", "3.20", "1.500", "0 0 0"])
+        self.assertEqual(rows[1][8:], ["2.00", "-", "-", "-", "-", "7"])
 
 
 @unittest.skipUnless(all(map(tools.installed, ("graywolf", "qrouter", "magic", "sta", "yosys"))),
