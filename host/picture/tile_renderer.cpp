@@ -16,6 +16,7 @@ namespace {
 // Pixels of a packet, and of the cones around eight of them: rays close together, for the boxes to
 // agree about.
 constexpr int kBlockWidth = 4, kBlockHeight = 2;
+static_assert(kErrorBlock % kBlockWidth == 0 && kErrorBlock % kBlockHeight == 0);
 constexpr int kSquare = 8;
 // The integrators' streams are made from others.
 constexpr std::uint32_t kFilterStream = 0, kLampStream = 7, kLensStream = 8;
@@ -69,9 +70,10 @@ bool TileRenderer::is_done(std::size_t index) const {
 int TileRenderer::samples_ahead(const PixelRect& tile, int end) const {
   if (job_.options.error == 0.0) return 0;
   std::size_t pixels = 0;
-  for_blocks(tile, 1, 1, [&](const PixelRect& pixel) {
-    const std::size_t index = film_.index_of(pixel.x0, pixel.y0);
-    pixels += static_cast<int>(film_.sums.samples[index]) < end && !is_done(index);
+  for_blocks(tile, kErrorBlock, kErrorBlock, [&](const PixelRect& block) {
+    const std::size_t index = film_.index_of(block.x0, block.y0);
+    if (static_cast<int>(film_.sums.samples[index]) >= end || is_done(index)) return;
+    pixels += static_cast<std::size_t>(block.width() * block.height());
   });
   return static_cast<int>(kManySamples / std::max<std::size_t>(1, pixels));
 }
@@ -85,10 +87,11 @@ void TileRenderer::list_pixels(const PixelRect& tile, int end) {
   const std::vector<std::uint32_t>& done = film_.sums.samples;
   for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
     for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
+      if (is_done(film_.index_of(block.x0, block.y0))) return;
       for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
         const std::size_t index = film_.index_of(pixel.x0, pixel.y0);
         const int first = begin + (done.empty() ? 0 : static_cast<int>(done[index]));
-        if (first >= end || is_done(index)) return;
+        if (first >= end) return;
         const int last =
             std::max(end, std::min({first + ahead, next_look(first), job_.options.samples}));
         pixels_.push_back({pixel.x0, pixel.y0, index, first, last});
