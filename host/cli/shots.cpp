@@ -6,7 +6,7 @@
 #include "host/cli/format.h"
 #include "host/cli/sky_lens_options.h"
 #include "host/exact/exact.h"
-#include "host/light/lights.h"
+#include "host/light/studio.h"
 #include "host/scene/camera_path.h"
 
 namespace raygate {

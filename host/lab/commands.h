@@ -25,5 +25,7 @@ void add_pictures(CLI::App& lab, Common& common);    ///< pictures by any varian
 void add_rays(CLI::App& lab, Common& common);        ///< rays per second, next to Embree's
 void add_core(CLI::App& lab, Common& common);        ///< clocks a ray of the ray core
 void add_skips(CLI::App& lab, Common& common);       ///< what each skip saves
+void add_techniques(CLI::App& lab,
+                    Common& common);  ///< what each technique of the path tracer gains
 
 }  // namespace raygate::lab

@@ -7,7 +7,7 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers gltf-pictures rays core skips predicates shares stages adaptive coverage trace-rates claims
+.PHONY: stress bench peers gltf-pictures rays core skips predicates techniques shares stages adaptive coverage trace-rates claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
@@ -22,7 +22,7 @@ else
 endif
 
 bench: ## run time against error, one report: make bench [QUICK=1 BASE=old.jsonl PUBLISH=1]
-	$(call build,bench,lab scenes unit_bench table_1 worked_example)
+	$(call build,bench,lab render scenes unit_bench table_1 worked_example)
 	@$(LAB_REPORT) bench $(if $(QUICK),--quick) $(if $(BASE),--base '$(BASE)') \
 	  $(if $(PUBLISH),--publish)
 
@@ -56,6 +56,12 @@ skips: ## tests and time that each skip saves
 	@python3 -B scenes/make_teapot.py build/scenes/teapot_coarse.obj --fineness 3
 	@$(LAB) --results $(LAB_ROWS)/skips.jsonl skips scenes/paper.obj \
 	  build/scenes/teapot_coarse.obj scenes/teapot.obj $(LARGE_SCENES)
+
+techniques: ## what each technique of the path tracer gains: time against error
+	$(call build,build,lab scenes)
+	@$(LAB) --results $(LAB_ROWS)/techniques.jsonl techniques scenes/cornell.obj scenes/cornell_spheres.json \
+	  scenes/paper_room.json scenes/still_life.json scenes/columns.json scenes/teapot.obj \
+	  host/lab/peers/scenes/landscape.json scenes/lanterns.json
 
 predicates: ## what an exact decision costs, beside rationals and __float128
 	$(call build,build,lab)

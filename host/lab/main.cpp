@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   lab::add_rays(app, common);
   lab::add_core(app, common);
   lab::add_skips(app, common);
+  lab::add_techniques(app, common);
   try {
     app.parse(argc, argv);
     return common.status;

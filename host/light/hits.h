@@ -15,6 +15,7 @@
 #include "host/light/sampler.h"
 #include "host/light/shadow_catcher.h"
 #include "host/light/surface.h"
+#include "host/light/techniques.h"
 #include "host/light/wave.h"
 
 namespace raygate {
@@ -79,6 +80,7 @@ struct ShadingScene {
   bool skips_weightless = true;
   bool sees_environment = true;   ///< rays that hit nothing
   bool asks_environment = false;  ///< surfaces, as they do lamps
+  Techniques techniques{};
 };
 
 /// As many hits of one kind as T has lanes.
@@ -90,7 +92,7 @@ struct Hits {
   RAYGATE_INLINE Hits(const ShadingScene& shading, HitBlock& hits, HitKind hit_kind,
                       std::span<const std::uint32_t> at)
       : block(hits), kind(hit_kind), count(static_cast<int>(at.size())) {
-    enum : std::uint8_t { kWeight, kDensity = 3, kScatteredAt = 4, kFields = 7 };
+    enum : std::uint8_t { kWeight, kDensity = 3, kScatteredAt = 4, kNormal = 7, kFields = 10 };
     Gathered<T, kFields> in;
     Gathered<T, 2, std::uint32_t> words;
     HitPlace places[kCount];
@@ -101,6 +103,7 @@ struct Hits {
       in.put(kWeight, k, burden.weight);
       in.values[kDensity][k] = burden.density;
       in.put(kScatteredAt, k, burden.scattered_at);
+      in.put(kNormal, k, burden.normal);
       words.values[0][k] = burden.stream;
       words.values[1][k] = burden.index;
       places[k] = hits.places[place[k]];
@@ -109,6 +112,7 @@ struct Hits {
     weight = in.triple(kWeight);
     density = in.one(kDensity);
     scattered_at = in.triple(kScatteredAt);
+    scattering_normal = in.triple(kNormal);
     stream = words.one(0);
     index = words.one(1);
     surface = surface_at<T>(shading.scene, shading.bvh, kind, places);
@@ -133,7 +137,7 @@ struct Hits {
   HitKind kind;
   int count;
   std::uint32_t place[kCount];  ///< in the block
-  Triple<T> weight, scattered_at;
+  Triple<T> weight, scattered_at, scattering_normal;
   T density;
   WordOf<T> stream, index;
   Surface<T> surface;
@@ -279,7 +283,7 @@ RAYGATE_INLINE Triple<T> light_from_area(const Hits<T>& hits, const WayToLight<T
 /// Rays that go on where `is_wanted`; `number` is the way's in its hit's list.
 template <class T>
 struct WaysOn {
-  Triple<T> direction, flat, weight, scattered_at;
+  Triple<T> direction, flat, weight, scattered_at, normal;
   T density;
   WordOf<T> stream;
   MaskOf<T> is_wanted, has_flat, is_through;
@@ -293,7 +297,7 @@ struct WaysOn {
                flats = Hits<T>::spread_out(has_flat), through = Hits<T>::spread_out(is_through);
     const auto directions = Hits<T>::spread_out(ahead),
                flat_ones = Hits<T>::spread_out(scaled(flat)), weights = Hits<T>::spread_out(weight),
-               places = Hits<T>::spread_out(scattered_at);
+               places = Hits<T>::spread_out(scattered_at), normals = Hits<T>::spread_out(normal);
     float densities[LanesOf<T>::kCount];
     std::uint32_t streams[LanesOf<T>::kCount];
     lanes_to(densities, density);
@@ -310,6 +314,7 @@ struct WaysOn {
       way.burden.weight = Hits<T>::triple_of(weights, k);
       way.burden.density = densities[k];
       way.burden.scattered_at = Hits<T>::triple_of(places, k);
+      way.burden.normal = Hits<T>::triple_of(normals, k);
       way.burden.stream = streams[k];
     }
   }

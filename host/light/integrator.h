@@ -15,6 +15,7 @@
 #include "host/light/lights.h"
 #include "host/light/point_error.h"
 #include "host/light/skips.h"
+#include "host/light/techniques.h"
 #include "host/light/wave.h"
 
 namespace raygate {
@@ -24,6 +25,7 @@ struct IntegratorOptions {
   double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced
   glm::dvec3 ambient{0.0};          ///< Whitted: radiance from all sides that reaches everything
   bool single_sample = false;       ///< one sample a pixel: no chance where there is a middle
+  Techniques techniques{};          ///< path
   float point_error = kPointError;  ///< the host finds P where the unit's is off by more of itself
 };
 

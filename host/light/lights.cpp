@@ -15,10 +15,6 @@
 namespace raygate {
 namespace {
 
-bool emits(const Material& material) {
-  return glm::any(glm::greaterThan(material.emission, glm::vec3(0.0f)));
-}
-
 double mean(const glm::dvec3& colour) { return (colour.x + colour.y + colour.z) / 3.0; }
 
 /// In the order of the scene's triangles: lamps, and what is sampled of them, do not depend on how
@@ -93,20 +89,25 @@ double unit_of(const Scene& scene) {
                      : 1.0;
 }
 
-/// Of the ball around the scene's box: what falls on it comes into the scene.
-double cross_section_of(const Scene& scene) {
-  if (is_empty(scene)) return 0.0;
+double diagonal_of(const Scene& scene) {
   const auto [low, high] = position_box(scene);
-  const double radius = 0.5 * glm::length(high - low);
-  return std::numbers::pi * radius * radius;
+  return glm::length(high - low);
 }
 
-/// In which a point light shines: all steradians, or those within the middle of a cone's border.
-double solid_angle(const PointLight& light) {
-  if (!light.spot) return 4.0 * std::numbers::pi;
-  const double inner = sine_cosine(light.spot->inner / 360.0).cosine;
-  const double outer = sine_cosine(light.spot->outer / 360.0).cosine;
-  return 2.0 * std::numbers::pi * (1.0 - 0.5 * (inner + outer));
+/// Lengths in units.
+/// What the back of a closed lamp is worth, where nothing else is within the box around it: next to
+/// nothing, but not nothing.
+constexpr double kBackOfClosed = 1.0 / 16.0;
+
+LightSource as_source(const PointLight& light, double unit) {
+  LightSource source;
+  source.middle = glm::dvec3(light.position) / unit;
+  source.power = mean(light.intensity) / unit / unit;
+  if (light.spot) {
+    source.axis = light.spot->axis;
+    source.spread = sine_cosine(light.spot->outer / 360.0).cosine;
+  }
+  return source;
 }
 
 /// The corner of a parallelogram and its two sides. Its diagonal from that corner parts the
@@ -132,109 +133,104 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   return std::nullopt;
 }
 
-/// Lamps stand still while the camera is looked through: they are found from it.
-class Studio {
- public:
-  Studio(const Scene& scene, const Camera& camera) : camera_(camera) {
-    const auto [low, high] = position_box(scene);
-    const glm::dvec3 eye(camera.eye());
-    middle_ = 0.5 * (low + high);
-    size_ = glm::length(high - low);
-    is_inside_ = glm::all(glm::lessThanEqual(low, eye)) && glm::all(glm::lessThanEqual(eye, high));
-  }
-
-  [[nodiscard]] bool is_inside() const { return is_inside_; }
-  [[nodiscard]] double size() const { return size_; }
-
-  /// From the upper left of the camera, or from the camera.
-  [[nodiscard]] PointLight key() const {
-    // In the middle of the scene a white wall that faces the lamp has radiance 0.8 from it.
-    if (is_inside_) return lamp(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
-    const glm::dvec3 at = place(-0.8, 1.2);
-    return lamp(at, glm::length(at - middle_), 0.8);
-  }
-  /// From the right of the camera.
-  [[nodiscard]] PointLight fill() const {
-    const glm::dvec3 at = place(1.4, 0.3);
-    return lamp(at, glm::length(at - middle_), 0.25);
-  }
-
- private:
-  [[nodiscard]] glm::dvec3 place(double right, double up) const {
-    return middle_ +
-           size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
-  }
-  [[nodiscard]] static PointLight lamp(const glm::dvec3& at, double distance, double radiance) {
-    return {glm::vec3(at), glm::dvec3(radiance * std::numbers::pi * distance * distance)};
-  }
-
-  const Camera& camera_;
-  glm::dvec3 middle_;
-  double size_;
-  bool is_inside_;
-};
-
-/// Neither lights nor faces that emit.
-bool has_no_lamp(const Scene& scene) {
-  return scene.lights.empty() && scene.directional_lights.empty() && !scene.environment &&
-         std::ranges::none_of(scene.triangles, [&](const Triangle& face) {
-           return emits(scene.materials[face.material]);
-         });
+/// A source that is as likely wherever it is asked for: as bright as it is on the average there.
+LightSource placeless(const LightSource& source, double scene_radius) {
+  LightSource everywhere;
+  everywhere.is_far = true;
+  everywhere.radius = 1.0;
+  everywhere.power = source.power;
+  if (source.is_far) return everywhere;
+  // Of all it sends out, what falls on the ball around the scene.
+  const double spread = source.reach < 1.0 ? 2.0 : 2.0 * (1.0 - source.spread);
+  everywhere.power *= spread / (scene_radius * scene_radius);
+  return everywhere;
 }
-
-/// Radiance times area of all faces that emit.
-double emitted(const Scene& scene) {
-  double sum = 0.0;
-  for (const Triangle& face : scene.triangles) {
-    const Material& material = scene.materials[face.material];
-    if (!emits(material)) continue;
-    const auto& [a, b, c] = face.vertices;
-    sum +=
-        0.5 * mean(glm::dvec3(material.emission)) *
-        glm::length(triangle_normal({scene.positions[a], scene.positions[b], scene.positions[c]}));
-  }
-  return sum;
-}
-
-constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 
 }  // namespace
 
-void light_if_dark(Scene& scene, const Camera& camera) {
-  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || !has_no_lamp(scene)) return;
-  scene.lights.push_back(Studio(scene, camera).key());
-  scene.background = kDimSky;
-}
-
-bool light_first_look(Scene& scene, const Camera& camera) {
-  if (is_empty(scene) || !scene.lights.empty() || !scene.directional_lights.empty() ||
-      scene.environment) {
-    return false;
+Lights::Lights(const Scene& scene, const Bvh& bvh, LightChoice choice) : scene_(scene), bvh_(bvh) {
+  const double unit = unit_of(scene);
+  per_unit_ = static_cast<float>(1.0 / unit);
+  std::vector<LightSource> sources;
+  const auto add = [&](const LightSource& source, std::uint32_t patch, double area) {
+    sources.push_back(source);
+    sources_.push_back({static_cast<std::uint32_t>(lamps_.size() - 1), patch,
+                        area > 0.0 ? bounded(unit * unit / area) : 0.0f});
+  };
+  for (const PointLight& light : scene.lights) {
+    Lamp& lamp = lamps_.emplace_back();
+    lamp.light = bounded(light.intensity / unit / unit);
+    lamp.position = light.position;
+    lamp.is_spot = light.spot.has_value();
+    if (lamp.is_spot) lamp.spot = SpotRamp(*light.spot);
+    add(raygate::as_source(light, unit), kNoIndex, 0.0);
   }
-  const Studio studio(scene, camera);
-  // Labels and the like that glow are no lamps: not a hundredth of what the key lamp does.
-  constexpr double kGlow = 0.01;
-  if (emitted(scene) > kGlow * studio.size() * studio.size()) return false;
-  scene.lights.push_back(studio.key());
-  if (!studio.is_inside()) scene.lights.push_back(studio.fill());
-  if (scene.background == glm::vec3(0.0f)) scene.background = kDimSky;
-  return true;
+  find_areas();
+  std::vector<std::uint32_t> slots;
+  for (const AreaLight& light : areas_)
+    slots.insert(slots.end(), light.slots.begin(), light.slots.end());
+  const std::vector<ClosedSide> sides = closed_sides(bvh, slots);
+  std::vector<ClosedSide> side_of_slot(source_of_slot_.size());
+  for (std::size_t i = 0; i < slots.size(); ++i) side_of_slot[slots[i]] = sides[i];
+  for (AreaLight& light : areas_) {
+    find_middle(bvh, light);
+    Lamp& lamp = lamps_.emplace_back();
+    lamp.kind = Kind::kArea;
+    lamp.light = bounded(light.radiance);
+    if (!scene.environment) {
+      const double ratio = mean(glm::dvec3(scene.background)) / mean(light.radiance);
+      lamp.sky = static_cast<float>(std::min(ratio, 0.5));
+    }
+    lamp.area = bounded(light.area() / unit / unit);
+    add_patches(light, lamp);
+    for (std::uint32_t i = lamp.first_patch; i < patches_.size(); ++i) {
+      const Patch& patch = patches_[i];
+      source_of_slot_[patch.slot] = source_of_slot_[patch.slot_beyond] =
+          static_cast<std::uint32_t>(sources.size());
+      add(as_source(patch, light, unit, side_of_slot[patch.slot]), i, patch.area);
+    }
+  }
+  for (const DirectionalLight& light : scene.directional_lights) {
+    Lamp& lamp = lamps_.emplace_back();
+    lamp.kind = Kind::kDirection;
+    lamp.light = light.irradiance;
+    lamp.position = glm::vec3(-light.direction);
+    add({.middle = -glm::dvec3(light.direction),
+         .is_far = true,
+         .power = mean(glm::dvec3(light.irradiance))},
+        kNoIndex, 0.0);
+  }
+  if (scene.environment) {
+    environment_.emplace(*scene.environment);
+    lamps_.emplace_back().kind = Kind::kEnvironment;
+    add({.radius = 1.0,
+         .is_far = true,
+         .power = std::numbers::pi * mean(environment_->mean_radiance())},
+        kNoIndex, 0.0);
+  }
+  any_power_ = std::ranges::any_of(sources, [](const auto& source) { return source.power > 0.0; });
+  if (choice == LightChoice::kPower) {
+    const double radius = is_empty(scene) ? 1.0 : 0.5 * diagonal_of(scene) / unit;
+    for (LightSource& source : sources) source = placeless(source, radius);
+  }
+  tree_ = LightTree(sources);
+  ambient_ =
+      background() != glm::vec3(0.0f) ? glm::dvec3(background()) : guessed_ambient(scene, areas_);
 }
 
-Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
+/// The faces that emit, lamp by lamp.
+void Lights::find_areas() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
-  for (const std::uint32_t slot : emitting_slots(scene, bvh)) {
-    const Triangle& face = scene.triangles[bvh.triangle_of(slot)];
-    const Material& material = scene.materials[face.material];
-    if (lamp_of_slot_.empty()) lamp_of_slot_.assign(bvh.slot_count(), kNoIndex);
+  for (const std::uint32_t slot : emitting_slots(scene_, bvh_)) {
+    const Triangle& face = scene_.triangles[bvh_.triangle_of(slot)];
+    if (source_of_slot_.empty()) source_of_slot_.assign(bvh_.slot_count(), kNoIndex);
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
       areas_.emplace_back();
-      areas_.back().radiance = glm::dvec3(material.emission);
+      areas_.back().radiance = glm::dvec3(scene_.materials[face.material].emission);
     }
-    lamp_of_slot_[slot] = static_cast<std::uint32_t>(points().size() + at->second);
     AreaLight& light = areas_[at->second];
-    const Corners corners = bvh.corners_of(slot);
+    const Corners corners = bvh_.corners_of(slot);
     if (is_new) light.low = light.high = corners[0];
     for (const glm::vec3& corner : corners) {
       light.low = glm::min(light.low, corner);
@@ -244,67 +240,38 @@ Lights::Lights(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh) {
     light.area_up_to.push_back((light.slots.empty() ? 0.0 : light.area()) + area);
     light.slots.push_back(slot);
   }
-  const double unit = unit_of(scene);
-  per_unit_ = static_cast<float>(1.0 / unit);
-  std::vector<double> power_up_to;
-  double power = 0.0;
-  for (const PointLight& light : scene.lights) {
-    Lamp& lamp = lamps_.emplace_back();
-    lamp.light = bounded(light.intensity / unit / unit);
-    lamp.position = light.position;
-    lamp.is_spot = light.spot.has_value();
-    if (lamp.is_spot) lamp.spot = SpotRamp(*light.spot);
-    power += solid_angle(light) * mean(light.intensity);
-    power_up_to.push_back(power);
+}
+
+/// In the units of what is asked for.
+LightSource Lights::as_source(const Patch& patch, const AreaLight& light, double unit,
+                              ClosedSide side) {
+  const glm::dvec3 corner(patch.corner), u(patch.u), v(patch.v);
+  LightSource source;
+  source.axis = glm::dvec3(patch.normal);
+  source.spread = 1.0;
+  source.reach = 0.0;
+  source.back = 1.0;
+  if (side != ClosedSide::kBoth) source.back = kBackOfClosed;
+  if (side == ClosedSide::kInwards) source.axis = -source.axis;
+  source.middle = (corner + (u + v) * (patch.is_triangle ? 1.0 / 3.0 : 0.5)) / unit;
+  for (const glm::dvec3& other : {corner, corner + u, corner + v, corner + u + v}) {
+    if (patch.is_triangle && other == corner + u + v) continue;
+    source.radius = std::max(source.radius, glm::distance(source.middle, other / unit));
   }
-  for (AreaLight& light : areas_) {
-    find_middle(bvh, light);
-    Lamp& lamp = lamps_.emplace_back();
-    lamp.kind = Kind::kArea;
-    lamp.light = bounded(light.radiance);
-    lamp.area = bounded(light.area() / unit / unit);
-    add_patches(light, lamp);
-    power += 2.0 * std::numbers::pi * light.area() * mean(light.radiance);
-    power_up_to.push_back(power);
-  }
-  const double cross_section = cross_section_of(scene);
-  for (const DirectionalLight& light : scene.directional_lights) {
-    Lamp& lamp = lamps_.emplace_back();
-    lamp.kind = Kind::kDirection;
-    lamp.light = light.irradiance;
-    lamp.position = glm::vec3(-light.direction);
-    power += cross_section * mean(glm::dvec3(light.irradiance));
-    power_up_to.push_back(power);
-  }
-  if (scene.environment) {
-    environment_.emplace(*scene.environment);
-    lamps_.emplace_back().kind = Kind::kEnvironment;
-    power += cross_section * 4.0 * std::numbers::pi * mean(environment_->mean_radiance());
-    power_up_to.push_back(power);
-  }
-  any_power_ = power > 0.0;
-  for (std::size_t i = 0; any_power_ && i < lamps_.size(); ++i) {
-    const double chance = (power_up_to[i] - (i == 0 ? 0.0 : power_up_to[i - 1])) / power;
-    lamps_[i].chance = static_cast<float>(chance);
-    if (lamps_[i].patches != 0) {
-      lamps_[i].chance_of_place =
-          bounded(chance / areas_[i - points().size()].area() * unit * unit);
-    }
-    chance_up_to_.push_back(static_cast<float>(power_up_to[i] / power));
-  }
-  ambient_ =
-      background() != glm::vec3(0.0f) ? glm::dvec3(background()) : guessed_ambient(scene, areas_);
+  source.power = patch.area / unit / unit * mean(light.radiance);
+  return source;
 }
 
 /// Two triangles in a row that share an edge and are opposite corners' halves of a parallelogram
 /// are one patch: points of the square are spread over it without a bend.
 void Lights::add_patches(const AreaLight& light, Lamp& lamp) {
   lamp.first_patch = static_cast<std::uint32_t>(patches_.size());
+  double before = 0.0;
   for (std::size_t i = 0; i < light.slots.size(); ++i) {
     const Corners t = bvh_.corners_of(light.slots[i]);
     Patch patch;
     patch.slot = patch.slot_beyond = light.slots[i];
-    patch.begin = i == 0 ? 0.0f : static_cast<float>(light.area_up_to[i - 1] / light.area());
+    patch.begin = static_cast<float>(before / light.area());
     patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
     patch.corner = t[0];
     patch.u = t[1] - t[0];
@@ -321,6 +288,8 @@ void Lights::add_patches(const AreaLight& light, Lamp& lamp) {
       }
     }
     patch.end = static_cast<float>(light.area_up_to[i] / light.area());
+    patch.area = light.area_up_to[i] - before;
+    before = light.area_up_to[i];
     patches_.push_back(patch);
     patch_ends_.push_back(patch.end);
     ++lamp.patches;

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "host/lane_math.h"
+#include "host/light/closed_sides.h"
 #include "host/light/environment.h"
+#include "host/light/light_tree.h"
 #include "host/light/sampler.h"
 #include "host/light/spot.h"
 #include "host/scene/scene.h"
@@ -17,20 +19,8 @@
 
 namespace raygate {
 
-class Camera;
-
-/// Adds light to a scene that has none (no lights, no face that emits, no background): one lamp to
-/// the upper left of the camera, or at the camera where that stands within the scene, and a dim
-/// sky.
-void light_if_dark(Scene& scene, const Camera& camera);
-
-/// The same for a first look, whose camera nobody chose: with a second, weaker lamp from the right,
-/// and also where all the light there is is a background, or faces that glow but light nothing.
-/// Returns whether it did.
-bool light_first_look(Scene& scene, const Camera& camera);
-
 /// The emitting faces of one object and material: one lamp, which shines to both sides of each
-/// face. Each part of its area is as likely to be sampled as any other.
+/// face.
 struct AreaLight {
   std::vector<std::uint32_t> slots;
   std::vector<double> area_up_to;   ///< of the slots so far, each included
@@ -55,7 +45,7 @@ struct LightPoint {
 class Lights {
  public:
   /// The references must outlive this.
-  Lights(const Scene& scene, const Bvh& bvh);
+  Lights(const Scene& scene, const Bvh& bvh, LightChoice choice = LightChoice::kTree);
 
   [[nodiscard]] std::span<const PointLight> points() const { return scene_.lights; }
   [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
@@ -66,8 +56,6 @@ class Lights {
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
   }
-  /// How likely choose() is to give it.
-  [[nodiscard]] float environment_chance() const { return lamps_.back().chance; }
   /// Of an environment the mean.
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : scene_.background;
@@ -94,9 +82,8 @@ class Lights {
     glm::vec3 light{0.0f};
     glm::vec3 position{0.0f};  ///< of a point light; or the direction towards the light
     SpotRamp spot;
-    float area = 0.0f;             ///< in square units
-    float chance = 0.0f;           ///< how likely choose() is to give it
-    float chance_of_place = 0.0f;  ///< chance over area: of a point, per square unit
+    float area = 0.0f;  ///< in square units
+    float sky = 0.0f;   ///< of an area light: the background's radiance over its own, at most 1/2
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Lamp& lamp(std::size_t index) const { return lamps_[index]; }
@@ -105,6 +92,10 @@ class Lights {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(
       const std::uint32_t (&lamps)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
+  /// The same of one patch each.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
+      const std::uint32_t (&patches)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
   /// The middle of a flat light, or very near, as a sample. Its slot is one of the light's.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
@@ -112,18 +103,38 @@ class Lights {
             spread<WordOf<T>>(light.slots[0])};
   }
 
-  /// Which light a slot belongs to, as in count(); kNoIndex for none.
-  [[nodiscard]] std::uint32_t lamp_of(std::uint32_t slot) const {
-    return slot < lamp_of_slot_.size() ? lamp_of_slot_[slot] : kNoIndex;
+  /// What is chosen: a lamp, or of an area light a patch: a triangle, or two of them.
+  struct Source {
+    std::uint32_t lamp = 0;          ///< as in count()
+    std::uint32_t patch = kNoIndex;  ///< of an area light
+    float per_area = 0.0f;           ///< of a patch: 1 / its area in square units
+  };
+  [[nodiscard]] const Source& source(std::size_t index) const { return sources_[index]; }
+  /// Which one a slot belongs to; kNoIndex for none.
+  [[nodiscard]] std::uint32_t source_of(std::uint32_t slot) const {
+    return slot < source_of_slot_.size() ? source_of_slot_[slot] : kNoIndex;
+  }
+  /// There is at most one; the last.
+  [[nodiscard]] std::uint32_t environment_source() const {
+    return static_cast<std::uint32_t>(sources_.size() - 1);
   }
 
   /// Whether there is a light, and not all are dark.
   [[nodiscard]] bool any_power() const { return any_power_; }
-  /// One light, chosen by its power. Only where any_power().
-  [[nodiscard]] std::uint32_t choose(float u) const {
-    return static_cast<std::uint32_t>(
-        std::upper_bound(chance_up_to_.begin(), chance_up_to_.end() - 1, u) -
-        chance_up_to_.begin());
+  /// One source for a point of a surface and its unit normal: see LightTree. Only where
+  /// any_power().
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE LightTree::Choice pick(const glm::vec3& point,
+                                                      const glm::vec3& normal, double u) const {
+    if (sources_.size() == 1) return {0, 1.0f};
+    return tree_.pick<T>(point * per_unit_, normal, u);
+  }
+  /// How likely pick() is to give a source.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE float chance(std::uint32_t source, const glm::vec3& point,
+                                            const glm::vec3& normal) const {
+    if (sources_.size() == 1) return 1.0f;
+    return tree_.chance<T>(source, point * per_unit_, normal);
   }
 
  private:
@@ -132,10 +143,14 @@ class Lights {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
     std::uint32_t slot = 0, slot_beyond = 0;  ///< with more of u than of v, and the other way round
     float begin = 0.0f, end = 0.0f;           ///< its part of the lamp's area, in [0, 1]
+    double area = 0.0;
     bool is_triangle = true;
   };
 
+  void find_areas();
   void add_patches(const AreaLight& light, Lamp& lamp);
+  [[nodiscard]] static LightSource as_source(const Patch& patch, const AreaLight& light,
+                                             double unit, ClosedSide side);
 
   const Scene& scene_;
   const Bvh& bvh_;
@@ -143,9 +158,10 @@ class Lights {
   std::vector<AreaLight> areas_;
   std::vector<Lamp> lamps_;
   std::vector<Patch> patches_;
-  std::vector<float> patch_ends_;            // of the patches, for searching
-  std::vector<std::uint32_t> lamp_of_slot_;  // or kNoIndex; empty: none at all. No instance emits
-  std::vector<float> chance_up_to_;          // each light included
+  std::vector<float> patch_ends_;              // of the patches, for searching
+  std::vector<Source> sources_;                // as in count(), patch by patch
+  std::vector<std::uint32_t> source_of_slot_;  // or kNoIndex; empty: none at all. No instance emits
+  LightTree tree_;
   bool any_power_ = false;
   float per_unit_ = 1.0f;
   glm::dvec3 ambient_{0.0};
@@ -155,45 +171,46 @@ template <class T>
 RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&lamps)[LanesOf<T>::kCount],
                                             const SquarePoint<T>& u) const {
   constexpr int kCount = LanesOf<T>::kCount;
-  enum : std::uint8_t {
-    kCorner,
-    kU = 3,
-    kV = 6,
-    kNormal = 9,
-    kBegin = 12,
-    kEnd,
-    kTriangle,
-    kFields
-  };
-  Gathered<T, kFields> in;
-  Gathered<T, 2, std::uint32_t> slots;
+  Gathered<T, 2> in;
+  std::uint32_t patches[kCount];
   float wanted[kCount];
   lanes_to(wanted, u.x);
   for (int k = 0; k < kCount; ++k) {
     const Lamp& lamp = lamps_[lamps[k]];
     const auto first = patch_ends_.begin() + lamp.first_patch;
     const auto found = std::upper_bound(first, first + lamp.patches - 1, wanted[k]);
-    const Patch& patch = patches_[static_cast<std::size_t>(found - patch_ends_.begin())];
+    patches[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
+    in.values[0][k] = patches_[patches[k]].begin;
+    in.values[1][k] = patches_[patches[k]].end;
+  }
+  const T begin = in.one(0), size = in.one(1) - begin;
+  return sample_patches<T>(patches, {at_most(at_least((u.x - begin) / size, 0.0f), 1.0f), u.y});
+}
+
+template <class T>
+RAYGATE_INLINE LightPoint<T> Lights::sample_patches(
+    const std::uint32_t (&patches)[LanesOf<T>::kCount], const SquarePoint<T>& u) const {
+  enum : std::uint8_t { kCorner, kU = 3, kV = 6, kNormal = 9, kTriangle = 12, kFields };
+  Gathered<T, kFields> in;
+  Gathered<T, 2, std::uint32_t> slots;
+  for (int k = 0; k < LanesOf<T>::kCount; ++k) {
+    const Patch& patch = patches_[patches[k]];
     in.put(kCorner, k, patch.corner);
     in.put(kU, k, patch.u);
     in.put(kV, k, patch.v);
     in.put(kNormal, k, patch.normal);
-    in.values[kBegin][k] = patch.begin;
-    in.values[kEnd][k] = patch.end;
     in.values[kTriangle][k] = patch.is_triangle ? 1.0f : 0.0f;
     slots.values[0][k] = patch.slot;
     slots.values[1][k] = patch.slot_beyond;
   }
-  const T begin = in.one(kBegin), size = in.one(kEnd) - begin;
-  const T x = at_most(at_least((u.x - begin) / size, 0.0f), 1.0f);
   // The square onto the triangle: sqrt keeps areas.
   const auto is_triangle = in.one(kTriangle) > 0.0f;
-  const T far = root(x);
-  const T along_u = raygate::choose(is_triangle, far * (1.0f - u.y), x);
-  const T along_v = raygate::choose(is_triangle, far * u.y, u.y);
+  const T far = root(u.x);
+  const T along_u = choose(is_triangle, far * (1.0f - u.y), u.x);
+  const T along_v = choose(is_triangle, far * u.y, u.y);
   return {in.triple(kCorner) + in.triple(kU) * along_u + in.triple(kV) * along_v,
           in.triple(kNormal),
-          raygate::choose(is_triangle | (along_u > along_v), slots.one(0), slots.one(1))};
+          choose(is_triangle | (along_u > along_v), slots.one(0), slots.one(1))};
 }
 
 }  // namespace raygate

@@ -8,8 +8,8 @@ namespace {
 // What random numbers and branches are for.
 constexpr std::uint32_t kGoOn = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                         kDirection = 5, kFacet = 6;
-constexpr int kSureSurfaces = 3;         // before chance decides whether a ray lives on,
-constexpr float kSureWeight = 0.25f;     // unless it counts for as much as this
+constexpr int kSureSurfaces = 3;         // before chance decides whether a ray lives on
+constexpr float kNothing = -1.0f;        // in place of a kind of lamp
 constexpr float kLeastDensity = 1e-20f;  // of a direction: floats have room for the inverse
 
 /// How likely each way on is, in proportion to what it brings.
@@ -29,22 +29,34 @@ struct LobeChances {
   }
 };
 
+/// What a lamp's share is at least, of the two ways of finding it, where a scattered ray finds it:
+/// beside the lamp such a ray meets the sky, and where the lamp's share of its light is as bright
+/// as that, it is no matter of chance which of them it meets.
+float least_share(const ShadingScene& shading, const Lights::Source& source) {
+  return shading.techniques.evens_out ? shading.lights.lamp(source.lamp).sky : 0.0f;
+}
+
 /// What the surfaces emit. Lamps that a scattered ray has found count for the share of that way of
 /// finding them.
 template <class T>
 RAYGATE_INLINE Triple<T> emitted(const ShadingScene& shading, const Hits<T>& hits) {
   const Lights& lights = shading.lights;
-  Gathered<T, 1> places;
+  Gathered<T, 2> places;
   for (int k = 0; k < Hits<T>::kCount; ++k) {
-    const std::uint32_t lamp = lights.lamp_of(hits.block.places[hits.place[k]].slot);
-    places.values[0][k] = lamp == kNoIndex ? 0.0f : lights.lamp(lamp).chance_of_place;
+    const std::uint32_t source = lights.source_of(hits.block.places[hits.place[k]].slot);
+    const Burden& burden = hits.block.burden(hits.place[k]);
+    const bool was_asked = source != kNoIndex && burden.density > 0.0f;
+    places.values[0][k] = was_asked ? lights.chance<T>(source, burden.scattered_at, burden.normal) *
+                                          lights.source(source).per_area
+                                    : 0.0f;
+    places.values[1][k] = was_asked ? least_share(shading, lights.source(source)) : 0.0f;
   }
   const Triple<T> way = (hits.surface.point - hits.scattered_at) * spread<T>(lights.per_unit());
   const T squared = dot(way, way);
   const T cosine = absolute(dot(hits.surface.flat_normal, way)) / root(squared);
   const T asked = choose(cosine > 0.0f, places.one(0) * squared / cosine, T{});
   const T share = choose((places.one(0) > 0.0f) & (hits.density > 0.0f),
-                         share_of(hits.density, asked), spread<T>(1.0f));
+                         maximum(share_of(hits.density, asked), places.one(1)), spread<T>(1.0f));
   return hits.weight * (hits.bsdf.emission() * share + hits.bsdf.unlit());
 }
 
@@ -52,8 +64,12 @@ template <class T>
 RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;
   const Lights& lights = shading.lights;
-  float chosen[kCount];
-  lanes_to(chosen, hits.random(kChooseLight).x);
+  const SquarePoint<T> u = hits.random(kChooseLight);
+  float chosen[kCount], rest[kCount];
+  lanes_to(chosen, u.x);
+  lanes_to(rest, u.y);
+  const Gathered<T, 3> points = Hits<T>::spread_out(hits.surface.point),
+                       normals = Hits<T>::spread_out(hits.surface.normal);
   enum : std::uint8_t {
     kLight,
     kPosition = 3,
@@ -62,20 +78,38 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
     kKind = 11,
     kChance,
     kPlace,
+    kLeast,
     kFields
   };
   Gathered<T, kFields> in;
-  std::uint32_t lamps[kCount];
+  std::uint32_t lamps[kCount], patches[kCount];
   bool any_point = false, any_area = false, any_direction = false, any_spot = false,
        any_environment = false;
   for (int k = 0; k < kCount; ++k) {
-    lamps[k] = lights.choose(chosen[k]);
-    const Lights::Lamp& lamp = lights.lamp(lamps[k]);
+    // Twice 24 bits: enough for a chance of one in many millions.
+    const LightTree::Choice choice =
+        lights.pick<T>(Hits<T>::triple_of(points, k), Hits<T>::triple_of(normals, k),
+                       double{chosen[k]} + double{rest[k]} * 0x1p-24);
+    if (choice.source == kNoIndex) {
+      in.put(kLight, k, glm::vec3(0.0f));
+      in.put(kPosition, k, glm::vec3(0.0f));
+      in.values[kKind][k] = kNothing;
+      in.values[kChance][k] = in.values[kPlace][k] = 1.0f;
+      in.values[kLeast][k] = 0.0f;
+      lamps[k] = 0;
+      patches[k] = kNoIndex;
+      continue;
+    }
+    const Lights::Source& source = lights.source(choice.source);
+    lamps[k] = source.lamp;
+    patches[k] = source.patch;
+    const Lights::Lamp& lamp = lights.lamp(source.lamp);
     in.put(kLight, k, lamp.light);
     in.put(kPosition, k, lamp.position);
     in.values[kKind][k] = static_cast<float>(lamp.kind);
-    in.values[kChance][k] = lamp.chance;
-    in.values[kPlace][k] = lamp.chance_of_place;
+    in.values[kChance][k] = choice.chance;
+    in.values[kPlace][k] = choice.chance * source.per_area;
+    in.values[kLeast][k] = least_share(shading, source);
     any_point = any_point || lamp.kind == Lights::Kind::kPoint;
     any_area = any_area || lamp.kind == Lights::Kind::kArea;
     any_direction = any_direction || lamp.kind == Lights::Kind::kDirection;
@@ -122,16 +156,18 @@ RAYGATE_INLINE void ask_one_light(const ShadingScene& shading, Hits<T>& hits) {
   if (!any_area) return;
   for (int k = 0; k < kCount; ++k) {
     // A lane without an area light samples one nevertheless, and nothing comes of it.
-    if (lights.lamp(lamps[k]).kind != Lights::Kind::kArea)
-      lamps[k] = static_cast<std::uint32_t>(lights.points().size());
+    if (patches[k] == kNoIndex) patches[k] = 0;
   }
-  const LightPoint<T> point = lights.sample<T>(lamps, hits.random(kLightPoint));
+  const LightPoint<T> point = lights.sample_patches<T>(patches, hits.random(kLightPoint));
   const WayToLight<T> way(lights, hits.surface, point.position);
   const T per_area = in.one(kPlace), cosine = absolute(dot(point.normal, way.direction));
   const T asked = per_area * way.squared / cosine;
   const T scattered =
       hits.bsdf.density(way.direction) * LobeChances<T>(hits.bsdf).share_of_scatter();
-  const Triple<T> weighted = in.triple(kLight) * (share_of(asked, scattered) / per_area);
+  const T share =
+      choose(scattered > kLeastDensity, minimum(share_of(asked, scattered), 1.0f - in.one(kLeast)),
+             spread<T>(1.0f));
+  const Triple<T> weighted = in.triple(kLight) * (share / per_area);
   const auto is_area = is_a(Lights::Kind::kArea), scatters = hits.bsdf.scatters();
   ask<T>(hits, 0, is_area & scatters & (cosine > 0.0f), light_from_area(hits, way, point, weighted),
          lamps, point);
@@ -148,8 +184,9 @@ RAYGATE_INLINE void go_on_by_chance(const ShadingScene& shading, Hits<T>& hits,
   WaysOn<T> ways;
   ways.is_wanted = chances.sum > 0.0f;
   // Chance decides before the lobe is looked at, so that no work is lost on rays that end.
-  if (hits.block.wave->depth >= kSureSurfaces) {
-    const T survival = at_most(largest(weight) * chances.sum * (1.0f / kSureWeight), 1.0f);
+  if (hits.block.wave->depth >= kSureSurfaces && shading.techniques.sure_weight > 0.0f) {
+    const float per_sure_weight = 1.0f / shading.techniques.sure_weight;
+    const T survival = at_most(largest(weight) * chances.sum * per_sure_weight, 1.0f);
     ways.is_wanted = ways.is_wanted & (choice.y < survival);
     weight = choose(ways.is_wanted, weight * (1.0f / survival), weight);
   }
@@ -175,6 +212,7 @@ RAYGATE_INLINE void go_on_by_chance(const ShadingScene& shading, Hits<T>& hits,
   ways.flat = ways.direction;
   ways.density = bsdf.density(ways.direction) * chances.share_of_scatter();
   ways.scattered_at = surface.point;
+  ways.normal = surface.normal;
   const T cosine = at_least(dot(surface.normal, ways.direction), 0.0f);
   const auto brings =
       (ways.density > kLeastDensity) & (dot(surface.flat_normal, ways.direction) > 0.0f);
@@ -221,6 +259,7 @@ RAYGATE_INLINE void go_on_by_chance(const ShadingScene& shading, Hits<T>& hits,
     ways.flat = choose(is_straight, -surface.view, ways.flat);
     ways.density = choose(is_straight, hits.density, ways.density);
     ways.scattered_at = choose(is_straight, hits.scattered_at, ways.scattered_at);
+    ways.normal = choose(is_straight, hits.scattering_normal, ways.normal);
   }
   ways.send(hits, 0);
 }

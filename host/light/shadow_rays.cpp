@@ -12,6 +12,7 @@ namespace raygate {
 namespace {
 
 constexpr float kWholeWay = 1.0f;
+constexpr std::size_t kManyPoints = 64;          // too few rays for each
 constexpr float kSureOfLight = 1.0f - 0x1p-10f;  // hits of a ray from a light that surely count
 constexpr float kBeforeAreaLight = 1.0f - 0x1p-16f;
 constexpr float kNoEnd = std::numeric_limits<float>::infinity();
@@ -69,11 +70,13 @@ ShadowRays::ShadowRays(const Scene& scene, const Clearances& clearances, const L
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
   traced_ = traced ? &traced : nullptr;
   next_.clear();
-  for (std::uint32_t light = 0; light < lights_.points().size(); ++light) {
+  const std::size_t points = lights_.points().size();
+  const bool from_points = points <= kManyPoints;
+  for (std::uint32_t light = 0; from_points && light < points; ++light) {
     trace_from_light(rays, light);
   }
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
-    if (rays[i].point_light == ShadowRay::kNoPoint) {
+    if (!from_points || rays[i].point_light == ShadowRay::kNoPoint) {
       next_from_surface(rays[i], i);
     }
   }

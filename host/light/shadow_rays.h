@@ -33,7 +33,8 @@ struct ShadowRay {
 /// Rays of a point light begin at the light, where they share its records, and end at the surface.
 /// Rounding their direction moves that end by about a float; so a hit in the last 2^-10 of the way
 /// does not count by itself: such a ray is traced again, from the surface. Hits of the surface's
-/// own triangle do not count, for the departure point is on the lamp's side of it. Rays of area
+/// own triangle do not count, for the departure point is on the lamp's side of it. Where there are
+/// so many point lights that hardly any has several rays, all begin at the surface. Rays of area
 /// lights begin at the surface and end 2^-16 of the way before the lamp, whose own triangle does
 /// not count. Rays to lights that are infinitely far away begin at the surface and have no end.
 /// Surfaces that let light through straight weaken it.

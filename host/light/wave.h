@@ -10,14 +10,15 @@
 
 namespace raygate {
 
-/// What a ray of light carries. Forty bytes in a row: hits are shaded in another order than rays
-/// are traced in, and one cache line is fetched for a ray, not ten.
+/// What a ray of light carries. Fifty-two bytes in a row: hits are shaded in another order than
+/// rays are traced in, and one cache line is fetched for a ray, not ten.
 struct Burden {
   glm::vec3 weight{1.0f};  ///< what light that comes along the ray counts for
   /// Where a surface scattered it: how likely that was to give this direction, per steradian;
   /// 0 where there was no choice (camera, mirror, glass).
   float density = 0.0f;
   glm::vec3 scattered_at{0.0f};  ///< and where
+  glm::vec3 normal{0.0f};        ///< of the surface there
   std::uint32_t sample = 0;      ///< of those that are traced together: whose radiance it adds to
   std::uint32_t stream = 0;      ///< of random numbers, its own in the picture
   std::uint32_t index = 0;       ///< of its points in such streams

@@ -87,7 +87,7 @@ RAYGATE_INLINE void go_on(const ShadingScene& shading, Hits<T>& hits, SkipCounte
   const Bsdf<T>& bsdf = hits.bsdf;
   WaysOn<T> ways;
   ways.density = T{};
-  ways.scattered_at = zero<T>();
+  ways.scattered_at = ways.normal = zero<T>();
   ways.weight = hits.weight * bsdf.mirror();
   Triple<T> facet = surface.normal, through = bsdf.through();
   if (has_rough_facets(hits)) {

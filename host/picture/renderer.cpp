@@ -310,7 +310,7 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
       film.sums.shown.assign(film.color.size(), 0.0f);
     }
   }
-  const Lights lights(scene, bvh);
+  const Lights lights(scene, bvh, options.techniques.lights);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lamps
   // have no edges.
   std::vector<LampEdge> lamp_edges;

@@ -12,6 +12,7 @@
 #include "host/light/integrator_kind.h"
 #include "host/light/point_error.h"
 #include "host/light/skips.h"
+#include "host/light/techniques.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -49,6 +50,7 @@ struct RenderOptions {
   int max_depth = 4;                ///< reflections and refractions in a row, at least 0
   double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced
   std::optional<double> ambient{};  ///< Whitted: radiance; none: see Lights::ambient
+  Techniques techniques{};          ///< path
   Skips skips{};                    ///< the film does not depend on them
   /// The unit's P is used where it is off by no more of the distance than that, in all else the
   /// host's: 0 for the host's alone; the largest float for the unit's wherever it has one.

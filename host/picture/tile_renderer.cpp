@@ -43,6 +43,7 @@ std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
        .threshold = options.threshold,
        .ambient = options.ambient ? glm::dvec3(*options.ambient) : job.lights.ambient(),
        .single_sample = options.samples == 1,
+       .techniques = options.techniques,
        .point_error = options.point_error});
 }
 

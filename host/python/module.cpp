@@ -26,7 +26,7 @@
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/unit_finder.h"
 #include "host/light/clearance.h"
-#include "host/light/lights.h"
+#include "host/light/studio.h"
 #include "host/picture/renderer.h"
 #include "host/python/float_reference.h"
 #include "host/scene/camera.h"

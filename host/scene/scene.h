@@ -66,6 +66,10 @@ struct Material {
   float opacity_cutoff = 0.5f;  ///< in [0, 1]
 };
 
+[[nodiscard]] inline bool emits(const Material& material) {
+  return glm::any(glm::greaterThan(material.emission, glm::vec3(0.0f)));
+}
+
 /// One triangle: indices into the scene's arrays. Vertices run counter-clockwise seen from the
 /// side the file means as the front.
 struct Triangle {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host/light/lights.h"
+#include "host/light/studio.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/tree/bvh.h"

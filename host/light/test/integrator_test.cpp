@@ -138,6 +138,19 @@ TEST(ManyLights, WindowsArePartsOfTheWhole) {
   }
 }
 
+// With many lamps shadow rays begin at the surface, with few at the lamp: it is the same shadow.
+TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
+  Scene few = everything();
+  Scene many = few;
+  for (int i = 0; i < 70; ++i) many.lights.push_back({{0.0f, 1.0f, 0.0f}, glm::vec3(0.0f)});
+  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
+  const RenderOptions options = light(IntegratorKind::kWhitted, 96, 96, 1);
+  const Film a = film_of(few, camera, options), b = film_of(many, camera, options);
+  int different = 0;
+  for (std::size_t i = 0; i < a.color.size(); ++i) different += a.color[i] != b.color[i];
+  EXPECT_LT(different, 10) << "of 9,216: rays from the lamp end a float away";
+}
+
 constexpr bool Skips::*kSkips[] = {&Skips::culling,    &Skips::records,     &Skips::light_behind,
                                    &Skips::weightless, &Skips::empty_tiles, &Skips::first_occluder};
 

@@ -71,6 +71,40 @@ TEST(DirectLight, LightsOfAllKindsAddUp) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), sum, 0.005 * sum);
 }
 
+// Many lamps, near and far, from which either way of choosing picks one: the mean is the sum over
+// all, as Whitted asks them. With a gloss, scattered rays find lamps just as often.
+TEST(Physics, ManyLampsAddUpHoweverTheyAreChosen) {
+  for (const float gloss : {0.0f, 0.6f}) {
+    Scene scene;
+    for (int i = 0; i < 60; ++i) {
+      const float angle = 2.4f * float(i), far = 0.3f + 0.11f * float(i), size = 0.02f * float(i);
+      const glm::vec3 at(far * std::cos(angle), 0.4f + 0.07f * float(i % 7), far * std::sin(angle));
+      if (i % 5 == 0) {
+        scene.lights.push_back({at, glm::dvec3(0.2)});
+      } else {
+        add(scene, rectangle(at, {size, 0.01f * float(i % 3), 0}, {0, 0.02f * float(i % 4), size}),
+            lamp(glm::vec3(1.0f + float(i % 3))));
+      }
+    }
+    Material floor = matte(glm::vec3(1.0f - gloss));
+    floor.specular = glm::vec3(gloss);
+    floor.shininess = 40.0f;
+    floor.illumination_model = 2;
+    add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), floor);
+    const Camera camera = camera_at({0.2, 1e-3, 0}, {0.2, 0, 0}, 1e-3);
+    const auto seen = [&](IntegratorKind integrator, LightChoice lights, int samples) {
+      RenderOptions options = light(integrator, 1, 1, samples);
+      options.max_depth = 0;
+      options.ambient = 0.0;
+      options.techniques.lights = lights;
+      return double{film_of(scene, camera, options).color[0].r};
+    };
+    const double sum = seen(kWhitted, LightChoice::kTree, 4096);
+    EXPECT_NEAR(seen(kPath, LightChoice::kTree, 1 << 15), sum, 0.005 * sum) << gloss;
+    EXPECT_NEAR(seen(kPath, LightChoice::kPower, 1 << 17), sum, 0.02 * sum) << gloss;
+  }
+}
+
 // A parallel rectangle with one corner straight above (Siegel and Howell's catalogue, B-4).
 TEST(DirectLight, RectangularLampHasItsFormFactor) {
   const double a = 1.5, b = 0.8, height = 1.2;

@@ -1,4 +1,4 @@
-#include "host/light/lights.h"
+#include "host/light/studio.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,166 @@
+// What each technique of the path tracer gains: the same pictures with each one changed by itself,
+// time against error. One thread, CPU engine; compare rows of one run.
+#include "host/light/techniques.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/cli/engines.h"
+#include "host/cli/options.h"
+#include "host/cli/shots.h"
+#include "host/lab/commands.h"
+#include "host/lab/results.h"
+#include "host/lab/timing.h"
+#include "host/picture/renderer.h"
+#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
+
+namespace raygate::lab {
+namespace {
+
+struct Named {
+  const char* name;
+  Techniques techniques;
+};
+const Named kTechniques[] = {
+    {"as it is", {}},
+    {"lamps by power alone", {.lights = LightChoice::kPower}},
+    {"lamps not as the sky", {.evens_out = false}},
+    {"roulette below 1/2", {.sure_weight = 0.5f}},
+    {"roulette below 1/16", {.sure_weight = 0.0625f}},
+    {"roulette below 1/64", {.sure_weight = 0.015625f}},
+    {"no roulette", {.sure_weight = 0.0f}},
+};
+
+/// What is measured, besides the scene.
+struct Plan {
+  std::vector<std::string> scenes;
+  int side = 128, samples = 32, reference = 1024, repeats = 3;
+};
+
+/// A scene, its camera and its lamps, as ./render has them.
+class Set {
+ public:
+  Set(const std::string& file, const Plan& plan) : plan_(plan), options_(options_of(file, plan)) {
+    scene_ = options_.scene_file ? load_scene(*options_.scene_file) : load_scene(options_.scene);
+    if (options_.scene_file) add_lights(*options_.scene_file, scene_);
+    shots_ = std::make_unique<Shots>(options_, scene_);
+    camera_ = shots_->light(1, scene_);
+    bvh_ = std::make_unique<Bvh>(scene_);
+    clearances_ = std::make_unique<Clearances>(*bvh_);
+  }
+
+  [[nodiscard]] std::string name() const { return options_.scene.stem().string(); }
+
+  [[nodiscard]] Film film(const Techniques& techniques, int samples, int seed,
+                          RenderStats& stats) const {
+    const RenderOptions options{.width = plan_.side,
+                                .height = plan_.side,
+                                .window = {},
+                                .samples = samples,
+                                .filter = PixelFilter::kBox,
+                                .seed = static_cast<std::uint64_t>(seed),
+                                .integrator = IntegratorKind::kPath,
+                                .max_depth = options_.light.max_depth(),
+                                .techniques = techniques};
+    return render(scene_, *clearances_, *camera_, options,
+                  make_finder_factory(options_, *bvh_, options_.light.skips), stats);
+  }
+
+ private:
+  static Options options_of(const std::string& file, const Plan& plan) {
+    const std::string size = std::to_string(plan.side) + "x" + std::to_string(plan.side);
+    const char* const words[] = {"lab",          file.c_str(), "--engine", "cpu",
+                                 "--integrator", "path",       "--size",   size.c_str()};
+    return parse_options(static_cast<int>(std::size(words)), words);
+  }
+
+  const Plan& plan_;
+  Options options_;
+  Scene scene_;
+  std::unique_ptr<Shots> shots_;
+  std::optional<Camera> camera_;
+  std::unique_ptr<Bvh> bvh_;
+  std::unique_ptr<Clearances> clearances_;
+};
+
+/// Over pixels and colours, scene-linear.
+double mean_squared_error(const Film& film, const Film& reference) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < film.color.size(); ++i) {
+    const glm::dvec3 apart = glm::dvec3(film.color[i]) - glm::dvec3(reference.color[i]);
+    sum += glm::dot(apart, apart);
+  }
+  return sum / (3.0 * static_cast<double>(film.color.size()));
+}
+
+void measure(const Set& set, const Plan& plan, Results& results, TextTable& table) {
+  constexpr int kReferenceSeed = 1000;
+  RenderStats stats;
+  const Film reference = set.film({}, plan.reference, kReferenceSeed, stats);
+  constexpr std::size_t kCount = std::size(kTechniques);
+  std::vector<double> seconds[kCount];
+  double errors[kCount] = {};
+  std::uint64_t rays[kCount] = {};
+  for (int repeat = 0; repeat < plan.repeats; ++repeat) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const Film film = set.film(kTechniques[i].techniques, plan.samples, repeat, stats);
+      seconds[i].push_back(stats.processor_seconds);
+      errors[i] += mean_squared_error(film, reference) / plan.repeats;
+      rays[i] = stats.rays;
+    }
+  }
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double time = median(seconds[i]) / median(seconds[0]), error = errors[i] / errors[0];
+    const Row row = {{"table", "techniques"},
+                     {"scene", set.name()},
+                     {"technique", kTechniques[i].name},
+                     {"rays", rays[i]},
+                     {"seconds", median(seconds[i])},
+                     {"mse", errors[i]},
+                     {"time_over_first", time},
+                     {"error_over_first", error},
+                     {"time_mse_over_first", time * error}};
+    results.add(row);
+    table.print(row);
+  }
+}
+
+}  // namespace
+
+void add_techniques(CLI::App& lab, Common& common) {
+  auto* app = lab.add_subcommand("techniques", "what each technique of the path tracer gains");
+  const auto plan = std::make_shared<Plan>();
+  app->add_option("scenes", plan->scenes, "scene files")->required();
+  app->add_option("--side", plan->side, "width and height, pixels (128)")
+      ->check(CLI::Range(1, 4096));
+  app->add_option("--spp", plan->samples, "samples per pixel (32)")->check(CLI::Range(1, 65536));
+  app->add_option("--reference", plan->reference,
+                  "samples of the picture they are held against (1024)")
+      ->check(CLI::Range(1, 1 << 20));
+  app->add_option("--repeats", plan->repeats, "other seeds, of which times are medians (3)")
+      ->check(CLI::Range(1, 1000));
+  app->callback([plan, &common] {
+    std::printf(
+        "%dx%d, path, %d samples per pixel, one thread, engine cpu, against %d samples of another\n"
+        "seed. time x MSE is over that of the scene's first row: below 1 is better.\n",
+        plan->side, plan->side, plan->samples, plan->reference);
+    Results results(common.results);
+    TextTable table({{"scene", "scene", -1, 14},
+                     {"technique", "technique", -1, 22},
+                     {"rays", "rays", -1, 10},
+                     {"seconds", "seconds", 3},
+                     {"mse", "MSE", 6, 9},
+                     {"time_over_first", "time", 2},
+                     {"error_over_first", "MSE over first", 2},
+                     {"time_mse_over_first", "time x MSE", 2}});
+    for (const std::string& scene : plan->scenes) {
+      measure(Set(scene, *plan), *plan, results, table);
+    }
+  });
+}
+
+}  // namespace raygate::lab

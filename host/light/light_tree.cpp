@@ -1,0 +1,229 @@
+#include "host/light/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace raygate {
+namespace {
+
+/// Axes of sources that shine to both sides are added up on one side.
+glm::dvec3 on_one_side(const LightSource& source) {
+  if (source.back < 1.0) return source.axis;
+  const glm::dvec3 size = glm::abs(source.axis);
+  const int k = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  return source.axis[k] < 0.0 ? -source.axis : source.axis;
+}
+
+/// What says how alike the sources of a group are, added up one by one.
+struct Sum {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+  glm::dvec3 axes{0.0};
+  double power = 0.0;
+
+  void add(const LightSource& source) {
+    low = glm::min(low, source.middle - source.radius);
+    high = glm::max(high, source.middle + source.radius);
+    // Of a source to all sides nothing: there is no way round that it faces.
+    axes += (0.5 + 0.5 * source.spread) * source.power * on_one_side(source);
+    power += source.power;
+  }
+  void add(const Sum& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+    axes += other.axes;
+    power += other.power;
+  }
+  /// How wrong the group's guess may be: its power times its size, squared, times how far its axes
+  /// lie apart, from 1 (parallel) to 4 (to all sides), as the measure of Conty Estevez and Kulla.
+  [[nodiscard]] double cost() const {
+    if (!(power > 0.0)) return 0.0;
+    const glm::dvec3 size = high - low;
+    return power * glm::dot(size, size) * (4.0 - 3.0 * std::min(glm::length(axes) / power, 1.0));
+  }
+};
+
+using Group = std::span<std::uint32_t>;  // numbers of sources
+
+}  // namespace
+
+class LightTree::Builder {
+ public:
+  Builder(std::span<const LightSource> sources, LightTree& tree) : sources_(sources), tree_(tree) {
+    for (const LightSource& source : sources) {
+      most_power_ = std::max(most_power_, source.power);
+    }
+  }
+
+  /// Adds the node of a group and those below it, and returns its number.
+  std::uint32_t add(Group group, std::uint32_t parent, std::uint32_t place) {
+    const auto number = static_cast<std::uint32_t>(tree_.nodes_.size());
+    tree_.nodes_.emplace_back();
+    tree_.nodes_[number].parent = parent;
+    tree_.nodes_[number].place = place;
+    const std::vector<Group> children = parted(group);
+    for (std::uint32_t k = 0; k < children.size(); ++k) {
+      set(tree_.nodes_[number], k, cluster(children[k]));
+      std::uint32_t child = children[k][0] | kIsSource;
+      if (children[k].size() == 1) {
+        tree_.place_of_[children[k][0]] = number * kLanes + k;
+      } else {
+        child = add(children[k], number, k);
+      }
+      tree_.nodes_[number].child[k] = child;
+    }
+    return number;
+  }
+
+ private:
+  [[nodiscard]] Sum sum_of(Group group) const {
+    Sum sum;
+    for (const std::uint32_t number : group) sum.add(sources_[number]);
+    return sum;
+  }
+
+  /// Up to eight groups of it: the worst one is split, again and again.
+  [[nodiscard]] std::vector<Group> parted(Group group) const {
+    std::vector<Group> groups = {group};
+    std::vector<double> costs = {sum_of(group).cost()};
+    while (groups.size() < std::min<std::size_t>(kLanes, group.size())) {
+      std::size_t worst = groups.size();
+      for (std::size_t i = 0; i < groups.size(); ++i) {
+        if (groups[i].size() < 2) continue;
+        if (worst == groups.size() || costs[i] > costs[worst]) worst = i;
+      }
+      const std::size_t size = split(groups[worst]);
+      const Group rest = groups[worst].subspan(size);
+      groups[worst] = groups[worst].first(size);
+      costs[worst] = sum_of(groups[worst]).cost();
+      groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(worst) + 1, rest);
+      costs.insert(costs.begin() + static_cast<std::ptrdiff_t>(worst) + 1, sum_of(rest).cost());
+    }
+    return groups;
+  }
+
+  /// Sorts a group of two or more into two, and returns the size of the first.
+  [[nodiscard]] std::size_t split(Group group) const {
+    const auto far = std::ranges::stable_partition(
+        group, [&](std::uint32_t number) { return sources_[number].is_far; });
+    const std::size_t far_size = group.size() - far.size();
+    if (far_size != 0 && far_size != group.size()) return far_size;
+
+    constexpr int kBins = 12;
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const std::uint32_t number : group) {
+      low = glm::min(low, sources_[number].middle);
+      high = glm::max(high, sources_[number].middle);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    int best_axis = -1, best_bin = 0;
+    const auto bin_of = [&](std::uint32_t number, int axis) {
+      const double share = (sources_[number].middle[axis] - low[axis]) / (high[axis] - low[axis]);
+      return std::min(static_cast<int>(share * kBins), kBins - 1);
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(high[axis] > low[axis])) continue;
+      std::array<Sum, kBins> bins;
+      for (const std::uint32_t number : group) {
+        bins[static_cast<std::size_t>(bin_of(number, axis))].add(sources_[number]);
+      }
+      std::array<double, kBins> above{};
+      Sum sum;
+      for (std::size_t i = kBins; i-- > 1;) {
+        sum.add(bins[i]);
+        above[i] = sum.cost();
+      }
+      sum = {};
+      for (int i = 1; i < kBins; ++i) {
+        sum.add(bins[static_cast<std::size_t>(i) - 1]);
+        const double cost = sum.cost() + above[static_cast<std::size_t>(i)];
+        if (cost < least) {
+          least = cost;
+          best_axis = axis;
+          best_bin = i;
+        }
+      }
+    }
+    if (best_axis < 0) return group.size() / 2;  // all in one place
+    const auto rest = std::ranges::stable_partition(
+        group, [&](std::uint32_t number) { return bin_of(number, best_axis) < best_bin; });
+    return group.size() - rest.size();
+  }
+
+  /// One source that stands for all of a group.
+  [[nodiscard]] LightSource cluster(Group group) const {
+    LightSource all = sources_[group[0]];
+    if (group.size() == 1) return all;
+    const Sum sum = sum_of(group);
+    all.power = sum.power;
+    if (all.is_far) {
+      all.middle = glm::dvec3(0.0);
+      all.radius = 1.0;
+      return all;
+    }
+    all.middle = 0.5 * (sum.low + sum.high);
+    all.radius = 0.0;
+    for (const std::uint32_t number : group) {
+      const LightSource& one = sources_[number];
+      all.radius = std::max(all.radius, glm::distance(all.middle, one.middle) + one.radius);
+      all.back = std::max(all.back, one.back);
+      all.reach = std::min(all.reach, one.reach);
+    }
+    const double length = glm::length(sum.axes);
+    if (length > 0.0) all.axis = sum.axes / length;
+    // The widest angle from the axis at which anything is sent in full; -1 if to all sides.
+    all.spread = length > 0.0 ? 1.0 : -1.0;
+    for (const std::uint32_t number : group) {
+      const LightSource& one = sources_[number];
+      double cosine = glm::dot(all.axis, one.axis);
+      if (one.back >= 1.0) cosine = std::abs(cosine);
+      cosine = std::clamp(cosine, -1.0, 1.0);
+      const double sine = std::sqrt(1.0 - cosine * cosine);
+      const double own = std::sqrt(std::max(0.0, 1.0 - one.spread * one.spread));
+      // Both angles together, unless that is more than 180 degrees.
+      const bool is_all = one.spread < -cosine;
+      all.spread = std::min(all.spread, is_all ? -1.0 : cosine * one.spread - sine * own);
+    }
+    return all;
+  }
+
+  void set(Node& node, std::uint32_t place, const LightSource& source) const {
+    // Floats have room for it: and what brings anything, however little, has some weight.
+    constexpr double kLeastPower = 0x1p-60;
+    const double relative = source.power / most_power_;
+    node.power[place] = static_cast<float>(std::max(relative, kLeastPower));
+    node.x[place] = static_cast<float>(source.middle.x);
+    node.y[place] = static_cast<float>(source.middle.y);
+    node.z[place] = static_cast<float>(source.middle.z);
+    node.nearness[place] = source.is_far ? 0.0f : 1.0f;
+    constexpr double kRounding = 1.0 + 0x1p-20;
+    const double radius = source.radius * kRounding + glm::length(source.middle) * 0x1p-22;
+    node.squared_radius[place] =
+        static_cast<float>(source.is_far ? source.radius : radius * radius);
+    node.axis_x[place] = static_cast<float>(source.axis.x);
+    node.axis_y[place] = static_cast<float>(source.axis.y);
+    node.axis_z[place] = static_cast<float>(source.axis.z);
+    node.spread[place] = static_cast<float>(source.spread);
+    node.spread_sine[place] =
+        static_cast<float>(std::sqrt(std::max(0.0, 1.0 - source.spread * source.spread)));
+    node.reach[place] = static_cast<float>(source.reach);
+    node.back[place] = static_cast<float>(source.back);
+  }
+
+  std::span<const LightSource> sources_;
+  LightTree& tree_;
+  double most_power_ = 0.0;
+};
+
+LightTree::LightTree(std::span<const LightSource> sources) {
+  place_of_.assign(sources.size(), kNoIndex);
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].power > 0.0) numbers.push_back(i);
+  }
+  if (!numbers.empty()) Builder(sources, *this).add(numbers, kNoIndex, 0);
+}
+
+}  // namespace raygate

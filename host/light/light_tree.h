@@ -1,0 +1,188 @@
+// Which of many lamps to ask for their light: a tree of them.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "host/lane_math.h"
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// What a lamp, or a flat part of one, may send where.
+struct LightSource {
+  glm::dvec3 middle{0.0};  ///< of a ball around it
+  double radius = 0.0;
+  /// It shines within the angle of `spread` around the axis in full, and less and less, as a
+  /// surface's cosine has it, up to an angle of `reach` more. Both are given by their cosines.
+  glm::dvec3 axis{0.0, 0.0, 1.0};
+  double spread = -1.0, reach = 1.0;
+  double back = 0.0;    ///< the share of it that it sends against the axis
+  bool is_far = false;  ///< infinitely; `middle` is the direction towards it, or 0: all sides
+  /// What it would bring a surface that faces it, at distance 1; of one that is far, anywhere. What
+  /// has none is never chosen.
+  double power = 0.0;
+};
+
+/// How sources are chosen.
+enum class LightChoice : std::uint8_t {
+  kTree,   ///< by what each may bring where it is asked for
+  kPower,  ///< by their power alone: what the tree is measured against
+};
+
+/// Chooses a source for a point of a surface, each nearly as likely as what it would bring there if
+/// nothing were between: by power, distance, and where source and surface face (Conty Estevez and
+/// Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018; no subtree is
+/// asked twice here, but each node has up to eight children, weighed together, so that the way to
+/// one of a thousand sources has three or four steps, and what is guessed of a cluster is guessed
+/// of a small one).
+///
+/// No source that brings anything has chance 0. Chances depend on nothing but the sources, their
+/// order, point and normal: the same bits for float and FloatLanes.
+class LightTree {
+ public:
+  LightTree() = default;
+  explicit LightTree(std::span<const LightSource> sources);
+
+  struct Choice {
+    std::uint32_t source = kNoIndex;  ///< kNoIndex: none, no light would come
+    float chance = 0.0f;              ///< of having been chosen
+  };
+  /// For u in [0, 1), where any source has power. T is float or FloatLanes: so many children are
+  /// weighed at a time.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE Choice pick(const glm::vec3& point, const glm::vec3& normal,
+                                           double u) const;
+  /// How likely pick() is to give a source.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE float chance(std::uint32_t source, const glm::vec3& point,
+                                            const glm::vec3& normal) const;
+
+ private:
+  /// Up to eight sources and clusters of sources, field by field. A place without one has power 0.
+  struct alignas(32) Node {
+    float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};  // as in LightSource
+    float nearness[kLanes] = {};                           // 0: far
+    float squared_radius[kLanes] = {};
+    float axis_x[kLanes] = {}, axis_y[kLanes] = {}, axis_z[kLanes] = {};
+    float spread[kLanes] = {}, spread_sine[kLanes] = {}, reach[kLanes] = {};
+    float back[kLanes] = {};
+    float power[kLanes] = {};
+    std::uint32_t child[kLanes] = {};  // a node's number, or a source's and kIsSource
+    std::uint32_t parent = kNoIndex, place = 0;
+  };
+  static constexpr std::uint32_t kIsSource = 1u << 31;
+
+  class Builder;
+
+  /// What each child may bring, up to a common factor.
+  template <class T>
+  RAYGATE_INLINE static void weigh(const Node& node, const glm::vec3& point,
+                                   const glm::vec3& normal, float (&weights)[kLanes]);
+
+  std::vector<Node> nodes_;              // the root first
+  std::vector<std::uint32_t> place_of_;  // of a source: its node's number times kLanes and place
+};
+
+template <class T>
+RAYGATE_INLINE void LightTree::weigh(const Node& node, const glm::vec3& point,
+                                     const glm::vec3& normal, float (&weights)[kLanes]) {
+  // Cosines are off by this much at most, so that nothing is left out that just shows.
+  constexpr float kMargin = 0x1p-10f;
+  constexpr float kLeastSquare = 0x1p-40f;
+  const T one = spread<T>(1.0f);
+  for (int k = 0; k < kLanes; k += LanesOf<T>::kCount) {
+    const T nearness = lanes_from<T>(node.nearness + k);
+    const Triple<T> way = {lanes_from<T>(node.x + k) - nearness * point.x,
+                           lanes_from<T>(node.y + k) - nearness * point.y,
+                           lanes_from<T>(node.z + k) - nearness * point.z};
+    const T squared = dot(way, way), radius = lanes_from<T>(node.squared_radius + k);
+    const auto is_inside = !(squared > radius);
+    const T per_distance = 1.0f / root(choose(squared > 0.0f, squared, one));
+    // The angle that the ball takes up, from its middle.
+    const T ball_sine_squared = choose(is_inside, one, radius * (per_distance * per_distance));
+    const T ball_sine = root(ball_sine_squared);
+    const T ball_cosine = root(at_least(1.0f - ball_sine_squared, 0.0f));
+    // The cosine of an angle less the ball's, or 1 where nothing is left.
+    const auto less_ball = [&](const T& cosine, const T& sine) RAYGATE_BODY {
+      return choose(is_inside | (cosine > ball_cosine), one,
+                    cosine * ball_cosine + sine * ball_sine);
+    };
+    const auto sine_of = [](const T& cosine)
+                             RAYGATE_BODY { return root(at_least(1.0f - cosine * cosine, 0.0f)); };
+    const T arriving = dot(way, spread<T>(normal)) * per_distance;
+    const T received = less_ball(arriving, sine_of(arriving)) + kMargin;
+
+    const Triple<T> axis = {lanes_from<T>(node.axis_x + k), lanes_from<T>(node.axis_y + k),
+                            lanes_from<T>(node.axis_z + k)};
+    const T leaving = -dot(way, axis) * per_distance, leaving_sine = sine_of(leaving);
+    const T cone_cosine = lanes_from<T>(node.spread + k),
+            cone_sine = lanes_from<T>(node.spread_sine + k);
+    const T reach = lanes_from<T>(node.reach + k);
+    const auto sent_at = [&](const T& cosine) RAYGATE_BODY {
+      const auto is_in_cone = cosine > cone_cosine;
+      const T beyond = choose(is_in_cone, one, cosine * cone_cosine + leaving_sine * cone_sine);
+      const T sine = choose(is_in_cone, T{}, leaving_sine * cone_cosine - cosine * cone_sine);
+      const T sent = less_ball(beyond, sine) + kMargin;
+      return choose(sent > reach, sent, T{});
+    };
+    const T sent = maximum(sent_at(leaving), lanes_from<T>(node.back + k) * sent_at(-leaving));
+    const T brought = lanes_from<T>(node.power + k) * received * sent /
+                      at_least(maximum(squared, radius), kLeastSquare);
+    lanes_to(weights + k, choose(received > 0.0f, brought, T{}));
+  }
+}
+
+template <class T>
+RAYGATE_INLINE LightTree::Choice LightTree::pick(const glm::vec3& point, const glm::vec3& normal,
+                                                 double u) const {
+  float chance = 1.0f;
+  for (std::uint32_t at = 0;;) {
+    const Node& node = nodes_[at];
+    alignas(4 * kLanes) float weights[kLanes];
+    weigh<T>(node, point, normal, weights);
+    float total = 0.0f;
+    for (const float weight : weights) total += weight;
+    if (!(total > 0.0f)) return {};
+    // The last one that has any weight, where rounding leaves nothing to the others.
+    const double wanted = u * double{total};
+    double begin = 0.0, end = 0.0;
+    int found = 0;
+    for (int k = 0; k < kLanes && end <= wanted; ++k) {
+      if (!(weights[k] > 0.0f)) continue;
+      begin = end;
+      end += double{weights[k]};
+      found = k;
+    }
+    constexpr double kBelowOne = 1.0 - 0x1p-53;
+    const double rest = (wanted - begin) / double{weights[found]};
+    u = rest < kBelowOne ? rest : kBelowOne;
+    chance *= weights[found] / total;
+    at = node.child[found];
+    if ((at & kIsSource) != 0) return {at & ~kIsSource, chance};
+  }
+}
+
+template <class T>
+RAYGATE_INLINE float LightTree::chance(std::uint32_t source, const glm::vec3& point,
+                                       const glm::vec3& normal) const {
+  if (place_of_[source] == kNoIndex) return 0.0f;
+  float chance = 1.0f;
+  std::uint32_t at = place_of_[source] / kLanes, place = place_of_[source] % kLanes;
+  while (at != kNoIndex) {
+    const Node& node = nodes_[at];
+    alignas(4 * kLanes) float weights[kLanes];
+    weigh<T>(node, point, normal, weights);
+    float total = 0.0f;
+    for (const float weight : weights) total += weight;
+    if (!(weights[place] > 0.0f)) return 0.0f;
+    chance *= weights[place] / total;
+    at = node.parent;
+    place = node.place;
+  }
+  return chance;
+}
+
+}  // namespace raygate

@@ -1,0 +1,186 @@
+#include "host/light/light_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "host/light/lights.h"
+#include "host/light/test/light_scenes.h"
+#include "host/vectors.h"
+
+namespace raygate {
+namespace {
+
+using test::add, test::lamp, test::rectangle;
+
+constexpr std::uint32_t kSeed = 20;
+
+/// Lamps of all kinds, strewn about: points, spots, triangles and parallelograms, from afar.
+class ManyLamps : public testing::TestWithParam<int> {
+ protected:
+  ManyLamps() {
+    for (int i = 0; i < GetParam(); ++i) {
+      const glm::vec3 at = place();
+      const float size = 0.01f + 0.2f * one();
+      if (i % 4 == 0) {
+        scene_.lights.push_back({at, glm::dvec3(0.01 + one())});
+      } else if (i % 4 == 1) {
+        const double inner = 40.0 * one();
+        scene_.lights.push_back({at, glm::dvec3(one()),
+                                 SpotCone{glm::dvec3(way()), inner, inner + 1.0 + 40.0 * one()}});
+      } else {
+        add(scene_,
+            i % 4 == 2 ? rectangle(at, size * way(), size * way())
+                       : std::vector<Corners>{{at, at + size * way(), at + size * way()}},
+            lamp(glm::vec3(0.1f + 9.0f * one())));
+      }
+    }
+    if (scene_.triangles.empty()) add(scene_, rectangle(way(), way(), way()), lamp({1, 1, 1}));
+    scene_.directional_lights.push_back({glm::dvec3(way()), glm::vec3(0.1f)});
+    scene_.directional_lights.push_back({glm::dvec3(way()), glm::vec3(0.5f)});
+  }
+
+  float one() { return std::uniform_real_distribution<float>(0.0f, 1.0f)(random_); }
+  glm::vec3 place() { return {8.0f * one() - 4.0f, 8.0f * one() - 4.0f, 8.0f * one() - 4.0f}; }
+  glm::vec3 way() {
+    for (;;) {
+      const glm::vec3 v(2.0f * one() - 1.0f, 2.0f * one() - 1.0f, 2.0f * one() - 1.0f);
+      if (glm::dot(v, v) < 1.0f && glm::dot(v, v) > 0.01f) return glm::normalize(v);
+    }
+  }
+
+  /// Whether a source brings anything to a surface there, if nothing is between.
+  bool brings(const Lights& lights, const Lights::Source& source, const glm::vec3& point,
+              const glm::vec3& normal) {
+    const Lights::Lamp& lamp = lights.lamp(source.lamp);
+    if (lamp.kind == Lights::Kind::kDirection) return glm::dot(lamp.position, normal) > 0.0f;
+    if (lamp.kind == Lights::Kind::kPoint) {
+      const glm::vec3 to = lamp.position - point;
+      const float cosine = -glm::dot(glm::normalize(to), lamp.spot.axis);
+      return glm::dot(to, normal) > 0.0f &&
+             (!lamp.is_spot || spot_share(cosine, lamp.spot.scale, lamp.spot.offset) > 0.0f);
+    }
+    for (int i = 0; i < 8; ++i) {
+      const std::uint32_t patches[] = {source.patch};
+      const auto place = lights.sample_patches<float>(patches, {one(), one()}).position;
+      if (glm::dot(glm::vec3(place.x, place.y, place.z) - point, normal) > 0.0f) return true;
+    }
+    return false;
+  }
+
+  std::mt19937 random_{kSeed};
+  Scene scene_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Numbers, ManyLamps, testing::Values(0, 5, 40, 1000));
+
+std::uint32_t count_of(const Lights& lights) { return lights.environment_source() + 1; }
+
+// At places all over, among the lamps too.
+TEST_P(ManyLamps, ChancesAreOneInAllAndNoLampThatBringsLightHasNone) {
+  const Bvh bvh(scene_);
+  const Lights lights(scene_, bvh);
+  int bringing = 0;
+  double all = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const glm::vec3 point = place(), normal = way();
+    double sum = 0.0;
+    for (std::uint32_t source = 0; source < count_of(lights); ++source) {
+      const float chance = lights.chance<float>(source, point, normal);
+      sum += double{chance};
+      if (brings(lights, lights.source(source), point, normal)) {
+        ++bringing;
+        EXPECT_GT(chance, 0.0f) << "seed " << kSeed << ", source " << source;
+      }
+    }
+    EXPECT_LT(sum, 1.0 + 1e-5);
+    all += sum;
+  }
+  EXPECT_GT(bringing, 50);
+  // Less than 1 where a cluster may bring something and none of it does: spots, mostly.
+  EXPECT_GT(all / 100, 0.7);
+}
+
+// What chance() says is how often pick() gives it: for evenly spread u, off by the spread.
+TEST_P(ManyLamps, ArePickedAsOftenAsTheirChance) {
+  const Bvh bvh(scene_);
+  const Lights lights(scene_, bvh);
+  constexpr int kPicks = 40000;
+  for (int i = 0; i < 4; ++i) {
+    const glm::vec3 point = place(), normal = way();
+    std::vector<int> picked(count_of(lights));
+    int none = 0;
+    for (int k = 0; k < kPicks; ++k) {
+      const auto choice = lights.pick<float>(point, normal, (k + 0.5) / kPicks);
+      if (choice.source == kNoIndex) {
+        ++none;
+        continue;
+      }
+      ++picked[choice.source];
+      ASSERT_NEAR(choice.chance, lights.chance<float>(choice.source, point, normal),
+                  1e-5f * choice.chance);
+    }
+    EXPECT_LT(none, kPicks);
+    for (std::uint32_t source = 0; source < count_of(lights); ++source) {
+      ASSERT_NEAR(picked[source], kPicks * lights.chance<float>(source, point, normal), 1.01);
+    }
+  }
+}
+
+// The same bits, one child at a time and eight.
+TEST_P(ManyLamps, LanesChangeNoBit) {
+  const Bvh bvh(scene_);
+  const Lights lights(scene_, bvh);
+  int cases = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::vec3 point = place(), normal = way();
+    const double u = double{one()} * 0.999;
+    const auto one_by_one = lights.pick<float>(point, normal, u);
+    for (const Vectors vectors : machine_vectors()) {
+      const UsingVectors in_use(vectors);
+      in_vectors([&](auto code) RAYGATE_BODY {
+        using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
+        const auto choice = lights.pick<T>(point, normal, u);
+        EXPECT_EQ(choice.source, one_by_one.source);
+        EXPECT_EQ(choice.chance, one_by_one.chance);
+        ++cases;
+        return 0;
+      });
+    }
+  }
+  EXPECT_GE(cases, 2000);
+}
+
+TEST(LightTree, PrefersWhatIsNearAndFacesTheSurface) {
+  std::vector<LightSource> sources(64);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    sources[i].middle = glm::dvec3(static_cast<double>(i), 1.0, 0.0);
+    sources[i].power = 1.0;
+  }
+  const LightTree tree(sources);
+  const glm::vec3 up(0, 1, 0);
+  for (const float x : {3.0f, 20.0f, 50.0f}) {
+    const auto here = static_cast<std::uint32_t>(x);
+    EXPECT_GT(tree.chance<float>(here, {x, 0, 0}, up), 0.25f) << "of 64";
+    EXPECT_LT(tree.chance<float>(here > 32 ? 0 : 63, {x, 0, 0}, up), 0.003f);
+    EXPECT_EQ(tree.pick<float>({x, 0, 0}, -up, 0.5).source, kNoIndex) << "all are behind";
+  }
+}
+
+TEST(LightTree, PowerAloneIsTheSameEverywhere) {
+  Scene scene;
+  scene.lights.push_back({{1, 2, 0}, glm::dvec3(1.0)});
+  scene.lights.push_back({{-7, 1, 0}, glm::dvec3(3.0)});
+  add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), test::matte(glm::vec3(0.5f)));
+  const Bvh bvh(scene);
+  const Lights lights(scene, bvh, LightChoice::kPower);
+  for (const glm::vec3& point : {glm::vec3(0.0f), glm::vec3(-7, 0, 0), glm::vec3(1, 1.9f, 0)}) {
+    EXPECT_FLOAT_EQ(lights.chance<float>(0, point, {0, -1, 0}), 0.25f);
+    EXPECT_FLOAT_EQ(lights.chance<float>(1, point, {0, 1, 0}), 0.75f);
+  }
+}
+
+}  // namespace
+}  // namespace raygate
