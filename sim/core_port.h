@@ -1,6 +1,7 @@
 // One Verilated ray_core and the words at its ports, clock by clock.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -97,7 +98,6 @@ class CorePort {
   void clock() {
     const bool ray_taken = (model_->ray_valid_i & model_->ray_ready_o) != 0;
     const bool line_taken = (model_->line_valid_i & model_->line_ready_o) != 0;
-    model_.eval();  // events follow the inputs of this clock
     count();
     model_.clock();
     if (ray_taken) model_->ray_valid_i = 0;
@@ -118,11 +118,18 @@ class CorePort {
     counters_.rests += events >> 7 & 1;
     counters_.lines += events >> 8 & 1;
     counters_.waits += events >> 9 & 1;
+    nodes_in_span_ += events >> 1 & 1;
+    triangles_in_span_ += events >> 2 & 1;
+    if (model_.clocks() % CoreCounters::kSpan == 0) {
+      counters_.busier += std::max(nodes_in_span_, triangles_in_span_);
+      nodes_in_span_ = triangles_in_span_ = 0;
+    }
   }
 
   Holder<Top> model_;
   CoreCounters counters_;
   int rays_ = 0;
+  unsigned nodes_in_span_ = 0, triangles_in_span_ = 0;
 };
 
 }  // namespace raygate

@@ -79,6 +79,21 @@ def array() -> tuple[dict, bool]:
                  "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")
 
 
+def slots_answer_once() -> tuple[dict, bool]:
+    """A ray that comes into a ray core has a slot of its own and leaves it once, by induction."""
+    slots = PROOFS / "contracts" / "ray_slots.sv"  # and a divider in place of that of hw/fp
+    rtl = [file for file in cores.files("ray_core") if file.stem != "fp_divider_stages"]
+    return holds("slots_answer_once", "Bitwuzla", cores.used("ray_slots", [*rtl, slots]), "open.tcl", steps=1,
+                 prepared="ray_slots {} {u_intake.free_q u_ends.active_q *dividing_q *pointing_q *.count_q "
+                 "*u_rays.valid_o *u_rays.space_o *u_inverses.valid_o *u_ends.u_ends.valid_o "
+                 "*u_ends.u_ends.space_o *u_points.valid_o}")
+
+
+def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
+    """What is claimed of a cell of hw/ray_core."""
+    return holds(top, "Bitwuzla", cores.used(cell, cores.files("ray_core")), steps=steps)
+
+
 def decision(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     """hit_decision denies no exact edge product."""
     return holds("decision_follows_edges", "Bitwuzla", cores.files("hit_test"),
@@ -120,7 +135,7 @@ def general_computes() -> tuple[dict, bool]:
 ALL = [
     *(Proof(f"unit.fifo_{depth}", f"a FIFO of {depth} words, {reserve} kept back: order, counts, stability",
             "Bitwuzla", functools.partial(fifo_keeps_order, depth, reserve))
-      for depth, reserve in ((2, 0), (5, 2), (36, 33), (48, 45))),
+      for depth, reserve in ((2, 0), (4, 0), (5, 2), (20, 0), (24, 0), (36, 33), (48, 45))),
     *(Proof(f"unit.nearest.{name}", "a burst's nearest hit is kept, and near ties reported",
             "Bitwuzla", functools.partial(nearest_is_kept, name, exp, frac))
       for name, (exp, frac, *_) in float_proofs.FORMATS.items()),
@@ -147,5 +162,13 @@ ALL = [
     Proof("unit.computes.serial", "the paper's unit makes P of its words, whatever it did before", "Bitwuzla",
           serial_computes, False),
     Proof("unit.computes.general", "the general unit, likewise", "Bitwuzla", general_computes, False),
+    Proof("unit.slots", "a ray in a ray core has a slot of its own, and is answered once", "Bitwuzla",
+          slots_answer_once),
+    Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
+          functools.partial(of_ray_core, "sort_seven_sorts", "sort_seven", 2)),
+    Proof("unit.pick", "the first request from a place on is picked", "Bitwuzla",
+          functools.partial(of_ray_core, "pick_is_fair", "rotating_pick")),
+    Proof("unit.grid_way", "ways on a node's grid are products, cut off", "Bitwuzla",
+          functools.partial(of_ray_core, "grid_way_multiplies", "grid_way")),
     Proof("unit.array", "an array is its lanes, and its counters are their sums", "Bitwuzla", array),
 ]

@@ -4,10 +4,11 @@
 //   subtract    D_k = origin_k - O_k                                        3 adders
 //   scale       2**E, how far the ray may go in this node; caps of 1 / I_k
 //   multiply    a_k = D_k / I_k                                             3 multipliers
-//   align       a_k and the grid's step s_k in units of 2**(E - 22), room r_k for errors
-//   step        q s_k for the planes of all boxes                           42 multipliers, 8 x 33
-//   enter       largest near plane, smallest far plane                      42 adders, comparators
-//   sort        near first                                                  16 comparators, two stages
+//   align       a_k and the grid's step s_k in units of 2**(E - 22),        see box_axis
+//               room r_k for errors
+//   step        q s_k for the planes of all boxes                           42 multipliers, 8 x 33, see box_child
+//   enter       largest near plane, smallest far plane                      42 adders, 49 comparators
+//   sort        near first; the group                                       see box_group, sort_seven
 //
 // No valid: what belongs to a node is the user's to carry along for BoxLatency clocks. Throughput one a clock.
 //
@@ -39,7 +40,7 @@
 //  5. So near planes are computed too near, far ones too far, and comparing them leaves nothing out.
 //
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
-// compressed wide BVHs", 2017; the sorting network is Batcher's for eight, less one input.
+// compressed wide BVHs", 2017.
 module box_unit #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
@@ -56,16 +57,11 @@ module box_unit #(
 );
 
   localparam int unsigned Children = ray_core_pkg::Children;
-  localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth;
-  localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth;
-  localparam int unsigned CountWidth = ray_core_pkg::CountWidth;
-  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
-
-  localparam int unsigned UnitBits = 22;  // 2**E is 2**UnitBits units
-  localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33
-  localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
-  localparam int unsigned PlaceWidth = 36;  // of sums, signed
-  localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;
+  localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
+  localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
+  localparam int unsigned StepWidth = ray_core_pkg::StepWidth;
+  localparam int unsigned PlaceWidth = ray_core_pkg::PlaceWidth;
+  localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
 
   if (ray_core_pkg::BoxLatency
       != 7 + hit_test_pkg::AdderLatency + hit_test_pkg::MultiplierLatency) begin : gen_check
@@ -110,24 +106,16 @@ module box_unit #(
 
   logic [95:0] distance;
 
-  for (genvar k = 0; k < 3; k++) begin : gen_distance
-    fp_pkg::flags_t unused_flags;
-
-    fp_adder_stages #(
-      .Arith(Arith),
-      .Adder(Adder),
-      .Cuts(hit_test_pkg::AdderCuts)
-    ) u_subtract (
-      .clk_i,
-      .a_i(node_q[ray_core_pkg::NodeOrigin+32*k +: 32]),
-      .b_i(origin_q[32*k +: 32]),
-      .subtract_i(1'b1),
-      .rounding_mode_i(fp_pkg::RoundNearestEven),
-      .tininess_after_i(1'b0),
-      .result_o(distance[32*k +: 32]),
-      .flags_o(unused_flags)
-    );
-  end
+  vector_adder #(
+    .Subtract(1'b1),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_subtract (
+    .clk_i,
+    .a_i(node_q[ray_core_pkg::NodeOrigin +: 96]),
+    .b_i(origin_q),
+    .sum_o(distance)
+  );
 
   // ---- Scale: exponents with binary32's bias, in 11 signed bits
 
@@ -198,24 +186,15 @@ module box_unit #(
   logic [8:0] mul_exponent;
   logic mul_every_box;
 
-  for (genvar k = 0; k < 3; k++) begin : gen_product
-    fp_pkg::flags_t unused_flags;
-
-    fp_multiplier_stages #(
-      .Arith(Arith),
-      .Adder(Adder),
-      .Cuts(hit_test_pkg::MultiplierCuts)
-    ) u_multiply (
-      .clk_i,
-      .a_i(scaled_distance_q[32*k +: 32]),
-      .b_i(scaled_inverse_q[32*k +: 32]),
-      .rounding_mode_i(fp_pkg::RoundNearestEven),
-      .tininess_after_i(1'b0),
-      .result_o(product[32*k +: 32]),
-      .flags_o(unused_flags)
-    );
-  end
-
+  vector_multiplier #(
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_multiply (
+    .clk_i,
+    .a_i(scaled_distance_q),
+    .b_i(scaled_inverse_q),
+    .product_o(product)
+  );
   delay_line #(
     .Width(ChildrenWidth + 96 + 33 + 31 + 3 + 3 + 9 + 1),
     .Depth(hit_test_pkg::MultiplierLatency)
@@ -239,33 +218,29 @@ module box_unit #(
   logic aligned_every_box_q;
 
   for (genvar k = 0; k < 3; k++) begin : gen_align
-    logic [7:0] product_field, inverse_field;
-    logic signed [10:0] amount, step_amount;
-    logic [SizeWidth-1:0] size;
+    logic [PlaceWidth-1:0] near, far;
     logic [StepWidth-1:0] step;
-    logic signed [PlaceWidth-1:0] a, room;
-    logic says_nothing;
 
-    assign product_field = product[32*k+23 +: 8];
-    assign inverse_field = mul_inverse[32*k+23 +: 8];
-    assign amount        = $signed({2'b0, mul_exponent}) + 11'sd11 - $signed({3'b0, product_field});
-    assign step_amount   = $signed(mul_caps[11*k +: 11]) - $signed({3'b0, inverse_field});
-    assign size = (amount <= 11'sd0) ? SizeWidth'(1) << (SizeWidth - 1)
-                : (amount > 11'sd33) ? '0 : {1'b1, product[32*k +: 23], 10'b0} >> amount[5:0];
-    assign step = (step_amount > 11'sd32) ? '0
-                : {1'b1, mul_inverse[32*k +: 23], 9'b0} >> step_amount[5:0];
-    assign a = product[32*k+31] ? -$signed({2'b0, size}) : $signed({2'b0, size});
-    assign room = $signed(PlaceWidth'(size[SizeWidth-1:22]))
-                + $signed(PlaceWidth'(step[StepWidth-1:24]))
-                + $signed(PlaceWidth'(6)) + (mul_capped[k] ? $signed(PlaceWidth'(Whole)) : '0);
-    assign says_nothing = mul_open[k] | (&product_field);
+    box_axis #(
+      .Arith(Arith),
+      .Adder(Adder)
+    ) u_axis (
+      .product_i(product[32*k +: 32]),
+      .inverse_i(mul_inverse[32*k +: 31]),
+      .exponent_i(mul_exponent),
+      .cap_i(mul_caps[11*k +: 11]),
+      .is_capped_i(mul_capped[k]),
+      .is_open_i(mul_open[k]),
+      .near_o(near),
+      .far_o(far),
+      .step_o(step)
+    );
 
     always_ff @(posedge clk_i) begin
-      near_q[PlaceWidth*k +: PlaceWidth] <=
-          says_nothing ? -($signed(PlaceWidth'(1)) <<< 33) : a - room;
-      far_q[PlaceWidth*k +: PlaceWidth] <= says_nothing ? $signed(PlaceWidth'(1)) <<< 33 : a + room;
-      step_q[StepWidth*k +: StepWidth] <= says_nothing ? '0 : step;
-      back_q[k] <= mul_inverse[32*k+31];
+      near_q[PlaceWidth*k +: PlaceWidth] <= near;
+      far_q[PlaceWidth*k +: PlaceWidth]  <= far;
+      step_q[StepWidth*k +: StepWidth]   <= step;
+      back_q[k]                          <= mul_inverse[32*k+31];
     end
   end
 
@@ -283,35 +258,20 @@ module box_unit #(
     aligned_every_box_q <= mul_every_box;
   end
 
-  // ---- Step: q s for the near and the far plane of each box
+  // ---- Step and enter: a key for each child, {left out, enter}
 
   localparam int unsigned NodeBoxes = ray_core_pkg::NodeBoxes - ray_core_pkg::NodeBase;
-  logic [Children*3*StepWidth-1:0] near_way_q, far_way_q;
+  localparam int unsigned BoxWidth = ray_core_pkg::BoxWidth;
+  localparam int unsigned Kinds = ray_core_pkg::NodeKinds - ray_core_pkg::NodeBase;
+  localparam int unsigned KeyWidth = UnitBits + 2;
+
   logic [3*PlaceWidth-1:0] step_near_q, step_far_q;
   logic [2:0] step_back_q;
   logic [UnitBits:0] step_limit_q;
-  logic [NodeBoxes-1:0] step_node_q;  // base and kinds
-  logic [8:0] step_exponent_q;
+  logic [NodeBoxes-1:0] step_node_q, keys_node_q;  // base and kinds
+  logic [8:0] step_exponent_q, keys_exponent_q;
   logic step_every_box_q;
-
-  for (genvar i = 0; i < Children; i++) begin : gen_step
-    for (genvar k = 0; k < 3; k++) begin : gen_axis
-      logic [7:0] low, high;
-      logic [StepWidth-1:0] low_way, high_way;
-      logic [StepWidth+7:0] step;
-      assign low  = aligned_node_q[NodeBoxes+48*i+8*k +: 8];
-      assign high = aligned_node_q[NodeBoxes+48*i+24+8*k +: 8];
-      assign step     = (StepWidth + 8)'(step_q[StepWidth*k +: StepWidth]);
-      assign low_way  = StepWidth'(((StepWidth + 8)'(low) * step) >> 8);
-      assign high_way = StepWidth'(((StepWidth + 8)'(high) * step) >> 8);
-      always_ff @(posedge clk_i) begin
-        near_way_q[StepWidth*(3*i+k) +: StepWidth] <=
-            back_q[k] ? high_way : low_way;
-        far_way_q[StepWidth*(3*i+k) +: StepWidth] <=
-            back_q[k] ? low_way : high_way;
-      end
-    end
-  end
+  logic [Children*KeyWidth-1:0] keys;
 
   always_ff @(posedge clk_i) begin
     step_near_q      <= near_q;
@@ -321,129 +281,42 @@ module box_unit #(
     step_node_q      <= aligned_node_q[NodeBoxes-1:0];
     step_exponent_q  <= aligned_exponent_q;
     step_every_box_q <= aligned_every_box_q;
+    keys_node_q      <= step_node_q;
+    keys_exponent_q  <= step_exponent_q;
   end
 
-  // ---- Enter: keys {left out, enter, number of the child}
-
-  localparam int unsigned NumberWidth = 3;
-  localparam int unsigned KeyWidth = 1 + UnitBits + 1 + NumberWidth;
-  localparam int unsigned Kinds = ray_core_pkg::NodeKinds - ray_core_pkg::NodeBase;
-  localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
-
-  logic [Children*KeyWidth-1:0] keys_q, half_sorted_q, half_sorted, sorted;
-  localparam int unsigned HeadWidth = ray_core_pkg::AddressWidth + Children * KindWidth + 9;
-  logic [HeadWidth-1:0] keys_head_q, half_head_q;  // {exponent, kinds, base}
-
-  for (genvar i = 0; i < Children; i++) begin : gen_enter
-    logic signed [PlaceWidth-1:0] enter, leave;
-    logic entered;
-
-    always_comb begin : planes
-      logic signed [PlaceWidth-1:0] near, far, near_from, far_from, near_way, far_way;
-      enter = '0;
-      leave = $signed(PlaceWidth'(step_limit_q));
-      for (int unsigned k = 0; k < 3; k++) begin
-        near_from = $signed(step_near_q[PlaceWidth*k +: PlaceWidth]);
-        far_from  = $signed(step_far_q[PlaceWidth*k +: PlaceWidth]);
-        near_way  = $signed({3'b0, near_way_q[StepWidth*(3*i+k) +: StepWidth]});
-        far_way   = $signed({3'b0, far_way_q[StepWidth*(3*i+k) +: StepWidth]});
-        near = step_back_q[k] ? near_from - near_way : near_from + near_way;
-        far  = step_back_q[k] ? far_from - far_way : far_from + far_way;
-        if (near > enter) enter = near;
-        if (far < leave) leave = far;
-      end
-    end
-
-    assign entered = (step_every_box_q | (enter <= leave))
-                   & (step_node_q[Kinds+KindWidth*i +: KindWidth] != ray_core_pkg::KindAbsent);
-    always_ff @(posedge clk_i) begin
-      keys_q[KeyWidth*i+:KeyWidth] <= {
-        ~entered,
-        (entered & ~step_every_box_q) ? enter[UnitBits:0] : (UnitBits + 1)'(0),
-        NumberWidth'(i)
-      };
-    end
+  for (genvar i = 0; i < Children; i++) begin : gen_child
+    box_child #(
+      .Arith(Arith),
+      .Adder(Adder)
+    ) u_child (
+      .clk_i,
+      .box_i(aligned_node_q[NodeBoxes+BoxWidth*i +: BoxWidth]),
+      .back_i(back_q),
+      .step_i(step_q),
+      .near_i(step_near_q),
+      .far_i(step_far_q),
+      .next_back_i(step_back_q),
+      .limit_i(step_limit_q),
+      .kind_i(step_node_q[Kinds+KindWidth*i +: KindWidth]),
+      .every_box_i(step_every_box_q),
+      .key_o(keys[KeyWidth*i +: KeyWidth])
+    );
   end
 
-  always_ff @(posedge clk_i) begin
-    keys_head_q   <= {step_exponent_q, step_node_q[Kinds+Children*KindWidth-1:0]};
-    half_sorted_q <= half_sorted;
-    half_head_q   <= keys_head_q;
-  end
+  // ---- Sort
 
-  // ---- Sort, in two stages
-
-  function automatic logic [2*KeyWidth-1:0] in_order(logic [KeyWidth-1:0] a,
-                                                     logic [KeyWidth-1:0] b);
-    in_order = (a > b) ? {a, b} : {b, a};  // the smaller one lowest
-  endfunction
-
-  always_comb begin : first_half
-    logic [KeyWidth-1:0] a, b, c, d, e, f, g;
-    {g, f, e, d, c, b, a} = keys_q;
-    {g, a} = in_order(a, g);
-    {d, c} = in_order(c, d);
-    {f, e} = in_order(e, f);
-    {c, a} = in_order(a, c);
-    {e, b} = in_order(b, e);
-    {g, d} = in_order(d, g);
-    {b, a} = in_order(a, b);
-    {f, c} = in_order(c, f);
-    {e, d} = in_order(d, e);
-    half_sorted = {g, f, e, d, c, b, a};
-  end
-  always_comb begin : second_half
-    logic [KeyWidth-1:0] a, b, c, d, e, f, g;
-    {g, f, e, d, c, b, a} = half_sorted_q;
-    {c, b} = in_order(b, c);
-    {g, e} = in_order(e, g);
-    {d, c} = in_order(c, d);
-    {f, e} = in_order(e, f);
-    {c, b} = in_order(b, c);
-    {e, d} = in_order(d, e);
-    {g, f} = in_order(f, g);
-    sorted = {g, f, e, d, c, b, a};
-  end
-
-  // ---- The group
-
-  logic [Children*OffsetWidth-1:0] offsets;  // of the children's first lines
-  logic [Children*EntryWidth-1:0] entries;
-  logic [Children-1:0] inner, leaf;
-
-  always_comb begin : group
-    logic [OffsetWidth-1:0] next;
-    logic [KindWidth-1:0] kind;
-    logic [KeyWidth-1:0] key;
-    logic [NumberWidth-1:0] number;
-    logic is_inner;
-    next = '0;
-    for (int unsigned i = 0; i < Children; i++) begin
-      offsets[OffsetWidth*i +: OffsetWidth] = next;
-      kind = half_head_q[ray_core_pkg::AddressWidth+KindWidth*i +: KindWidth];
-      next = next + ((kind == ray_core_pkg::KindInner) ? OffsetWidth'(1)
-                                                       : OffsetWidth'(kind[CountWidth-1:0]));
-    end
-    for (int unsigned n = 0; n < Children; n++) begin
-      key = sorted[KeyWidth*n +: KeyWidth];
-      number = key[NumberWidth-1:0];
-      kind = half_head_q[ray_core_pkg::AddressWidth+KindWidth*number +: KindWidth];
-      is_inner = kind == ray_core_pkg::KindInner;
-      inner[n] = ~key[KeyWidth-1] & is_inner;
-      leaf[n]  = ~key[KeyWidth-1] & ~is_inner;
-      entries[EntryWidth*n +: EntryWidth] =
-          {key[NumberWidth+UnitBits] ? {EnterWidth{1'b1}}
-                                     : key[NumberWidth+UnitBits-1 -: EnterWidth],
-           offsets[OffsetWidth*number +: OffsetWidth],
-           is_inner ? CountWidth'(0) : kind[CountWidth-1:0]};
-    end
-  end
-
-  always_ff @(posedge clk_i) begin
-    group_o <= {half_head_q[ray_core_pkg::AddressWidth-1:0], half_head_q[HeadWidth-1 -: 9],
-                entries};
-    inner_o <= inner;
-    leaf_o  <= leaf;
-  end
+  box_group #(
+    .Arith(Arith)
+  ) u_group (
+    .clk_i,
+    .keys_i(keys),
+    .kinds_i(keys_node_q[Kinds +: Children*KindWidth]),
+    .base_i(keys_node_q[0 +: ray_core_pkg::AddressWidth]),
+    .exponent_i(keys_exponent_q),
+    .group_o,
+    .inner_o,
+    .leaf_o
+  );
 
 endmodule

@@ -1,14 +1,16 @@
 // The one memory port: nodes and triangles that rays ask for, each kind through a cache of its own.
 //
-// What the caches lack goes out in turn, with a tag, {is a triangle's, ray, line}; its line may come back at
-// any time and in any order. Each clock gives a node and a triangle where both caches have one.
+// What the caches lack goes out in turn, with a tag, {is a triangle's, alone, waiter, place}, see line_cache;
+// its line may come back at any time and in any order. Each clock gives a node and a triangle where both caches have one.
 module line_port #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
   parameter int unsigned TriangleLines = 256,  // of the triangles'
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned TagWidth = 1 + RayWidth + AddressWidth,
+  localparam int unsigned PlaceWidth =
+      $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
+  localparam int unsigned TagWidth = 2 + RayWidth + PlaceWidth,
   localparam int unsigned LineWidth = ray_core_pkg::LineWidth,
   localparam int unsigned TriangleWidth = ray_core_pkg::TriangleWidth
 ) (
@@ -44,6 +46,7 @@ module line_port #(
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
+  localparam int unsigned MissWidth = 1 + RayWidth + AddressWidth;  // as many waiters as rays
 
   // ---- What is asked for
 
@@ -79,16 +82,31 @@ module line_port #(
 
   // ---- Caches
 
-  logic fill, fill_triangle;
-  logic [RequestWidth-1:0] fill_request, node_miss, triangle_miss;
+  logic line_valid, fill, fill_triangle, fill_alone, node_done, triangle_done;
+  logic [RayWidth-1:0] fill_waiter;
+  logic [PlaceWidth-1:0] fill_place;
+  logic [LineWidth-1:0] line;
+  logic [MissWidth-1:0] node_miss, triangle_miss;
   logic node_miss_valid, node_miss_ready, triangle_miss_valid, triangle_miss_ready;
 
-  assign line_ready_o = tests_allowed_i;
-  assign fill         = line_valid_i & line_ready_o;
-  assign {fill_triangle, fill_request} = line_tag_i;
+  fifo #(
+    .Width(TagWidth + LineWidth),
+    .Depth(2)
+  ) u_lines (
+    .clk_i,
+    .rst_ni,
+    .push_i(line_valid_i & line_ready_o),
+    .data_i({line_tag_i, line_i}),
+    .space_o(line_ready_o),
+    .pop_i(fill & (fill_triangle ? triangle_done : node_done)),
+    .valid_o(line_valid),
+    .data_o({fill_triangle, fill_alone, fill_waiter, fill_place, line})
+  );
+  assign fill = line_valid & tests_allowed_i;
 
   line_cache #(
     .Lines(NodeLines),
+    .Waiters(Rays),
     .RayWidth(RayWidth)
   ) u_node_cache (
     .clk_i,
@@ -100,12 +118,15 @@ module line_port #(
     .line_number_i(node[AddressWidth-1:0]),
     .miss_valid_o(node_miss_valid),
     .miss_ready_i(node_miss_ready),
-    .miss_ray_o(node_miss[RequestWidth-1 -: RayWidth]),
+    .miss_waiter_o(node_miss[MissWidth-2 -: RayWidth]),
+    .miss_alone_o(node_miss[MissWidth-1]),
     .miss_number_o(node_miss[AddressWidth-1:0]),
     .fill_i(fill & ~fill_triangle),
-    .fill_ray_i(fill_request[RequestWidth-1 -: RayWidth]),
-    .fill_number_i(fill_request[AddressWidth-1:0]),
-    .fill_line_i(line_i),
+    .fill_done_o(node_done),
+    .fill_waiter_i(fill_waiter),
+    .fill_alone_i(fill_alone),
+    .fill_index_i(fill_place[$clog2(NodeLines)-1:0]),
+    .fill_line_i(line),
     .valid_o(node_valid_o),
     .ready_i(1'b1),
     .ray_o(node_ray_o),
@@ -113,6 +134,7 @@ module line_port #(
   );
   line_cache #(
     .Lines(TriangleLines),
+    .Waiters(Rays),
     .RayWidth(RayWidth),
     .Width(TriangleWidth)
   ) u_triangle_cache (
@@ -125,12 +147,15 @@ module line_port #(
     .line_number_i(triangle[AddressWidth-1:0]),
     .miss_valid_o(triangle_miss_valid),
     .miss_ready_i(triangle_miss_ready),
-    .miss_ray_o(triangle_miss[RequestWidth-1 -: RayWidth]),
+    .miss_waiter_o(triangle_miss[MissWidth-2 -: RayWidth]),
+    .miss_alone_o(triangle_miss[MissWidth-1]),
     .miss_number_o(triangle_miss[AddressWidth-1:0]),
     .fill_i(fill & fill_triangle),
-    .fill_ray_i(fill_request[RequestWidth-1 -: RayWidth]),
-    .fill_number_i(fill_request[AddressWidth-1:0]),
-    .fill_line_i(line_i[TriangleWidth-1:0]),
+    .fill_done_o(triangle_done),
+    .fill_waiter_i(fill_waiter),
+    .fill_alone_i(fill_alone),
+    .fill_index_i(fill_place[$clog2(TriangleLines)-1:0]),
+    .fill_line_i(line[TriangleWidth-1:0]),
     .valid_o(triangle_valid_o),
     .ready_i(tests_allowed_i),
     .ray_o(triangle_ray_o),
@@ -139,6 +164,7 @@ module line_port #(
 
   // ---- What they lack, in turn
 
+  logic [MissWidth:0] out;
   logic out_ready, node_last_q;  // the last request was a node's
 
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
@@ -152,7 +178,7 @@ module line_port #(
   end
 
   fifo #(
-    .Width(1 + RequestWidth),
+    .Width(1 + MissWidth),
     .Depth(2)
   ) u_out (
     .clk_i,
@@ -162,8 +188,9 @@ module line_port #(
     .space_o(out_ready),
     .pop_i(read_valid_o & read_ready_i),
     .valid_o(read_valid_o),
-    .data_o(read_tag_o)
+    .data_o(out)
   );
-  assign read_line_o = read_tag_o[AddressWidth-1:0];
+  assign read_line_o = out[AddressWidth-1:0];
+  assign read_tag_o  = {out[MissWidth -: 2 + RayWidth], out[PlaceWidth-1:0]};
 
 endmodule

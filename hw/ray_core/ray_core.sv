@@ -1,13 +1,14 @@
 // The ray core: rays in, nearest sure hits and doubts out; it walks the tree of boxes in memory by itself.
 //
-//   ray_intake         a slot of the table for each ray, 1 / I_k
+//   ray_intake         1 / I_k, and a slot of the table for each ray
 //   ray_walk           the stacks, and which ray goes to its next node
 //   line_port          nodes and triangles, from caches or memory
 //   box_unit           which children of a node a ray enters
 //   leaf_walk          the triangles of the leaves among them
-//   set_up_unit        a triangle's record, seen from the ray's origin
-//   hit_test_pipeline  hit, miss or doubt; t, P
+//   triangle_test      set_up_unit: a triangle's record, seen from the ray's origin; hit_test_pipeline: hit,
+//                      miss or doubt, t, P
 //   ray_hits           each ray's nearest hit and limit, and the doubts
+//   ray_ends           which rays have ended; results
 //
 // Rays and results: valid/ready. A ray's walk begins at the inner node of line ray_start_i (the root's, as a
 // rule). Its direction is scaled: the largest component is in [1, 2). Hits at t >= ray_limit_i, in exact
@@ -24,7 +25,7 @@
 //
 // Throughput: a node and a triangle a clock, out of the caches; a line a clock of what they lack.
 module ray_core #(
-  parameter int unsigned Rays  = 64,  // in flight; a power of two
+  parameter int unsigned Rays  = 64,  // of the table; a power of two
   parameter int unsigned Depth = 8,   // groups on a ray's stack
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
@@ -32,7 +33,8 @@ module ray_core #(
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned TagWidth = 1 + RayWidth + AddressWidth,
+  localparam int unsigned TagWidth = 2 + RayWidth
+                                   + $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
   localparam int unsigned LineWidth = ray_core_pkg::LineWidth,
   localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
   localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
@@ -74,7 +76,7 @@ module ray_core #(
   output logic                    line_ready_o,
   input  logic [TagWidth-1:0]     line_tag_i,
   input  logic [LineWidth-1:0]    line_i,
-  output logic [ray_core_pkg::NumEvents-1:0] events_o  // this clock's, see event_e
+  output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
 );
 
   localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth;
@@ -83,22 +85,26 @@ module ray_core #(
 
   // ---- The table: what is known of a ray from its beginning
 
+  localparam int unsigned InWidth = 96 + 96 + 31 + 32 + AddressWidth + 1 + 1 + 32;
+
   logic [95:0] origins[Rays];
   logic [95:0] directions[Rays];
   logic [95:0] inverses[Rays];
   logic [31:0] ignored[Rays];
   logic [31:0] tags[Rays];
-  logic [AddressWidth-1:0] starts[Rays];
   logic [Rays-1:0] every_box_q;
 
-  logic taken, inverse_valid, start_valid, start_taken, end_given;
-  logic [RayWidth-1:0] slot, inverse_slot, start_slot, end_ray;
-  logic [95:0] inverse;
-
-  assign taken = ray_valid_i & ray_ready_o;
+  logic start_valid, start_taken, ending;
+  logic [RayWidth-1:0] slot, ending_slot;
+  logic [95:0] origin, direction, inverse;
+  logic [31:0] start_ignored, start_tag;
+  logic [30:0] start_limit;
+  logic [AddressWidth-1:0] start_line;
+  logic start_any_hit, start_every_box;
 
   ray_intake #(
     .Rays(Rays),
+    .Width(InWidth),
     .Arith(Arith),
     .Adder(Adder)
   ) u_intake (
@@ -107,33 +113,34 @@ module ray_core #(
     .valid_i(ray_valid_i),
     .ready_o(ray_ready_o),
     .direction_i(ray_direction_i),
-    .slot_o(slot),
-    .free_valid_i(end_given),
-    .free_slot_i(end_ray),
-    .inverse_valid_o(inverse_valid),
-    .inverse_slot_o(inverse_slot),
-    .inverse_o(inverse),
+    .ray_i({ray_origin_i, ray_direction_i, ray_limit_i, ray_ignored_i, ray_start_i, ray_any_hit_i,
+            ray_every_box_i, ray_tag_i}),
+    .free_valid_i(ending),
+    .free_slot_i(ending_slot),
     .start_valid_o(start_valid),
-    .start_slot_o(start_slot),
+    .start_slot_o(slot),
+    .start_inverse_o(inverse),
+    .start_ray_o({origin, direction, start_limit, start_ignored, start_line, start_any_hit,
+                  start_every_box, start_tag}),
     .start_taken_i(start_taken)
   );
 
   always_ff @(posedge clk_i) begin
-    if (taken) begin
-      origins[slot]     <= ray_origin_i;
-      directions[slot]  <= ray_direction_i;
-      ignored[slot]     <= ray_ignored_i;
-      tags[slot]        <= ray_tag_i;
-      starts[slot]      <= ray_start_i;
-      every_box_q[slot] <= ray_every_box_i;
+    if (start_taken) begin
+      origins[slot]     <= origin;
+      directions[slot]  <= direction;
+      inverses[slot]    <= inverse;
+      ignored[slot]     <= start_ignored;
+      tags[slot]        <= start_tag;
+      every_box_q[slot] <= start_every_box;
     end
-    if (inverse_valid) inverses[inverse_slot] <= inverse;
   end
 
   // ---- Walk
 
   logic box_valid, walk_ended, leaf_ended, leaf_crowded, node, rest_valid, rest_taken;
-  logic [RayWidth-1:0] box_ray, walk_ray, leaf_ray, node_ray, rest_ray;
+  logic [RayWidth-1:0] box_ray, walk_ray, leaf_ray, node_ray;
+  logic [31:0] rest_tag;
   logic [GroupWidth-1:0] box_group;
   logic [Children-1:0] box_inner, box_leaf;
   logic [30:0] walk_limit, leaf_limit;
@@ -148,11 +155,12 @@ module ray_core #(
     .clk_i,
     .rst_ni,
     .start_valid_i(start_valid),
-    .start_ray_i(start_slot),
-    .start_line_i(starts[start_slot]),
+    .start_ray_i(slot),
+    .start_line_i(start_line),
     .start_taken_o(start_taken),
     .box_valid_i(box_valid),
     .box_ray_i(box_ray),
+    .box_tag_i(tags[box_ray]),
     .box_group_i(box_group),
     .box_inner_i(box_inner),
     .held_i(held),
@@ -165,7 +173,7 @@ module ray_core #(
     .node_ray_o(node_ray),
     .node_line_o(node_line),
     .rest_valid_o(rest_valid),
-    .rest_ray_o(rest_ray),
+    .rest_tag_o(rest_tag),
     .rest_line_o(rest_line),
     .rest_nodes_o(rest_nodes),
     .rest_taken_i(rest_taken)
@@ -269,123 +277,77 @@ module ray_core #(
   end
   assign box_valid = boxing_q[ray_core_pkg::BoxLatency-1];
 
-  // ---- Set up
+  // ---- Tests
 
-  logic [hit_test_pkg::RecordWords*32-1:0] set_record;
-  logic [PlaneErrorWidth-1:0] set_normal_error, set_distance_error;
-  logic [set_up_pkg::Latency-1:0] setting_q;
-  logic [RayWidth-1:0] set_ray;
-  logic [31:0] set_triangle;
-  logic set_ignored;
-
-  set_up_unit #(
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_set_up (
-    .clk_i,
-    .origin_i(origins[triangle_line_ray]),
-    .corners_i(triangle_words[ray_core_pkg::TriangleCorners +: 9*32]),
-    .record_o(set_record),
-    .normal_error_o(set_normal_error),
-    .distance_error_o(set_distance_error)
-  );
-  delay_line #(
-    .Width(RayWidth + 32 + 1),
-    .Depth(set_up_pkg::Latency)
-  ) u_beside_set_up (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i({triangle_line_ray, triangle_words[ray_core_pkg::TriangleIndex +: 32],
-             triangle_words[ray_core_pkg::TriangleIndex +: 32] == ignored[triangle_line_ray]}),
-    .data_o({set_ray, set_triangle, set_ignored})
-  );
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) setting_q <= '0;
-    else setting_q <= {setting_q[set_up_pkg::Latency-2:0], triangle_here};
-  end
-
-  // ---- Test: each triangle is a burst of its own
-
-  localparam int unsigned TestTagWidth = 2 * PlaneErrorWidth + 1 + RayWidth + 32;
-
-  logic unused_ready, word_valid, closed, found, point_valid;
-  hit_test_pkg::report_e report;
-  logic [TestTagWidth-1:0] report_tag, found_tag, tag;
+  logic over, found, doubt, point_valid, result_ignored;
+  logic [RayWidth-1:0] set_ray, result_ray;
   logic [31:0] t, result_triangle;
   logic [hit_test_pkg::TErrorWidth-1:0] t_error;
-  logic [95:0] point;
-  logic [hit_test_pkg::NumCounts-1:0] unused_events;
   logic [PlaneErrorWidth-1:0] normal_error, distance_error;
-  logic [RayWidth-1:0] result_ray;
-  logic result_ignored;
+  logic [95:0] point;
 
-  hit_test_pipeline #(
+  triangle_test #(
+    .Rays(Rays),
     .Arith(Arith),
-    .Adder(Adder),
-    .TagWidth(TestTagWidth)
+    .Adder(Adder)
   ) u_tests (
     .clk_i,
     .rst_ni,
-    .valid_i(setting_q[set_up_pkg::Latency-1]),
-    .ready_o(unused_ready),  // always, as results are always taken
-    .first_i(1'b1),
-    .last_i(1'b1),
-    .tag_i({set_normal_error, set_distance_error, set_ignored, set_ray, set_triangle}),
+    .valid_i(triangle_here),
+    .slot_i(triangle_line_ray),
+    .triangle_i(triangle_words),
+    .origin_i(origins[triangle_line_ray]),
+    .ignored_i(ignored[triangle_line_ray]),
+    .direction_slot_o(set_ray),
     .direction_i(directions[set_ray]),
-    .record_i(set_record),
-    .valid_o(word_valid),
-    .ready_i(1'b1),
-    .report_o(report),
-    .report_tag_o(report_tag),
-    .closed_o(closed),
+    .closed_o(over),
+    .slot_o(result_ray),
+    .triangle_o(result_triangle),
+    .is_ignored_o(result_ignored),
+    .doubt_o(doubt),
     .found_o(found),
-    .tag_o(found_tag),
     .t_o(t),
     .t_error_o(t_error),
+    .normal_error_o(normal_error),
+    .distance_error_o(distance_error),
     .point_valid_o(point_valid),
-    .point_o(point),
-    .events_o(unused_events)
+    .point_o(point)
   );
-
-  assign tag = found ? found_tag : report_tag;
-  assign {normal_error, distance_error, result_ignored, result_ray, result_triangle} = tag;
 
   // ---- Hits
 
-  logic over, near_tie, doubt_valid, doubt_taken;
-  logic [RayWidth-1:0] doubt_ray;
-  logic [31:0] doubt_triangle, end_triangle, end_t;
-  logic [95:0] end_point;
+  logic near_tie, doubt_valid, doubt_taken;
+  logic [31:0] doubt_tag, doubt_triangle, end_triangle, end_t;
   logic [TErrorWidth-1:0] end_t_error;
   logic [TestsWidth-1:0] end_tests;
   logic end_found;
-
-  assign over = word_valid & closed;
+  logic [RayWidth-1:0] point_slot;
+  logic [95:0] end_point;
 
   ray_hits #(
     .Rays(Rays)
   ) u_hits (
     .clk_i,
     .rst_ni,
-    .load_i(taken),
+    .load_i(start_taken),
     .load_ray_i(slot),
-    .load_limit_i(ray_limit_i),
-    .load_any_hit_i(ray_any_hit_i),
+    .load_limit_i(start_limit),
+    .load_any_hit_i(start_any_hit),
     .test_i(triangle_valid & triangle_ready),
     .test_ray_i(triangle_ray),
     .tests_allowed_o(tests_allowed),
     .result_i(over),
     .result_ray_i(result_ray),
+    .result_tag_i(tags[result_ray]),
     .result_triangle_i(result_triangle),
     .result_ignored_i(result_ignored),
-    .result_doubt_i(report == hit_test_pkg::ReportDoubt),
+    .result_doubt_i(doubt),
     .result_hit_i(found),
     .result_t_i(t),
     .result_t_error_i(t_error),
     .result_normal_error_i(normal_error),
     .result_distance_error_i(distance_error),
-    .point_valid_i(word_valid & point_valid),
+    .point_valid_i(point_valid),
     .point_i(point),
     .walk_ray_i(walk_ray),
     .walk_limit_o(walk_limit),
@@ -398,113 +360,83 @@ module ray_core #(
     .box_limit_o(box_limit),
     .testing_o(testing),
     .doubt_valid_o(doubt_valid),
-    .doubt_ray_o(doubt_ray),
+    .doubt_tag_o(doubt_tag),
     .doubt_triangle_o(doubt_triangle),
     .doubt_taken_i(doubt_taken),
-    .end_ray_i(end_ray),
+    .end_ray_i(ending_slot),
     .end_found_o(end_found),
     .end_triangle_o(end_triangle),
     .end_t_o(end_t),
     .end_t_error_o(end_t_error),
-    .end_point_o(end_point),
     .end_tests_o(end_tests),
+    .point_ray_i(point_slot),
+    .point_o(end_point),
     .near_tie_o(near_tie)
   );
 
-  // ---- The end: nothing to walk, to ask for or to test. P may be on its way still
+  // ---- Results
 
-  localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
-
-  logic [Rays-1:0] active_q;  // on its way, and its end not noticed
-  logic ending, end_valid, unused_space;
-  logic [RayWidth-1:0] ending_ray, pointed_ray;
-  logic [PointDelay-1:0] pointing_q;
-
-  rotating_pick #(
-    .Width(Rays)
-  ) u_end (
-    .requests_i(active_q & ~walking & ~held & ~testing),
-    .start_i('0),
-    .valid_o(ending),
-    .index_o(ending_ray)
-  );
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      active_q   <= '0;
-      pointing_q <= '0;
-    end else begin
-      if (start_taken) active_q[start_slot] <= 1'b1;
-      if (ending) active_q[ending_ray] <= 1'b0;
-      pointing_q <= {pointing_q[PointDelay-2:0], ending};
-    end
-  end
-  delay_line #(
-    .Width(RayWidth),
-    .Depth(PointDelay)
-  ) u_pointing (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i(ending_ray),
-    .data_o(pointed_ray)
-  );
-  fifo #(
-    .Width(RayWidth),
-    .Depth(Rays)
+  ray_ends #(
+    .Rays(Rays)
   ) u_ends (
     .clk_i,
     .rst_ni,
-    .push_i(pointing_q[PointDelay-1]),
-    .data_i(pointed_ray),
-    .space_o(unused_space),
-    .pop_i(end_given),
-    .valid_o(end_valid),
-    .data_o(end_ray)
+    .start_i(start_taken),
+    .start_slot_i(slot),
+    .busy_i(walking | held | testing),
+    .ending_o(ending),
+    .ending_slot_o(ending_slot),
+    .ending_tag_i(tags[ending_slot]),
+    .ending_found_i(end_found),
+    .ending_triangle_i(end_triangle),
+    .ending_t_i(end_t),
+    .ending_t_error_i(end_t_error),
+    .ending_tests_i(end_tests),
+    .point_slot_o(point_slot),
+    .point_i(end_point),
+    .doubt_valid_i(doubt_valid),
+    .doubt_tag_i(doubt_tag),
+    .doubt_triangle_i(doubt_triangle),
+    .doubt_taken_o(doubt_taken),
+    .rest_valid_i(rest_valid),
+    .rest_tag_i(rest_tag),
+    .rest_line_i(rest_line),
+    .rest_nodes_i(rest_nodes),
+    .rest_taken_o(rest_taken),
+    .result_valid_o,
+    .result_ready_i,
+    .result_kind_o,
+    .result_tag_o,
+    .result_found_o,
+    .result_triangle_o,
+    .result_t_o,
+    .result_t_error_o,
+    .result_point_o,
+    .result_tests_o,
+    .result_line_o,
+    .result_nodes_o
   );
-
-  // ---- Results: a ray's doubts and rests come before its end
-
-  logic load;
-
-  assign load        = ~result_valid_o | result_ready_i;
-  assign doubt_taken = load & doubt_valid;
-  assign rest_taken  = load & rest_valid & ~doubt_valid;
-  assign end_given   = load & end_valid & ~doubt_valid & ~rest_valid;
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) result_valid_o <= 1'b0;
-    else if (load) result_valid_o <= doubt_valid | rest_valid | end_valid;
-  end
-  always_ff @(posedge clk_i) begin
-    if (load) begin
-      result_kind_o     <= doubt_valid ? ray_core_pkg::ResultDoubt
-                         : rest_valid ? ray_core_pkg::ResultRest : ray_core_pkg::ResultEnd;
-      result_tag_o      <= tags[doubt_valid ? doubt_ray : rest_valid ? rest_ray : end_ray];
-      result_found_o    <= end_found & ~doubt_valid & ~rest_valid;
-      result_triangle_o <= doubt_valid ? doubt_triangle : end_triangle;
-      result_t_o        <= end_t;
-      result_t_error_o  <= end_t_error;
-      result_point_o    <= end_point;
-      result_tests_o    <= end_tests;
-      result_line_o     <= rest_line;
-      result_nodes_o    <= rest_nodes;
-    end
-  end
 
   // ---- Events
 
+  logic [ray_core_pkg::NumEvents-1:0] events;
+
   always_comb begin
-    events_o = '0;
-    events_o[ray_core_pkg::EventRay]      = end_given;
-    events_o[ray_core_pkg::EventNode]     = node_here;
-    events_o[ray_core_pkg::EventTriangle] = triangle_here;
-    events_o[ray_core_pkg::EventHit]      = over & found;
-    events_o[ray_core_pkg::EventMiss]     = over & ~found & (report != hit_test_pkg::ReportDoubt);
-    events_o[ray_core_pkg::EventDoubt]    = over & (report == hit_test_pkg::ReportDoubt);
-    events_o[ray_core_pkg::EventNearTie]  = near_tie;
-    events_o[ray_core_pkg::EventRest]     = rest_taken;
-    events_o[ray_core_pkg::EventRead]     = read_valid_o & read_ready_i;
-    events_o[ray_core_pkg::EventWait]     = read_valid_o & ~read_ready_i;
+    events = '0;
+    events[ray_core_pkg::EventRay]      = ending;
+    events[ray_core_pkg::EventNode]     = node_here;
+    events[ray_core_pkg::EventTriangle] = triangle_here;
+    events[ray_core_pkg::EventHit]      = over & found;
+    events[ray_core_pkg::EventMiss]     = over & ~found & ~doubt;
+    events[ray_core_pkg::EventDoubt]    = over & doubt;
+    events[ray_core_pkg::EventNearTie]  = near_tie;
+    events[ray_core_pkg::EventRest]     = rest_taken;
+    events[ray_core_pkg::EventRead]     = read_valid_o & read_ready_i;
+    events[ray_core_pkg::EventWait]     = read_valid_o & ~read_ready_i;
+  end
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) events_o <= '0;
+    else events_o <= events;
   end
 
 endmodule

@@ -63,6 +63,12 @@ package ray_core_pkg;
   // From the clock edge that takes a node to the one after which its group is there, see box_unit.
   localparam int unsigned BoxLatency = 12;
 
+  // ---- Numbers inside box_unit, in units of 2**(E - UnitBits): E is how far the ray may go in the node
+
+  localparam int unsigned UnitBits = 22;
+  localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
+  localparam int unsigned PlaceWidth = 36;  // of planes, two's complement
+
   // ---- Results: what the core says of a ray
 
   typedef enum logic [1:0] {

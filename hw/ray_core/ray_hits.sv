@@ -30,6 +30,7 @@ module ray_hits #(
   // a test is over
   input  logic                       result_i,
   input  logic [RayWidth-1:0]        result_ray_i,
+  input  logic [31:0]                result_tag_i,      // the ray's, for doubts
   input  logic [31:0]                result_triangle_i,
   input  logic                       result_ignored_i,  // it counts for nothing
   input  logic                       result_doubt_i,
@@ -53,7 +54,7 @@ module ray_hits #(
   output logic [Rays-1:0]            testing_o,
   // doubts
   output logic                       doubt_valid_o,
-  output logic [RayWidth-1:0]        doubt_ray_o,
+  output logic [31:0]                doubt_tag_o,
   output logic [31:0]                doubt_triangle_o,
   input  logic                       doubt_taken_i,
   // the nearest hit of a ray, in the same clock
@@ -62,8 +63,10 @@ module ray_hits #(
   output logic [31:0]                end_triangle_o,
   output logic [31:0]                end_t_o,
   output logic [TErrorWidth-1:0]     end_t_error_o,
-  output logic [95:0]                end_point_o,
   output logic [TestsWidth-1:0]      end_tests_o,
+  // the P of a ray's last hit that was kept, in the same clock
+  input  logic [RayWidth-1:0]        point_ray_i,
+  output logic [95:0]                point_o,
   // this clock's, for counters
   output logic                       near_tie_o
 );
@@ -137,18 +140,18 @@ module ray_hits #(
   // ---- Doubts
 
   fifo #(
-    .Width(RayWidth + 32),
+    .Width(32 + 32),
     .Depth(InFlight + 16),
     .Reserve(InFlight)
   ) u_doubts (
     .clk_i,
     .rst_ni,
     .push_i(doubt | open | old_open),
-    .data_i({result_ray_i, old_open ? nearest_triangle[result_ray_i] : result_triangle_i}),
+    .data_i({result_tag_i, old_open ? nearest_triangle[result_ray_i] : result_triangle_i}),
     .space_o(tests_allowed_o),
     .pop_i(doubt_taken_i),
     .valid_o(doubt_valid_o),
-    .data_o({doubt_ray_o, doubt_triangle_o})
+    .data_o({doubt_tag_o, doubt_triangle_o})
   );
 
   // ---- P: of every hit in turn, kept if the hit was
@@ -203,7 +206,7 @@ module ray_hits #(
   assign end_triangle_o = nearest_triangle[end_ray_i];
   assign end_t_o        = nearest_t[end_ray_i];
   assign end_t_error_o  = nearest_error[end_ray_i];
-  assign end_point_o    = points[end_ray_i];
   assign end_tests_o    = tests[end_ray_i];
+  assign point_o        = points[point_ray_i];
 
 endmodule

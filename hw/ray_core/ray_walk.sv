@@ -1,15 +1,19 @@
 // Where rays stand in the tree: a short stack for each, and which one goes to its next node.
 //
 // A stack holds groups of children that a ray enters, the nearest last; of a group those that wait. Each
-// clock one ray is picked that neither waits for a node nor has leaves that nobody has asked for: its
-// nearest inner node is asked for, or, where that is beyond its limit, the whole group dropped. Rays that have
-// no tests on their way come first: what they ask for is needed as far as anybody knows.
+// clock one ray is picked that neither waits for a node nor has leaves that nobody has asked for. Of its
+// groups those whose nearest child is beyond the limit are dropped, all at once; the nearest child of the
+// topmost that is left is asked for. Rays that have no tests on their way come first: what they ask for is
+// needed as far as anybody knows.
 //
 // Where a stack has no room for a group, the group leaves as a rest: the host sends the ray there. Rests are
 // few; while one waits, no node is asked for, so Rays words are room enough.
 //
-// A node's request is in the queue two clocks after its ray was picked. Rays that start (start_*) ask for
-// their first node, and come before those that were picked.
+//   pick    a ray
+//   choose  its group; or, where it has none, a ray that starts (start_*) asks for its first node
+//   ask     the node's line, out of the group
+//
+// A ray that starts waits for one that was picked before, and then has its turn: starts and picks alternate.
 module ray_walk #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,  // groups on a stack, at least 1
@@ -29,6 +33,7 @@ module ray_walk #(
   // what box_unit says of a node
   input  logic                    box_valid_i,
   input  logic [RayWidth-1:0]     box_ray_i,
+  input  logic [31:0]             box_tag_i,  // the ray's, for rests
   input  logic [GroupWidth-1:0]   box_group_i,
   input  logic [Children-1:0]     box_inner_i,
   // what is known of rays
@@ -44,7 +49,7 @@ module ray_walk #(
   output logic [AddressWidth-1:0] node_line_o,
   // rests
   output logic                    rest_valid_o,
-  output logic [RayWidth-1:0]     rest_ray_o,
+  output logic [31:0]             rest_tag_o,
   output logic [AddressWidth-1:0] rest_line_o,
   output logic [NodesWidth-1:0]   rest_nodes_o,
   input  logic                    rest_taken_i
@@ -57,9 +62,10 @@ module ray_walk #(
   localparam int unsigned LevelWidth = $clog2(Depth + 1);
   localparam int unsigned PlaceWidth = $clog2(Rays * Depth);
 
+  localparam int unsigned NextWidth = Children + EnterWidth;
+
   logic [GroupWidth-1:0] groups[Rays*Depth];
-  logic [Children-1:0] masks[Rays*Depth];  // which entries wait
-  logic [LevelWidth-1:0] levels[Rays];     // groups on the stack
+  logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
   logic [Rays-1:0] busy_q;     // waits for a node
   logic [Rays-1:0] waiting_q;  // levels is not 0
 
@@ -70,15 +76,26 @@ module ray_walk #(
     place = PlaceWidth'(slot) * PlaceWidth'(Depth) + PlaceWidth'(depth);
   endfunction
 
+  // The nearest of the entries that are among `which`, 0 for none: {enter, offset}.
+  function automatic logic [EnterWidth+OffsetWidth-1:0] nearest(logic [GroupWidth-1:0] entries,
+                                                                logic [Children-1:0] which);
+    nearest = '0;
+    for (int unsigned n = 0; n < Children; n++) begin
+      if (which[n] && (which & ((Children'(1) << n) - 1'b1)) == '0) begin
+        nearest = entries[EntryWidth*n+CountWidth+:EnterWidth+OffsetWidth];
+      end
+    end
+  endfunction
+
   // ---- Pick
 
   logic [Rays-1:0] ready, sure;
-  logic some, pick, picked_q;
+  logic some, pick, picked_q, go;
   logic [RayWidth-1:0] picked_ray, ray_q;
 
   assign ready = waiting_q & ~busy_q & ~held_i;
   assign sure  = ready & ~testing_i;
-  assign pick  = some & ~start_valid_i & ~rest_valid_o;
+  assign pick  = some & ~(start_valid_i & ~start_taken_o) & ~rest_valid_o;
 
   rotating_pick #(
     .Width(Rays)
@@ -99,56 +116,95 @@ module ray_walk #(
     end
   end
 
-  // ---- Take the nearest of the group on top
+  // ---- Choose: of each level of the stack is known which entries wait, and where the first begins
 
-  logic [LevelWidth-1:0] level, below;
-  logic [GroupWidth-1:0] group;
-  logic [Children-1:0] mask, lowest, rest;
-  logic [EnterWidth+OffsetWidth-1:0] entry;
-  logic beyond, go, last;
+  logic push, asked_q;
+  logic [LevelWidth-1:0] box_level, level, chosen, left, chosen_q;
+  logic [Depth*Children-1:0] masks;
+  logic [Depth-1:0] open;  // levels that have a child within the limit
+  logic [Children-1:0] mask, rest, mask_q, rest_q;
+  logic [RayWidth-1:0] asking_ray_q;
+  logic [EnterWidth-1:0] box_enter, rest_enter;
 
-  assign level       = levels[ray_q];
-  assign below       = level - 1'b1;
-  assign group       = groups[place(ray_q, below)];
-  assign mask        = masks[place(ray_q, below)];
-  assign lowest      = mask & -mask;
-  assign rest        = mask & ~lowest;
   assign limit_ray_o = ray_q;
+  assign level       = levels[ray_q];
+
+  for (genvar d = 0; d < Depth; d++) begin : gen_level
+    logic [NextWidth-1:0] nexts[Rays];  // {mask, enter}
+    logic [ray_core_pkg::ExponentWidth-1:0] exponents[Rays];
+
+    always_ff @(posedge clk_i) begin
+      if (asked_q && chosen_q == LevelWidth'(d)) nexts[asking_ray_q] <= {rest_q, rest_enter};
+      if (push && box_level == LevelWidth'(d)) begin
+        nexts[box_ray_i]     <= {box_inner_i, box_enter};
+        exponents[box_ray_i] <= box_group_i[Children*EntryWidth +: ray_core_pkg::ExponentWidth];
+      end
+    end
+
+    assign masks[Children*d +: Children] = nexts[ray_q][NextWidth-1 -: Children];
+    assign open[d] = (level > LevelWidth'(d)) & ~ended_i & ~ray_core_pkg::is_beyond(
+        exponents[ray_q], nexts[ray_q][EnterWidth-1:0], limit_i);
+  end
 
   always_comb begin
-    entry = '0;
-    for (int unsigned n = 0; n < Children; n++) begin
-      if (lowest[n]) entry = group[EntryWidth*n+CountWidth+:EnterWidth+OffsetWidth];
+    chosen = '0;
+    mask   = '0;
+    for (int unsigned d = 0; d < Depth; d++) begin
+      if (open[d]) begin
+        chosen = LevelWidth'(d);
+        mask   = masks[Children*d +: Children];
+      end
     end
   end
 
-  assign beyond = ended_i | ray_core_pkg::is_beyond(
-      group[Children*EntryWidth +: ray_core_pkg::ExponentWidth],
-      entry[OffsetWidth +: EnterWidth], limit_i);
-  assign go   = picked_q & ~beyond;
-  assign last = beyond | (rest == '0);  // of the group
+  assign rest = mask & (mask - 1'b1);
+  assign go   = picked_q & (open != '0);
+  assign left = (open == '0) ? '0 : (rest == '0) ? chosen : chosen + 1'b1;  // of the levels
 
-  assign start_taken_o = start_valid_i & ~picked_q & ~rest_valid_o;
+  assign start_taken_o = start_valid_i & ~go & ~rest_valid_o;
+
+  // ---- Ask
+
+  logic started_q;
+  logic [AddressWidth-1:0] start_line_q;
+  logic [GroupWidth-1:0] group;
+  logic [OffsetWidth-1:0] offset;
+  logic [EnterWidth-1:0] unused_enter;
+  logic [OffsetWidth-1:0] unused_offset, unused_box_offset;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) node_valid_o <= 1'b0;
-    else node_valid_o <= go | start_taken_o;
+    if (!rst_ni) begin
+      asked_q   <= 1'b0;
+      started_q <= 1'b0;
+    end else begin
+      asked_q   <= go;
+      started_q <= start_taken_o;
+    end
   end
   always_ff @(posedge clk_i) begin
-    node_ray_o  <= picked_q ? ray_q : start_ray_i;
-    node_line_o <= picked_q
-        ? group[GroupWidth-1 -: AddressWidth] + AddressWidth'(entry[OffsetWidth-1:0])
-        : start_line_i;
+    asking_ray_q <= go ? ray_q : start_ray_i;
+    chosen_q     <= chosen;
+    mask_q       <= mask;
+    rest_q       <= rest;
+    start_line_q <= start_line_i;
   end
+
+  assign group = groups[place(asking_ray_q, chosen_q)];
+  assign {unused_enter, offset} = nearest(group, mask_q);
+  assign {rest_enter, unused_offset} = nearest(group, rest_q);
+  assign node_valid_o = asked_q | started_q;
+  assign node_ray_o   = asking_ray_q;
+  assign node_line_o  = started_q ? start_line_q
+                                  : group[GroupWidth-1 -: AddressWidth] + AddressWidth'(offset);
 
   // ---- Push what box_unit found
 
-  logic push, room;
-  logic [LevelWidth-1:0] box_level;
+  logic room;
 
   assign box_level = levels[box_ray_i];
   assign room      = box_level != LevelWidth'(Depth);
   assign push      = box_valid_i & (box_inner_i != '0) & room;
+  assign {box_enter, unused_box_offset} = nearest(box_group_i, box_inner_i);
 
   always_ff @(posedge clk_i) begin
     if (push) groups[place(box_ray_i, box_level)] <= box_group_i;
@@ -163,18 +219,16 @@ module ray_walk #(
     end else begin
       if (pick) busy_q[picked_ray] <= 1'b1;
       if (start_taken_o) busy_q[start_ray_i] <= 1'b1;
-      if (picked_q && beyond) busy_q[ray_q] <= 1'b0;
+      if (picked_q && !go) busy_q[ray_q] <= 1'b0;
       if (box_valid_i) busy_q[box_ray_i] <= 1'b0;
-      if (picked_q && last) waiting_q[ray_q] <= ~ended_i & (below != '0);
+      if (picked_q) waiting_q[ray_q] <= left != '0;
       if (push) waiting_q[box_ray_i] <= 1'b1;
     end
   end
   always_ff @(posedge clk_i) begin
     if (start_taken_o) levels[start_ray_i] <= '0;
-    if (picked_q && last) levels[ray_q] <= ended_i ? '0 : below;
+    if (picked_q) levels[ray_q] <= left;
     if (push) levels[box_ray_i] <= box_level + 1'b1;
-    if (picked_q && !last) masks[place(ray_q, below)] <= rest;
-    if (push) masks[place(box_ray_i, box_level)] <= box_inner_i;
   end
 
   // ---- Rests
@@ -190,17 +244,17 @@ module ray_walk #(
   end
 
   fifo #(
-    .Width(RayWidth + AddressWidth + NodesWidth),
+    .Width(32 + AddressWidth + NodesWidth),
     .Depth(Rays)
   ) u_rests (
     .clk_i,
     .rst_ni,
     .push_i(box_valid_i & (box_inner_i != '0) & ~room),
-    .data_i({box_ray_i, box_group_i[GroupWidth-1 -: AddressWidth], nodes}),
+    .data_i({box_tag_i, box_group_i[GroupWidth-1 -: AddressWidth], nodes}),
     .space_o(unused_space),
     .pop_i(rest_taken_i),
     .valid_o(rest_valid_o),
-    .data_o({rest_ray_o, rest_line_o, rest_nodes_o})
+    .data_o({rest_tag_o, rest_line_o, rest_nodes_o})
   );
 
 endmodule

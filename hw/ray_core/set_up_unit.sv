@@ -51,7 +51,6 @@ module set_up_unit #(
 
   localparam int unsigned ExpWidth = set_up_pkg::ExpWidth;
   localparam int unsigned FracWidth = set_up_pkg::FracWidth;
-  localparam bit [2:0] RoundingMode = fp_pkg::RoundNearestEven;
   localparam int unsigned AdderLatency = hit_test_pkg::AdderLatency;
   localparam int unsigned CrossLatency = hit_test_pkg::MultiplierLatency + AdderLatency;
   localparam int unsigned SumLatency = 2 * AdderLatency;
@@ -68,43 +67,17 @@ module set_up_unit #(
   logic [9*Width-1:0] corner;  // A, B, C
   logic [9*Width-1:0] edge_vector;  // B-A, C-B, A-C
 
-  for (genvar n = 0; n < 9; n++) begin : gen_difference
-    localparam int unsigned Next = (n + 3) % 9;  // the same coordinate of the next vertex
-    fp_pkg::flags_t unused_flags_corner, unused_flags_edge;
-
-    fp_adder_stages #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
-      .Arith(Arith),
-      .Adder(Adder),
-      .Cuts(hit_test_pkg::AdderCuts)
-    ) u_corner (
-      .clk_i,
-      .a_i(corners_i[Width*n +: Width]),
-      .b_i(origin_i[Width*(n%3) +: Width]),
-      .subtract_i(1'b1),
-      .rounding_mode_i(RoundingMode),
-      .tininess_after_i(1'b0),
-      .result_o(corner[Width*n +: Width]),
-      .flags_o(unused_flags_corner)
-    );
-    fp_adder_stages #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
-      .Arith(Arith),
-      .Adder(Adder),
-      .Cuts(hit_test_pkg::AdderCuts)
-    ) u_edge (
-      .clk_i,
-      .a_i(corners_i[Width*Next +: Width]),
-      .b_i(corners_i[Width*n +: Width]),
-      .subtract_i(1'b1),
-      .rounding_mode_i(RoundingMode),
-      .tininess_after_i(1'b0),
-      .result_o(edge_vector[Width*n +: Width]),
-      .flags_o(unused_flags_edge)
-    );
-  end
+  vector_adder #(
+    .Words(18),
+    .Subtract(1'b1),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_differences (
+    .clk_i,
+    .a_i({corners_i[0 +: 3*Width], corners_i[3*Width +: 6*Width], corners_i}),
+    .b_i({corners_i, {3{origin_i}}}),
+    .sum_o({edge_vector, corner})
+  );
 
   // ---- Cross: three edge planes, then the triangle's plane
 
@@ -113,11 +86,8 @@ module set_up_unit #(
   logic [3*Width-1:0] normal_terms;
 
   cross_product #(
-    .ExpWidth(ExpWidth),
-    .FracWidth(FracWidth),
     .Arith(Arith),
-    .Adder(Adder),
-    .RoundingMode(RoundingMode)
+    .Adder(Adder)
   ) u_normal (
     .clk_i,
     .a_i(edge_vector[6*Width +: 3*Width]),
@@ -127,11 +97,8 @@ module set_up_unit #(
   );
   for (genvar k = 0; k < 3; k++) begin : gen_edge
     cross_product #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
       .Arith(Arith),
-      .Adder(Adder),
-      .RoundingMode(RoundingMode)
+      .Adder(Adder)
     ) u_edge (
       .clk_i,
       .a_i(corner[3*Width*k +: 3*Width]),
@@ -159,30 +126,19 @@ module set_up_unit #(
   logic [Width-1:0] d;
   logic [3*Width-1:0] sums;
 
+  vector_multiplier #(
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_shares (
+    .clk_i,
+    .a_i(product[9*Width +: 3*Width]),
+    .b_i(vertex),
+    .product_o(shares)
+  );
   for (genvar k = 0; k < 3; k++) begin : gen_sum
-    fp_pkg::flags_t unused_flags;
-
-    fp_multiplier_stages #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
-      .Arith(Arith),
-      .Adder(Adder),
-      .Cuts(hit_test_pkg::MultiplierCuts)
-    ) u_share (
-      .clk_i,
-      .a_i(product[Width*(9+k) +: Width]),
-      .b_i(vertex[Width*k +: Width]),
-      .rounding_mode_i(RoundingMode),
-      .tininess_after_i(1'b0),
-      .result_o(shares[Width*k +: Width]),
-      .flags_o(unused_flags)
-    );
     sum_of_three #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
       .Arith(Arith),
-      .Adder(Adder),
-      .RoundingMode(RoundingMode)
+      .Adder(Adder)
     ) u_terms (
       .clk_i,
       .x_i(terms[Width*3*k +: Width]),
@@ -193,11 +149,8 @@ module set_up_unit #(
   end
 
   sum_of_three #(
-    .ExpWidth(ExpWidth),
-    .FracWidth(FracWidth),
     .Arith(Arith),
-    .Adder(Adder),
-    .RoundingMode(RoundingMode)
+    .Adder(Adder)
   ) u_d (
     .clk_i,
     .x_i(shares[0 +: Width]),

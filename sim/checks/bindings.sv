@@ -45,3 +45,59 @@ bind hit_test_pipeline burst_checks #(
   .found_o,
   .point_valid_o
 );
+bind camera_unit stream_checks #(
+  .Width($bits({direction_o, pixel_o}))
+) u_output_checks (
+  .clk_i,
+  .rst_ni,
+  .valid(valid_o),
+  .ready(ready_i),
+  .data ({direction_o, pixel_o})
+);
+bind axi_line_reader stream_checks #(
+  .Width($bits({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o}))
+) u_request_checks (
+  .clk_i,
+  .rst_ni,
+  .valid(axi_arvalid_o),
+  .ready(axi_arready_i),
+  .data ({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o})
+);
+bind core_registers stream_checks #(
+  .Width($bits(axi_bresp_o))
+) u_write_checks (
+  .clk_i,
+  .rst_ni,
+  .valid(axi_bvalid_o),
+  .ready(axi_bready_i),
+  .data (axi_bresp_o)
+);
+bind core_registers stream_checks #(
+  .Width($bits({axi_rdata_o, axi_rresp_o}))
+) u_read_checks (
+  .clk_i,
+  .rst_ni,
+  .valid(axi_rvalid_o),
+  .ready(axi_rready_i),
+  .data ({axi_rdata_o, axi_rresp_o})
+);
+bind ray_core stream_checks #(
+  .Width($bits({read_line_o, read_tag_o}))
+) u_read_checks (
+  .clk_i,
+  .rst_ni,
+  .valid(read_valid_o),
+  .ready(read_ready_i),
+  .data ({read_line_o, read_tag_o})
+);
+bind ray_core stream_checks #(
+  .Width($bits({result_kind_o, result_tag_o, result_found_o, result_triangle_o, result_t_o,
+                result_t_error_o, result_point_o, result_tests_o, result_line_o, result_nodes_o}))
+) u_result_checks (
+  .clk_i,
+  .rst_ni,
+  .valid(result_valid_o),
+  .ready(result_ready_i),
+  .data ({result_kind_o, result_tag_o, result_found_o, result_triangle_o, result_t_o,
+                result_t_error_o, result_point_o, result_tests_o, result_line_o, result_nodes_o})
+);

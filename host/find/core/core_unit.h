@@ -49,6 +49,8 @@ struct CoreResult {
 
 /// What a core has done since it was made. Clocks are 0 where nothing is simulated.
 struct CoreCounters {
+  static constexpr std::uint64_t kSpan = 256;
+
   std::uint64_t rays = 0;
   std::uint64_t nodes = 0;                         ///< node lines that the box unit took
   std::uint64_t triangles = 0;                     ///< triangle lines that the set-up unit took
@@ -57,6 +59,9 @@ struct CoreCounters {
   std::uint64_t rests = 0;                         ///< words of kind kRest
   std::uint64_t lines = 0;                         ///< read from memory
   std::uint64_t waits = 0;  ///< clocks in which memory did not take what was asked for
+  /// Clocks of the busier of both units in each span of kSpan clocks: rays that keep boxes busy and
+  /// rays that keep triangles busy come in turns.
+  std::uint64_t busier = 0;
   std::uint64_t clocks = 0;
 
   CoreCounters& operator+=(const CoreCounters& other) {
@@ -70,6 +75,7 @@ struct CoreCounters {
     rests += other.rests;
     lines += other.lines;
     waits += other.waits;
+    busier += other.busier;
     clocks += other.clocks;
     return *this;
   }

@@ -103,6 +103,7 @@ class CoreBench {
         {"bytes_per_ray", 64.0 * static_cast<double>(counters.lines) / rays},
         {"nodes_percent", 100.0 * static_cast<double>(counters.nodes) / core_clocks},
         {"triangles_percent", 100.0 * static_cast<double>(counters.triangles) / core_clocks},
+        {"busier_percent", 100.0 * static_cast<double>(counters.busier) / core_clocks},
         {"waits_percent", 100.0 * static_cast<double>(counters.waits) / core_clocks},
         {"doubts_per_1000", 1e3 * static_cast<double>(counters.doubts) / rays},
         {"near_ties_per_1000", 1e3 * static_cast<double>(counters.near_ties) / rays},
@@ -124,6 +125,7 @@ class CoreBench {
                     {"bytes_per_ray", "bytes/ray", 0},
                     {"nodes_percent", "boxes busy, %", 1},
                     {"triangles_percent", "triangles busy, %", 1},
+                    {"busier_percent", "busier of 256 clocks, %", 1},
                     {"doubts_per_1000", "doubts/1000 rays", 2},
                     {"near_ties_per_1000", "near ties/1000", 2},
                     {"rays_per_second", "rays/s", 0}}};

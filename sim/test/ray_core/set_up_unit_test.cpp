@@ -1,5 +1,5 @@
 // set_up_unit against its reference model, bit for bit.
-// Tests: cross_product
+// Tests: cross_product, vector_adder, vector_multiplier
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,0 +1,126 @@
+// The core's memory port as an AXI4 read master: a burst for each 64-byte line.
+//
+// A line's burst has as many beats as DataWidth makes of 64 bytes, and begins at a multiple of 64: no burst
+// crosses 4 KiB. Each burst that is on its way has an ID of its own, which stands for the line's tag: so bursts
+// may be answered in any order, and their beats come mixed. base_i is the address of line 0.
+//
+// At most 2**IdWidth lines are on their way; more wait. A line is offered in the clock of its last beat.
+// failed_o: a beat has come with an error; its line goes on as it came.
+//
+// Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
+module axi_line_reader #(
+  parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two
+  parameter int unsigned IdWidth   = 6,
+  parameter int unsigned TagWidth  = 16,   // ray_core's
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
+  localparam int unsigned LineWidth = ray_core_pkg::LineWidth
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic [63:0]             base_i,  // a multiple of 64
+  // the core's
+  input  logic                    read_valid_i,
+  output logic                    read_ready_o,
+  input  logic [AddressWidth-1:0] read_line_i,
+  input  logic [TagWidth-1:0]     read_tag_i,
+  output logic                    line_valid_o,
+  input  logic                    line_ready_i,
+  output logic [TagWidth-1:0]     line_tag_o,
+  output logic [LineWidth-1:0]    line_o,
+  // AXI4, read address
+  output logic                    axi_arvalid_o,
+  input  logic                    axi_arready_i,
+  output logic [IdWidth-1:0]      axi_arid_o,
+  output logic [63:0]             axi_araddr_o,
+  output logic [7:0]              axi_arlen_o,
+  output logic [2:0]              axi_arsize_o,
+  output logic [1:0]              axi_arburst_o,
+  // AXI4, read data
+  input  logic                    axi_rvalid_i,
+  output logic                    axi_rready_o,
+  input  logic [IdWidth-1:0]      axi_rid_i,
+  input  logic [DataWidth-1:0]    axi_rdata_i,
+  input  logic [1:0]              axi_rresp_i,
+  output logic                    failed_o
+);
+
+  localparam int unsigned Ids = 2 ** IdWidth;
+  localparam int unsigned Beats = LineWidth / DataWidth;
+  localparam int unsigned BeatWidth = (Beats == 1) ? 1 : $clog2(Beats);
+  localparam logic [1:0] BurstIncrement = 2'b01;
+
+  // ---- Requests: a free ID for each
+
+  logic [Ids-1:0] free_q;
+  logic [IdWidth-1:0] id;
+  logic some_free, load, taken, given;
+  logic [TagWidth-1:0] tags[Ids];
+
+  rotating_pick #(
+    .Width(Ids)
+  ) u_pick (
+    .requests_i(free_q),
+    .start_i('0),
+    .valid_o(some_free),
+    .index_o(id)
+  );
+  assign load         = ~axi_arvalid_o | axi_arready_i;
+  assign read_ready_o = load & some_free;
+  assign taken        = read_valid_i & read_ready_o;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      free_q        <= '1;
+      axi_arvalid_o <= 1'b0;
+    end else begin
+      if (taken) free_q[id] <= 1'b0;
+      if (given) free_q[axi_rid_i] <= 1'b1;
+      if (load) axi_arvalid_o <= taken;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (taken) begin
+      tags[id]     <= read_tag_i;
+      axi_arid_o   <= id;
+      axi_araddr_o <= base_i + {{(58 - AddressWidth) {1'b0}}, read_line_i, 6'd0};
+    end
+  end
+  assign axi_arlen_o   = 8'(Beats - 1);
+  assign axi_arsize_o  = 3'($clog2(DataWidth / 8));
+  assign axi_arburst_o = BurstIncrement;
+
+  // ---- Beats: all but a line's last one wait for it
+
+  logic [BeatWidth-1:0] counts[Ids];  // beats that have come; set back when the ID is given
+  logic last;
+
+  if (Beats == 1) begin : gen_whole
+    assign last   = 1'b1;
+    assign line_o = axi_rdata_i;
+  end else begin : gen_beats
+    assign last = counts[axi_rid_i] == BeatWidth'(Beats - 1);
+    assign line_o[LineWidth-1 -: DataWidth] = axi_rdata_i;
+    for (genvar b = 0; b < Beats - 1; b++) begin : gen_beat
+      logic [DataWidth-1:0] parts[Ids];
+      always_ff @(posedge clk_i) begin
+        if (axi_rvalid_i && counts[axi_rid_i] == BeatWidth'(b)) parts[axi_rid_i] <= axi_rdata_i;
+      end
+      assign line_o[DataWidth*b+:DataWidth] = parts[axi_rid_i];
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (taken) counts[id] <= '0;
+    if (axi_rvalid_i && !last) counts[axi_rid_i] <= counts[axi_rid_i] + 1'b1;
+  end
+
+  assign axi_rready_o = ~last | line_ready_i;
+  assign line_valid_o = axi_rvalid_i & last;
+  assign line_tag_o   = tags[axi_rid_i];
+  assign given        = line_valid_o & line_ready_i;
+  assign failed_o     = axi_rvalid_i & axi_rready_o & axi_rresp_i[1];
+
+  logic unused;  // EXOKAY is never answered
+  assign unused = axi_rresp_i[0];
+
+endmodule

@@ -1,0 +1,89 @@
+// One axis of a node, seen from the ray: where its grid's first planes are met and how far apart planes are, in
+// units of 2**(E - 22). Combinational; steps 2 to 4 of box_unit's header say why.
+//
+// In:  product_i    a = D / I, binary32; any
+//      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap, with binary32's bias
+//      is_capped_i  the inverse was above the cap; is_open_i: and the cap is no binary32 number
+// Out: near_o, far_o  a - r and a + r, two's complement; step_o: s in 256ths of a unit
+module box_axis #(
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
+  localparam int unsigned PlaceWidth = ray_core_pkg::PlaceWidth
+) (
+  input  logic [31:0]           product_i,
+  input  logic [30:0]           inverse_i,
+  input  logic [8:0]            exponent_i,
+  input  logic [10:0]           cap_i,
+  input  logic                  is_capped_i,
+  input  logic                  is_open_i,
+  output logic [PlaceWidth-1:0] near_o,
+  output logic [PlaceWidth-1:0] far_o,
+  output logic [StepWidth-1:0]  step_o
+);
+
+  localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33
+  localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
+  localparam logic [PlaceWidth-1:0] Far = PlaceWidth'(1) << 33;
+
+  logic [7:0] product_field, inverse_field;
+  logic signed [10:0] amount, step_amount;
+  logic [SizeWidth-1:0] size;
+  logic [StepWidth-1:0] step;
+  logic [PlaceWidth-1:0] a, room, near, far;
+  logic says_nothing;
+
+  assign product_field = product_i[23 +: 8];
+  assign inverse_field = inverse_i[23 +: 8];
+  assign amount        = $signed({2'b0, exponent_i}) + 11'sd11 - $signed({3'b0, product_field});
+  assign step_amount   = $signed(cap_i) - $signed({3'b0, inverse_field});
+  assign size = (amount <= 11'sd0) ? SizeWidth'(1) << (SizeWidth - 1)
+              : (amount > 11'sd33) ? '0 : {1'b1, product_i[22:0], 10'b0} >> amount[5:0];
+  assign step = (step_amount > 11'sd32) ? '0
+              : {1'b1, inverse_i[22:0], 9'b0} >> step_amount[5:0];
+  assign says_nothing = is_open_i | (&product_field);
+
+  // ---- r: a few bits, and 2**E for a ray that hardly moves along this axis
+
+  logic [11:0] few;
+  assign few  = size[SizeWidth-1:22] + 12'(step[StepWidth-1:24]) + 12'd6;
+  assign room = PlaceWidth'(few) | (is_capped_i ? PlaceWidth'(1) << UnitBits : '0);
+
+  // ---- a -+ r
+
+  add_subtract #(
+    .Width(PlaceWidth),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_sign (
+    .a_i('0),
+    .b_i(PlaceWidth'(size)),
+    .subtract_i(product_i[31]),
+    .sum_o(a)
+  );
+  add_subtract #(
+    .Width(PlaceWidth),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_near (
+    .a_i(a),
+    .b_i(room),
+    .subtract_i(1'b1),
+    .sum_o(near)
+  );
+  add_subtract #(
+    .Width(PlaceWidth),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_far (
+    .a_i(a),
+    .b_i(room),
+    .subtract_i(1'b0),
+    .sum_o(far)
+  );
+
+  assign near_o = says_nothing ? -Far : near;
+  assign far_o  = says_nothing ? Far : far;
+  assign step_o = says_nothing ? '0 : step;
+
+endmodule

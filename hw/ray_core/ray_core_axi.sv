@@ -1,0 +1,264 @@
+// The ray core with its camera, on AXI: registers by AXI4-Lite, the scene by AXI4, rays and results as they are.
+//
+//   core_registers   what to draw, counters, flags
+//   camera_unit      the rays of a rectangle; the tag of each is its pixel, {y, x}
+//   ray_core
+//   axi_line_reader  its memory port
+//
+// Rays of the user's (ray_*) come while the camera makes none. A camera's ray has no limit, ignores nothing, and
+// begins at the root. The rest as in those modules.
+module ray_core_axi #(
+  parameter int unsigned Rays  = 64,
+  parameter int unsigned Depth = 8,
+  parameter int unsigned NodeLines     = 256,
+  parameter int unsigned TriangleLines = 256,
+  parameter int unsigned DataWidth = 128,  // of the AXI4 port
+  parameter int unsigned IdWidth   = 6,
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  localparam int unsigned RegisterAddressWidth = 12,
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
+  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
+  localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
+  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth
+) (
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  output logic                   interrupt_o,
+  // registers: AXI4-Lite
+  input  logic                   reg_awvalid_i,
+  output logic                   reg_awready_o,
+  input  logic [RegisterAddressWidth-1:0] reg_awaddr_i,
+  input  logic                   reg_wvalid_i,
+  output logic                   reg_wready_o,
+  input  logic [31:0]            reg_wdata_i,
+  input  logic [3:0]             reg_wstrb_i,
+  output logic                   reg_bvalid_o,
+  input  logic                   reg_bready_i,
+  output logic [1:0]             reg_bresp_o,
+  input  logic                   reg_arvalid_i,
+  output logic                   reg_arready_o,
+  input  logic [RegisterAddressWidth-1:0] reg_araddr_i,
+  output logic                   reg_rvalid_o,
+  input  logic                   reg_rready_i,
+  output logic [31:0]            reg_rdata_o,
+  output logic [1:0]             reg_rresp_o,
+  // memory: AXI4, reads
+  output logic                   mem_arvalid_o,
+  input  logic                   mem_arready_i,
+  output logic [IdWidth-1:0]     mem_arid_o,
+  output logic [63:0]            mem_araddr_o,
+  output logic [7:0]             mem_arlen_o,
+  output logic [2:0]             mem_arsize_o,
+  output logic [1:0]             mem_arburst_o,
+  input  logic                   mem_rvalid_i,
+  output logic                   mem_rready_o,
+  input  logic [IdWidth-1:0]     mem_rid_i,
+  input  logic [DataWidth-1:0]   mem_rdata_i,
+  input  logic [1:0]             mem_rresp_i,
+  // rays
+  input  logic                   ray_valid_i,
+  output logic                   ray_ready_o,
+  input  logic [95:0]            ray_origin_i,
+  input  logic [95:0]            ray_direction_i,
+  input  logic [30:0]            ray_limit_i,
+  input  logic [31:0]            ray_ignored_i,
+  input  logic [AddressWidth-1:0] ray_start_i,
+  input  logic                   ray_any_hit_i,
+  input  logic                   ray_every_box_i,
+  input  logic [31:0]            ray_tag_i,
+  // results
+  output logic                   result_valid_o,
+  input  logic                   result_ready_i,
+  output ray_core_pkg::result_e  result_kind_o,
+  output logic [31:0]            result_tag_o,
+  output logic                   result_found_o,
+  output logic [31:0]            result_triangle_o,
+  output logic [31:0]            result_t_o,
+  output logic [TErrorWidth-1:0] result_t_error_o,
+  output logic [95:0]            result_point_o,
+  output logic [TestsWidth-1:0]  result_tests_o,
+  output logic [AddressWidth-1:0] result_line_o,
+  output logic [NodesWidth-1:0]  result_nodes_o
+);
+
+  localparam int unsigned TagWidth = 2 + $clog2(
+    Rays
+  ) + $clog2(
+    NodeLines > TriangleLines ? NodeLines : TriangleLines
+  );
+  localparam logic [30:0] Infinity = 31'h7f80_0000;
+  localparam logic [31:0] NoTriangle = 32'hffff_ffff;
+
+  // ---- Registers
+
+  logic start, invalidate, camera_busy, failed, result_given, is_doubt, ended;
+  logic [63:0] base;
+  logic [31:0] corner, size;
+  logic [4*96-1:0] camera;
+  logic [ray_core_pkg::NumEvents-1:0] events;
+  logic [31:0] inside_q;  // rays taken whose end has not been given
+
+  assign result_given = result_valid_o & result_ready_i;
+  assign is_doubt     = result_given & (result_kind_o == ray_core_pkg::ResultDoubt);
+  assign ended        = result_given & (result_kind_o == ray_core_pkg::ResultEnd);
+
+  core_registers u_registers (
+    .clk_i,
+    .rst_ni,
+    .axi_awvalid_i(reg_awvalid_i),
+    .axi_awready_o(reg_awready_o),
+    .axi_awaddr_i(reg_awaddr_i),
+    .axi_wvalid_i(reg_wvalid_i),
+    .axi_wready_o(reg_wready_o),
+    .axi_wdata_i(reg_wdata_i),
+    .axi_wstrb_i(reg_wstrb_i),
+    .axi_bvalid_o(reg_bvalid_o),
+    .axi_bready_i(reg_bready_i),
+    .axi_bresp_o(reg_bresp_o),
+    .axi_arvalid_i(reg_arvalid_i),
+    .axi_arready_o(reg_arready_o),
+    .axi_araddr_i(reg_araddr_i),
+    .axi_rvalid_o(reg_rvalid_o),
+    .axi_rready_i(reg_rready_i),
+    .axi_rdata_o(reg_rdata_o),
+    .axi_rresp_o(reg_rresp_o),
+    .start_o(start),
+    .invalidate_o(invalidate),
+    .base_o(base),
+    .corner_o(corner),
+    .size_o(size),
+    .camera_o(camera),
+    .camera_busy_i(camera_busy),
+    .core_busy_i(inside_q != '0),
+    .doubt_i(is_doubt),
+    .failed_i(failed),
+    .events_i(events),
+    .interrupt_o
+  );
+
+  // ---- Camera
+
+  logic camera_valid, camera_ready;
+  logic [95:0] camera_direction;
+  logic [31:0] pixel;
+
+  camera_unit #(
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_camera (
+    .clk_i,
+    .rst_ni,
+    .first_i(camera[96 +: 96]),
+    .right_i(camera[192 +: 96]),
+    .down_i(camera[288 +: 96]),
+    .start_i(start),
+    .x_i(corner[15:0]),
+    .y_i(corner[31:16]),
+    .width_i(size[15:0]),
+    .height_i(size[31:16]),
+    .busy_o(camera_busy),
+    .valid_o(camera_valid),
+    .ready_i(camera_ready),
+    .direction_o(camera_direction),
+    .pixel_o(pixel)
+  );
+
+  // ---- Rays: the camera's first
+
+  logic core_ready, core_valid, taken;
+  assign core_valid   = camera_valid | (ray_valid_i & ~camera_busy);
+  assign camera_ready = core_ready;
+  assign ray_ready_o  = core_ready & ~camera_busy;
+  assign taken        = core_valid & core_ready;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) inside_q <= '0;
+    else begin
+      inside_q <= inside_q + 32'(taken) - 32'(ended);
+    end
+  end
+
+  // ---- The core and its memory
+
+  logic read_valid, read_ready, line_valid, line_ready;
+  logic [AddressWidth-1:0] read_line;
+  logic [TagWidth-1:0] read_tag, line_tag;
+  logic [ray_core_pkg::LineWidth-1:0] line;
+
+  ray_core #(
+    .Rays(Rays),
+    .Depth(Depth),
+    .NodeLines(NodeLines),
+    .TriangleLines(TriangleLines),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_core (
+    .clk_i,
+    .rst_ni,
+    .invalidate_i(invalidate),
+    .ray_valid_i(core_valid),
+    .ray_ready_o(core_ready),
+    .ray_origin_i(camera_valid ? camera[0 +: 96] : ray_origin_i),
+    .ray_direction_i(camera_valid ? camera_direction : ray_direction_i),
+    .ray_limit_i(camera_valid ? Infinity : ray_limit_i),
+    .ray_ignored_i(camera_valid ? NoTriangle : ray_ignored_i),
+    .ray_start_i(camera_valid ? '0 : ray_start_i),
+    .ray_any_hit_i(~camera_valid & ray_any_hit_i),
+    .ray_every_box_i(~camera_valid & ray_every_box_i),
+    .ray_tag_i(camera_valid ? pixel : ray_tag_i),
+    .result_valid_o,
+    .result_ready_i,
+    .result_kind_o,
+    .result_tag_o,
+    .result_found_o,
+    .result_triangle_o,
+    .result_t_o,
+    .result_t_error_o,
+    .result_point_o,
+    .result_tests_o,
+    .result_line_o,
+    .result_nodes_o,
+    .read_valid_o(read_valid),
+    .read_ready_i(read_ready),
+    .read_line_o(read_line),
+    .read_tag_o(read_tag),
+    .line_valid_i(line_valid),
+    .line_ready_o(line_ready),
+    .line_tag_i(line_tag),
+    .line_i(line),
+    .events_o(events)
+  );
+
+  axi_line_reader #(
+    .DataWidth(DataWidth),
+    .IdWidth(IdWidth),
+    .TagWidth(TagWidth)
+  ) u_reader (
+    .clk_i,
+    .rst_ni,
+    .base_i(base),
+    .read_valid_i(read_valid),
+    .read_ready_o(read_ready),
+    .read_line_i(read_line),
+    .read_tag_i(read_tag),
+    .line_valid_o(line_valid),
+    .line_ready_i(line_ready),
+    .line_tag_o(line_tag),
+    .line_o(line),
+    .axi_arvalid_o(mem_arvalid_o),
+    .axi_arready_i(mem_arready_i),
+    .axi_arid_o(mem_arid_o),
+    .axi_araddr_o(mem_araddr_o),
+    .axi_arlen_o(mem_arlen_o),
+    .axi_arsize_o(mem_arsize_o),
+    .axi_arburst_o(mem_arburst_o),
+    .axi_rvalid_i(mem_rvalid_i),
+    .axi_rready_o(mem_rready_o),
+    .axi_rid_i(mem_rid_i),
+    .axi_rdata_i(mem_rdata_i),
+    .axi_rresp_i(mem_rresp_i),
+    .failed_o(failed)
+  );
+
+endmodule

@@ -1,0 +1,169 @@
+// Rays go out: notices that a ray has ended, and queues what the core says of rays.
+//
+// A ray has ended when it has nothing to walk, to ask for or to test. Its slot is free at once: what is known of
+// its nearest hit waits in a queue for P, which comes PointDelay clocks later at most, before another ray
+// in the slot could have one. A ray's doubts and rests leave before its end.
+//
+// A ray ends a clock at most, a result leaves a clock.
+module ray_ends #(
+  parameter int unsigned Rays = 64,
+  localparam int unsigned RayWidth = $clog2(Rays),
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
+  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
+  localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
+  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth
+) (
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  input  logic                   start_i,        // a ray is in a slot
+  input  logic [RayWidth-1:0]    start_slot_i,
+  input  logic [Rays-1:0]        busy_i,         // something is to be done for a slot's ray
+  // a ray ends, its slot is free; what is known of it, in the same clock
+  output logic                   ending_o,
+  output logic [RayWidth-1:0]    ending_slot_o,
+  input  logic [31:0]            ending_tag_i,
+  input  logic                   ending_found_i,
+  input  logic [31:0]            ending_triangle_i,
+  input  logic [31:0]            ending_t_i,
+  input  logic [TErrorWidth-1:0] ending_t_error_i,
+  input  logic [TestsWidth-1:0]  ending_tests_i,
+  // the P of a slot's last ray, in the same clock
+  output logic [RayWidth-1:0]    point_slot_o,
+  input  logic [95:0]            point_i,
+  // doubts and rests
+  input  logic                   doubt_valid_i,
+  input  logic [31:0]            doubt_tag_i,
+  input  logic [31:0]            doubt_triangle_i,
+  output logic                   doubt_taken_o,
+  input  logic                   rest_valid_i,
+  input  logic [31:0]            rest_tag_i,
+  input  logic [AddressWidth-1:0] rest_line_i,
+  input  logic [NodesWidth-1:0]  rest_nodes_i,
+  output logic                   rest_taken_o,
+  // results
+  output logic                   result_valid_o,
+  input  logic                   result_ready_i,
+  output ray_core_pkg::result_e  result_kind_o,
+  output logic [31:0]            result_tag_o,
+  output logic                   result_found_o,
+  output logic [31:0]            result_triangle_o,
+  output logic [31:0]            result_t_o,
+  output logic [TErrorWidth-1:0] result_t_error_o,
+  output logic [95:0]            result_point_o,
+  output logic [TestsWidth-1:0]  result_tests_o,
+  output logic [AddressWidth-1:0] result_line_o,
+  output logic [NodesWidth-1:0]  result_nodes_o
+);
+
+  localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
+  localparam int unsigned Depth = PointDelay + 3;  // for an end a clock
+  localparam int unsigned EndWidth = 32 + 1 + 32 + 32 + TErrorWidth + TestsWidth;
+
+  // ---- The end of a ray
+
+  logic [Rays-1:0] active_q;  // in its slot, and its end not noticed
+  logic some, space;
+
+  rotating_pick #(
+    .Width(Rays)
+  ) u_pick (
+    .requests_i(active_q & ~busy_i),
+    .start_i('0),
+    .valid_o(some),
+    .index_o(ending_slot_o)
+  );
+  assign ending_o = some & space;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      active_q <= '0;
+    end else begin
+      if (start_i) active_q[start_slot_i] <= 1'b1;
+      if (ending_o) active_q[ending_slot_o] <= 1'b0;
+    end
+  end
+
+  // ---- What is known of it, and P: as many points at most as there are ends
+
+  logic [PointDelay-1:0] pointing_q;
+  logic end_valid, end_given, unused_valid, unused_space;
+  logic [EndWidth-1:0] end_words;
+  logic [95:0] end_point;
+  logic [31:0] end_tag, end_triangle, end_t;
+  logic [TErrorWidth-1:0] end_t_error;
+  logic [TestsWidth-1:0] end_tests;
+  logic end_found;
+
+  fifo #(
+    .Width(EndWidth),
+    .Depth(Depth)
+  ) u_ends (
+    .clk_i,
+    .rst_ni,
+    .push_i(ending_o),
+    .data_i({ending_tag_i, ending_found_i, ending_triangle_i, ending_t_i, ending_t_error_i,
+             ending_tests_i}),
+    .space_o(space),
+    .pop_i(end_given),
+    .valid_o(unused_valid),
+    .data_o(end_words)
+  );
+  assign {end_tag, end_found, end_triangle, end_t, end_t_error, end_tests} = end_words;
+
+  delay_line #(
+    .Width(RayWidth),
+    .Depth(PointDelay)
+  ) u_pointing (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(ending_slot_o),
+    .data_o(point_slot_o)
+  );
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) pointing_q <= '0;
+    else pointing_q <= {pointing_q[PointDelay-2:0], ending_o};
+  end
+  fifo #(
+    .Width(96),
+    .Depth(Depth)
+  ) u_points (
+    .clk_i,
+    .rst_ni,
+    .push_i(pointing_q[PointDelay-1]),
+    .data_i(point_i),
+    .space_o(unused_space),
+    .pop_i(end_given),
+    .valid_o(end_valid),
+    .data_o(end_point)
+  );
+
+  // ---- Results
+
+  logic load;
+
+  assign load          = ~result_valid_o | result_ready_i;
+  assign doubt_taken_o = load & doubt_valid_i;
+  assign rest_taken_o  = load & rest_valid_i & ~doubt_valid_i;
+  assign end_given     = load & end_valid & ~doubt_valid_i & ~rest_valid_i;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) result_valid_o <= 1'b0;
+    else if (load) result_valid_o <= doubt_valid_i | rest_valid_i | end_valid;
+  end
+  always_ff @(posedge clk_i) begin
+    if (load) begin
+      result_kind_o     <= doubt_valid_i ? ray_core_pkg::ResultDoubt
+                         : rest_valid_i ? ray_core_pkg::ResultRest : ray_core_pkg::ResultEnd;
+      result_tag_o      <= doubt_valid_i ? doubt_tag_i : rest_valid_i ? rest_tag_i : end_tag;
+      result_found_o    <= end_found & ~doubt_valid_i & ~rest_valid_i;
+      result_triangle_o <= doubt_valid_i ? doubt_triangle_i : end_triangle;
+      result_t_o        <= end_t;
+      result_t_error_o  <= end_t_error;
+      result_point_o    <= end_point;
+      result_tests_o    <= end_tests;
+      result_line_o     <= rest_line_i;
+      result_nodes_o    <= rest_nodes_i;
+    end
+  end
+
+endmodule

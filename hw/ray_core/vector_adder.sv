@@ -1,0 +1,35 @@
+// Adds vectors word by word, sum[n] = a[n] + b[n], or subtracts them, a[n] - b[n]; binary32, rounded to nearest.
+//
+// Throughput one a clock, latency hit_test_pkg::AdderLatency. Takes every bit pattern; no flags.
+module vector_adder #(
+  parameter int unsigned Words    = 3,
+  parameter bit          Subtract = 1'b0,
+  parameter int unsigned Arith    = arith_pkg::Structural,
+  parameter int unsigned Adder    = arith_pkg::AdderGraded
+) (
+  input  logic                clk_i,
+  input  logic [32*Words-1:0] a_i,
+  input  logic [32*Words-1:0] b_i,
+  output logic [32*Words-1:0] sum_o
+);
+
+  for (genvar n = 0; n < Words; n++) begin : gen_word
+    fp_pkg::flags_t unused_flags;
+
+    fp_adder_stages #(
+      .Arith(Arith),
+      .Adder(Adder),
+      .Cuts(hit_test_pkg::AdderCuts)
+    ) u_adder (
+      .clk_i,
+      .a_i(a_i[32*n +: 32]),
+      .b_i(b_i[32*n +: 32]),
+      .subtract_i(Subtract),
+      .rounding_mode_i(fp_pkg::RoundNearestEven),
+      .tininess_after_i(1'b0),
+      .result_o(sum_o[32*n +: 32]),
+      .flags_o(unused_flags)
+    );
+  end
+
+endmodule

@@ -1,0 +1,120 @@
+// axi_line_reader before a memory that answers bursts in any order, their beats mixed, with random
+// pauses on every channel: each tag gets its own line, once. sim/checks watches the handshakes.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <map>
+#include <random>
+#include <vector>
+
+#include "Vaxi_line_reader_128.h"
+#include "Vaxi_line_reader_32.h"
+#include "Vaxi_line_reader_512.h"
+#include "sim/model.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::uint32_t kSeed = 20261122;
+constexpr std::uint64_t kBase = 0x12'3456'7000;
+constexpr unsigned kIds = 8;
+
+/// Word n of a line of memory.
+std::uint32_t word_of(std::uint32_t line, unsigned n) { return (line * 16 + n) * 2654435761u; }
+
+/// The bytes of a port, whatever type Verilator gave it.
+template <class Port>
+void set_words(Port& port, const std::vector<std::uint32_t>& words) {
+  ASSERT_EQ(sizeof port, 4 * words.size());
+  std::memcpy(&port, words.data(), sizeof port);
+}
+
+template <class Top>
+class AxiLineReaderTest : public testing::Test {};
+using Tops = testing::Types<Vaxi_line_reader_32, Vaxi_line_reader_128, Vaxi_line_reader_512>;
+TYPED_TEST_SUITE(AxiLineReaderTest, Tops);
+
+TYPED_TEST(AxiLineReaderTest, EveryTagGetsItsLineOnce) {
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  struct Burst {
+    bool open = false;
+    std::uint32_t line = 0;
+    unsigned beat = 0;
+  };
+  Model<TypeParam> model;
+  std::mt19937 random(kSeed);
+  model->base_i = kBase;
+  model->read_valid_i = model->line_ready_i = model->axi_arready_i = model->axi_rvalid_i = 0;
+  model.reset();
+  const unsigned beat_words = sizeof model->axi_rdata_i / 4, beats = 16 / beat_words;
+  std::array<Burst, kIds> bursts;
+  std::map<std::uint64_t, std::uint32_t> waiting;  // lines by tag
+  std::uint64_t next_tag = 0;
+  unsigned answering = 0, given = 0, mixed = 0, full = 0, failed = 0, last_id = 0;
+  bool fails = false;
+  for (int clock = 0; clock < 60'000; ++clock) {
+    const unsigned eager = 1 + clock / 4'000 % 7;  // of 8
+    if (model->read_valid_i == 0 && random() % 8 < 6) {
+      model->read_valid_i = 1;
+      model->read_line_i = random() % (1u << 28);
+      model->read_tag_i = next_tag++ % 65'536;
+    }
+    model->axi_arready_i = random() % 8 < eager;
+    model->line_ready_i = random() % 8 < 8 - eager / 2;
+    // A beat of any burst that is open; what is offered stays.
+    if (model->axi_rvalid_i == 0 && random() % 8 < eager) {
+      const unsigned id = random() % kIds;
+      if (bursts[id].open) {
+        std::vector<std::uint32_t> words(beat_words);
+        for (unsigned n = 0; n < beat_words; ++n) {
+          words[n] = word_of(bursts[id].line, bursts[id].beat * beat_words + n);
+        }
+        set_words(model->axi_rdata_i, words);
+        fails = random() % 64 == 0;
+        model->axi_rresp_i = fails ? 2 : 0;
+        model->axi_rid_i = answering = id;
+        model->axi_rvalid_i = 1;
+      }
+    }
+    model.eval();
+    const bool read = (model->read_valid_i & model->read_ready_o) != 0;
+    const bool asked = (model->axi_arvalid_o & model->axi_arready_i) != 0;
+    const bool answered = (model->axi_rvalid_i & model->axi_rready_o) != 0;
+    if (read) waiting[model->read_tag_i] = model->read_line_i;
+    full += waiting.size() >= kIds && model->read_valid_i != 0 && !read;
+    if (asked) {
+      const unsigned id = model->axi_arid_o;
+      ASSERT_FALSE(bursts[id].open) << "an ID of its own";
+      ASSERT_EQ(model->axi_arlen_o, beats - 1);
+      ASSERT_EQ(1u << model->axi_arsize_o, 4 * beat_words);
+      ASSERT_EQ(model->axi_arburst_o, 1);
+      ASSERT_EQ(model->axi_araddr_o % 64, 0u);
+      bursts[id] = {true, static_cast<std::uint32_t>((model->axi_araddr_o - kBase) / 64), 0};
+    }
+    ASSERT_EQ(model->failed_o, answered && fails);
+    failed += model->failed_o;
+    if ((model->line_valid_o & model->line_ready_i) != 0) {
+      const auto tag = waiting.find(model->line_tag_o);
+      ASSERT_NE(tag, waiting.end()) << "a tag that waits";
+      for (unsigned n = 0; n < 16; ++n) ASSERT_EQ(model->line_o[n], word_of(tag->second, n));
+      waiting.erase(tag);
+      ++given;
+    }
+    model.clock();
+    if (read) model->read_valid_i = 0;
+    if (answered) {
+      model->axi_rvalid_i = 0;
+      mixed += answering != last_id && bursts[last_id].open && bursts[last_id].beat != 0;
+      last_id = answering;
+      if (++bursts[answering].beat == beats) bursts[answering].open = false;
+    }
+  }
+  EXPECT_GT(given, 400u);
+  EXPECT_GT(full, 100u);
+  EXPECT_GT(failed, 10u);
+  EXPECT_GE(mixed, beats > 1 ? 1'000u : 0u);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,110 @@
+// camera_unit against its reference, bit for bit, with random pauses: each pixel once, row by row.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "Vcamera_unit_behavioural.h"
+#include "Vcamera_unit_structural.h"
+#include "host/find/core/pixel_grid.h"
+#include "sim/model.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::uint32_t kSeed = 20261122;
+
+template <class Top>
+class CameraUnitTest : public testing::Test {};
+using Tops = testing::Types<Vcamera_unit_behavioural, Vcamera_unit_structural>;
+TYPED_TEST_SUITE(CameraUnitTest, Tops);
+
+TYPED_TEST(CameraUnitTest, EqualsItsReference) {
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  Model<TypeParam> model;
+  std::mt19937 random(kSeed);
+  model->start_i = 0;
+  model->ready_i = 0;
+  model.reset();
+  long rays = 0, zeros = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    // Ordinary pictures, and some of all sizes of numbers.
+    std::uniform_real_distribution<float> number(-1.0f, 1.0f);
+    const auto vector = [&](int spread) {
+      glm::vec3 vector;
+      for (int k = 0; k < 3; ++k) {
+        vector[k] = std::ldexp(number(random), -static_cast<int>(random() % spread));
+      }
+      return vector;
+    };
+    const int spread = frame % 3 == 0 ? 140 : 8;
+    PixelGrid grid{vector(spread), 0.01f * vector(spread), 0.01f * vector(spread)};
+    if (frame % 5 == 0) grid.right.x = 0.0f;
+    if (frame % 6 == 0) {
+      for (glm::vec3* vector : {&grid.first, &grid.right, &grid.down}) vector->z *= 0x1p-122f;
+    }
+    const bool far = frame % 4 == 0;
+    const unsigned x = far ? 65'000 + random() % 500 : random() % 40, y = random() % 65'000;
+    const unsigned width = frame == 7 ? 0 : 1 + random() % 30, height = 1 + random() % 30;
+    std::memcpy(&model->first_i, &grid.first, sizeof grid.first);
+    std::memcpy(&model->right_i, &grid.right, sizeof grid.right);
+    std::memcpy(&model->down_i, &grid.down, sizeof grid.down);
+    model->x_i = x;
+    model->y_i = y;
+    model->width_i = width;
+    model->height_i = height;
+    model->start_i = 1;
+    model.clock();
+    model->start_i = 0;
+    const unsigned ready_of_8 = 1 + random() % 8;
+    unsigned given = 0;
+    for (int clock = 0; model->busy_o != 0; ++clock) {
+      ASSERT_LT(clock, 20'000);
+      model->ready_i = random() % 8 < ready_of_8;
+      model.eval();
+      if ((model->valid_o & model->ready_i) != 0) {
+        ASSERT_LT(given, width * height);
+        const unsigned column = x + given % width, row = y + given / width;
+        ASSERT_EQ(model->pixel_o, row << 16 | column);
+        const glm::vec3 expected =
+            grid.direction(static_cast<std::uint16_t>(column), static_cast<std::uint16_t>(row));
+        for (int k = 0; k < 3; ++k) {
+          ASSERT_EQ(model->direction_o[k], std::bit_cast<std::uint32_t>(expected[k]))
+              << "frame " << frame << ", pixel " << column << ", " << row;
+          zeros += expected[k] == 0.0f;
+        }
+        ++given;
+      }
+      model.clock();
+    }
+    ASSERT_EQ(given, width * height);
+    rays += given;
+  }
+  EXPECT_GT(rays, 5'000);
+  EXPECT_GT(zeros, 10);
+}
+
+/// A ray in every clock, where it is taken.
+TYPED_TEST(CameraUnitTest, GivesARayAClock) {
+  Model<TypeParam> model;
+  model->start_i = 0;
+  model->ready_i = 1;
+  model.reset();
+  const PixelGrid grid{{-1.0f, 1.0f, -2.0f}, {0.01f, 0.0f, 0.0f}, {0.0f, -0.01f, 0.0f}};
+  std::memcpy(&model->first_i, &grid.first, sizeof grid.first);
+  std::memcpy(&model->right_i, &grid.right, sizeof grid.right);
+  std::memcpy(&model->down_i, &grid.down, sizeof grid.down);
+  model->x_i = model->y_i = 0;
+  model->width_i = model->height_i = 32;
+  model->start_i = 1;
+  model.clock();
+  model->start_i = 0;
+  int clocks = 0;
+  for (; model->busy_o != 0; ++clocks) model.clock();
+  EXPECT_LT(clocks, 32 * 32 + 16);
+}
+
+}  // namespace
+}  // namespace raygate

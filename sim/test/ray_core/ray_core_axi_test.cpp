@@ -1,0 +1,202 @@
+// The ray core behind AXI: a picture by writes to its registers, its memory an AXI slave with
+// random pauses. Every pixel ends once, and has the answer that ReferenceCore has for the same ray.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <deque>
+#include <random>
+
+#include "Vray_core_axi.h"
+#include "host/find/core/memory_image.h"
+#include "host/find/core/pixel_grid.h"
+#include "host/find/core/reference_core.h"
+#include "host/find/core/test/core_cases.h"
+#include "sim/model.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::uint32_t kSeed = 20261122;
+constexpr std::uint64_t kBase = 0x1'0000'0000;
+
+class RayCoreAxiTest : public testing::Test {
+ protected:
+  RayCoreAxiTest() {
+    model_->reg_awvalid_i = model_->reg_wvalid_i = model_->reg_arvalid_i = 0;
+    model_->reg_bready_i = model_->reg_rready_i = 1;
+    model_->reg_wstrb_i = 15;
+    model_->mem_arready_i = model_->mem_rvalid_i = 0;
+    model_->mem_rresp_i = 0;
+    model_->ray_valid_i = model_->result_ready_i = 0;
+    model_.reset();
+  }
+
+  /// A clock of the whole: memory and results too.
+  void clock() {
+    model_->mem_arready_i = random_() % 4 != 0;
+    model_->result_ready_i = random_() % 4 != 0;
+    if (model_->mem_rvalid_i == 0 && !beats_.empty() && random_() % 4 != 0) {
+      model_->mem_rid_i = beats_.front().id;
+      model_->mem_rdata_i = beats_.front().data;
+      model_->mem_rvalid_i = 1;
+      beats_.pop_front();
+    }
+    model_.eval();
+    if ((model_->mem_arvalid_o & model_->mem_arready_i) != 0) {
+      const std::uint64_t line = (model_->mem_araddr_o - kBase) / 64;
+      ASSERT_LT(line, image_.lines().size());
+      ASSERT_EQ(model_->mem_arlen_o, 7);
+      for (unsigned beat = 0; beat < 8; ++beat) {
+        const auto& words = image_.lines()[line].words;
+        beats_.push_back(
+            {model_->mem_arid_o, std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat]});
+      }
+    }
+    const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
+    if ((model_->result_valid_o & model_->result_ready_i) != 0) take_result();
+    model_.clock();
+    if (beat_taken) model_->mem_rvalid_i = 0;
+  }
+
+  void write(std::uint32_t address, std::uint32_t data) {
+    model_->reg_awaddr_i = address;
+    model_->reg_wdata_i = data;
+    model_->reg_awvalid_i = model_->reg_wvalid_i = 1;
+    model_.eval();
+    ASSERT_EQ(model_->reg_awready_o, 1);
+    clock();
+    model_->reg_awvalid_i = model_->reg_wvalid_i = 0;
+    clock();
+  }
+  void write(std::uint32_t address, const glm::vec3& vector) {
+    for (int k = 0; k < 3; ++k) {
+      write(address + 4 * static_cast<unsigned>(k), std::bit_cast<std::uint32_t>(vector[k]));
+    }
+  }
+
+  std::uint32_t read(std::uint32_t address) {
+    model_->reg_araddr_i = address;
+    model_->reg_arvalid_i = 1;
+    clock();
+    model_->reg_arvalid_i = 0;
+    const std::uint32_t data = model_->reg_rdata_o;
+    EXPECT_EQ(model_->reg_rvalid_o, 1);
+    clock();
+    return data;
+  }
+
+  void take_result() {
+    CoreResult result;
+    result.kind = static_cast<CoreResult::Kind>(model_->result_kind_o);
+    result.tag = model_->result_tag_o;
+    result.found = model_->result_found_o != 0;
+    result.triangle = model_->result_triangle_o;
+    result.t = std::bit_cast<float>(model_->result_t_o);
+    results_.push_back(result);
+  }
+
+  struct Beat {
+    std::uint32_t id;
+    std::uint64_t data;
+  };
+
+  Bvh bvh_{test::scene_of(test::bodies())};
+  MemoryImage image_{bvh_};
+  std::mt19937 random_{kSeed};
+  Model<Vray_core_axi> model_;
+  std::deque<Beat> beats_;
+  std::vector<CoreResult> results_;
+};
+
+TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  constexpr std::uint32_t kWidth = 40, kHeight = 30, kX = 3, kY = 5;
+  const glm::vec3 eye(0.25f, 0.3f, 2.5f);
+  const PixelGrid grid{{-0.6f, 0.5f, -1.0f}, {0.03f, 0.001f, 0.0f}, {0.0f, -0.03f, 0.002f}};
+  write(0x014, static_cast<std::uint32_t>(kBase));
+  write(0x018, static_cast<std::uint32_t>(kBase >> 32));
+  write(0x020, kY << 16 | kX);
+  write(0x030, eye);
+  write(0x040, grid.first);
+  write(0x050, grid.right);
+  write(0x060, grid.down);
+  write(0x00C, 2);
+  for (int frame = 0; frame < 2; ++frame) {
+    results_.clear();
+    write(0x010, 7);
+    write(0x024, kHeight << 16 | kWidth);
+    write(0x004, 1 | 4);
+    for (int n = 0; model_->interrupt_o == 0; ++n) {
+      ASSERT_LT(n, 200'000);
+      clock();
+    }
+    EXPECT_EQ(read(0x008), 0u);
+    EXPECT_EQ(read(0x108), kWidth * kHeight) << "rays";
+    EXPECT_GT(read(0x100), kWidth * kHeight) << "clocks";
+
+    std::vector<int> ends(kWidth * kHeight);
+    std::vector<std::vector<std::uint32_t>> doubts(ends.size());
+    std::size_t doubted = 0, found = 0;
+    std::vector<CoreResult> nearest(ends.size());
+    for (const CoreResult& result : results_) {
+      const std::uint32_t x = (result.tag & 0xFFFF) - kX, y = (result.tag >> 16) - kY;
+      ASSERT_LT(x, kWidth);
+      ASSERT_LT(y, kHeight);
+      const std::size_t pixel = y * kWidth + x;
+      ASSERT_NE(result.kind, CoreResult::Kind::kRest);
+      ASSERT_EQ(ends[pixel], 0) << "its end is its last";
+      if (result.kind == CoreResult::Kind::kDoubt) {
+        doubts[pixel].push_back(result.triangle);
+        ++doubted;
+        continue;
+      }
+      ++ends[pixel];
+      nearest[pixel] = result;
+      found += result.found;
+    }
+    EXPECT_EQ(std::ranges::count(ends, 1), static_cast<long>(ends.size()));
+    EXPECT_GT(found, ends.size() / 2);
+    EXPECT_EQ(read(0x010) & 1, doubted != 0 ? 1u : 0u);
+    ReferenceCore reference;
+    int compared = 0;
+    for (std::uint32_t pixel = 0; pixel < ends.size(); ++pixel) {
+      const glm::vec3 direction = grid.direction(static_cast<std::uint16_t>(kX + pixel % kWidth),
+                                                 static_cast<std::uint16_t>(kY + pixel / kWidth));
+      const CoreRay ray{.ray = {eye, direction}};
+      std::vector<CoreResult> expected;
+      reference.trace(image_.lines(), {&ray, 1}, expected);
+      if (expected.size() != 1 || !doubts[pixel].empty()) continue;
+      ++compared;
+      ASSERT_EQ(nearest[pixel].found, expected[0].found) << pixel;
+      if (!expected[0].found) continue;
+      ASSERT_EQ(nearest[pixel].triangle, expected[0].triangle) << pixel;
+      ASSERT_EQ(nearest[pixel].t, expected[0].t) << pixel;
+    }
+    EXPECT_GT(compared, 600);
+  }
+}
+
+/// Memory that fails is told of.
+TEST_F(RayCoreAxiTest, AnErrorOfMemoryRaisesItsFlag) {
+  write(0x014, static_cast<std::uint32_t>(kBase));
+  write(0x018, static_cast<std::uint32_t>(kBase >> 32));
+  write(0x020, 0u);
+  write(0x030, glm::vec3(0.0f, 0.0f, 2.5f));
+  write(0x040, glm::vec3(0.0f, 0.0f, -1.0f));
+  write(0x050, glm::vec3(0.01f, 0.0f, 0.0f));
+  write(0x060, glm::vec3(0.0f, 0.01f, 0.0f));
+  write(0x00C, 4);
+  model_->mem_rresp_i = 2;
+  write(0x024, 1u << 16 | 1u);
+  write(0x004, 1);
+  for (int n = 0; model_->interrupt_o == 0; ++n) {
+    ASSERT_LT(n, 10'000);
+    clock();
+  }
+  EXPECT_EQ(read(0x010) & 4, 4u);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,126 @@
+// A ray core of which nothing is left but rays that come and go: ray_intake and ray_ends as ray_core joins them.
+// What is to be done for a ray is anything, and so is when its walk begins.
+module ray_slots #(
+  parameter int unsigned Rays = 4,
+  localparam int unsigned SlotWidth = $clog2(Rays)
+) (
+  input  logic                 clk_i,
+  input  logic                 rst_ni,
+  input  logic                 ray_valid_i,
+  output logic                 ray_ready_o,
+  input  logic                 start_i,  // the walk takes a ray that is there
+  input  logic [Rays-1:0]      busy_i,
+  output logic                 started_o,
+  output logic [SlotWidth-1:0] started_slot_o,
+  output logic                 ending_o,
+  output logic [SlotWidth-1:0] ending_slot_o,
+  input  logic                 doubt_valid_i,
+  input  logic                 rest_valid_i,
+  output logic                 result_valid_o,
+  input  logic                 result_ready_i,
+  output logic [1:0]           result_kind_o
+);
+
+  logic start_valid;
+  logic [95:0] inverse;
+  logic ray;
+  assign started_o = start_valid & start_i;
+
+  ray_intake #(
+    .Rays(Rays),
+    .Width(1)
+  ) u_intake (
+    .clk_i,
+    .rst_ni,
+    .valid_i(ray_valid_i),
+    .ready_o(ray_ready_o),
+    .direction_i('0),
+    .ray_i(1'b0),
+    .free_valid_i(ending_o),
+    .free_slot_i(ending_slot_o),
+    .start_valid_o(start_valid),
+    .start_slot_o(started_slot_o),
+    .start_inverse_o(inverse),
+    .start_ray_o(ray),
+    .start_taken_i(started_o)
+  );
+
+  (* anyseq *) logic [31:0] tag, triangle, t;
+  (* anyseq *) logic [95:0] point;
+  logic found;
+  logic [SlotWidth-1:0] point_slot;
+  logic doubt_taken, rest_taken;
+  logic [31:0] result_tag, result_triangle, result_t;
+  logic result_found;
+  logic [4:0] result_t_error;
+  logic [95:0] result_point;
+  logic [15:0] result_tests;
+  logic [27:0] result_line;
+  logic [48:0] result_nodes;
+  assign found = tag[0];
+
+  ray_ends #(
+    .Rays(Rays)
+  ) u_ends (
+    .clk_i,
+    .rst_ni,
+    .start_i(started_o),
+    .start_slot_i(started_slot_o),
+    .busy_i,
+    .ending_o,
+    .ending_slot_o,
+    .ending_tag_i(tag),
+    .ending_found_i(found),
+    .ending_triangle_i(triangle),
+    .ending_t_i(t),
+    .ending_t_error_i('0),
+    .ending_tests_i('0),
+    .point_slot_o(point_slot),
+    .point_i(point),
+    .doubt_valid_i,
+    .doubt_tag_i('0),
+    .doubt_triangle_i('0),
+    .doubt_taken_o(doubt_taken),
+    .rest_valid_i,
+    .rest_tag_i('0),
+    .rest_line_i('0),
+    .rest_nodes_i('0),
+    .rest_taken_o(rest_taken),
+    .result_valid_o,
+    .result_ready_i,
+    .result_kind_o,
+    .result_tag_o(result_tag),
+    .result_found_o(result_found),
+    .result_triangle_o(result_triangle),
+    .result_t_o(result_t),
+    .result_t_error_o(result_t_error),
+    .result_point_o(result_point),
+    .result_tests_o(result_tests),
+    .result_line_o(result_line),
+    .result_nodes_o(result_nodes)
+  );
+
+endmodule
+
+// A divider that promises nothing.
+module fp_divider_stages #(
+  parameter int unsigned ExpWidth     = 8,
+  parameter int unsigned FracWidth    = 23,
+  parameter int unsigned Arith        = 0,
+  parameter int unsigned Adder        = 0,
+  parameter int unsigned QuotientBits = 0,
+  parameter bit [31:0]   Cuts         = 32'd0
+) (
+  input  logic                        clk_i,
+  input  logic                        valid_i,
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  logic [2:0]                  rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output fp_pkg::flags_t              flags_o
+);
+  (* anyseq *) logic [ExpWidth+FracWidth:0] any;
+  assign result_o = any;
+  assign flags_o = '0;
+endmodule

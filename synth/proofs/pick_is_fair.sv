@@ -1,0 +1,33 @@
+// The rotating pick takes a request where there is one: the first from `from` on, around the end.
+module pick_is_fair #(
+  parameter int unsigned Width = 64,
+  localparam int unsigned IndexWidth = $clog2(Width)
+) (
+  input logic [Width-1:0]      requests,
+  input logic [IndexWidth-1:0] from,
+  input logic [IndexWidth-1:0] other  // any place
+);
+
+  logic valid;
+  logic [IndexWidth-1:0] index;
+
+  rotating_pick #(
+    .Width(Width)
+  ) dut (
+    .requests_i(requests),
+    .start_i(from),
+    .valid_o(valid),
+    .index_o(index)
+  );
+
+  logic [IndexWidth-1:0] way, other_way;  // from `from` on
+  assign way       = index - from;
+  assign other_way = other - from;
+
+  always_comb begin
+    assert (valid == (requests != '0));
+    if (valid) assert (requests[index]);
+    if (requests[other]) assert (way <= other_way);
+  end
+
+endmodule
