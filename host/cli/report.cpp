@@ -44,7 +44,7 @@ std::string headline(const Report& report) {
   if (report.ranks > 1)
     line += ", " + format_count(report.ranks, "rank") + " of";
   else
-    line += ",";
+    line += ',';
   return line + " " + format_count(options.threads, "thread") + "\n";
 }
 
@@ -249,6 +249,8 @@ std::string to_json(const Report& report) {
       {"rays", render.rays},
       {"camera_rays", render.camera_rays},
       {"shadow_rays", render.shadow_rays},
+      {"gathered_tiles", render.gathered_tiles},
+      {"gathered_bytes", render.gathered_bytes},
       {"records", render.find.own_records + render.find.common_records},
       {"common_records", render.find.common_records},
       {"tests", hit.tests},
@@ -281,6 +283,7 @@ std::string to_json(const Report& report) {
         {"tree", report.tree_seconds},
         {"render", render.wall_seconds},
         {"processor", render.processor_seconds},
+        {"gather", render.gather_seconds},
         {"write", report.write_seconds},
         {"total", report.total_seconds}}},
       {"thread_seconds",

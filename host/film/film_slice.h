@@ -8,6 +8,8 @@
 
 namespace raygate {
 
+static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>), "for_each_array() has them all");
+
 /// Calls `visit` with each array of pixels that a film may have.
 template <class AnyFilm, class Visit>
 void for_each_array(AnyFilm& film, const Visit& visit) {
@@ -23,6 +25,8 @@ void for_each_array(AnyFilm& film, const Visit& visit) {
   visit(film.sums.samples);
   visit(film.sums.color);
   visit(film.sums.albedo);
+  visit(film.sums.error);
+  visit(film.sums.shown);
   visit(film.sums.error);
   visit(film.sums.shown);
 }

@@ -7,24 +7,32 @@ LARGE_SCENES := build/scenes/sphere.obj build/scenes/sphereflake.obj
 # `make stress`: tests by the cpu engine in each suite; others do their share of it.
 TESTS ?= 10000000
 
-.PHONY: stress bench peers gltf-pictures rays core skips predicates techniques shares stages adaptive coverage trace-rates claims
+# `make stress MPIRUN='mpirun -n 4'`: ranks share the suites, and of `make bench` the sections.
+define share
+$(if $(MPIRUN),@$(SETUP) mpi && $(configure) -DRAYGATE_MPI=ON >/dev/null && cmake --build build -j $(JOBS) --target share)
+endef
+
+.PHONY: stress bench peers gltf-pictures rays core skips predicates techniques shares stages growth adaptive coverage trace-rates claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
-stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 PUBLISH=1]
+stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 MPIRUN='mpirun -n 4' PUBLISH=1]
 ifdef QUICK
 	$(call build,build,lab >/dev/null)
 	@$(LAB) stress --quiet --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
 else
 	$(call build,lab,lab)
+	$(share)
+	@$(if $(MPIRUN),$(LAB_REPORT) share-stress --tests $(TESTS) --seed $(or $(SEED),1) --launcher '$(MPIRUN)')
 	@$(LAB) --results $(LAB_ROWS)/stress.jsonl stress --tests $(TESTS) --threads $(JOBS) \
 	  --seed $(or $(SEED),1); status=$$?; \
 	$(LAB_REPORT) stress $(if $(PUBLISH),--publish) && exit $$status
 endif
 
-bench: ## run time against error, one report: make bench [QUICK=1 BASE=old.jsonl PUBLISH=1]
+bench: ## run time against error, one report: make bench [QUICK=1 BASE=old.jsonl MPIRUN='mpirun -n 4' PUBLISH=1]
 	$(call build,bench,lab render scenes unit_bench table_1 worked_example)
+	$(share)
 	@$(LAB_REPORT) bench $(if $(QUICK),--quick) $(if $(BASE),--base '$(BASE)') \
-	  $(if $(PUBLISH),--publish)
+	  $(if $(MPIRUN),--launcher '$(MPIRUN)') $(if $(PUBLISH),--publish)
 
 peers: ## error against time next to Mitsuba 3: make peers [QUICK=1 SCENES='cornell teapot' PUBLISH=1]
 	$(call build,peers,render scenes)
@@ -83,6 +91,13 @@ adaptive: ## time with --error beside uniform --spp, at equal RMSE and equal FLI
 coverage: ## how often the estimated error of --error holds, pixels of known value, 1,000 seeds: make coverage [SEEDS=1000]
 	$(call build,test,picture_test)
 	@RAYGATE_SEEDS=$(or $(SEEDS),1000) build/picture_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
+
+growth: ## time by ranks: measured for 1 and 2, a model up to 1,000: make growth [PUBLISH=1]
+	@$(SETUP) mpi
+	@$(SETUP) lab
+	@$(configure) -DRAYGATE_MPI=ON >/dev/null
+	@cmake --build build -j $(JOBS) --target render scenes
+	@$(LAB_REPORT) growth scenes/cornell.obj build/scenes/landscape.obj $(if $(PUBLISH),--publish)
 
 trace-rates: ## rays per second of ./trace: nearest, any and all hits, tables in and out included
 	$(call build,lab,trace scenes)

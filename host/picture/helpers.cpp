@@ -1,5 +1,7 @@
 #include "host/picture/helpers.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cassert>
 
@@ -9,8 +11,16 @@
 namespace raygate {
 namespace {
 
-// What a rank that dies takes with it, and how seldom a helper has to be answered.
+// What a rank that dies takes with it, at least, and how seldom it has to be answered.
 constexpr double kSeconds = 1.0;
+// Bytes a second that rank 0 may be sent: it takes in several times as many.
+constexpr double kRate = 250e6;
+
+double thread_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 }  // namespace
 
@@ -22,21 +32,12 @@ Helpers::Helpers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film)
       room_(static_cast<std::size_t>(ranks.count()), 0) {}
 
 bool Helpers::serve(Schedule& schedule) {
-  bool came_back = false;
+  const double start = thread_seconds();
+  bool came_back = false, did_something = false;
   while (const auto message = ranks_.receive()) {
-    int& room = room_[static_cast<std::size_t>(message->from)];
-    if (message->about == About::kRoom) {
-      room = value_of<int>(message->bytes);
-      most_room_ += room;
-    } else if (message->about == About::kTraced) {
-      const auto tile = value_of<SharedTile>(message->bytes);
-      put_slice(film_, tile.rect, slice_in(message->bytes));
-      schedule.end(tile.number);
-      seconds_ += tile.seconds;
-      passes_ += (tile.last - tile.end) / tile.step + 1;
-      ++room;
-      came_back = true;
-    }
+    take(*message, schedule);
+    came_back = came_back || message->about == About::kTraced;
+    did_something = true;
   }
   for (bool gave = true; gave;) {  // one each in turn
     gave = false;
@@ -44,19 +45,41 @@ bool Helpers::serve(Schedule& schedule) {
       int& room = room_[static_cast<std::size_t>(rank)];
       if (room == 0) continue;
       const auto step = schedule.begin(rank, most_passes(schedule));
-      if (!step) return came_back;
+      if (!step) break;
       give(rank, *step);
       --room;
-      gave = true;
+      gave = did_something = true;
     }
   }
+  if (did_something) serving_ += thread_seconds() - start;
   return came_back;
 }
 
-/// Fewer and fewer towards the end, for all to end at once; and no more than take a second.
+void Helpers::take(const Message& message, Schedule& schedule) {
+  int& room = room_[static_cast<std::size_t>(message.from)];
+  if (message.about == About::kRoom) {
+    room = value_of<int>(message.bytes);
+    most_room_ += room;
+  } else if (message.about == About::kTraced) {
+    const auto tile = value_of<SharedTile>(message.bytes);
+    put_slice(film_, tile.rect, slice_in(message.bytes));
+    schedule.end(tile.number);
+    seconds_ += tile.seconds;
+    passes_ += (tile.last - tile.end) / tile.step + 1;
+    ++tiles_back_;
+    bytes_back_ += message.bytes.size();
+    ++room;
+  }
+}
+
+/// Fewer and fewer towards the end, for all to end at once; and no more than take a second, or as
+/// long as so many ranks need for rank 0 to keep up with them.
 int Helpers::most_passes(const Schedule& schedule) const {
   const double share = static_cast<double>(schedule.left()) / (4.0 * most_room_);
-  const double in_time = passes_ == 0 ? 1.0 : kSeconds * static_cast<double>(passes_) / seconds_;
+  if (passes_ == 0) return 1;
+  const double slice = static_cast<double>(bytes_back_) / static_cast<double>(tiles_back_);
+  const double seconds = std::max(kSeconds, most_room_ * slice / kRate);
+  const double in_time = seconds * static_cast<double>(passes_) / seconds_;
   return static_cast<int>(std::clamp(std::min(share, in_time), 1.0, 1e6));
 }
 
@@ -80,7 +103,11 @@ bool Helpers::finish(RenderStats& stats) {
     add(stats, value_of<RenderStats>(message->bytes));
     ++heard_;
   }
-  return heard_ == ranks_.count() - 1;
+  if (heard_ < ranks_.count() - 1) return false;
+  stats.gather_seconds = serving_;
+  stats.gathered_tiles = tiles_back_;
+  stats.gathered_bytes = bytes_back_;
+  return true;
 }
 
 }  // namespace raygate

@@ -22,10 +22,11 @@ class Helpers {
   bool serve(Schedule& schedule);
 
   /// Says that all is traced, and waits for what everyone has to say about it: true once that is
-  /// in `stats`. False: not yet.
+  /// in `stats`, with what serve() has done. False: not yet.
   bool finish(RenderStats& stats);
 
  private:
+  void take(const Message& message, Schedule& schedule);
   [[nodiscard]] int most_passes(const Schedule& schedule) const;
   void give(int rank, const Schedule::Step& step);
 
@@ -37,6 +38,8 @@ class Helpers {
   int most_room_ = 0;      // of all of them, when they had nothing to do
   double seconds_ = 0.0;   // of threads, for ...
   std::int64_t passes_ = 0;
+  double serving_ = 0.0;  // seconds of this thread
+  std::uint64_t tiles_back_ = 0, bytes_back_ = 0;
   bool told_ = false;
   int heard_ = 0;  // statistics that have come
 };

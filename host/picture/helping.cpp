@@ -40,6 +40,7 @@ class Helper {
   ~Helper() { stop(); }
 
   void run(Ranks& ranks) {
+    const double busy = processor_seconds();
     try {
       while (static_cast<int>(threads_.size()) < job_.options.threads) {
         threads_.emplace_back([this] { work(); });
@@ -53,6 +54,7 @@ class Helper {
     }
     stop();
     threads_.clear();
+    stats_.processor_seconds = processor_seconds() - busy;
     ranks.send(0, About::kCounts, bytes_of(stats_));
   }
 

@@ -281,6 +281,7 @@ void add(RenderStats& stats, const RenderStats& of_helper) {
   stats.skipped += of_helper.skipped;
   stats.find += of_helper.find;
   stats.shade_seconds += of_helper.shade_seconds;
+  stats.processor_seconds += of_helper.processor_seconds;
 }
 
 Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
@@ -296,7 +297,7 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
   const int end = options.end_sample > 0 ? options.end_sample : options.samples;
   const int ranks = options.ranks == nullptr ? 1 : options.ranks->count();
   const Tiles tiles(film.window, end - options.first_sample, first_finder->preferred_batch(),
-                    options.threads * ranks);
+                    options.threads, ranks, options.error > 0.0);
   if (options.begun != nullptr) {
     film = *options.begun;
     film.keeps_sums = options.channels.sums;
@@ -337,7 +338,7 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     }
   }
   stats.wall_seconds = wall.lap();
-  stats.processor_seconds = processor_seconds() - busy;
+  stats.processor_seconds += processor_seconds() - busy;
   return film;
 }
 

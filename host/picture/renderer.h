@@ -71,7 +71,7 @@ struct RenderOptions {
 
 /// What a render did. Seconds of the parts are summed over the threads (two threads busy for a
 /// second make two seconds); `wall_seconds` is what a clock on the wall shows, `processor_seconds`
-/// what all threads of the program were given of the processors meanwhile.
+/// what all threads of the program, of all ranks, were given of the processors meanwhile.
 struct RenderStats {
   std::uint64_t rays = 0;          ///< of all kinds; the others are reflected or refracted
   std::uint64_t camera_rays = 0;   ///< of these, from the camera
@@ -82,8 +82,11 @@ struct RenderStats {
   double shade_seconds = 0.0;  ///< making the rays and shading them
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
-  std::uint64_t spare_samples = 0;  ///< not taken, as RenderOptions::error had no need of them
-  int missing_threads = 0;          ///< that could not be started; the others did their work
+  std::uint64_t spare_samples = 0;   ///< not taken, as RenderOptions::error had no need of them
+  double gather_seconds = 0.0;       ///< of a processor of rank 0: handing out, putting together
+  std::uint64_t gathered_tiles = 0;  ///< that came back from other ranks, once or more often ...
+  std::uint64_t gathered_bytes = 0;  ///< ... with so much
+  int missing_threads = 0;           ///< that could not be started; the others did their work
   bool cancelled = false;  ///< the progress function said stop: the film has what there was
 };
 

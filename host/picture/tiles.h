@@ -11,18 +11,24 @@ namespace raygate {
 
 /// The window cut into tiles, numbered row by row, and each pixel's samples into passes, so that a
 /// tile's samples of a pass are about as many as a finder likes at once. Fewer where some of the
-/// threads would have no tile.
+/// threads would have no tile; and where there are other ranks, smaller tiles and longer passes,
+/// unless these are to stay short, as long as a thread has not four tiles.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
   int width, height;  ///< of a tile
   int columns, count;
 
-  /// `batch`: Finder::preferred_batch.
-  Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads)
+  /// `batch`: Finder::preferred_batch. `threads` of each of so many `ranks`.
+  Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads, int ranks = 1,
+        bool short_passes = false)
       : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {
-    const int edge = samples_per_pass == 1 ? 128 : samples_per_pass < 4 ? 80 : 64;
-    const std::int64_t share = std::int64_t{window.width()} * window.height() / threads;
+    int edge = samples_per_pass == 1 ? 128 : samples_per_pass < 4 ? 80 : 64;
+    const std::int64_t share =
+        std::int64_t{window.width()} * window.height() / (std::int64_t{threads} * ranks);
+    for (; ranks > 1 && edge > 16 && share < std::int64_t{4} * edge * edge; edge /= 2) {
+      if (!short_passes) samples_per_pass = std::min(samples, 4 * samples_per_pass);
+    }
     const int square = edge * edge;
     const auto many = static_cast<std::int64_t>(batch) / samples_per_pass;
     const int pixels = static_cast<int>(

@@ -1,8 +1,13 @@
 #include "host/ranks/launcher.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace raygate {
 
@@ -18,6 +23,17 @@ int launched_count() {
     }
   }
   return 0;
+}
+
+void forget_launcher() {
+  std::vector<std::string> names;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    for (const std::string_view prefix : {"OMPI_", "PMI_", "PMIX_"}) {
+      if (text.starts_with(prefix)) names.emplace_back(text.substr(0, text.find('=')));
+    }
+  }
+  for (const std::string& name : names) ::unsetenv(name.c_str());
 }
 
 }  // namespace raygate

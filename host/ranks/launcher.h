@@ -9,4 +9,7 @@ namespace raygate {
 /// How many processes the launcher says that it started; 0 where it says nothing.
 [[nodiscard]] int launched_count();
 
+/// Takes out of the environment what the launcher has put there, for programs that this one starts.
+void forget_launcher();
+
 }  // namespace raygate

@@ -23,7 +23,7 @@ std::optional<int> SharedJobs::next() {
   if (ranks_.count() > 1 && !server_.joinable())
     server_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
   const int job = next_++;
-  if (job < count_) return job;
+  if (job < count_ && !has_failed_) return job;
   if (server_.joinable()) server_.join();
   if (error_) std::rethrow_exception(error_);
   return std::nullopt;
@@ -43,6 +43,7 @@ void SharedJobs::serve(const std::stop_token& stop) {
     }
   } catch (...) {
     error_ = std::current_exception();
+    has_failed_ = true;
   }
 }
 

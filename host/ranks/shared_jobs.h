@@ -21,7 +21,7 @@ class SharedJobs {
   SharedJobs& operator=(const SharedJobs&) = delete;
 
   /// A job for this rank; none when all have been begun. On rank 0 not before those of the other
-  /// ranks have ended; then throws what receive() does.
+  /// ranks have ended, or one of them could not go on; then throws what receive() does.
   [[nodiscard]] std::optional<int> next();
 
  private:
@@ -30,6 +30,7 @@ class SharedJobs {
   Ranks& ranks_;
   int count_;
   std::atomic<int> next_ = 0;
+  std::atomic<bool> has_failed_ = false;
   std::exception_ptr error_;
   std::jthread server_;  // last: it uses the others
 };

@@ -30,7 +30,7 @@ std::vector<int> children_of(int parent) {
     std::ifstream file(entry.path() / "stat");
     std::string stat(std::istreambuf_iterator<char>(file), {});
     const std::size_t end = stat.rfind(')');  // of the program's name
-    if (end != std::string::npos && std::atoi(stat.c_str() + end + 4) == parent) {
+    if (end != std::string::npos && std::stoi(stat.substr(end + 4)) == parent) {
       children.push_back(std::stoi(name));
     }
   }
@@ -42,7 +42,7 @@ int rank_of(int process) {
   const std::string environment(std::istreambuf_iterator<char>(file), {});
   const std::string name = "OMPI_COMM_WORLD_RANK=";
   const std::size_t at = environment.find(name);
-  return at == std::string::npos ? -1 : std::atoi(environment.c_str() + at + name.size());
+  return at == std::string::npos ? -1 : std::stoi(environment.substr(at + name.size()));
 }
 
 class Ranks : public Render {
@@ -67,10 +67,10 @@ class Ranks : public Render {
   }
 };
 
-const Words kSmall = {kCornell, "--size", "60x44", "--integrator", "path", "--threads", "1"};
+Words small() { return {kCornell, "--size", "60x44", "--integrator", "path", "--threads", "1"}; }
 
 TEST_F(Ranks, ShareAPicture) {
-  const Words arguments = kSmall + Words{"--spp", "9", "--channels", "Albedo,objectId"};
+  const Words arguments = small() + Words{"--spp", "9", "--channels", "Albedo,objectId"};
   alone(arguments + Words{"--engine", "cpu", "-o", "whole"});
   for (const int count : {1, 2, 4}) {
     const Outcome outcome = on_ranks(count, arguments + Words{"--engine", "cpu", "-o", "shared"});
@@ -100,14 +100,23 @@ TEST_F(Ranks, ShareOneSampleCropsAndRanges) {
   EXPECT_EQ(on_ranks(3, one + Words{"-o", "shared"}).status, 0);
   expect_same_pictures("shared", "whole");
   const Words part =
-      kSmall + Words{"--engine", "cpu", "--spp", "12", "--crop", "9,7,50,41", "--samples", "3:11"};
+      small() + Words{"--engine", "cpu", "--spp", "12", "--crop", "9,7,50,41", "--samples", "3:11"};
   alone(part + Words{"-o", "whole"});
   EXPECT_EQ(on_ranks(2, part + Words{"-o", "shared"}).status, 0);
   expect_same_pictures("shared", "whole");
 }
 
+TEST_F(Ranks, ShareAPictureWithSamplesByItsError) {
+  const Words arguments = small() + Words{"--engine", "cpu", "--spp", "200", "--error", "4"};
+  alone(arguments + Words{"-o", "whole"});
+  for (const int count : {2, 4}) {
+    EXPECT_EQ(on_ranks(count, arguments + Words{"-o", "shared"}).status, 0);
+    expect_same_pictures("shared", "whole");
+  }
+}
+
 TEST_F(Ranks, GoOnWhereAnotherNumberOfThemWas) {
-  const Words arguments = kSmall + Words{"--engine", "cpu"};
+  const Words arguments = small() + Words{"--engine", "cpu"};
   alone(arguments + Words{"--spp", "13", "-o", "whole"});
   const Words begun = arguments + Words{"--spp", "5", "--channels", "sums", "-o", "a.exr"};
   EXPECT_EQ(on_ranks(3, begun).status, 0);
@@ -127,6 +136,29 @@ TEST_F(Ranks, ShareTheFramesOfAFilm) {
   for (int frame = 1; frame <= 5; ++frame) {
     expect_same_pictures("a-000" + std::to_string(frame), "b-000" + std::to_string(frame));
   }
+}
+
+TEST_F(Ranks, ShareCommands) {
+  const auto share = [&](const std::string& commands) {
+    folder_.write("commands", commands);
+    return run_program({.arguments = {"--oversubscribe", "-n", "3", RAYGATE_SHARE, "commands"},
+                        .folder = folder_.path(),
+                        .program = RAYGATE_MPIRUN});
+  };
+  std::string commands;
+  for (char name = 'a'; name <= 'k'; ++name) {
+    commands += std::string("echo $PPID >> ") + name + "\n";
+  }
+  const Outcome outcome = share(commands + "env | grep -c OMPI_COMM || true\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "0\n") << "programs take themselves for ranks";
+  for (char name = 'a'; name <= 'k'; ++name) {
+    const std::string text = folder_.read(std::string(1, name));
+    EXPECT_EQ(std::ranges::count(text, '\n'), 1) << name << ": " << text;
+  }
+  const Outcome failed = share(commands + "exit 3\n");
+  EXPECT_EQ(failed.status, 2);
+  EXPECT_NE(failed.err.find("this command failed: exit 3"), std::string::npos) << failed.err;
 }
 
 TEST_F(Ranks, SayOnceWhatIsWrong) {
@@ -155,7 +187,7 @@ class KilledRanks : public Ranks {
                              "1",        "--filter", "box"};
     const Words begun = arguments + Words{"-o", "a.exr"} + more;
     const char* const wanted = std::getenv("RAYGATE_KILLS");
-    const int kills = wanted != nullptr ? std::atoi(wanted) : 2;
+    const int kills = wanted != nullptr ? std::stoi(wanted) : 2;
     constexpr unsigned kSeed = 20261122;
     std::mt19937 random(kSeed + static_cast<unsigned>(who));
     int killed = 0, saved = 0;

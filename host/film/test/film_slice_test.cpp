@@ -12,6 +12,8 @@ Film with_sums(Film film) {
   film.sums.samples.assign(film.color.size(), 3);
   film.sums.color.resize(film.color.size());
   film.sums.albedo.resize(film.albedo.size());
+  film.sums.error.assign(film.color.size(), 0.5f);
+  film.sums.shown.assign(film.color.size(), 99.0f);
   for (std::size_t i = 0; i < film.color.size(); ++i) {
     film.sums.color[i][2].add(double(i) / 3.0);
     film.sums.albedo[i][1].add(-double(i));

@@ -1,5 +1,5 @@
 """`python3 -m host.lab.report`: what `make bench`, `make stress`, `make core`, `make shares`, `make stages`,
-`make adaptive` and `make trace-rates` run."""
+`make growth`, `make adaptive` and `make trace-rates` run."""
 
 import argparse
 import pathlib
@@ -7,7 +7,7 @@ import shutil
 import statistics
 import sys
 
-from host.lab.report import (adaptive, bench, bench_report, compare, core_report, document, shares, stages,
+from host.lab.report import (adaptive, bench, bench_report, compare, core_report, document, growth, shares, stages,
                              stress_report, trace_rates)
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
@@ -28,6 +28,11 @@ def arguments() -> argparse.Namespace:
                          help="older rows: says what got slower or less accurate since")
     command.add_argument("--report-only", action="store_true",
                          help="draw build/results/bench.jsonl again, measuring nothing")
+    command.add_argument("--launcher", default="", help="shares the sections among ranks: 'mpirun -n 4'")
+    shared = commands.add_parser("share-stress", help="the suites of `lab stress`, shared among ranks")
+    shared.add_argument("--launcher", required=True, help="'mpirun -n 4' or the like")
+    shared.add_argument("--tests", type=int, required=True)
+    shared.add_argument("--seed", type=int, required=True)
     stress = commands.add_parser("stress", help="build/results/stress.jsonl as a report")
     core = commands.add_parser("core", help="build/results/core-*.jsonl as a report")
     for publishing in (command, stress, core):
@@ -53,6 +58,13 @@ def arguments() -> argparse.Namespace:
     command.add_argument("--counts", type=int, nargs="+", default=[16, 32, 64, 128, 256], help="uniform samples")
     command.add_argument("--reference", type=int, default=2048, help="samples of the picture that is the truth")
     command.add_argument("--seeds", type=int, default=2)
+    command = commands.add_parser("growth", help="time by ranks, measured and modelled: build/reports/growth/report.md")
+    command.add_argument("scenes", nargs="+", help="OBJ files")
+    command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
+    command.add_argument("--repeats", type=int, default=5)
+    command.add_argument("--report-only", action="store_true", help="draw what was measured last again")
+    command.add_argument("--publish", action="store_true",
+                         help="write the report into host/lab/results/ as well")
     command = commands.add_parser("trace", help="rays per second of ./trace")
     command.add_argument("scenes", nargs="+", help="OBJ files")
     command.add_argument("--trace", type=pathlib.Path, default=ROOT / "trace", metavar="PROGRAM")
@@ -83,7 +95,7 @@ def run_bench(given: argparse.Namespace) -> int:
     base = kept.read(given.base) if given.base else None
     file = KEPT / "bench.jsonl"
     if not given.report_only:
-        kept.write(file, bench.measure(given.quick))
+        kept.write(file, bench.measure(given.quick, given.launcher))
     rows = kept.read(file)
     write(rows, bench_report.build, "bench", given.publish)
     table = kept.comma_separated(kept.of(rows, "pictures"))
@@ -119,6 +131,12 @@ def run_core(given: argparse.Namespace) -> int:
     return 0
 
 
+def share_stress(given: argparse.Namespace) -> int:
+    """For `lab stress` to judge."""
+    bench.share_stress(given.tests, given.seed, given.launcher)
+    return 0
+
+
 def run_shares(given: argparse.Namespace) -> int:
     """Prints the table and keeps its rows."""
     light = ["--integrator", "path", "--size", given.size, "--spp", given.spp]
@@ -147,6 +165,15 @@ def run_stages(given: argparse.Namespace) -> int:
         {"scene": "", "triangles": ","} | {f"{stage}, ms": "" for stage in stages.STAGES},
         [[kept.scene_name(row), row["triangles"], *(cell(row["scene"], stage) for stage in stages.STAGES)]
          for row in kept.of(rows, "stages", program=0)]))
+    return 0
+
+
+def run_growth(given: argparse.Namespace) -> int:
+    """ValueError where numbers of ranks differ in a byte."""
+    file = KEPT / "growth.jsonl"
+    if not given.report_only:
+        kept.write(file, growth.measure(given.render.resolve(), given.scenes, given.repeats))
+    write(kept.read(file), growth.build, "growth", given.publish)
     return 0
 
 
@@ -182,8 +209,9 @@ def run_adaptive(given: argparse.Namespace) -> int:
 def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
-    commands = {"bench": run_bench, "stress": run_stress, "core": run_core, "shares": run_shares,
-                "stages": run_stages, "adaptive": run_adaptive, "trace": run_trace}
+    commands = {"bench": run_bench, "stress": run_stress, "share-stress": share_stress, "core": run_core,
+                "shares": run_shares, "stages": run_stages, "growth": run_growth, "adaptive": run_adaptive,
+                "trace": run_trace}
     try:
         return commands[given.command](given)
     except (OSError, ValueError) as error:

@@ -1,7 +1,9 @@
 """`make bench`: measures, and what follows from the measured rows."""
 
 import json
+import pathlib
 import re
+import shlex
 import statistics
 import subprocess
 import sys
@@ -15,9 +17,8 @@ LAB = ROOT / "build" / "lab"
 
 def lab(name: str, *words: str) -> list[dict]:
     """The rows of a command of the lab; its progress goes to standard error."""
-    file = KEPT / f"part-{name}.jsonl"
-    subprocess.run([LAB, "--results", file, *words], cwd=ROOT, stdout=sys.stderr, check=True)
-    return kept.read(file)
+    share([["--results", part(name), *words]], "")
+    return kept.read(part(name))
 
 
 def make_spheres(quick: bool) -> None:
@@ -59,7 +60,35 @@ def simulation() -> list[dict]:
             for match in re.finditer(row, done.stdout, re.MULTILINE)]
 
 
-def measure(quick: bool) -> list[dict]:
+def share(commands: list[list[object]], launcher: str) -> None:
+    """Runs `build/lab` with these words, command by command; `launcher`, "mpirun -n 4" or the like, shares them
+    among ranks, which write into the same folders."""
+    if not launcher:
+        for words in commands:
+            subprocess.run([LAB, *words], cwd=ROOT, stdout=sys.stderr, check=True)
+        return
+    file = KEPT / "share.txt"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text("".join(shlex.join(map(str, (LAB, *words))) + "\n" for words in commands))
+    subprocess.run([*shlex.split(launcher), ROOT / "build" / "share", file], cwd=ROOT, stdout=sys.stderr, check=True)
+
+
+def part(name: str) -> pathlib.Path:
+    """Where a command of many keeps its rows."""
+    return KEPT / f"part-{name}.jsonl"
+
+
+def share_stress(tests: int, seed: int, launcher: str) -> None:
+    """All suites of `lab stress`, each a command: build/results/stress.jsonl, for `lab stress` to judge."""
+    suites = subprocess.run([LAB, "stress", "--list"], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
+    share([["--results", part(f"stress-{suite}"), "stress", "--suite", suite, "--tests", tests, "--seed", seed]
+           for suite in suites], launcher)
+    found = [row for suite in suites for row in kept.read(part(f"stress-{suite}"))]
+    bounds = kept.of(found, "bounds")[:1]  # the same in each
+    kept.write(KEPT / "stress.jsonl", bounds + kept.of(found, "stress"))
+
+
+def measure(quick: bool, launcher: str = "") -> list[dict]:
     """Everything."""
     start = time.monotonic()
     about = {**machine.describe(ROOT), "quick": quick,
@@ -68,11 +97,13 @@ def measure(quick: bool) -> list[dict]:
     variants = lab("variants", "variants")
     found = [*variants, *lab("checks", "check", "--tests", "20000" if quick else "1000000")]
     make_spheres(quick)
+    commands = []
     for name, section in runs.SECTIONS.items():
-        print(f"[{time.monotonic() - start:5.0f} s] {name}: {section.__doc__}", file=sys.stderr)
         file = KEPT / f"runs-{name}.json"
         file.write_text(json.dumps([{"section": name, **run} for run in section(variants, quick)]))
-        found += lab(name, "pictures", "--runs", str(file))
+        commands.append(["--results", part(name), "pictures", "--runs", file])
+    share(commands, launcher)
+    found += [row for name in runs.SECTIONS for row in kept.read(part(name))]
     add_flip(kept.of(found, "pictures"))
     found += [] if quick else simulation()
     found += claims.table(ROOT, found)

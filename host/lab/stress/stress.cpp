@@ -20,7 +20,7 @@ namespace {
 struct Asked {
   StressOptions options{.tests = 10'000'000};
   std::vector<std::string> suites, subjects;
-  bool quiet = false, minimised = false;
+  bool quiet = false, minimised = false, listed = false;
 };
 
 template <class List>
@@ -110,6 +110,10 @@ void print_suite(std::span<const Row> rows) {
 }
 
 int run_stress(const Asked& asked, const std::filesystem::path& file) {
+  if (asked.listed) {
+    for (const Suite& suite : all_suites()) std::printf("%s\n", suite.name.c_str());
+    return 0;
+  }
   keep_memory();
   const auto wanted = [](const std::vector<std::string>& list, const std::string& name) {
     return list.empty() || std::ranges::count(list, name) > 0;
@@ -157,6 +161,7 @@ void add_stress(CLI::App& lab, Common& common) {
   app->add_flag("--minimise", asked->minimised,
                 "print some wrong decisions of all subjects, made as simple as they can be");
   app->add_flag("--quiet", asked->quiet, "the last line only");
+  app->add_flag("--list", asked->listed, "the suites' names, and no more");
   app->callback([asked, &common] { common.status = run_stress(*asked, common.results); });
 }
 

@@ -66,6 +66,7 @@ TEST(SharedJobs, EachIsTakenOnce) {
       std::vector<std::atomic<int>> taken(static_cast<std::size_t>(jobs));
       {
         std::vector<std::jthread> ranks;
+        ranks.reserve(static_cast<std::size_t>(count));
         for (int rank = 0; rank < count; ++rank) {
           ranks.emplace_back([&, rank] {
             ThreadRanks own(post, rank);

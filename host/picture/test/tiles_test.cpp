@@ -1,0 +1,56 @@
+// Tiles cover the window once, passes all samples, whoever shares them.
+#include "host/picture/tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace raygate {
+namespace {
+
+TEST(Tiles, CoverEachPixelOnceAndAllSamples) {
+  int cases = 0;
+  for (const PixelRect window : {PixelRect{0, 0, 1, 1}, {3, 5, 100, 41}, {7, 0, 647, 480}}) {
+    for (const int samples : {1, 2, 4, 5, 300}) {
+      for (const int ranks : {1, 2, 1000}) {
+        for (const std::size_t batch : {1 << 14, 1 << 20}) {
+          const Tiles tiles(window, samples, batch, 2, ranks);
+          std::vector<int> covered(std::size_t(window.width()) * std::size_t(window.height()), 0);
+          for (int i = 0; i < tiles.count; ++i) {
+            const PixelRect tile = tiles[i];
+            ASSERT_GT(tile.width(), 0);
+            ASSERT_GT(tile.height(), 0);
+            for (int y = tile.y0; y < tile.y1; ++y) {
+              for (int x = tile.x0; x < tile.x1; ++x) {
+                ++covered[std::size_t(y - window.y0) * std::size_t(window.width()) +
+                          std::size_t(x - window.x0)];
+              }
+            }
+          }
+          EXPECT_EQ(std::ranges::count(covered, 1), std::ssize(covered));
+          EXPECT_EQ(tiles.samples_after(tiles.passes() - 1), samples);
+          EXPECT_EQ(tiles.passes() == 1, tiles.samples_per_pass == samples);
+          ++cases;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(cases, 90);
+}
+
+TEST(Tiles, ShrinkForManyRanksAndKeepTheirSamples) {
+  const PixelRect frame{0, 0, 1920, 1080};
+  const Tiles alone(frame, 1024, 1 << 14, 64);
+  const Tiles few(frame, 1024, 1 << 14, 2, 4), many(frame, 1024, 1 << 14, 64, 8);
+  EXPECT_EQ(alone.count, 510);
+  EXPECT_EQ(few.count, alone.count);
+  EXPECT_GE(many.count, 4 * 64 * 8);
+  EXPECT_EQ(many.width * many.height * many.samples_per_pass,
+            alone.width * alone.height * alone.samples_per_pass);
+  const Tiles most(frame, 1024, 1 << 14, 64, 1000);
+  EXPECT_EQ(most.width * most.height, 16 * 16);
+}
+
+}  // namespace
+}  // namespace raygate
