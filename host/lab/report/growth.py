@@ -137,9 +137,9 @@ def predict(picture: Picture, ranks: int, small_tiles: bool = True, slower_answe
 
 def measured(rows: list[dict], **values: object) -> float:
     """Seconds of a picture where each rank has a processor to itself, whatever else runs meanwhile."""
-    ranks = values["ranks"]
-    return (sum(seconds(rows, stage, **values | {"ranks": 1}) for stage in ("load", "tree"))
-            + seconds(rows, "processor", **values) / ranks)
+    alone = {"scene": values["scene"], "ranks": 1}
+    return (seconds(rows, "load", **alone) + seconds(rows, "tree", **alone)
+            + seconds(rows, "processor", **values) / values["ranks"])
 
 
 def measured_table(rows: list[dict], fits: dict[str, Costs]) -> str:
@@ -218,7 +218,8 @@ def limits_table(fits: dict[str, Costs]) -> str:
             time = predict(picture, half or 1000)
             longest = max(("scene", "gather", "end"), key=lambda part: getattr(time, part))
             cells.append([pathlib.Path(scene).stem, name, one, predict(picture, 1000).total(),
-                          "over 1,000" if half is None else f"{half:,}", longest])
+                          "over 1,000" if half is None else f"{half:,}",
+                          "-" if half is None else longest])
     return table({"scene": "", "picture": "", "1 rank, s": ",.0f", "1,000 ranks, s": ",.1f",
                   "ranks at an efficiency of one half": "", "what holds it back there": ""}, cells)
 
