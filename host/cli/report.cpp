@@ -39,6 +39,7 @@ std::string headline(const Report& report) {
     line += " (" + options.unit;
     if (options.engine != Engine::kModel) line += ", " + to_string(options.arith);
     if (options.lanes > 1) line += ", " + std::to_string(options.lanes) + " lanes";
+    if (options.cores > 1) line += ", " + std::to_string(options.cores) + " cores";
     line += ')';
   }
   if (report.ranks > 1)
@@ -238,6 +239,7 @@ std::string to_json(const Report& report) {
       {"unit", options.unit},
       {"arith", to_string(options.arith)},
       {"lanes", options.lanes},
+      {"cores", options.cores},
       {"ranks", report.ranks},
       {"threads", options.threads},
       {"seed", options.seed},

@@ -12,7 +12,7 @@ define share
 $(if $(MPIRUN),@$(SETUP) mpi && $(configure) -DRAYGATE_MPI=ON >/dev/null && cmake --build build -j $(JOBS) --target share)
 endef
 
-.PHONY: stress bench peers gltf-pictures rays core skips predicates techniques shares stages growth adaptive coverage trace-rates claims
+.PHONY: stress stress-core bench peers gltf-pictures rays core skips predicates techniques shares stages growth adaptive coverage trace-rates claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 MPIRUN='mpirun -n 4' PUBLISH=1]
@@ -27,6 +27,12 @@ else
 	  --seed $(or $(SEED),1); status=$$?; \
 	$(LAB_REPORT) stress $(if $(PUBLISH),--publish) && exit $$status
 endif
+
+# 500,000 tests a suite by the reference model, 50,000 by the simulated hardware; goes on where it was.
+stress-core: ## the ray core alone under stress: ten million tests by its reference model, one million simulated
+	$(call build,build,lab)
+	@$(LAB) --results $(LAB_ROWS)/stress-core.jsonl stress --subject 'model core' 'rtl core' \
+	  --tests 2500000 --threads $(JOBS) --seed $(or $(SEED),1)
 
 bench: ## run time against error, one report: make bench [QUICK=1 BASE=old.jsonl MPIRUN='mpirun -n 4' PUBLISH=1]
 	$(call build,bench,lab render scenes unit_bench table_1 worked_example)

@@ -125,7 +125,9 @@ def main() -> int:
         lines = read(given.file)
         counts = check(lines)
         if given.hex:
-            given.hex.write_text("".join(f"{line:0{2 * LINE}x}\n" for line in lines))
+            unfinished = given.hex.with_name(given.hex.name + ".unfinished")
+            unfinished.write_text("".join(f"{line:0{2 * LINE}x}\n" for line in lines))
+            unfinished.replace(given.hex)
     except OSError as error:
         print(f"{error.filename}: {error.strerror}", file=sys.stderr)
         return 2
