@@ -35,8 +35,7 @@ Engine
                              bytes a clock (64), lines of a cache before it (0)
   --cores N                  ray cores behind one memory, per thread (1)
   --dump-image FILE          the memory that ray cores read, as it is
-  --trace-pixel X,Y --trace FILE.vcd   in place of a picture: the wave of that
-                             pixel's ray in the ray core (make wave)
+  --trace-pixel X,Y --trace FILE.vcd   no picture: the core's wave of its ray
   --arith NAME               structural: Booth trees, carry-select (default); or
                              behavioural: + and *, simulated faster
   --lanes 1|2|4|8            pipelined units side by side, per thread (1)
