@@ -103,7 +103,7 @@ module line_cache #(
   // ---- A line comes, and goes to all that are enlisted
 
   assign current     = fill_alone_i ? fill_waiter_i : draining_q ? current_q : heads[fill_index_i];
-  assign more        = ~fill_alone_i & follows_q[current];
+  assign more        = follows_q[current];  // never of one that is alone
   assign arrive      = fill_i & ~fill_alone_i & ~draining_q;
   assign fill_done_o = fill_i & ~more;
 
