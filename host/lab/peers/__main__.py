@@ -27,7 +27,8 @@ def main() -> int:
     names = given.scenes or (["cornell", "cornell_spheres"] if given.quick else list(measure.SCENES))
     found = [{**machine.describe(kept.ROOT), "quick": given.quick}]
     for rows in measure.measure(names, given.quick, given.repeats or (2 if given.quick else 3),
-                                given.reference or (128 if given.quick else 512), given.render.resolve()):
+                                given.reference or (128 if given.quick else 512), given.render.resolve(),
+                                {1, machine.processors()}):
         found += rows
         kept.write(kept.KEPT / "peers.jsonl", found)  # what there is, should it be interrupted
     print(peers_report.tables(found))

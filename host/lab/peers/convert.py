@@ -83,9 +83,19 @@ def lamp_sides(corners: numpy.ndarray, normal: numpy.ndarray, everything: numpy.
     return [side for side, lit in ((True, heights.max() > flat), (False, heights.min() < -flat)) if lit]
 
 
+def is_closed(mesh: Mesh) -> bool:
+    """Each edge is of two faces, which run along it in opposite directions."""
+    places = {tuple(place): number for number, place in enumerate(numpy.unique(mesh.positions, axis=0))}
+    faces = [[places[tuple(mesh.positions[corner])] for corner in face] for face in mesh.faces]
+    edges = [(face[i], face[i - 2]) for face in faces for i in range(3)]
+    return len(set(edges)) == len(edges) and {edge[::-1] for edge in edges} == set(edges)
+
+
 def lamp_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
     """Mitsuba's lamps shine to the front, raygate's to both sides: the lamp as it must face, twice if it lights
-    both sides, the two then apart by a hundred-thousandth of the scene."""
+    both sides, the two then apart by a hundred-thousandth of the scene. Closed ones are seen from outside."""
+    if is_closed(mesh):
+        return [mesh]
     a, b, c = mesh.positions[mesh.faces[0]]
     normal = numpy.cross(b - a, c - a)
     normal /= numpy.linalg.norm(normal)

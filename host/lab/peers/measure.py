@@ -13,10 +13,11 @@ from host.lab.report.rows import ROOT
 
 # Scene -> width of its picture; the height is the same.
 SCENES = {"cornell": 128, "cornell_spheres": 128, "paper_room": 128, "still_life": 128, "columns": 128,
-          "teapot": 128, "sphereflake": 128, "landscape": 128}
+          "teapot": 128, "sphereflake": 128, "landscape": 128, "lanterns": 128}
 VARIANTS = ("scalar_rgb", "llvm_ad_rgb")
 # Of Mitsuba's samplers those that come out best: they are also timed with other numbers of samples.
 BEST = ("multijitter", "orthogonal")
+ERRORS = (16, 8, 4, 2)  # of --error, which decides how many samples each pixel gets
 COUNT = 32  # samples per pixel of the tables; samplers that cannot have it take the next they can
 REFERENCE_SEED = 1000
 
@@ -30,6 +31,14 @@ def scene_file(name: str) -> pathlib.Path:
 def mse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
     """Over pixels and colours, scene-linear."""
     return float(numpy.mean((picture.astype(float) - reference) ** 2))
+
+
+def display_rmse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
+    """As an 8-bit display shows both (sRGB), in its steps."""
+    def shown(light: numpy.ndarray) -> numpy.ndarray:
+        light = numpy.clip(light.astype(float), 0.0, 1.0)
+        return 255.0 * numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    return float(numpy.mean((shown(picture) - shown(reference)) ** 2)) ** 0.5
 
 
 def reference(renderer: object, sampler: str, samples: int, size: dict) -> tuple[numpy.ndarray, float]:
@@ -84,6 +93,8 @@ class Measurement:
         counts = ([8, COUNT] if self.quick else [2, 8, COUNT]) if one_thread else [COUNT]
         raygate = Raygate(self.folder, threads, self.program)
         found = [(raygate, "Owen-scrambled Sobol", count) for count in counts]
+        if one_thread:
+            found += [(raygate, f"--error {error}", COUNT) for error in ERRORS]
         for variant in VARIANTS:
             mitsuba = Mitsuba(self.folder, threads, variant)
             found += [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
@@ -98,7 +109,8 @@ class Measurement:
             for (renderer, sampler, count), mine in zip(plan, runs, strict=True):
                 self.progress(f"{renderer.name} {sampler}, {count} samples, {threads} threads")
                 row, picture = renderer.render(sampler, count, seed, **self.size)
-                mine.append(row | {"mse": mse(picture, self.references[renderer.name.split()[0]])})
+                truth = self.references[renderer.name.split()[0]]
+                mine.append(row | {"mse": mse(picture, truth), "display_rmse": display_rmse(picture, truth)})
         for renderer in {id(renderer): renderer for renderer, _, _ in plan}.values():
             renderer.close()
         return [self.row(threads, renderer.name, sampler, mine)
@@ -109,15 +121,16 @@ class Measurement:
         key = "processor_seconds" if threads == 1 else "seconds"
         seconds = statistics.median(run[key] for run in runs)
         error = statistics.fmean(run["mse"] for run in runs)
+        shown = statistics.fmean(run["display_rmse"] ** 2 for run in runs) ** 0.5
         return {"table": "peers", "scene": self.name, **self.size, "threads": threads, "renderer": renderer,
                 "sampler": sampler, "samples": runs[0]["samples"], "seconds": [run["seconds"] for run in runs],
                 "processor_seconds": [run["processor_seconds"] for run in runs], "median_seconds": seconds,
-                "mse": error, "time_mse": seconds * error, "rays": runs[0].get("rays")}
+                "mse": error, "display_rmse": shown, "time_mse": seconds * error, "rays": runs[0].get("rays")}
 
 
-def measure(names: list[str], quick: bool, repeats: int, samples: int, program: pathlib.Path) -> Iterator[list[dict]]:
+def measure(names: list[str], quick: bool, repeats: int, samples: int, program: pathlib.Path,
+            threads: set[int]) -> Iterator[list[dict]]:
     """The rows of one scene after another."""
     for name in names:
         mine = Measurement(name, quick, program)
-        yield [mine.references_row(samples), *(row for threads in sorted({1, processors()})
-                                               for row in mine.rows(threads, repeats))]
+        yield [mine.references_row(samples), *(row for count in sorted(threads) for row in mine.rows(count, repeats))]

@@ -9,12 +9,14 @@ from host.lab.peers.measure import BEST, COUNT, VARIANTS
 
 def name(row: dict) -> str:
     """Who rendered, and how."""
-    return row["renderer"] if row["renderer"] == "raygate" else f"{row['renderer']}, {row['sampler']}"
+    if row["renderer"] == "raygate":
+        return "raygate, --error" if row["sampler"].startswith("--error") else "raygate"
+    return f"{row['renderer']}, {row['sampler']}"
 
 
 def at_count(rows: list[dict]) -> list[dict]:
     """Those of about COUNT samples."""
-    return [row for row in rows if COUNT / 2 < row["samples"] < 2 * COUNT]
+    return [row for row in rows if COUNT / 2 < row["samples"] < 2 * COUNT and name(row) != "raygate, --error"]
 
 
 def scene_table(rows: list[dict]) -> str:
@@ -62,20 +64,25 @@ def tables(rows: list[dict]) -> str:
     return "\n".join(parts)
 
 
+def error_against_time(rows: list[dict], scene: str, folder: pathlib.Path) -> pathlib.Path:
+    """Of one thread: a line for each renderer and sampler of several numbers of samples, a point for the others."""
+    series: dict[str, list] = {}
+    mine = kept.of(rows, "peers", scene=scene, threads=1)
+    for row in mine:
+        if row["renderer"] == "raygate" or row["sampler"] in BEST or row in at_count(mine):
+            series.setdefault(name(row), []).append((row["median_seconds"], row["display_rmse"]))
+    plot, _ = plots.scaling(series, "seconds, one thread",
+                            "RMSE on a display, 8-bit steps", scene,
+                            folder / f"peers-{scene}.png")
+    return plot
+
+
 def build(rows: list[dict], folder: pathlib.Path) -> str:
     """The report, its plots in `folder`."""
     scenes = []
     for reference in kept.of(rows, "references"):
         mine = kept.of(rows, "peers", scene=reference["scene"])
-        series: dict[str, list] = {}
-        for row in mine:
-            if row["threads"] == 1 and (row["renderer"] == "raygate" or row["sampler"] in BEST):
-                series.setdefault(name(row), []).append((row["median_seconds"], row["mse"] ** 0.5))
-        for row in at_count(mine):
-            if row["threads"] == 1:
-                series.setdefault(name(row), [(row["median_seconds"], row["mse"] ** 0.5)])
-        plot, _ = plots.scaling(series, "seconds, one thread", "RMSE against the renderer's own long run",
-                                reference["scene"], folder / f"peers-{reference['scene']}.png")
+        plot = error_against_time(mine, reference["scene"], folder)
         scenes.append({"reference": reference, "table": scene_table(mine), "plot": plot})
     return render("peers.md.j2", folder, machine=kept.of(rows, "machine")[0], references=references_table(rows),
                   summary=summary_table(rows),

@@ -25,16 +25,21 @@ class Raygate:
     """./render, the cpu engine."""
 
     name = "raygate"
+    most_samples = 1024  # of a pixel, with --error
 
     def __init__(self, folder: pathlib.Path, threads: int, program: pathlib.Path) -> None:
         self._words = [program, folder / "scene.json", "--engine", "cpu", "--quiet", "--integrator", "path",
                        "--filter", "box", "--depth", str(DEPTH), "--threads", str(threads)]
 
     def render(self, sampler: str, samples: int, seed: int, width: int, height: int) -> tuple[dict, numpy.ndarray]:
-        """What it took, and the picture. It has one sampler."""
+        """What it took, and the picture. It has one sampler; `--error X` gives its samples where they are needed."""
+        adaptive = sampler.startswith("--error")
+        if adaptive:
+            samples = self.most_samples
         with tempfile.TemporaryDirectory() as name:
             picture, stats = pathlib.Path(name) / "picture.exr", pathlib.Path(name) / "stats.json"
-            subprocess.run([*self._words, "--size", f"{width}x{height}", "--spp", str(samples), "--seed", str(seed),
+            words = [*self._words, *(sampler.split() if adaptive else [])]
+            subprocess.run([*words, "--size", f"{width}x{height}", "--spp", str(samples), "--seed", str(seed),
                             "--output", picture, "--stats", stats], check=True, cwd=ROOT)
             found = json.loads(stats.read_text())
             pixels = mitsuba.Bitmap(str(picture))

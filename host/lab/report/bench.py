@@ -88,6 +88,15 @@ def share_stress(tests: int, seed: int, launcher: str) -> None:
     kept.write(KEPT / "stress.jsonl", bounds + kept.of(found, "stress"))
 
 
+def race(quick: bool) -> list[dict]:
+    """Error against time: as many samples in each pixel, --error, and Mitsuba, as `make peers` has them."""
+    from host.lab.peers import measure as peers  # needs Mitsuba, which tests of the tables do without
+
+    scenes = ["cornell"] if quick else ["cornell", "lanterns"]
+    return [row for rows in peers.measure(scenes, quick, 2 if quick else 3, 128 if quick else 512, ROOT / "render", {1})
+            for row in rows]
+
+
 def measure(quick: bool, launcher: str = "") -> list[dict]:
     """Everything."""
     start = time.monotonic()
@@ -105,6 +114,8 @@ def measure(quick: bool, launcher: str = "") -> list[dict]:
     share(commands, launcher)
     found += [row for name in runs.SECTIONS for row in kept.read(part(name))]
     add_flip(kept.of(found, "pictures"))
+    print(f"[{time.monotonic() - start:5.0f} s] race: {race.__doc__}", file=sys.stderr)
+    found += race(quick)
     found += [] if quick else simulation()
     found += claims.table(ROOT, found)
     found += costs.synthesis(variants, machine.processors(), measure=not quick)

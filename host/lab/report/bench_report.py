@@ -3,6 +3,7 @@
 import pathlib
 import statistics
 
+from host.lab.peers.peers_report import error_against_time
 from host.lab.report import plots, rows as kept
 from host.lab.report.bench import frames, median_seconds
 from host.lab.report.document import render, table
@@ -96,7 +97,9 @@ def samples(rows: list[dict], folder: pathlib.Path) -> dict:
         "samples per pixel", "error", "Path tracing, Cornell box", folder / "samples.png")
     shown = [(f"{row['samples']} samples: RMSE {row['rmse']:.3f}",
               ROOT / f"{row['picture']}.png") for row in mine[::2]]
+    scenes = [row["scene"] for row in kept.of(rows, "references")]
     return {"reference": max(every, key=lambda row: row["samples"]), "plot": file, "laws": laws,
+            "races": [(error_against_time(rows, scene, folder), scene) for scene in scenes],
             "table": table({"samples": ",", "seconds": ".3g", "rays": ",", "RMSE": ".3g",
                             "PSNR, dB": ".1f", "SSIM": ".4f", "FLIP": ".4f"},
                            [[row["samples"], median_seconds(row), row["rays"], row["rmse"],

@@ -73,7 +73,7 @@ TEST(DirectLight, LightsOfAllKindsAddUp) {
 
 // Many lamps, near and far, from which either way of choosing picks one: the mean is the sum over
 // all, as Whitted asks them. With a gloss, scattered rays find lamps just as often.
-TEST(Physics, ManyLampsAddUpHoweverTheyAreChosen) {
+TEST(DirectLight, ManyLampsAddUpHoweverTheyAreChosen) {
   for (const float gloss : {0.0f, 0.6f}) {
     Scene scene;
     for (int i = 0; i < 60; ++i) {
@@ -102,6 +102,27 @@ TEST(Physics, ManyLampsAddUpHoweverTheyAreChosen) {
     const double sum = seen(kWhitted, LightChoice::kTree, 4096);
     EXPECT_NEAR(seen(kPath, LightChoice::kTree, 1 << 15), sum, 0.005 * sum) << gloss;
     EXPECT_NEAR(seen(kPath, LightChoice::kPower, 1 << 17), sum, 0.02 * sum) << gloss;
+  }
+}
+
+// A lamp before a sky that is darker, as bright, brighter: what chance finds of it counts for as
+// much as the sky, and the mean stays.
+TEST(DirectLight, ALampBeforeASkyAddsUp) {
+  for (const float radiance : {0.2f, 1.0f, 6.0f}) {
+    Scene scene;
+    add(scene, rectangle({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}), lamp(glm::vec3(radiance)));
+    add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
+    scene.background = glm::vec3(1.0f);
+    const Camera camera = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
+    RenderOptions options = light(kPath, 1, 1, 1 << 14);
+    options.max_depth = 0;
+    // The form factor of a square of side 1 at distance 1, of four quarters.
+    const double x = 0.5, r = std::sqrt(1 + x * x), form = 4 * x / r * std::atan(x / r) / kPi;
+    const double expected = radiance * form + (1.0 - form);
+    for (const bool evens_out : {false, true}) {
+      options.techniques.evens_out = evens_out;
+      EXPECT_NEAR(film_of(scene, camera, options).color[0].r, expected, 4e-3 * expected);
+    }
   }
 }
 

@@ -8,6 +8,7 @@ import unittest
 import numpy
 
 from host.lab.peers import convert, measure, peers_report, scene
+from host.lab.report import rows as kept
 
 OBJ = """\
 mtllib room.mtl
@@ -113,14 +114,34 @@ class Peers(unittest.TestCase):
     def test_the_summary_takes_each_variant_at_its_best(self):
         def row(renderer, sampler, time_mse, **more):
             return {"table": "peers", "scene": "room", "threads": 1, "renderer": renderer, "sampler": sampler,
-                    "samples": 32, "median_seconds": 1.0, "mse": 0.04, "time_mse": time_mse} | more
+                    "samples": 32, "median_seconds": 1.0, "mse": 0.04, "display_rmse": 9.0, "time_mse": time_mse} | more
 
         rows = [{"table": "references", "scene": "room"}, row("raygate", "", 3.0),
-                row("raygate", "", 1.0, samples=8), row("raygate", "", 9.0, threads=2)]
+                row("raygate", "", 1.0, samples=8), row("raygate", "", 9.0, threads=2),
+                row("raygate", "--error 4", 0.5)]
         rows += [row(f"Mitsuba {variant}", sampler, value) for variant, sampler, value in (
             ("scalar_rgb", "independent", 8.0), ("scalar_rgb", "multijitter", 4.0), ("llvm_ad_rgb", "multijitter", 1.0))]
         cells = [cell.strip() for cell in peers_report.summary_table(rows).splitlines()[2].split("|")[1:-1]]
         self.assertEqual(cells, ["room", "1.000", "0.20000", "0.75", "3.00"])
+        with tempfile.TemporaryDirectory() as folder:
+            plot = peers_report.error_against_time(kept.of(rows, "peers"), "room", pathlib.Path(folder))
+            self.assertTrue(plot.exists())
+
+    def test_closed_lamps_shine_outwards_alone(self):
+        corners = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+        faces = numpy.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        everything = numpy.concatenate([corners, corners + 9, corners - 9])
+        material = scene.Material("lamp", emission=(1.0, 1.0, 1.0))
+        whole = scene.Mesh(material, corners, None, None, faces)
+        self.assertEqual(convert.lamp_meshes(whole, everything), [whole])
+        sheet = scene.Mesh(material, corners, None, None, faces[:3])
+        self.assertEqual(len(convert.lamp_meshes(sheet, everything)), 2)
+
+    def test_errors_are_in_steps_of_a_display(self):
+        black = numpy.zeros((2, 2, 3))
+        self.assertAlmostEqual(measure.display_rmse(black + 9.0, black), 255.0)
+        self.assertAlmostEqual(measure.display_rmse(black + 0.214041, black), 127.5, delta=1e-3)
+        self.assertEqual(measure.display_rmse(black + 2.0, black + 3.0), 0.0)
 
     def test_noise_of_a_reference(self):
         class Coin:
