@@ -61,8 +61,6 @@ class CoreBench {
   }
 
  private:
-  static constexpr int kTable = 64;  // rays in a core's table
-
   /// One of `options_.every` rays.
   [[nodiscard]] RaySet every(const RaySet& set) const {
     RaySet some = set;
@@ -97,7 +95,7 @@ class CoreBench {
         {"rays", set.name},
         {"latency", timing.latency},
         {"cores", cores.cores},
-        {"in_flight", cores.rays == 0 ? kTable : cores.rays},
+        {"in_flight", cores.rays == 0 ? Row("all") : Row(cores.rays)},
         {"clocks_per_ray", clocks / rays},
         {"lines_per_ray", static_cast<double>(counters.lines) / rays},
         {"bytes_per_ray", 64.0 * static_cast<double>(counters.lines) / rays},
