@@ -50,8 +50,13 @@ def rows(section: str, seeds: int = 3, budget: int = 16, workers: int = 2) -> li
         return [Row(section, graded, "cells", *SPARSE),
                 *(Row(section, design, "fast", *SPARSE) for design in (graded, *kinds, plain))]
     if section == "cores":
-        return [Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *SPARSE)
-                for top in ("fp_adder", "fp_multiplier", "fp_divider")]
+        small = catalogue.FORMATS["binary16"]
+        tops = ("fp_adder", "fp_multiplier", "fp_divider")
+        return [*(Row(section, catalogue.design(top, f"{top.replace('_', '-')}-binary16", "graded",
+                                                ExpWidth=small[0], FracWidth=small[1]), "modules", 0.6, 2.5)
+                  for top in tops),
+                *(Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *SPARSE)
+                  for top in tops)]
     raise ValueError(f"no section {section}; there are {', '.join(SECTIONS)}")
 
 

@@ -18,7 +18,7 @@ NAMED = [
     (r"u_(adder|far_sum|near_difference|quotient|remainder)\b", "wide adders"),
     (r"u_(exp|near_exp|a_minus_b|b_minus_a|offset|count)", "exponent adders"),
 ]
-REST = "the rest: Booth rows, selection, control"
+REST = "selection, control"
 
 
 def of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:

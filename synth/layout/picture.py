@@ -36,7 +36,7 @@ def draw(layout: Layout, parts: dict[str, str], path: list[dict], title: str, ou
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False, fontsize="small")
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
-    figure.savefig(out.with_name(out.name + ".png"), dpi=120)
+    figure.savefig(out.with_name(out.name + ".png"), dpi=120, bbox_inches="tight")
     plt.close(figure)
 
 
@@ -101,5 +101,5 @@ def slacks(records: list[dict], out: pathlib.Path) -> None:
         axes.tick_params(labelsize=6)
     panels[0, 0].set_title("paths' ends by their slack with wires, clock of 10 MHz", fontsize=9)
     panels[-1, 0].set_xlabel("slack, ns; red: the least")
-    figure.savefig(out.with_name(out.name + ".png"), dpi=120)
+    figure.savefig(out.with_name(out.name + ".png"), dpi=120, bbox_inches="tight")
     plt.close(figure)
