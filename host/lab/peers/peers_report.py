@@ -64,16 +64,14 @@ def tables(rows: list[dict]) -> str:
     return "\n".join(parts)
 
 
-def error_against_time(rows: list[dict], scene: str, folder: pathlib.Path) -> pathlib.Path:
+def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> pathlib.Path:
     """Of one thread: a line for each renderer and sampler of several numbers of samples, a point for the others."""
     series: dict[str, list] = {}
     mine = kept.of(rows, "peers", scene=scene, threads=1)
     for row in mine:
         if row["renderer"] == "raygate" or row["sampler"] in BEST or row in at_count(mine):
             series.setdefault(name(row), []).append((row["median_seconds"], row["display_rmse"]))
-    plot, _ = plots.scaling(series, "seconds, one thread",
-                            "RMSE on a display, 8-bit steps", scene,
-                            folder / f"peers-{scene}.png")
+    plot, _ = plots.scaling(series, "seconds, one thread", "RMSE on a display, 8-bit steps", scene, file)
     return plot
 
 
@@ -82,7 +80,7 @@ def build(rows: list[dict], folder: pathlib.Path) -> str:
     scenes = []
     for reference in kept.of(rows, "references"):
         mine = kept.of(rows, "peers", scene=reference["scene"])
-        plot = error_against_time(mine, reference["scene"], folder)
+        plot = error_against_time(mine, reference["scene"], folder / f"peers-{reference['scene']}.png")
         scenes.append({"reference": reference, "table": scene_table(mine), "plot": plot})
     return render("peers.md.j2", folder, machine=kept.of(rows, "machine")[0], references=references_table(rows),
                   summary=summary_table(rows),

@@ -99,7 +99,7 @@ def samples(rows: list[dict], folder: pathlib.Path) -> dict:
               ROOT / f"{row['picture']}.png") for row in mine[::2]]
     scenes = [row["scene"] for row in kept.of(rows, "references")]
     return {"reference": max(every, key=lambda row: row["samples"]), "plot": file, "laws": laws,
-            "races": [(error_against_time(rows, scene, folder), scene) for scene in scenes],
+            "races": [(error_against_time(rows, scene, folder / f"race-{scene}.png"), scene) for scene in scenes],
             "table": table({"samples": ",", "seconds": ".3g", "rays": ",", "RMSE": ".3g",
                             "PSNR, dB": ".1f", "SSIM": ".4f", "FLIP": ".4f"},
                            [[row["samples"], median_seconds(row), row["rays"], row["rmse"],

@@ -124,7 +124,7 @@ class Peers(unittest.TestCase):
         cells = [cell.strip() for cell in peers_report.summary_table(rows).splitlines()[2].split("|")[1:-1]]
         self.assertEqual(cells, ["room", "1.000", "0.20000", "0.75", "3.00"])
         with tempfile.TemporaryDirectory() as folder:
-            plot = peers_report.error_against_time(kept.of(rows, "peers"), "room", pathlib.Path(folder))
+            plot = peers_report.error_against_time(kept.of(rows, "peers"), "room", pathlib.Path(folder) / "room.png")
             self.assertTrue(plot.exists())
 
     def test_closed_lamps_shine_outwards_alone(self):
