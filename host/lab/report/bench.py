@@ -69,7 +69,8 @@ def share(commands: list[list[object]], launcher: str) -> None:
         return
     file = KEPT / "share.txt"
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text("".join(shlex.join(map(str, (LAB, *words))) + "\n" for words in commands))
+    # 1: something was judged to be wrong, which the rows say, too.
+    file.write_text("".join(shlex.join(map(str, (LAB, *words))) + " || test $? = 1\n" for words in commands))
     subprocess.run([*shlex.split(launcher), ROOT / "build" / "share", file], cwd=ROOT, stdout=sys.stderr, check=True)
 
 
@@ -80,7 +81,7 @@ def part(name: str) -> pathlib.Path:
 
 def share_stress(tests: int, seed: int, launcher: str) -> None:
     """All suites of `lab stress`, each a command: build/results/stress.jsonl, for `lab stress` to judge."""
-    suites = subprocess.run([LAB, "stress", "--list"], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
+    suites = subprocess.run([LAB, "stress", "--list"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
     share([["--results", part(f"stress-{suite}"), "stress", "--suite", suite, "--tests", tests, "--seed", seed]
            for suite in suites], launcher)
     found = [row for suite in suites for row in kept.read(part(f"stress-{suite}"))]
