@@ -5,25 +5,34 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace raygate {
+namespace {
+
+/// Of the first of these variables that is there; 0: none is.
+int number_in(std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (const char* const text = std::getenv(name)) {
+      return static_cast<int>(std::strtol(text, nullptr, 10));
+    }
+  }
+  return 0;
+}
+
+}  // namespace
 
 bool is_launched() {
   return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK"},
                              [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-int launched_count() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
-    if (const char* const count = std::getenv(name)) {
-      return static_cast<int>(std::strtol(count, nullptr, 10));
-    }
-  }
-  return 0;
-}
+int launched_count() { return number_in({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}); }
+
+int launched_index() { return number_in({"OMPI_COMM_WORLD_RANK", "PMI_RANK"}); }
 
 void forget_launcher() {
   std::vector<std::string> names;

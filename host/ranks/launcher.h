@@ -9,6 +9,9 @@ namespace raygate {
 /// How many processes the launcher says that it started; 0 where it says nothing.
 [[nodiscard]] int launched_count();
 
+/// Which of them this is, from 0; 0 where it says nothing.
+[[nodiscard]] int launched_index();
+
 /// Takes out of the environment what the launcher has put there, for programs that this one starts.
 void forget_launcher();
 

@@ -119,6 +119,9 @@ TEST(Ranks, SeveralWithoutMpiAreRefused) {
                  "found 3 ranks, expected one: this program was built without MPI; "
                  "`make verilate MPI=1` builds it with it");
   }
+  ::setenv("OMPI_COMM_WORLD_RANK", "2", 1);
+  EXPECT_EXIT((void)join_ranks(), testing::ExitedWithCode(2), "^$") << "one line is enough";
+  ::unsetenv("OMPI_COMM_WORLD_RANK");
   ::unsetenv("OMPI_COMM_WORLD_SIZE");
 }
 
