@@ -13,27 +13,10 @@
 namespace raygate {
 namespace {
 
-// Pixels of a packet, and of the cones around eight of them: rays close together, for the boxes to
-// agree about.
-constexpr int kBlockWidth = 4, kBlockHeight = 2;
-static_assert(kErrorBlock % kBlockWidth == 0 && kErrorBlock % kBlockHeight == 0);
-constexpr int kSquare = 8;
 // The integrators' streams are made from others.
 constexpr std::uint32_t kFilterStream = 0, kLampStream = 7, kLensStream = 8;
 constexpr int kLooks = 8;                         // at a lamp's edge, for each sample
-constexpr std::size_t kManySamples = 1 << 14;     // at once
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
-
-/// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
-/// smaller.
-template <class Visit>
-void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit) {
-  for (int y = rect.y0; y < rect.y1; y += height) {
-    for (int x = rect.x0; x < rect.x1; x += width) {
-      visit(PixelRect{x, y, std::min(x + width, rect.x1), std::min(y + height, rect.y1)});
-    }
-  }
-}
 
 std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
   const RenderOptions& options = job.options;
@@ -60,51 +43,9 @@ TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film,
                    integrator_->shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
-/// By RenderOptions::error.
-bool TileRenderer::is_done(std::size_t index) const {
-  const double wanted = job_.options.error;
-  return wanted > 0.0 && raygate::is_done(film_.sums.error[index],
-                                          static_cast<int>(film_.sums.samples[index]), wanted);
-}
-
-/// How many samples each pixel that needs more may take at once, for a wave to have many rays.
-int TileRenderer::samples_ahead(const PixelRect& tile, int end) const {
-  if (job_.options.error == 0.0) return 0;
-  std::size_t pixels = 0;
-  for_blocks(tile, kErrorBlock, kErrorBlock, [&](const PixelRect& block) {
-    const std::size_t index = film_.index_of(block.x0, block.y0);
-    if (static_cast<int>(film_.sums.samples[index]) >= end || is_done(index)) return;
-    pixels += static_cast<std::size_t>(block.width() * block.height());
-  });
-  return static_cast<int>(kManySamples / std::max<std::size_t>(1, pixels));
-}
-
-/// Square by square, and in them block by block: finders' packets are blocks, their cones squares.
-void TileRenderer::list_pixels(const PixelRect& tile, int end) {
-  pixels_.clear();
-  samples_ = 0;
-  const int begin = job_.options.first_sample;
-  const int ahead = samples_ahead(tile, end);
-  const std::vector<std::uint32_t>& done = film_.sums.samples;
-  for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
-    for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
-      if (is_done(film_.index_of(block.x0, block.y0))) return;
-      for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
-        const std::size_t index = film_.index_of(pixel.x0, pixel.y0);
-        const int first = begin + (done.empty() ? 0 : static_cast<int>(done[index]));
-        if (first >= end) return;
-        const int last =
-            std::max(end, std::min({first + ahead, next_look(first), job_.options.samples}));
-        pixels_.push_back({pixel.x0, pixel.y0, index, first, last});
-        samples_ += static_cast<std::size_t>(last - first);
-      });
-    });
-  });
-}
-
 /// With one sample a pixel its ray goes through the middles of pixel and lens.
-void TileRenderer::add_camera_ray(const Pixel& pixel, const Sampler& sampler, std::uint32_t index,
-                                  std::uint32_t stream) {
+void TileRenderer::add_camera_ray(const PixelSamples& pixel, const Sampler& sampler,
+                                  std::uint32_t index, std::uint32_t stream) {
   const RenderOptions& options = job_.options;
   const Camera& camera = job_.camera;
   glm::dvec2 offset(0.0), lens(0.0);
@@ -130,7 +71,7 @@ void TileRenderer::add_camera_ray(const Pixel& pixel, const Sampler& sampler, st
 void TileRenderer::make_camera_rays() {
   wave_.clear();
   wave_.depth = 0;
-  for (const Pixel& pixel : pixels_) {
+  for (const PixelSamples& pixel : pixels_) {
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int i = pixel.first; i < pixel.end; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
@@ -145,8 +86,12 @@ void TileRenderer::make_camera_rays() {
 
 bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going) {
   Stopwatch watch;
-  list_pixels(tile, end);
+  pixels_ = samples_to_trace(job_.options, film_, tile, end);
   if (pixels_.empty()) return true;
+  samples_ = 0;
+  for (const PixelSamples& pixel : pixels_) {
+    samples_ += static_cast<std::size_t>(pixel.end - pixel.first);
+  }
   seen_.assign(samples_, {});
   output_.radiance.assign(samples_, glm::vec3(0.0f));
   output_.first_surface.assign(samples_, {});
@@ -185,7 +130,7 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
     rays = find_lamp_edges(job_, finder_, film_, tile, lamp_edges_, lamp_work_);
   }
   wave_.clear();
-  for (const Pixel& pixel : pixels_) {
+  for (const PixelSamples& pixel : pixels_) {
     if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int look = pixel.first * kLooks; look < pixel.end * kLooks; ++look) {
@@ -208,7 +153,7 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
   std::size_t ray = 0;
   std::size_t sample = 0;
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
-    const Pixel& pixel = pixels_[p];
+    const PixelSamples& pixel = pixels_[p];
     const std::size_t first = sample;
     sample += static_cast<std::size_t>(pixel.end - pixel.first);
     if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
@@ -290,7 +235,7 @@ void TileRenderer::write() {
   FilmSums& kept = film_.sums;
   std::size_t i = 0;  // a sample
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
-    const Pixel& pixel = pixels_[p];
+    const PixelSamples& pixel = pixels_[p];
     const std::size_t at = pixel.index;
     if (pixel.first == 0) write_channels(at, i);
     std::array<SampleSum, 4> color{};
@@ -327,7 +272,7 @@ void TileRenderer::write() {
 
 /// At blocks whose samples that were traced last are enough for that.
 void TileRenderer::look() {
-  for (const Pixel& pixel : pixels_) {
+  for (const PixelSamples& pixel : pixels_) {
     if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_look(pixel.end)) continue;
     look_at_block(film_, pixel.x, pixel.y, job_.options.exposure);
   }

@@ -16,6 +16,7 @@
 #include "host/light/wave.h"
 #include "host/picture/lamp_edges.h"
 #include "host/picture/render_job.h"
+#include "host/picture/tile_samples.h"
 
 namespace raygate {
 
@@ -27,11 +28,8 @@ class TileRenderer {
   /// `lamp_edges`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
   TileRenderer(const RenderJob& job, Finder& finder, Film& film, std::span<LampEdge> lamp_edges);
 
-  /// Traces those samples of each pixel that it lacks for having all up to number `end`; with
-  /// RenderOptions::error, none of pixels that need no more, and some beyond `end` where few
-  /// pixels do.
-  /// `keep_going` is asked between waves; when it says no, what was traced is not worth writing,
-  /// and false is returned.
+  /// Traces the samples that samples_to_trace() names. `keep_going` is asked between waves; when it
+  /// says no, what was traced is not worth writing, and false is returned.
   [[nodiscard]] bool trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going);
 
   /// Adds the samples that were traced last to the film.
@@ -48,16 +46,7 @@ class TileRenderer {
     RayWork work;            // of all rays of the sample
   };
 
-  struct Pixel {
-    int x, y;
-    std::size_t index;  // in the film
-    int first, end;     // its samples
-  };
-
-  [[nodiscard]] bool is_done(std::size_t index) const;
-  [[nodiscard]] int samples_ahead(const PixelRect& tile, int end) const;
-  void list_pixels(const PixelRect& tile, int end);
-  void add_camera_ray(const Pixel& pixel, const Sampler& sampler, std::uint32_t index,
+  void add_camera_ray(const PixelSamples& pixel, const Sampler& sampler, std::uint32_t index,
                       std::uint32_t stream);
   void make_camera_rays();
   void sharpen_lamps(const PixelRect& tile);
@@ -76,12 +65,12 @@ class TileRenderer {
   ShadowRays shadow_rays_;
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.
-  [[nodiscard]] std::size_t place_in_tile(const Pixel& pixel) const {
+  [[nodiscard]] std::size_t place_in_tile(const PixelSamples& pixel) const {
     return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +
            std::size_t(pixel.x - tile_.x0);
   }
 
-  std::vector<Pixel> pixels_;
+  std::vector<PixelSamples> pixels_;
   std::size_t samples_ = 0;  // of all of them
   std::vector<Seen> seen_;   // by sample
   bool is_counting_;
