@@ -89,6 +89,18 @@ def slots_answer_once() -> tuple[dict, bool]:
                  "*u_ends.u_ends.space_o *u_points.valid_o}")
 
 
+def stack_keeps_nodes() -> tuple[dict, bool]:
+    """What a ray's stack holds is asked for once, or beyond, by induction: of two rays and two levels."""
+    walk = PROOFS / "contracts" / "small_ray_walk.sv"
+    wires = "busy_q waiting_q picked_q ray_q asked_q started_q asking_ray_q chosen_q mask_q rest_q"
+    memories = "u_walk.levels 2 2 u_walk.groups 4 184 " + " ".join(
+        f"u_walk.gen_level[{d}].nexts 2 19 u_walk.gen_level[{d}].exponents 2 9" for d in range(2))
+    return holds("stack_keeps_nodes", "Bitwuzla", cores.used("small_ray_walk", [*cores.files("ray_core"), walk]),
+                 "open.tcl", steps=1, reach=14,
+                 prepared=f"small_ray_walk {{}} {{{' '.join(f'u_walk.{wire}' for wire in wires.split())}}} "
+                 f"{{{memories}}}")
+
+
 def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
     """What is claimed of a cell of hw/ray_core."""
     return holds(top, "Bitwuzla", cores.used(cell, cores.files("ray_core")), steps=steps)
@@ -164,6 +176,8 @@ ALL = [
     Proof("unit.computes.general", "the general unit, likewise", "Bitwuzla", general_computes, False),
     Proof("unit.slots", "a ray in a ray core has a slot of its own, and is answered once", "Bitwuzla",
           slots_answer_once),
+    Proof("unit.stack", "a node on a ray's stack is asked for once, unless it is beyond the limit", "Bitwuzla",
+          stack_keeps_nodes, False),
     Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
           functools.partial(of_ray_core, "sort_seven_sorts", "sort_seven", 2)),
     Proof("unit.pick", "the first request from a place on is picked", "Bitwuzla",

@@ -1,0 +1,225 @@
+// A ray's stack, whatever box_unit says, whichever rays wait, from reset and for ever: a node that was pushed is
+// asked for, once, by the line that its group gives, unless it was beyond the ray's limit, or the ray had ended, in
+// a clock in which its stack was looked at; until then the ray counts as walking. Of groups for which there is room; others leave
+// as rests. No more nodes wait than there are rays.
+// opened_small_ray_walk is contracts/small_ray_walk.sv with its registers and memories as outputs.
+module stack_keeps_nodes #(
+  localparam int unsigned Rays  = 2,
+  localparam int unsigned Depth = 2,
+  localparam int unsigned Children = ray_core_pkg::Children,
+  localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
+  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth,
+  localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth,
+  localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth,
+  localparam int unsigned CountWidth = ray_core_pkg::CountWidth,
+  localparam int unsigned ExponentWidth = ray_core_pkg::ExponentWidth,
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
+  localparam int unsigned NextWidth = Children + EnterWidth
+) (
+  input logic                  clk,
+  input logic                  start,
+  input logic                  start_ray,
+  input logic                  box,
+  input logic                  box_ray,
+  input logic [Children-1:0]   box_inner,
+  input logic [Rays-1:0]       held,
+  input logic [Rays-1:0]       testing,
+  input logic [30:0]           limit,
+  input logic                  ended,
+  input logic                  rest_taken,
+  input logic                  choose,  // the child `which` of the group pushed now is the one that is watched
+  input logic [2:0]            which
+);
+
+  logic reset_n;  // low for the first clock
+  initial reset_n = 1'b0;
+  always_ff @(posedge clk) reset_n <= 1'b1;
+
+  (* anyseq *) logic [AddressWidth-1:0] start_line;
+  (* anyseq *) logic [GroupWidth-1:0] box_group;
+
+  logic start_taken, node, node_ray, rest;
+  logic limit_ray;
+  logic [AddressWidth-1:0] node_line;
+  logic [Rays-1:0] walking, busy_q, waiting_q;
+  logic picked_q, ray_q, asked_q, started_q, asking_ray_q;
+  logic [1:0] chosen_q;
+  logic [Children-1:0] mask_q, rest_q;
+  logic [Rays*2-1:0] levels;
+  logic [Rays*NextWidth-1:0] nexts_0, nexts_1;
+  logic [Rays*ExponentWidth-1:0] exponents_0, exponents_1;
+  logic [Rays*Depth*GroupWidth-1:0] groups;
+
+  opened_small_ray_walk dut (
+    .clk_i(clk),
+    .rst_ni(reset_n),
+    .start_valid_i(start),
+    .start_ray_i(start_ray),
+    .start_line_i(start_line),
+    .start_taken_o(start_taken),
+    .box_valid_i(box),
+    .box_ray_i(box_ray),
+    .box_tag_i(32'd0),
+    .box_group_i(box_group),
+    .box_inner_i(box_inner),
+    .held_i(held),
+    .testing_i(testing),
+    .limit_ray_o(limit_ray),
+    .limit_i(limit),
+    .ended_i(ended),
+    .walking_o(walking),
+    .node_valid_o(node),
+    .node_ray_o(node_ray),
+    .node_line_o(node_line),
+    .rest_valid_o(rest),
+    .rest_taken_i(rest_taken),
+    .\u_walk.busy_q (busy_q),
+    .\u_walk.waiting_q (waiting_q),
+    .\u_walk.picked_q (picked_q),
+    .\u_walk.ray_q (ray_q),
+    .\u_walk.asked_q (asked_q),
+    .\u_walk.started_q (started_q),
+    .\u_walk.asking_ray_q (asking_ray_q),
+    .\u_walk.chosen_q (chosen_q),
+    .\u_walk.mask_q (mask_q),
+    .\u_walk.rest_q (rest_q),
+    .u_walk_levels(levels),
+    .u_walk_groups(groups),
+    .\u_walk_gen_level[0]_nexts (nexts_0),
+    .\u_walk_gen_level[1]_nexts (nexts_1),
+    .\u_walk_gen_level[0]_exponents (exponents_0),
+    .\u_walk_gen_level[1]_exponents (exponents_1)
+  );
+
+  // ---- Entries of a group
+
+  function automatic logic [EnterWidth-1:0] enter_of(logic [GroupWidth-1:0] group, logic [2:0] n);
+    enter_of = group[EntryWidth*n+CountWidth+OffsetWidth+:EnterWidth];
+  endfunction
+  function automatic logic [AddressWidth-1:0] line_of(logic [GroupWidth-1:0] group, logic [2:0] n);
+    line_of = group[GroupWidth-1-:AddressWidth] + AddressWidth'(group[EntryWidth*n+CountWidth+:OffsetWidth]);
+  endfunction
+
+  // ---- What the user promises: rays begin that do not walk, nodes come that were asked for, near ones first
+
+  logic [Rays-1:0] wanted;  // nodes asked for that have not come
+
+  function automatic logic is_sorted(logic [GroupWidth-1:0] group);
+    is_sorted = 1'b1;
+    for (int unsigned n = 0; n < Children - 1; n++) begin
+      if (group[EntryWidth*n+CountWidth+OffsetWidth+:EnterWidth]
+          > group[EntryWidth*(n+1)+CountWidth+OffsetWidth+:EnterWidth]) is_sorted = 1'b0;
+    end
+  endfunction
+
+  always_ff @(posedge clk) begin
+    if (!reset_n) begin
+      wanted <= '0;
+    end else begin
+      if (node) wanted[node_ray] <= 1'b1;
+      if (box) wanted[box_ray] <= 1'b0;
+    end
+  end
+  always_comb begin
+    if (reset_n) begin
+      assume (!start || !walking[start_ray]);
+      assume (!box || (wanted[box_ray] && is_sorted(box_group)));
+      assume (!rest_taken || rest);
+    end else begin
+      assume (!start && !box && !rest_taken);
+    end
+  end
+
+  // ---- The watched node
+
+  logic watching, done, w_ray, w_level, dropped;
+  logic [2:0] w_entry;
+  logic [GroupWidth-1:0] w_group;
+  logic [1:0] box_level, w_levels;
+  logic asked, present, push_here;
+  logic [Children-1:0] w_mask, next_mask;
+  logic [EnterWidth-1:0] w_next;
+  logic [ExponentWidth-1:0] w_exponent;
+  logic [GroupWidth-1:0] kept;
+  initial watching = 1'b0;
+  initial done = 1'b0;
+
+  assign box_level = levels[2*box_ray+:2];
+  assign w_levels  = levels[2*w_ray+:2];
+  assign {next_mask, w_next} = w_level ? nexts_1[NextWidth*w_ray+:NextWidth]
+                                       : nexts_0[NextWidth*w_ray+:NextWidth];
+  assign w_exponent = w_level ? exponents_1[ExponentWidth*w_ray+:ExponentWidth]
+                              : exponents_0[ExponentWidth*w_ray+:ExponentWidth];
+  assign kept = groups[GroupWidth*{w_ray, w_level}+:GroupWidth];
+
+  logic asking;  // its group's level is being asked
+  assign asking  = asked_q && asking_ray_q == w_ray && chosen_q == {1'b0, w_level};
+  assign w_mask  = asking ? rest_q : next_mask;
+  assign present = w_levels > {1'b0, w_level} && w_mask[w_entry];
+  assign asked   = asking && mask_q[w_entry] && (mask_q & ((Children'(1) << w_entry) - 1'b1)) == '0;
+  assign push_here = box && box_inner != '0 && box_ray == w_ray && box_level == {1'b0, w_level};
+
+  always_ff @(posedge clk) begin
+    dropped <= picked_q && limit_ray == w_ray
+               && (ended || ray_core_pkg::is_beyond(
+                     w_group[Children*EntryWidth+:ExponentWidth], enter_of(w_group, w_entry), limit));
+    if (!reset_n) begin
+      watching <= 1'b0;
+      done <= 1'b0;
+    end else begin
+      if (!watching && !done && choose && box && box_inner[which] && which < 3'd7
+          && box_level < 2'd2) begin
+        watching <= 1'b1;
+        w_ray <= box_ray;
+        w_level <= box_level[0];
+        w_entry <= which;
+        w_group <= box_group;
+      end else if (watching && !present) begin
+        watching <= 1'b0;
+        done <= asked;
+      end else if (done && (push_here || (start_taken && start_ray == w_ray))) begin
+        done <= 1'b0;
+      end
+    end
+  end
+
+  // ---- Claims
+
+  always_comb begin
+    if (reset_n) begin
+      if (watching) begin
+        assert (present || asked || dropped);
+        if (present) assert (walking[w_ray] && !asked);
+        if (asked) assert (node && node_ray == w_ray && node_line == line_of(w_group, w_entry));
+      end
+      if (done) assert (!asked && !present);
+
+      // Invariants
+      for (int unsigned r = 0; r < Rays; r++) begin
+        assert (busy_q[r] == (wanted[r] || (picked_q && ray_q == 1'(r))
+                              || ((asked_q || started_q) && asking_ray_q == 1'(r))));
+        assert (!(wanted[r] && picked_q && ray_q == 1'(r)));
+        assert (!(wanted[r] && (asked_q || started_q) && asking_ray_q == 1'(r)));
+        if (walking[r]) begin
+          assert (levels[2*r+:2] <= 2'd2);
+          assert (waiting_q[r] == (levels[2*r+:2] != 2'd0));
+        end
+      end
+      assert (!(asked_q && started_q));
+      assert (!(picked_q && (asked_q || started_q) && asking_ray_q == ray_q));
+      if (picked_q) assert (waiting_q[ray_q]);
+      if (started_q) assert (levels[2*asking_ray_q+:2] == 2'd0);
+      if (watching && (present || asked)) begin
+        assert (kept == w_group && w_entry < 3'd7 && is_sorted(w_group));
+        if (asking) assert (rest_q == (mask_q & (mask_q - 1'b1)) && mask_q == next_mask);
+        assert (w_exponent == w_group[Children*EntryWidth+:ExponentWidth]);
+        if (!asking) assert (w_next <= enter_of(w_group, w_entry));
+      end
+
+      cover (watching && asked);
+      cover (watching && dropped && !asked);
+      cover (done && push_here);
+    end
+  end
+
+endmodule
