@@ -132,9 +132,10 @@ def block_costs(stat: str, memories: dict[str, int]) -> dict[str, dict]:
     """
     area, inside = {}, {}
     for name, text in re.findall(r"^=== (\S+) ===\n(.*?)(?=^=== |\Z)", stat, re.M | re.S):
-        if own := re.search(r"Chip area for (?:top )?module '[^']*': ([\d.]+)", text):
-            area[name] = float(own[1])
-            inside[name] = [(cell, int(count)) for cell, count in re.findall(r"^ {5}(\S+) +(\d+)$", text, re.M)]
+        # A module may have no cells of its own; its name may end in Width=32'...
+        own = re.search(r"Chip area for (?:top )?module '.*': ([\d.]+)$", text, re.M)
+        area[name] = float(own[1]) if own else 0.0
+        inside[name] = [(cell, int(count)) for cell, count in re.findall(r"^ {5}(\S+) +(\d+)$", text, re.M)]
 
     def whole(name: str, own: dict) -> float:
         return own.get(name, 0) + sum(count * whole(cell, own) for cell, count in inside[name] if cell in area)

@@ -104,11 +104,18 @@ class LightTree::Builder {
     return groups;
   }
 
+  /// Puts those first for which `is_first` is true, the order kept; how many these are. (Clang 14
+  /// doesn't compile the library's std::ranges::stable_partition.)
+  template <class IsFirst>
+  static std::size_t partitioned(Group group, const IsFirst& is_first) {
+    return static_cast<std::size_t>(std::stable_partition(group.begin(), group.end(), is_first) -
+                                    group.begin());
+  }
+
   /// Sorts a group of two or more into two, and returns the size of the first.
   [[nodiscard]] std::size_t split(Group group) const {
-    const auto far = std::ranges::stable_partition(
-        group, [&](std::uint32_t number) { return sources_[number].is_far; });
-    const std::size_t far_size = group.size() - far.size();
+    const std::size_t far_size =
+        partitioned(group, [&](std::uint32_t number) { return sources_[number].is_far; });
     if (far_size != 0 && far_size != group.size()) return far_size;
 
     constexpr int kBins = 12;
@@ -147,9 +154,8 @@ class LightTree::Builder {
       }
     }
     if (best_axis < 0) return group.size() / 2;  // all in one place
-    const auto rest = std::ranges::stable_partition(
-        group, [&](std::uint32_t number) { return bin_of(number, best_axis) < best_bin; });
-    return group.size() - rest.size();
+    return partitioned(group,
+                       [&](std::uint32_t number) { return bin_of(number, best_axis) < best_bin; });
   }
 
   /// One source that stands for all of a group.

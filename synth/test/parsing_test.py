@@ -108,9 +108,20 @@ STAT = r"""
 
    Chip area for module '$paramod$34cd\line_port': 30.500000
 
+=== $paramod\leaf_walk\Rays=32'00000000000000000000000001000000 ===
+
+     NAND2X1                        5
+
+   Chip area for module '$paramod\leaf_walk\Rays=32'00000000000000000000000001000000': 50.000000
+
+=== $paramod$56ef\vector_adder ===
+
+     $paramod\leaf_walk\Rays=32'00000000000000000000000001000000      3
+
 === ray_core ===
 
      $paramod$34cd\line_port        2
+     $paramod$56ef\vector_adder        1
      kept_memory                    1
 
    Area for cell type \kept_memory is unknown!
@@ -121,7 +132,7 @@ STAT = r"""
 
    ray_core                          1
 
-   Chip area for top module '\ray_core': 468.000000
+   Chip area for top module '\ray_core': 618.000000
 """
 DUMP = r"""
 module $paramod$12ab\line_cache
@@ -148,7 +159,8 @@ class Blocks(unittest.TestCase):
         self.assertEqual(memories, {r"$paramod$12ab\line_cache": 6144, "ray_core": 6144})
         self.assertEqual(mapping.block_costs(STAT, memories), {
             "the rest": {"count": 1, "area": 7, "bits": 6144},
-            "line_port": {"count": 2, "area": 461, "bits": 4 * 6144}})
+            "line_port": {"count": 2, "area": 461, "bits": 4 * 6144},
+            "vector_adder": {"count": 1, "area": 150, "bits": 0}})
 
     def test_a_dump_of_one_module_names_none(self):
         text = "  cell \\kept_memory \\words\n    parameter \\BITS 40\n  end\n"
