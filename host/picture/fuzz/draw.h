@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "host/find/cpu/cpu_finder.h"
-#include "host/light/lights.h"
+#include "host/light/studio.h"
 #include "host/picture/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/instances.h"
