@@ -5,6 +5,7 @@ import hashlib
 import json
 import pathlib
 import re
+import threading
 from collections.abc import Callable, Iterable
 
 from synth import tools
@@ -17,6 +18,7 @@ class NotKept(Exception):
 
 
 only_kept = False
+_locks: dict[pathlib.Path, threading.Lock] = {}
 
 
 @functools.cache
@@ -45,16 +47,18 @@ def kept(folder: pathlib.Path, wanted: str) -> dict | None:
 def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple[dict, bool]:
     """The result in `folder` if it was made under the key `wanted`; else makes and keeps it.
 
-    Returns the result and whether it was already there.
+    Returns the result and whether it was already there. Jobs that want the same one wait for whichever
+    makes it.
     """
-    there = kept(folder, wanted)
-    if there is not None:
-        return there, True
-    if only_kept:
-        raise NotKept(folder.name)
-    file = folder / "result.json"
-    file.unlink(missing_ok=True)  # a run that fails must not leave an older answer behind
-    folder.mkdir(parents=True, exist_ok=True)
-    result = make()
-    file.write_text(json.dumps({"key": wanted, "result": result}, indent=1))
-    return json.loads(file.read_text())["result"], False
+    with _locks.setdefault(folder, threading.Lock()):
+        there = kept(folder, wanted)
+        if there is not None:
+            return there, True
+        if only_kept:
+            raise NotKept(folder.name)
+        file = folder / "result.json"
+        file.unlink(missing_ok=True)  # a run that fails must not leave an older answer behind
+        folder.mkdir(parents=True, exist_ok=True)
+        result = make()
+        file.write_text(json.dumps({"key": wanted, "result": result}, indent=1))
+        return json.loads(file.read_text())["result"], False
