@@ -59,9 +59,9 @@ def groups(design: Design) -> list[int]:
     if packed := parameters.get("GroupWidths"):
         value = int(packed.split("'h")[1], 16)
         return [value >> 8 * place & 255 for place in range(16) if value >> 8 * place & 255]
-    if parameters.get("Adder") == str(catalogue.adder_kinds()["graded"]) and parameters.get("Width") == "48":
+    width = int(parameters.get("Width", 48))  # the module's own
+    if parameters.get("Adder") == str(catalogue.adder_kinds()["graded"]) and width == 48:
         return list(final_adder.CORES_OWN)
-    width = int(parameters["Width"])
     return [min(BAND, width - low) for low in range(0, width, BAND)]
 
 
