@@ -127,7 +127,7 @@ kill-ranks: ## kill -9 of a rank, of rank 0, of all, KILLS times each: --resume 
 	@RAYGATE_KILLS=$(KILLS) build/ranks_test --gtest_filter='KilledRanks.*'
 
 .PHONY: everything
-everything kill-ranks: configure += -DBUILD_TESTING=ON
+everything kill-ranks coverage: configure += -DBUILD_TESTING=ON
 everything:
 	$(call build,test,all)
 
