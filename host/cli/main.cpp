@@ -6,7 +6,6 @@
 #include "host/cli/process.h"
 #include "host/cli/run.h"
 #include "host/exact/ieee_floats.h"
-#include "host/ranks/helper_guard.h"
 #include "host/ranks/ranks.h"
 
 int main(int argc, char** argv) {
@@ -24,11 +23,7 @@ int main(int argc, char** argv) {
     require_ieee_floats();
     choose_vectors();
     ranks = join_ranks();
-    if (ranks->index() == 0) {
-      work();
-    } else {
-      run_helper(*ranks, work);
-    }
+    work_as_rank(*ranks, work);
     return 0;
   };
   const int status = run_guarded(program, 1);

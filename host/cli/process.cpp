@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 
+#include "host/ranks/helper_guard.h"
 #include "host/scene/io/input_error.h"
 #include "host/vectors.h"
 
@@ -24,11 +25,6 @@ std::atomic<bool> noted_warning = false;
 
 void note(int signal) { noted_signal = signal; }
 void note_warning(int /*signal*/) { noted_warning = true; }
-
-int fail(int status, const char* message) {
-  std::fprintf(stderr, "error: %s\n", printable(message).c_str());
-  return status;
-}
 
 /// The length of the UTF-8 character that `text` begins with, if it is one that a terminal shows;
 /// else 0.
@@ -92,6 +88,22 @@ void choose_vectors() {
   }
 }
 
+Ending ending_of(const std::exception_ptr& error, int internal_error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const InputError& unusable) {
+    return {kUserError, unusable.what()};
+  } catch (const Interrupted& interrupted) {
+    return {kSignalBase + interrupted.signal(), interrupted.what()};
+  } catch (const std::bad_alloc&) {
+    return {kUserError, "out of memory; a smaller picture needs less"};
+  } catch (const RankTrouble& trouble) {
+    return {trouble.status(), trouble.what()};
+  } catch (const std::exception& fault) {
+    return {internal_error, fault.what()};
+  }
+}
+
 int run_guarded(const std::function<int()>& program, int internal_error) {
   // A file that grows past the user's limit, or a pipe whose reader is gone, becomes a failed
   // write, not a death.
@@ -101,14 +113,18 @@ int run_guarded(const std::function<int()>& program, int internal_error) {
     const int status = program();
     flush_standard_output();
     return status;
-  } catch (const InputError& error) {
-    return fail(kUserError, error.what());
-  } catch (const Interrupted& interrupted) {
-    return fail(kSignalBase + interrupted.signal(), interrupted.what());
-  } catch (const std::bad_alloc&) {
-    return fail(kUserError, "out of memory; a smaller picture needs less");
-  } catch (const std::exception& error) {
-    return fail(internal_error, error.what());
+  } catch (...) {
+    const Ending ending = ending_of(std::current_exception(), internal_error);
+    std::fprintf(stderr, "error: %s\n", printable(ending.line).c_str());
+    return ending.status;
+  }
+}
+
+void work_as_rank(Ranks& ranks, const std::function<void()>& work) {
+  if (ranks.index() == 0) {
+    work();
+  } else {
+    run_helper(ranks, work, [](const std::exception_ptr& error) { return ending_of(error, 1); });
   }
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "host/ranks/ranks.h"
+
 namespace raygate {
 
 /// `text` as a terminal may have it: control characters, which file names can hold, become "\x1B"
@@ -22,10 +24,17 @@ void print_warning(std::string_view what);
 /// Throws InputError if what was printed cannot reach standard output: a full disk.
 void flush_standard_output();
 
+/// What a program ends with that has thrown `error`: status 2 for InputError and where memory is
+/// short, `internal_error` for a fault of ours, 128 + signal for Interrupted, for RankTrouble that
+/// rank's.
+[[nodiscard]] Ending ending_of(const std::exception_ptr& error, int internal_error);
+
 /// The body of main(): runs `program`, and turns what it throws into one line on standard error and
-/// an exit status: 2 for InputError and where memory is short, `internal_error` for a fault of
-/// ours, 128 + signal for Interrupted.
+/// an exit status.
 int run_guarded(const std::function<int()>& program, int internal_error);
+
+/// Runs `work` on one of the ranks of a run. What it throws on any of them rank 0 throws.
+void work_as_rank(Ranks& ranks, const std::function<void()>& work);
 
 /// Settles which vector code runs (host/vectors.h). Throws InputError where RAYGATE_VECTORS names
 /// none that this machine has.

@@ -243,6 +243,7 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
   Film film = render_film(options, outputs, scene, clearances, image, camera, metadata,
                           begun ? &*begun : nullptr, ranks, report.render);
   if (report.render.cancelled) {
+    if (!is_ours) throw Interrupted(interruption(), "rank 0 has the picture");
     end_interrupted(outputs, film, metadata, static_cast<int>(options.threads));
   }
   ranks.leave();

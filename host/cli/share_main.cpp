@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "host/cli/process.h"
-#include "host/ranks/helper_guard.h"
 #include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
 #include "host/ranks/shared_jobs.h"
@@ -50,11 +49,7 @@ int main(int argc, char** argv) {
     ranks = join_ranks();
     forget_launcher();
     const auto work = [&] { run_shared(read_lines(argv[1]), *ranks); };
-    if (ranks->index() == 0) {
-      work();
-    } else {
-      run_helper(*ranks, work);
-    }
+    work_as_rank(*ranks, work);
     return 0;
   };
   return run_guarded(program, 1);

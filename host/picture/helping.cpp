@@ -7,7 +7,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -53,6 +52,7 @@ class Helper {
     while (talk(ranks)) {
     }
     stop();
+    if (stats_.cancelled) return;
     threads_.clear();
     stats_.processor_seconds = processor_seconds() - busy;
     ranks.send(0, About::kCounts, bytes_of(stats_));
@@ -61,7 +61,7 @@ class Helper {
  private:
   static constexpr std::chrono::milliseconds kLook{1};  // between looks for messages
 
-  /// False when rank 0 has said that all is traced.
+  /// False when rank 0 has said that all is traced, or the caller wants no more.
   bool talk(Ranks& ranks) {
     while (auto message = ranks.receive()) {
       if (message->about == About::kFinish) return false;
@@ -73,7 +73,10 @@ class Helper {
       to_do_.push_back(tile);
       changed_.notify_all();
     }
-    if (progress_ && !progress_(0.0)) throw std::runtime_error("interrupted");
+    if (progress_ && !progress_(0.0)) {
+      stats_.cancelled = true;
+      return false;
+    }
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, kLook, [this] { return error_ || !traced_.empty(); });
     if (error_) std::rethrow_exception(error_);

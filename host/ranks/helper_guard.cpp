@@ -1,15 +1,14 @@
 #include "host/ranks/helper_guard.h"
 
-#include <exception>
-
 namespace raygate {
 
-void run_helper(Ranks& ranks, const std::function<void()>& work) {
+void run_helper(Ranks& ranks, const std::function<void()>& work,
+                const std::function<Ending(std::exception_ptr)>& ending) {
   try {
     work();
   } catch (const RunIsOver&) {  // NOLINT(bugprone-empty-catch): nothing left to do
-  } catch (const std::exception& error) {
-    ranks.send(0, About::kTrouble, error.what());
+  } catch (...) {
+    ranks.send(0, About::kTrouble, RankTrouble::message_of(ending(std::current_exception())));
   }
 }
 

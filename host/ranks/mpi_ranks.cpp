@@ -79,9 +79,7 @@ class MpiRanks : public Ranks {
       is_over_ = true;
       throw RunIsOver();
     }
-    if (message->about == About::kTrouble) {
-      throw InputError("rank " + std::to_string(message->from) + ": " + message->bytes);
-    }
+    if (message->about == About::kTrouble) throw RankTrouble(*message);
     return message;
   }
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -21,7 +22,7 @@ enum class About : int {
   kCounts,   ///< to rank 0: the sender's statistics
   kNext,     ///< to rank 0: asks for the number of the next job
   kJob,      ///< from rank 0: that number
-  kTrouble,  ///< to rank 0: why the sender cannot go on, a line
+  kTrouble,  ///< to rank 0: the Ending of a sender that cannot go on
   kEnd,      ///< from rank 0: the run is over, whatever the others are doing
 };
 
@@ -45,6 +46,29 @@ template <class T>
   return value;
 }
 
+/// What a process says last that cannot go on: its exit status, and a line that says why.
+struct Ending {
+  int status;
+  std::string line;
+};
+
+/// What rank 0 throws when another one has ended so.
+class RankTrouble : public std::runtime_error {
+ public:
+  explicit RankTrouble(const Message& message)
+      : std::runtime_error("rank " + std::to_string(message.from) + ": " +
+                           message.bytes.substr(sizeof(int))),
+        status_(value_of<int>(message.bytes)) {}
+  /// The bytes of a message about it.
+  [[nodiscard]] static std::string message_of(const Ending& ending) {
+    return bytes_of(ending.status) + ending.line;
+  }
+  [[nodiscard]] int status() const { return status_; }
+
+ private:
+  int status_;
+};
+
 /// All ranks of a run, as one of them sees them. Rank 0 hands out work, gathers and writes. From
 /// one thread at a time.
 class Ranks {
@@ -65,7 +89,7 @@ class Ranks {
   // NOLINTNEXTLINE(performance-unnecessary-value-param): those that have others keep the bytes
   virtual void send(int /*to*/, About /*about*/, std::string /*bytes*/) {}
   /// The next message, if one is there. Of those that are never handed on, throws: on rank 0
-  /// InputError for kTrouble, which says whose it is; on others RunIsOver for kEnd.
+  /// RankTrouble for kTrouble; on others RunIsOver for kEnd.
   [[nodiscard]] virtual std::optional<Message> receive() { return std::nullopt; }
 
   /// Nothing is shared from now on. Rank 0 says so to the others, which wait for that; all wait for

@@ -176,6 +176,23 @@ TEST_F(Ranks, SayOnceWhatIsWrong) {
   EXPECT_TRUE(folder_.list().empty());
 }
 
+TEST_F(Ranks, EndAlikeWhoeverIsInTrouble) {
+  const std::tuple<std::string, int, std::string> endings[] = {
+      {"difference", 1, "a ray"}, {"interrupted", 143, "interrupted; "}};
+  for (const auto& [ending, status, line] : endings) {
+    for (const int rank : {0, 2}) {
+      const Outcome outcome =
+          run_program({.arguments = {"--oversubscribe", "-n", "3", RAYGATE_ENDINGS, ending,
+                                     std::to_string(rank)},
+                       .folder = folder_.path(),
+                       .program = RAYGATE_MPIRUN});
+      EXPECT_EQ(outcome.status, status) << ending << " on rank " << rank << "\n" << outcome.err;
+      const std::string whose = rank == 0 ? "" : "rank " + std::to_string(rank) + ": ";
+      EXPECT_NE(outcome.err.find("error: " + whose + line), std::string::npos) << outcome.err;
+    }
+  }
+}
+
 /// Killed at any time, a film is there to go on from: of a rank's death, without --save-every, all
 /// but the tiles in flight. RAYGATE_KILLS says how often; each takes up what the last one left.
 class KilledRanks : public Ranks {

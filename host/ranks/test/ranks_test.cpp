@@ -50,7 +50,7 @@ class ThreadRanks : public Ranks {
   }
   [[nodiscard]] std::optional<Message> receive() override {
     auto message = post_.take(index_);
-    if (message && message->about == About::kTrouble) throw InputError(message->bytes);
+    if (message && message->about == About::kTrouble) throw RankTrouble(*message);
     return message;
   }
 
@@ -83,19 +83,31 @@ TEST(SharedJobs, EachIsTakenOnce) {
 TEST(SharedJobs, TroubleOfOneEndsRank0) {
   Post post(2);
   ThreadRanks first(post, 0), second(post, 1);
-  run_helper(second, [] { throw InputError("no memory"); });
+  run_helper(
+      second, [] { throw InputError("no memory"); },
+      [](const std::exception_ptr&) {
+        return Ending{7, "no room"};
+      });
   SharedJobs shared(first, 1);
-  const auto take_all = [&] {
+  try {
     while (shared.next()) {
     }
-  };
-  EXPECT_THROW(take_all(), InputError);
+    ADD_FAILURE();
+  } catch (const RankTrouble& trouble) {
+    EXPECT_EQ(trouble.status(), 7);
+    EXPECT_STREQ(trouble.what(), "rank 1: no room");
+  }
 }
 
 TEST(HelperGuard, TheEndOfARunIsNoTrouble) {
   Post post(2);
   ThreadRanks ranks(post, 1);
-  run_helper(ranks, [] { throw RunIsOver(); });
+  run_helper(
+      ranks, [] { throw RunIsOver(); },
+      [](const std::exception_ptr&) {
+        ADD_FAILURE();
+        return Ending{};
+      });
   EXPECT_FALSE(post.take(0));
 }
 
