@@ -125,26 +125,17 @@ Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
     throw InputError(path.string() +
                      ": found no sums of samples, expected a picture of `render --channels sums`");
   }
-  Film film;
-  read_windows(header, film.width, film.height, film.window);
-  film.keeps_sums = true;
-  const std::size_t pixels = std::size_t(film.window.width()) * std::size_t(film.window.height());
-  film.color.resize(pixels);
-  film.depth.resize(pixels);
-  film.normal.resize(pixels);
-  film.primitive.resize(pixels);
-  film.sums.samples.resize(pixels);
-  film.sums.color.resize(pixels);
-  if (has("error")) {
-    film.sums.error.resize(pixels);
-    film.sums.shown.resize(pixels);
-  }
-  if (has("P.X")) film.position.resize(pixels);
-  if (has("Albedo.R")) film.albedo.resize(pixels);
-  film.sums.albedo.resize(film.albedo.size());
-  if (has("objectId")) film.object.resize(pixels);
-  if (has("tests")) film.tests.resize(pixels);
-  if (has("doubts")) film.doubts.resize(pixels);
+  int width = 0, height = 0;
+  PixelRect window;
+  read_windows(header, width, height, window);
+  Film film = make_film(width, height, window,
+                        {.position = has("P.X"),
+                         .albedo = has("Albedo.R"),
+                         .object = has("objectId"),
+                         .tests = has("tests"),
+                         .doubts = has("doubts"),
+                         .sums = true});
+  add_sums(film, has("error"));
   std::vector<std::string> names;
   for (const Channel& channel : channels_of(film)) names.push_back(channel.name);
   require_channels(path, channels, names);

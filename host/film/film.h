@@ -59,4 +59,36 @@ struct Film {
   }
 };
 
+/// Calls `visit` with the first array of pixels that a film may have, of each of `films`, then with
+/// the second, and so on.
+template <class Visit, class... Films>
+void for_each_array(const Visit& visit, Films&... films) {
+  visit(films.color...);
+  visit(films.depth...);
+  visit(films.normal...);
+  visit(films.primitive...);
+  visit(films.position...);
+  visit(films.albedo...);
+  visit(films.object...);
+  visit(films.tests...);
+  visit(films.doubts...);
+  visit(films.sums.samples...);
+  visit(films.sums.color...);
+  visit(films.sums.albedo...);
+  visit(films.sums.error...);
+  visit(films.sums.shown...);
+}
+static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
+                  sizeof(Film) == 14 * sizeof(std::vector<int>) + 2 * sizeof(PixelRect),
+              "for_each_array() has them all");
+
+/// A film of `window` with the arrays that `extra` asks for, but for sums, in which every pixel is
+/// a miss.
+[[nodiscard]] Film make_film(int width, int height, const PixelRect& window,
+                             const ExtraChannels& extra);
+
+/// Gives it sums of no samples; `with_error`: also what films have whose pixels get samples by
+/// their error.
+void add_sums(Film& film, bool with_error);
+
 }  // namespace raygate

@@ -11,14 +11,15 @@ namespace {
 /// many bytes the row has.
 template <class AnyFilm, class Visit>
 void for_each_row(AnyFilm& film, const PixelRect& rect, const Visit& visit) {
-  for_each_array(film, [&](auto& values) {
+  const auto visit_rows = [&](auto& values) {
     using Value = std::remove_cvref_t<decltype(values.front())>;
     static_assert(std::is_trivially_copyable_v<Value>);
     if (values.empty()) return;
     for (int y = rect.y0; y < rect.y1; ++y) {
       visit(values.data() + film.index_of(rect.x0, y), sizeof(Value) * std::size_t(rect.width()));
     }
-  });
+  };
+  for_each_array(visit_rows, film);
 }
 
 }  // namespace

@@ -33,11 +33,10 @@ void require_like(const NamedFilm& part, const NamedFilm& first) {
   if (const auto difference = different_picture(file.metadata, first.second.metadata)) {
     throw InputError(name + ": found " + *difference + " as in " + first.first);
   }
-  const auto layout = [](const Film& f) {
-    return std::tuple(f.width, f.height, f.position.empty(), f.albedo.empty(), f.object.empty(),
-                      f.tests.empty(), f.doubts.empty(), f.sums.error.empty());
-  };
-  if (layout(film) != layout(other)) {
+  bool is_like = film.width == other.width && film.height == other.height;
+  for_each_array([&](const auto& a, const auto& b) { is_like = is_like && a.empty() == b.empty(); },
+                 film, other);
+  if (!is_like) {
     throw InputError(name + ": found another frame or other channels than in " + first.first +
                      ", expected the same");
   }
@@ -188,21 +187,8 @@ FilmFile merge(std::vector<NamedFilm> parts) {
   film.keeps_sums = true;
   for (const NamedFilm& window : windows) {
     const Film& part = window.second.film;
-    const auto put = [&](const auto& values, auto& into) { place(values, part.window, into, all); };
-    put(part.color, film.color);
-    put(part.depth, film.depth);
-    put(part.normal, film.normal);
-    put(part.primitive, film.primitive);
-    put(part.position, film.position);
-    put(part.albedo, film.albedo);
-    put(part.object, film.object);
-    put(part.tests, film.tests);
-    put(part.doubts, film.doubts);
-    put(part.sums.samples, film.sums.samples);
-    put(part.sums.color, film.sums.color);
-    put(part.sums.albedo, film.sums.albedo);
-    put(part.sums.error, film.sums.error);
-    put(part.sums.shown, film.sums.shown);
+    for_each_array([&](const auto& values, auto& into) { place(values, part.window, into, all); },
+                   part, film);
   }
   return result;
 }

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -31,28 +30,12 @@ namespace raygate {
 namespace {
 
 Film empty_film(const RenderOptions& options) {
-  Film film;
-  film.width = options.width;
-  film.height = options.height;
-  film.window = options.window;
-  if (film.window.width() <= 0 || film.window.height() <= 0) {
-    film.window = {0, 0, options.width, options.height};
-  }
-  assert(film.window.x0 >= 0 && film.window.x1 <= film.width);
-  assert(film.window.y0 >= 0 && film.window.y1 <= film.height);
-  const std::size_t pixels = std::size_t(film.window.width()) * std::size_t(film.window.height());
-  film.color.assign(pixels, glm::vec4(0.0f));
-  film.depth.assign(pixels, std::numeric_limits<float>::infinity());
-  film.normal.assign(pixels, glm::vec3(0.0f));
-  film.primitive.assign(pixels, kNoPrimitive);
-  const ExtraChannels& extra = options.channels;
-  film.keeps_sums = extra.sums;
-  if (extra.position) film.position.assign(pixels, glm::vec3(0.0f));
-  if (extra.albedo) film.albedo.assign(pixels, glm::vec3(0.0f));
-  if (extra.object) film.object.assign(pixels, kNoPrimitive);
-  if (extra.tests) film.tests.assign(pixels, 0);
-  if (extra.doubts) film.doubts.assign(pixels, 0);
-  return film;
+  const PixelRect frame{0, 0, options.width, options.height};
+  const bool is_crop = options.window.width() > 0 && options.window.height() > 0;
+  const PixelRect& window = is_crop ? options.window : frame;
+  assert(window.x0 >= 0 && window.x1 <= options.width);
+  assert(window.y0 >= 0 && window.y1 <= options.height);
+  return make_film(options.width, options.height, window, options.channels);
 }
 
 /// The threads that trace, and the one that called, which watches over them: only this one reports
@@ -303,13 +286,7 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     film.keeps_sums = options.channels.sums;
     assert(film.sums.samples.size() == film.color.size());
   } else if (tiles.passes() > 1 || film.keeps_sums || options.error > 0.0 || ranks > 1) {
-    film.sums.samples.assign(film.color.size(), 0);
-    film.sums.color.resize(film.color.size());
-    film.sums.albedo.resize(film.albedo.size());
-    if (options.error > 0.0) {
-      film.sums.error.assign(film.color.size(), std::numeric_limits<float>::infinity());
-      film.sums.shown.assign(film.color.size(), 0.0f);
-    }
+    add_sums(film, options.error > 0.0);
   }
   const Lights lights(scene, bvh, options.techniques.lights);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lamps

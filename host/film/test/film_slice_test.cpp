@@ -25,10 +25,11 @@ TEST(FilmSlice, BringsAllChannelsOfItsPixelsAndNoOthers) {
   const PixelRect window{3, 5, 16, 14};
   const Film source = with_sums(make_sample_film(20, 18, window, true));
   Film target = source;
-  for_each_array(target, [](auto& values) {
+  const auto blank_out = [](auto& values) {
     ASSERT_FALSE(values.empty());
     values.assign(values.size(), {});
-  });
+  };
+  for_each_array(blank_out, target);
   const Film blank = target;
   const PixelRect rect{4, 7, 9, 14};
   put_slice(target, rect, slice_of(source, rect));
@@ -42,6 +43,14 @@ TEST(FilmSlice, BringsAllChannelsOfItsPixelsAndNoOthers) {
     }
   }
   EXPECT_EQ(inside, 35);
+}
+
+TEST(FilmSlice, HasEachNumberOnce) {
+  const Film film = with_sums(make_sample_film(4, 4, {0, 0, 4, 4}, true));
+  std::size_t bytes = 0;
+  for_each_array([&](const auto& values) { bytes += sizeof(values[0]); }, film);
+  EXPECT_EQ(bytes, 4 * (4 + 1 + 3 + 1 + 3 + 3 + 1 + 1 + 1 + 1 + 1 + 1) + 7 * sizeof(SampleSum));
+  EXPECT_EQ(slice_of(film, {1, 1, 2, 2}).size(), bytes);
 }
 
 TEST(FilmSlice, LeavesOutWhatAFilmDoesNotHave) {
