@@ -159,7 +159,8 @@ int run(const TraceOptions& options) {
   if (!options.is_to_standard_output()) require_writable(options.output);
   std::optional<SceneFile> scene_file;
   if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
-  const LoadOptions load_options{.strict = options.strict, .keep_instances = true};
+  const LoadOptions load_options{
+      .strict = options.strict, .keep_instances = true, .textures = false};
   Scene scene =
       scene_file ? load_scene(*scene_file, load_options) : load_scene(options.scene, load_options);
   settle_instances(scene, options.engine.instances, options.scene);

@@ -26,7 +26,7 @@ void put_ends(const std::vector<double>& weights, float* ends) {
 
 }  // namespace
 
-Environment::Environment(const EnvironmentMap& map)
+Environment::Environment(const EnvironmentMap& map, bool is_sampled)
     : map_(map),
       width_(static_cast<std::uint32_t>(map.width)),
       height_(static_cast<std::uint32_t>(map.height)),
@@ -40,8 +40,10 @@ Environment::Environment(const EnvironmentMap& map)
     cosines_.push_back(static_cast<float>(sine_cosine((row + 0.5) / (2.0 * height_)).cosine));
   }
   cosines_.push_back(-1.0f);
-  row_ends_.resize(rows);
-  column_ends_.resize(std::size_t{rows} * width_);
+  if (is_sampled) {
+    row_ends_.resize(rows);
+    column_ends_.resize(std::size_t{rows} * width_);
+  }
   std::vector<double> of_rows(rows), of_cells(width_);
   glm::dvec3 sum(0.0);
   for (std::uint32_t row = 0; row < rows; ++row) {
@@ -61,9 +63,9 @@ Environment::Environment(const EnvironmentMap& map)
       of_cells[column] = bright;
       of_rows[row] += bright * solid_angle;
     }
-    put_ends(of_cells, &column_ends_[std::size_t{row} * width_]);
+    if (is_sampled) put_ends(of_cells, &column_ends_[std::size_t{row} * width_]);
   }
-  put_ends(of_rows, row_ends_.data());
+  if (is_sampled) put_ends(of_rows, row_ends_.data());
   mean_ = sum * (double{map.strength} / (4.0 * std::numbers::pi));
 }
 

@@ -23,7 +23,8 @@ namespace raygate {
 /// its cell. ("Physically Based Rendering", Pharr, Jakob and Humphreys, does so with whole texels.)
 class Environment {
  public:
-  explicit Environment(const EnvironmentMap& map);
+  /// Without `is_sampled` there is neither density() nor sample().
+  explicit Environment(const EnvironmentMap& map, bool is_sampled = true);
 
   /// Radiance: scene-linear RGB.
   template <class T>

@@ -76,8 +76,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
   const Scene& scene = shading_.scene;
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
-  const bool sees_environment =
-      shading_.sees_environment && shading_.lights.environment() != nullptr;
+  const bool sees_surroundings = sees_environment();
   escaped_.clear();
   first_.assign(kHitKinds + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
@@ -87,7 +86,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
       __builtin_prefetch(&face_at(scene, shading_.bvh.face_of(soon)).material);
     }
     kinds_[i] = kHitKinds;
-    if (hit.slot == NearestHit::kNone && sees_environment) {
+    if (hit.slot == NearestHit::kNone && sees_surroundings) {
       escaped_.push_back(static_cast<std::uint32_t>(i));
       continue;
     }

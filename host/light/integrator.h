@@ -54,6 +54,10 @@ class Integrator {
 
   /// Radiance along rays that hit nothing.
   [[nodiscard]] virtual glm::vec3 background() const { return shading_.lights.background(); }
+  /// Whether they see an environment instead.
+  [[nodiscard]] bool sees_environment() const {
+    return shading_.sees_environment && shading_.lights.environment() != nullptr;
+  }
   /// Whether shadows are cast as if glass did not bend light.
   [[nodiscard]] virtual bool shadows_through_refraction() const { return true; }
 

@@ -28,6 +28,7 @@ struct LightSource {
 
 /// How sources are chosen.
 enum class LightChoice : std::uint8_t {
+  kNone,   ///< not at all: those who ask do ask all lights, or none
   kTree,   ///< by what each may bring where it is asked for
   kPower,  ///< by their power alone: what the tree is measured against
 };

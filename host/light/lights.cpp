@@ -9,13 +9,12 @@
 #include <utility>
 
 #include "host/exact/exact.h"
+#include "host/light/light_values.h"
 #include "host/scene/camera.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
 namespace {
-
-double mean(const glm::dvec3& colour) { return (colour.x + colour.y + colour.z) / 3.0; }
 
 /// In the order of the scene's triangles: lamps, and what is sampled of them, do not depend on how
 /// the tree is built.
@@ -70,12 +69,6 @@ glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lam
   return flux * mean / (1.0 - mean) / (std::numbers::pi * area);
 }
 
-/// No infinity.
-float bounded(double x) {
-  return static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
-}
-glm::vec3 bounded(const glm::dvec3& x) { return {bounded(x.x), bounded(x.y), bounded(x.z)}; }
-
 /// A power of two about as long as the scene, its lights included.
 double unit_of(const Scene& scene) {
   float size = 0.0f;
@@ -87,27 +80,6 @@ double unit_of(const Scene& scene) {
   constexpr int kMostExponent = 126;  // the inverse is a float, too
   return size > 0.0f ? std::ldexp(1.0, std::clamp(std::ilogb(size), -kMostExponent, kMostExponent))
                      : 1.0;
-}
-
-double diagonal_of(const Scene& scene) {
-  const auto [low, high] = position_box(scene);
-  return glm::length(high - low);
-}
-
-/// Lengths in units.
-/// What the back of a closed lamp is worth, where nothing else is within the box around it: next to
-/// nothing, but not nothing.
-constexpr double kBackOfClosed = 1.0 / 16.0;
-
-LightSource as_source(const PointLight& light, double unit) {
-  LightSource source;
-  source.middle = glm::dvec3(light.position) / unit;
-  source.power = mean(light.intensity) / unit / unit;
-  if (light.spot) {
-    source.axis = light.spot->axis;
-    source.spread = sine_cosine(light.spot->outer / 360.0).cosine;
-  }
-  return source;
 }
 
 /// The corner of a parallelogram and its two sides. Its diagonal from that corner parts the
@@ -133,89 +105,47 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   return std::nullopt;
 }
 
-/// A source that is as likely wherever it is asked for: as bright as it is on the average there.
-LightSource placeless(const LightSource& source, double scene_radius) {
-  LightSource everywhere;
-  everywhere.is_far = true;
-  everywhere.radius = 1.0;
-  everywhere.power = source.power;
-  if (source.is_far) return everywhere;
-  // Of all it sends out, what falls on the ball around the scene.
-  const double spread = source.reach < 1.0 ? 2.0 : 2.0 * (1.0 - source.spread);
-  everywhere.power *= spread / (scene_radius * scene_radius);
-  return everywhere;
-}
-
 }  // namespace
 
 Lights::Lights(const Scene& scene, const Bvh& bvh, LightChoice choice) : scene_(scene), bvh_(bvh) {
   const double unit = unit_of(scene);
   per_unit_ = static_cast<float>(1.0 / unit);
-  std::vector<LightSource> sources;
-  const auto add = [&](const LightSource& source, std::uint32_t patch, double area) {
-    sources.push_back(source);
-    sources_.push_back({static_cast<std::uint32_t>(lamps_.size() - 1), patch,
-                        area > 0.0 ? bounded(unit * unit / area) : 0.0f});
-  };
   for (const PointLight& light : scene.lights) {
     Lamp& lamp = lamps_.emplace_back();
-    lamp.light = bounded(light.intensity / unit / unit);
+    lamp.light = finite_floats(light.intensity / unit / unit);
     lamp.position = light.position;
     lamp.is_spot = light.spot.has_value();
     if (lamp.is_spot) lamp.spot = SpotRamp(*light.spot);
-    add(raygate::as_source(light, unit), kNoIndex, 0.0);
   }
   find_areas();
-  std::vector<std::uint32_t> slots;
-  for (const AreaLight& light : areas_)
-    slots.insert(slots.end(), light.slots.begin(), light.slots.end());
-  const std::vector<ClosedSide> sides = closed_sides(bvh, slots);
-  std::vector<ClosedSide> side_of_slot(source_of_slot_.size());
-  for (std::size_t i = 0; i < slots.size(); ++i) side_of_slot[slots[i]] = sides[i];
   for (AreaLight& light : areas_) {
     find_middle(bvh, light);
     Lamp& lamp = lamps_.emplace_back();
     lamp.kind = Kind::kArea;
-    lamp.light = bounded(light.radiance);
+    lamp.light = finite_floats(light.radiance);
     if (!scene.environment) {
       const double ratio = mean(glm::dvec3(scene.background)) / mean(light.radiance);
       lamp.sky = static_cast<float>(std::min(ratio, 0.5));
     }
-    lamp.area = bounded(light.area() / unit / unit);
+    lamp.area = finite_float(light.area() / unit / unit);
     add_patches(light, lamp);
-    for (std::uint32_t i = lamp.first_patch; i < patches_.size(); ++i) {
-      const Patch& patch = patches_[i];
-      source_of_slot_[patch.slot] = source_of_slot_[patch.slot_beyond] =
-          static_cast<std::uint32_t>(sources.size());
-      add(as_source(patch, light, unit, side_of_slot[patch.slot]), i, patch.area);
-    }
   }
   for (const DirectionalLight& light : scene.directional_lights) {
     Lamp& lamp = lamps_.emplace_back();
     lamp.kind = Kind::kDirection;
     lamp.light = light.irradiance;
     lamp.position = glm::vec3(-light.direction);
-    add({.middle = -glm::dvec3(light.direction),
-         .is_far = true,
-         .power = mean(glm::dvec3(light.irradiance))},
-        kNoIndex, 0.0);
   }
   if (scene.environment) {
-    environment_.emplace(*scene.environment);
+    environment_.emplace(*scene.environment, choice != LightChoice::kNone);
     lamps_.emplace_back().kind = Kind::kEnvironment;
-    add({.radius = 1.0,
-         .is_far = true,
-         .power = std::numbers::pi * mean(environment_->mean_radiance())},
-        kNoIndex, 0.0);
   }
-  any_power_ = std::ranges::any_of(sources, [](const auto& source) { return source.power > 0.0; });
-  if (choice == LightChoice::kPower) {
-    const double radius = is_empty(scene) ? 1.0 : 0.5 * diagonal_of(scene) / unit;
-    for (LightSource& source : sources) source = placeless(source, radius);
-  }
-  tree_ = LightTree(sources);
-  ambient_ =
-      background() != glm::vec3(0.0f) ? glm::dvec3(background()) : guessed_ambient(scene, areas_);
+  if (choice != LightChoice::kNone) add_sources(choice, unit);
+}
+
+glm::dvec3 Lights::ambient() const {
+  return background() != glm::vec3(0.0f) ? glm::dvec3(background())
+                                         : guessed_ambient(scene_, areas_);
 }
 
 /// The faces that emit, lamp by lamp.
@@ -223,7 +153,6 @@ void Lights::find_areas() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t slot : emitting_slots(scene_, bvh_)) {
     const Triangle& face = scene_.triangles[bvh_.triangle_of(slot)];
-    if (source_of_slot_.empty()) source_of_slot_.assign(bvh_.slot_count(), kNoIndex);
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
       areas_.emplace_back();
@@ -240,26 +169,6 @@ void Lights::find_areas() {
     light.area_up_to.push_back((light.slots.empty() ? 0.0 : light.area()) + area);
     light.slots.push_back(slot);
   }
-}
-
-/// In the units of what is asked for.
-LightSource Lights::as_source(const Patch& patch, const AreaLight& light, double unit,
-                              ClosedSide side) {
-  const glm::dvec3 corner(patch.corner), u(patch.u), v(patch.v);
-  LightSource source;
-  source.axis = glm::dvec3(patch.normal);
-  source.spread = 1.0;
-  source.reach = 0.0;
-  source.back = 1.0;
-  if (side != ClosedSide::kBoth) source.back = kBackOfClosed;
-  if (side == ClosedSide::kInwards) source.axis = -source.axis;
-  source.middle = (corner + (u + v) * (patch.is_triangle ? 1.0 / 3.0 : 0.5)) / unit;
-  for (const glm::dvec3& other : {corner, corner + u, corner + v, corner + u + v}) {
-    if (patch.is_triangle && other == corner + u + v) continue;
-    source.radius = std::max(source.radius, glm::distance(source.middle, other / unit));
-  }
-  source.power = patch.area / unit / unit * mean(light.radiance);
-  return source;
 }
 
 /// Two triangles in a row that share an edge and are opposite corners' halves of a parallelogram

@@ -44,7 +44,8 @@ struct LightPoint {
 /// are in units of `unit()`: floats have room for their squares then.
 class Lights {
  public:
-  /// The references must outlive this.
+  /// The references must outlive this. Without a `choice` there are no sources, and none of what
+  /// they are chosen by.
   Lights(const Scene& scene, const Bvh& bvh, LightChoice choice = LightChoice::kTree);
 
   [[nodiscard]] std::span<const PointLight> points() const { return scene_.lights; }
@@ -64,7 +65,7 @@ class Lights {
   /// background's or, where that is black, what the lamps' flux would come to after many
   /// reflections if it were spread evenly over all surfaces ("A progressive refinement approach to
   /// fast radiosity image generation", Cohen, Chen, Wallace and Greenberg 1988, has such a term).
-  [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
+  [[nodiscard]] glm::dvec3 ambient() const;
   /// Points first, then areas, then directions, then the environment.
   [[nodiscard]] std::size_t count() const { return lamps_.size(); }
 
@@ -102,6 +103,8 @@ class Lights {
     return {spread<T>(glm::vec3(light.middle)), spread<T>(glm::vec3(light.middle_normal)),
             spread<WordOf<T>>(light.slots[0])};
   }
+
+  // For those who ask one light at a time:
 
   /// What is chosen: a lamp, or of an area light a patch: a triangle, or two of them.
   struct Source {
@@ -149,6 +152,7 @@ class Lights {
 
   void find_areas();
   void add_patches(const AreaLight& light, Lamp& lamp);
+  void add_sources(LightChoice choice, double unit);
   [[nodiscard]] static LightSource as_source(const Patch& patch, const AreaLight& light,
                                              double unit, ClosedSide side);
 
@@ -164,7 +168,6 @@ class Lights {
   LightTree tree_;
   bool any_power_ = false;
   float per_unit_ = 1.0f;
-  glm::dvec3 ambient_{0.0};
 };
 
 template <class T>

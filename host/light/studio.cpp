@@ -4,13 +4,12 @@
 #include <numbers>
 
 #include "host/exact/exact.h"
+#include "host/light/light_values.h"
 #include "host/scene/camera.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
 namespace {
-
-double mean(const glm::dvec3& colour) { return (colour.x + colour.y + colour.z) / 3.0; }
 
 /// Lamps stand still while the camera is looked through: they are found from it.
 class Studio {

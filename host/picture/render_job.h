@@ -15,6 +15,7 @@ struct RenderJob {
   const RenderOptions& options;
   const Lights& lights;
   const Clearances& clearances;
+  glm::dvec3 ambient;  ///< as IntegratorOptions has it
 
   /// What a triangle, or kNone, sends out as a lamp.
   [[nodiscard]] glm::vec3 emission_of(std::uint32_t slot) const {

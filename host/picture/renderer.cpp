@@ -288,14 +288,23 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
   } else if (tiles.passes() > 1 || film.keeps_sums || options.error > 0.0 || ranks > 1) {
     add_sums(film, options.error > 0.0);
   }
-  const Lights lights(scene, bvh, options.techniques.lights);
+  const bool is_path = options.integrator == IntegratorKind::kPath;
+  const Lights lights(scene, bvh, is_path ? options.techniques.lights : LightChoice::kNone);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lamps
   // have no edges.
   std::vector<LampEdge> lamp_edges;
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
     lamp_edges.assign(film.color.size(), LampEdge::kUnknown);
   }
-  const RenderJob job{scene, bvh, camera, options, lights, clearances};
+  const RenderJob job{scene,
+                      bvh,
+                      camera,
+                      options,
+                      lights,
+                      clearances,
+                      options.ambient ? glm::dvec3(*options.ambient)
+                      : is_path       ? glm::dvec3(0.0)
+                                      : lights.ambient()};
   if (ranks > 1 && options.ranks->index() != 0) {
     help(*options.ranks, job, std::move(first_finder), make_finder, progress, film, lamp_edges,
          stats);

@@ -24,7 +24,7 @@ std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
       options.integrator, job.scene, job.clearances, job.lights, options.skips,
       {.max_depth = options.integrator == IntegratorKind::kPrimary ? 0 : options.max_depth,
        .threshold = options.threshold,
-       .ambient = options.ambient ? glm::dvec3(*options.ambient) : job.lights.ambient(),
+       .ambient = job.ambient,
        .single_sample = options.samples == 1,
        .techniques = options.techniques,
        .point_error = options.point_error});
@@ -101,7 +101,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   tile_ = tile;
   lamp_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
-  if (job_.options.skips.empty_tiles && job_.lights.environment() == nullptr &&
+  if (job_.options.skips.empty_tiles && !integrator_->sees_environment() &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
     output_.radiance.assign(samples_, integrator_->background());
     stats_.skipped.empty_tile_rays += samples_;

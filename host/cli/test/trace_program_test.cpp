@@ -83,6 +83,20 @@ TEST_F(TraceRays, WritesArrays) {
   EXPECT_EQ(t, 0.5);
 }
 
+/// Nobody asks it for colours.
+TEST_F(TraceRays, LeavesTexturesAlone) {
+  folder_.write("a.mtl", "newmtl a\nmap_Kd damaged.png\nnewmtl b\nmap_Kd missing.png\n");
+  folder_.write("damaged.png", "no picture");
+  folder_.write("textured.obj",
+                "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nv 0 0 -1\nv 1 0 -1\n"
+                "v 0 1 -1\nusemtl b\nf 4 5 6\n");
+  const Outcome outcome =
+      trace({"textured.obj", "rays.csv", "-q", "--hits", "all", "--columns", "ray,triangle"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "ray,triangle\n0,0\n0,1\n");
+  EXPECT_EQ(outcome.err, "");
+}
+
 TEST_F(TraceRays, LosesNothing) {
   folder_.write("hits.csv", "old");
   folder_.write("bad.csv", "0,0,1,0,0,1\n0,0,1,0\n");

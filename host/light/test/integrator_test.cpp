@@ -240,6 +240,17 @@ TEST(Skips, AreCounted) {
   options.skips.empty_tiles = false;
   EXPECT_TRUE(same(film, render(scene, bvh, camera, options, pipeline_model(bvh), stats)));
   EXPECT_EQ(stats.camera_rays, 400u * 400u);
+  // Only those who see an environment have something to see there.
+  EnvironmentMap sky;
+  sky.width = sky.height = 1;
+  sky.texels = {glm::vec3(1.0f)};
+  scene.environment = sky;
+  options.skips.empty_tiles = true;
+  for (const IntegratorKind kind : {IntegratorKind::kWhitted, IntegratorKind::kPrimary}) {
+    options.integrator = kind;
+    (void)render(scene, bvh, camera, options, pipeline_model(bvh), stats);
+    EXPECT_EQ(stats.skipped.empty_tile_rays > 0, kind == IntegratorKind::kPrimary);
+  }
 }
 
 // The threshold saves rays, and changes the picture by no more than it says a ray may count for.

@@ -78,6 +78,20 @@ INSTANTIATE_TEST_SUITE_P(Numbers, ManyLamps, testing::Values(0, 5, 40, 1000));
 
 std::uint32_t count_of(const Lights& lights) { return lights.environment_source() + 1; }
 
+// Who asks all lights has the same lamps, and nothing to choose from.
+TEST_P(ManyLamps, AreListedWithoutAChoice) {
+  const Bvh bvh(scene_);
+  const Lights chosen(scene_, bvh), all(scene_, bvh, LightChoice::kNone);
+  EXPECT_EQ(count_of(all), 0u);
+  EXPECT_FALSE(all.any_power());
+  ASSERT_EQ(all.count(), chosen.count());
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    EXPECT_EQ(all.lamp(i).light, chosen.lamp(i).light);
+    EXPECT_EQ(all.lamp(i).patches, chosen.lamp(i).patches);
+  }
+  EXPECT_EQ(all.ambient(), chosen.ambient());
+}
+
 // At places all over, among the lamps too.
 TEST_P(ManyLamps, ChancesAreOneInAllAndNoLampThatBringsLightHasNone) {
   const Bvh bvh(scene_);

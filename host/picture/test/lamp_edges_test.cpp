@@ -58,8 +58,8 @@ std::vector<LampEdge> marks(const Panel& panel, PixelFilter filter, std::size_t&
   film.width = film.height = kSide;
   film.window = {0, 0, kSide, kSide};
   std::vector<LampEdge> found(std::size_t{kSide} * kSide);
-  rays = find_lamp_edges({panel.scene, bvh, panel.camera, asked, lights, clearances}, finder, film,
-                         film.window, found, {});
+  rays = find_lamp_edges({panel.scene, bvh, panel.camera, asked, lights, clearances, {}}, finder,
+                         film, film.window, found, {});
   return found;
 }
 

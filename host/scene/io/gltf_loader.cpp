@@ -48,7 +48,7 @@ class GltfReader {
       : file_(path),
         options_(options),
         own_{MeshBuilder(file_.name())},
-        meshes_(file_, scene_),
+        meshes_(file_, scene_, options.textures),
         lights_(file_, scene_) {}
 
   Scene read() {

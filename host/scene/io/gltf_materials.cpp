@@ -84,6 +84,7 @@ int GltfMaterials::texcoord_set(int material) {
 }
 
 std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content content) {
+  if (!textures_) return std::nullopt;
   const tinygltf::Model& model = file_.model();
   const int source = file_.at(model.textures, texture, "texture").source;
   if (source < 0) {

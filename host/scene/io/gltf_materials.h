@@ -17,7 +17,9 @@ namespace raygate {
 /// they are masks of one half. KHR_materials_unlit has no shading (illum 0).
 class GltfMaterials {
  public:
-  GltfMaterials(const GltfFile& file, Scene& scene) : file_(file), scene_(scene) {}
+  /// Without `textures` none is decoded.
+  GltfMaterials(const GltfFile& file, Scene& scene, bool textures)
+      : file_(file), scene_(scene), textures_(textures) {}
 
   /// The scene's number of the file's material; -1 is the default.
   std::uint32_t number_of(int material);
@@ -37,6 +39,7 @@ class GltfMaterials {
 
   const GltfFile& file_;
   Scene& scene_;
+  const bool textures_;
   std::map<int, std::uint32_t> numbers_;  // of materials
   /// In the scene; kNoIndex: there is none.
   std::map<std::pair<int, Texture::Content>, std::uint32_t> texture_of_image_;

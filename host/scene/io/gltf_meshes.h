@@ -23,8 +23,8 @@ struct GltfGeometry {
 class GltfMeshes {
  public:
   /// Both must outlive this.
-  GltfMeshes(const GltfFile& file, Scene& scene)
-      : file_(file), scene_(scene), materials_(file, scene) {}
+  GltfMeshes(const GltfFile& file, Scene& scene, bool textures)
+      : file_(file), scene_(scene), materials_(file, scene, textures) {}
 
   /// Appends a mesh as `world` places it, faces of an object. Warns and leaves out points, lines
   /// and what has no positions. Throws InputError: what is no geometry, or too much of it.

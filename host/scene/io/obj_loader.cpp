@@ -46,7 +46,7 @@ Scene load_obj(const std::filesystem::path& file, const LoadOptions& options) {
   scene.files = {obj.mtl().files().begin(), obj.mtl().files().end()};
   scene.files.push_back(file);
   give_materials(obj, scene);
-  load_textures(scene);
+  if (options.textures) load_textures(scene);
   return scene;
 }
 

@@ -14,6 +14,7 @@ struct LoadOptions {
   /// one warning counts them.
   bool strict = false;
   bool keep_instances = false;  ///< false: they are written out (see host/scene/instances.h)
+  bool textures = true;         ///< false: nobody will ask for them
   /// Faces without normals are smooth over edges at which they are at most so far apart, in degrees
   /// from 0 to 180; none: as the file's smoothing groups say, where it can have any.
   std::optional<double> smooth = {};

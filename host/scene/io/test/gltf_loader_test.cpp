@@ -19,9 +19,9 @@ constexpr const char* kOneNode = R"([{"mesh": 0}])";
 
 class LoadGltf : public testing::Test {
  protected:
-  [[nodiscard]] Scene load(const std::string& json,
-                           const std::string& buffer = square_buffer()) const {
-    return load_gltf(folder_.write("s.glb", glb(json, buffer)));
+  [[nodiscard]] Scene load(const std::string& json, const std::string& buffer = square_buffer(),
+                           const LoadOptions& options = {}) const {
+    return load_gltf(folder_.write("s.glb", glb(json, buffer)), options);
   }
   /// What follows "FOLDER/" in the error.
   [[nodiscard]] std::string error(const std::string& json) const {
@@ -296,6 +296,10 @@ TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
   EXPECT_EQ(material.opacity_cutoff, 0.5f) << "of the texture alone";
   EXPECT_EQ(scene.textures[1].least_code(), 16 / 255.0);
   EXPECT_TRUE(scene.warnings.empty());
+  const Scene bare = load(json, square_buffer() + picture, {.textures = false});
+  EXPECT_TRUE(bare.textures.empty());
+  EXPECT_EQ(bare.materials[0].opacity_map.texture, kNoIndex);
+  EXPECT_EQ(bare.triangles.size(), scene.triangles.size());
 }
 
 TEST_F(LoadGltf, WhatIsRefused) {
