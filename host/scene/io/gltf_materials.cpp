@@ -163,7 +163,8 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   const double least = is_mask ? cutoff / factor : cutoff;
   if (map.texture == kNoIndex || scene_.textures[map.texture].least_code() >= least) return;
   if (!is_mask)
-    file_.warn_once("textures of opacity without a mask are masks of one half", scene_.warnings);
+    file_.warn_once("alphaMode BLEND: opacity in a texture is taken as a mask of one half",
+                    scene_.warnings);
   material.opacity_map = std::move(map);
   material.opacity_cutoff = static_cast<float>(least);
 }
