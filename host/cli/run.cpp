@@ -17,6 +17,7 @@
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
 #include "host/cli/resume.h"
+#include "host/cli/saver.h"
 #include "host/cli/shots.h"
 #include "host/cli/version.h"
 #include "host/film/environment_file.h"
@@ -98,81 +99,7 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shot
   return metadata;
 }
 
-void write_partial(const OutputOptions& outputs, const Film& film, ExrMetadata metadata,
-                   int threads) {
-  metadata.partial = true;
-  for (PendingFile& file : make_ready(outputs, film, metadata, threads).files) file.commit();
-}
-
-std::string listed(const std::vector<std::filesystem::path>& paths) {
-  std::string text;
-  for (const auto& path : paths) text += (text.empty() ? "" : ", ") + path.string();
-  return text;
-}
-
-/// Whether nothing has been rendered, or nothing but misses.
-bool is_empty(const Film& film) {
-  return std::ranges::all_of(film.color, [](const glm::vec4& color) { return color.a == 0.0f; });
-}
-
-std::string going_on(const OutputOptions& outputs) {
-  return "--resume " + outputs.exr->string() + " goes on from there";
-}
-
-/// Writes what had been rendered when a signal came, if that is anything.
-[[noreturn]] void end_interrupted(const OutputOptions& outputs, const Film& film,
-                                  const ExrMetadata& metadata, int threads) {
-  const int signal = interruption();
-  if (is_empty(film)) {
-    throw Interrupted(signal, "no file was changed");
-  }
-  write_partial(outputs, film, metadata, threads);
-  OutputOptions pictures = outputs;
-  pictures.stats.reset();
-  throw Interrupted(signal, "wrote what there was: " + listed(pictures.paths()) +
-                                (film.keeps_sums && outputs.exr ? "; " + going_on(outputs) : ""));
-}
-
-/// Saves what there is now and then. What goes wrong is said once and tried again.
-class Saver {
- public:
-  Saver(const OutputOptions& outputs, const ExrMetadata& metadata, int threads, ProgressBar& bar)
-      : outputs_(outputs), metadata_(metadata), threads_(threads), bar_(bar) {}
-
-  /// What a rank that has died has not brought down, without pictures that nothing goes on from.
-  void save_urgently(const Film& film) {
-    if (!outputs_.exr) return;
-    OutputOptions film_alone = outputs_;
-    film_alone.png.reset();
-    film_alone.false_colors.clear();
-    save(film, film_alone);
-    bar_.erase();
-    print_warning("a rank may have died; " + going_on(outputs_));
-  }
-
-  void save(const Film& film, const OutputOptions& outputs) {
-    std::string trouble;
-    try {
-      write_partial(outputs, film, metadata_, threads_);
-    } catch (const std::exception& error) {
-      trouble = error.what();
-    }
-    if (!trouble.empty() && trouble != last_trouble_) {
-      bar_.erase();
-      print_warning(trouble + "; the render goes on, and the next save tries again");
-    }
-    last_trouble_ = trouble;
-  }
-
- private:
-  const OutputOptions& outputs_;
-  const ExrMetadata& metadata_;
-  int threads_;
-  ProgressBar& bar_;
-  std::string last_trouble_;
-};
-
-/// Renders with a progress bar, until a signal comes.
+/// Renders with a progress bar. Throws Interrupted when a signal comes.
 Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
                  const Clearances& clearances, const CoreImage& image, const Camera& camera,
                  const ExrMetadata& metadata, const Film* begun, Ranks& ranks, RenderStats& stats) {
@@ -204,7 +131,7 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                   ranks.count() > 1 ? ProgressBar::Style::kLines : ProgressBar::Style::kBar);
   Saver saver(outputs, metadata, threads, bar);
   if (outputs.save_seconds > 0.0) {
-    render_options.snapshot = [&](const Film& film) { saver.save(film, outputs); };
+    render_options.snapshot = [&](const Film& film) { saver.save(film); };
     render_options.snapshot_seconds = outputs.save_seconds;
   }
   if (ranks.count() > 1) {
@@ -215,7 +142,7 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
   // The threads are deep in a search and will not stop soon: end without them.
   render_options.abandon = [&](const Film& film) {
     bar.erase();
-    std::_Exit(run_guarded([&]() -> int { end_interrupted(outputs, film, metadata, threads); }, 1));
+    std::_Exit(run_guarded([&]() -> int { saver.end_interrupted(film); }, 1));
   };
   Film film = render(scene, clearances, camera, render_options,
                      make_finder_factory(options, clearances.bvh(), options.light.skips, image),
@@ -226,6 +153,10 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
                        return interruption() == 0;
                      });
   bar.erase();
+  if (stats.cancelled) {
+    if (ranks.index() != 0) throw Interrupted(interruption(), "rank 0 has the picture");
+    saver.end_interrupted(film);
+  }
   if (stats.missing_threads > 0) {
     print_warning("only " + std::to_string(options.threads - stats.missing_threads) + " of " +
                   std::to_string(options.threads) + " threads could be started");
@@ -242,10 +173,6 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
   const std::optional<Film> begun = is_ours ? begun_film(options, metadata) : std::nullopt;
   Film film = render_film(options, outputs, scene, clearances, image, camera, metadata,
                           begun ? &*begun : nullptr, ranks, report.render);
-  if (report.render.cancelled) {
-    if (!is_ours) throw Interrupted(interruption(), "rank 0 has the picture");
-    end_interrupted(outputs, film, metadata, static_cast<int>(options.threads));
-  }
   ranks.leave();
   if (!is_ours) return;
   film.keeps_sums = outputs.needed_channels().sums;

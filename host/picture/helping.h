@@ -13,7 +13,7 @@
 namespace raygate {
 
 /// Helps rank 0, on options.threads threads, until all is traced. `film`, with sums, becomes its
-/// notebook. Throws what a finder throws, RunIsOver, and where `progress` says stop.
+/// notebook. Throws what a finder throws, and RunIsOver.
 void help(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
           const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
           std::span<LampEdge> lamp_edges, RenderStats& stats);

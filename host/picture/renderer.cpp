@@ -2,25 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
-#include <optional>
-#include <span>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "host/light/clearance.h"
 #include "host/light/lights.h"
-#include "host/picture/helpers.h"
+#include "host/picture/crew.h"
 #include "host/picture/helping.h"
 #include "host/picture/lamp_edges.h"
-#include "host/picture/sample_choice.h"
-#include "host/picture/schedule.h"
-#include "host/picture/tile_renderer.h"
 #include "host/picture/tiles.h"
 #include "host/ranks/ranks.h"
 #include "host/scene/camera.h"
@@ -37,222 +26,6 @@ Film empty_film(const RenderOptions& options) {
   assert(window.y0 >= 0 && window.y1 <= options.height);
   return make_film(options.width, options.height, window, options.channels);
 }
-
-/// The threads that trace, and the one that called, which watches over them: only this one reports
-/// and saves, so that nobody waits for a terminal or a disk.
-class Crew {
- public:
-  Crew(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
-       const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
-       std::span<LampEdge> lamp_edges, RenderStats& stats)
-      : job_(job),
-        tiles_(tiles),
-        first_finder_(std::move(first_finder)),
-        make_finder_(make_finder),
-        report_(report),
-        film_(film),
-        lamp_edges_(lamp_edges),
-        stats_(stats),
-        schedule_(tiles.count, tiles.passes(), job.options.begun != nullptr) {
-    Ranks* const ranks = job.options.ranks;
-    if (ranks == nullptr || ranks->count() == 1) return;
-    helpers_.emplace(*ranks, tiles, job.options.first_sample, film);
-    grace_ = {};
-  }
-
-  /// Returns when all is traced, or the caller wants no more.
-  void run() {
-    look();
-    {
-      const int wanted = std::min(job_.options.threads, tiles_.count);
-      std::jthread server;
-      if (helpers_) server = std::jthread([this] { serve(); });
-      std::vector<std::jthread> threads;
-      try {
-        while (static_cast<int>(threads.size()) < wanted) threads.emplace_back([this] { work(); });
-      } catch (const std::system_error&) {  // no more to be had: these will do
-        stats_.missing_threads = wanted - std::max(1, static_cast<int>(threads.size()));
-      }
-      if (threads.empty()) {
-        is_alone_ = true;
-        work();
-      }
-      watch(static_cast<int>(threads.size()));
-    }
-    if (error_) {
-      if (helpers_ && job_.options.urgent_snapshot) job_.options.urgent_snapshot(film_);
-      std::rethrow_exception(error_);
-    }
-    stats_.cancelled = !schedule_.all_ended();
-    if (!stats_.cancelled && report_) report_(1.0);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kLook{50};    // between reports, at most
-  static constexpr std::chrono::milliseconds kServe{1};    // between looks for messages
-  static constexpr std::chrono::milliseconds kShare{500};  // between looks for what is left
-
-  /// A thread's: until there is nothing left to begin.
-  void work() {
-    try {
-      auto finder = take_first_finder();
-      if (!finder) finder = make_finder_();
-      TileRenderer renderer(job_, *finder, film_, lamp_edges_);
-      const auto keep_going = [this] {
-        if (is_alone_) look();
-        const std::scoped_lock lock(mutex_);
-        return !stopped_;
-      };
-      while (const auto step = next()) {
-        const int end = job_.options.first_sample + tiles_.samples_after(step->pass);
-        if (!renderer.trace(tiles_[step->tile], end, keep_going)) break;
-        const std::scoped_lock lock(mutex_);
-        renderer.write();
-        schedule_.end(step->tile);
-        changed_.notify_all();
-      }
-      const std::scoped_lock lock(mutex_);
-      renderer.add_to(stats_);
-    } catch (...) {
-      fail(std::current_exception());
-    }
-    const std::scoped_lock lock(mutex_);
-    ++gone_;
-    changed_.notify_all();
-  }
-
-  /// The other ranks', on a thread of its own: a save or a terminal keeps none of them waiting.
-  void serve() {
-    try {
-      std::unique_lock lock(mutex_);
-      while (!stopped_ && !(schedule_.all_ended() && helpers_->finish(stats_))) {
-        if (!schedule_.all_ended() && helpers_->serve(schedule_)) changed_.notify_all();
-        changed_.wait_for(lock, kServe);
-      }
-    } catch (...) {
-      fail(std::current_exception());
-    }
-    const std::scoped_lock lock(mutex_);
-    served_ = true;
-    changed_.notify_all();
-  }
-
-  std::unique_ptr<Finder> take_first_finder() {
-    const std::scoped_lock lock(mutex_);
-    return std::move(first_finder_);
-  }
-
-  /// None when there is none left, or the render is to stop.
-  std::optional<Schedule::Step> next() {
-    std::unique_lock lock(mutex_);
-    std::optional<Schedule::Step> step;
-    changed_.wait(lock, [&] {
-      if (stopped_ || schedule_.all_begun()) return true;
-      step = schedule_.begin();
-      return step.has_value();
-    });
-    return step;
-  }
-
-  /// Until so many threads are gone, and all other ranks have said their last word.
-  void watch(int threads) {
-    std::unique_lock lock(mutex_);
-    while (gone_ < threads || (helpers_ && !served_)) {
-      changed_.wait_for(lock, kLook);
-      lock.unlock();
-      look();
-      lock.lock();
-    }
-  }
-
-  /// Reports, and saves if it is time.
-  void look() {
-    try {
-      std::unique_lock lock(mutex_);
-      if (stopped_) {
-        if (job_.options.abandon && !error_ && Clock::now() - stopped_at_ > grace_) {
-          const Film film = film_;
-          lock.unlock();
-          job_.options.abandon(film);
-        }
-        return;
-      }
-      const double fraction = share_done();
-      lock.unlock();
-      if (report_ && !report_(fraction)) stop();
-      lock.lock();
-      if (helpers_ && job_.options.is_urgent && job_.options.is_urgent()) {
-        const Film film = film_;
-        lock.unlock();
-        job_.options.urgent_snapshot(film);
-        return;
-      }
-      if (stopped_ || schedule_.all_ended() || !job_.options.snapshot) return;
-      since_snapshot_ += watch_.lap();
-      if (since_snapshot_ < job_.options.snapshot_seconds) return;
-      const Film film = film_;
-      lock.unlock();
-      job_.options.snapshot(film);
-      since_snapshot_ = 0.0;
-      watch_.lap();
-    } catch (...) {
-      fail(std::current_exception());
-    }
-  }
-
-  /// Looks at the film now and then, if that tells.
-  double share_done() {
-    const double wanted = job_.options.error;
-    if (wanted == 0.0) return schedule_.fraction();
-    const Clock::time_point now = Clock::now();
-    if (now >= next_share_) {
-      share_ = raygate::share_done(film_, job_.options.samples, wanted);
-      next_share_ = now + kShare;
-    }
-    return share_;
-  }
-
-  void stop() {
-    const std::scoped_lock lock(mutex_);
-    stopped_ = true;
-    stopped_at_ = Clock::now();
-    changed_.notify_all();
-  }
-
-  void fail(std::exception_ptr error) {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (!error_) error_ = std::move(error);
-    }
-    stop();
-  }
-
-  const RenderJob& job_;
-  const Tiles& tiles_;
-  std::unique_ptr<Finder> first_finder_;  // of the thread that begins first
-  const FinderFactory& make_finder_;
-  const ProgressFunction& report_;
-  std::mutex mutex_;  // of all that follows
-  std::condition_variable changed_;
-  Film& film_;
-  std::span<LampEdge> lamp_edges_;
-  RenderStats& stats_;
-  Schedule schedule_;
-  std::optional<Helpers> helpers_;  // none: there is one rank
-  bool served_ = false;
-  int gone_ = 0;
-  bool stopped_ = false;
-  Clock::time_point stopped_at_;
-  std::exception_ptr error_;
-  // Of the watching thread alone.
-  std::chrono::milliseconds grace_{500};  // for threads that are to stop
-  bool is_alone_ = false;
-  Stopwatch watch_;
-  double since_snapshot_ = 0.0;
-  double share_ = 0.0;
-  Clock::time_point next_share_;
-};
 
 }  // namespace
 
@@ -310,7 +83,7 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
          stats);
     return film;
   }
-  Crew(job, tiles, std::move(first_finder), make_finder, progress, film, lamp_edges, stats).run();
+  trace_all(job, tiles, std::move(first_finder), make_finder, progress, film, lamp_edges, stats);
   if (stats.find.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
     const std::uint64_t every_record = bvh.slot_count() * origins * std::uint64_t(ranks);

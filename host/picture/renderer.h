@@ -29,7 +29,7 @@ struct RenderOptions {
   /// Those that share this render, each called with the same of everything that the film depends
   /// on; null: nobody else. Rank 0 has the film in the end; the others have parts, and call back
   /// for nothing but progress, to be told to stop. If one of them cannot go on, rank 0 calls
-  /// `urgent_snapshot` and throws InputError.
+  /// `urgent_snapshot` and throws RankTrouble.
   Ranks* ranks = nullptr;
   int samples = 1;       ///< of each pixel, at least 1; a single one is its middle
   int first_sample = 0;  ///< those from this one ...

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/film/film_sums.h"
+#include "host/picture/camera_ray.h"
 #include "host/picture/lamp_edges.h"
 #include "host/picture/sample_choice.h"
 #include "host/picture/view_pyramid.h"
@@ -13,8 +14,6 @@
 namespace raygate {
 namespace {
 
-// The integrators' streams are made from others.
-constexpr std::uint32_t kFilterStream = 0, kLampStream = 7, kLensStream = 8;
 constexpr int kLooks = 8;                         // at a lamp's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
@@ -43,31 +42,6 @@ TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film,
                    integrator_->shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
-/// With one sample a pixel its ray goes through the middles of pixel and lens.
-void TileRenderer::add_camera_ray(const PixelSamples& pixel, const Sampler& sampler,
-                                  std::uint32_t index, std::uint32_t stream) {
-  const RenderOptions& options = job_.options;
-  const Camera& camera = job_.camera;
-  glm::dvec2 offset(0.0), lens(0.0);
-  if (options.samples > 1) {
-    const SquarePoint<float> u = sampler(index, stream);
-    offset = filter_offset(options.filter, {u.x, u.y});
-  }
-  const double x = (pixel.x + 0.5 + offset.x) / film_.width;
-  const double y = (pixel.y + 0.5 + offset.y) / film_.height;
-  if (camera.is_pinhole()) {
-    Ray& ray = wave_.rays.emplace_back();
-    ray.origin = camera.eye();
-    ray.direction = camera.direction(x, y);
-    return;
-  }
-  if (options.samples > 1 && camera.aperture() > 0.0) {
-    const SquarePoint<float> u = sampler(index, kLensStream);
-    lens = {u.x, u.y};
-  }
-  wave_.rays.push_back(camera.ray(x, y, lens));
-}
-
 void TileRenderer::make_camera_rays() {
   wave_.clear();
   wave_.depth = 0;
@@ -79,7 +53,7 @@ void TileRenderer::make_camera_rays() {
       burden.sample = static_cast<std::uint32_t>(wave_.rays.size());
       burden.stream = sampler.key();
       burden.index = index;
-      add_camera_ray(pixel, sampler, index, kFilterStream);
+      wave_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
     }
   }
 }
@@ -134,7 +108,8 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
     if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int look = pixel.first * kLooks; look < pixel.end * kLooks; ++look) {
-      add_camera_ray(pixel, sampler, static_cast<std::uint32_t>(look), kLampStream);
+      wave_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler,
+                                      static_cast<std::uint32_t>(look), kLampStream));
     }
   }
   rays += wave_.rays.size();

@@ -46,8 +46,6 @@ class TileRenderer {
     RayWork work;            // of all rays of the sample
   };
 
-  void add_camera_ray(const PixelSamples& pixel, const Sampler& sampler, std::uint32_t index,
-                      std::uint32_t stream);
   void make_camera_rays();
   void sharpen_lamps(const PixelRect& tile);
   void trace_wave();

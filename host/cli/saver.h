@@ -1,0 +1,46 @@
+// Pictures that are not finished, in their files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/cli/output_options.h"
+#include "host/cli/progress_bar.h"
+#include "host/film/exr.h"
+#include "host/film/film.h"
+
+namespace raygate {
+
+/// "a.exr, a.png".
+[[nodiscard]] std::string listed(const std::vector<std::filesystem::path>& paths);
+
+/// Saves what there is of a picture now and then, and when a signal ends the run. The files say
+/// that they are partial.
+class Saver {
+ public:
+  /// The references must outlive this.
+  Saver(const OutputOptions& outputs, const ExrMetadata& metadata, int threads, ProgressBar& bar)
+      : outputs_(outputs), metadata_(metadata), threads_(threads), bar_(bar) {}
+
+  /// What goes wrong is said once and tried again.
+  void save(const Film& film) { save(film, outputs_); }
+
+  /// What a rank that has died has not brought down, without pictures that nothing goes on from.
+  void save_urgently(const Film& film);
+
+  /// Writes what had been rendered when a signal came, if that is anything, and throws Interrupted.
+  [[noreturn]] void end_interrupted(const Film& film) const;
+
+ private:
+  void save(const Film& film, const OutputOptions& outputs);
+  void write(const Film& film, const OutputOptions& outputs) const;
+
+  const OutputOptions& outputs_;
+  const ExrMetadata& metadata_;
+  int threads_;
+  ProgressBar& bar_;
+  std::string last_trouble_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,22 @@
+// What rank 0, or the only process, does in a render: it traces all tiles, with the others' help.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "host/film/film.h"
+#include "host/find/finder.h"
+#include "host/picture/lamp_edges.h"
+#include "host/picture/render_job.h"
+#include "host/picture/renderer.h"
+#include "host/picture/tiles.h"
+
+namespace raygate {
+
+/// Traces on options.threads threads until all is in `film`, or `report` says stop
+/// (RenderStats::cancelled). Throws what a finder throws, and RankTrouble.
+void trace_all(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
+               const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
+               std::span<LampEdge> lamp_edges, RenderStats& stats);
+
+}  // namespace raygate
