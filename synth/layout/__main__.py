@@ -59,7 +59,7 @@ def measure(rows: list[jobs.Row], workers: int) -> tuple[list[dict], list[str]]:
     for row in rows:
         mine = [(job, result) for (of, job), result in zip(all_jobs, results, strict=True)
                 if of is row and result]
-        routed = sorted(((job, result) for job, result in mine if not result["failed"]),
+        routed = sorted(((job, result) for job, result in mine if result["failed"] == 0),
                         key=lambda pair: pair[1]["wires_ns"])
         if mine:
             job, result = routed[len(routed) // 2] if routed else mine[0]
@@ -72,12 +72,14 @@ def measure(rows: list[jobs.Row], workers: int) -> tuple[list[dict], list[str]]:
 
 def told(result: dict) -> str:
     """A few words of a result."""
-    delay = f"{result['wires_ns']:.2f} ns with wires" if "wires_ns" in result else ""
-    return f"{result['cells_ns']:.2f} ns, {delay or str(result['failed']) + ' nets failed'}"
+    if "wires_ns" in result:
+        return f"{result['cells_ns']:.2f} ns, {result['wires_ns']:.2f} ns with wires"
+    failed = "" if result["failed"] is None else f", {result['failed']} nets failed"
+    return f"{result['cells_ns']:.2f} ns, {result['guess_ns']:.2f} ns with estimated wires{failed}"
 
 
 def table(records: list[dict]) -> str:
-    """Cells alone, with wires, their ratio, areas and wires."""
+    """Cells alone, with wires, their ratio, areas and wires; the wires are the estimate's where not all are routed."""
     rows = []
     for got in records:
         spread = got["spread"]
@@ -87,11 +89,11 @@ def table(records: list[dict]) -> str:
                       f"{got['wires_ns'] / got['cells_ns']:.3f}"]
         rows.append([got["design"], got["flow"], got["cells"], f"{got['area']:,}", f"{got['core']:,}",
                      f"{got['area'] / got['core']:.2f}", f"{got['wire_um'] / 1000:.1f}",
-                     f"{got['wire_pf']:.2f}", f"{got['cells_ns']:.2f}", *delays,
-                     " ".join(map(str, got["failed"]))])
+                     f"{got['wire_pf']:.2f}", f"{got['cells_ns']:.2f}", f"{got['guess_ns']:.2f}", *delays,
+                     " ".join("not routed" if count is None else str(count) for count in got["failed"])])
     return tables.markdown(
         ["design", "flow", "cells", "cells, um2", "core, um2", "density", "wires, mm", "wires, pF",
-         "cells alone, ns", "with wires, least", "median", "most", "median / alone", "nets failed"], rows)
+         "cells alone, ns", "estimated wires, ns", "with wires, least", "median", "most", "median / alone", "nets failed"], rows)
 
 
 def energy_table(records: list[dict]) -> str:
@@ -125,14 +127,13 @@ def draw(records: list[dict]) -> list[str]:
         made = flow.load(job)
         name = f"{got['design']}-{job.library.name}-{got['flow']}"
         picture.draw(made, parts.of(job.design, made.netlist, flow.outputs(job.library)),
-                     got.get("path", []), f"{got['design']}, flow {got['flow']}, {job.library.title}",
-                     OUT / name)
+                     got["path"], f"{got['design']}, flow {got['flow']}, {job.library.title}"
+                     + ("" if got["spread"] else ", wires estimated"), OUT / name)
         names.append(name)
-    routed = [got for got in records if "slacks" in got]
-    for section in dict.fromkeys(got["section"] for got in routed):
-        picture.slacks([got for got in routed if got["section"] == section],
-                       OUT / f"slacks-{section}-{routed[0]['job'].library.name}")
-        names.append(f"slacks-{section}-{routed[0]['job'].library.name}")
+    for section in dict.fromkeys(got["section"] for got in records):
+        name = f"slacks-{section}-{records[0]['job'].library.name}"
+        picture.slacks([got for got in records if got["section"] == section], OUT / name)
+        names.append(name)
     return names
 
 
@@ -140,7 +141,7 @@ def main() -> int:
     """1 where a layout fails, 2 for what the user can mend."""
     given = arguments()
     try:
-        for tool in ("yosys", "sta", "graywolf", "qrouter", "magic", "iverilog"):
+        for tool in ("yosys", "sta", "graywolf", "coloquinte", "qrouter", "magic", "iverilog"):
             tools.find(tool)
         records, failures = measure(wanted(given), int(given.jobs or 2))
         failures += spend(records, int(given.jobs or 2))

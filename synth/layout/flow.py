@@ -7,15 +7,17 @@ import re
 
 from synth import mapping, store, tools
 from synth.catalogue import Design, Library
-from synth.layout import lef, netlist, parasitics, place, route
+from synth.layout import estimate, lef, netlist, parasitics, place, route, spread
 
 HERE = pathlib.Path(__file__).resolve().parent
+ANNEALED = 1000  # cells: so many graywolf places well, and in seconds
 
 
 @dataclasses.dataclass(frozen=True)
 class Job:
     """A layout to make. `density`: the share of the core's rows that cells take; `aspect`: its height by its
-    width. Wires run across in one metal alone and upwards in two, so what has many is better tall."""
+    width. Wires run across in one metal alone and upwards in two, so what has many is better tall.
+    `routed`: whether routing is tried; without it the wires are those of estimate.py."""
 
     design: Design
     library: Library
@@ -23,6 +25,7 @@ class Job:
     density: float = 1.0
     aspect: float = 0.75
     seed: int = 1
+    routed: bool = True
 
     @property
     def folder(self) -> pathlib.Path:
@@ -45,15 +48,16 @@ def key(job: Job) -> str:
     """Of all that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
              job.library.graywolf, *job.library.magic, *mapping.scripts(),
-             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "route.py", "parasitics.py",
+             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "spread.py", "estimate.py", "route.py", "parasitics.py",
                                         "magic.tcl"))]
     return store.key(files, mapping.flow_facts(), *(tools.version(tool) for tool in ("qrouter", "magic")),
-                     job.design.facts, job.library, job.flow, job.density, job.aspect, job.seed)
+                     job.design.facts, job.library, job.flow, job.density, job.aspect, job.seed, job.routed)
 
 
 def make(job: Job) -> tuple[dict, bool]:
-    """Delay of the cells alone and with wires (ns), areas (um2), wires (um, pF), failed nets, slacks;
-    and whether it was kept. Where nets failed there is no delay with wires."""
+    """Delay of the cells alone, with estimated wires and with routed ones (ns), areas (um2), wires (um, pF),
+    slacks, failed nets (None where no routing was tried); and whether it was kept. Where nets failed wires
+    and slacks are the estimate's, and there is no routed delay."""
     return store.cached(job.folder, key(job), tools.measured(lambda: _make(job)))
 
 
@@ -61,35 +65,56 @@ def _make(job: Job) -> dict:
     mapped, _ = mapping.synthesise(job.design, job.library, job.flow)
     run = store.OUT / "runs" / f"{job.design.name}.{job.library.name}.{job.flow}"
     folder = job.folder
+    (folder / "wires.spef").unlink(missing_ok=True)  # load takes it for a sign that all nets are routed
     (folder / "netlist.json").write_text((run / "netlist.json").read_text())
     nets = netlist.parse(mapping.top_module(folder / "netlist.json"), job.design.top)
     technology = lef.read(job.library.lef)
-    placement = place.place(nets, technology, job.library.graywolf, job.seed, job.density, job.aspect,
-                            folder)
-    routing = route.route(nets, placement, technology, job.library.lef, folder)
-    startup, tech = job.library.magic
-    farads = parasitics.extract(nets, job.library.lef, startup, folder)
+    if len(nets.cells) > ANNEALED:
+        placement = spread.place(nets, technology, job.seed, job.density, job.aspect, folder)
+    else:
+        placement = place.place(nets, technology, job.library.graywolf, job.seed, job.density, job.aspect, folder)
+    (folder / "placement.json").write_text(json.dumps(dataclasses.asdict(placement)))
     (folder / "placed.v").write_text(nets.verilog())
-    clock = next((name for name, port in nets.ports.items() if port.name == job.design.clock), "")
-    cells_ns, _ = mapping.critical_path(
-        mapping.sta(job.design, job.library, folder / "placed.v", folder / "cells.txt", clock=clock))
-    wires = [wire for pieces in routing.wires.values() for wire in pieces]
+    ports = route.pins(placement, technology, nets)
+    routing = route.Routing(estimate.wires(nets, placement, technology, ports), ports, [],
+                            route.outline(placement, technology))
+    ohms = parasitics.contacts(job.library.magic[1], list(technology.layers))
+    farads = {net: estimate.FARADS[job.library.name] * sum(wire.length for wire in pieces)
+              for net, pieces in routing.wires.items()}
+    cells_ns, _ = mapping.critical_path(_time(job, nets, "cells"))
+
+    def with_wires(name: str) -> tuple[float, list[dict], list[float]]:
+        (folder / f"{name}.spef").write_text(parasitics.spef(
+            nets, placement, routing, technology, farads, ohms, outputs(job.library)))
+        report = _time(job, nets, name)
+        return *mapping.critical_path(report), slacks(report)
+
+    guess_ns, path, ends = with_wires("estimate")
     result = {
-        "cells": len(nets.cells), "nets": len(nets.nets()), "failed": len(routing.failed),
-        "area": mapped["area"], "cells_ns": cells_ns,
-        "core": round(placement.width * placement.height), "width": placement.width,
-        "height": placement.height, "wire_um": round(sum(wire.length for wire in wires)),
-        "vias": sum(bool(wire.to) for wire in wires), "wire_pf": round(sum(farads.values()), 3),
+        "cells": len(nets.cells), "nets": len(nets.nets()), "area": mapped["area"], "cells_ns": cells_ns,
+        "guess_ns": guess_ns, "core": round(placement.width * placement.height), "width": placement.width,
+        "height": placement.height, "failed": None,
     }
-    if routing.failed:
-        return result
-    ohms = parasitics.contacts(tech, list(technology.layers))
-    (folder / "wires.spef").write_text(parasitics.spef(
-        nets, placement, routing, technology, farads, ohms, outputs(job.library)))
-    report = mapping.sta(job.design, job.library, folder / "placed.v", folder / "wires.txt", True,
-                         folder / "wires.spef", clock)
-    wires_ns, path = mapping.critical_path(report)
-    return {**result, "wires_ns": wires_ns, "path": path, "slacks": slacks(report)}
+    if job.routed:
+        guessed, routing = routing, route.route(nets, placement, technology, job.library.lef, folder,
+                                                tidy=len(nets.cells) <= ANNEALED)
+        result["failed"] = len(routing.failed)
+        if routing.failed:
+            routing = guessed
+        else:
+            farads = parasitics.extract(nets, job.library.lef, job.library.magic[0], folder)
+            result["wires_ns"], path, ends = with_wires("wires")
+    wires = [wire for pieces in routing.wires.values() for wire in pieces]
+    return {**result, "path": path, "slacks": ends, "wire_um": round(sum(wire.length for wire in wires)),
+            "vias": sum(bool(wire.to) for wire in wires), "wire_pf": round(sum(farads.values()), 3)}
+
+
+def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
+    """OpenSTA's report with the wires of NAME.spef; of cells alone where there is none."""
+    clock = next((short for short, port in nets.ports.items() if port.name == job.design.clock), "")
+    wires = job.folder / f"{name}.spef"
+    return mapping.sta(job.design, job.library, job.folder / "placed.v", job.folder / f"{name}.txt", True,
+                       wires if wires.exists() else None, clock)
 
 
 def slacks(report: str) -> list[float]:
@@ -108,12 +133,15 @@ def outputs(library: Library) -> dict[str, set[str]]:
 
 
 def load(job: Job) -> Layout:
-    """A layout that was made."""
+    """A layout that was made: with its routed wires, or where they are not whole with estimated ones."""
     folder = job.folder
     nets = netlist.parse(mapping.top_module(folder / "netlist.json"), job.design.top)
     technology = lef.read(job.library.lef)
-    placement = place.read((folder / "placed.pl1").read_text(), technology, nets)
-    failed = [name for name in (folder / "failed.txt").read_text().split("\n")[1:] if name]
-    wires = route.wires((folder / "routed.def").read_text(), list(technology.layers))
-    return Layout(nets, technology, placement, route.Routing(
-        wires, route.pins(placement, technology, nets), failed, route.outline(placement, technology)))
+    kept = json.loads((folder / "placement.json").read_text())
+    placement = place.Placement({name: place.Site(**site) for name, site in kept.pop("cells").items()}, **kept)
+    ports = route.pins(placement, technology, nets)
+    if (folder / "wires.spef").exists():
+        wires = route.wires((folder / "routed.def").read_text(), list(technology.layers))
+    else:
+        wires = estimate.wires(nets, placement, technology, ports)
+    return Layout(nets, technology, placement, route.Routing(wires, ports, [], route.outline(placement, technology)))

@@ -6,7 +6,7 @@ from synth import adder_study, catalogue, final_adder, grading
 from synth.catalogue import Design, Library
 from synth.layout.flow import Job
 
-SPARSE = 0.5, 2.5  # density and aspect with which a multiplier's nets all find their way
+SPARSE = 0.45, 1.3  # density and aspect with which a multiplier's nets all find their way
 
 
 @dataclasses.dataclass(frozen=True)
@@ -19,15 +19,16 @@ class Row:
     density: float
     aspect: float
     seeds: int = 1
+    routed: bool = True
     library: Library = catalogue.library("osu035")
 
     def jobs(self) -> list[Job]:
         """One for each seed."""
-        return [Job(self.design, self.library, self.flow, self.density, self.aspect, seed)
+        return [Job(self.design, self.library, self.flow, self.density, self.aspect, seed, self.routed)
                 for seed in range(1, self.seeds + 1)]
 
 
-SECTIONS = ("adders", "grading", "multipliers", "cores")
+SECTIONS = ("adders", "grading", "multipliers", "cores", "unit")
 CANDIDATES = 4  # groupings whose cells alone are the fastest: those are laid out
 
 
@@ -53,10 +54,13 @@ def rows(section: str, seeds: int = 3, budget: int = 16, workers: int = 2) -> li
         small = catalogue.FORMATS["binary16"]
         tops = ("fp_adder", "fp_multiplier", "fp_divider")
         return [*(Row(section, catalogue.design(top, f"{top.replace('_', '-')}-binary16", "graded",
-                                                ExpWidth=small[0], FracWidth=small[1]), "modules", 0.6, 2.5)
+                                                ExpWidth=small[0], FracWidth=small[1]), "modules", *SPARSE)
                   for top in tops),
                 *(Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *SPARSE)
                   for top in tops)]
+    if section == "unit":  # its 18,000 nets would take qrouter hours
+        return [Row(section, catalogue.design("hit_test_unit"), flow, *SPARSE, routed=False)
+                for flow in ("parts", "small")]
     raise ValueError(f"no section {section}; there are {', '.join(SECTIONS)}")
 
 

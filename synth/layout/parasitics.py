@@ -134,6 +134,21 @@ def distance(rects: list[Rect], node: Node) -> float:
                 for rect in rects if rect.layer == layer), default=float("inf"))
 
 
+def taps(netlist: Netlist, placement: Placement, technology: Technology,
+         ports: dict[str, tuple[float, float, str]], ends: list[tuple[str, str]]) -> dict[str, list[Rect]]:
+    """The metal of what hangs on a net, by its name in SPEF, in the order of `ends` (Netlist.nets)."""
+    corner, found = origin(technology), {}
+    for cell, pin in ends:
+        if cell == "PIN":
+            x, y, layer = ports[pin]
+            found[pin] = [Rect(layer, x, y, x, y)]
+            continue
+        site, macro = placement.cells[cell], technology.macros[netlist.cells[cell].kind]
+        found[f"{cell}:{pin}"] = [turned(rect, (macro.width, macro.height), (site.x + corner[0], site.y + corner[1]),
+                                         site.turned) for rect in macro.pins[pin]]
+    return found
+
+
 def spef(netlist: Netlist, placement: Placement, routing: Routing, technology: Technology,
          farads: dict[str, float], ohms: dict[str, float], outputs: dict[str, set[str]]) -> str:
     """`farads` of each net, pF; `ohms` of contacts; `outputs`: the output pins of each type of cell."""
@@ -141,26 +156,16 @@ def spef(netlist: Netlist, placement: Placement, routing: Routing, technology: T
     lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.top}"',
              *(f'*{name} "{value}"' for name, value in head.items()), "*DIVIDER /", "*DELIMITER :",
              "*BUS_DELIMITER [ ]", "*T_UNIT 1 NS", "*C_UNIT 1 PF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY", ""]
-    corner = origin(technology)
     for net, ends in netlist.nets().items():
         wires = routing.wires.get(net, [])
         if net in RAILS or not wires:
             continue
-        body, taps = ["*CONN"], {}
-        for cell, pin in ends:
-            if cell == "PIN":
-                x, y, layer = routing.ports[pin]
-                name, word, drives = pin, "P", netlist.ports[pin].output
-                taps[name] = [Rect(layer, x, y, x, y)]
-            else:
-                kind, site = netlist.cells[cell].kind, placement.cells[cell]
-                macro = technology.macros[kind]
-                name, word, drives = f"{cell}:{pin}", "I", pin in outputs[kind]
-                taps[name] = [turned(rect, (macro.width, macro.height),
-                                     (site.x + corner[0], site.y + corner[1]), site.turned)
-                              for rect in macro.pins[pin]]
-            body.append(f"*{word} {name} {'O' if drives else 'I'}")
-        wired = tree(wires, taps, technology, ohms)
+        metal = taps(netlist, placement, technology, routing.ports, ends)
+        body = ["*CONN"]
+        for (cell, pin), name in zip(ends, metal, strict=True):
+            drives = netlist.ports[pin].output if cell == "PIN" else pin in outputs[netlist.cells[cell].kind]
+            body.append(f"*{'P' if cell == 'PIN' else 'I'} {name} {'O' if drives else 'I'}")
+        wired = tree(wires, metal, technology, ohms)
         names = {node: f"{net}:{place}" for place, node in enumerate(wired.length, 1)}
         total = sum(wired.length.values())
         body.append("*CAP")

@@ -19,6 +19,8 @@ NAMED = [
     (r"u_(exp|near_exp|a_minus_b|b_minus_a|offset|count)", "exponent adders"),
 ]
 REST = "selection, control"
+# The same in a whole unit, whose multiplier and divider have adders of their own.
+CORES = [(r"u_multiplier\b", "multiplier"), (r"u_divider\b", "divider"), (r"u_adder\b", "adder")]
 
 
 def of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:
@@ -30,15 +32,16 @@ def of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[s
     """
     if design.top == "adder":
         return _adder(design, netlist, outputs)
-    named = {name: next((part for pattern, part in NAMED if re.search(pattern, cell.name)), REST)
+    patterns, rest = (CORES, "registers, selection, control") if design.clock else (NAMED, REST)
+    named = {name: next((part for pattern, part in patterns if re.search(pattern, cell.name)), rest)
              for name, cell in netlist.cells.items()}
-    if set(named.values()) == {REST}:
+    if set(named.values()) == {rest}:
         depth = _spread(netlist, outputs, lambda port: 0, 1)
         named = {name: BAND // 2 * (depth[name] // (BAND // 2)) for name in netlist.cells}
         named = {name: f"gates {low + 1} to {low + BAND // 2} of a path" for name, low in
                  sorted(named.items(), key=lambda entry: entry[1])}
         return named
-    order = [part for _, part in NAMED] + [REST]
+    order = [part for _, part in patterns] + [rest]
     return dict(sorted(named.items(), key=lambda entry: order.index(entry[1])))
 
 

@@ -5,9 +5,9 @@ import tempfile
 import unittest
 from unittest import mock
 
-from synth import catalogue, store, tools
+from synth import catalogue, mapping, store, tools
 from synth.layout import __main__ as command
-from synth.layout import energy, flow, lef, parasitics, parts, place, route, tests
+from synth.layout import energy, estimate, flow, lef, netlist, parasitics, parts, place, route, spread, tests
 from synth.layout.lef import Layer, Rect, Technology
 from synth.layout.netlist import Cell, Netlist, Port
 from synth.layout.route import Wire
@@ -141,6 +141,32 @@ class Trees(unittest.TestCase):
                          Rect("metal1", 107, 216, 109, 218))
 
 
+class Estimate(unittest.TestCase):
+    """Wires before routing."""
+
+    def test_tree(self):
+        """The nearest of those joined, not the first."""
+        self.assertEqual(estimate.tree([(0, 0), (10, 0), (12, 1), (0, 3)]), [(0, 3), (0, 1), (1, 2)])
+
+    def test_wires(self):
+        """From pin to pin upwards in metal 2 and across in metal 3, in one piece; none of a net of one pin."""
+        technology = Technology(LAYERS, {"INVX1": lef.Macro(4.8, 20, {
+            "A": [Rect("metal1", 0.4, 6, 1.2, 8)], "Y": [Rect("metal1", 2, 6, 2.8, 8)]})})
+        nets = Netlist("top", {"c0": Cell("a", "INVX1", {"A": "p0", "Y": "n1"}),
+                               "c1": Cell("b", "INVX1", {"A": "n1", "Y": "n2"})},
+                       {"p0": Port("a_i", False, "p0")})
+        placed = place.Placement({"c0": place.Site(0, 0, "N"), "c1": place.Site(8, 20, "FS")}, {}, 16, 40)
+        ports = {"p0": (-0.8, 8.0, "metal3")}
+        found = estimate.wires(nets, placed, technology, ports)
+        self.assertEqual(set(found), {"p0", "n1"})
+        # Y at 2.4 + 0.8, 7 + 1; A in the row above, upside down, at 8 + 1.6, 20 + 13 + 1.
+        self.assertAlmostEqual(sum(wire.length for wire in found["n1"]), 6.4 + 26)
+        self.assertAlmostEqual(sum(wire.length for wire in found["p0"]), 2.4)
+        for net, ends in (("n1", [("c0", "Y"), ("c1", "A")]), ("p0", [("PIN", "p0"), ("c0", "A")])):
+            parasitics.tree(found[net], parasitics.taps(nets, placed, technology, ports, ends), technology,
+                            {"metal1": 1.3, "metal2": 1.2})
+
+
 class Energy(unittest.TestCase):
     """energy's counts and tables."""
 
@@ -221,16 +247,18 @@ class Report(unittest.TestCase):
     """The tables of make layout."""
 
     RECORD = {"design": "d", "flow": "fast", "cells": 2, "area": 100, "core": 200, "wire_um": 1500, "wire_pf": 0.1,
-              "cells_ns": 2.0}
+              "cells_ns": 2.0, "guess_ns": 2.8}
 
     def test_table(self):
         """The median with its spread and the ratio; nets that failed, and no delay then."""
         routed = {**self.RECORD, "wires_ns": 3.0, "spread": [2.9, 3.0, 3.2], "failed": [0, 0, 0]}
         failed = {**self.RECORD, "spread": [], "failed": [7]}
+        placed = {**failed, "failed": [None]}
         rows = [[cell.strip() for cell in line.strip("|").split("|")]
-                for line in command.table([routed, failed]).splitlines()[2:]]
-        self.assertEqual(rows[0][5:], ["0.50", "1.5", "0.10", "2.00", "2.90", "3.00", "3.20", "1.500", "0 0 0"])
-        self.assertEqual(rows[1][8:], ["2.00", "-", "-", "-", "-", "7"])
+                for line in command.table([routed, failed, placed]).splitlines()[2:]]
+        self.assertEqual(rows[0][5:], ["0.50", "1.5", "0.10", "2.00", "2.80", "2.90", "3.00", "3.20", "1.500", "0 0 0"])
+        self.assertEqual(rows[1][8:], ["2.00", "2.80", "-", "-", "-", "-", "7"])
+        self.assertEqual(rows[2][-1], "not routed")
 
 
 @unittest.skipUnless(all(map(tools.installed, ("graywolf", "qrouter", "magic", "sta", "yosys"))),
@@ -248,11 +276,44 @@ class Adder(unittest.TestCase):
             self.assertEqual((got["cells"], got["failed"], len(got["slacks"])), (8, 0, 9))
             self.assertGreater(got["wires_ns"], got["cells_ns"])
             self.assertLess(got["wires_ns"], 1.1 * got["cells_ns"])
+            self.assertAlmostEqual(got["guess_ns"] / got["wires_ns"], 1, delta=0.02)
             self.assertGreater(got["wire_um"], 300)
             made = flow.load(job)
             self.assertTrue(all(pieces for net, pieces in made.routing.wires.items()
                                 if net not in route.RAILS))
             self.assertTrue((job.folder / "adder.gds").stat().st_size > 10000)
+
+
+@unittest.skipUnless(all(map(tools.installed, ("coloquinte", "sta", "yosys"))), ".ci/setup layout installs the tools")
+class Spread(unittest.TestCase):
+    """Coloquinte's placement of a 16-bit adder."""
+
+    def test_placed(self):
+        """Rows in which no cell overlaps another's place, ports around them, the density asked for."""
+        library = catalogue.library("osu035")
+        design = catalogue.design("adder", adder="prefix", Width=16)
+        with (tempfile.TemporaryDirectory() as name,
+              mock.patch.object(store, "OUT", pathlib.Path(name))):
+            mapping.synthesise(design, library, "fast")
+            (run,) = (store.OUT / "runs").iterdir()
+            nets = netlist.parse(mapping.top_module(run / "netlist.json"), "adder")
+            technology = lef.read(library.lef)
+            placed, again = (spread.place(nets, technology, 1, 0.6, 1.0, pathlib.Path(name)) for _ in range(2))
+        self.assertEqual(placed, again)
+        rows = {}
+        for cell, site in placed.cells.items():
+            width = technology.macros[nets.cells[cell].kind].width
+            rows.setdefault(site.y, []).append((site.x, site.x + width))
+            self.assertEqual(site.turned in ("FS", "S"), round(site.y / 20) % 2 == 1)
+            self.assertTrue(0 <= site.x and site.x + width <= placed.width + 1e-6)
+        for row in rows.values():
+            for (_, end), (start, _) in zip(sorted(row), sorted(row)[1:]):
+                self.assertLessEqual(end, start + 1e-6)
+        cells = sum(technology.macros[cell.kind].width * 20 for cell in nets.cells.values())
+        self.assertAlmostEqual(cells / (placed.width * placed.height), 0.6, delta=0.06)
+        self.assertEqual(set(placed.ports), {name for name, port in nets.ports.items() if port.net == name})
+        for x, y in placed.ports.values():
+            self.assertTrue(x in (0, placed.width) or y in (0, placed.height))
 
 
 if __name__ == "__main__":

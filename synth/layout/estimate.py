@@ -1,0 +1,72 @@
+"""The wires of a placement before it is routed: each net as the shortest tree of straight lines between its pins.
+
+A line goes upwards in the first metal that does, then across in the next that does. Nothing is in its way, so
+what routing adds is not in it; but the tree may not branch between pins, which makes it longer than it need be.
+"""
+
+import numpy as np
+
+from synth.layout.lef import Technology
+from synth.layout.netlist import Netlist
+from synth.layout.parasitics import taps
+from synth.layout.place import Placement
+from synth.layout.route import RAILS, Wire
+
+# pF a um: what magic extracted of the adders' layouts by their wires' length.
+FARADS = {"osu035": 6.4e-5, "osu018": 6.4e-5}
+TREES = 200  # pins: clock and reset have more; they get trees of buffers, which synthesis does not make
+
+
+def wires(netlist: Netlist, placement: Placement, technology: Technology,
+          ports: dict[str, tuple[float, float, str]]) -> dict[str, list[Wire]]:
+    """Of each net but the rails and those of more than TREES pins; as route.wires gives them, vias included."""
+    layers = list(technology.layers)
+    up = next(name for name in layers if technology.layers[name].vertical)
+    across = next(name for name in layers[layers.index(up):] if not technology.layers[name].vertical)
+    found = {}
+    for net, ends in netlist.nets().items():
+        if net in RAILS or not 1 < len(ends) <= TREES:
+            continue
+        pins = [(rects[0].layer, *rects[0].centre) for rects in
+                taps(netlist, placement, technology, ports, ends).values()]
+        found[net] = [wire for one, other in tree([(x, y) for _, x, y in pins])
+                      for wire in _line(pins[one], pins[other], up, across, layers)]
+    return found
+
+
+def tree(points: list[tuple[float, float]]) -> list[tuple[int, int]]:
+    """The edges of the shortest tree between points by the distance across plus that upwards (Prim)."""
+    at = np.array(points, float)
+    nearest = np.zeros(len(at), int)
+    far = np.abs(at - at[0]).sum(axis=1)
+    far[0] = np.inf
+    edges = []
+    for _ in range(len(at) - 1):
+        new = int(far.argmin())
+        edges.append((int(nearest[new]), new))
+        ways = np.abs(at - at[new]).sum(axis=1)
+        nearer = (ways < far) & np.isfinite(far)
+        nearest[nearer] = new
+        far = np.where(nearer, ways, far)
+        far[new] = np.inf
+    return edges
+
+
+def _line(one: tuple, other: tuple, up: str, across: str, layers: list[str]) -> list[Wire]:
+    """From pin to pin: layer, x, y each."""
+    (first, x0, y0), (last, x1, y1) = one, other
+    pieces = [*_contacts(first, up, x0, y0, layers)]
+    if y0 != y1:
+        pieces.append(Wire(up, x0, y0, x0, y1))
+    if x0 != x1:
+        pieces += [*_contacts(up, across, x0, y1, layers), Wire(across, x0, y1, x1, y1),
+                   *_contacts(last, across, x1, y1, layers)]
+    else:
+        pieces += _contacts(last, up, x1, y1, layers)
+    return pieces
+
+
+def _contacts(low: str, high: str, x: float, y: float, layers: list[str]) -> list[Wire]:
+    """The vias between two metals, one on another."""
+    low, high = sorted((layers.index(low), layers.index(high)))
+    return [Wire(layers[place], x, y, x, y, layers[place + 1]) for place in range(low, high)]

@@ -1,0 +1,114 @@
+"""Places a netlist of thousands of cells in rows with Coloquinte, in seconds; graywolf, which anneals, takes minutes.
+
+Coloquinte reads and writes the files of the placement contests (bookshelf): .nodes, .nets, .pl, .scl. It
+counts in whole numbers: here x in tracks, y in STEPS of a row's height. Those are longer than a track, so
+wires across, which have one metal, cost more than those upwards, which have two.
+"""
+
+import math
+import pathlib
+
+from synth import tools
+from synth.layout.lef import Technology
+from synth.layout.netlist import CONSTANTS, Netlist
+from synth.layout.place import Placement, Site, gaps
+
+FULL = 0.97  # of each row, gaps included: cells need some room to be put into rows
+STEPS = 9
+EFFORT = 3  # of 9; more takes longer and shortens no wire
+
+
+def place(netlist: Netlist, technology: Technology, seed: int, density: float, aspect: float,
+          folder: pathlib.Path) -> Placement:
+    """`density`: the share of the rows that cells take; `aspect`: the core's height by its width.
+
+    Twice: without ports, which are then put around the core where their nets pull them, and with them.
+    """
+    pitch = next(layer.pitch for layer in technology.layers.values() if layer.vertical)
+    macros = {name: technology.macros[cell.kind] for name, cell in netlist.cells.items()}
+    beside = gaps(netlist, technology, min(1.0, density / FULL), pitch)
+    widths = {name: round((macro.width + beside[name]) / pitch) for name, macro in macros.items()}
+    height = next(iter(macros.values())).height
+    area = sum(widths.values()) * pitch * height / FULL
+    rows = max(1, round(math.sqrt(area * aspect) / height))
+    sites = math.ceil(area / (rows * height * pitch))
+    free, _ = _run(netlist, technology, widths, {}, (sites, rows), seed, folder / "free")
+    ports = around(netlist, free, (sites, rows * STEPS))
+    found, turned = _run(netlist, technology, widths, ports, (sites, rows), seed, folder / "placed")
+    step = height / STEPS
+    cells = {}
+    for name, (x, y) in found.items():
+        aside = beside[name] if turned[name] in ("FN", "S") else 0  # the gap has been turned to the left side
+        cells[name] = Site(x * pitch + aside, y * step, turned[name])
+    return Placement(cells, {name: (x * pitch, y * step) for name, (x, y) in ports.items()},
+                     sites * pitch, rows * height)
+
+
+def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
+         core: tuple[int, int], seed: int, stem: pathlib.Path) -> tuple[dict, dict[str, str]]:
+    """Where each cell's lower left corner is and how it is turned; without `ports` not yet in rows."""
+    for suffix, text in bookshelf(netlist, technology, widths, ports, core).items():
+        stem.with_suffix(suffix).write_text(text.format(stem=stem.name))
+    solution = stem.with_suffix(".sol")
+    tools.run(["coloquinte", "--effort", str(EFFORT), "--seed", str(seed), "--save-solution", solution,
+               *([] if ports else ["--only-global"]), stem.with_suffix(".aux")], stem.with_suffix(".log"))
+    places, turned = {}, {}
+    for line in solution.read_text().splitlines():
+        name, *words = line.split() or [""]
+        if name in netlist.cells:
+            places[name] = int(words[0]), int(words[1])
+            turned[name] = words[3]
+    return places, turned
+
+
+def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
+              core: tuple[int, int]) -> dict[str, str]:
+    """The files by their suffixes. `widths` of the cells, tracks; `core`: its tracks across, its rows."""
+    sites, rows = core
+    pitch = next(layer.pitch for layer in technology.layers.values() if layer.vertical)
+    nodes = [f"{name} {widths[name]} {STEPS}" for name in netlist.cells] + [f"{name} terminal" for name in ports]
+    at = [f"{name} {sites // 2} {rows * STEPS // 2} : N" for name in netlist.cells]
+    at += [f"{name} {x} {y} : N" for name, (x, y) in ports.items()]
+    nets = []
+    for net, ends in netlist.nets().items():
+        pins = []
+        for cell, pin in ends:
+            if cell == "PIN":
+                pins += [f"{pin} I : 0 0"] if pin in ports else []
+                continue
+            macro = technology.macros[netlist.cells[cell].kind]
+            x, y = macro.pins[pin][0].centre
+            pins.append(f"{cell} I : {x / pitch - widths[cell] / 2:.2f} {(y / macro.height - 0.5) * STEPS:.2f}")
+        if len(pins) > 1 and net not in CONSTANTS.values():
+            nets += [f"NetDegree : {len(pins)} {net}", *pins]
+    lines = [f"NumRows : {rows}"]
+    for row in range(rows):
+        lines += ["CoreRow Horizontal", f"Coordinate : {row * STEPS}", f"Height : {STEPS}", "Sitewidth : 1",
+                  f"Siteorient : {'FS' if row % 2 else 'N'}", f"SubrowOrigin : 0 NumSites : {sites}", "End"]
+    return {".aux": "RowBasedPlacement : {stem}.nodes {stem}.nets {stem}.pl {stem}.scl\n",
+            **{suffix: "\n".join(["UCLA 1.0", *text]) + "\n" for suffix, text in
+               ((".nodes", nodes), (".nets", nets), (".pl", at), (".scl", lines))}}
+
+
+def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int, int]) -> dict[str, tuple[int, int]]:
+    """The ports at equal distances around the core, in the order in which their nets' cells lie around its middle."""
+    width, height = core
+    angles = {}
+    for ends in netlist.nets().values():
+        near = [cells[cell] for cell, _ in ends if cell != "PIN"]
+        x = sum(x for x, _ in near) / len(near) if near else 0
+        y = sum(y for _, y in near) / len(near) if near else 0
+        angles.update({pin: math.atan2(y / height - 0.5, x / width - 0.5) for cell, pin in ends if cell == "PIN"})
+    order = sorted(angles, key=lambda name: (angles[name], name))
+    return {name: _edge((place + 0.5) / len(order) * 2 * (width + height), width, height)
+            for place, name in enumerate(order)}
+
+
+def _edge(far: float, width: int, height: int) -> tuple[int, int]:
+    """The point that far along the core's edge, from the middle of its left side downwards."""
+    for x, y, dx, dy, length in ((0, height / 2, 0, -1, height / 2), (0, 0, 1, 0, width), (width, 0, 0, 1, height),
+                                 (width, height, -1, 0, width), (0, height, 0, -1, height / 2)):
+        if far <= length:
+            return round(x + dx * far), round(y + dy * far)
+        far -= length
+    return 0, round(height / 2)
