@@ -1,6 +1,7 @@
 // Drives Verilated ray cores and the memory behind them: rays in, results out.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <random>
 #include <span>
@@ -54,6 +55,11 @@ class CoreModel : public CoreUnit {
       if (serve_memory()) quiet = 0;
       if (++quiet > kPatience)
         broken("nothing asked for and nothing told for " + std::to_string(kPatience) + " clocks");
+      for (Core& core : cores_) core.clock();
+    }
+    while (std::ranges::any_of(cores_, &Core::is_busy_with_memory)) {
+      serve_memory();
+      if (++quiet > kPatience) broken("waits for a line that it does not ask for");
       for (Core& core : cores_) core.clock();
     }
     for (Core& core : cores_) {

@@ -80,6 +80,8 @@ class CorePort {
 
   // ---- Memory
 
+  /// Whether lines are on their way, or will be: memory must not change.
+  [[nodiscard]] bool is_busy_with_memory() const { return model_->reading_o != 0; }
   /// Whether a line is asked for; of which number, with which tag.
   [[nodiscard]] bool is_reading() const { return model_->read_valid_o != 0; }
   [[nodiscard]] std::uint32_t line() const { return model_->read_line_o; }

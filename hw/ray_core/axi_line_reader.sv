@@ -11,7 +11,7 @@
 module axi_line_reader #(
   parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two
   parameter int unsigned IdWidth   = 6,
-  parameter int unsigned TagWidth  = 16,   // ray_core's
+  parameter int unsigned TagWidth  = 9,    // ray_core's
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned LineWidth = ray_core_pkg::LineWidth
 ) (

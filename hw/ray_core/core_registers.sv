@@ -5,7 +5,8 @@
 //
 //   0x000  identity   ro   0x52470001
 //   0x004  command    wo   bit 0: make the rays of the rectangle; 1: memory has changed; 2: counters to zero
-//   0x008  status     ro   bit 0: the camera has rays to make; 1: rays are in the core
+//   0x008  status     ro   bit 0: the camera has rays to make; 1: rays are in the core, or lines
+//                          on their way to it
 //   0x00c  enable     rw   of interrupts, as in `flags`
 //   0x010  flags      w1c  bit 0: a doubt has left; 1: the last ray of a rectangle has ended; 2: memory
 //                          has answered with an error
@@ -14,7 +15,7 @@
 //   0x020  corner     rw   the rectangle's first pixel: x in bits 15:0, y in 31:16
 //   0x024  size       rw   its width and height, likewise
 //   0x030  eye        rw   where the camera's rays begin; 0x040 first, 0x050 right, 0x060 down: see camera_unit
-//   0x100  counters   ro   two words each, low word first: clocks with rays in the core, then those of
+//   0x100  counters   ro   two words each, low word first: clocks with status bit 1 high, then those of
 //                          ray_core_pkg::event_e in their order. Of 48 bits, modulo 2**48
 //
 // So a picture is drawn by one write of `size` and one of `command`, where the camera stays. Commands and writes

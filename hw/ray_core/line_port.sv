@@ -1,7 +1,11 @@
 // The one memory port: nodes and triangles that rays ask for, each kind through a cache of its own.
 //
-// What the caches lack goes out in turn, with a tag, {is a triangle's, alone, waiter, place}, see line_cache;
-// its line may come back at any time and in any order. Each clock gives a node and a triangle where both caches have one.
+// What the caches lack goes out in turn, with a tag, {is a triangle's, place in its cache}; its line may come
+// back at any time and in any order. Each clock gives a node and a triangle where both caches have one.
+//
+// A node that is not asked for, but may be soon (soon_i), is read into its cache in clocks in which no ray asks for
+// one; where too many of them wait, it is forgotten. Its line may come when the last ray has long ended: memory must
+// not change, nor the caches be emptied, while reading_o.
 module line_port #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
@@ -10,17 +14,21 @@ module line_port #(
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned PlaceWidth =
       $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
-  localparam int unsigned TagWidth = 2 + RayWidth + PlaceWidth,
+  localparam int unsigned TagWidth = 1 + PlaceWidth,
   localparam int unsigned LineWidth = ray_core_pkg::LineWidth,
   localparam int unsigned TriangleWidth = ray_core_pkg::TriangleWidth
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    invalidate_i,  // the caches: memory has changed
+  output logic                    reading_o,  // a line is on its way, or will be
   // nodes asked for: one for each ray at most
   input  logic                    node_i,
   input  logic [RayWidth-1:0]     node_ray_i,
   input  logic [AddressWidth-1:0] node_line_i,
+  // a node that may be asked for soon
+  input  logic                    soon_i,
+  input  logic [AddressWidth-1:0] soon_line_i,
   // triangles asked for
   input  logic                    triangle_i,
   output logic                    triangle_ready_o,
@@ -46,12 +54,14 @@ module line_port #(
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
-  localparam int unsigned MissWidth = 1 + RayWidth + AddressWidth;  // as many waiters as rays
+  localparam int unsigned MissWidth = PlaceWidth + AddressWidth;
 
   // ---- What is asked for
 
   logic node_valid, node_taken, triangle_valid, triangle_taken, unused_space;
   logic [RequestWidth-1:0] node, triangle;
+  logic soon_valid, soon_taken, soon_space;
+  logic [AddressWidth-1:0] soon_line;
 
   fifo #(
     .Width(RequestWidth),
@@ -65,6 +75,19 @@ module line_port #(
     .pop_i(node_valid & node_taken),
     .valid_o(node_valid),
     .data_o(node)
+  );
+  fifo #(
+    .Width(AddressWidth),
+    .Depth(8)
+  ) u_soon (
+    .clk_i,
+    .rst_ni,
+    .push_i(soon_i & soon_space),
+    .data_i(soon_line_i),
+    .space_o(soon_space),
+    .pop_i(soon_taken),
+    .valid_o(soon_valid),
+    .data_o(soon_line)
   );
   fifo #(
     .Width(RequestWidth),
@@ -82,10 +105,12 @@ module line_port #(
 
   // ---- Caches
 
-  logic line_valid, fill, fill_triangle, fill_alone, node_done, triangle_done;
-  logic [RayWidth-1:0] fill_waiter;
+  logic line_valid, line_done, fill, fill_triangle, node_done, triangle_done;
   logic [PlaceWidth-1:0] fill_place;
   logic [LineWidth-1:0] line;
+  logic [AddressWidth-1:0] node_number, triangle_number;
+  logic [$clog2(NodeLines)-1:0] node_place;
+  logic [$clog2(TriangleLines)-1:0] triangle_place;
   logic [MissWidth-1:0] node_miss, triangle_miss;
   logic node_miss_valid, node_miss_ready, triangle_miss_valid, triangle_miss_ready;
 
@@ -98,11 +123,12 @@ module line_port #(
     .push_i(line_valid_i & line_ready_o),
     .data_i({line_tag_i, line_i}),
     .space_o(line_ready_o),
-    .pop_i(fill & (fill_triangle ? triangle_done : node_done)),
+    .pop_i(line_done),
     .valid_o(line_valid),
-    .data_o({fill_triangle, fill_alone, fill_waiter, fill_place, line})
+    .data_o({fill_triangle, fill_place, line})
   );
-  assign fill = line_valid & tests_allowed_i;
+  assign soon_taken = soon_valid & ~node_valid & node_taken;
+  assign fill       = line_valid & tests_allowed_i;
 
   line_cache #(
     .Lines(NodeLines),
@@ -112,20 +138,18 @@ module line_port #(
     .clk_i,
     .rst_ni,
     .invalidate_i,
-    .valid_i(node_valid),
+    .valid_i(node_valid | soon_valid),
     .ready_o(node_taken),
+    .wanted_i(node_valid),
     .ray_i(node[RequestWidth-1 -: RayWidth]),
-    .line_number_i(node[AddressWidth-1:0]),
+    .line_number_i(node_valid ? node[AddressWidth-1:0] : soon_line),
     .miss_valid_o(node_miss_valid),
     .miss_ready_i(node_miss_ready),
-    .miss_waiter_o(node_miss[MissWidth-2 -: RayWidth]),
-    .miss_alone_o(node_miss[MissWidth-1]),
-    .miss_number_o(node_miss[AddressWidth-1:0]),
+    .miss_place_o(node_place),
+    .miss_number_o(node_number),
     .fill_i(fill & ~fill_triangle),
     .fill_done_o(node_done),
-    .fill_waiter_i(fill_waiter),
-    .fill_alone_i(fill_alone),
-    .fill_index_i(fill_place[$clog2(NodeLines)-1:0]),
+    .fill_place_i(fill_place[$clog2(NodeLines)-1:0]),
     .fill_line_i(line),
     .valid_o(node_valid_o),
     .ready_i(1'b1),
@@ -134,7 +158,7 @@ module line_port #(
   );
   line_cache #(
     .Lines(TriangleLines),
-    .Waiters(Rays),
+    .Waiters(2 * Rays),
     .RayWidth(RayWidth),
     .Width(TriangleWidth)
   ) u_triangle_cache (
@@ -143,18 +167,16 @@ module line_port #(
     .invalidate_i,
     .valid_i(triangle_valid),
     .ready_o(triangle_taken),
+    .wanted_i(1'b1),
     .ray_i(triangle[RequestWidth-1 -: RayWidth]),
     .line_number_i(triangle[AddressWidth-1:0]),
     .miss_valid_o(triangle_miss_valid),
     .miss_ready_i(triangle_miss_ready),
-    .miss_waiter_o(triangle_miss[MissWidth-2 -: RayWidth]),
-    .miss_alone_o(triangle_miss[MissWidth-1]),
-    .miss_number_o(triangle_miss[AddressWidth-1:0]),
+    .miss_place_o(triangle_place),
+    .miss_number_o(triangle_number),
     .fill_i(fill & fill_triangle),
     .fill_done_o(triangle_done),
-    .fill_waiter_i(fill_waiter),
-    .fill_alone_i(fill_alone),
-    .fill_index_i(fill_place[$clog2(TriangleLines)-1:0]),
+    .fill_place_i(fill_place[$clog2(TriangleLines)-1:0]),
     .fill_line_i(line[TriangleWidth-1:0]),
     .valid_o(triangle_valid_o),
     .ready_i(tests_allowed_i),
@@ -162,18 +184,30 @@ module line_port #(
     .line_o(triangle_o)
   );
 
+  assign node_miss     = {PlaceWidth'(node_place), node_number};
+  assign triangle_miss = {PlaceWidth'(triangle_place), triangle_number};
+
   // ---- What they lack, in turn
 
+  localparam int unsigned CountWidth = $clog2(NodeLines + TriangleLines + 1);
+
   logic [MissWidth:0] out;
-  logic out_ready, node_last_q;  // the last request was a node's
+  logic out_ready, ask, node_last_q;  // the last request was a node's
+  logic [CountWidth-1:0] lines_q;  // asked for, and not in the caches
 
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
   assign triangle_miss_ready = out_ready & ~(node_miss_valid & node_miss_ready);
+  assign ask                 = out_ready & (node_miss_valid | triangle_miss_valid);
+  assign line_done           = fill & (fill_triangle ? triangle_done : node_done);
+  assign reading_o           = (lines_q != '0) | soon_valid;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) node_last_q <= 1'b0;
-    else if (out_ready & (node_miss_valid | triangle_miss_valid)) begin
-      node_last_q <= node_miss_valid & node_miss_ready;
+    if (!rst_ni) begin
+      node_last_q <= 1'b0;
+      lines_q     <= '0;
+    end else begin
+      if (ask) node_last_q <= node_miss_valid & node_miss_ready;
+      lines_q <= lines_q + CountWidth'(ask) - CountWidth'(line_done);
     end
   end
 
@@ -183,7 +217,7 @@ module line_port #(
   ) u_out (
     .clk_i,
     .rst_ni,
-    .push_i(out_ready & (node_miss_valid | triangle_miss_valid)),
+    .push_i(ask),
     .data_i((node_miss_valid & node_miss_ready) ? {1'b0, node_miss} : {1'b1, triangle_miss}),
     .space_o(out_ready),
     .pop_i(read_valid_o & read_ready_i),
@@ -191,6 +225,6 @@ module line_port #(
     .data_o(out)
   );
   assign read_line_o = out[AddressWidth-1:0];
-  assign read_tag_o  = {out[MissWidth -: 2 + RayWidth], out[PlaceWidth-1:0]};
+  assign read_tag_o  = out[MissWidth -: TagWidth];
 
 endmodule

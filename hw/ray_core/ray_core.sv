@@ -21,7 +21,7 @@
 //                than 2**result_t_error_o numbers), P as the pipeline has it, and how many tests there were
 //
 // Memory: reads of lines by number, valid/ready, each with a tag. Lines come back with it, in any order,
-// valid/ready.
+// valid/ready. Some are asked for because they may be needed: reading_o may be high when the last ray has ended.
 //
 // Throughput: a node and a triangle a clock, out of the caches; a line a clock of what they lack.
 module ray_core #(
@@ -33,8 +33,8 @@ module ray_core #(
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned TagWidth = 2 + RayWidth
-                                   + $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
+  localparam int unsigned TagWidth = 1 + $clog2(
+      NodeLines > TriangleLines ? NodeLines : TriangleLines),
   localparam int unsigned LineWidth = ray_core_pkg::LineWidth,
   localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
   localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
@@ -42,7 +42,8 @@ module ray_core #(
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic                    invalidate_i,  // memory has changed; only while no ray is here
+  input  logic                    invalidate_i,  // memory has changed; only while no ray is here, and not reading_o
+  output logic                    reading_o,
   // rays
   input  logic                    ray_valid_i,
   output logic                    ray_ready_o,
@@ -138,14 +139,14 @@ module ray_core #(
 
   // ---- Walk
 
-  logic box_valid, walk_ended, leaf_ended, leaf_crowded, node, rest_valid, rest_taken;
+  logic box_valid, walk_ended, leaf_ended, leaf_crowded, node, soon, rest_valid, rest_taken;
   logic [RayWidth-1:0] box_ray, walk_ray, leaf_ray, node_ray;
   logic [31:0] rest_tag;
   logic [GroupWidth-1:0] box_group;
   logic [Children-1:0] box_inner, box_leaf;
   logic [30:0] walk_limit, leaf_limit;
   logic [Rays-1:0] held, testing, walking;
-  logic [AddressWidth-1:0] node_line, rest_line;
+  logic [AddressWidth-1:0] node_line, soon_line, rest_line;
   logic [NodesWidth-1:0] rest_nodes;
 
   ray_walk #(
@@ -172,6 +173,8 @@ module ray_core #(
     .node_valid_o(node),
     .node_ray_o(node_ray),
     .node_line_o(node_line),
+    .soon_o(soon),
+    .soon_line_o(soon_line),
     .rest_valid_o(rest_valid),
     .rest_tag_o(rest_tag),
     .rest_line_o(rest_line),
@@ -218,9 +221,12 @@ module ray_core #(
     .clk_i,
     .rst_ni,
     .invalidate_i,
+    .reading_o,
     .node_i(node),
     .node_ray_i(node_ray),
     .node_line_i(node_line),
+    .soon_i(soon),
+    .soon_line_i(soon_line),
     .triangle_i(triangle_valid),
     .triangle_ready_o(triangle_ready),
     .triangle_ray_i(triangle_ray),

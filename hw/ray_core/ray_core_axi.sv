@@ -82,17 +82,14 @@ module ray_core_axi #(
   output logic [NodesWidth-1:0]  result_nodes_o
 );
 
-  localparam int unsigned TagWidth = 2 + $clog2(
-    Rays
-  ) + $clog2(
-    NodeLines > TriangleLines ? NodeLines : TriangleLines
-  );
+  localparam int unsigned TagWidth = 1 + $clog2(
+      NodeLines > TriangleLines ? NodeLines : TriangleLines);
   localparam logic [30:0] Infinity = 31'h7f80_0000;
   localparam logic [31:0] NoTriangle = 32'hffff_ffff;
 
   // ---- Registers
 
-  logic start, invalidate, camera_busy, failed, result_given, is_doubt, ended;
+  logic start, invalidate, reading, camera_busy, failed, result_given, is_doubt, ended;
   logic [63:0] base;
   logic [31:0] corner, size;
   logic [4*96-1:0] camera;
@@ -130,7 +127,7 @@ module ray_core_axi #(
     .size_o(size),
     .camera_o(camera),
     .camera_busy_i(camera_busy),
-    .core_busy_i(inside_q != '0),
+    .core_busy_i((inside_q != '0) | reading),
     .doubt_i(is_doubt),
     .failed_i(failed),
     .events_i(events),
@@ -197,6 +194,7 @@ module ray_core_axi #(
     .clk_i,
     .rst_ni,
     .invalidate_i(invalidate),
+    .reading_o(reading),
     .ray_valid_i(core_valid),
     .ray_ready_o(core_ready),
     .ray_origin_i(camera_valid ? camera[0 +: 96] : ray_origin_i),

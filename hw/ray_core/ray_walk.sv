@@ -47,6 +47,9 @@ module ray_walk #(
   output logic                    node_valid_o,
   output logic [RayWidth-1:0]     node_ray_o,
   output logic [AddressWidth-1:0] node_line_o,
+  // the next of the same group, where there is one
+  output logic                    soon_o,
+  output logic [AddressWidth-1:0] soon_line_o,
   // rests
   output logic                    rest_valid_o,
   output logic [31:0]             rest_tag_o,
@@ -170,7 +173,7 @@ module ray_walk #(
   logic [GroupWidth-1:0] group;
   logic [OffsetWidth-1:0] offset;
   logic [EnterWidth-1:0] unused_enter;
-  logic [OffsetWidth-1:0] unused_offset, unused_box_offset;
+  logic [OffsetWidth-1:0] soon_offset, unused_box_offset;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -191,11 +194,14 @@ module ray_walk #(
 
   assign group = groups[place(asking_ray_q, chosen_q)];
   assign {unused_enter, offset} = nearest(group, mask_q);
-  assign {rest_enter, unused_offset} = nearest(group, rest_q);
+  assign {rest_enter, soon_offset} = nearest(group, rest_q);
   assign node_valid_o = asked_q | started_q;
   assign node_ray_o   = asking_ray_q;
   assign node_line_o  = started_q ? start_line_q
                                   : group[GroupWidth-1 -: AddressWidth] + AddressWidth'(offset);
+
+  assign soon_o      = asked_q & (rest_q != '0);
+  assign soon_line_o = group[GroupWidth-1 -: AddressWidth] + AddressWidth'(soon_offset);
 
   // ---- Push what box_unit found
 

@@ -132,6 +132,7 @@ TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
       ASSERT_LT(n, 200'000);
       clock();
     }
+    EXPECT_TRUE(beats_.empty()) << "memory may change";
     EXPECT_EQ(read(0x008), 0u);
     EXPECT_EQ(read(0x108), kWidth * kHeight) << "rays";
     EXPECT_GT(read(0x100), kWidth * kHeight) << "clocks";
