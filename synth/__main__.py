@@ -18,8 +18,8 @@ def arguments() -> argparse.Namespace:
                         "adders: the adders' part of the report alone")
     chosen.add_arguments(parser)
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; those installed if not given")
-    parser.add_argument("--budget", default="16", help="groupings tried in each search (%(default)s)")
-    parser.add_argument("--jobs", default="2", help="at once (%(default)s)")
+    parser.add_argument("--budget", type=chosen.whole(1, 10**6), default="16", help="groupings tried in each search (%(default)s)")
+    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
     return chosen.parse(parser)
 
 

@@ -1,18 +1,39 @@
 """One design of hw/, as a command line describes it."""
 
 import argparse
+from collections.abc import Callable
 
 from synth import catalogue
+
+
+def whole(least: int, most: int) -> Callable[[str], str]:
+    """The `type` of an option: nothing, or a whole number, as its text."""
+    def checked(text: str) -> str:
+        try:
+            fits = not text or least <= int(text) <= most
+        except ValueError:
+            fits = False
+        if not fits:
+            raise argparse.ArgumentTypeError(f"expected a whole number from {least} to {most}, got {text!r}")
+        return text
+    return checked
+
+
+def whole_numbers(text: str) -> str:
+    """The same of several with commas between."""
+    for number in text.split(",") if text else []:
+        whole(1, 255)(number or "nothing")
+    return text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options that `design` reads; an empty value counts as not given, so that a Makefile can pass all."""
     parser.add_argument("--adder", help="ripple, uniform, graded, prefix or tool")
-    parser.add_argument("--width", help="bits of an adder or a multiplier")
-    parser.add_argument("--groups", help="carry-select groups, least significant first: 4,5,7,...")
-    parser.add_argument("--look-ahead", help="1: groups add by carry look-ahead, 0: by ripple carry")
-    parser.add_argument("--exp-width", help="exponent bits of a float core")
-    parser.add_argument("--frac-width", help="fraction bits of a float core")
+    parser.add_argument("--width", type=whole(1, 4080), help="bits of an adder or a multiplier")
+    parser.add_argument("--groups", type=whole_numbers, help="carry-select groups, least significant first: 4,5,7,...")
+    parser.add_argument("--look-ahead", type=whole(0, 1), help="1: groups add by carry look-ahead, 0: by ripple carry")
+    parser.add_argument("--exp-width", type=whole(2, 15), help="exponent bits of a float core")
+    parser.add_argument("--frac-width", type=whole(1, 112), help="fraction bits of a float core")
 
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:

@@ -4,6 +4,7 @@ of one made of units, those and the memories between them.
 `python3 -m synth.diagram TOP OUT [--units]`: OUT.svg and OUT.png, by graphviz.
 """
 
+import argparse
 import collections
 import pathlib
 import re
@@ -119,7 +120,20 @@ def draw(top: str, out: pathlib.Path, width: int = 32, seen: object = blocks) ->
                   out.with_suffix(".log"))
 
 
+def main() -> int:
+    """The command line; 2 for what the user can mend."""
+    parser = argparse.ArgumentParser(prog="synth.diagram", description="Draws a module as blocks.")
+    parser.add_argument("top", metavar="TOP", help="module of hw/")
+    parser.add_argument("out", metavar="OUT", nargs="?", type=pathlib.Path, help="OUT.svg and OUT.png (build/synth/TOP)")
+    parser.add_argument("--units", action="store_true", help="units and the memories between them")
+    given = parser.parse_args()
+    try:
+        draw(given.top, given.out or store.OUT / given.top, *((28, units) if given.units else ()))
+    except (tools.MissingTool, OSError) as error:
+        print(f"synth.diagram: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
 if __name__ == "__main__":
-    names = [word for word in sys.argv[1:] if word != "--units"]
-    draw(names[0], pathlib.Path(names[1]) if len(names) > 1 else store.OUT / names[0],
-         *((28, units) if "--units" in sys.argv else ()))
+    sys.exit(main())

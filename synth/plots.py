@@ -1,10 +1,8 @@
 """Area against delay, one picture a section and library, as SVG and PNG."""
 
-from matplotlib import ticker
-
 from synth import drawing, store
 from synth.catalogue import FLOWS, LIBRARIES
-from synth.drawing import plt
+from synth.drawing import plt, ticker
 
 MARKERS = dict(zip(FLOWS, "soXvD^<P*d", strict=True))
 

@@ -55,5 +55,5 @@ def draw(trace: str, save_file: str, out: pathlib.Path) -> None:
 
 
 if __name__ == "__main__":
-    _, TRACE, SAVE_FILE, OUT = sys.argv
-    draw(pathlib.Path(TRACE).read_text(), pathlib.Path(SAVE_FILE).read_text(), pathlib.Path(OUT))
+    sys.exit(waveform.main("synth.ray_timeline", "Draws a trace (VCD) of one ray in the ray core, OUT as SVG.",
+                           lambda trace, save_file, out: draw(trace.read_text(), save_file.read_text(), out)))

@@ -4,10 +4,12 @@
 GTKWave's: it says which signals are drawn, how they are called and grouped.
 """
 
+import argparse
 import json
 import pathlib
 import re
 import sys
+from collections.abc import Callable
 
 
 def read(text: str) -> dict[str, list[tuple[int, str]]]:
@@ -98,5 +100,23 @@ def draw(trace: pathlib.Path, save_file: pathlib.Path, out: pathlib.Path) -> Non
     out.with_suffix(".svg").write_text(render(source))
 
 
+def main(prog: str, described: str, drawn: Callable[[pathlib.Path, pathlib.Path, pathlib.Path], None]) -> int:
+    """The command line of what draws a trace by a save file; 2 for what the user can mend."""
+    parser = argparse.ArgumentParser(prog=prog, description=described)
+    for name in ("trace", "save_file", "out"):
+        parser.add_argument(name, metavar=name.upper(), type=pathlib.Path)
+    given = parser.parse_args()
+    try:
+        drawn(given.trace, given.save_file, given.out)
+    except OSError as error:
+        print(f"{prog}: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
+    except (ValueError, KeyError) as error:
+        print(f"{prog}: found in {given.trace}, or in {given.save_file}: {error}; expected a value change dump, "
+              "and GTKWave's save file of its signals", file=sys.stderr)
+        return 2
+    return 0
+
+
 if __name__ == "__main__":
-    draw(*map(pathlib.Path, sys.argv[1:]))
+    sys.exit(main("synth.waveform", "Draws a trace (VCD) as a timing diagram, OUT.json and OUT.svg.", draw))

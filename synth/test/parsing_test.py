@@ -1,5 +1,6 @@
 """What is read from the tools' reports."""
 
+import argparse
 import concurrent.futures
 import os
 import pathlib
@@ -7,7 +8,7 @@ import tempfile
 import unittest
 from unittest import mock
 
-from synth import catalogue, fpga, mapping, netlists, store, tools
+from synth import catalogue, chosen, fpga, mapping, netlists, store, tools
 from synth.catalogue import Design
 
 OPENSTA = """\
@@ -25,6 +26,20 @@ OPENSTA = """\
                   -0.09  999.91   library setup time
                          999.91   data required time
 """
+
+
+class Options(unittest.TestCase):
+    """chosen.whole and chosen.whole_numbers."""
+
+    def test_whole(self):
+        """What a Makefile passes as empty counts as not given; all else is looked at before anything runs."""
+        for check, right, wrong in ((chosen.whole(1, 9), ("", "1", "9"), ("0", "10", "nan", "2.5", "x")),
+                                    (chosen.whole_numbers, ("", "4", "4,5,7"), ("abc", "4,,5", "0", "1,-1", "256"))):
+            for text in right:
+                self.assertEqual(check(text), text)
+            for text in wrong:
+                with self.assertRaises(argparse.ArgumentTypeError):
+                    check(text)
 
 
 class Pads(unittest.TestCase):
