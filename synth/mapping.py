@@ -53,9 +53,10 @@ def top_module(file: pathlib.Path) -> dict:
 
 def synthesise(design: Design, library: Library, flow: str,
                root: pathlib.Path | None = None) -> tuple[dict, bool]:
-    """Area (liberty units), delay (ns), cells and critical path; and whether it was cached."""
+    """Area (liberty units), delay (ns; also at the library's other corners), cells and critical path; and whether it was
+    cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
-    files = [*design.sources(flow == "cells"), library.liberty, *scripts()]
+    files = [*design.sources(flow == "cells"), library.liberty, *library.corners.values(), *scripts()]
     wanted = store.key(files, flow_facts(), design.facts, library, flow)
     return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
 
@@ -78,6 +79,8 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
     area, cells = cell_counts(prefix.with_suffix(".stat").read_text())
     timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt", bool(design.cut))
     delay, path = critical_path(timing)
+    corners = {name: critical_path(sta(design, library, prefix.with_suffix(".timed.v"), folder / f"timing.{name}.txt",
+                                       liberty=tables))[0] for name, tables in library.corners.items()}
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
     parts = {"blocks": block_costs(prefix.with_suffix(".blocks").read_text(), kept_memories(
         prefix.with_suffix(".memories").read_text()))} if flow == "blocks" else {}
@@ -87,19 +90,21 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
         **({"ends": ends(timing)} if design.cut else {}),
         "area": area,
         "delay_ns": delay,
+        **({"corners_ns": corners} if corners else {}),
         "cells": cells,
         "path": path,
     }
 
 
 def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Path,
-        ends: bool = False, spef: pathlib.Path | None = None, clock: str = "") -> str:
+        ends: bool = False, spef: pathlib.Path | None = None, clock: str = "", liberty: pathlib.Path | None = None) -> str:
     """OpenSTA's report of the slowest path of `netlist`, and of all its ends if so wished.
 
-    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does.
+    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does; `liberty`: tables of
+    another corner.
     """
     return tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], log, {
-        "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
+        "LIBERTY": str(liberty or library.liberty), "NETLIST": str(netlist), "TOP": design.top,
         "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}", "CLOCK": clock or design.clock,
         "ENDS": f"{ends:d}", "SPEF": str(spef or "")})
 

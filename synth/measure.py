@@ -26,7 +26,7 @@ def available(names: list[str] | None) -> tuple[str, ...]:
     for library in LIBRARIES:
         if not names or library.name in names:
             tools.find("sta")
-            _ = library.liberty
+            _ = library.liberty, library.corners
             chosen.append(library.name)
     for device in FPGAS:
         if names and device.name in names:

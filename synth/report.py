@@ -9,9 +9,9 @@ from synth.catalogue import FLOWS, FPGAS, LIBRARIES
 TITLES = {target.name: target.title for target in [*LIBRARIES, *FPGAS]}
 
 CAVEATS = """\
-Areas are square micrometres of the cells alone (one NAND2X1: 96 in the 0.35 um library, 24 in the
-0.18 um one). Delays are those of the slowest path at typical corner, in at an INVX4,
-out into 0.1 pF, with no layout and no wires: silicon is slower, and the order of two designs that
+Areas are square micrometres of the cells alone (the least NAND of two inputs: 96 in the 0.35 um library, 24 in the
+0.18 um one, 3.75 in SkyWater's 130 nm). Delays are those of the slowest path at typical corner, in at an inverter of four times the
+least, out into 0.1 pF (0.02 in 130 nm), with no layout and no wires: silicon is slower, and the order of two designs that
 are close may change. iCE40 and ECP5 figures are placed and routed, between registers, the median of
 several placements.
 """
@@ -53,6 +53,17 @@ def clock_table(records: list[dict]) -> str:
         [record["design"], TITLES[record["target"]], record["flow"],
          f"{1000 / record['delay_ns']:.1f}", record["from"], record["to"]]
         for record in records if "from" in record])
+
+
+def corner_table(records: list[dict]) -> str:
+    """The slowest path at each corner of the libraries that have several, ns; "" where there are none."""
+    names = list(dict.fromkeys(name for record in records for name in record.get("corners_ns", {})))
+    return tables.markdown(["design", "library", "flow", "typical, ns", *(f"{name}, ns" for name in names),
+                            *(f"{name}, ratio" for name in names)], [
+        [record["design"], TITLES[record["target"]], record["flow"], f"{record['delay_ns']:.2f}",
+         *(f"{record['corners_ns'][name]:.2f}" for name in names),
+         *(f"{record['corners_ns'][name] / record['delay_ns']:.2f}" for name in names)]
+        for record in records if "corners_ns" in record])
 
 
 def path_table(record: dict) -> str:

@@ -3,6 +3,7 @@
 import functools
 import hashlib
 import json
+import os
 import pathlib
 import re
 import threading
@@ -42,6 +43,16 @@ def kept(folder: pathlib.Path, wanted: str) -> dict | None:
     file = folder / "result.json"
     found = json.loads(file.read_text()) if file.exists() else {}
     return found["result"] if found.get("key") == wanted else None
+
+
+def replace(file: pathlib.Path, text: str) -> None:
+    """Writes `text` where it differs from what `file` holds. Readers see the whole file or none, and jobs that run at once
+    don't share theirs."""
+    if not file.exists() or file.read_text() != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        written = file.with_suffix(f".{os.getpid()}-{threading.get_ident()}")
+        written.write_text(text)
+        written.replace(file)
 
 
 def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple[dict, bool]:

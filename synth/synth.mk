@@ -2,7 +2,7 @@
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth prove refute verilog fpga datasheet layout energy floorplan
+.PHONY: synth cells prove refute verilog fpga datasheet layout energy floorplan
 
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
@@ -12,6 +12,10 @@ synth: $(if $(TOP),,verilate) ## area and time: make synth [TOP=adder ADDER=grad
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
 	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
 	  --jobs '$(SYNTH_JOBS)'
+
+cells: ## characterise SkyWater 130 cells with ngspice, and how far they are from published figures: make cells [CORNERS=tt,ss,ff]
+	@$(SETUP) synth
+	@$(PYTHON) -m synth.cells --corners '$(CORNERS)' --jobs '$(SYNTH_JOBS)'
 
 prove: ## prove adders, multiplier, float cores, units, netlists: make prove [PROOFS='adder. float.add'] [LONG=1] [KEPT=1] [RECORD=1]
 	@$(SETUP) prove

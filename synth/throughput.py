@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 
 from synth import store, tables, tools
-from synth.catalogue import LIBRARIES
+from synth.catalogue import LIBRARIES, Library
 
 # Unit -> its word in table_1's last line.
 COUNTED = {"hit_test_unit": "proposed", "general_hit_test_unit": "general"}
@@ -32,9 +32,9 @@ def simulated() -> dict[str, float]:
     return clocks
 
 
-def nand2(liberty: str) -> float:
-    """The area of a NAND2X1, by which gates are counted."""
-    return float(re.search(r"cell \(NAND2X1\) \{.*?area : ([\d.]+)", liberty, re.S).group(1))
+def gate(library: Library) -> float:
+    """The area of the cell by which gates are counted."""
+    return float(re.search(rf"cell \({library.gate}\) \{{.*?area : ([\d.]+)", library.liberty.read_text(), re.S).group(1))
 
 
 def table(records: list[dict], clocks: dict[str, float] | None = None) -> str:
@@ -49,7 +49,7 @@ def table(records: list[dict], clocks: dict[str, float] | None = None) -> str:
             if record["target"] != library.name or record["top"] not in clocks or "from" not in record:
                 continue
             rate = 1e9 / record["delay_ns"] / clocks[record["top"]]
-            gates = record["area"] / nand2(library.liberty.read_text())
+            gates = record["area"] / gate(library)
             rows.append([record["design"], library.title, record["flow"],
                          f"{1000 / record['delay_ns']:.1f}", f"{clocks[record['top']]:.2f}",
                          f"{rate:,.0f}", f"{gates:,.0f}", f"{rate / gates:.1f}",

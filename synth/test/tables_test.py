@@ -1,9 +1,12 @@
 """What is written and compared: tables, tests a second, two runs' figures."""
 
 import json
+import pathlib
+import tempfile
 import unittest
+from unittest import mock
 
-from synth import compare, tables, throughput
+from synth import catalogue, compare, tables, throughput
 
 
 class Tables(unittest.TestCase):
@@ -20,13 +23,16 @@ class Tables(unittest.TestCase):
 
 
 class Throughput(unittest.TestCase):
-    """throughput.nand2."""
+    """throughput.gate."""
 
-    def test_nand2(self):
+    def test_gate(self):
         """The gate's area, and not that of a cell before it."""
-        self.assertEqual(throughput.nand2(
-            "cell (NAND2X1x) {\n area : 1;\n}\ncell (INVX1) {\n area : 64;\n}\n"
-            "cell (NAND2X1) {\n cell_footprint : nand2x1;\n area : 96;\n}\n"), 96)
+        with tempfile.TemporaryDirectory() as name:
+            file = pathlib.Path(name) / "tiny.lib"
+            file.write_text("cell (NAND2X1x) {\n area : 1;\n}\ncell (INVX1) {\n area : 64;\n}\n"
+                            "cell (NAND2X1) {\n cell_footprint : nand2x1;\n area : 96;\n}\n")
+            with mock.patch.object(catalogue.Library, "liberty", file):
+                self.assertEqual(throughput.gate(catalogue.LIBRARIES[0]), 96)
 
 
 class Compare(unittest.TestCase):
