@@ -2,7 +2,7 @@
 //
 //   take        node, ray                                                   registers
 //   subtract    D_k = origin_k - O_k                                        3 adders
-//   scale       2**E, how far the ray may go in this node; caps of 1 / I_k
+//   scale       2**E, how far the ray may go in this node; caps of 1 / I_k  see box_scale
 //   multiply    a_k = D_k / I_k                                             3 multipliers
 //   align       a_k and the grid's step s_k in units of 2**(E - 22),        see box_axis
 //               room r_k for errors
@@ -117,44 +117,26 @@ module box_unit #(
     .sum_o(distance)
   );
 
-  // ---- Scale: exponents with binary32's bias, in 11 signed bits
+  // ---- Scale
 
-  localparam logic signed [10:0] NoExponent = 11'sd511;
-  localparam logic signed [10:0] LeastExponent = 11'sd27;
   localparam int unsigned NodeExponents = ray_core_pkg::NodeExponents - 96;  // in what goes along
 
-  logic signed [10:0] least, scale_exponent;
-  logic [32:0] reaches;  // 11 bits an axis
+  logic [8:0] scale_exponent;
   logic [32:0] caps;
   logic [95:0] capped_inverse;
   logic [2:0] capped, open;
 
-  for (genvar k = 0; k < 3; k++) begin : gen_scale
-    logic [7:0] distance_field, inverse_field, cell_field;
-    logic signed [10:0] beyond, grid, reach, cap;
-    assign distance_field = distance[32*k+23 +: 8];
-    assign inverse_field  = sub_inverse[32*k+23 +: 8];
-    assign cell_field     = sub_node[NodeExponents+8*k +: 8];
-    assign beyond = $signed({3'b0, distance_field}) + 11'sd1;
-    assign grid   = $signed({3'b0, cell_field}) + 11'sd8;
-    assign reach  = ((beyond > grid) ? beyond : grid) + $signed({3'b0, inverse_field}) - 11'sd125;
-    assign reaches[11*k +: 11] = (&inverse_field) ? NoExponent : reach;
-
-    assign cap = scale_exponent - $signed({3'b0, cell_field}) + 11'sd129;
-    assign caps[11*k +: 11] = cap;
-    assign capped[k] = (&inverse_field) | ($signed({3'b0, inverse_field}) >= cap);
-    assign open[k] = capped[k] & (cap < 11'sd1 | cap > 11'sd254);
-    assign capped_inverse[32*k +: 32] =
-        capped[k] ? {sub_inverse[32*k+31], cap[7:0], 23'd0} : sub_inverse[32*k +: 32];
-  end
-
-  always_comb begin
-    least = (&sub_limit[30:23]) ? NoExponent : $signed({3'b0, sub_limit[30:23]}) + 11'sd1;
-    for (int unsigned k = 0; k < 3; k++) begin
-      if ($signed(reaches[11*k+:11]) < least) least = $signed(reaches[11*k+:11]);
-    end
-    scale_exponent = (least < LeastExponent) ? LeastExponent : least;
-  end
+  box_scale u_scale (
+    .distances_i({distance[94:87], distance[62:55], distance[30:23]}),
+    .inverse_i(sub_inverse),
+    .cells_i(sub_node[NodeExponents +: 24]),
+    .limit_i(sub_limit[30:23]),
+    .exponent_o(scale_exponent),
+    .inverse_o(capped_inverse),
+    .caps_o(caps),
+    .is_capped_o(capped),
+    .is_open_o(open)
+  );
 
   logic [95:0] scaled_distance_q, scaled_inverse_q;
   logic [ChildrenWidth-1:0] scaled_node_q;
@@ -172,7 +154,7 @@ module box_unit #(
     scaled_limit_q     <= sub_limit;
     scaled_capped_q    <= capped;
     scaled_open_q      <= open;
-    scaled_exponent_q  <= scale_exponent[8:0];
+    scaled_exponent_q  <= scale_exponent;
     scaled_every_box_q <= sub_every_box;
   end
 

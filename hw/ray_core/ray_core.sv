@@ -1,9 +1,9 @@
 // The ray core: rays in, nearest sure hits and doubts out; it walks the tree of boxes in memory by itself.
 //
-//   ray_intake         1 / I_k, and a slot of the table for each ray
+//   ray_table          rays by their slots: ray_intake gives each its slot, and 1 / I_k
 //   ray_walk           the stacks, and which ray goes to its next node
 //   line_port          nodes and triangles, from caches or memory
-//   box_unit           which children of a node a ray enters
+//   box_test           box_unit: which children of a node a ray enters
 //   leaf_walk          the triangles of the leaves among them
 //   triangle_test      set_up_unit: a triangle's record, seen from the ray's origin; hit_test_pipeline: hit,
 //                      miss or doubt, t, P
@@ -21,7 +21,8 @@
 //                than 2**result_t_error_o numbers), P as the pipeline has it, and how many tests there were
 //
 // Memory: reads of lines by number, valid/ready, each with a tag. Lines come back with it, in any order,
-// valid/ready. Some are asked for because they may be needed: reading_o may be high when the last ray has ended.
+// valid/ready. Some are asked for because they may be needed soon: reading_o may be high when the last ray has
+// ended. Memory may change, and invalidate_i be high then, while no ray is here and reading_o is low.
 //
 // Throughput: a node and a triangle a clock, out of the caches; a line a clock of what they lack.
 module ray_core #(
@@ -42,7 +43,7 @@ module ray_core #(
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic                    invalidate_i,  // memory has changed; only while no ray is here, and not reading_o
+  input  logic                    invalidate_i,  // memory has changed: see above
   output logic                    reading_o,
   // rays
   input  logic                    ray_valid_i,
@@ -84,63 +85,67 @@ module ray_core #(
   localparam int unsigned Children = ray_core_pkg::Children;
   localparam int unsigned PlaneErrorWidth = set_up_pkg::PlaneErrorWidth;
 
-  // ---- The table: what is known of a ray from its beginning
+  // ---- The table
 
-  localparam int unsigned InWidth = 96 + 96 + 31 + 32 + AddressWidth + 1 + 1 + 32;
-
-  logic [95:0] origins[Rays];
-  logic [95:0] directions[Rays];
-  logic [95:0] inverses[Rays];
-  logic [31:0] ignored[Rays];
-  logic [31:0] tags[Rays];
-  logic [Rays-1:0] every_box_q;
-
-  logic start_valid, start_taken, ending;
-  logic [RayWidth-1:0] slot, ending_slot;
-  logic [95:0] origin, direction, inverse;
-  logic [31:0] start_ignored, start_tag;
+  logic start_valid, start_taken, ending, node_every_box;
+  logic [RayWidth-1:0]
+    slot, ending_slot, node_line_ray, box_ray, triangle_line_ray, set_ray, result_ray;
+  logic [31:0] ending_tag, box_tag, result_tag, ignored;
+  logic [95:0] node_origin, node_inverse, triangle_origin, direction;
+  ray_core_pkg::ray_t ray;
   logic [30:0] start_limit;
   logic [AddressWidth-1:0] start_line;
-  logic start_any_hit, start_every_box;
+  logic start_any_hit;
 
-  ray_intake #(
+  assign ray = {
+    ray_origin_i,
+    ray_direction_i,
+    ray_limit_i,
+    ray_ignored_i,
+    ray_start_i,
+    ray_any_hit_i,
+    ray_every_box_i,
+    ray_tag_i
+  };
+
+  ray_table #(
     .Rays(Rays),
-    .Width(InWidth),
     .Arith(Arith),
     .Adder(Adder)
-  ) u_intake (
+  ) u_table (
     .clk_i,
     .rst_ni,
     .valid_i(ray_valid_i),
     .ready_o(ray_ready_o),
-    .direction_i(ray_direction_i),
-    .ray_i({ray_origin_i, ray_direction_i, ray_limit_i, ray_ignored_i, ray_start_i, ray_any_hit_i,
-            ray_every_box_i, ray_tag_i}),
-    .free_valid_i(ending),
-    .free_slot_i(ending_slot),
+    .ray_i(ray),
     .start_valid_o(start_valid),
     .start_slot_o(slot),
-    .start_inverse_o(inverse),
-    .start_ray_o({origin, direction, start_limit, start_ignored, start_line, start_any_hit,
-                  start_every_box, start_tag}),
-    .start_taken_i(start_taken)
+    .start_limit_o(start_limit),
+    .start_line_o(start_line),
+    .start_any_hit_o(start_any_hit),
+    .start_taken_i(start_taken),
+    .ending_i(ending),
+    .ending_slot_i(ending_slot),
+    .ending_tag_o(ending_tag),
+    .node_slot_i(node_line_ray),
+    .node_origin_o(node_origin),
+    .node_inverse_o(node_inverse),
+    .node_every_box_o(node_every_box),
+    .box_slot_i(box_ray),
+    .box_tag_o(box_tag),
+    .triangle_slot_i(triangle_line_ray),
+    .triangle_origin_o(triangle_origin),
+    .triangle_ignored_o(ignored),
+    .direction_slot_i(set_ray),
+    .direction_o(direction),
+    .result_slot_i(result_ray),
+    .result_tag_o(result_tag)
   );
-
-  always_ff @(posedge clk_i) begin
-    if (start_taken) begin
-      origins[slot]     <= origin;
-      directions[slot]  <= direction;
-      inverses[slot]    <= inverse;
-      ignored[slot]     <= start_ignored;
-      tags[slot]        <= start_tag;
-      every_box_q[slot] <= start_every_box;
-    end
-  end
 
   // ---- Walk
 
   logic box_valid, walk_ended, leaf_ended, leaf_crowded, node, soon, rest_valid, rest_taken;
-  logic [RayWidth-1:0] box_ray, walk_ray, leaf_ray, node_ray;
+  logic [RayWidth-1:0] walk_ray, leaf_ray, node_ray;
   logic [31:0] rest_tag;
   logic [GroupWidth-1:0] box_group;
   logic [Children-1:0] box_inner, box_leaf;
@@ -161,7 +166,7 @@ module ray_core #(
     .start_taken_o(start_taken),
     .box_valid_i(box_valid),
     .box_ray_i(box_ray),
-    .box_tag_i(tags[box_ray]),
+    .box_tag_i(box_tag),
     .box_group_i(box_group),
     .box_inner_i(box_inner),
     .held_i(held),
@@ -209,7 +214,6 @@ module ray_core #(
   // ---- Memory
 
   logic node_here, triangle_here, tests_allowed;
-  logic [RayWidth-1:0] node_line_ray, triangle_line_ray;
   logic [LineWidth-1:0] node_words;
   logic [ray_core_pkg::TriangleWidth-1:0] triangle_words;
 
@@ -251,42 +255,31 @@ module ray_core #(
   // ---- Boxes
 
   logic [30:0] box_limit;
-  logic [ray_core_pkg::BoxLatency-1:0] boxing_q;
 
-  box_unit #(
+  box_test #(
+    .Rays(Rays),
     .Arith(Arith),
     .Adder(Adder)
   ) u_boxes (
     .clk_i,
+    .rst_ni,
+    .valid_i(node_here),
+    .slot_i(node_line_ray),
     .node_i(node_words),
-    .origin_i(origins[node_line_ray]),
-    .inverse_i(inverses[node_line_ray]),
+    .origin_i(node_origin),
+    .inverse_i(node_inverse),
     .limit_i(box_limit),
-    .every_box_i(every_box_q[node_line_ray]),
+    .every_box_i(node_every_box),
+    .valid_o(box_valid),
+    .slot_o(box_ray),
     .group_o(box_group),
     .inner_o(box_inner),
     .leaf_o(box_leaf)
   );
-  delay_line #(
-    .Width(RayWidth),
-    .Depth(ray_core_pkg::BoxLatency)
-  ) u_box_ray (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i(node_line_ray),
-    .data_o(box_ray)
-  );
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) boxing_q <= '0;
-    else boxing_q <= {boxing_q[ray_core_pkg::BoxLatency-2:0], node_here};
-  end
-  assign box_valid = boxing_q[ray_core_pkg::BoxLatency-1];
 
   // ---- Tests
 
   logic over, found, doubt, point_valid, result_ignored;
-  logic [RayWidth-1:0] set_ray, result_ray;
   logic [31:0] t, result_triangle;
   logic [hit_test_pkg::TErrorWidth-1:0] t_error;
   logic [PlaneErrorWidth-1:0] normal_error, distance_error;
@@ -302,10 +295,10 @@ module ray_core #(
     .valid_i(triangle_here),
     .slot_i(triangle_line_ray),
     .triangle_i(triangle_words),
-    .origin_i(origins[triangle_line_ray]),
-    .ignored_i(ignored[triangle_line_ray]),
+    .origin_i(triangle_origin),
+    .ignored_i(ignored),
     .direction_slot_o(set_ray),
-    .direction_i(directions[set_ray]),
+    .direction_i(direction),
     .closed_o(over),
     .slot_o(result_ray),
     .triangle_o(result_triangle),
@@ -344,7 +337,7 @@ module ray_core #(
     .tests_allowed_o(tests_allowed),
     .result_i(over),
     .result_ray_i(result_ray),
-    .result_tag_i(tags[result_ray]),
+    .result_tag_i(result_tag),
     .result_triangle_i(result_triangle),
     .result_ignored_i(result_ignored),
     .result_doubt_i(doubt),
@@ -392,7 +385,7 @@ module ray_core #(
     .busy_i(walking | held | testing),
     .ending_o(ending),
     .ending_slot_o(ending_slot),
-    .ending_tag_i(tags[ending_slot]),
+    .ending_tag_i(ending_tag),
     .ending_found_i(end_found),
     .ending_triangle_i(end_triangle),
     .ending_t_i(end_t),

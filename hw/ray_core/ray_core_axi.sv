@@ -83,7 +83,8 @@ module ray_core_axi #(
 );
 
   localparam int unsigned TagWidth = 1 + $clog2(
-      NodeLines > TriangleLines ? NodeLines : TriangleLines);
+    NodeLines > TriangleLines ? NodeLines : TriangleLines
+  );
   localparam logic [30:0] Infinity = 31'h7f80_0000;
   localparam logic [31:0] NoTriangle = 32'hffff_ffff;
 

@@ -69,6 +69,19 @@ package ray_core_pkg;
   localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
   localparam int unsigned PlaceWidth = 36;  // of planes, two's complement
 
+  // ---- A ray, as it comes
+
+  typedef struct packed {
+    logic [95:0]             origin;     // binary32, x lowest
+    logic [95:0]             direction;
+    logic [30:0]             limit;
+    logic [31:0]             ignored;
+    logic [AddressWidth-1:0] start;
+    logic                    any_hit;
+    logic                    every_box;
+    logic [31:0]             tag;
+  } ray_t;
+
   // ---- Results: what the core says of a ray
 
   typedef enum logic [1:0] {

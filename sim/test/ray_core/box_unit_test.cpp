@@ -1,5 +1,5 @@
 // box_unit against its reference, bit for bit, a node in every clock.
-// Tests: box_axis, box_child, box_group, grid_way, add_subtract, largest, sort_seven
+// Tests: box_axis, box_child, box_group, box_scale, grid_way, add_subtract, largest, sort_seven
 #include <gtest/gtest.h>
 
 #include <deque>
