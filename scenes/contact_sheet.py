@@ -17,6 +17,7 @@ import tempfile
 
 from PIL import Image, ImageDraw
 
+import making
 from make_sphere import icosphere
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -118,7 +119,7 @@ def main() -> None:
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("models", type=pathlib.Path, nargs="*", help="default: those at hand")
     parser.add_argument("--size", default="320x240", help="of each picture (320x240)")
-    parser.add_argument("--columns", type=int, default=5)
+    parser.add_argument("--columns", type=making.at_least(1), default=5)
     parser.add_argument("--options", default="", help="more of ./render")
     asked = parser.parse_args()
     size = tuple(int(side) for side in asked.size.split("x"))
@@ -136,4 +137,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

@@ -5,6 +5,8 @@ import argparse
 import math
 import pathlib
 
+import making
+
 MATERIALS = """\
 newmtl floor
 Kd 0.7 0.66 0.6
@@ -36,7 +38,7 @@ def write_block(file, first, centre, turned, half, low, high):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("output", type=pathlib.Path, help="the OBJ file; the MTL file goes beside it")
-    parser.add_argument("--columns", type=int, default=12)
+    parser.add_argument("--columns", type=making.at_least(1), default=12)
     options = parser.parse_args()
 
     materials = options.output.with_suffix(".mtl")
@@ -55,4 +57,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

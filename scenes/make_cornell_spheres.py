@@ -3,6 +3,7 @@
 import argparse
 import pathlib
 
+import making
 from make_sphere import icosphere, write_faces, write_normals, write_vertices
 
 MATERIALS = """
@@ -53,4 +54,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

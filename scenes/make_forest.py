@@ -11,6 +11,8 @@ import math
 import pathlib
 import random
 
+import making
+
 GROUND = """\
 newmtl ground
 Kd 0.3 0.26 0.14
@@ -168,8 +170,8 @@ def places(count, rng):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("output", type=pathlib.Path, help="the ground's OBJ; all else beside it")
-    parser.add_argument("--trees", type=int, default=10_000)
-    parser.add_argument("--triangles", type=int, default=100_000, help="of a tree; even")
+    parser.add_argument("--trees", type=making.at_least(1), default=10_000)
+    parser.add_argument("--triangles", type=making.at_least(2), default=100_000, help="of a tree; even")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
 
@@ -196,4 +198,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

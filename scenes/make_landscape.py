@@ -9,6 +9,8 @@ import argparse
 import pathlib
 import random
 
+import making
+
 MATERIAL = """\
 newmtl ground
 Kd 0.45 0.4 0.3
@@ -46,7 +48,7 @@ def landscape(cells, seed):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("output", type=pathlib.Path)
-    parser.add_argument("--cells", type=int, default=448, help="along each side (default: 448)")
+    parser.add_argument("--cells", type=making.at_least(1), default=448, help="along each side (default: 448)")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
 
@@ -67,4 +69,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

@@ -4,6 +4,7 @@ import argparse
 import math
 import pathlib
 
+import making
 from make_columns import write_block
 from make_sphere import icosphere, write_faces, write_normals, write_vertices
 
@@ -53,8 +54,8 @@ def places(strings, lanterns):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("output", type=pathlib.Path, help="the OBJ file; the MTL file goes beside it")
-    parser.add_argument("--strings", type=int, default=24)
-    parser.add_argument("--lanterns", type=int, default=42, help="of each string")
+    parser.add_argument("--strings", type=making.at_least(1), default=24)
+    parser.add_argument("--lanterns", type=making.at_least(1), default=42, help="of each string")
     options = parser.parse_args()
 
     materials = options.output.with_suffix(".mtl")
@@ -86,4 +87,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

@@ -5,6 +5,7 @@ import argparse
 import math
 import pathlib
 
+import making
 from make_sphere import icosphere, unit, write_faces, write_normals, write_vertices
 
 COLUMNS = 5
@@ -83,4 +84,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

@@ -6,6 +6,8 @@ Vertices are shared, so the mesh is watertight; 20 * 4**fineness triangles.
 import argparse
 import math
 
+import making
+
 
 def icosphere(fineness):
     """Unit vectors and counter-clockwise triangles of indices (from 0) of the sphere."""
@@ -97,4 +99,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

@@ -8,6 +8,7 @@ import argparse
 import math
 import pathlib
 
+import making
 from make_sphere import icosphere, unit, write_faces, write_normals, write_vertices
 
 MATERIALS = """\
@@ -90,4 +91,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

@@ -9,6 +9,7 @@ import pathlib
 import struct
 import zlib
 
+import making
 from make_sphere import icosphere, unit, write_faces, write_normals, write_vertices
 
 MATERIALS = """\
@@ -135,4 +136,4 @@ def write_globe(file, vertices, triangles, first, first_uv):
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

@@ -9,6 +9,8 @@ lid does not quite touch the rim, handle and spout go through the wall.
 import argparse
 import math
 
+import making
+
 # The round parts: rows of (radius, height); four rows make a ring of four patches. A row's
 # control points in a quadrant are (r, 0), (r, q), (q, r), (0, r), with q = 0.56 r
 # (but in the lid's first row, where Newell had 0.45 for 0.448).
@@ -152,4 +154,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    making.run(main)

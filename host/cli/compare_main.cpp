@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -59,6 +60,7 @@ struct CompareOptions {
   std::string picture, reference, difference;
   std::vector<std::string> thresholds;
   std::string channels = "R,G,B";
+  std::string scale_text;
   double scale = 0.0;  ///< of the difference picture; 0: up to its largest difference
   bool json = false;
 };
@@ -154,6 +156,9 @@ int compare_files(const CompareOptions& options) {
     const std::filesystem::path outputs[] = {options.difference};
     const std::filesystem::path inputs[] = {options.picture, options.reference};
     require_others(outputs, inputs);
+    if (std::filesystem::path(options.difference).extension() != ".png") {
+      fail_value("--difference", options.difference, "FILE.png");
+    }
     require_writable(options.difference);
   }
   const std::vector<std::string> names = channel_names(options.channels);
@@ -173,6 +178,17 @@ int compare_files(const CompareOptions& options) {
   return exceeded.empty() ? 0 : kTooFar;
 }
 
+/// Of the picture of differences.
+void check_scale(CompareOptions& options) {
+  if (options.scale_text.empty()) return;
+  const auto scale = parse_number<double>(options.scale_text);
+  if (!scale || !std::isfinite(*scale) || *scale <= 0.0) {
+    fail_value("--scale", options.scale_text, "a number above 0");
+  }
+  if (options.difference.empty()) throw InputError("--scale: expected --difference beside it");
+  options.scale = *scale;
+}
+
 int run(int argc, char** argv) {
   CompareOptions options;
   CLI::App app("", "compare");
@@ -180,7 +196,7 @@ int run(int argc, char** argv) {
   app.add_option("REFERENCE", options.reference);
   app.add_option("--threshold", options.thresholds)->allow_extra_args(false);
   app.add_option("--difference", options.difference);
-  app.add_option("--scale", options.scale)->check(CLI::PositiveNumber);
+  app.add_option("--scale", options.scale_text);
   app.add_option("--channels", options.channels);
   app.add_flag("--json", options.json);
   const std::string information =
@@ -190,6 +206,7 @@ int run(int argc, char** argv) {
     return 0;
   }
   if (options.reference.empty()) throw InputError("expected PICTURE and REFERENCE (see --help)");
+  check_scale(options);
   return compare_files(options);
 }
 

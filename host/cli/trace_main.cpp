@@ -105,6 +105,12 @@ TraceOptions parse(const std::vector<std::string>& words) {
         "--hits", hits, {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
   }
   options.engine = parse_engine_options(engine, {.engine = Engine::kCpu});
+  for (const auto& [name, value] :
+       {std::pair{"--unit", engine.unit}, {"--arith", engine.arith}, {"--lanes", engine.lanes}}) {
+    if (options.engine.engine == Engine::kCpu && !value.empty()) {
+      fail_value(name, value, "--engine rtl, model or check beside it");
+    }
+  }
   const auto names = columns.empty() ? std::vector<std::string>() : split_at_commas(columns);
   options.columns = columns_of(names, options.hits, options.engine.engine == Engine::kCpu, "--");
   return options;

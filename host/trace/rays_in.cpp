@@ -274,6 +274,8 @@ RaysIn::RaysIn(const std::filesystem::path& file, const glm::dvec3& scene_origin
   auto bytes = std::make_unique<Bytes>(file);
   if (bytes->peek(kMagic.size()).starts_with(kMagic)) {
     source_ = std::make_unique<NpySource>(std::move(bytes));
+  } else if (file.extension() == ".npy") {
+    throw InputError(file.string() + ": not a NumPy array: it does not begin as one");
   } else {
     source_ = std::make_unique<CsvSource>(std::move(bytes));
   }

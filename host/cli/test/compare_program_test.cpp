@@ -86,7 +86,12 @@ TEST_F(ComparePictures, WhatCannotBeComparedIsRefused) {
             std::string::npos);
   expect_refused({"a.exr", "b.exr", "--threshold", "mse"}, "--threshold: expected ");
   expect_refused({"a.exr", "crop.exr", "--threshold", "ssim=1"}, "--threshold: ssim needs ");
-  expect_refused({"a.exr", "b.exr", "--scale", "-1"}, "--scale: ");
+  for (const char* scale : {"-1", "0", "nan", "inf", "x"}) {
+    expect_refused({"a.exr", "b.exr", "--difference", "d.png", "--scale", scale},
+                   "--scale: expected a number above 0");
+  }
+  expect_refused({"a.exr", "b.exr", "--scale", "1"}, "--scale: expected --difference beside it");
+  expect_refused({"a.exr", "b.exr", "--difference", "d"}, "--difference: expected FILE.png");
   expect_refused({"a.exr", "b.exr", "--difference", "none/d.png"}, "none/d.png: cannot write: ");
   expect_refused({"a.exr", "b.exr", "c.exr"}, "");
   expect_refused({"a.exr"}, "");

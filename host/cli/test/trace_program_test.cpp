@@ -129,6 +129,10 @@ TEST_F(TraceRays, RefusesWhatItCannotDo) {
   expect_refused({"sheets.obj", "rays.csv", "--hits", "all", "--engine", "rtl"},
                  "--engine: expected cpu with --hits all");
   expect_refused({"sheets.obj", "rays.csv", "more"}, "more: a third file");
+  expect_refused({"sheets.obj", "rays.csv", "--unit", "core"},
+                 "--unit: expected --engine rtl, model or check beside it, got 'core'");
+  folder_.write("empty.npy", "");
+  expect_refused({"sheets.obj", "empty.npy"}, "empty.npy: not a NumPy array");
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 import argparse
 import pathlib
+import shlex
 import shutil
 import statistics
+import subprocess
 import sys
 
 from host.lab.report import (adaptive, bench, bench_report, compare, core_report, document, growth, shares, stages,
@@ -214,6 +216,13 @@ def main() -> int:
                 "trace": run_trace}
     try:
         return commands[given.command](given)
+    except subprocess.CalledProcessError as error:  # which has said why, or had its standard error kept
+        print(f"{error.stderr or ''}error: {shlex.join(map(str, error.cmd))}: ended with status {error.returncode}",
+              file=sys.stderr)
+        return 2
+    except FileNotFoundError as error:
+        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
     except (OSError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
