@@ -101,6 +101,16 @@ def stack_keeps_nodes() -> tuple[dict, bool]:
                  f"{{{memories}}}")
 
 
+def hits_keep_nearest() -> tuple[dict, bool]:
+    """ray_hits keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
+    wires = "found_q any_hit_q replace u_doubts.push_i u_doubts.data_i *.count_q u_points.read_q u_points.write_q"
+    memories = ("limits 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 points 2 96 tests 2 16 "
+                "counts 2 10 u_points.words 2 2")
+    return holds("hits_keep_nearest", "Bitwuzla", cores.used("ray_hits", cores.files("ray_core")), "open.tcl",
+                 steps=1, reach=8,
+                 prepared=f"ray_hits {{-chparam Rays 2 -chparam InFlight 2}} {{{wires}}} {{{memories}}}")
+
+
 def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
     """What is claimed of a cell of hw/ray_core."""
     return holds(top, "Bitwuzla", cores.used(cell, cores.files("ray_core")), steps=steps)
@@ -178,6 +188,8 @@ ALL = [
           slots_answer_once),
     Proof("unit.stack", "a node on a ray's stack is asked for once, unless it is beyond the limit", "Bitwuzla",
           stack_keeps_nodes, False),
+    Proof("unit.hits", "a ray's nearest hit is kept, what may be nearer is a doubt, once; tests are counted",
+          "Bitwuzla", hits_keep_nearest),
     Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
           functools.partial(of_ray_core, "sort_seven_sorts", "sort_seven", 2)),
     Proof("unit.pick", "the first request from a place on is picked", "Bitwuzla",

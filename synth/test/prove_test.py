@@ -1,12 +1,12 @@
 """A proof refuses what is broken: a wrong wire in an array's lane, a counter that misses events, two
-results' places exchanged."""
+results' places exchanged, a hit that is forgotten."""
 
 import pathlib
 import tempfile
 import unittest
 import unittest.mock
 
-from synth import catalogue, store, tools, unit_proofs
+from synth import catalogue, cores, store, tools, unit_proofs
 
 LANES = [(".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])"),
          (".ready_i(ready_i[n])", ".ready_i(ready_i[Lanes-1-n])"),
@@ -14,23 +14,29 @@ LANES = [(".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])
          ("count_q + increment", "count_q | increment")]
 RESULTS = [(".data_o({report_o, closed_o, found_o", ".data_o({report_o, found_o, closed_o"),
            (".push_i(report != hit_test_pkg::ReportNone | closed", ".push_i(closed")]
+HITS = [("(low <= limit)", "(low < limit)"),
+        ("(old_low <= high)", "(old_low < high)"),
+        ("old_open ? nearest_triangle[result_ray_i] : result_triangle_i",
+         "open ? result_triangle_i : nearest_triangle[result_ray_i]"),
+        (".data_i({result_ray_i, replace})", ".data_i({result_ray_i, hit})"),
+        ("if (test_i && !same) counts", "if (test_i) counts")]
 
 
 class ProofsRefuseFaults(unittest.TestCase):
     def refuse(self, module, faults, proof):
-        sound = catalogue.HW / "hit_test" / f"{module}.sv"
-        around = unit_proofs.around
+        sound = next(catalogue.HW.glob(f"*/{module}.sv"))
+        files = cores.files
         for before, after in faults:
             self.assertEqual(sound.read_text().count(before), 1, before)
             with self.subTest(after), tempfile.TemporaryDirectory() as folder:
                 broken = pathlib.Path(folder) / sound.name
                 broken.write_text(sound.read_text().replace(before, after))
 
-                def with_fault(*names, broken=broken):
-                    return [broken if file == sound else file for file in around(*names)]
+                def with_fault(core, broken=broken):
+                    return [broken if file == sound else file for file in files(core)]
 
                 with (unittest.mock.patch.object(store, "OUT", pathlib.Path(folder)),
-                      unittest.mock.patch.object(unit_proofs, "around", with_fault),
+                      unittest.mock.patch.object(cores, "files", with_fault),
                       self.assertRaisesRegex(tools.ToolFailed, r": sat: \$assert")):
                     proof()
 
@@ -39,6 +45,9 @@ class ProofsRefuseFaults(unittest.TestCase):
 
     def test_of_the_results_places(self):
         self.refuse("hit_test_pipeline", RESULTS, lambda: unit_proofs.queues_results("binary16", 5, 10))
+
+    def test_of_a_rays_hits(self):
+        self.refuse("ray_hits", HITS, unit_proofs.hits_keep_nearest)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,323 @@
+// What tests say of a ray, whatever they say and whenever, from reset and for ever: no sure hit is lost in silence. A hit is
+// kept, or was told as a doubt, once, or it is farther, by both its error and the kept one's, than the limit, which
+// is the least upper bound of all hits so far and the user's limit. What has no verdict is told as a doubt, once. P and t
+// are the kept hit's. Tests on their way are counted rightly, and there is room for the doubts of all of them.
+// opened_ray_hits is ray_hits of two rays with its registers and memories as outputs; that its queues keep order is fifo_keeps_order's.
+module hits_keep_nearest #(
+  localparam int unsigned Rays     = 2,
+  localparam int unsigned InFlight = 2,
+  localparam int unsigned Depth    = InFlight + 16,
+  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
+  localparam int unsigned TestsWidth  = ray_core_pkg::TestsWidth
+) (
+  input logic        clk,
+  input logic        load,
+  input logic        load_ray,
+  input logic [30:0] load_limit,
+  input logic        load_any_hit,
+  input logic        test,
+  input logic        test_ray,
+  input logic        enter,  // a test goes into the pipeline, which holds InFlight
+  input logic        result,
+  input logic        result_ray,
+  input logic [31:0] result_triangle,
+  input logic        result_ignored,
+  input logic        result_doubt,
+  input logic        result_hit,
+  input logic [31:0] result_t,
+  input logic [3:0]  result_t_error,
+  input logic [3:0]  result_normal_error,
+  input logic [3:0]  result_distance_error,
+  input logic        point_valid,
+  input logic        walk_ray,
+  input logic        leaf_ray,
+  input logic        box_ray,
+  input logic        doubt_taken,
+  input logic        end_ray,
+  input logic        point_ray,
+  input logic        choose  // the hit told now is the one that is watched
+);
+
+  localparam logic [31:0] Infinity = 32'h7f80_0000;
+
+  logic reset_n;  // low for the first clock
+  initial reset_n = 1'b0;
+  always_ff @(posedge clk) reset_n <= 1'b1;
+
+  (* anyseq *) logic [95:0] point;
+  (* anyseq *) logic [31:0] load_tag;
+
+  logic tests_allowed, walk_ended, leaf_ended, crowded, doubt_valid, end_found, near_tie;
+  logic [30:0] walk_limit, leaf_limit, box_limit;
+  logic [Rays-1:0] testing, found_q, any_hit_q;
+  logic [31:0] result_tag, end_triangle, end_t;
+  logic [TErrorWidth-1:0] end_t_error;
+  logic [TestsWidth-1:0] end_tests;
+  logic [95:0] end_point;
+  logic replace, push, doubts_space, doubts_valid, points_read, points_write;
+  logic [63:0] pushed;
+  logic [4:0] doubts;
+  logic [1:0] points_count;
+  logic [Rays*31-1:0] limits;
+  logic [Rays*32-1:0] nearest_t, nearest_triangle;
+  logic [Rays*TErrorWidth-1:0] nearest_error;
+  logic [Rays*96-1:0] points;
+  logic [Rays*10-1:0] counts;
+  logic [Rays*TestsWidth-1:0] tests;
+  logic [InFlight*2-1:0] points_words;
+
+  opened_ray_hits dut (
+    .clk_i(clk),
+    .rst_ni(reset_n),
+    .load_i(load),
+    .load_ray_i(load_ray),
+    .load_limit_i(load_limit),
+    .load_any_hit_i(load_any_hit),
+    .test_i(test),
+    .test_ray_i(test_ray),
+    .tests_allowed_o(tests_allowed),
+    .result_i(result),
+    .result_ray_i(result_ray),
+    .result_tag_i(result_tag),
+    .result_triangle_i(result_triangle),
+    .result_ignored_i(result_ignored),
+    .result_doubt_i(result_doubt),
+    .result_hit_i(result_hit),
+    .result_t_i(result_t),
+    .result_t_error_i(result_t_error),
+    .result_normal_error_i(result_normal_error),
+    .result_distance_error_i(result_distance_error),
+    .point_valid_i(point_valid),
+    .point_i(point),
+    .walk_ray_i(walk_ray),
+    .walk_limit_o(walk_limit),
+    .walk_ended_o(walk_ended),
+    .leaf_ray_i(leaf_ray),
+    .leaf_limit_o(leaf_limit),
+    .leaf_ended_o(leaf_ended),
+    .leaf_crowded_o(crowded),
+    .box_ray_i(box_ray),
+    .box_limit_o(box_limit),
+    .testing_o(testing),
+    .doubt_valid_o(doubt_valid),
+    .doubt_taken_i(doubt_taken),
+    .end_ray_i(end_ray),
+    .end_found_o(end_found),
+    .end_triangle_o(end_triangle),
+    .end_t_o(end_t),
+    .end_t_error_o(end_t_error),
+    .end_tests_o(end_tests),
+    .point_ray_i(point_ray),
+    .point_o(end_point),
+    .near_tie_o(near_tie),
+    .found_q(found_q),
+    .any_hit_q(any_hit_q),
+    .replace(replace),
+    .\u_doubts.push_i (push),
+    .\u_doubts.data_i (pushed),
+    .\u_doubts.count_q (doubts),
+    .\u_points.read_q (points_read),
+    .\u_points.write_q (points_write),
+    .\u_points.count_q (points_count),
+    .limits(limits),
+    .nearest_t(nearest_t),
+    .nearest_error(nearest_error),
+    .nearest_triangle(nearest_triangle),
+    .points(points),
+    .tests(tests),
+    .counts(counts),
+    .u_points_words(points_words)
+  );
+
+  // ---- What the user promises
+
+  logic [Rays-1:0] loaded, any_hit;
+  logic [11:0] flight_0, flight_1;  // a ray's tests on their way
+  logic [TestsWidth-1:0] made_0, made_1;  // its tests
+  logic [31:0] tag_0, tag_1;
+  logic [30:0] user_0, user_1;  // its limit at first
+  logic [2:0] flying;  // tests in the pipeline
+
+  assign result_tag = result_ray ? tag_1 : tag_0;
+  always_ff @(posedge clk) begin
+    if (!reset_n) begin
+      loaded <= '0;
+      flying <= '0;
+      flight_0 <= '0;
+      flight_1 <= '0;
+    end else begin
+      flying <= flying + 3'(enter) - 3'(result);
+      flight_0 <= flight_0 + 12'(test && !test_ray) - 12'(result && !result_ray);
+      flight_1 <= flight_1 + 12'(test && test_ray) - 12'(result && result_ray);
+      made_0 <= made_0 + TestsWidth'(test && !test_ray);
+      made_1 <= made_1 + TestsWidth'(test && test_ray);
+      if (load) begin
+        loaded[load_ray] <= 1'b1;
+        any_hit[load_ray] <= load_any_hit;
+        if (load_ray) begin
+          tag_1 <= load_tag;
+          user_1 <= load_limit;
+          made_1 <= '0;
+        end else begin
+          tag_0 <= load_tag;
+          user_0 <= load_limit;
+          made_0 <= '0;
+        end
+      end
+    end
+  end
+
+  always_comb begin
+    if (reset_n) begin
+      assume (!load || ((load_ray ? flight_1 : flight_0) == '0 && load_limit <= Infinity[30:0]
+                        && !(test && test_ray == load_ray)));
+      assume (!test || (loaded[test_ray] && test_ray == leaf_ray && !crowded));
+      assume (!enter || (tests_allowed && (flying < 3'(InFlight) || result)));
+      assume (!result || ((result_ray ? flight_1 : flight_0) != '0 && flying != '0));
+      assume (!(result_hit && result_doubt) && result_t <= Infinity);
+      assume (!(result && result_hit) || points_count < 2'(InFlight) || point_valid);
+      assume (!point_valid || points_count != '0);
+      assume (!doubt_taken || doubt_valid);
+    end else begin
+      assume (!load && !test && !enter && !result && !point_valid && !doubt_taken);
+    end
+  end
+
+  // ---- This clock's result
+
+  logic good, sure, vague;  // a hit within an error, or neither hit nor miss
+  logic [TErrorWidth-1:0] t_error;
+  assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_t_error), result_normal_error);
+  assign t_error = set_up_pkg::t_error_exponent(TErrorWidth'(result_t_error), result_normal_error,
+                                                result_distance_error);
+  assign sure  = result && !result_ignored && result_hit && good;
+  assign vague = result && !result_ignored && (result_doubt || (result_hit && !good));
+
+  // Exact bounds
+  logic signed [33:0] low, high;
+  assign low  = $signed({2'b00, result_t}) - $signed(34'd1 << t_error);
+  assign high = $signed({2'b00, result_t}) + $signed(34'd1 << t_error);
+
+  // ---- The watched hit
+
+  localparam logic [1:0] Nowhere = 2'd0, Kept = 2'd1, Told = 2'd2, Beyond = 2'd3;
+  logic [1:0] state;
+  logic w_ray, has_point, w_place;
+  logic [31:0] w_t, w_triangle;
+  logic [TErrorWidth-1:0] w_error;
+  logic [95:0] w_point;
+  logic signed [33:0] w_low, w_high;
+  logic [30:0] w_limit;  // of its ray
+  logic ousted;
+  initial state = Nowhere;
+
+  assign w_limit = w_ray ? limits[61:31] : limits[30:0];
+  assign ousted  = state == Kept && result && result_ray == w_ray && replace;
+
+  always_ff @(posedge clk) begin
+    if (!reset_n) begin
+      state <= Nowhere;
+    end else if (state == Nowhere) begin
+      if (sure && choose) begin
+        state <= replace ? Kept : push ? Told : Beyond;
+        w_ray <= result_ray;
+        w_t <= result_t;
+        w_error <= t_error;
+        w_triangle <= result_triangle;
+        w_low <= low;
+        w_high <= high > $signed({2'b00, Infinity}) ? $signed({2'b00, Infinity}) : high;
+        has_point <= 1'b0;
+        w_place <= points_write;
+      end
+    end else begin
+      if (load && load_ray == w_ray) state <= Nowhere;
+      else if (ousted) state <= push ? Told : Beyond;
+      if (point_valid && !has_point && points_read == w_place) begin
+        has_point <= 1'b1;
+        w_point <= point;
+      end
+    end
+  end
+
+  // ---- Claims
+
+  logic [1:0] behind;  // the word of the queue of hits that is behind the watched one's, or in front of it
+  assign behind = w_place ? points_words[1:0] : points_words[3:2];
+  logic [30:0] result_limit;
+  assign result_limit = result_ray ? limits[61:31] : limits[30:0];
+
+  always_comb begin
+    if (reset_n) begin
+      if (vague) assert (push && pushed == {result_tag, result_triangle} && !replace);
+      if (sure && !replace && push) assert (pushed == {result_tag, result_triangle});
+      if (sure && !replace && !push) assert (low > $signed({3'b000, result_limit}));
+      if (replace) assert (sure);
+      if (push) assert (vague || sure);
+      if (push && replace) assert (found_q[result_ray] && near_tie);
+      if (ousted && push) assert (pushed == {result_tag, w_triangle});
+      if (state == Beyond) assert (w_low > $signed({3'b000, w_limit}));
+      if (state != Nowhere) assert ($signed({3'b000, w_limit}) <= w_high);
+      if (state == Kept) begin
+        assert (found_q[w_ray] && $signed({3'b000, w_limit}) == w_high);
+        assert (nearest_t[32*w_ray+:32] == w_t && nearest_triangle[32*w_ray+:32] == w_triangle
+                && nearest_error[TErrorWidth*w_ray+:TErrorWidth] == w_error);
+        if (has_point) assert (points[96*w_ray+:96] == w_point);
+      end
+      assert (end_found == found_q[end_ray] && end_t == nearest_t[32*end_ray+:32]
+              && end_triangle == nearest_triangle[32*end_ray+:32]
+              && end_t_error == nearest_error[TErrorWidth*end_ray+:TErrorWidth]
+              && end_point == points[96*point_ray+:96]);
+      // The user's limit holds until a hit is kept
+      if (loaded[0]) assert (found_q[0] ? limits[30:0] < user_0 : limits[30:0] == user_0);
+      if (loaded[1]) assert (found_q[1] ? limits[61:31] < user_1 : limits[61:31] == user_1);
+      if (loaded[walk_ray]) begin
+        assert (walk_limit == (walk_ray ? limits[61:31] : limits[30:0])
+                && walk_ended == (found_q[walk_ray] && any_hit[walk_ray]));
+      end
+      if (loaded[leaf_ray]) begin
+        assert (leaf_limit == (leaf_ray ? limits[61:31] : limits[30:0])
+                && leaf_ended == (found_q[leaf_ray] && any_hit[leaf_ray]));
+      end
+      assert (box_limit == (box_ray ? limits[61:31] : limits[30:0]));
+      // Tests
+      assert (testing == {flight_1 != '0, flight_0 != '0});
+      if (loaded[0]) assert ({2'b00, counts[9:0]} == flight_0);
+      if (loaded[1]) assert ({2'b00, counts[19:10]} == flight_1);
+      assert (end_tests == tests[TestsWidth*end_ray+:TestsWidth]);
+      if (loaded[0]) assert (tests[TestsWidth-1:0] == made_0);
+      if (loaded[1]) assert (tests[2*TestsWidth-1:TestsWidth] == made_1);
+      // Room for doubts
+      assert ({1'b0, doubts} + 6'(flying) <= 6'(Depth));
+
+      // Invariants
+      assert (flying <= 3'(InFlight) && points_count <= 2'(InFlight));
+      assert (tests_allowed == (doubts < 5'(Depth - InFlight)) && doubt_valid == (doubts != '0));
+      assert ((points_write == points_read) == (points_count != 2'd1));
+      if (!loaded[0]) assert (flight_0 == '0);
+      if (!loaded[1]) assert (flight_1 == '0);
+      if (loaded[0]) assert (any_hit_q[0] == any_hit[0]);
+      if (loaded[1]) assert (any_hit_q[1] == any_hit[1]);
+      if (state != Nowhere) begin
+        assert (loaded[w_ray] && w_t <= Infinity);
+        assert (w_low == $signed({2'b00, w_t}) - $signed(34'd1 << w_error));
+        if (!has_point) assert (points_count == 2'd2 || (points_count == 2'd1 && w_place == points_read));
+      end
+      if (state == Kept) begin
+        if (!has_point) begin
+          assert (points_words[2*w_place+:2] == {w_ray, 1'b1});
+          if (points_count == 2'd2 && points_read == w_place) assert (behind != {w_ray, 1'b1});
+        end else begin
+          if (points_count == 2'd2) assert (behind != {w_ray, 1'b1} && points_words[2*w_place+:2] != {w_ray, 1'b1});
+          if (points_count == 2'd1) assert (points_words[2*points_read+:2] != {w_ray, 1'b1});
+        end
+      end
+
+      cover (state == Kept && has_point && end_ray == w_ray);
+      cover (ousted && push);
+      cover (ousted && !push);
+      cover (state == Beyond && doubts != '0);
+      cover (state == Told && end_found && end_ray == w_ray);
+    end
+  end
+
+endmodule
