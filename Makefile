@@ -75,10 +75,10 @@ soak: everything ## ten million tests of the pipelined unit with each number of 
 	@RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 
 COUNT ?= $(if $(QUICK),100,1000)
-mutate: ## single faults in cores and pipeline that the tests' vectors catch: make mutate [COUNT=1000 | QUICK=1]
+mutate: ## single faults in cores, pipeline and ray core that the tests' vectors catch: make mutate [COUNT=1000 | QUICK=1]
 	@$(SETUP) test
 	@cmake -S . -B build/mutate -G Ninja -DBUILD_TESTING=ON -DRAYGATE_MUTANTS=$(COUNT) >/dev/null
-	@cmake --build build/mutate -j $(JOBS) --target core_mutants
+	@cmake --build build/mutate -j $(JOBS) --target mutants
 	@python3 -m sim.mutate build/mutate --jobs $(JOBS)
 
 FUZZ_SECONDS ?= 60

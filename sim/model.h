@@ -26,8 +26,16 @@ inline std::unique_ptr<VerilatedContext> make_context() {
 template <class Top>
 class Model {
  public:
-  /// Verilator's first evaluation is the start: an edge of the clock in it would not count.
-  Model() { top_->eval(); }
+  /// Verilator's first evaluation is the start: an edge of the clock in it would not count. Of a
+  /// netlist with faults (sim/mutate) RAYGATE_MUTANT in the environment says which one it has.
+  Model() {
+    if constexpr (requires(Top top) { top.mutant; }) {
+      if (const char* fault = std::getenv("RAYGATE_MUTANT")) {
+        top_->mutant = static_cast<std::uint16_t>(std::strtoul(fault, nullptr, 10));
+      }
+    }
+    top_->eval();
+  }
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 

@@ -8,7 +8,8 @@
 #     parameters stand for; models that several programs use are built once.
 #
 #     PATCHES <folder>: modules found there are taken instead of those of hw/, to break them on purpose.
-#     NETLIST <file>: TOP is in that file, all of it, as Yosys wrote it.
+#     NETLIST <file>: TOP is in that file, as Yosys wrote it; what it instantiates and lacks is in hw/.
+#     AS <name>: its class is that of model <name>, V<name>, so that a program takes it in that one's place.
 #
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...] [RANDOM_RESETS <filter>])
 #     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest. RANDOM_RESETS: those
@@ -61,7 +62,7 @@ set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-SYNCASYNCNET -fno-const-bit-op-tree --ass
 set(RAYGATE_CHECKS ${CMAKE_SOURCE_DIR}/sim/checks)  # bindings.sv binds them to the modules of hw/
 
 function(raygate_model NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES;NETLIST" "PARAMETERS")
+  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES;NETLIST;AS" "PARAMETERS")
   if(NOT MODEL_TOP OR MODEL_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN] [SHARED], "
       "got ${ARGN}")
@@ -81,6 +82,9 @@ function(raygate_model NAME)
     message(FATAL_ERROR "raygate_model(${NAME}): no ${MODEL_TOP}.sv in hw/*/*.core or this folder")
   endif()
 
+  if(NOT MODEL_AS)
+    set(MODEL_AS ${NAME})
+  endif()
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.verilated)
   set(all ${dir}/all.cpp)  # includes all that Verilator wrote, whose names only it knows
   list(TRANSFORM MODEL_PARAMETERS PREPEND -G)
@@ -94,14 +98,14 @@ function(raygate_model NAME)
   if(MODEL_PATCHES)
     set(patches -y ${MODEL_PATCHES})
   endif()
-  add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${NAME}.h
+  add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${MODEL_AS}.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
     COMMAND ${VERILATOR_BIN} --cc -O3 --no-timing
       ${RAYGATE_VERILATOR_FLAGS} ${patches} ${RAYGATE_HW_FOLDERS} -y ${RAYGATE_CHECKS} ${open}
-      --prefix V${NAME} --Mdir ${dir} --make cmake --MMD
+      --prefix V${MODEL_AS} --Mdir ${dir} --make cmake --MMD
       --top-module ${MODEL_TOP} ${MODEL_PARAMETERS} ${RAYGATE_HW_PACKAGES}
       ${top_file} ${RAYGATE_CHECKS}/bindings.sv
-    COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${NAME} -P ${CMAKE_SOURCE_DIR}/sim/gather.cmake
+    COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${MODEL_AS} -P ${CMAKE_SOURCE_DIR}/sim/gather.cmake
     DEPENDS ${top_file} ${RAYGATE_HW_PACKAGES} ${RAYGATE_CHECKS}/bindings.sv
       ${CMAKE_SOURCE_DIR}/sim/gather.cmake
     DEPFILE ${dir}/all.d

@@ -1,20 +1,23 @@
 """`python3 -m sim.mutate BUILD`: how many single faults of the hardware the vectors of `make test` catch.
 
 For each core and the pipeline around them: a netlist with faults (netlist.py) runs the vectors with one
-fault after the other. A fault that survives is held against the sound netlist by ABC's equivalence check: one that changes no output
-for any input is no fault. What is left is listed, with its lines in hw/. `--one-in N`: only every N-th
-vector, which `make test` can spare the time for; the check is then that no more survive than
+fault after the other. The ray core and its units run their own tests, built with the netlist. A fault that
+survives is held against the sound netlist by ABC's equivalence check: one that changes no output for any
+input is no fault. What is left is listed, with its lines in hw/. `--one-in N`: only every N-th vector, but
+every test, which `make test` can spare the time for; the check is then that no more survive than
 `--at-most` percent."""
 
 import argparse
 import collections
 import concurrent.futures
 import dataclasses
+import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
+import time
 
 
 @dataclasses.dataclass
@@ -39,15 +42,19 @@ def run(command: list[object], **options: object) -> str:
 
 
 def equivalent(netlist: pathlib.Path, fault: str) -> bool:
-    """Whether the module in NETLIST.il gives the same outputs with this fault as without, by ABC within
-    20 s. False where that is not known."""
-    # Registers are cut open: their inputs must be the same functions too.
-    gates = ("memory_map; async2sync; dffunmap; expose -evert-dff; techmap; opt -fast; aigmap; opt_clean; "
-             "write_aiger")
+    """Whether the module in NETLIST.il gives the same outputs with this fault as without, by Yosys and ABC
+    within 20 s each. False where that is not known."""
+    # Registers, matched by their order, are cut open: their inputs must be the same functions too. So must those
+    # of the modules that the netlist is around.
+    gates = ("memory_map; async2sync; dffunmap; expose -evert; techmap; setundef -undriven -zero; opt_expr; "
+             "opt_merge; aigmap; opt_clean; write_aiger")
     with tempfile.TemporaryDirectory() as folder:
         mutate = re.sub(r" -ctrl mutant \d+ \d+", "", fault)
-        run(["yosys", "-q", "-p", f"read_rtlil {netlist}.il; {gates} {folder}/sound.aig; design -reset; "
-             f"read_rtlil {netlist}.il; {mutate}; {gates} {folder}/broken.aig"])
+        try:
+            run(["yosys", "-q", "-p", f"read_rtlil {netlist}.il; {gates} {folder}/sound.aig; design -reset; "
+                 f"read_rtlil {netlist}.il; {mutate}; {gates} {folder}/broken.aig"], timeout=20)
+        except subprocess.TimeoutExpired:
+            return False
         said = run(["yosys-abc", "-c", f"cec -T 20 {folder}/sound.aig {folder}/broken.aig"])
     return "Networks are equivalent" in said
 
@@ -60,13 +67,35 @@ def place(fault: str) -> str:
     return f"{file}:{line} {words['mode']} {words['port']}[{words['portbit']}]"
 
 
+def test_passes(program: pathlib.Path, fault: int, limit: float) -> bool:
+    """Whether a unit's test passes with this fault, within `limit` seconds; 0: without one."""
+    try:
+        return subprocess.run([program, "--gtest_fail_fast", "--gtest_throw_on_failure"], timeout=limit,
+                              env=os.environ | {"RAYGATE_MUTANT": str(fault)}, check=False,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
+    except subprocess.TimeoutExpired:
+        return False
+
+
+def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
+    """Those of so many faults with which a unit's test passes."""
+    begin = time.monotonic()
+    if not test_passes(program, 0, 3600):
+        raise ValueError(f"{program}: fails without a fault")
+    limit = 2 + 20 * (time.monotonic() - begin)
+    return [fault for fault in range(1, faults + 1) if test_passes(program, fault, limit)]
+
+
 def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, one_in: int,
           prove: bool) -> Outcome:
     """Runs a core's faults."""
     netlist = netlists / core
     faults = (netlists / f"{core}.list").read_text().splitlines()
-    program = programs / "core_mutants"
-    survived = [int(line) for line in run([program, core, f"{netlist}.list", one_in]).split()]
+    program, test = programs / "core_mutants", programs / f"{core}_mutants"
+    if test.exists():
+        survived, one_in = test_survivors(test, len(faults)), 1
+    else:
+        survived = [int(line) for line in run([program, core, f"{netlist}.list", one_in]).split()]
     outcome = Outcome(core, len(faults))
     if prove:
         same = {number for number in survived if equivalent(netlist, faults[number - 1])}
@@ -98,7 +127,7 @@ def main() -> int:
             outcomes = list(pool.map(
                 lambda core: judge(core, given.build / "sim", netlists, given.one_in or 100,
                                    not given.one_in), cores))
-    except (subprocess.CalledProcessError, FileNotFoundError) as error:
+    except (subprocess.CalledProcessError, FileNotFoundError, ValueError) as error:
         print(f"sim.mutate: {error}", file=sys.stderr)
         return 1
     print("| core | faults | caught | equivalent | survive |\n|---|---:|---:|---:|---:|")

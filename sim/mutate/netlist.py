@@ -16,6 +16,10 @@ from synth import cores
 
 # Yosys's other modes invert a bit where a neighbour is 0 or 1: two of those in one netlist make a loop.
 MODES = ("inv", "const0", "const1")
+# Nobody reads such a wire.
+UNUSED = re.compile(r"-wire \S*\bunused_")
+# Memories whose ports have clocks of their own, or asynchronous reads an enable, are not written as Verilog.
+NOT_WRITTEN = re.compile(r"mem(rd|wr)\S* -port \S*CLK\b|memrd\S* -port \S*EN\b")
 
 
 def yosys(script: str) -> None:
@@ -25,21 +29,25 @@ def yosys(script: str) -> None:
 
 
 def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int,
-          without: list[str]) -> int:
+          without: list[str], around: list[str]) -> int:
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults."""
     out.parent.mkdir(parents=True, exist_ok=True)
-    sources = " ".join(str(file) for file in
-                       dict.fromkeys(file for core in cores.names() for file in cores.files(core)))
-    chosen = " ".join(f"-chparam {name} {value}" for name, value in
-                      (text.split("=", 1) for text in parameters))
+    files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
+    sources = " ".join(str(file) for file in files if file.stem not in around)
+    ports = " ".join(str(file) for file in files if file.stem in around)
+    # `hierarchy -chparam` stops at modules with an unsized constant at a cell's port.
+    chosen = "".join(f"chparam -set {name} {value} $abstract\\{top}; " for name, value in
+                     (text.split("=", 1) for text in parameters))
     faults = out.with_suffix(".list")
     # Of the modes that Yosys chooses from three in five are of use here; outside of the cores, one fault in ten.
     chosen_from = (20 if without else 2) * count + 20
-    yosys(f"read_verilog -sv -D SYNTHESIS -defer {sources}; hierarchy -check -top {top} {chosen}; "
+    yosys(f"read_verilog -sv -D SYNTHESIS -defer {sources}; "
+          f"{f'read_verilog -sv -lib {ports}; ' if ports else ''}{chosen}hierarchy -check -top {top}; "
           f"proc; flatten; rename -top {top}; opt -full; opt_clean; write_rtlil {out}.il; "
           f"mutate -list {chosen_from} -seed {seed} -o {faults}")
     lines = [line for line in faults.read_text().splitlines()
              if re.search(r"-mode (\w+)", line).group(1) in MODES
+             and not NOT_WRITTEN.search(line) and not UNUSED.search(line)
              and (not without or "hw/" in line and not any(folder in line for folder in without))][:count]
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
@@ -58,11 +66,14 @@ def main() -> int:
     parser.add_argument("parameters", nargs="*", help="Name=value")
     parser.add_argument("--without", nargs="+", default=[], metavar="FOLDER",
                         help="no faults in these folders' lines, wherever they are instantiated")
+    parser.add_argument("--around", nargs="*", default=[], metavar="MODULE",
+                        help="modules that stay as they are in hw/: instances of them in OUT.v")
     parser.add_argument("--count", type=int, default=1000, help="faults (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="(%(default)s)")
     given = parser.parse_args()
     try:
-        write(given.out, given.top, given.parameters, given.count, given.seed, given.without)
+        write(given.out, given.top, given.parameters, given.count, given.seed, given.without,
+              given.around)
     except subprocess.CalledProcessError as error:
         print(f"sim.mutate.netlist: {error}", file=sys.stderr)
         return 2

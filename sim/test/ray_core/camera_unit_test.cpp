@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <tuple>
+#include <utility>
 
 #include "Vcamera_unit_behavioural.h"
 #include "Vcamera_unit_structural.h"
@@ -41,13 +43,18 @@ TYPED_TEST(CameraUnitTest, EqualsItsReference) {
     };
     const int spread = frame % 3 == 0 ? 140 : 8;
     PixelGrid grid{vector(spread), 0.01f * vector(spread), 0.01f * vector(spread)};
-    if (frame % 5 == 0) grid.right.x = 0.0f;
-    if (frame % 6 == 0) {
-      for (glm::vec3* vector : {&grid.first, &grid.right, &grid.down}) vector->z *= 0x1p-122f;
+    for (glm::vec3* vector : {&grid.first, &grid.right, &grid.down}) {
+      if (frame % 5 == 0) vector->x = 0.0f;
+      if (frame % 6 == 0) vector->z *= 0x1p-122f;
+      if (frame % 12 == 0) vector->y *= 0x1p20f;
     }
     const bool far = frame % 4 == 0;
-    const unsigned x = far ? 65'000 + random() % 500 : random() % 40, y = random() % 65'000;
-    const unsigned width = frame == 7 ? 0 : 1 + random() % 30, height = 1 + random() % 30;
+    const unsigned x = far ? 65'000 + random() % 500 : random() % 3;
+    const unsigned y = frame % 8 == 1 ? 0 : random() % 25'000;
+    unsigned width = frame == 7 ? 0 : 1 + random() % 30, height = 1 + random() % 30;
+    // Long ones, of more than 15 bits.
+    if (frame == 21) std::tie(width, height) = std::pair(40'000, 2);
+    if (frame == 22) std::tie(width, height) = std::pair(1, 40'000);
     std::memcpy(&model->first_i, &grid.first, sizeof grid.first);
     std::memcpy(&model->right_i, &grid.right, sizeof grid.right);
     std::memcpy(&model->down_i, &grid.down, sizeof grid.down);
@@ -61,8 +68,11 @@ TYPED_TEST(CameraUnitTest, EqualsItsReference) {
     const unsigned ready_of_8 = 1 + random() % 8;
     unsigned given = 0;
     for (int clock = 0; model->busy_o != 0; ++clock) {
-      ASSERT_LT(clock, 20'000);
+      ASSERT_LT(clock, 20'000 + 16 * static_cast<int>(width * height));
       model->ready_i = random() % 8 < ready_of_8;
+      model->start_i = random() % 8 == 0;  // nothing, while it is busy
+      model->x_i = random() % 65'536;
+      model->width_i = random() % 16;
       model.eval();
       if ((model->valid_o & model->ready_i) != 0) {
         ASSERT_LT(given, width * height);
@@ -79,7 +89,12 @@ TYPED_TEST(CameraUnitTest, EqualsItsReference) {
       }
       model.clock();
     }
+    model->start_i = 0;
     ASSERT_EQ(given, width * height);
+    for (int idle = 0; idle < 4; ++idle) {
+      model.clock();
+      ASSERT_EQ(model->busy_o | model->valid_o, 0);
+    }
     rays += given;
   }
   EXPECT_GT(rays, 5'000);

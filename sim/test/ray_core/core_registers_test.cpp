@@ -184,5 +184,100 @@ TEST_F(CoreRegistersTest, CountersCountTheirEvents) {
   for (unsigned n = 0; n <= kEvents; ++n) EXPECT_EQ(read(0x100 + 8 * n), 0u);
 }
 
+/// Reads and writes of any word, close upon each other, while the core works: each word and each
+/// output as the header says.
+TEST_F(CoreRegistersTest, AnyTrafficIsAsTheHeaderSays) {
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  std::array<std::uint32_t, 32> words{};
+  for (unsigned n = 5; n < 27; ++n) write(4 * n, words[n] = random_());
+  std::array<std::uint64_t, kEvents + 1> counts{};
+  std::uint32_t enable = 0, flags = 0, expected = 0;
+  bool drawing = false, written = false, answered = false;
+  unsigned writes = 0, reads = 0;
+  const auto value = [&](unsigned word) -> std::uint32_t {
+    if (word == 0) return 0x52470001;
+    if (word == 2) return model_->core_busy_i << 1 | model_->camera_busy_i;
+    if (word == 3) return enable;
+    if (word == 4) return flags;
+    if (word >= 5 && word < 27) return words[word];
+    if (word >= 64 && word < 64 + 2 * counts.size()) {
+      return static_cast<std::uint32_t>(counts[(word - 64) / 2] >> (word % 2 == 0 ? 0 : 32));
+    }
+    return 0;
+  };
+  const auto address = [&] {
+    const unsigned kind = random_() % 4;
+    return 4 * (kind < 2 ? random_() % 32 : kind == 2 ? 64 + random_() % 32 : random_() % 1024);
+  };
+  for (int i = 0; i < 60'000; ++i) {
+    if (model_->axi_awvalid_i == 0 && random_() % 4 != 0) {
+      model_->axi_awaddr_i = address();
+      model_->axi_awvalid_i = 1;
+    }
+    if (model_->axi_wvalid_i == 0 && random_() % 4 != 0) {
+      model_->axi_wdata_i = random_();
+      model_->axi_wstrb_i = random_() % 16;
+      model_->axi_wvalid_i = 1;
+    }
+    if (model_->axi_arvalid_i == 0 && random_() % 4 != 0) {
+      model_->axi_araddr_i = address();
+      model_->axi_arvalid_i = 1;
+    }
+    model_->axi_bready_i = random_() % 2;
+    model_->axi_rready_i = random_() % 2;
+    if (random_() % 16 == 0) model_->camera_busy_i = random_() % 2;
+    if (random_() % 16 == 0) model_->core_busy_i = random_() % 2;
+    model_->doubt_i = random_() % 16 == 0;
+    model_->failed_i = random_() % 16 == 0;
+    model_->events_i = random_() & ((1u << kEvents) - 1);
+    model_.eval();
+    ASSERT_EQ(model_->axi_bvalid_o, written);
+    ASSERT_EQ(model_->axi_rvalid_o, answered);
+    if (answered) {
+      ASSERT_EQ(model_->axi_rdata_o, expected);
+    }
+    ASSERT_EQ(model_->base_o, std::uint64_t{words[6]} << 32 | words[5]);
+    ASSERT_EQ(model_->corner_o, words[8]);
+    ASSERT_EQ(model_->size_o, words[9]);
+    for (unsigned n = 0; n < 12; ++n) {
+      ASSERT_EQ(model_->camera_o[n], words[12 + n / 3 * 4 + n % 3]);
+    }
+    ASSERT_EQ(model_->interrupt_o, (enable & flags) != 0);
+
+    // What this clock does.
+    const bool write = (model_->axi_awvalid_i & model_->axi_wvalid_i & model_->axi_awready_o) != 0;
+    const bool read = (model_->axi_arvalid_i & model_->axi_arready_o) != 0;
+    ASSERT_EQ(model_->axi_wready_o, model_->axi_awready_o);
+    ASSERT_EQ(write, model_->axi_awvalid_i != 0 && model_->axi_wvalid_i != 0 &&
+                         (!written || model_->axi_bready_i != 0));
+    ASSERT_EQ(read, model_->axi_arvalid_i != 0 && (!answered || model_->axi_rready_i != 0));
+    if (read) expected = value(model_->axi_araddr_i / 4);
+    const unsigned word = write ? model_->axi_awaddr_i / 4 : 1023;
+    std::uint32_t mask = 0;
+    for (unsigned b = 0; b < 4; ++b) mask |= (model_->axi_wstrb_i >> b & 1) * (0xFFu << 8 * b);
+    const std::uint32_t data = model_->axi_wdata_i & mask;
+    ASSERT_EQ(model_->start_o, word == 1 && (data & 1) != 0);
+    ASSERT_EQ(model_->invalidate_o, word == 1 && (data & 2) != 0);
+    const bool busy = (model_->camera_busy_i | model_->core_busy_i) != 0;
+    if (word == 3) enable = (data | (enable & ~mask)) & 7;
+    if (word == 4) flags &= ~data;
+    flags |= model_->doubt_i | (drawing && !busy ? 2u : 0u) | (model_->failed_i != 0 ? 4u : 0u);
+    drawing = model_->camera_busy_i != 0 || (drawing && busy);
+    if (word >= 5 && word < 27) words[word] = data | (words[word] & ~mask);
+    counts[0] += model_->core_busy_i;
+    for (unsigned n = 0; n < kEvents; ++n) counts[n + 1] += model_->events_i >> n & 1;
+    if (word == 1 && (data & 4) != 0) counts = {};
+    written = write || (written && model_->axi_bready_i == 0);
+    answered = read || (answered && model_->axi_rready_i == 0);
+    writes += write;
+    reads += read;
+    model_.clock();
+    if (write) model_->axi_awvalid_i = model_->axi_wvalid_i = 0;
+    if (read) model_->axi_arvalid_i = 0;
+  }
+  EXPECT_GT(writes, 15'000u);
+  EXPECT_GT(reads, 15'000u);
+}
+
 }  // namespace
 }  // namespace raygate

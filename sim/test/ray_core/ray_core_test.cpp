@@ -57,7 +57,7 @@ TEST_F(RayCoreTest, NearestHitsAreTheCpuFinders) {
 }
 
 TEST_F(RayCoreTest, CoresShareAMemory) {
-  const std::vector<Ray> rays = some_rays(bodies(), random_, 3'000);
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 1'000);
   const auto clocks = [&](const MemoryTiming& timing, const CoreSet& set) {
     check(rays, {}, make_rtl_core(Arith::kBehavioural, timing, {}, set));
     EXPECT_GE(counters_.rays, rays.size());
@@ -144,6 +144,40 @@ TEST_F(RayCoreTest, PointsAreTheReferences) {
     ASSERT_EQ(a[i].point, b[i].point) << i;
   }
   EXPECT_GT(same, 1'500);
+}
+
+/// Counters agree with each other, and with the words that came.
+TEST_F(RayCoreTest, EventsAreCounted) {
+  std::vector<CoreRay> sent;
+  for (const Ray& ray : some_rays(bodies(), random_, 2'000)) {
+    sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
+  }
+  CoreModel<Vray_core_small> small({.latency = 3, .not_taken = 128});
+  const std::unique_ptr<CoreUnit> large =
+      core(Arith::kBehavioural, {.latency = 3, .not_taken = 128});
+  for (CoreUnit* unit : {static_cast<CoreUnit*>(&small), large.get()}) {
+    std::vector<CoreResult> results;
+    unit->trace(image_->lines(), sent, results);
+    const CoreCounters counters = unit->counters();
+    const auto number = [&](CoreResult::Kind kind) {
+      return static_cast<std::uint64_t>(std::ranges::count(results, kind, &CoreResult::kind));
+    };
+    std::uint64_t tests = 0;
+    for (const CoreResult& result : results) {
+      if (result.kind == CoreResult::Kind::kEnd) tests += result.tests;
+    }
+    EXPECT_EQ(counters.rays, sent.size());
+    EXPECT_EQ(counters.rays, number(CoreResult::Kind::kEnd));
+    EXPECT_EQ(counters.triangles, tests);
+    EXPECT_EQ(counters.triangles, counters.hits + counters.misses + counters.doubts);
+    EXPECT_EQ(counters.rests, number(CoreResult::Kind::kRest));
+    EXPECT_GE(number(CoreResult::Kind::kDoubt), counters.near_ties);
+    EXPECT_GE(counters.doubts + counters.near_ties, number(CoreResult::Kind::kDoubt));
+    EXPECT_GT(counters.nodes, counters.rays);
+    EXPECT_GT(counters.misses, counters.hits);
+    EXPECT_GT(counters.waits, counters.lines / 4);
+    EXPECT_LT(counters.waits, 4 * counters.lines);
+  }
 }
 
 TEST_F(RayCoreTest, AShortStackCostsWalksAndNoHits) {

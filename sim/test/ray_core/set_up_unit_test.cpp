@@ -60,7 +60,7 @@ class Triangles {
 
 template <class Top>
 class SetUpUnit : public testing::Test {};
-using Tops = testing::Types<Vset_up_unit_0, Vset_up_unit_1>;
+using Tops = testing::Types<Vset_up_unit_1, Vset_up_unit_0>;
 TYPED_TEST_SUITE(SetUpUnit, Tops, );
 
 TYPED_TEST(SetUpUnit, EqualsItsReference) {
