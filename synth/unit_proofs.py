@@ -111,6 +111,14 @@ def hits_keep_nearest() -> tuple[dict, bool]:
                  prepared=f"ray_hits {{-chparam Rays 2 -chparam InFlight 2}} {{{wires}}} {{{memories}}}")
 
 
+def leaves_are_asked_for() -> tuple[dict, bool]:
+    """leaf_walk asks for the triangles of each group in order, or they are beyond, by induction: of two rays."""
+    wires = "valid_q ray_q group_q mask_q number_q u_groups.count_q u_groups.valid_o u_groups.read_q u_groups.write_q"
+    return holds("leaves_are_asked_for", "Bitwuzla", cores.used("leaf_walk", cores.files("ray_core")), "open.tcl",
+                 steps=1, reach=8,
+                 prepared=f"leaf_walk {{-chparam Rays 2}} {{{wires}}} {{u_groups.words 2 192}}")
+
+
 def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
     """What is claimed of a cell of hw/ray_core."""
     return holds(top, "Bitwuzla", cores.used(cell, cores.files("ray_core")), steps=steps)
@@ -190,6 +198,8 @@ ALL = [
           stack_keeps_nodes, False),
     Proof("unit.hits", "a ray's nearest hit is kept, what may be nearer is a doubt, once; tests are counted",
           "Bitwuzla", hits_keep_nearest),
+    Proof("unit.leaves", "a leaf's triangles are asked for in order, each once, unless they are beyond the limit",
+          "Bitwuzla", leaves_are_asked_for),
     Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
           functools.partial(of_ray_core, "sort_seven_sorts", "sort_seven", 2)),
     Proof("unit.pick", "the first request from a place on is picked", "Bitwuzla",

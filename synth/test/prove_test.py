@@ -21,6 +21,11 @@ HITS = [("(low <= limit)", "(low < limit)"),
         (".data_i({result_ray_i, replace})", ".data_i({result_ray_i, hit})"),
         ("if (test_i && !same) counts", "if (test_i) counts")]
 
+LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
+          ("given & last & (rest == '0)", "given & (rest == '0)"),
+          ("triangle_valid_o & triangle_ready_i;", "triangle_valid_o;"),
+          ("if (push) held_o[box_ray_i] <= 1'b1;", "if (push && !done) held_o[box_ray_i] <= 1'b1;")]
+
 
 class ProofsRefuseFaults(unittest.TestCase):
     def refuse(self, module, faults, proof):
@@ -48,6 +53,9 @@ class ProofsRefuseFaults(unittest.TestCase):
 
     def test_of_a_rays_hits(self):
         self.refuse("ray_hits", HITS, unit_proofs.hits_keep_nearest)
+
+    def test_of_leaves(self):
+        self.refuse("leaf_walk", LEAVES, unit_proofs.leaves_are_asked_for)
 
 
 if __name__ == "__main__":

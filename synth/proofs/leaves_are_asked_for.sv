@@ -1,0 +1,216 @@
+// The triangles of leaves that a ray enters, whatever groups come and whichever rays wait, from reset and for ever:
+// those of a group are asked for in order, near leaves first, each once, by the lines that the group gives; of those
+// that are not, the leaf was beyond the ray's limit or the ray had ended in the clock in which they were dropped. Until
+// then the ray counts as held. No more groups wait than there is room for.
+// opened_leaf_walk is leaf_walk of two rays with its registers and its queue as outputs.
+module leaves_are_asked_for #(
+  localparam int unsigned Rays = 2,
+  localparam int unsigned Children = ray_core_pkg::Children,
+  localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
+  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth,
+  localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth,
+  localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth,
+  localparam int unsigned CountWidth = ray_core_pkg::CountWidth,
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
+  localparam int unsigned WordWidth = 1 + GroupWidth + Children,
+  localparam int unsigned TotalWidth = 6
+) (
+  input logic                  clk,
+  input logic                  box,
+  input logic                  box_ray,
+  input logic [Children-1:0]   box_leaf,
+  input logic [30:0]           limit,
+  input logic                  ended,
+  input logic                  crowded,
+  input logic                  ready,
+  input logic                  choose,  // triangle `number` of leaf `which` of the group that comes now is watched
+  input logic [2:0]            which,
+  input logic [CountWidth-1:0] number
+);
+
+  logic reset_n;  // low for the first clock
+  initial reset_n = 1'b0;
+  always_ff @(posedge clk) reset_n <= 1'b1;
+
+  (* anyseq *) logic [GroupWidth-1:0] box_group;
+
+  logic limit_ray, triangle, triangle_ray, valid_q, ray_q, queued, read_q, write_q;
+  logic [AddressWidth-1:0] line;
+  logic [Rays-1:0] held;
+  logic [GroupWidth-1:0] group_q;
+  logic [Children-1:0] mask_q;
+  logic [CountWidth-1:0] number_q;
+  logic [1:0] count;
+  logic [Rays*WordWidth-1:0] words;
+
+  opened_leaf_walk dut (
+    .clk_i(clk),
+    .rst_ni(reset_n),
+    .box_valid_i(box),
+    .box_ray_i(box_ray),
+    .box_group_i(box_group),
+    .box_leaf_i(box_leaf),
+    .limit_ray_o(limit_ray),
+    .limit_i(limit),
+    .ended_i(ended),
+    .crowded_i(crowded),
+    .held_o(held),
+    .triangle_valid_o(triangle),
+    .triangle_ready_i(ready),
+    .triangle_ray_o(triangle_ray),
+    .triangle_line_o(line),
+    .valid_q(valid_q),
+    .ray_q(ray_q),
+    .group_q(group_q),
+    .mask_q(mask_q),
+    .number_q(number_q),
+    .\u_groups.count_q (count),
+    .\u_groups.valid_o (queued),
+    .\u_groups.read_q (read_q),
+    .\u_groups.write_q (write_q),
+    .u_groups_words(words)
+  );
+
+  // ---- Entries of a group
+
+  function automatic logic [EnterWidth-1:0] enter_of(logic [GroupWidth-1:0] group, logic [2:0] n);
+    enter_of = group[EntryWidth*n+CountWidth+OffsetWidth+:EnterWidth];
+  endfunction
+  function automatic logic [CountWidth-1:0] count_of(logic [GroupWidth-1:0] group, logic [2:0] n);
+    count_of = group[EntryWidth*n+:CountWidth];
+  endfunction
+  function automatic logic [TotalWidth-1:0] triangles_of(logic [GroupWidth-1:0] group,
+                                                         logic [Children-1:0] mask);
+    triangles_of = '0;
+    for (int unsigned n = 0; n < Children; n++) begin
+      if (mask[n]) triangles_of = triangles_of + TotalWidth'(group[EntryWidth*n+:CountWidth]);
+    end
+  endfunction
+  // Near ones first, and no leaf is empty
+  function automatic logic is_group(logic [GroupWidth-1:0] group, logic [Children-1:0] mask);
+    is_group = 1'b1;
+    for (int unsigned n = 0; n < Children; n++) begin
+      if (mask[n] && group[EntryWidth*n+:CountWidth] == '0) is_group = 1'b0;
+      if (n + 1 < Children && group[EntryWidth*n+CountWidth+OffsetWidth+:EnterWidth]
+                              > group[EntryWidth*(n+1)+CountWidth+OffsetWidth+:EnterWidth]) begin
+        is_group = 1'b0;
+      end
+    end
+  endfunction
+
+  // ---- What the user promises: groups are sorted, and a ray that is held has no other
+
+  always_comb begin
+    if (reset_n) assume (!box || box_leaf == '0 || (!held[box_ray] && is_group(box_group, box_leaf)));
+    else assume (!box);
+  end
+
+  // The group that is walked ends: its last triangle is given, or it is dropped.
+  logic leaves, dropped;
+  logic [2:0] nearest;
+  always_comb begin
+    nearest = '0;
+    for (int unsigned n = 0; n < Children; n++) begin
+      if (mask_q[n] && (mask_q & ((Children'(1) << n) - 1'b1)) == '0) nearest = 3'(n);
+    end
+  end
+  assign dropped = ended || ray_core_pkg::is_beyond(group_q[Children*EntryWidth+:ray_core_pkg::ExponentWidth],
+                                                    enter_of(group_q, nearest), limit);
+  assign leaves = valid_q && (dropped || (triangle && ready && (mask_q & (mask_q - 1'b1)) == '0
+                                          && number_q + 1'b1 == count_of(group_q, nearest)));
+
+  // ---- The watched triangle, and how many of its group were asked for
+
+  localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Walked = 2'd2;
+  logic [1:0] state;
+  logic w_ray, w_place, given, w_beyond;
+  logic [GroupWidth-1:0] w_group;
+  logic [Children-1:0] w_mask;
+  logic [2:0] w_leaf;
+  logic [CountWidth-1:0] w_number;
+  logic [TotalWidth-1:0] asked, asked_next, rank;
+  initial state = Nowhere;
+
+  assign rank       = triangles_of(w_group, w_mask & ((Children'(1) << w_leaf) - 1'b1)) + TotalWidth'(w_number);
+  assign given      = state == Walked && triangle && ready;
+  assign asked_next = asked + TotalWidth'(given);
+  assign w_beyond   = ended || ray_core_pkg::is_beyond(w_group[Children*EntryWidth+:ray_core_pkg::ExponentWidth],
+                                                       enter_of(w_group, w_leaf), limit);
+
+  always_ff @(posedge clk) begin
+    if (!reset_n) begin
+      state <= Nowhere;
+    end else begin
+      if (state == Nowhere) begin
+        if (box && choose && which < 3'd7 && box_leaf[which] && number < count_of(box_group, which)) begin
+          state <= Queued;
+          w_ray <= box_ray;
+          w_group <= box_group;
+          w_mask <= box_leaf;
+          w_leaf <= which;
+          w_number <= number;
+          w_place <= write_q;
+          asked <= '0;
+        end
+      end else if (state == Queued) begin
+        if (queued && read_q == w_place && (!valid_q || leaves)) state <= Walked;
+      end else begin
+        asked <= asked_next;
+        if (leaves) state <= Nowhere;
+      end
+    end
+  end
+
+  // ---- Claims
+
+  logic [WordWidth-1:0] first, second, w_word;  // of the queue
+  assign first  = read_q ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];
+  assign second = read_q ? words[WordWidth-1:0] : words[2*WordWidth-1:WordWidth];
+  assign w_word = w_place ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];
+
+  always_comb begin
+    if (reset_n) begin
+      if (crowded) assert (!triangle);
+      assert (limit_ray == ray_q && triangle_ray == ray_q);
+      if (triangle) assert (valid_q);
+      if (state != Nowhere) assert (held[w_ray]);
+      if (given && asked == rank) begin
+        assert (triangle_ray == w_ray
+                && line == w_group[GroupWidth-1-:AddressWidth]
+                           + AddressWidth'(w_group[EntryWidth*w_leaf+CountWidth+:OffsetWidth])
+                           + AddressWidth'(w_number));
+      end
+      if (state == Walked) assert (asked_next <= triangles_of(w_group, w_mask));
+      if (state == Walked && leaves && asked_next <= rank) assert (w_beyond);
+
+      // Invariants
+      assert (queued == (count != '0) && count <= 2'd2);
+      assert ((read_q == write_q) == (count != 2'd1));
+      if (valid_q) assert (held[ray_q] && mask_q != '0);
+      if (count != '0) assert (held[first[WordWidth-1]] && (!valid_q || first[WordWidth-1] != ray_q));
+      if (count == 2'd2) assert (!valid_q && held[second[WordWidth-1]] && first[WordWidth-1] != second[WordWidth-1]);
+      if (count != '0) assert (first[Children-1:0] != '0 && is_group(first[Children+:GroupWidth], first[Children-1:0]));
+      if (count == 2'd2) begin
+        assert (second[Children-1:0] != '0 && is_group(second[Children+:GroupWidth], second[Children-1:0]));
+      end
+      if (valid_q) assert (is_group(group_q, mask_q) && number_q < count_of(group_q, nearest));
+      if (state != Nowhere) begin
+        assert (w_leaf < 3'd7 && w_mask[w_leaf] && w_number < count_of(w_group, w_leaf) && is_group(w_group, w_mask));
+      end
+      if (state == Queued) begin
+        assert (asked == '0 && w_word == {w_ray, w_group, w_mask});
+        assert (count == 2'd2 || (count == 2'd1 && read_q == w_place));
+      end
+      if (state == Walked) begin
+        assert (valid_q && ray_q == w_ray && group_q == w_group);
+        assert ((mask_q & ~w_mask) == '0 && (w_mask & ~mask_q) < (mask_q & -mask_q));
+        assert (asked == triangles_of(w_group, w_mask & ~mask_q) + TotalWidth'(number_q));
+      end
+
+      cover (given && asked == rank && rank > TotalWidth'(3));
+      cover (state == Walked && leaves && asked_next <= rank && asked != '0);
+      cover (state == Queued && valid_q && triangle);
+    end
+  end
+
+endmodule
