@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-from synth import tools
+from synth import chosen, tools
 from synth.cells import library, published
 from synth.cells.catalogue import CORNERS
 
@@ -14,14 +14,14 @@ def main() -> int:
         "Characterises SkyWater 130 cells with ngspice, writes build/synth/cells/{tt,ss,ff}.lib, and prints how far some figures "
         "are from SkyWater's own."))
     parser.add_argument("--corners", default="", help="tt,ss,ff (all)")
-    parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
+    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
     given = parser.parse_args()
     names = [name for name in given.corners.split(",") if name] or [corner.name for corner in CORNERS]
     unknown = set(names) - {corner.name for corner in CORNERS}
     if unknown:
         parser.error(f"no corner {', '.join(sorted(unknown))}; there are {', '.join(corner.name for corner in CORNERS)}")
     try:
-        failures = library.make([library.corner(name) for name in names], given.jobs)
+        failures = library.make([library.corner(name) for name in names], int(given.jobs))
         if not failures:
             print(published.table(names))
     except tools.MissingTool as error:

@@ -32,6 +32,8 @@ FIGURES = [
     Figure("inv_1", "tt", "A", "capacitance", 0.002302),
     Figure("inv_1", "tt", "A to Y", "cell_rise", 0.0566328, 0.0531329, 0.00356533),
     Figure("inv_1", "tt", "A to Y", "cell_fall", 0.0410519, 0.0531329, 0.00356533),
+    Figure("inv_1", "tt", "A to Y", "cell_rise", 0.0903158, 0.0531329, 0.00952062),  # the load of four like it
+    Figure("inv_1", "tt", "A to Y", "cell_fall", 0.0615784, 0.0531329, 0.00952062),
     Figure("inv_1", "tt", "A to Y", "cell_rise", 0.1807958, 0.0531329, 0.0254232),
     Figure("inv_1", "tt", "A to Y", "cell_fall", 0.1142486, 0.0531329, 0.0254232),
     Figure("inv_1", "tt", "A to Y", "rise_transition", 0.0404175, 0.0531329, 0.00356533),
