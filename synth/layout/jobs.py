@@ -58,7 +58,7 @@ def rows(section: str, seeds: int = 3, budget: int = 16, workers: int = 2) -> li
                   for top in tops),
                 *(Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *SPARSE)
                   for top in tops)]
-    if section == "unit":  # its 18,000 nets would take qrouter hours
+    if section == "unit":  # whether qrouter routes 18,000 nets has not been tried
         return [Row(section, catalogue.design("hit_test_unit"), flow, *SPARSE, routed=False)
                 for flow in ("parts", "small")]
     raise ValueError(f"no section {section}; there are {', '.join(SECTIONS)}")

@@ -19,6 +19,9 @@ NAMED = [
     (r"u_(exp|near_exp|a_minus_b|b_minus_a|offset|count)", "exponent adders"),
 ]
 REST = "selection, control"
+# The same in a multiplier; a group is of the last adder.
+MULTIPLIER = [(r"u_tree\b", "carry-save tree"), (r"u_adder\b.*gen_group\[(?P<group>\d+)\]", "group {group}"),
+              (r"u_adder\b", "rest of the last adder")]
 # The same in a whole unit, whose multiplier and divider have adders of their own.
 CORES = [(r"u_multiplier\b", "multiplier"), (r"u_divider\b", "divider"), (r"u_adder\b", "adder")]
 
@@ -33,8 +36,16 @@ def of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[s
     if design.top == "adder":
         return _adder(design, netlist, outputs)
     patterns, rest = (CORES, "registers, selection, control") if design.clock else (NAMED, REST)
-    named = {name: next((part for pattern, part in patterns if re.search(pattern, cell.name)), rest)
-             for name, cell in netlist.cells.items()}
+    if design.top == "booth_multiplier":
+        patterns, rest = MULTIPLIER, "Booth rows"
+
+    def part_of(name: str) -> str:
+        for pattern, part in patterns:
+            if found := re.search(pattern, name):
+                return part.format(group=int(found.groupdict().get("group", 0)) + 1)  # from 1, as in an adder
+        return rest
+
+    named = {name: part_of(cell.name) for name, cell in netlist.cells.items()}
     if set(named.values()) == {rest}:
         depth = _spread(netlist, outputs, lambda port: 0, 1)
         named = {name: BAND // 2 * (depth[name] // (BAND // 2)) for name in netlist.cells}
@@ -42,7 +53,8 @@ def of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[s
                  sorted(named.items(), key=lambda entry: entry[1])}
         return named
     order = [part for _, part in patterns] + [rest]
-    return dict(sorted(named.items(), key=lambda entry: order.index(entry[1])))
+    return dict(sorted(named.items(), key=lambda entry: (order.index(re.sub(r"\d+", "{group}", entry[1])),
+                                                         len(entry[1]), entry[1])))
 
 
 def _adder(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:
