@@ -32,7 +32,7 @@ def wanted(given: argparse.Namespace) -> list[jobs.Row]:
     if library is None:
         raise ValueError(f"no library {given.targets}, expected one of "
                          f"{', '.join(entry.name for entry in catalogue.LIBRARIES)}")
-    _ = library.liberty, library.lef
+    _ = library.lef, library.liberty  # before anything is made, and first what only some libraries have
     return [dataclasses.replace(row, library=library) for row in _rows(given)]
 
 

@@ -242,6 +242,19 @@ class Parts(unittest.TestCase):
         self.assertEqual(found, {"c2": "group 1: bits 0 to 0", "c0": "group 2: bits 1 to 2",
                                  "c1": "group 2: bits 1 to 2"})
 
+    def test_names(self):
+        """A multiplier's cells by the instance that they are in, groups from 1; a unit's by its core."""
+        names = ["u_tree.gen_adder[0].u_adder.u_cell", "u_adder.gen_select.gen_group[1].u_carry", "u_adder.u_sum",
+                 "$abc$1$auto$2"]
+        nets = Netlist("top", {f"c{place}": Cell(name, "INVX1", {}) for place, name in enumerate(names)}, {})
+        found = parts.of(catalogue.design("booth_multiplier"), nets, {})
+        self.assertEqual(list(found.items()), [("c0", "carry-save tree"), ("c1", "group 2"),
+                                               ("c2", "rest of the last adder"), ("c3", "Booth rows")])
+        nets = Netlist("top", {"c0": Cell("$flatten\\u_divider.\\u_adder.$1", "INVX1", {}),
+                               "c1": Cell("$flatten\\u_adder.$1", "INVX1", {}), "c2": Cell("$1", "DFFPOSX1", {})}, {})
+        found = parts.of(catalogue.design("hit_test_unit"), nets, {})
+        self.assertEqual(list(found.values()), ["divider", "adder", "registers, selection, control"])
+
 
 class Report(unittest.TestCase):
     """The tables of make layout."""
