@@ -81,7 +81,7 @@ Light
   --seed N                   seed of the random numbers (0)
 
 Run
-  --resume FILE.exr          go on from a picture with sums, finished or not
+  --resume FILE.exr          go on from a picture with sums, or with a film
   --save-every SECONDS       save the unfinished pictures now and then
   --stats FILE.json          all statistics as JSON; - prints them
   --strict                   refuse faces without area, which are left out

@@ -128,7 +128,12 @@ void check_values(const RawValues& raw, Options& options) {
   }
   if (!raw.resume.empty()) {
     options.resume = raw.resume;
-    if (options.output.frames > 0) throw InputError("--resume: expected no --frames beside it");
+    const auto& film = options.output.exr;
+    if (options.output.frames > 0 && (!film || *film != options.resume)) {
+      fail_value("--resume", raw.resume,
+                 film ? film->string() + " beside --frames, the film's own name"
+                      : "an EXR among the outputs of --frames");
+    }
   }
   if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);
   if (!raw.smooth.empty()) options.smooth = parse_smooth(raw.smooth);

@@ -1,9 +1,12 @@
 #include "host/cli/resume.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <tuple>
+#include <vector>
 
+#include "host/film/channels.h"
 #include "host/film/exr_reader.h"
 #include "host/film/merge.h"
 #include "host/film/sample_range.h"
@@ -30,12 +33,40 @@ void keep(bool needed, std::vector<T>& values, const std::string& name, const st
   }
 }
 
+/// `found`: a film, or what a file says of one.
+template <class Found>
+void require_place(const Options& options, const std::string& name, const ExrMetadata& metadata,
+                   const Found& found, const ExrMetadata& found_metadata) {
+  const auto layout = [](int width, int height, const PixelRect& w) {
+    return std::tuple(width, height, w.x0, w.y0, w.x1, w.y1);
+  };
+  const PixelRect window =
+      options.window.width() > 0 ? options.window : PixelRect{0, 0, options.width, options.height};
+  if (layout(found.width, found.height, found.window) !=
+      layout(options.width, options.height, window)) {
+    throw InputError(name + ": found another frame or crop, expected those of this run");
+  }
+  if (found_metadata.world_to_camera != metadata.world_to_camera) {
+    throw InputError(name + ": found another camera, expected that of this run");
+  }
+}
+
+/// In the order of their letters, as a file has them.
+std::vector<std::string> channels_of_file(const ExtraChannels& extra, bool with_error) {
+  Film film = make_film(1, 1, {0, 0, 1, 1}, extra);
+  if (extra.sums || with_error) add_sums(film, with_error);
+  std::vector<std::string> names;
+  for (const Channel& channel : channels_of(film)) names.push_back(channel.name);
+  std::ranges::sort(names);
+  return names;
+}
+
 }  // namespace
 
-std::optional<Film> begun_film(const Options& options, const ExrMetadata& metadata) {
-  if (options.resume.empty()) return std::nullopt;
-  const std::string name = options.resume.string();
-  FilmFile file = read_film(options.resume);
+Film begun_film(const Options& options, const std::filesystem::path& path,
+                const ExrMetadata& metadata) {
+  const std::string name = path.string();
+  FilmFile file = read_film(path);
   Film& film = file.film;
 
   const SampleRange there = samples_of(file.metadata);
@@ -50,15 +81,7 @@ std::optional<Film> begun_film(const Options& options, const ExrMetadata& metada
   if (const auto difference = different_picture(file.metadata, metadata)) {
     throw InputError(name + ": found " + *difference + " as this run has it");
   }
-  const auto layout = [](int width, int height, const PixelRect& w) {
-    return std::tuple(width, height, w.x0, w.y0, w.x1, w.y1);
-  };
-  const PixelRect window =
-      options.window.width() > 0 ? options.window : PixelRect{0, 0, options.width, options.height};
-  if (layout(film.width, film.height, film.window) !=
-      layout(options.width, options.height, window)) {
-    throw InputError(name + ": found another frame or crop, expected those of this run");
-  }
+  require_place(options, name, metadata, film, file.metadata);
   const ExtraChannels needed = options.output.needed_channels();
   keep(needed.position, film.position, "P", name);
   keep(needed.albedo, film.albedo, "Albedo", name);
@@ -69,6 +92,30 @@ std::optional<Film> begun_film(const Options& options, const ExrMetadata& metada
   keep(options.light.error > 0.0, film.sums.error, "error", name);
   keep(options.light.error > 0.0, film.sums.shown, "sums.shown", name);
   return film;
+}
+
+FoundFrame found_frame(const Options& options, const OutputOptions& outputs,
+                       const ExrMetadata& metadata) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(*outputs.exr, ignored)) return {};
+  const std::string name = outputs.exr->string();
+  const ExrSummary found = read_summary(*outputs.exr);
+  const bool has_sums = std::ranges::find(found.channels, "sums.R.0") != found.channels.end();
+  const auto difference = different_picture(found.metadata, metadata);
+  if (has_sums && (found.metadata.partial || difference)) {
+    return {false, begun_film(options, *outputs.exr, metadata)};
+  }
+  if (difference) throw InputError(name + ": found " + *difference + " as this run has it");
+  require_place(options, name, metadata, found, found.metadata);
+  if (found.metadata.partial || !found.is_complete) return {};
+  if (found.channels != channels_of_file(outputs.needed_channels(), options.light.error > 0.0)) {
+    throw InputError(name + ": found other channels, expected those of this run");
+  }
+  return {std::ranges::all_of(outputs.paths(),
+                              [&](const std::filesystem::path& path) {
+                                return std::filesystem::exists(path, ignored);
+                              }),
+          std::nullopt};
 }
 
 }  // namespace raygate

@@ -1,6 +1,7 @@
 // A picture that was begun earlier, for this run to go on from.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
 #include "host/cli/options.h"
@@ -9,10 +10,21 @@
 
 namespace raygate {
 
-/// What --resume names, with the channels that this run's outputs need and no others; nothing if
-/// it names nothing. `metadata` is what this run's picture says of itself. Throws InputError: a
-/// file that cannot be read, keeps no sums, or is not of the picture that this run renders; only
-/// --spp may have grown.
-[[nodiscard]] std::optional<Film> begun_film(const Options& options, const ExrMetadata& metadata);
+/// What is in `file`, with the channels that this run's outputs need and no others. `metadata` is
+/// what this run's picture says of itself. Throws InputError: a file that cannot be read, keeps no
+/// sums, or is not of the picture that this run renders; only --spp may have grown.
+[[nodiscard]] Film begun_film(const Options& options, const std::filesystem::path& file,
+                              const ExrMetadata& metadata);
+
+/// What --resume finds of one frame of a film.
+struct FoundFrame {
+  bool is_finished = false;   ///< all its files are there
+  std::optional<Film> begun;  ///< if not, and there is something to go on from
+};
+
+/// Looks at the files of a frame, `outputs`. One that was broken off without sums counts as none.
+/// Throws InputError as begun_film does.
+[[nodiscard]] FoundFrame found_frame(const Options& options, const OutputOptions& outputs,
+                                     const ExrMetadata& metadata);
 
 }  // namespace raygate

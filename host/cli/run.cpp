@@ -129,7 +129,7 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
   if (ranks.count() > 1) render_options.channels.sums = true;
   ProgressBar bar(!options.quiet && ranks.index() == 0,
                   ranks.count() > 1 ? ProgressBar::Style::kLines : ProgressBar::Style::kBar);
-  Saver saver(outputs, metadata, threads, bar);
+  Saver saver(outputs, options.output, metadata, threads, bar);
   if (outputs.save_seconds > 0.0) {
     render_options.snapshot = [&](const Film& film) { saver.save(film); };
     render_options.snapshot_seconds = outputs.save_seconds;
@@ -164,17 +164,27 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
   return film;
 }
 
-/// Renders one picture and writes it with `report` completed.
-void render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
+/// Renders one picture and writes it with `report` completed; false if it is a frame whose files
+/// are there.
+bool render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
                     const Clearances& clearances, const CoreImage& image, const Shots& shots,
                     const Camera& camera, Clock::time_point start, Ranks& ranks, Report& report) {
   const ExrMetadata metadata = make_metadata(options, scene, shots, camera);
   const bool is_ours = ranks.index() == 0;
-  const std::optional<Film> begun = is_ours ? begun_film(options, metadata) : std::nullopt;
+  std::optional<Film> begun;
+  if (is_ours && !options.resume.empty()) {
+    if (options.output.frames == 0) {
+      begun = begun_film(options, options.resume, metadata);
+    } else {
+      FoundFrame found = found_frame(options, outputs, metadata);
+      if (found.is_finished) return false;
+      begun = std::move(found.begun);
+    }
+  }
   Film film = render_film(options, outputs, scene, clearances, image, camera, metadata,
                           begun ? &*begun : nullptr, ranks, report.render);
   ranks.leave();
-  if (!is_ours) return;
+  if (!is_ours) return true;
   film.keeps_sums = outputs.needed_channels().sums;
 
   // All files are made ready before the first takes its name: a full disk changes none of them.
@@ -186,6 +196,7 @@ void render_picture(const Options& options, const OutputOptions& outputs, const 
   report.total_seconds = seconds_since(start);
   if (outputs.stats) ready.files.emplace_back(*outputs.stats, to_json(report));
   for (PendingFile& file : ready.files) file.commit();
+  return true;
 }
 
 /// One picture after the other, each by the rank that is free; a line for each.
@@ -198,11 +209,14 @@ void render_film_of_frames(const Options& options, Scene& scene, const Clearance
     const int frame = *job + 1;
     const Clock::time_point start = Clock::now();
     Ranks alone;
-    render_picture(options, options.output.numbered(frame), scene, clearances, image, shots,
-                   shots.light(frame, scene), start, alone, report);
+    const OutputOptions outputs = options.output.numbered(frame);
+    const bool is_new = render_picture(options, outputs, scene, clearances, image, shots,
+                                       shots.light(frame, scene), start, alone, report);
     if (options.quiet) continue;
     print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
-              format_duration(report.total_seconds) + ", wrote " + listed(report.pictures) + "\n",
+              (is_new ? format_duration(report.total_seconds) + ", wrote " + listed(report.pictures)
+                      : "kept " + outputs.exr->string()) +
+              "\n",
           console);
     flush_standard_output();
   }

@@ -33,7 +33,7 @@ void Saver::save_urgently(const Film& film) {
   film_alone.false_colors.clear();
   save(film, film_alone);
   bar_.erase();
-  print_warning("a rank may have died; " + going_on(outputs_));
+  print_warning("a rank may have died; " + going_on(all_));
 }
 
 void Saver::end_interrupted(const Film& film) const {
@@ -44,9 +44,9 @@ void Saver::end_interrupted(const Film& film) const {
   write(film, outputs_);
   OutputOptions pictures = outputs_;
   pictures.stats.reset();
-  const bool goes_on = film.keeps_sums && outputs_.exr;
+  const bool goes_on = (film.keeps_sums || all_.frames > 0) && outputs_.exr;
   throw Interrupted(signal, "wrote what there was: " + listed(pictures.paths()) +
-                                (goes_on ? "; " + going_on(outputs_) : ""));
+                                (goes_on ? "; " + going_on(all_) : ""));
 }
 
 void Saver::save(const Film& film, const OutputOptions& outputs) {

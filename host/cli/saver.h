@@ -20,8 +20,10 @@ namespace raygate {
 class Saver {
  public:
   /// The references must outlive this.
-  Saver(const OutputOptions& outputs, const ExrMetadata& metadata, int threads, ProgressBar& bar)
-      : outputs_(outputs), metadata_(metadata), threads_(threads), bar_(bar) {}
+  /// `outputs` are of the picture, `all` of the run: the same, but for a film.
+  Saver(const OutputOptions& outputs, const OutputOptions& all, const ExrMetadata& metadata,
+        int threads, ProgressBar& bar)
+      : outputs_(outputs), all_(all), metadata_(metadata), threads_(threads), bar_(bar) {}
 
   /// What goes wrong is said once and tried again.
   void save(const Film& film) { save(film, outputs_); }
@@ -36,7 +38,7 @@ class Saver {
   void save(const Film& film, const OutputOptions& outputs);
   void write(const Film& film, const OutputOptions& outputs) const;
 
-  const OutputOptions& outputs_;
+  const OutputOptions &outputs_, &all_;
   const ExrMetadata& metadata_;
   int threads_;
   ProgressBar& bar_;

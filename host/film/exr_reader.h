@@ -30,6 +30,18 @@ struct FilmFile {
   ExrMetadata metadata;
 };
 
+/// What a picture file says of itself, without its numbers.
+struct ExrSummary {
+  int width = 0, height = 0;
+  PixelRect window;
+  std::vector<std::string> channels;  ///< in the order of their letters
+  ExrMetadata metadata;
+  bool is_complete = false;  ///< the file has all of its rows
+};
+
+/// Throws InputError: what cannot be read, is not OpenEXR, or is larger than 2^26 pixels.
+[[nodiscard]] ExrSummary read_summary(const std::filesystem::path& file);
+
 /// Reads a film that keeps its sums. Throws InputError: what cannot be read, is not OpenEXR or not
 /// such a film, is damaged, or is larger than 2^26 pixels.
 [[nodiscard]] FilmFile read_film(const std::filesystem::path& file);

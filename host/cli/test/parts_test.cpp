@@ -177,6 +177,71 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
                  "--false-colour: found no channel error in the picture");
 }
 
+TEST_F(Parts, FinishedFramesOfAFilmAreKept) {
+  const auto film = [](std::vector<std::string> more) {
+    more.insert(more.end(), {"--spp", "2", "--frames", "3"});
+    return more;
+  };
+  const auto kept = [](const Outcome& outcome) {
+    int count = 0;
+    for (std::size_t at = 0; (at = outcome.out.find(": kept a-000", at)) != std::string::npos; ++at)
+      ++count;
+    return count;
+  };
+  make(film({"-o", "whole"}));
+  make(film({"-o", "a"}));
+  const auto time = fs::last_write_time(folder_.path() / "a-0001.exr");
+  fs::remove(folder_.path() / "a-0002.exr");
+  fs::remove(folder_.path() / "a-0003.png");
+  const std::vector<std::string> again = film({"-o", "a", "--resume", "a.exr"});
+  EXPECT_EQ(kept(part(again)), 1);
+  EXPECT_EQ(fs::last_write_time(folder_.path() / "a-0001.exr"), time);
+  EXPECT_EQ(kept(part(again)), 3);
+  for (const char* frame : {"-0001", "-0002", "-0003"}) {
+    expect_same_pictures("a"s + frame, "whole"s + frame);
+  }
+  // One that was broken off is rendered again, or gone on with where it has sums.
+  const auto replace = [&](const char* frame, const std::vector<std::string>& options) {
+    make(options);
+    fs::rename(folder_.path() / ("b-"s + frame + ".exr"),
+               folder_.path() / ("a-"s + frame + ".exr"));
+  };
+  replace("0002", {"-o", "b.exr", "--spp", "1", "--frames", "3", "--channels", "sums"});
+  const Outcome refused = part(again);
+  EXPECT_EQ(refused.status, 2) << "a single sample is no first of two";
+  const std::vector<std::string> longer = {"--spp", "5", "--frames", "3", "--channels", "sums"};
+  const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  make(with(longer, {"-o", "long"}));
+  make(film({"-o", "b.exr", "--channels", "sums"}));
+  make(with(longer, {"-o", "b.exr", "--resume", "b.exr"}));
+  for (const char* frame : {"-0001", "-0002", "-0003"}) {
+    EXPECT_EQ(folder_.read("b"s + frame + ".exr"), folder_.read("long"s + frame + ".exr"));
+  }
+}
+
+TEST_F(Parts, FramesOfAnotherFilmAreRefused) {
+  make({"-o", "a.exr", "--spp", "1", "--frames", "2"});
+  const std::string before = folder_.read("a-0002.exr");
+  const auto refuse = [&](std::vector<std::string> more, const std::string& line) {
+    more.insert(more.end(), {"-o", "a.exr", "--resume", "a.exr"});
+    expect_refused(part(more), line);
+  };
+  refuse({"--spp", "1", "--frames", "2", "--seed", "1"},
+         "a-0001.exr: found seed 0, expected seed 1");
+  refuse({"--spp", "2", "--frames", "2"}, "a-0001.exr: found spp 1, expected spp 2");
+  refuse({"--spp", "1", "--frames", "2", "--channels", "P"}, "a-0001.exr: found other channels");
+  refuse({"--spp", "1", "--frames", "2", "--crop", "0,0,8,8"}, "a-0001.exr: found another frame");
+  refuse({"--spp", "1", "--frames", "3"}, "a-0002.exr: found another camera");
+  EXPECT_EQ(folder_.read("a-0002.exr"), before);
+  expect_refused(part({"--frames", "2", "-o", "a.exr", "--resume", "b.exr"}),
+                 "--resume: expected a.exr beside --frames, the film's own name, got 'b.exr'");
+  expect_refused(part({"--frames", "2", "-o", "a.png", "--resume", "a.exr"}),
+                 "--resume: expected an EXR among the outputs of --frames");
+}
+
 TEST_F(Parts, OfDifferentPicturesAreRefused) {
   make({"-o", "a.exr", "--samples", "0:5"});
   make({"-o", "b.exr", "--samples", "5:12", "--seed", "3"});
