@@ -15,6 +15,9 @@ struct CoreStalls {
   std::uint64_t seed = 0;
 };
 
+/// Rays in the table of make_rtl_core's cores.
+inline constexpr int kTableRays = 64;
+
 /// Cores behind one port to memory.
 struct CoreSet {
   int cores = 1;

@@ -54,13 +54,15 @@ rays: ## rays per second of the cpu engine next to Embree 3
 	  scenes/paper.obj $(LARGE_SCENES) build/scenes/landscape.obj
 
 CORE_SCENES := scenes/cornell.obj scenes/teapot.obj build/scenes/sphereflake.obj
+ALL_CORE_SCENES := scenes/cornell.obj scenes/paper.obj scenes/teapot.obj $(addprefix build/scenes/, \
+  cornell_spheres.obj still_life.obj columns.obj sphereflake.obj)
 core: ## the simulated ray core: clocks, lines, bytes a ray by kind, latency, rays in flight, cores: make core [PUBLISH=1]
 	$(call build,lab,lab scenes)
-	@$(LAB) --results $(LAB_ROWS)/core.jsonl core scenes/cornell.obj scenes/paper.obj scenes/teapot.obj \
-	  build/scenes/cornell_spheres.obj build/scenes/still_life.obj build/scenes/columns.obj \
-	  build/scenes/sphereflake.obj
+	@$(LAB) --results $(LAB_ROWS)/core.jsonl core $(ALL_CORE_SCENES)
+	@$(LAB) --results $(LAB_ROWS)/core-wide.jsonl core $(ALL_CORE_SCENES) --latency 200 --in-flight 128
+	@$(LAB) --results $(LAB_ROWS)/core-records.jsonl core $(ALL_CORE_SCENES) --records
 	@$(LAB) --results $(LAB_ROWS)/core-in-flight.jsonl core $(CORE_SCENES) --kinds camera scattered \
-	  --in-flight 1 2 4 8 16 32 64 --every 8
+	  --in-flight 1 2 4 8 16 32 64 128 256 --every 4
 	@$(LAB) --results $(LAB_ROWS)/core-cores.jsonl core $(CORE_SCENES) --kinds camera scattered \
 	  --latency 50 --cores 1 2 4 8 --every 2
 	@$(LAB_REPORT) core $(if $(PUBLISH),--publish)

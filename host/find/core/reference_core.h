@@ -1,6 +1,9 @@
 // The ray core in C++, without its clocks: the same units, one ray after the other.
 #pragma once
 
+#include <functional>
+#include <utility>
+
 #include "host/find/core/core_unit.h"
 
 namespace raygate {
@@ -10,8 +13,12 @@ namespace raygate {
 /// doubts.
 class ReferenceCore : public CoreUnit {
  public:
+  /// What hears of each test: where its ray begins, and its triangle.
+  using Listener = std::function<void(const glm::vec3& origin, std::uint32_t triangle)>;
+
   /// `stack_depth`: see ray_core.sv.
   explicit ReferenceCore(int stack_depth = kStackDepth) : stack_depth_(stack_depth) {}
+  explicit ReferenceCore(Listener listener) : listener_(std::move(listener)) {}
 
   void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
              std::vector<CoreResult>& results) override;
@@ -23,7 +30,8 @@ class ReferenceCore : public CoreUnit {
   void trace(std::span<const MemoryLine> lines, const CoreRay& ray,
              std::vector<CoreResult>& results);
 
-  int stack_depth_;
+  int stack_depth_ = kStackDepth;
+  Listener listener_;
   CoreCounters counters_;
 };
 

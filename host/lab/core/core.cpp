@@ -3,20 +3,24 @@
 // the run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 
 #include "host/find/check_finder.h"
 #include "host/find/core/core_finder.h"
 #include "host/find/core/memory_image.h"
+#include "host/find/core/reference_core.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/lab/commands.h"
+#include "host/lab/core/record_cache.h"
 #include "host/lab/rays/peer.h"
 #include "host/lab/rays/ray_sets.h"
 #include "host/lab/results.h"
 #include "host/lab/timing.h"
 #include "host/scene/io/obj_loader.h"
 #include "sim/rtl_core.h"
+#include "sim/wide_core.h"
 
 namespace raygate::lab {
 namespace {
@@ -26,7 +30,7 @@ struct Options {
   std::vector<int> latencies = {1, 50, 200}, in_flight = {0}, cores = {1};
   std::vector<std::string> kinds = {"camera", "light", "scattered"};
   int size = 128, every = 1;
-  bool structural = false;
+  bool structural = false, records = false;
 };
 
 class CoreBench {
@@ -50,6 +54,10 @@ class CoreBench {
          {camera, light_rays(scene, camera, seen), scattered_rays(scene, camera, seen)}) {
       if (std::ranges::find(options_.kinds, set.name) == options_.kinds.end()) continue;
       const RaySet chosen = every(set);
+      if (options_.records) {
+        count_records(bvh, image, chosen);
+        continue;
+      }
       for (const int latency : options_.latencies) {
         for (const int cores : options_.cores) {
           for (const int rays : options_.in_flight) {
@@ -73,10 +81,41 @@ class CoreBench {
     return some;
   }
 
+  /// How many tests would find their records in a cache, in the order of a core that has one ray.
+  void count_records(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image,
+                     const RaySet& set) {
+    std::array caches{RecordCache(16), RecordCache(64), RecordCache(256)};
+    CoreFinder finder(
+        bvh, image,
+        std::make_shared<ReferenceCore>([&](const glm::vec3& origin, std::uint32_t triangle) {
+          for (RecordCache& cache : caches) cache.use(origin, triangle);
+        }));
+    std::vector<NearestHit> hits(set.rays.size());
+    Search search{.limits = set.limits};
+    if (set.any_hit) search.enough_before = set.limits;
+    finder.find(set.rays, search, hits);
+    Row row = {{"table", "records"},
+               {"scene", name_},
+               {"rays", set.name},
+               {"tests_per_ray",
+                static_cast<double>(caches[0].uses()) / static_cast<double>(set.rays.size())}};
+    for (const RecordCache& cache : caches) {
+      row["of_" + std::to_string(cache.records()) + "_percent"] = cache.hits_percent();
+    }
+    records_.print(row);
+    results_.add(row);
+  }
+
+  [[nodiscard]] std::unique_ptr<CoreUnit> make_core(const MemoryTiming& timing,
+                                                    const CoreSet& cores) const {
+    if (cores.rays > kTableRays) return make_wide_core(timing, cores);
+    return make_rtl_core(options_.structural ? Arith::kStructural : Arith::kBehavioural, timing, {},
+                         cores);
+  }
+
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const RaySet& set,
            const MemoryTiming& timing, const CoreSet& cores) {
-    const std::shared_ptr<CoreUnit> core = make_rtl_core(
-        options_.structural ? Arith::kStructural : Arith::kBehavioural, timing, {}, cores);
+    const std::shared_ptr<CoreUnit> core = make_core(timing, cores);
     CheckFinder finder(bvh, std::make_unique<CoreFinder>(bvh, image, core),
                        std::make_unique<CpuFinder>(bvh));
     std::vector<NearestHit> hits(set.rays.size());
@@ -113,6 +152,12 @@ class CoreBench {
   const Options& options_;
   Results results_;
   std::string name_;
+  TextTable records_{{{"scene", "scene", -1, 16},
+                      {"rays", "rays", -1, 10},
+                      {"tests_per_ray", "tests/ray", 2},
+                      {"of_16_percent", "found of 16 records, %", 1},
+                      {"of_64_percent", "of 64, %", 1},
+                      {"of_256_percent", "of 256, %", 1}}};
   TextTable table_{{{"scene", "scene", -1, 16},
                     {"rays", "rays", -1, 10},
                     {"latency", "latency", -1},
@@ -139,8 +184,9 @@ void add_core(CLI::App& lab, Common& common) {
       ->check(CLI::Range(128, 8192));
   app->add_option("--latency", options->latencies, "of memory, in clocks; several may be given")
       ->check(CLI::Range(1, 10'000));
-  app->add_option("--in-flight", options->in_flight, "rays in each core at most; several; 0: all")
-      ->check(CLI::Range(0, 64));
+  app->add_option("--in-flight", options->in_flight,
+                  "rays in each core at most; several; 0: 64, its table; more: a table of 256")
+      ->check(CLI::Range(0, kWideRays));
   app->add_option("--cores", options->cores, "behind one port to memory; several may be given")
       ->check(CLI::Range(1, 64));
   app->add_option("--kinds", options->kinds, "of rays: camera, light, scattered")
@@ -148,8 +194,13 @@ void add_core(CLI::App& lab, Common& common) {
   app->add_option("--every", options->every, "of the rays only each so-manieth")
       ->check(CLI::Range(1, 1024));
   app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
+  app->add_flag("--records", options->records,
+                "instead: tests whose records a cache of them would hold; no clocks");
   app->callback([options, &common] {
     options->size -= options->size % 128;
+    if (options->structural && std::ranges::max(options->in_flight) > kTableRays) {
+      throw CLI::ValidationError("--in-flight", "expected at most 64 with --structural");
+    }
     std::printf(
         "%dx%d pixels; a line of 64 bytes a clock. rays/s: simulated, %s\n"
         "arithmetic, the comparison with the cpu engine included.\n",

@@ -127,7 +127,8 @@ def run_stress(given: argparse.Namespace) -> int:
 def run_core(given: argparse.Namespace) -> int:
     """The rows of the runs that `make core` makes, by the names of their files."""
     rows = [{**row, "run": run} for run, file in (("scenes", "core"), ("in flight", "core-in-flight"),
-                                                  ("cores", "core-cores"))
+                                                  ("cores", "core-cores"), ("wide", "core-wide"),
+                                                  ("records", "core-records"))
             for row in kept.read(KEPT / f"{file}.jsonl")]
     write(rows, core_report.build, "core", given.publish)
     return 0
