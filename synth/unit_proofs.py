@@ -11,7 +11,7 @@ from synth.assertions import PROOFS, Proof, holds
 
 def fifo_keeps_order(depth: int, reserve: int) -> tuple[dict, bool]:
     """A FIFO of this size keeps its promises, by induction."""
-    parameters = f"-chparam Width 2 -chparam Depth {depth} -chparam Reserve {reserve}"
+    parameters = f"Width 2 Depth {depth} Reserve {reserve}"
     return holds("fifo_keeps_order", "Bitwuzla", [catalogue.HW / "common" / "fifo.sv"], "open.tcl",
                  (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6,
                  prepared=f"fifo {{{parameters}}} *_q {{words {depth} 2}}", name=f"fifo_{depth}")
@@ -74,8 +74,8 @@ def queues_results(name: str, exp: int, frac: int) -> tuple[dict, bool]:
 def array() -> tuple[dict, bool]:
     """An array of four lanes is its lanes, by induction."""
     return holds("array_is_its_lanes", "Bitwuzla", around("hit_test_array", "lane"), "open.tcl", steps=1,
-                 reach=8, prepared="hit_test_array {-chparam Lanes 4 -chparam ExpWidth 5 -chparam FracWidth 10 "
-                 "-chparam TagWidth 2 -chparam CounterWidth 6} "
+                 reach=8, prepared="hit_test_array {Lanes 4 ExpWidth 5 FracWidth 10 "
+                 "TagWidth 2 CounterWidth 6} "
                  "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")
 
 
@@ -91,14 +91,11 @@ def slots_answer_once() -> tuple[dict, bool]:
 
 def stack_keeps_nodes() -> tuple[dict, bool]:
     """What a ray's stack holds is asked for once, or beyond, by induction: of two rays and two levels."""
-    walk = PROOFS / "contracts" / "small_ray_walk.sv"
     wires = "busy_q waiting_q picked_q ray_q asked_q started_q asking_ray_q chosen_q mask_q rest_q"
-    memories = "u_walk.levels 2 2 u_walk.groups 4 184 " + " ".join(
-        f"u_walk.gen_level[{d}].nexts 2 19 u_walk.gen_level[{d}].exponents 2 9" for d in range(2))
-    return holds("stack_keeps_nodes", "Bitwuzla", cores.used("small_ray_walk", [*cores.files("ray_core"), walk]),
-                 "open.tcl", steps=1, reach=14,
-                 prepared=f"small_ray_walk {{}} {{{' '.join(f'u_walk.{wire}' for wire in wires.split())}}} "
-                 f"{{{memories}}}")
+    memories = "levels 2 2 groups 4 184 " + " ".join(
+        f"gen_level[{d}].nexts 2 19 gen_level[{d}].exponents 2 9" for d in range(2))
+    return holds("stack_keeps_nodes", "Bitwuzla", cores.used("ray_walk", cores.files("ray_core")), "open.tcl",
+                 steps=1, reach=14, prepared=f"ray_walk {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
 
 
 def hits_keep_nearest() -> tuple[dict, bool]:
@@ -108,7 +105,7 @@ def hits_keep_nearest() -> tuple[dict, bool]:
                 "counts 2 10 u_points.words 2 2")
     return holds("hits_keep_nearest", "Bitwuzla", cores.used("ray_hits", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,
-                 prepared=f"ray_hits {{-chparam Rays 2 -chparam InFlight 2}} {{{wires}}} {{{memories}}}")
+                 prepared=f"ray_hits {{Rays 2 InFlight 2}} {{{wires}}} {{{memories}}}")
 
 
 def leaves_are_asked_for() -> tuple[dict, bool]:
@@ -116,7 +113,17 @@ def leaves_are_asked_for() -> tuple[dict, bool]:
     wires = "valid_q ray_q group_q mask_q number_q u_groups.count_q u_groups.valid_o u_groups.read_q u_groups.write_q"
     return holds("leaves_are_asked_for", "Bitwuzla", cores.used("leaf_walk", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,
-                 prepared=f"leaf_walk {{-chparam Rays 2}} {{{wires}}} {{u_groups.words 2 192}}")
+                 prepared=f"leaf_walk {{Rays 2}} {{{wires}}} {{u_groups.words 2 192}}")
+
+
+def cache_answers_once() -> tuple[dict, bool]:
+    """line_cache answers each request once, by its line, by induction: of two sets, and two that may wait."""
+    wires = ("held_q pending_q free_q follows_q draining_q current_q waiter current somebody leaves place room "
+             "u_hits.count_q u_hits.valid_o u_hits.read_q u_hits.write_q")
+    memories = "words 16 2 labels 2 216 heads 16 2 nexts 2 1 rays 2 1 u_hits.words 16 3"
+    return holds("cache_answers_once", "Bitwuzla", cores.used("line_cache", cores.files("ray_core")), "open.tcl",
+                 steps=1, reach=10, prepared="line_cache {Lines 16 Waiters 2 RayWidth 1 Width 2} "
+                 f"{{{wires}}} {{{memories}}}")
 
 
 def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
@@ -139,8 +146,8 @@ def edge_sign(frac: int) -> tuple[dict, bool]:
 
 
 def _opened(exp: int, frac: int, tag: int, inner: str) -> str:
-    return (f"hit_test_pipeline {{-chparam ExpWidth {exp} -chparam FracWidth {frac} "
-            f"-chparam TagWidth {tag}}} {{{inner}}}")
+    return (f"hit_test_pipeline {{ExpWidth {exp} FracWidth {frac} "
+            f"TagWidth {tag}}} {{{inner}}}")
 
 
 def timetable() -> tuple[dict, bool]:
@@ -200,6 +207,8 @@ ALL = [
           "Bitwuzla", hits_keep_nearest),
     Proof("unit.leaves", "a leaf's triangles are asked for in order, each once, unless they are beyond the limit",
           "Bitwuzla", leaves_are_asked_for),
+    Proof("unit.cache", "a request for a line is answered once, by that line, in whichever order memory answers",
+          "Bitwuzla", cache_answers_once, False),
     Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
           functools.partial(of_ray_core, "sort_seven_sorts", "sort_seven", 2)),
     Proof("unit.pick", "the first request from a place on is picked", "Bitwuzla",

@@ -82,7 +82,7 @@ def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
     begin = time.monotonic()
     if not test_passes(program, 0, 3600):
         raise ValueError(f"{program}: fails without a fault")
-    limit = 2 + 20 * (time.monotonic() - begin)
+    limit = 2 + 5 * (time.monotonic() - begin)
     return [fault for fault in range(1, faults + 1) if test_passes(program, fault, limit)]
 
 

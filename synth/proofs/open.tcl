@@ -1,11 +1,13 @@
 # Makes the module opened_NAME of module NAME: the same, flat, with inner wires as outputs. For
 # invariants, which speak of what is inside.
 #   RTL       the sources
-#   PREPARED  NAME, its parameters as arguments of `hierarchy`, the wires, in Yosys's patterns, and memories,
+#   PREPARED  NAME, its parameters and their values, the wires, in Yosys's patterns, and memories,
 #             each as its name, depth and width: all words are one output, word 0 lowest
 lassign $::env(PREPARED) name parameters wires memories
 yosys read_verilog -formal -sv -defer {*}$::env(RTL)
-yosys hierarchy -check -top $name {*}$parameters
+# `hierarchy -chparam` stops at modules with an unsized constant at a cell's port.
+foreach {parameter value} $parameters { yosys chparam -set $parameter $value \$abstract\\$name }
+yosys hierarchy -check -top $name
 yosys proc
 yosys flatten
 yosys rename -top opened_$name

@@ -2,7 +2,7 @@
 // asked for, once, by the line that its group gives, unless it was beyond the ray's limit, or the ray had ended, in
 // a clock in which its stack was looked at; until then the ray counts as walking. Of groups for which there is room; others leave
 // as rests. No more nodes wait than there are rays.
-// opened_small_ray_walk is contracts/small_ray_walk.sv with its registers and memories as outputs.
+// opened_ray_walk is ray_walk of two rays, with stacks of two groups, with its registers and memories as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
   localparam int unsigned Depth = 2,
@@ -50,7 +50,7 @@ module stack_keeps_nodes #(
   logic [Rays*ExponentWidth-1:0] exponents_0, exponents_1;
   logic [Rays*Depth*GroupWidth-1:0] groups;
 
-  opened_small_ray_walk dut (
+  opened_ray_walk dut (
     .clk_i(clk),
     .rst_ni(reset_n),
     .start_valid_i(start),
@@ -73,22 +73,22 @@ module stack_keeps_nodes #(
     .node_line_o(node_line),
     .rest_valid_o(rest),
     .rest_taken_i(rest_taken),
-    .\u_walk.busy_q (busy_q),
-    .\u_walk.waiting_q (waiting_q),
-    .\u_walk.picked_q (picked_q),
-    .\u_walk.ray_q (ray_q),
-    .\u_walk.asked_q (asked_q),
-    .\u_walk.started_q (started_q),
-    .\u_walk.asking_ray_q (asking_ray_q),
-    .\u_walk.chosen_q (chosen_q),
-    .\u_walk.mask_q (mask_q),
-    .\u_walk.rest_q (rest_q),
-    .u_walk_levels(levels),
-    .u_walk_groups(groups),
-    .\u_walk_gen_level[0]_nexts (nexts_0),
-    .\u_walk_gen_level[1]_nexts (nexts_1),
-    .\u_walk_gen_level[0]_exponents (exponents_0),
-    .\u_walk_gen_level[1]_exponents (exponents_1)
+    .busy_q(busy_q),
+    .waiting_q(waiting_q),
+    .picked_q(picked_q),
+    .ray_q(ray_q),
+    .asked_q(asked_q),
+    .started_q(started_q),
+    .asking_ray_q(asking_ray_q),
+    .chosen_q(chosen_q),
+    .mask_q(mask_q),
+    .rest_q(rest_q),
+    .levels(levels),
+    .groups(groups),
+    .\gen_level[0]_nexts (nexts_0),
+    .\gen_level[1]_nexts (nexts_1),
+    .\gen_level[0]_exponents (exponents_0),
+    .\gen_level[1]_exponents (exponents_1)
   );
 
   // ---- Entries of a group

@@ -26,6 +26,10 @@ LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
           ("triangle_valid_o & triangle_ready_i;", "triangle_valid_o;"),
           ("if (push) held_o[box_ray_i] <= 1'b1;", "if (push && !done) held_o[box_ray_i] <= 1'b1;")]
 
+CACHE = [("some_free & ~(arrive & fill_place_i == place)", "some_free"),
+         ("<= follow & head[WaiterWidth]", "<= follow"),
+         (".requests_i(~pending)", ".requests_i({Ways{1'b1}})")]
+
 
 class ProofsRefuseFaults(unittest.TestCase):
     def refuse(self, module, faults, proof):
@@ -56,6 +60,9 @@ class ProofsRefuseFaults(unittest.TestCase):
 
     def test_of_leaves(self):
         self.refuse("leaf_walk", LEAVES, unit_proofs.leaves_are_asked_for)
+
+    def test_of_the_cache(self):
+        self.refuse("line_cache", CACHE, unit_proofs.cache_answers_once)
 
 
 if __name__ == "__main__":
