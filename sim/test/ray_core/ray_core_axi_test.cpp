@@ -6,7 +6,9 @@
 #include <bit>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <random>
+#include <vector>
 
 #include "Vray_core_axi.h"
 #include "host/find/core/memory_image.h"
@@ -19,7 +21,7 @@ namespace raygate {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261122;
-constexpr std::uint64_t kBase = 0x1'0000'0000;
+constexpr std::uint64_t kBase = 0x9234'5678'8000'0000;
 
 class RayCoreAxiTest : public testing::Test {
  protected:
@@ -55,9 +57,11 @@ class RayCoreAxiTest : public testing::Test {
       }
     }
     const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
+    const bool ray_taken = (model_->ray_valid_i & model_->ray_ready_o) != 0;
     if ((model_->result_valid_o & model_->result_ready_i) != 0) take_result();
     model_.clock();
     if (beat_taken) model_->mem_rvalid_i = 0;
+    if (ray_taken) model_->ray_valid_i = 0;
   }
 
   void write(std::uint32_t address, std::uint32_t data) {
@@ -94,7 +98,23 @@ class RayCoreAxiTest : public testing::Test {
     result.found = model_->result_found_o != 0;
     result.triangle = model_->result_triangle_o;
     result.t = std::bit_cast<float>(model_->result_t_o);
+    result.t_error = model_->result_t_error_o;
+    std::memcpy(&result.point, &model_->result_point_o, sizeof result.point);
+    result.tests = model_->result_tests_o;
     results_.push_back(result);
+  }
+
+  /// Offers a ray at the port for rays.
+  void offer(const CoreRay& ray) {
+    std::memcpy(&model_->ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
+    std::memcpy(&model_->ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
+    model_->ray_limit_i = std::bit_cast<std::uint32_t>(ray.limit);
+    model_->ray_ignored_i = ray.ignored;
+    model_->ray_start_i = ray.start;
+    model_->ray_any_hit_i = ray.any_hit;
+    model_->ray_every_box_i = ray.every_box;
+    model_->ray_tag_i = ray.tag;
+    model_->ray_valid_i = 1;
   }
 
   struct Beat {
@@ -112,9 +132,11 @@ class RayCoreAxiTest : public testing::Test {
 
 TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
-  constexpr std::uint32_t kWidth = 40, kHeight = 30, kX = 3, kY = 5;
+  constexpr std::uint32_t kWidth = 40, kHeight = 30, kX = 0x2A03, kY = 0x1505;
   const glm::vec3 eye(0.25f, 0.3f, 2.5f);
-  const PixelGrid grid{{-0.6f, 0.5f, -1.0f}, {0.03f, 0.001f, 0.0f}, {0.0f, -0.03f, 0.002f}};
+  const glm::vec3 right(0.03f, 0.001f, 0.0f), down(0.0f, -0.03f, 0.002f);
+  const PixelGrid grid{glm::vec3(-0.6f, 0.5f, -1.0f) - float{kX} * right - float{kY} * down, right,
+                       down};
   write(0x014, static_cast<std::uint32_t>(kBase));
   write(0x018, static_cast<std::uint32_t>(kBase >> 32));
   write(0x020, kY << 16 | kX);
@@ -177,6 +199,70 @@ TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
     }
     EXPECT_GT(compared, 600);
   }
+}
+
+/// Rays at the port, of all kinds: what their ends say is what the reference says of each alone.
+TEST_F(RayCoreAxiTest, RaysAtThePortAreTraced) {
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  write(0x014, static_cast<std::uint32_t>(kBase));
+  write(0x018, static_cast<std::uint32_t>(kBase >> 32));
+  const MemoryLine& root = image_.lines()[MemoryImage::kRoot];
+  std::vector<std::uint32_t> starts{MemoryImage::kRoot};
+  std::uint32_t line = NodeLine(root).base;
+  for (const NodeLine::Child& child : NodeLine(root).child) {
+    if (child.kind == NodeLine::kInner) starts.push_back(line);
+    line += child.size();
+  }
+  ASSERT_GT(starts.size(), 1u);
+  test::Random random;
+  std::vector<CoreRay> rays;
+  for (const Ray& ray : test::some_rays(test::bodies(), random, 1'000)) {
+    CoreRay& sent = rays.emplace_back(CoreRay{.ray = ray});
+    sent.tag = static_cast<std::uint32_t>(rays.size() * 0x00F1'1F05 + 0x8000'0000);
+    if (random_() % 4 == 0) sent.limit = random.uniform(0.01f, 3.0f);
+    if (random_() % 4 == 0) sent.ignored = random_() % bvh_.slot_count();
+    sent.start = starts[random_() % starts.size()];
+    sent.any_hit = random_() % 8 == 0;
+    sent.every_box = random_() % 16 == 0;
+  }
+  std::size_t ended = 0, seen = 0;
+  auto next = rays.begin();
+  std::map<std::uint32_t, std::vector<CoreResult>> words;
+  for (int n = 0; ended < rays.size(); ++n) {
+    ASSERT_LT(n, 400'000);
+    if (next != rays.end() && model_->ray_valid_i == 0 && random_() % 4 != 0) offer(*next++);
+    clock();
+    for (; seen < results_.size(); ++seen) {
+      words[results_[seen].tag].push_back(results_[seen]);
+      ended += results_[seen].kind == CoreResult::Kind::kEnd;
+    }
+  }
+  ReferenceCore reference;
+  int compared = 0, every = 0;
+  for (const CoreRay& ray : rays) {
+    ASSERT_FALSE(words[ray.tag].empty());
+    const CoreResult& end = words[ray.tag].back();
+    ASSERT_EQ(end.kind, CoreResult::Kind::kEnd);
+    std::vector<CoreResult> expected;
+    reference.trace(image_.lines(), {&ray, 1}, expected);
+    if (ray.every_box) {
+      ++every;
+      if (!ray.any_hit) {
+        EXPECT_EQ(end.tests, expected.back().tests);
+      }
+    }
+    if (ray.any_hit || expected.size() != 1 || words[ray.tag].size() != 1) continue;
+    ++compared;
+    ASSERT_EQ(end.found, expected[0].found);
+    if (!end.found) continue;
+    ASSERT_EQ(end.triangle, expected[0].triangle);
+    ASSERT_EQ(end.t, expected[0].t);
+    ASSERT_EQ(end.t_error, expected[0].t_error);
+    ASSERT_EQ(end.point, expected[0].point);
+  }
+  EXPECT_GT(compared, 600);
+  EXPECT_GT(every, 20);
+  EXPECT_EQ(read(0x108), rays.size()) << "rays";
 }
 
 /// Memory that fails is told of.
