@@ -93,7 +93,15 @@ RAYGATE_INLINE void load_quad(const float* from, FloatQuad& to) {
 
 /// As many floats as fit a register: what is wider, GCC takes apart word by word to compare it.
 template <Vectors kCode>
-using NativeFloats = std::conditional_t<kCode == Vectors::kBaseline, FloatQuad, FloatLanes>;
+struct NativeFloatsOf {
+  using Type = FloatLanes;
+};
+template <>
+struct NativeFloatsOf<Vectors::kBaseline> {
+  using Type = FloatQuad;
+};
+template <Vectors kCode>
+using NativeFloats = typename NativeFloatsOf<kCode>::Type;
 
 /// Element i of row k becomes element k of row i.
 RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {

@@ -57,11 +57,15 @@ class Reader {
     return found;
   }
 
+  static std::string quoted(std::string_view text) {
+    return std::string("'").append(text).append("'");
+  }
+
   void read_header() {
     if (!rest_.starts_with("#?")) fail("not a Radiance HDR file");
     for (std::string_view text = line(); !text.empty(); text = line()) {
       if (text.starts_with("FORMAT=") && text != "FORMAT=32-bit_rle_rgbe") {
-        fail("'" + std::string(text) + "', expected FORMAT=32-bit_rle_rgbe");
+        fail(quoted(text) + ", expected FORMAT=32-bit_rle_rgbe");
       }
       if (!text.starts_with("EXPOSURE=")) continue;
       text.remove_prefix(text.find('=') + 1);
@@ -91,7 +95,7 @@ class Reader {
     picture.height = number("-Y ", at);
     picture.width = number(" +X ", at);
     if (at != text.size() || picture.width < 1 || picture.height < 1) {
-      fail("'" + std::string(text.substr(0, 40)) + "', expected -Y HEIGHT +X WIDTH");
+      fail(quoted(text.substr(0, 40)) + ", expected -Y HEIGHT +X WIDTH");
     }
   }
 

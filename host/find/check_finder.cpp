@@ -6,32 +6,24 @@
 #include <string>
 #include <utility>
 
+#include "host/find/hex_words.h"
+
 namespace raygate {
 namespace {
-
-std::string hex(std::span<const float> words) {
-  std::string text;
-  for (const float word : words) {
-    char buffer[16];
-    std::snprintf(buffer, sizeof buffer, " %08X", std::bit_cast<std::uint32_t>(word));
-    text += buffer;
-  }
-  return text;
-}
 
 bool same_bits(const glm::vec3& a, const glm::vec3& b) {
   using Bits = std::array<std::uint32_t, 3>;
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
-std::string hex(const glm::vec3& v) { return hex({&v.x, 3}); }
+std::string hex(const glm::vec3& v) { return hex_words({&v.x, 3}); }
 
 std::string describe(const Bvh& bvh, const NearestHit& hit) {
   if (hit.slot == NearestHit::kNone) return "no hit";
   char t[64];
   std::snprintf(t, sizeof t, ", t in [%.17g, %.17g]", hit.t.low, hit.t.high);
   return "triangle " + std::to_string(bvh.triangle_of(hit.slot)) + ", P" + hex(hit.point) +
-         " within " + hex({&hit.point_error, 1}) + t;
+         " within " + hex_words({&hit.point_error, 1}) + t;
 }
 
 }  // namespace
@@ -51,7 +43,7 @@ void CheckFinder::find(std::span<const Ray> rays, const Search& search,
     if (agree(rays[i], search, i, hits[i], expected_[i])) continue;
     const float limit = search.limit(i);
     throw FinderMismatch("the finders differ: ray" + hex(rays[i].origin) + "," +
-                         hex(rays[i].direction) + ", limit" + hex({&limit, 1}) + ": " +
+                         hex(rays[i].direction) + ", limit" + hex_words({&limit, 1}) + ": " +
                          describe(bvh_, hits[i]) + "; reference: " + describe(bvh_, expected_[i]));
   }
 }

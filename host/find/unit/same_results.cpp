@@ -1,26 +1,16 @@
 #include "host/find/unit/same_results.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdio>
 #include <string>
+
+#include "host/find/hex_words.h"
 
 namespace raygate {
 namespace {
 
-std::string hex(std::span<const float> words) {
-  std::string text;
-  for (const float word : words) {
-    char buffer[16];
-    std::snprintf(buffer, sizeof buffer, " %08X", std::bit_cast<std::uint32_t>(word));
-    text += buffer;
-  }
-  return text;
-}
-
 std::string describe(const BurstHit& hit) {
   const float words[] = {hit.t, hit.point.x, hit.point.y, hit.point.z};
-  return "nearest is record " + std::to_string(hit.record) + ", t and P" + hex(words) +
+  return "nearest is record " + std::to_string(hit.record) + ", t and P" + hex_words(words) +
          ", error of t " + std::to_string(hit.t_error);
 }
 
@@ -48,9 +38,10 @@ void require_same_list(std::span<const RayBundle> batch, std::span<const Result>
   const RayBundle& bundle = batch[culprit.bundle];
   const glm::vec3 direction = bundle.lane_direction(static_cast<int>(culprit.lane));
   std::string text = "the pipelined units differ: unit: " + part(a_left, a) +
-                     "; reference: " + part(e_left, e) + "; direction" + hex({&direction.x, 3});
+                     "; reference: " + part(e_left, e) + "; direction" +
+                     hex_words({&direction.x, 3});
   for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
-    text += "; record " + std::to_string(i) + hex({&bundle.records[i].normal.x, 16});
+    text += "; record " + std::to_string(i) + hex_words({&bundle.records[i].normal.x, 16});
   }
   throw BurstUnitMismatch(text);
 }

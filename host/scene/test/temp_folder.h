@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "host/scene/io/input_error.h"
+
 namespace raygate {
 
 class TempFolder {
@@ -34,6 +36,17 @@ class TempFolder {
     return file;
   }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  /// What follows "FOLDER/" in the InputError that `work` throws; "(read)" where it throws none.
+  template <class Work>
+  [[nodiscard]] std::string error_of(const Work& work) const {
+    try {
+      work();
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(path_.string().size() + 1);
+    }
+    return "(read)";
+  }
 
  private:
   std::filesystem::path path_;

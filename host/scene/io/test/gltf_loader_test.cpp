@@ -23,14 +23,8 @@ class LoadGltf : public testing::Test {
                            const LoadOptions& options = {}) const {
     return load_gltf(folder_.write("s.glb", glb(json, buffer)), options);
   }
-  /// What follows "FOLDER/" in the error.
   [[nodiscard]] std::string error(const std::string& json) const {
-    try {
-      (void)load(json);
-    } catch (const InputError& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return "(read)";
+    return folder_.error_of([&] { (void)load(json); });
   }
   void expect_error(const std::string& json, const std::string& start) const {
     EXPECT_TRUE(error(json).starts_with("s.glb: " + start)) << error(json);

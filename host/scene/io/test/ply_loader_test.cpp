@@ -24,14 +24,8 @@ class LoadPly : public testing::Test {
   [[nodiscard]] Scene load(std::string_view text) const {
     return load_ply(folder_.write("s.ply", text));
   }
-  /// What follows "FOLDER/" in the error.
   [[nodiscard]] std::string error(std::string_view text) const {
-    try {
-      (void)load(text);
-    } catch (const InputError& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return "(read)";
+    return folder_.error_of([&] { (void)load(text); });
   }
   [[nodiscard]] static std::string with(std::string_view part, std::string_view instead) {
     std::string text(kAscii);

@@ -34,14 +34,8 @@ class ReadSceneFile : public testing::Test {
   [[nodiscard]] SceneFile read(std::string_view text) const {
     return read_scene_file(folder_.write("s.json", text));
   }
-  /// What follows "FOLDER/" in the error.
   [[nodiscard]] std::string error(std::string_view text) const {
-    try {
-      (void)read(text);
-    } catch (const InputError& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return "(read)";
+    return folder_.error_of([&] { (void)read(text); });
   }
 
   const TempFolder folder_;

@@ -34,14 +34,8 @@ class LoadStl : public testing::Test {
   [[nodiscard]] Scene load(std::string_view text) const {
     return load_stl(folder_.write("s.stl", text));
   }
-  /// What follows "FOLDER/" in the error.
   [[nodiscard]] std::string error(std::string_view text) const {
-    try {
-      (void)load(text);
-    } catch (const InputError& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return "(read)";
+    return folder_.error_of([&] { (void)load(text); });
   }
 
   const TempFolder folder_;
