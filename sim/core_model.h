@@ -19,7 +19,7 @@ namespace raygate {
 /// Cores of `Top`, each with a `Holder` (see CorePort), in step: they share one port to memory,
 /// which takes one request and gives one line a clock, in turn. Hardware that is broken is told by
 /// std::runtime_error: no line and no result for kPatience clocks, a ray that ends twice, a line
-/// that is not there.
+/// that is not there, lines on their way that it does not tell of.
 template <class Top, template <class> class Holder = Model>
 class CoreModel : public CoreUnit {
  public:
@@ -57,13 +57,14 @@ class CoreModel : public CoreUnit {
         broken("nothing asked for and nothing told for " + std::to_string(kPatience) + " clocks");
       for (Core& core : cores_) core.clock();
     }
+    for (Core& core : cores_) core.take_result(false);
     while (std::ranges::any_of(cores_, &Core::is_busy_with_memory)) {
       serve_memory();
       if (++quiet > kPatience) broken("waits for a line that it does not ask for");
       for (Core& core : cores_) core.clock();
     }
-    for (Core& core : cores_) {
-      core.take_result(false);
+    if (!memory_.is_idle()) broken("lines are on their way, and it says that none is");
+    for (const Core& core : cores_) {
       if (core.rays() != 0 || core.is_offering() || core.has_result()) broken("a ray ended twice");
     }
   }

@@ -62,6 +62,9 @@ class MemoryModel {
   [[nodiscard]] std::uint64_t tag() const { return due_.top().tag; }
   void pop() { due_.pop(); }
 
+  /// Whether no line is on its way.
+  [[nodiscard]] bool is_idle() const { return due_.empty(); }
+
   /// Lines that the cache lacked.
   [[nodiscard]] std::uint64_t misses() const { return misses_; }
 
