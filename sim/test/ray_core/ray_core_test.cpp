@@ -118,6 +118,18 @@ TEST_F(RayCoreTest, WithoutCullingEveryTriangleIsTested) {
   for (const RayWork& ray : work) EXPECT_EQ(ray.tests, bvh_.slot_count());
 }
 
+/// A line that was read ahead may come when the last ray has ended; the core tells, or CoreModel
+/// throws.
+TEST_F(RayCoreTest, MemoryIsAtRestWhenTheCoreSaysSo) {
+  CoreModel<Vray_core_small> core({.latency = 1, .disorder = 1'000, .seed = 4});
+  for (const Ray& ray : some_rays(bodies(), random_, 100)) {
+    const CoreRay sent{.ray = ray};
+    std::vector<CoreResult> results;
+    core.trace(image_->lines(), {&sent, 1}, results);
+    ASSERT_FALSE(results.empty());
+  }
+}
+
 /// P of sure hits has the bits that the reference has for the core's own records.
 TEST_F(RayCoreTest, PointsAreTheReferences) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
