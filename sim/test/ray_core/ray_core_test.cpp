@@ -158,6 +158,37 @@ TEST_F(RayCoreTest, PointsAreTheReferences) {
   EXPECT_GT(same, 1'500);
 }
 
+/// The walk of a ray that hits nothing depends on no timing: it enters the nodes that the reference
+/// enters, and tests its triangles.
+TEST_F(RayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
+  std::vector<CoreRay> all, sent;
+  for (const Ray& ray : some_rays(bodies(), random_, 3'000)) {
+    CoreRay& one = all.emplace_back(CoreRay{.ray = ray});
+    one.tag = static_cast<std::uint32_t>(all.size() - 1);
+    if (one.tag % 4 != 0) one.limit = random_.uniform(0.01f, 3.0f);
+  }
+  std::vector<CoreResult> results;
+  ReferenceCore().trace(image_->lines(), all, results);
+  for (const CoreResult& result : results) {
+    if (result.kind == CoreResult::Kind::kEnd && !result.found) sent.push_back(all[result.tag]);
+  }
+  ASSERT_GT(sent.size(), 500u);
+  const auto tests = [&](CoreUnit& unit) {
+    std::vector<CoreResult> words;
+    std::vector<std::uint32_t> tests(all.size());
+    unit.trace(image_->lines(), sent, words);
+    for (const CoreResult& result : words) {
+      if (result.kind == CoreResult::Kind::kEnd) tests[result.tag] = result.tests;
+    }
+    return tests;
+  };
+  ReferenceCore reference;
+  const std::unique_ptr<CoreUnit> simulated = core(Arith::kBehavioural);
+  EXPECT_EQ(tests(*simulated), tests(reference));
+  EXPECT_EQ(simulated->counters().nodes, reference.counters().nodes);
+  EXPECT_EQ(simulated->counters().triangles, reference.counters().triangles);
+}
+
 /// Counters agree with each other, and with the words that came.
 TEST_F(RayCoreTest, EventsAreCounted) {
   std::vector<CoreRay> sent;
