@@ -118,6 +118,7 @@ module line_cache #(
   logic [WaiterWidth:0] head, fill_head;
   logic [RayWidth-1:0] rays[Waiters];
   logic some_free, enlist, arrive, draining_q, somebody, more;
+  logic room;  // for one more hit, below
 
   rotating_pick #(
     .Width(Waiters)
@@ -191,7 +192,7 @@ module line_cache #(
 
   // ---- What hit waits for a clock in which no line comes from memory
 
-  logic room, queued, leaves;
+  logic queued, leaves;
   logic [RayWidth-1:0] queued_ray;
   logic [Width-1:0] queued_line;
 
