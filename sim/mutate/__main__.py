@@ -122,6 +122,10 @@ def main() -> int:
     if not cores:
         print(f"sim.mutate: {netlists}: no netlists, expected core.list", file=sys.stderr)
         return 2
+    for core in cores:
+        if not (netlists / f"{core}.list").exists():
+            print(f"sim.mutate: {netlists}: no netlist of {core}, expected {core}.list", file=sys.stderr)
+            return 2
     try:
         with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
             outcomes = list(pool.map(
