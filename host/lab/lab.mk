@@ -12,7 +12,7 @@ define share
 $(if $(MPIRUN),@$(SETUP) mpi && $(configure) -DRAYGATE_MPI=ON >/dev/null && cmake --build build -j $(JOBS) --target share)
 endef
 
-.PHONY: stress stress-core bench peers gltf-pictures rays core skips predicates techniques shares stages growth adaptive coverage trace-rates claims
+.PHONY: stress stress-core bench peers gltf-pictures rays core skips predicates techniques profile phase-times scaling adaptive coverage trace-rates claims
 
 # An interrupted run goes on where it was: the suites that are done are in $(LAB_ROWS)/stress.jsonl.
 stress: ## try to make the hit tests wrong: make stress [QUICK=1 TESTS=10000000 SEED=1 MPIRUN='mpirun -n 4' PUBLISH=1]
@@ -83,13 +83,13 @@ predicates: ## what an exact decision costs, beside rationals and __float128
 	$(call build,build,lab)
 	@$(LAB) --results $(LAB_ROWS)/predicates.jsonl predicates
 
-shares: ## what a path-traced picture spends on hit tests, departures, shading and doubts, scene by scene
+profile: ## what a path-traced picture spends on hit tests, departures, shading and doubts, scene by scene
 	$(call build,lab,render scenes)
-	@$(LAB_REPORT) shares $(GALLERY) build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)')
+	@$(LAB_REPORT) profile $(GALLERY) build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)')
 
-stages: ## load, tree, render, write: milliseconds of a small and two large scenes: make stages [BEFORE=PROGRAM]
+phase-times: ## load, tree, render, write: milliseconds of a small and two large scenes: make phase-times [BEFORE=PROGRAM]
 	$(call build,lab,render scenes)
-	@$(LAB_REPORT) stages scenes/cornell.obj scenes/teapot.obj build/scenes/sphereflake.obj \
+	@$(LAB_REPORT) phase-times scenes/cornell.obj scenes/teapot.obj build/scenes/sphereflake.obj \
 	  build/scenes/landscape.obj $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)')
 
 adaptive: ## time with --error beside uniform --spp, at equal RMSE and equal FLIP: make adaptive [SCENES='scenes/cornell.obj']
@@ -100,12 +100,12 @@ coverage: ## how often the estimated error of --error holds, pixels of known val
 	$(call build,test,picture_test)
 	@RAYGATE_SEEDS=$(or $(SEEDS),1000) build/picture_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
 
-growth: ## time by ranks: measured for 1 and 2, a model up to 1,000: make growth [PUBLISH=1]
+scaling: ## time by ranks: measured for 1 and 2, a model up to 1,000: make scaling [PUBLISH=1]
 	@$(SETUP) mpi
 	@$(SETUP) lab
 	@$(configure) -DRAYGATE_MPI=ON >/dev/null
 	@cmake --build build -j $(JOBS) --target render scenes
-	@$(LAB_REPORT) growth scenes/cornell.obj build/scenes/landscape.obj $(if $(PUBLISH),--publish)
+	@$(LAB_REPORT) scaling scenes/cornell.obj build/scenes/landscape.obj $(if $(PUBLISH),--publish)
 
 trace-rates: ## rays per second of ./trace: nearest, any and all hits, tables in and out included
 	$(call build,lab,trace scenes)

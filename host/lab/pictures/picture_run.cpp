@@ -17,7 +17,7 @@
 #include "host/film/png.h"
 #include "host/find/unit/unit_finder.h"
 #include "host/lab/pictures/decision_audit.h"
-#include "host/lab/pictures/stage.h"
+#include "host/lab/pictures/lit_scene.h"
 #include "host/lab/timing.h"
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/lab/variants/variant_hit_tester.h"
@@ -102,9 +102,9 @@ double time_yardstick() {
 }
 
 /// One run, from its first picture on.
-class Performance {
+class TimedRun {
  public:
-  Performance(const PictureRun& run, const Stage& stage)
+  TimedRun(const PictureRun& run, const LitScene& stage)
       : run_(run),
         variant_(variant_named(run.variant)),
         stage_(stage),
@@ -183,7 +183,7 @@ class Performance {
  private:
   const PictureRun& run_;
   const Variant& variant_;
-  const Stage& stage_;
+  const LitScene& stage_;
   Camera camera_;
   RenderStats stats_;
   std::optional<Film> film_;
@@ -236,16 +236,16 @@ PictureRun parse_run(const Row& object) {
 
 std::vector<Row> measure(const std::vector<PictureRun>& runs,
                          const std::function<void(const std::string&)>& progress) {
-  std::map<std::string, std::unique_ptr<Stage>> stages;
-  std::vector<std::unique_ptr<Performance>> performances;
+  std::map<std::string, std::unique_ptr<LitScene>> stages;
+  std::vector<std::unique_ptr<TimedRun>> timed_runs;
   for (const PictureRun& run : runs) {
-    std::unique_ptr<Stage>& stage = stages[run.scene];
-    if (!stage) stage = std::make_unique<Stage>(run.scene);
-    performances.push_back(std::make_unique<Performance>(run, *stage));
+    std::unique_ptr<LitScene>& stage = stages[run.scene];
+    if (!stage) stage = std::make_unique<LitScene>(run.scene);
+    timed_runs.push_back(std::make_unique<TimedRun>(run, *stage));
   }
   for (bool busy = true; busy;) {
     busy = false;
-    for (const auto& performance : performances) {
+    for (const auto& performance : timed_runs) {
       if (performance->done()) continue;
       const PictureRun& run = performance->run();
       progress(run.scene + " " + run.variant + " " + run.engine);
@@ -254,14 +254,14 @@ std::vector<Row> measure(const std::vector<PictureRun>& runs,
     }
   }
   std::vector<Row> rows;
-  for (const auto& performance : performances) {
+  for (const auto& performance : timed_runs) {
     performance->write_picture();
     Row& row = rows.emplace_back(performance->row());
     const std::string& against = performance->run().against;
     if (against.empty()) continue;
     const auto reference = std::ranges::find_if(
-        performances, [&](const auto& other) { return other->run().picture == against; });
-    if (reference == performances.end()) fail("against", against, "another run's picture");
+        timed_runs, [&](const auto& other) { return other->run().picture == against; });
+    if (reference == timed_runs.end()) fail("against", against, "another run's picture");
     row.update(difference(performance->film(), (*reference)->film()));
   }
   return rows;

@@ -7,7 +7,7 @@
 #include "host/cli/engines.h"
 #include "host/cli/options.h"
 #include "host/lab/commands.h"
-#include "host/lab/pictures/stage.h"
+#include "host/lab/pictures/lit_scene.h"
 #include "host/lab/results.h"
 #include "host/picture/renderer.h"
 
@@ -29,7 +29,7 @@ struct Run {
   RenderStats stats;
 };
 
-Run timed(const Stage& stage, const Options& options) {
+Run timed(const LitScene& stage, const Options& options) {
   const RenderOptions render_options{.width = kWidth,
                                      .height = kHeight,
                                      .window = {},
@@ -51,7 +51,7 @@ Run timed(const Stage& stage, const Options& options) {
 /// All of one scene's rows.
 class SceneRows {
  public:
-  SceneRows(const Stage& stage, Results& results, TextTable& table)
+  SceneRows(const LitScene& stage, Results& results, TextTable& table)
       : stage_(stage), results_(results), table_(table) {}
 
   /// False when a skip changed the picture.
@@ -103,7 +103,7 @@ class SceneRows {
     return fine;
   }
 
-  const Stage& stage_;
+  const LitScene& stage_;
   Results& results_;
   TextTable& table_;
   Run all_;
@@ -132,7 +132,7 @@ void add_skips(CLI::App& lab, Common& common) {
                      {"time_over_all_skips", "over all skips", 2},
                      {"picture", "picture"}});
     for (const std::string& scene : *scenes) {
-      if (!SceneRows(Stage(scene), results, table).run()) common.status = 1;
+      if (!SceneRows(LitScene(scene), results, table).run()) common.status = 1;
     }
   });
 }

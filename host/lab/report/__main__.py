@@ -1,5 +1,5 @@
-"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make core`, `make shares`, `make stages`,
-`make growth`, `make adaptive` and `make trace-rates` run."""
+"""`python3 -m host.lab.report`: what `make bench`, `make stress`, `make core`, `make profile`, `make phase-times`,
+`make scaling`, `make adaptive` and `make trace-rates` run."""
 
 import argparse
 import pathlib
@@ -9,7 +9,7 @@ import statistics
 import subprocess
 import sys
 
-from host.lab.report import (adaptive, bench, bench_report, compare, core_report, document, growth, shares, stages,
+from host.lab.report import (adaptive, bench, bench_report, compare, core_report, document, phase_times, profile, scaling,
                              stress_report, trace_rates)
 from host.lab.report import rows as kept
 from host.lab.report.rows import KEPT, ROOT
@@ -40,12 +40,12 @@ def arguments() -> argparse.Namespace:
     for publishing in (command, stress, core):
         publishing.add_argument("--publish", action="store_true",
                                 help="write the report into host/lab/results/ as well")
-    command = commands.add_parser("shares", help="hit tests, departures and shading in pictures by ./render")
+    command = commands.add_parser("profile", help="hit tests, departures and shading in pictures by ./render")
     command.add_argument("scenes", nargs="+")
     command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
     command.add_argument("--size", default="128x96")
     command.add_argument("--spp", default="4")
-    command = commands.add_parser("stages", help="load, tree, render, write: how long each takes ./render")
+    command = commands.add_parser("phase-times", help="load, tree, render, write: how long each takes ./render")
     command.add_argument("scenes", nargs="+")
     command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
     command.add_argument("--before", type=pathlib.Path, metavar="PROGRAM", help="an older one to print in brackets")
@@ -60,7 +60,7 @@ def arguments() -> argparse.Namespace:
     command.add_argument("--counts", type=int, nargs="+", default=[16, 32, 64, 128, 256], help="uniform samples")
     command.add_argument("--reference", type=int, default=2048, help="samples of the picture that is the truth")
     command.add_argument("--seeds", type=int, default=2)
-    command = commands.add_parser("growth", help="time by ranks, measured and modelled: build/reports/growth/report.md")
+    command = commands.add_parser("scaling", help="time by ranks, measured and modelled: build/reports/scaling/report.md")
     command.add_argument("scenes", nargs="+", help="OBJ files")
     command.add_argument("--render", type=pathlib.Path, default=ROOT / "render", metavar="PROGRAM")
     command.add_argument("--repeats", type=int, default=5)
@@ -140,11 +140,11 @@ def share_stress(given: argparse.Namespace) -> int:
     return 0
 
 
-def run_shares(given: argparse.Namespace) -> int:
+def run_profile(given: argparse.Namespace) -> int:
     """Prints the table and keeps its rows."""
     light = ["--integrator", "path", "--size", given.size, "--spp", given.spp]
-    rows = [shares.row(given.render.resolve(), scene, light) for scene in given.scenes]
-    kept.write(KEPT / "shares.jsonl", rows)
+    rows = [profile.row(given.render.resolve(), scene, light) for scene in given.scenes]
+    kept.write(KEPT / "profile.jsonl", rows)
     print(document.table(
         {"scene": "", "triangles": ",", "rays": ",", "instructions per ray": ",.0f", "hit tests, %": ".1f",
          "departures, %": ".1f", "shading, %": ".1f", "exact decisions, %": ".2f", "doubts, % of tests": ".4f"},
@@ -153,30 +153,30 @@ def run_shares(given: argparse.Namespace) -> int:
     return 0
 
 
-def run_stages(given: argparse.Namespace) -> int:
-    """Prints the table, the fastest of each stage's runs, and keeps the rows."""
+def run_phase_times(given: argparse.Namespace) -> int:
+    """Prints the table, the fastest of each phase's runs, and keeps the rows."""
     programs = [given.render.resolve()] + ([given.before.resolve()] if given.before else [])
-    rows = stages.measure(programs, given.scenes, ["--integrator", "whitted", "--spp", "1", "--size", given.size],
+    rows = phase_times.measure(programs, given.scenes, ["--integrator", "whitted", "--spp", "1", "--size", given.size],
                           given.repeats)
-    kept.write(KEPT / "stages.jsonl", rows)
+    kept.write(KEPT / "phase_times.jsonl", rows)
 
-    def cell(scene: str, stage: str) -> str:
-        now, *before = (f"{1000 * min(row['seconds'][stage]):.0f}" for row in kept.of(rows, "stages", scene=scene))
+    def cell(scene: str, phase: str) -> str:
+        now, *before = (f"{1000 * min(row['seconds'][phase]):.0f}" for row in kept.of(rows, "phase_times", scene=scene))
         return now + "".join(f" ({old})" for old in before)
 
     print(document.table(
-        {"scene": "", "triangles": ","} | {f"{stage}, ms": "" for stage in stages.STAGES},
-        [[kept.scene_name(row), row["triangles"], *(cell(row["scene"], stage) for stage in stages.STAGES)]
-         for row in kept.of(rows, "stages", program=0)]))
+        {"scene": "", "triangles": ","} | {f"{phase}, ms": "" for phase in phase_times.PHASES},
+        [[kept.scene_name(row), row["triangles"], *(cell(row["scene"], phase) for phase in phase_times.PHASES)]
+         for row in kept.of(rows, "phase_times", program=0)]))
     return 0
 
 
-def run_growth(given: argparse.Namespace) -> int:
+def run_scaling(given: argparse.Namespace) -> int:
     """ValueError where numbers of ranks differ in a byte."""
-    file = KEPT / "growth.jsonl"
+    file = KEPT / "scaling.jsonl"
     if not given.report_only:
-        kept.write(file, growth.measure(given.render.resolve(), given.scenes, given.repeats))
-    write(kept.read(file), growth.build, "growth", given.publish)
+        kept.write(file, scaling.measure(given.render.resolve(), given.scenes, given.repeats))
+    write(kept.read(file), scaling.build, "scaling", given.publish)
     return 0
 
 
@@ -213,7 +213,7 @@ def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
     commands = {"bench": run_bench, "stress": run_stress, "share-stress": share_stress, "core": run_core,
-                "shares": run_shares, "stages": run_stages, "growth": run_growth, "adaptive": run_adaptive,
+                "profile": run_profile, "phase-times": run_phase_times, "scaling": run_scaling, "adaptive": run_adaptive,
                 "trace": run_trace}
     try:
         return commands[given.command](given)

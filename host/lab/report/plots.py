@@ -126,7 +126,7 @@ def gallery(pictures: list[tuple[str, pathlib.Path]], file: pathlib.Path,
     return save(figure, file)
 
 
-def shares(values: list[list[float]], rows: list[str], columns: list[str], title: str,
+def heat_map(values: list[list[float]], rows: list[str], columns: list[str], title: str,
            file: pathlib.Path) -> pathlib.Path:
     """A map of shares from 1e-6 to 1, white where there are none."""
     figure, axes = plt.subplots(figsize=(12, 0.4 * len(rows) + 2.5), layout="constrained")

@@ -105,7 +105,7 @@ def build(rows: list[dict], folder: pathlib.Path) -> str:
     first = [next(iter(found.values())) for found in suites.values()]  # what is the suite's alone
     unit = next(t for t in totals if t["exact"] and t["t_ulp"]["count"])
     others = [t for t in totals if not t["exact"]]
-    shares = plots.shares([[wrong(suites[suite][t["subject"]]) /
+    shares = plots.heat_map([[wrong(suites[suite][t["subject"]]) /
                             max(suites[suite][t["subject"]]["tests"], 1) for suite in suites]
                            for t in others], [t["subject"] for t in others], list(suites),
                           "Wrong decisions, % of tests (the exact ones: 0 everywhere)",

@@ -5,7 +5,7 @@ import pathlib
 import tempfile
 import unittest
 
-from host.lab.report import bench, claims, costs, document, rows, shares, statistics
+from host.lab.report import bench, claims, costs, document, rows, profile, statistics
 
 VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "exponent_bits": 8,
            "digits": 24, "rounding": "nearest-even", "flush": False, "quotient_digits": 0, "fused": False,
@@ -54,9 +54,9 @@ calls=1 0
 """
 
 
-class Shares(unittest.TestCase):
+class Profile(unittest.TestCase):
     def test_a_part_that_calls_itself_counts_once(self):
-        self.assertEqual(shares.inside(shares.calls(PROFILE), shares.PARTS["departures"]), 115)
+        self.assertEqual(profile.inside(profile.calls(PROFILE), profile.PARTS["departures"]), 115)
 
 
 class Rows(unittest.TestCase):

@@ -7,12 +7,12 @@ import tempfile
 
 from host.lab.report.rows import ROOT
 
-STAGES = ("load", "tree", "render", "write", "total")
+PHASES = ("load", "tree", "render", "write", "total")
 
 
 def measure(programs: list[pathlib.Path], scenes: list[str], arguments: list[str], repeats: int) -> list[dict]:
-    """A row for each scene and program: seconds of each stage in each run; the programs take turns."""
-    rows = [{"table": "stages", "scene": scene, "program": number, "seconds": {stage: [] for stage in STAGES}}
+    """A row for each scene and program: seconds of each phase in each run; the programs take turns."""
+    rows = [{"table": "phase_times", "scene": scene, "program": number, "seconds": {phase: [] for phase in PHASES}}
             for scene in scenes for number in range(len(programs))]
     with tempfile.TemporaryDirectory() as name:
         picture, stats = pathlib.Path(name) / "picture.exr", pathlib.Path(name) / "stats.json"
@@ -22,6 +22,6 @@ def measure(programs: list[pathlib.Path], scenes: list[str], arguments: list[str
                                 "--stats", stats, *arguments], cwd=ROOT, check=True)
                 found = json.loads(stats.read_text())
                 row["triangles"] = found["triangles"]
-                for stage in STAGES:
-                    row["seconds"][stage].append(found["seconds"][stage])
+                for phase in PHASES:
+                    row["seconds"][phase].append(found["seconds"][phase])
     return rows

@@ -11,12 +11,12 @@
 
 namespace raygate::lab {
 
-struct Stage {
+struct LitScene {
   std::string name;
   Scene scene;
   Bvh bvh;
 
-  explicit Stage(const std::filesystem::path& file)
+  explicit LitScene(const std::filesystem::path& file)
       : name(file.stem().string()), scene(load_obj(file)), bvh(scene) {
     light_if_dark(scene, Camera::frame(scene, 4.0 / 3.0));
   }

@@ -49,7 +49,7 @@ def row(program: pathlib.Path, scene: str, arguments: list[str]) -> dict:
         found, counts = calls(profile.read_text()), json.loads(stats.read_text())
     whole = inside(found, WHOLE)
     shares = {part: 100 * inside(found, names) / whole for part, names in PARTS.items()}
-    return {"table": "shares", "scene": scene, "triangles": counts["triangles"], "rays": counts["rays"],
+    return {"table": "profile", "scene": scene, "triangles": counts["triangles"], "rays": counts["rays"],
             "edge_doubts_percent": 100 * counts["edge_doubts"] / max(counts["tests"], 1),
             "instructions_per_ray": whole / max(counts["rays"], 1), **shares,
             "shading": 100 - shares["hit_tests"] - shares["departures"]}

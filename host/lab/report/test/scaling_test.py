@@ -4,55 +4,55 @@ import pathlib
 import tempfile
 import unittest
 
-from host.lab.report import growth
+from host.lab.report import scaling
 from host.lab.report.rows import ROOT
 
-COSTS = growth.Costs(scene=2.0, scene_bytes=10**9, pixel=0.0, sample=1e-6, gather_byte=1e-9, slice_bytes=136)
+COSTS = scaling.Costs(scene=2.0, scene_bytes=10**9, pixel=0.0, sample=1e-6, gather_byte=1e-9, slice_bytes=136)
 
 
 def rows() -> list[dict]:
     """As a machine would measure that has these costs."""
     found = []
-    for ranks in (*growth.RANKS, *growth.MORE_RANKS):
-        for samples in growth.SAMPLES if ranks in growth.RANKS else growth.SAMPLES[:1]:
+    for ranks in (*scaling.RANKS, *scaling.MORE_RANKS):
+        for samples in scaling.SAMPLES if ranks in scaling.RANKS else scaling.SAMPLES[:1]:
             came = 10**6 if ranks > 1 else 0
-            found.append({"table": "growth", "scene": "a.obj", "ranks": ranks, "samples": samples, "pixels": 10**4,
+            found.append({"table": "scaling", "scene": "a.obj", "ranks": ranks, "samples": samples, "pixels": 10**4,
                           "scene_bytes": 10**9, "gathered_bytes": came, "gathered_tiles": came // 10**5, "bytes": str(samples),
                           "seconds": {"load": 0.5, "tree": 1.5, "processor": 1e-2 * samples, "gather": 1e-9 * came}})
     return found
 
 
-class Growth(unittest.TestCase):
+class Scaling(unittest.TestCase):
     def test_fits_what_it_was_made_of(self) -> None:
-        costs = growth.fit(rows(), "a.obj")
+        costs = scaling.fit(rows(), "a.obj")
         for name, value in vars(COSTS).items():
             self.assertAlmostEqual(getattr(costs, name) / (value or 1.0), 1.0 if value else 0.0, places=6, msg=name)
 
     def test_parts_of_one_rank_and_of_many(self) -> None:
-        picture = growth.Picture(COSTS, pixels=4096 * 2560, samples=1000, threads=1)
-        one, ten = growth.predict(picture, 1), growth.predict(picture, 10)
+        picture = scaling.Picture(COSTS, pixels=4096 * 2560, samples=1000, threads=1)
+        one, ten = scaling.predict(picture, 1), scaling.predict(picture, 10)
         self.assertAlmostEqual(one.compute, 4096 * 2560 * 1e-3)
         self.assertAlmostEqual(one.compute / ten.compute, 10.0)
         self.assertEqual((one.scene, one.gather, one.end), (2.0, 0.0, 0.0))
         self.assertAlmostEqual(ten.scene, 2.0 + 9 / 5)
-        fixed = growth.predict(picture, 10**6, small_tiles=False)
+        fixed = scaling.predict(picture, 10**6, small_tiles=False)
         self.assertAlmostEqual(fixed.compute, one.compute / 2560)  # as many as there are tiles
 
     def test_numbers_are_those_of_the_program(self) -> None:
         helpers = (ROOT / "host/picture/helpers.cpp").read_text()
         tiles = (ROOT / "host/picture/tiles.h").read_text()
-        self.assertIn(f"kSeconds = {growth.JOB_SECONDS};", helpers)
-        self.assertIn(f"kRate = {growth.RATE / 1e6:.0f}e6;", helpers)
-        self.assertIn(f": {growth.EDGE};", tiles)
-        self.assertIn(f"edge > {growth.LEAST_EDGE} ", tiles)
+        self.assertIn(f"kSeconds = {scaling.JOB_SECONDS};", helpers)
+        self.assertIn(f"kRate = {scaling.RATE / 1e6:.0f}e6;", helpers)
+        self.assertIn(f": {scaling.EDGE};", tiles)
+        self.assertIn(f"edge > {scaling.LEAST_EDGE} ", tiles)
 
     def test_a_byte_that_differs_is_no_report(self) -> None:
         wrong = rows()
         wrong[-1]["bytes"] = "other"
         with tempfile.TemporaryDirectory() as folder:
-            self.assertIn("one checksum", growth.build(rows(), pathlib.Path(folder)))
+            self.assertIn("one checksum", scaling.build(rows(), pathlib.Path(folder)))
             with self.assertRaises(ValueError):
-                growth.build(wrong, pathlib.Path(folder))
+                scaling.build(wrong, pathlib.Path(folder))
 
 
 if __name__ == "__main__":

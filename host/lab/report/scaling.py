@@ -48,7 +48,7 @@ def run(program: pathlib.Path, scene: str, ranks: int, samples: int) -> dict:
                         "--spp", str(samples), "--quiet", "-o", folder / "a.exr", "--stats", folder / "a.json"],
                        cwd=ROOT, env=ENVIRONMENT, check=True)
         found = json.loads((folder / "a.json").read_text())
-        return {"table": "growth", "scene": scene, "ranks": ranks, "samples": samples,
+        return {"table": "scaling", "scene": scene, "ranks": ranks, "samples": samples,
                 "pixels": SIZE[0] * SIZE[1], "triangles": found["triangles"], "seconds": found["seconds"],
                 "gathered_tiles": found["gathered_tiles"], "gathered_bytes": found["gathered_bytes"],
                 "scene_bytes": (ROOT / scene).stat().st_size,
@@ -75,7 +75,7 @@ class Costs:
 
 def seconds(rows: list[dict], stage: str, **values: object) -> float:
     """The least of the repeats: what other programs took is in the others."""
-    return min(row["seconds"][stage] for row in kept.of(rows, "growth", **values))
+    return min(row["seconds"][stage] for row in kept.of(rows, "scaling", **values))
 
 
 def fit(rows: list[dict], scene: str) -> Costs:
@@ -84,8 +84,8 @@ def fit(rows: list[dict], scene: str) -> Costs:
     pixels = rows[0]["pixels"]
     samples = numpy.array(SAMPLES) * pixels
     sample, rest = numpy.polyfit(samples, [seconds(rows, "processor", samples=n, **alone) for n in SAMPLES], 1)
-    shared = [row for row in kept.of(rows, "growth", scene=scene) if row["gathered_bytes"]]
-    one = kept.of(rows, "growth", **alone)[0]
+    shared = [row for row in kept.of(rows, "scaling", scene=scene) if row["gathered_bytes"]]
+    one = kept.of(rows, "scaling", **alone)[0]
     # Every channel of a film with sums, see host/film/film_slice.h: colour, depth, normal, triangle, sums.
     slice_bytes = 16 + 4 + 12 + 4 + 4 + 4 * 24
     return Costs(scene=seconds(rows, "load", **alone) + seconds(rows, "tree", **alone),
@@ -227,6 +227,6 @@ def limits_table(fits: dict[str, Costs]) -> str:
 def build(rows: list[dict], folder: pathlib.Path) -> str:
     """The report's Markdown; its plot beside it."""
     fits = {scene: fit(rows, scene) for scene in dict.fromkeys(row["scene"] for row in rows)}
-    return render("growth.md.j2", folder, size=SIZE, same=same_bytes(rows), costs=costs_table(fits),
+    return render("scaling.md.j2", folder, size=SIZE, same=same_bytes(rows), costs=costs_table(fits),
                   measured=measured_table(rows, fits), limits=limits_table(fits), link=LINK, files=FILES,
-                  threads=THREADS, plot=plot(fits, folder / "growth.png"))
+                  threads=THREADS, plot=plot(fits, folder / "scaling.png"))
