@@ -1,5 +1,5 @@
 // In place of core_wave.cpp, where CMake's RAYGATE_WAVES is off.
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "sim/core_wave.h"
 
 namespace raygate {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "sim/model.h"
 #include "verilated_vcd_c.h"
 

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "host/base/input_error.h"
 #include "host/cli/option_text.h"
 #include "host/cli/version.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

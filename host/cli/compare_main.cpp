@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/cli/command_line.h"
 #include "host/cli/option_text.h"
 #include "host/cli/process.h"
@@ -16,7 +17,6 @@
 #include "host/film/false_color.h"
 #include "host/film/pending_file.h"
 #include "host/film/png.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <system_error>
 
+#include "host/base/input_error.h"
 #include "host/cli/format.h"
 #include "host/cli/option_text.h"
 #include "host/film/pending_file.h"
 #include "host/find/core/core_finder.h"
-#include "host/scene/io/input_error.h"
 #include "sim/core_wave.h"
 
 namespace raygate {

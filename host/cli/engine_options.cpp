@@ -6,8 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "host/base/input_error.h"
 #include "host/cli/option_text.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/input_error.h"
 #include "host/cli/option_text.h"
 #include "host/exact/exact.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/cli/command_line.h"
 #include "host/cli/output_options.h"
 #include "host/cli/outputs.h"
 #include "host/cli/process.h"
 #include "host/film/merge.h"
 #include "host/film/sample_range.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

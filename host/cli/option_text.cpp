@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

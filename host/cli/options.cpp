@@ -3,13 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "host/base/input_error.h"
 #include "host/cli/command_line.h"
 #include "host/cli/help.h"
 #include "host/cli/option_text.h"
 #include "host/cli/sky_lens_options.h"
 #include "host/cli/values.h"
 #include "host/picture/sample_choice.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

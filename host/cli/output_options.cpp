@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "host/base/input_error.h"
 #include "host/cli/option_text.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "host/base/input_error.h"
 #include "host/film/channels.h"
 #include "host/film/display.h"
 #include "host/film/false_color.h"
 #include "host/film/png.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 

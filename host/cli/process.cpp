@@ -7,9 +7,9 @@
 #include <cstring>
 #include <new>
 
+#include "host/base/input_error.h"
+#include "host/base/vectors.h"
 #include "host/ranks/helper_guard.h"
-#include "host/scene/io/input_error.h"
-#include "host/vectors.h"
 
 namespace raygate {
 namespace {

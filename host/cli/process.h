@@ -36,8 +36,8 @@ int run_guarded(const std::function<int()>& program, int internal_error);
 /// Runs `work` on one of the ranks of a run. What it throws on any of them rank 0 throws.
 void work_as_rank(Ranks& ranks, const std::function<void()>& work);
 
-/// Settles which vector code runs (host/vectors.h). Throws InputError where RAYGATE_VECTORS names
-/// none that this machine has.
+/// Settles which vector code runs (host/base/vectors.h). Throws InputError where RAYGATE_VECTORS
+/// names none that this machine has.
 void choose_vectors();
 
 /// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one ends the program at once.

@@ -6,11 +6,11 @@
 #include <tuple>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/film/channels.h"
 #include "host/film/exr_reader.h"
 #include "host/film/merge.h"
 #include "host/film/sample_range.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/cli/engines.h"
 #include "host/cli/format.h"
 #include "host/cli/outputs.h"
@@ -27,7 +28,6 @@
 #include "host/scene/camera.h"
 #include "host/scene/ground.h"
 #include "host/scene/instances.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/tree/bvh.h"

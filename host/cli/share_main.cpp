@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/cli/process.h"
 #include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
 #include "host/ranks/shared_jobs.h"
-#include "host/scene/io/input_error.h"
 
 namespace {
 

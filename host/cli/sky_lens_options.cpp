@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <limits>
 
+#include "host/base/input_error.h"
 #include "host/cli/format.h"
 #include "host/cli/option_text.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/cli/command_line.h"
 #include "host/cli/engine_options.h"
 #include "host/cli/engines.h"
@@ -14,7 +15,6 @@
 #include "host/cli/process.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/pending_file.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/trace/answers.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "host/base/lanes.h"
 #include "host/exact/exact_vector.h"
-#include "host/lanes.h"
 
 namespace raygate {
 namespace {

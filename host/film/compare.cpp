@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/scene/io/input_error.h"
-#include "host/scene/srgb.h"
+#include "host/base/input_error.h"
+#include "host/base/srgb.h"
 
 namespace raygate {
 namespace {

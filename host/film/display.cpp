@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/elementary.h"
-#include "host/scene/srgb.h"
+#include "host/base/elementary.h"
+#include "host/base/srgb.h"
 
 namespace raygate {
 namespace {

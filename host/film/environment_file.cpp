@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
 #include "host/film/exr_reader.h"
 #include "host/film/radiance_reader.h"
 

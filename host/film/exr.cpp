@@ -15,9 +15,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/base/threads.h"
 #include "host/film/channels.h"
 #include "host/film/exr_slices.h"
-#include "host/threads.h"
 
 namespace raygate {
 namespace {

@@ -15,9 +15,9 @@
 #include <fstream>
 #include <system_error>
 
+#include "host/base/input_error.h"
 #include "host/film/channels.h"
 #include "host/film/exr_slices.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
 
 namespace raygate {
 namespace {

@@ -5,8 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "host/base/input_error.h"
 #include "host/film/sample_range.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

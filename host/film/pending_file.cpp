@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
 
 namespace raygate {
 namespace {

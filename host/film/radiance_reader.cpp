@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "host/scene/io/file_bytes.h"
-#include "host/scene/io/input_error.h"
+#include "host/base/file_bytes.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

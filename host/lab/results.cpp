@@ -6,10 +6,10 @@
 #include <system_error>
 #include <utility>
 
+#include "host/base/input_error.h"
+#include "host/base/vectors.h"
 #include "host/cli/format.h"
 #include "host/film/pending_file.h"
-#include "host/scene/io/input_error.h"
-#include "host/vectors.h"
 
 namespace raygate::lab {
 namespace {

@@ -61,7 +61,7 @@ int in_range(const std::string& name, int value, int low, int high);
 [[nodiscard]] std::uint64_t digest(std::string_view bytes);
 
 /// The machine, as far as it decides speed: processor, the widest vectors that it has,
-/// and those that the cpu engine uses (host/vectors.h).
+/// and those that the cpu engine uses (host/base/vectors.h).
 [[nodiscard]] Row machine_kind();
 
 }  // namespace raygate::lab

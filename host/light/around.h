@@ -1,7 +1,7 @@
 // Directions given by their angles around another one.
 #pragma once
 
-#include "host/lane_math.h"
+#include "host/base/lane_math.h"
 
 namespace raygate {
 

@@ -1,8 +1,8 @@
 // What a material does with light: the MTL illumination models, as lobes that make no energy.
 #pragma once
 
-#include "host/elementary.h"
-#include "host/lane_math.h"
+#include "host/base/elementary.h"
+#include "host/base/lane_math.h"
 #include "host/light/around.h"
 #include "host/light/facet_lobes.h"
 #include "host/light/finish.h"

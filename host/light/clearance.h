@@ -9,10 +9,10 @@
 #include <mutex>
 #include <vector>
 
+#include "host/base/vectors.h"
 #include "host/exact/exact.h"
 #include "host/light/crowd.h"
 #include "host/tree/bvh.h"
-#include "host/vectors.h"
 
 namespace raygate {
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/base/lanes.h"
+#include "host/base/vectors.h"
 #include "host/exact/exact.h"
-#include "host/lanes.h"
-#include "host/vectors.h"
 
 namespace raygate {
 

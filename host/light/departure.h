@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "host/base/vectors.h"
 #include "host/exact/exact.h"
 #include "host/light/clearance.h"
 #include "host/tree/bvh.h"
-#include "host/vectors.h"
 
 namespace raygate {
 

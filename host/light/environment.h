@@ -6,8 +6,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "host/elementary.h"
-#include "host/lane_math.h"
+#include "host/base/elementary.h"
+#include "host/base/lane_math.h"
 #include "host/light/sampler.h"
 #include "host/scene/environment_map.h"
 

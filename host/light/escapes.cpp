@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "host/vectors.h"
+#include "host/base/vectors.h"
 
 namespace raygate {
 

@@ -1,7 +1,7 @@
 // What a metallic-roughness material does with light: rough facets, and what is under them.
 #pragma once
 
-#include "host/lane_math.h"
+#include "host/base/lane_math.h"
 #include "host/light/finish.h"
 #include "host/light/fresnel.h"
 #include "host/light/ggx.h"

@@ -1,7 +1,7 @@
 // What happens to light at the border of two clear media. T is float or FloatLanes.
 #pragma once
 
-#include "host/lane_math.h"
+#include "host/base/lane_math.h"
 
 namespace raygate {
 

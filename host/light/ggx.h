@@ -6,8 +6,8 @@
 // function", 2014). Light that meets a second facet is lost: single scattering.
 #pragma once
 
-#include "host/elementary.h"
-#include "host/lane_math.h"
+#include "host/base/elementary.h"
+#include "host/base/lane_math.h"
 #include "host/light/around.h"
 #include "host/light/sampler.h"
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "host/base/lane_math.h"
 #include "host/find/nearest_hit.h"
-#include "host/lane_math.h"
 #include "host/light/bsdf.h"
 #include "host/light/departure.h"
 #include "host/light/finish.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <type_traits>
 
+#include "host/base/vectors.h"
 #include "host/light/hits.h"
-#include "host/vectors.h"
 
 namespace raygate {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "host/lane_math.h"
+#include "host/base/lane_math.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

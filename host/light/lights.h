@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "host/lane_math.h"
+#include "host/base/lane_math.h"
 #include "host/light/closed_sides.h"
 #include "host/light/environment.h"
 #include "host/light/light_tree.h"

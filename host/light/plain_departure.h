@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "host/lanes.h"
+#include "host/base/lanes.h"
 #include "host/light/clearance.h"
 #include "host/light/widen.h"
 

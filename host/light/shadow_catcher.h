@@ -1,7 +1,7 @@
 // Surfaces that are not to be seen, but for the shadows on them: illum 10.
 #pragma once
 
-#include "host/lane_math.h"
+#include "host/base/lane_math.h"
 #include "host/light/lights.h"
 #include "host/light/surface.h"
 

@@ -1,8 +1,8 @@
 // How much of a spot light's intensity goes in a direction.
 #pragma once
 
-#include "host/elementary.h"
-#include "host/lane_math.h"
+#include "host/base/elementary.h"
+#include "host/base/lane_math.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

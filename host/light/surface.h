@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "host/base/lane_math.h"
 #include "host/exact/exact.h"
-#include "host/lane_math.h"
 #include "host/light/finish.h"
 #include "host/scene/placed.h"
 #include "host/scene/scene.h"

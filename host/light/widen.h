@@ -1,7 +1,7 @@
 // Four floats as doubles.
 #pragma once
 
-#include "host/lanes.h"
+#include "host/base/lanes.h"
 
 namespace raygate {
 

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/stopwatch.h"
 #include "host/picture/helpers.h"
 #include "host/picture/sample_choice.h"
 #include "host/picture/schedule.h"
 #include "host/picture/tile_renderer.h"
 #include "host/ranks/ranks.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 namespace {

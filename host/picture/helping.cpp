@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/stopwatch.h"
 #include "host/film/film_slice.h"
 #include "host/picture/shared_tile.h"
 #include "host/picture/tile_renderer.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 namespace {

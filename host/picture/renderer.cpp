@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/stopwatch.h"
 #include "host/light/clearance.h"
 #include "host/light/lights.h"
 #include "host/picture/crew.h"
@@ -13,7 +14,6 @@
 #include "host/picture/tiles.h"
 #include "host/ranks/ranks.h"
 #include "host/scene/camera.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 namespace {

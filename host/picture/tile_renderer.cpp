@@ -4,12 +4,12 @@
 #include <limits>
 #include <utility>
 
+#include "host/base/stopwatch.h"
 #include "host/film/film_sums.h"
 #include "host/picture/camera_ray.h"
 #include "host/picture/lamp_edges.h"
 #include "host/picture/sample_choice.h"
 #include "host/picture/view_pyramid.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 namespace {

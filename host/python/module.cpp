@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/exact/exact_sign.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/environment_file.h"
@@ -30,7 +31,6 @@
 #include "host/picture/renderer.h"
 #include "host/python/float_reference.h"
 #include "host/scene/camera.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"

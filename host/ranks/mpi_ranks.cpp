@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -2,9 +2,9 @@
 #include <cstdlib>
 #include <string>
 
+#include "host/base/input_error.h"
 #include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
+#include "host/base/input_error.h"
 #include "host/exact/exact.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/view.h"
 
 namespace raygate {

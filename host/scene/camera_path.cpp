@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
 
 namespace raygate {
 namespace {

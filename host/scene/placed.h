@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "host/base/vectors.h"
 #include "host/scene/scene.h"
-#include "host/vectors.h"
 
 namespace raygate {
 

@@ -13,9 +13,9 @@
 #include <string>
 #include <string_view>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/srgb.h"
 #include "host/scene/scene.h"
-#include "host/scene/srgb.h"
 
 namespace raygate {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
+#include "host/base/input_error.h"
 #include "host/scene/camera.h"
 #include "host/scene/instances.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host/base/threads.h"
 #include "host/find/cpu/all_hits.h"
-#include "host/threads.h"
 
 namespace raygate {
 namespace {

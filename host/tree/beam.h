@@ -9,7 +9,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "host/lanes.h"
+#include "host/base/lanes.h"
 #include "host/tree/bvh.h"
 
 // Why no true hit is culled

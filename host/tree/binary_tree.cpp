@@ -8,7 +8,7 @@
 #include <mutex>
 #include <span>
 
-#include "host/threads.h"
+#include "host/base/threads.h"
 
 namespace raygate {
 namespace {

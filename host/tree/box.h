@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "host/lanes.h"
+#include "host/base/lanes.h"
 
 namespace raygate {
 

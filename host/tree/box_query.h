@@ -4,8 +4,8 @@
 #include <bit>
 #include <glm/glm.hpp>
 
+#include "host/base/lanes.h"
 #include "host/exact/exact.h"
-#include "host/lanes.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {

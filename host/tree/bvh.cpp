@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "host/threads.h"
+#include "host/base/threads.h"
 #include "host/tree/binary_tree.h"
 
 // Which nodes of the binary tree are nodes of the wide one

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/vectors.h"
 #include "host/scene/placed.h"
 #include "host/scene/scene.h"
 #include "host/tree/placed_tree.h"
 #include "host/tree/runs.h"
-#include "host/vectors.h"
 
 namespace raygate {
 

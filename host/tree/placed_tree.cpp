@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host/base/lanes.h"
 #include "host/exact/exact.h"
-#include "host/lanes.h"
 #include "host/tree/binary_tree.h"
 #include "host/tree/bvh.h"
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "host/lanes.h"
+#include "host/base/lanes.h"
 #include "host/tree/bvh.h"
 
 namespace raygate {

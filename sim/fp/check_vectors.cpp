@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "sim/fp/vector_check.h"
 
 namespace raygate {

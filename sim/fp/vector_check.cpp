@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

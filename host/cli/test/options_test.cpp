@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/base/test/temp_folder.h"
 #include "host/cli/test/parsed.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

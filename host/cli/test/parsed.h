@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/cli/options.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 

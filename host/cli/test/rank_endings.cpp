@@ -5,9 +5,9 @@
 #include <string>
 #include <thread>
 
+#include "host/base/input_error.h"
 #include "host/cli/process.h"
 #include "host/find/check_finder.h"
-#include "host/scene/io/input_error.h"
 
 int main(int argc, char** argv) {
   using namespace raygate;

@@ -10,9 +10,9 @@
 #include <set>
 #include <sstream>
 
+#include "host/base/vectors.h"
 #include "host/cli/test/render_run.h"
 #include "host/film/test/exr_reader.h"
-#include "host/vectors.h"
 
 namespace raygate {
 namespace {

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <random>
 
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/film/exr.h"
 #include "host/film/test/sample_film.h"
-#include "host/scene/io/input_error.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

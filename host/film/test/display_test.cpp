@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/srgb.h"
 #include "host/film/test/sample_film.h"
-#include "host/scene/srgb.h"
 
 namespace raygate {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <string>
 
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/film/radiance_reader.h"
-#include "host/scene/io/input_error.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

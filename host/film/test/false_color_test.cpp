@@ -6,8 +6,8 @@
 #include <limits>
 #include <set>
 
+#include "host/base/srgb.h"
 #include "host/film/test/sample_film.h"
-#include "host/scene/srgb.h"
 
 namespace raygate {
 namespace {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

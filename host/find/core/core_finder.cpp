@@ -4,8 +4,8 @@
 #include <bit>
 #include <cassert>
 
+#include "host/base/stopwatch.h"
 #include "host/find/unit/reference_burst_unit.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "host/base/lanes.h"
 #include "host/exact/exact.h"
-#include "host/lanes.h"
 #include "host/tree/beam.h"
 
 namespace raygate {

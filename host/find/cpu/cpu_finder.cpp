@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "host/base/stopwatch.h"
 #include "host/find/cpu/cone_search.h"
 #include "host/find/cpu/ray_search.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 

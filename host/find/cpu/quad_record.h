@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "host/base/lanes.h"
 #include "host/exact/exact.h"
-#include "host/lanes.h"
 
 // Why a sure answer is right
 //

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <limits>
 
+#include "host/base/lanes.h"
 #include "host/exact/exact.h"
-#include "host/lanes.h"
 
 // Why a sure answer is right
 //

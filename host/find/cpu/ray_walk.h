@@ -10,10 +10,10 @@
 #include <iterator>
 #include <limits>
 
+#include "host/base/lanes.h"
 #include "host/exact/exact.h"
 #include "host/find/cpu/quad_test.h"
 #include "host/find/finder.h"
-#include "host/lanes.h"
 #include "host/tree/beam.h"
 #include "host/tree/bvh.h"
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "host/base/lanes.h"
 #include "host/find/find_counters.h"
 #include "host/find/unit/polygon_record.h"
-#include "host/lanes.h"
 
 namespace raygate {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "host/base/lanes.h"
 #include "host/find/unit/polygon_record.h"
-#include "host/lanes.h"
 
 // Why P is no farther off
 //

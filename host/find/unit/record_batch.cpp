@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "host/lanes.h"
+#include "host/base/lanes.h"
 
 // The operations are those of exact.cpp and polygon_record.cpp, in their order, so the bits are
 // theirs, as long as double is accurate enough and all exponents are ordinary. Where that is not

@@ -5,8 +5,8 @@
 #include <cassert>
 #include <utility>
 
+#include "host/base/stopwatch.h"
 #include "host/find/unit/record_batch.h"
-#include "host/stopwatch.h"
 
 namespace raygate {
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/base/input_error.h"
 #include "host/cli/engines.h"
 #include "host/film/compare.h"
 #include "host/film/display.h"
@@ -22,7 +23,6 @@
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/lab/variants/variant_hit_tester.h"
 #include "host/picture/renderer.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate::lab {
 

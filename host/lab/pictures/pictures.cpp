@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <fstream>
 
+#include "host/base/input_error.h"
 #include "host/lab/commands.h"
 #include "host/lab/pictures/picture_run.h"
 #include "host/lab/variants/variant_check.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate::lab {
 namespace {

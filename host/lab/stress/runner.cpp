@@ -5,8 +5,8 @@
 #include <mutex>
 #include <set>
 
+#include "host/base/threads.h"
 #include "host/lab/timing.h"
-#include "host/threads.h"
 
 namespace raygate::lab {
 namespace {

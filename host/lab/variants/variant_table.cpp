@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/base/input_error.h"
 #include "host/lab/variants/variants_text.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include "host/base/vectors.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/reference_plane_unit.h"
 #include "host/find/unit/serial_hit_tester.h"
 #include "host/light/test/light_scenes.h"
-#include "host/vectors.h"
 
 namespace raygate {
 namespace {

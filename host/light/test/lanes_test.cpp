@@ -6,13 +6,13 @@
 #include <random>
 #include <vector>
 
-#include "host/elementary.h"
-#include "host/lane_math.h"
+#include "host/base/elementary.h"
+#include "host/base/lane_math.h"
+#include "host/base/vectors.h"
 #include "host/light/around.h"
 #include "host/light/fresnel.h"
 #include "host/light/ggx.h"
 #include "host/light/sampler.h"
-#include "host/vectors.h"
 
 namespace raygate {
 namespace {

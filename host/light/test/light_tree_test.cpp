@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
+#include "host/base/vectors.h"
 #include "host/light/lights.h"
 #include "host/light/test/light_scenes.h"
-#include "host/vectors.h"
 
 namespace raygate {
 namespace {

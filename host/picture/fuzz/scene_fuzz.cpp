@@ -6,8 +6,8 @@
 #include <fstream>
 #include <string>
 
+#include "host/base/input_error.h"
 #include "host/picture/fuzz/draw.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/scene_loader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

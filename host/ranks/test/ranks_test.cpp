@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/ranks/helper_guard.h"
 #include "host/ranks/shared_jobs.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

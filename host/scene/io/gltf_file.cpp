@@ -9,8 +9,8 @@
 #include <limits>
 #include <string_view>
 
-#include "host/scene/io/file_bytes.h"
-#include "host/scene/io/input_error.h"
+#include "host/base/file_bytes.h"
+#include "host/base/input_error.h"
 #include "host/scene/io/words.h"
 
 namespace raygate {

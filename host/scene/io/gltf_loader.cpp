@@ -7,12 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include "host/base/input_error.h"
 #include "host/scene/io/gltf_camera.h"
 #include "host/scene/io/gltf_file.h"
 #include "host/scene/io/gltf_lights.h"
 #include "host/scene/io/gltf_meshes.h"
 #include "host/scene/io/gltf_places.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/instance_settings.h"
 #include "host/scene/io/mesh_builder.h"
 

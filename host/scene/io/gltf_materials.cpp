@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "host/scene/srgb.h"
+#include "host/base/srgb.h"
 
 namespace raygate {
 namespace {

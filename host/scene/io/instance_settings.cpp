@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "host/scene/io/scene_loader.h"
 
 namespace raygate {

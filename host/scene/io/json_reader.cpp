@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/input_error.h"
 #include "host/exact/exact.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/words.h"
 
 namespace raygate {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "host/base/input_error.h"
 #include "host/exact/exact_sign.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

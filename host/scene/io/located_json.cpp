@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "host/scene/io/words.h"
 
 namespace raygate {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/input_error.h"
 #include "host/exact/exact_sign.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/polygon_cutter.h"
 #include "host/scene/io/smooth_normals.h"
 

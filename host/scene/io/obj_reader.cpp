@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <utility>
 
+#include "host/base/threads.h"
 #include "host/scene/io/obj_part.h"
 #include "host/scene/io/words.h"
-#include "host/threads.h"
 
 namespace raygate {
 

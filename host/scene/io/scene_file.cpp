@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "host/scene/io/json_reader.h"
 #include "host/scene/io/scene_loader.h"
 

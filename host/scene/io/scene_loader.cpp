@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "host/base/input_error.h"
 #include "host/scene/io/gltf_loader.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/ply_loader.h"
 #include "host/scene/io/stl_loader.h"
 

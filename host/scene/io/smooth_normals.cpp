@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
 
 namespace raygate {
 namespace {

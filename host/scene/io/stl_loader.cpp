@@ -6,8 +6,8 @@
 #include <limits>
 #include <string_view>
 
-#include "host/scene/io/file_bytes.h"
-#include "host/scene/io/input_error.h"
+#include "host/base/file_bytes.h"
+#include "host/base/input_error.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/token_reader.h"
 #include "host/scene/io/words.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "host/scene/io/file_bytes.h"
-#include "host/scene/io/input_error.h"
+#include "host/base/file_bytes.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "host/scene/io/words.h"
 
 namespace raygate {

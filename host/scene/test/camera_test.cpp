@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "host/base/input_error.h"
 #include "host/exact/exact.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate {
 namespace {

@@ -7,11 +7,11 @@
 #include <limits>
 #include <random>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/srgb.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/scene.h"
-#include "host/scene/srgb.h"
-#include "host/scene/test/temp_folder.h"
 #include "host/scene/test/tga.h"
 
 namespace raygate {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "host/trace/rays_in.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <string>
 
-#include "host/scene/io/input_error.h"
-#include "host/scene/test/damage.h"
+#include "host/base/input_error.h"
+#include "host/base/test/damage.h"
 #include "host/trace/rays_in.h"
 
 namespace raygate {

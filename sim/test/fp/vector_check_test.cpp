@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "sim/fp/vectors.h"
 #include "sim/test/fp/oracle.h"
 

@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "host/base/vectors.h"
 #include "host/find/cpu/cpu_finder.h"
 #include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/unit_finder.h"
-#include "host/vectors.h"
 
 namespace raygate::test {
 

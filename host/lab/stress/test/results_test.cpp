@@ -6,8 +6,8 @@
 
 #include <fstream>
 
+#include "host/base/input_error.h"
 #include "host/lab/stress/runner.h"
-#include "host/scene/io/input_error.h"
 
 namespace raygate::lab {
 namespace {

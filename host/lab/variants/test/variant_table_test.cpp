@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {

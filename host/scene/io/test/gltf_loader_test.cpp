@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/instances.h"
-#include "host/scene/io/input_error.h"
 #include "host/scene/io/test/binary.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 #include "host/scene/io/obj_loader.h"
 
 namespace raygate::test {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/obj_loader.h"
-#include "host/scene/test/temp_folder.h"
 #include "host/scene/test/tga.h"
 
 namespace raygate {

@@ -1,11 +1,11 @@
 // Every bad file is refused, with its line and what is wrong.
 #include <gtest/gtest.h>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/obj_reader.h"
 #include "host/scene/io/test/in_parts.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <clocale>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/test/in_parts.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

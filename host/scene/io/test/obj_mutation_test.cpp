@@ -1,12 +1,12 @@
 // Damaged files: whatever comes out loads into a scene that holds together, or is an InputError.
 #include <gtest/gtest.h>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/test/damage.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/test/in_parts.h"
 #include "host/scene/io/test/sound.h"
-#include "host/scene/test/damage.h"
-#include "host/scene/test/temp_folder.h"
 #include "host/scene/test/tga.h"
 
 namespace raygate {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/test/binary.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

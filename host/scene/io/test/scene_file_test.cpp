@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/test/damage.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/obj_loader.h"
-#include "host/scene/test/damage.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
+#include "host/base/test/damage.h"
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/test/binary.h"
 #include "host/scene/io/test/sound.h"
-#include "host/scene/test/damage.h"
-#include "host/scene/test/temp_folder.h"
 #include "host/scene/test/tga.h"
 
 namespace raygate {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/test/temp_folder.h"
 
 namespace raygate {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "host/scene/io/input_error.h"
-#include "host/scene/test/temp_folder.h"
+#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 
 namespace raygate {
 namespace {

@@ -1,11 +1,11 @@
-#include "host/scene/io/file_bytes.h"
+#include "host/base/file_bytes.h"
 
 #include <bit>
 #include <cerrno>
 #include <fstream>
 #include <system_error>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 

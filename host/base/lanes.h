@@ -1,5 +1,5 @@
 // Eight rays at a time: vectors, and what is done with them. They are compiled for each kind of
-// machine by in_vectors (host/vectors.h).
+// machine by in_vectors (host/base/vectors.h).
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <immintrin.h>
 #endif
 
-#include "host/vectors.h"
+#include "host/base/vectors.h"
 
 namespace raygate {
 

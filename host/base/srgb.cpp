@@ -1,10 +1,10 @@
-#include "host/scene/srgb.h"
+#include "host/base/srgb.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "host/elementary.h"
+#include "host/base/elementary.h"
 
 namespace raygate {
 namespace {

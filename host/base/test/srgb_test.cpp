@@ -1,4 +1,4 @@
-#include "host/scene/srgb.h"
+#include "host/base/srgb.h"
 
 #include <gtest/gtest.h>
 

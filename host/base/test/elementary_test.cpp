@@ -1,5 +1,5 @@
 // Elementary functions against MPFR, over many arguments and at the ends of their ranges.
-#include "host/elementary.h"
+#include "host/base/elementary.h"
 
 #include <gtest/gtest.h>
 #include <mpfr.h>

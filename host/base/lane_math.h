@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "host/lanes.h"
+#include "host/base/lanes.h"
 
 namespace raygate {
 

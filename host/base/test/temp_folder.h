@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "host/scene/io/input_error.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 
