@@ -92,7 +92,7 @@ fuzz: ## run libFuzzer on readers, pictures of what they read, and exact arithme
 	@cmake --build build/fuzz -j $(JOBS) --target $(FUZZ_SCENES:=_fuzz) hdr_fuzz rays_fuzz exact_fuzz
 	@mkdir -p build/fuzz/obj && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/obj
 	@for kind in $(FUZZ_SCENES); do \
-	  mkdir -p build/fuzz/$$kind && cp -n host/picture/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
+	  mkdir -p build/fuzz/$$kind && cp -n host/render/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
 	  build/fuzz/$${kind}_fuzz $(FUZZ_LENGTH) $(FUZZ_LIMITS) build/fuzz/$$kind || exit 1; \
 	done
 	@mkdir -p build/fuzz/hdr && cp -n host/film/fuzz/seeds/*.hdr build/fuzz/hdr

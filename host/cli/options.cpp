@@ -9,7 +9,7 @@
 #include "host/cli/option_text.h"
 #include "host/cli/sky_lens_options.h"
 #include "host/cli/values.h"
-#include "host/picture/sample_choice.h"
+#include "host/render/sample_choice.h"
 
 namespace raygate {
 namespace {

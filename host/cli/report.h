@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/cli/options.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 
 namespace raygate {
 

@@ -18,7 +18,7 @@ struct FilmSums {
   std::vector<std::array<SampleSum, 4>> color;
   std::vector<std::array<SampleSum, 3>> albedo;  ///< if the film has it
   // Of films whose pixels get samples by their error: as of the last look, see
-  // picture/sample_choice.h. In steps of an 8-bit display.
+  // render/sample_choice.h. In steps of an 8-bit display.
   std::vector<float> error;  ///< standard error, estimated; infinite before there is an estimate
   std::vector<float> shown;  ///< what a display shows
 };

@@ -97,8 +97,8 @@ adaptive: ## time with --error beside uniform --spp, at equal RMSE and equal FLI
 	@$(LAB_REPORT) adaptive $(or $(SCENES),$(GALLERY)) $(if $(RENDER),--render '$(RENDER)')
 
 coverage: ## how often the estimated error of --error holds, pixels of known value, 1,000 seeds: make coverage [SEEDS=1000]
-	$(call build,test,picture_test)
-	@RAYGATE_SEEDS=$(or $(SEEDS),1000) build/picture_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
+	$(call build,test,render_test)
+	@RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
 
 scaling: ## time by ranks: measured for 1 and 2, a model up to 1,000: make scaling [PUBLISH=1]
 	@$(SETUP) mpi

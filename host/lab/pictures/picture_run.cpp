@@ -22,7 +22,7 @@
 #include "host/lab/timing.h"
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/lab/variants/variant_hit_tester.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 
 namespace raygate::lab {
 

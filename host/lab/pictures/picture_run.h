@@ -8,7 +8,7 @@
 
 #include "host/lab/results.h"
 #include "host/lab/variants/variant_table.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 
 namespace raygate::lab {
 

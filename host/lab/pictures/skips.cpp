@@ -9,7 +9,7 @@
 #include "host/lab/commands.h"
 #include "host/lab/pictures/lit_scene.h"
 #include "host/lab/results.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 
 namespace raygate::lab {
 namespace {

@@ -14,7 +14,7 @@
 #include "host/lab/commands.h"
 #include "host/lab/results.h"
 #include "host/lab/timing.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 

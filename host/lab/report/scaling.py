@@ -8,7 +8,7 @@ The model of a picture's seconds on N ranks of T threads each:
                goes on during compute, so only what is longer of both counts
     end        the last pass over a tile, while others have nothing left to do
 
-Sizes of tiles and steps are those of host/picture (tiles.h, helpers.cpp).
+Sizes of tiles and steps are those of host/render (tiles.h, helpers.cpp).
 """
 
 import dataclasses
@@ -33,7 +33,7 @@ RANKS = (1, 2)
 MORE_RANKS = (4, 8)
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
-# As in host/picture.
+# As in host/render.
 JOB_SECONDS, RATE, EDGE, LEAST_EDGE, PASS = 1.0, 250e6, 64, 16, 4
 # Not measured: a link of 10 Gbit/s to rank 0, files read at 5 GB/s by all ranks together, 64 threads a node.
 LINK, FILES, THREADS = 1.25e9, 5e9, 64

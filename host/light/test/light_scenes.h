@@ -9,7 +9,7 @@
 #include "host/find/unit/pipeline_hit_tester.h"
 #include "host/find/unit/reference_burst_unit.h"
 #include "host/find/unit/unit_finder.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 #include "host/scene/camera.h"
 
 namespace raygate::test {

@@ -1,4 +1,4 @@
-"""The model of ranks: its parts where they are known, and its numbers as host/picture has them."""
+"""The model of ranks: its parts where they are known, and its numbers as host/render has them."""
 
 import pathlib
 import tempfile
@@ -39,8 +39,8 @@ class Scaling(unittest.TestCase):
         self.assertAlmostEqual(fixed.compute, one.compute / 2560)  # as many as there are tiles
 
     def test_numbers_are_those_of_the_program(self) -> None:
-        helpers = (ROOT / "host/picture/helpers.cpp").read_text()
-        tiles = (ROOT / "host/picture/tiles.h").read_text()
+        helpers = (ROOT / "host/render/helpers.cpp").read_text()
+        tiles = (ROOT / "host/render/tiles.h").read_text()
         self.assertIn(f"kSeconds = {scaling.JOB_SECONDS};", helpers)
         self.assertIn(f"kRate = {scaling.RATE / 1e6:.0f}e6;", helpers)
         self.assertIn(f": {scaling.EDGE};", tiles)

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/film/film.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 
 namespace raygate {
 

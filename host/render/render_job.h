@@ -3,7 +3,7 @@
 
 #include "host/light/clearance.h"
 #include "host/light/lights.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 #include "host/scene/camera.h"
 
 namespace raygate {

@@ -6,9 +6,9 @@
 
 #include "host/film/film.h"
 #include "host/find/finder.h"
-#include "host/picture/lamp_edges.h"
-#include "host/picture/render_job.h"
-#include "host/picture/renderer.h"
+#include "host/render/lamp_edges.h"
+#include "host/render/render_job.h"
+#include "host/render/renderer.h"
 
 namespace raygate {
 

@@ -6,7 +6,7 @@
 
 #include "host/film/pixel_filter.h"
 #include "host/light/sampler.h"
-#include "host/picture/render_job.h"
+#include "host/render/render_job.h"
 
 namespace raygate {
 

@@ -1,4 +1,4 @@
-#include "host/picture/helpers.h"
+#include "host/render/helpers.h"
 
 #include <time.h>
 
@@ -6,7 +6,7 @@
 #include <cassert>
 
 #include "host/film/film_slice.h"
-#include "host/picture/shared_tile.h"
+#include "host/render/shared_tile.h"
 
 namespace raygate {
 namespace {

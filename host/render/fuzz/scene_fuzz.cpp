@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/picture/fuzz/draw.h"
+#include "host/render/fuzz/draw.h"
 #include "host/scene/io/scene_loader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "host/picture/view_pyramid.h"
+#include "host/render/view_pyramid.h"
 
 #include <array>
 

@@ -1,5 +1,5 @@
 // Samples by error: the estimate holds, and the film does not depend on how it came about.
-#include "host/picture/sample_choice.h"
+#include "host/render/sample_choice.h"
 
 #include <gtest/gtest.h>
 

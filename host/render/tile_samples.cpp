@@ -1,9 +1,9 @@
-#include "host/picture/tile_samples.h"
+#include "host/render/tile_samples.h"
 
 #include <algorithm>
 #include <cstdint>
 
-#include "host/picture/sample_choice.h"
+#include "host/render/sample_choice.h"
 
 namespace raygate {
 namespace {

@@ -1,4 +1,4 @@
-#include "host/picture/sample_choice.h"
+#include "host/render/sample_choice.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,5 +1,5 @@
 // Lamps that the camera sees begin and end where they do, to a fraction of what a sample is.
-#include "host/picture/lamp_edges.h"
+#include "host/render/lamp_edges.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "host/picture/lamp_edges.h"
+#include "host/render/lamp_edges.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "host/picture/view_pyramid.h"
+#include "host/render/view_pyramid.h"
 
 namespace raygate {
 

@@ -1,4 +1,4 @@
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 
 #include <algorithm>
 #include <cassert>
@@ -8,11 +8,11 @@
 #include "host/base/stopwatch.h"
 #include "host/light/clearance.h"
 #include "host/light/lights.h"
-#include "host/picture/crew.h"
-#include "host/picture/helping.h"
-#include "host/picture/lamp_edges.h"
-#include "host/picture/tiles.h"
 #include "host/ranks/ranks.h"
+#include "host/render/crew.h"
+#include "host/render/helping.h"
+#include "host/render/lamp_edges.h"
+#include "host/render/tiles.h"
 #include "host/scene/camera.h"
 
 namespace raygate {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "host/base/input_error.h"
-#include "host/picture/fuzz/draw.h"
+#include "host/render/fuzz/draw.h"
 #include "host/scene/io/scene_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,10 +6,10 @@
 
 #include "host/film/film.h"
 #include "host/find/finder.h"
-#include "host/picture/lamp_edges.h"
-#include "host/picture/render_job.h"
-#include "host/picture/renderer.h"
-#include "host/picture/tiles.h"
+#include "host/render/lamp_edges.h"
+#include "host/render/render_job.h"
+#include "host/render/renderer.h"
+#include "host/render/tiles.h"
 
 namespace raygate {
 

@@ -1,4 +1,4 @@
-#include "host/picture/crew.h"
+#include "host/render/crew.h"
 
 #include <algorithm>
 #include <chrono>
@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "host/base/stopwatch.h"
-#include "host/picture/helpers.h"
-#include "host/picture/sample_choice.h"
-#include "host/picture/schedule.h"
-#include "host/picture/tile_renderer.h"
 #include "host/ranks/ranks.h"
+#include "host/render/helpers.h"
+#include "host/render/sample_choice.h"
+#include "host/render/schedule.h"
+#include "host/render/tile_renderer.h"
 
 namespace raygate {
 namespace {

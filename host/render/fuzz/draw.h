@@ -7,7 +7,7 @@
 
 #include "host/find/cpu/cpu_finder.h"
 #include "host/light/studio.h"
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/instances.h"
 #include "host/scene/view.h"

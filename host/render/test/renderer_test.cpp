@@ -1,5 +1,5 @@
 // The film: right in every pixel, and the same whatever the threads, the window and the engine.
-#include "host/picture/renderer.h"
+#include "host/render/renderer.h"
 
 #include <gtest/gtest.h>
 

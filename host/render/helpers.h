@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "host/film/film.h"
-#include "host/picture/renderer.h"
-#include "host/picture/schedule.h"
-#include "host/picture/tiles.h"
 #include "host/ranks/ranks.h"
+#include "host/render/renderer.h"
+#include "host/render/schedule.h"
+#include "host/render/tiles.h"
 
 namespace raygate {
 

@@ -6,7 +6,7 @@
 
 #include "host/film/film.h"
 #include "host/find/finder.h"
-#include "host/picture/render_job.h"
+#include "host/render/render_job.h"
 
 namespace raygate {
 

@@ -14,9 +14,9 @@
 #include "host/light/integrator.h"
 #include "host/light/shadow_rays.h"
 #include "host/light/wave.h"
-#include "host/picture/lamp_edges.h"
-#include "host/picture/render_job.h"
-#include "host/picture/tile_samples.h"
+#include "host/render/lamp_edges.h"
+#include "host/render/render_job.h"
+#include "host/render/tile_samples.h"
 
 namespace raygate {
 

@@ -1,4 +1,4 @@
-#include "host/picture/helping.h"
+#include "host/render/helping.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,8 +15,8 @@
 
 #include "host/base/stopwatch.h"
 #include "host/film/film_slice.h"
-#include "host/picture/shared_tile.h"
-#include "host/picture/tile_renderer.h"
+#include "host/render/shared_tile.h"
+#include "host/render/tile_renderer.h"
 
 namespace raygate {
 namespace {

@@ -1,5 +1,5 @@
 // Tiles cover the window once, passes all samples, whoever shares them.
-#include "host/picture/tiles.h"
+#include "host/render/tiles.h"
 
 #include <gtest/gtest.h>
 

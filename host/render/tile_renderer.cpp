@@ -1,4 +1,4 @@
-#include "host/picture/tile_renderer.h"
+#include "host/render/tile_renderer.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,10 +6,10 @@
 
 #include "host/base/stopwatch.h"
 #include "host/film/film_sums.h"
-#include "host/picture/camera_ray.h"
-#include "host/picture/lamp_edges.h"
-#include "host/picture/sample_choice.h"
-#include "host/picture/view_pyramid.h"
+#include "host/render/camera_ray.h"
+#include "host/render/lamp_edges.h"
+#include "host/render/sample_choice.h"
+#include "host/render/view_pyramid.h"
 
 namespace raygate {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "host/base/input_error.h"
-#include "host/picture/fuzz/draw.h"
+#include "host/render/fuzz/draw.h"
 #include "host/scene/io/obj_loader.h"
 
 namespace {
