@@ -13,10 +13,10 @@ class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   InputError(const std::string& file, std::size_t line, const std::string& what)
-      : std::runtime_error(place_of(file, line) + what) {}
+      : std::runtime_error(location(file, line) + what) {}
 
   /// "file:line: "; "file: " for line 0, of a file without lines.
-  [[nodiscard]] static std::string place_of(const std::string& file, std::size_t line) {
+  [[nodiscard]] static std::string location(const std::string& file, std::size_t line) {
     std::string place = file;
     if (line != 0) place.append(":").append(std::to_string(line));
     return place.append(": ");

@@ -38,11 +38,11 @@ int parse_lanes(const std::string& text) {
   return *lanes;
 }
 
-InstanceUse parse_instances(const std::string& text) {
-  return choose<InstanceUse>("--instances", text,
-                             {{"auto", InstanceUse::kAutomatic},
-                              {"keep", InstanceUse::kKept},
-                              {"write", InstanceUse::kWritten}});
+InstanceMode parse_instances(const std::string& text) {
+  return choose<InstanceMode>("--instances", text,
+                              {{"auto", InstanceMode::kAutomatic},
+                               {"keep", InstanceMode::kKeep},
+                               {"write", InstanceMode::kFlatten}});
 }
 
 /// "latency=100,bytes=16,cache=1024", each of them or not.
@@ -129,10 +129,10 @@ EngineOptions parse_engine_options(const RawEngineOptions& raw, EngineOptions de
   }
   if (!raw.instances.empty()) options.instances = parse_instances(raw.instances);
   if (options.has_core()) {
-    if (options.instances == InstanceUse::kKept) {
+    if (options.instances == InstanceMode::kKeep) {
       throw InputError("--instances: expected auto or write with --unit core, got keep");
     }
-    options.instances = InstanceUse::kWritten;  // its memory holds one tree
+    options.instances = InstanceMode::kFlatten;  // its memory holds one tree
   }
   return options;
 }

@@ -31,7 +31,7 @@ struct EngineOptions {
   int cores = 1;          ///< behind one memory, for each thread; 1 for other units
   unsigned threads = 1;
   unsigned processors = 0;  ///< for a thread each where --threads is not given; 0: the machine's
-  InstanceUse instances = InstanceUse::kAutomatic;  ///< what is in the tree
+  InstanceMode instances = InstanceMode::kAutomatic;  ///< what is in the tree
 
   /// Whether rays go to ray cores, simulated or not.
   [[nodiscard]] bool has_core() const { return unit == "core" && engine != Engine::kCpu; }

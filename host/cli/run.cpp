@@ -226,7 +226,7 @@ void render_film_of_frames(const Options& options, Scene& scene, const Clearance
 glm::dvec3 environment_up(const Options& options, const Scene& scene) {
   if (options.view.up) return *options.view.up;
   if (options.scene_file && options.scene_file->up) return *options.scene_file->up;
-  return guessed_up(scene);
+  return guess_up_axis(scene);
 }
 
 }  // namespace
@@ -269,7 +269,7 @@ void run(const Options& options, Ranks& ranks) {
   const Shots shots(options, scene);
   if (shots.has_ground()) add_ground(scene, shots.up());
   report.view = shots.text();
-  settle_instances(scene, options.instances, options.scene);
+  resolve_instances(scene, options.instances, options.scene);
 
   const Clock::time_point tree_start = Clock::now();
   const Bvh bvh(scene, static_cast<int>(options.threads));

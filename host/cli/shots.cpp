@@ -19,13 +19,13 @@ CameraSetting completed(const CameraSetting& camera, const Options& options, con
   result.target -= scene.origin;
   if (options.view.up) result.up = options.view.up;
   if (options.view.fov) result.fov = options.view.fov;
-  result.lens = camera.lens.changed_by(options.view.lens);
+  result.lens = camera.lens.overridden_by(options.view.lens);
   return result;
 }
 
 View chosen_view(const Options& options, const Scene& scene) {
-  const glm::dvec3 up = options.view.up ? *options.view.up : guessed_up(scene);
-  if (!options.view.angles) return first_view(scene, up);
+  const glm::dvec3 up = options.view.up ? *options.view.up : guess_up_axis(scene);
+  if (!options.view.angles) return default_view(scene, up);
   return {options.view.angles->first, options.view.angles->second, up};
 }
 
@@ -54,7 +54,7 @@ Shots::Shots(const Options& options, Scene& scene)
     shot.lights = std::exchange(scene.lights, lights);
     shot.background = std::exchange(scene.background, background);
   }
-  const bool is_first_look = has_lamps && view_.elevation > 0.0 && !is_room(scene);
+  const bool is_first_look = has_lamps && view_.elevation > 0.0 && !is_interior(scene);
   has_ground_ = options.ground.value_or(is_first_look);
   if (!given_) text_ = view_text(scene);
 }
@@ -70,18 +70,18 @@ CameraSetting Shots::setting(const Scene& scene, int number) const {
   const int frames = options_.output.frames;
   if (frames > 1 && !options_.path.empty()) {
     const double time = (number - 1.0) / (frames - 1.0);
-    return completed(camera_on_path(options_.path, time, Camera::kDefaultFov), options_, scene);
+    return completed(camera_at(options_.path, time, Camera::kDefaultFov), options_, scene);
   }
   const double turn = frames > 1 ? (number - 1.0) / frames : 0.0;
   if (given_) {
     const CameraSetting still = completed(*given_, options_, scene);
-    return frames > 1 ? turned(still, turn) : still;
+    return frames > 1 ? orbited(still, turn) : still;
   }
   View view = view_;
   view.azimuth += 360.0 * turn;
   CameraSetting whole =
-      framing(scene, aspect_of(options_), options_.view.fov.value_or(Camera::kDefaultFov), view,
-              frames > 1 ? Filling::kCylinder : Filling::kVertices);
+      frame_scene(scene, aspect_of(options_), options_.view.fov.value_or(Camera::kDefaultFov), view,
+                  frames > 1 ? FrameFit::kCylinder : FrameFit::kVertices);
   whole.lens = options_.view.lens;
   return whole;
 }

@@ -19,7 +19,7 @@ namespace raygate {
 class Shots {
  public:
   /// Of a scene as the file has it, which is left as it is. `options` must outlive this. Throws
-  /// InputError as Camera::look_at and framing.
+  /// InputError as Camera::look_at and frame_scene.
   Shots(const Options& options, Scene& scene);
 
   /// Gives `scene`, the same one, the light of frame `number`, from 1; returns its camera.

@@ -169,7 +169,7 @@ int run(const TraceOptions& options) {
       .strict = options.strict, .keep_instances = true, .textures = false};
   Scene scene =
       scene_file ? load_scene(*scene_file, load_options) : load_scene(options.scene, load_options);
-  settle_instances(scene, options.engine.instances, options.scene);
+  resolve_instances(scene, options.engine.instances, options.scene);
   for (const std::string& warning : scene.warnings) print_warning(warning);
   const auto threads = static_cast<int>(options.engine.threads);
   const Bvh bvh(scene, threads);

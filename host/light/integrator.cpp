@@ -6,7 +6,7 @@
 #include "host/light/path.h"
 #include "host/light/primary.h"
 #include "host/light/whitted.h"
-#include "host/scene/placed.h"
+#include "host/scene/instance_transform.h"
 
 namespace raygate {
 namespace {
@@ -98,7 +98,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
     }
     const bool is_doubtful = is_point_doubt(hit, point_error_);
     point_doubts_ += is_doubtful ? 1 : 0;
-    const StoredFace stored = shading_.bvh.face_of(hit.slot);
+    const FaceRef stored = shading_.bvh.face_of(hit.slot);
     const Triangle& face = face_at(scene, stored);
     block_.places[i] = {&block_.wave->rays[block_.begin + i], hit.slot, &face,
                         is_doubtful ? nullptr : &hit.point, instance_at(scene, stored)};

@@ -29,7 +29,7 @@ LightSource as_source(const PointLight& light, double unit) {
 }
 
 double diagonal_of(const Scene& scene) {
-  const auto [low, high] = position_box(scene);
+  const auto [low, high] = position_bounds(scene);
   return glm::length(high - low);
 }
 

@@ -73,7 +73,7 @@ glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lam
 double unit_of(const Scene& scene) {
   float size = 0.0f;
   if (!is_empty(scene)) {
-    const PositionBox box = position_box(scene);
+    const Bounds3 box = position_bounds(scene);
     size = static_cast<float>(std::max(largest(box.low), largest(box.high)));
   }
   for (const PointLight& light : scene.lights) size = std::max(size, largest(light.position));

@@ -180,7 +180,7 @@ void ShadowRays::trace(bool from_light, float enough) {
 
 glm::vec3 ShadowRays::transmittance(std::size_t number) const {
   const std::uint32_t slot = hits_[number].slot;
-  const StoredFace stored = bvh_.face_of(slot);
+  const FaceRef stored = bvh_.face_of(slot);
   const Triangle& face = face_at(scene_, stored);
   const Finish& finish = finishes_[face.material];
   const HitPlace place = {&wave_[number], slot, &face, nullptr, instance_at(scene_, stored)};

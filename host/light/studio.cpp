@@ -15,7 +15,7 @@ namespace {
 class Studio {
  public:
   Studio(const Scene& scene, const Camera& camera) : camera_(camera) {
-    const auto [low, high] = position_box(scene);
+    const auto [low, high] = position_bounds(scene);
     const glm::dvec3 eye(camera.eye());
     middle_ = 0.5 * (low + high);
     size_ = glm::length(high - low);

@@ -7,7 +7,7 @@
 #include "host/base/lane_math.h"
 #include "host/exact/exact.h"
 #include "host/light/finish.h"
-#include "host/scene/placed.h"
+#include "host/scene/instance_transform.h"
 #include "host/scene/scene.h"
 #include "host/tree/bvh.h"
 
@@ -25,7 +25,7 @@ struct HitPlace {
   /// A normal that the face names.
   [[nodiscard]] glm::vec3 normal(const Scene& scene, std::uint32_t index) const {
     const glm::vec3& own = scene.normals[index];
-    return instance == nullptr ? own : placed_normal(*instance, own);
+    return instance == nullptr ? own : transform_normal(*instance, own);
   }
 };
 

@@ -120,9 +120,9 @@ class PythonScene {
       add_lights(*file_, scene_);
       const auto& environment = file_->lights.environment;
       if (environment)
-        load_environment(*environment, file_->up.value_or(guessed_up(scene_)), scene_);
+        load_environment(*environment, file_->up.value_or(guess_up_axis(scene_)), scene_);
     }
-    settle_instances(scene_, InstanceUse::kWritten, path);
+    resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(threads);
   }
 
@@ -285,8 +285,8 @@ class PythonScene {
       setting.eye -= scene_.origin;
       setting.target -= scene_.origin;
     } else {
-      setting = framing(scene_, aspect, fov.value_or(Camera::kDefaultFov),
-                        first_view(scene_, guessed_up(scene_)));
+      setting = frame_scene(scene_, aspect, fov.value_or(Camera::kDefaultFov),
+                            default_view(scene_, guess_up_axis(scene_)));
     }
     const auto vector = [](const Three& v) { return glm::dvec3(v[0], v[1], v[2]); };
     if (eye) setting.eye = vector(*eye) - scene_.origin;

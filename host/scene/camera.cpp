@@ -111,8 +111,8 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
 }
 
 Camera Camera::frame(const Scene& scene, double aspect, double vertical_fov_degrees) {
-  return look_at(framing(scene, aspect, vertical_fov_degrees, front_view(scene), Filling::kBox),
-                 aspect);
+  return look_at(
+      frame_scene(scene, aspect, vertical_fov_degrees, front_view(scene), FrameFit::kBox), aspect);
 }
 
 /// A thin lens: all rays of a point of the picture meet where the ray through its middle is at the

@@ -20,8 +20,7 @@ glm::dvec3 catmull_rom(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec
 
 }  // namespace
 
-CameraSetting camera_on_path(const std::vector<CameraSetting>& path, double time,
-                             double default_fov) {
+CameraSetting camera_at(const std::vector<CameraSetting>& path, double time, double default_fov) {
   assert(path.size() >= 2);
   const auto last = static_cast<std::ptrdiff_t>(path.size()) - 1;
   const double place = std::clamp(time, 0.0, 1.0) * static_cast<double>(last);
@@ -45,7 +44,7 @@ CameraSetting camera_on_path(const std::vector<CameraSetting>& path, double time
   return camera;
 }
 
-CameraSetting turned(const CameraSetting& camera, double turn) {
+CameraSetting orbited(const CameraSetting& camera, double turn) {
   const glm::dvec3 up = camera.up.value_or(glm::dvec3(0.0, 1.0, 0.0)), size = glm::abs(up);
   const int axis = size.y >= size.x && size.y >= size.z ? 1 : size.z >= size.x ? 2 : 0;
   const int from = (axis + 1) % 3, to = (axis + 2) % 3;

@@ -11,11 +11,11 @@ namespace raygate {
 /// through all places (Catmull-Rom), which takes the same time from each place to the next. Fields
 /// of view and upward directions are those of the two places around it, in proportion; one that a
 /// place leaves out is `default_fov`, or +y. `path` has at least two places.
-[[nodiscard]] CameraSetting camera_on_path(const std::vector<CameraSetting>& path, double time,
-                                           double default_fov);
+[[nodiscard]] CameraSetting camera_at(const std::vector<CameraSetting>& path, double time,
+                                      double default_fov);
 
 /// `camera` after `turn` (1 is all the way round) around the vertical axis through its target,
 /// counter-clockwise seen from above. Vertical is the coordinate axis nearest to its up, or y.
-[[nodiscard]] CameraSetting turned(const CameraSetting& camera, double turn);
+[[nodiscard]] CameraSetting orbited(const CameraSetting& camera, double turn);
 
 }  // namespace raygate

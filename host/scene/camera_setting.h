@@ -22,7 +22,7 @@ struct LensSetting {
   std::optional<double> focus;
 
   /// These, where `other` does not say something else.
-  [[nodiscard]] LensSetting changed_by(const LensSetting& other) const {
+  [[nodiscard]] LensSetting overridden_by(const LensSetting& other) const {
     return {other.projection ? other.projection : projection,
             other.aperture ? other.aperture : aperture, other.focus ? other.focus : focus};
   }

@@ -12,7 +12,7 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
   if (is_empty(scene)) return;
   const glm::dvec3 upright =
       glm::normalize(up / std::max({std::abs(up.x), std::abs(up.y), std::abs(up.z)}));
-  const auto [low, high] = position_box(scene);
+  const auto [low, high] = position_bounds(scene);
   double lowest = std::numeric_limits<double>::infinity();
   for_each_position(scene, [&](const glm::vec3& position) {
     lowest = std::min(lowest, glm::dot(glm::dvec3(position), upright));

@@ -23,7 +23,7 @@ void shift(std::array<std::uint32_t, 3>& indices, std::uint32_t by) {
   }
 }
 
-void grow(PositionBox& box, const glm::dvec3& position) {
+void grow(Bounds3& box, const glm::dvec3& position) {
   box.low = glm::min(box.low, position);
   box.high = glm::max(box.high, position);
 }
@@ -98,7 +98,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
   return static_cast<std::uint32_t>(scene.meshes.size() - 1);
 }
 
-std::uint32_t add_turned(Scene& scene, std::uint32_t mesh) {
+std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
   Mesh turned = scene.meshes[mesh];
   // Normals point to the front, on whichever side that is.
   const Run normals(turned);
@@ -133,12 +133,12 @@ void write(Scene& scene, std::span<const Instance> instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
     for (const glm::vec3& position : mesh.positions) {
-      scene.positions.push_back(placed(instance.rows, position));
+      scene.positions.push_back(transform_point(instance.rows, position));
     }
     const Run& run = normals[instance.mesh];
     const auto first_normal = static_cast<std::uint32_t>(scene.normals.size());
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      scene.normals.push_back(placed_normal(instance, glm::vec3(scene.normals[i])));
+      scene.normals.push_back(transform_normal(instance, glm::vec3(scene.normals[i])));
     }
     for (Triangle triangle : mesh.triangles) {
       shift(triangle.vertices, first);
@@ -151,7 +151,7 @@ void write(Scene& scene, std::span<const Instance> instances) {
 
 }  // namespace
 
-void write_out(Scene& scene) {
+void flatten_instances(Scene& scene) {
   const std::vector<Instance> instances = std::exchange(scene.instances, {});
   write(scene, instances);
   scene.meshes.clear();
@@ -160,7 +160,7 @@ void write_out(Scene& scene) {
 namespace {
 
 /// Before all others.
-void write_out_lamps(Scene& scene) {
+void flatten_emitters(Scene& scene) {
   std::vector<bool> emits;
   emits.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
@@ -182,29 +182,29 @@ void write_out_lamps(Scene& scene) {
 
 }  // namespace
 
-bool settle_instances(Scene& scene, InstanceUse use) {
+bool resolve_instances(Scene& scene, InstanceMode use) {
   if (scene.instances.empty()) return true;
   const std::uint64_t triangles = triangle_count(scene);
   if (triangles + scene.instances.size() >= (std::uint64_t{1} << 31) - 1) return false;
-  write_out_lamps(scene);
-  const bool is_many = triangles - scene.triangles.size() > kManyTriangles;
-  if (use == InstanceUse::kWritten || (use == InstanceUse::kAutomatic && !is_many)) {
-    write_out(scene);
+  flatten_emitters(scene);
+  const bool is_many = triangles - scene.triangles.size() > kFlattenLimit;
+  if (use == InstanceMode::kFlatten || (use == InstanceMode::kAutomatic && !is_many)) {
+    flatten_instances(scene);
   }
   return true;
 }
 
-PositionBox box_around(std::span<const glm::vec3> positions) {
+Bounds3 bounds_of(std::span<const glm::vec3> positions) {
   const glm::dvec3 first(positions[0]);
-  PositionBox box{first, first};
+  Bounds3 box{first, first};
   for (const glm::vec3& position : positions) grow(box, position);
   return box;
 }
 
 // The largest of a coordinate is at one of the box's corners, in the very operations of
-// place_coordinate, too: each of them is monotonic in its operands, rounding included.
-PositionBox placed(const double (&rows)[3][4], const PositionBox& box) {
-  PositionBox result{};
+// transform_coordinate, too: each of them is monotonic in its operands, rounding included.
+Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box) {
+  Bounds3 result{};
   for (int k = 0; k < 3; ++k) {
     const auto& row = rows[k];
     double low[3], high[3];
@@ -213,27 +213,27 @@ PositionBox placed(const double (&rows)[3][4], const PositionBox& box) {
       low[axis] = is_turned ? box.high[axis] : box.low[axis];
       high[axis] = is_turned ? box.low[axis] : box.high[axis];
     }
-    place_coordinate(row, low, result.low[k]);
-    place_coordinate(row, high, result.high[k]);
+    transform_coordinate(row, low, result.low[k]);
+    transform_coordinate(row, high, result.high[k]);
   }
   return result;
 }
 
-void grow_by_instances(const Scene& scene, PositionBox& box) {
-  std::vector<PositionBox> boxes;
+void expand_by_instances(const Scene& scene, Bounds3& box) {
+  std::vector<Bounds3> boxes;
   boxes.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
-    boxes.push_back(mesh.positions.empty() ? PositionBox{} : box_around(mesh.positions));
+    boxes.push_back(mesh.positions.empty() ? Bounds3{} : bounds_of(mesh.positions));
   }
   for (const Instance& instance : scene.instances) {
-    const PositionBox whole = placed(instance.rows, boxes[instance.mesh]);
+    const Bounds3 whole = transform_bounds(instance.rows, boxes[instance.mesh]);
     // Rounding to float keeps order: the middle of the scene need not be looked at.
     if (glm::all(glm::lessThanEqual(box.low, glm::dvec3(glm::vec3(whole.low)))) &&
         glm::all(glm::lessThanEqual(glm::dvec3(glm::vec3(whole.high)), box.high))) {
       continue;
     }
     for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
-      grow(box, placed(instance.rows, position));
+      grow(box, transform_point(instance.rows, position));
     }
   }
 }
@@ -241,33 +241,33 @@ void grow_by_instances(const Scene& scene, PositionBox& box) {
 namespace {
 
 /// A box to begin with: around `position`, or around a position of an instance.
-PositionBox first_box(const Scene& scene, const glm::vec3* position) {
+Bounds3 first_box(const Scene& scene, const glm::vec3* position) {
   glm::dvec3 first;
   if (position != nullptr) {
     first = *position;
   } else {
     const Instance& instance = scene.instances.at(0);
-    first = placed(instance.rows, scene.meshes[instance.mesh].positions[0]);
+    first = transform_point(instance.rows, scene.meshes[instance.mesh].positions[0]);
   }
   return {first, first};
 }
 
 }  // namespace
 
-PositionBox corner_box(const Scene& scene) {
-  PositionBox box = first_box(
+Bounds3 triangle_bounds(const Scene& scene) {
+  Bounds3 box = first_box(
       scene, scene.triangles.empty() ? nullptr : &scene.positions[scene.triangles[0].vertices[0]]);
   for (const Triangle& triangle : scene.triangles) {
     for (const std::uint32_t vertex : triangle.vertices) grow(box, scene.positions[vertex]);
   }
-  grow_by_instances(scene, box);
+  expand_by_instances(scene, box);
   return box;
 }
 
-PositionBox position_box(const Scene& scene) {
-  PositionBox box = first_box(scene, scene.positions.empty() ? nullptr : &scene.positions[0]);
+Bounds3 position_bounds(const Scene& scene) {
+  Bounds3 box = first_box(scene, scene.positions.empty() ? nullptr : &scene.positions[0]);
   for (const glm::vec3& position : scene.positions) grow(box, position);
-  grow_by_instances(scene, box);
+  expand_by_instances(scene, box);
   return box;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "host/exact/exact.h"
-#include "host/scene/placed.h"
+#include "host/scene/instance_transform.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -21,36 +21,36 @@ namespace raygate {
 std::uint32_t add_mesh(Scene& scene, Scene&& part);
 
 /// A copy of a mesh whose triangles run the other way round; its number. For mirrored instances.
-std::uint32_t add_turned(Scene& scene, std::uint32_t mesh);
+std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh);
 
 /// Writes the instances out: they become triangles like others, of the same numbers, corners and
 /// normals, and no instance is left.
-void write_out(Scene& scene);
+void flatten_instances(Scene& scene);
 
 /// What becomes of instances.
-enum class InstanceUse {
-  kWritten,    ///< they are written out
-  kKept,       ///< each mesh is in memory once
-  kAutomatic,  ///< kept where more than kManyTriangles would be written
+enum class InstanceMode {
+  kFlatten,    ///< they are written out
+  kKeep,       ///< each mesh is in memory once
+  kAutomatic,  ///< kept where more than kFlattenLimit would be written
 };
-inline constexpr std::uint64_t kManyTriangles = 4'000'000;
+inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 
 /// Writes out what is not to be kept, and in any case what emits: lamps are lists of triangles.
 /// What is numbered how does not depend on `use`. False, and nothing is done, where there are about
 /// 2^31 triangles or more.
-[[nodiscard]] bool settle_instances(Scene& scene, InstanceUse use);
+[[nodiscard]] bool resolve_instances(Scene& scene, InstanceMode use);
 
 /// A box of coordinates in double.
-struct PositionBox {
+struct Bounds3 {
   glm::dvec3 low, high;
 };
 
 /// A box around positions, at least one; around where an instance has that box (and no tighter).
-[[nodiscard]] PositionBox box_around(std::span<const glm::vec3> positions);
-[[nodiscard]] PositionBox placed(const double (&rows)[3][4], const PositionBox& box);
+[[nodiscard]] Bounds3 bounds_of(std::span<const glm::vec3> positions);
+[[nodiscard]] Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box);
 
 /// Makes the box hold all positions of the scene's instances; no larger than they ask for.
-void grow_by_instances(const Scene& scene, PositionBox& box);
+void expand_by_instances(const Scene& scene, Bounds3& box);
 
 /// Neither triangles nor instances.
 [[nodiscard]] inline bool is_empty(const Scene& scene) {
@@ -58,9 +58,9 @@ void grow_by_instances(const Scene& scene, PositionBox& box);
 }
 
 /// The box around the corners of all triangles, instances' included; of a scene with any.
-[[nodiscard]] PositionBox corner_box(const Scene& scene);
+[[nodiscard]] Bounds3 triangle_bounds(const Scene& scene);
 /// The same around all positions, those of no triangle, too; of a scene with any.
-[[nodiscard]] PositionBox position_box(const Scene& scene);
+[[nodiscard]] Bounds3 position_bounds(const Scene& scene);
 
 /// Calls visit(position) for all positions of the scene and of its instances.
 template <class Visit>
@@ -68,7 +68,7 @@ void for_each_position(const Scene& scene, const Visit& visit) {
   for (const glm::vec3& position : scene.positions) visit(position);
   for (const Instance& instance : scene.instances) {
     for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
-      visit(placed(instance.rows, position));
+      visit(transform_point(instance.rows, position));
     }
   }
 }
@@ -85,7 +85,7 @@ void for_each_face(const Scene& scene, const Visit& visit) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     for (const Triangle& face : mesh.triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = placed(instance.rows, mesh.positions[face.vertices[k]]);
+        corners[k] = transform_point(instance.rows, mesh.positions[face.vertices[k]]);
       }
       visit(corners, face);
     }

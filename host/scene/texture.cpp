@@ -131,7 +131,7 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
   return {width, height, std::move(texels)};
 }
 
-Texture Texture::of_channels(const Texture* green, const Texture* blue) {
+Texture Texture::combine_channels(const Texture* green, const Texture* blue) {
   const Texture& one = green != nullptr ? *green : *blue;
   const Texture& other = blue != nullptr ? *blue : one;
   const int width = std::max(one.width_, other.width_),
@@ -152,7 +152,7 @@ Texture Texture::of_channels(const Texture* green, const Texture* blue) {
   return {width, height, std::move(texels)};
 }
 
-double Texture::least_code() const {
+double Texture::min_code() const {
   std::uint8_t least = 255;
   for (const Texel& codes : texels_) least = std::min(least, codes[0]);
   return least / 255.0;

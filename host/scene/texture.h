@@ -41,10 +41,10 @@ class Texture {
 
   /// The red codes of two textures as green and blue codes of one, as large as the larger one; 255
   /// for one that is not given. One of them is.
-  [[nodiscard]] static Texture of_channels(const Texture* green, const Texture* blue);
+  [[nodiscard]] static Texture combine_channels(const Texture* green, const Texture* blue);
 
   /// The least of the red codes, from 0 to 1.
-  [[nodiscard]] double least_code() const;
+  [[nodiscard]] double min_code() const;
 
   /// The mean of all texels' codes, from 0 to 1: for pictures whose codes are numbers, not colours.
   [[nodiscard]] glm::dvec3 mean_codes() const;

@@ -11,14 +11,14 @@
 namespace raygate {
 namespace {
 
-struct Box : PositionBox {
+struct Box : Bounds3 {
   [[nodiscard]] glm::dvec3 middle() const { return 0.5 * (low + high); }
   [[nodiscard]] glm::dvec3 half() const { return 0.5 * (high - low); }
 };
 
 Box bounding_box(const Scene& scene) {
   if (is_empty(scene)) throw InputError("cannot frame a scene without faces");
-  return {corner_box(scene)};
+  return {triangle_bounds(scene)};
 }
 
 /// Twice the area of a triangle as a vector along its normal; its corners.
@@ -72,7 +72,7 @@ View front_view(const Scene& scene, const glm::dvec3& up) {
 
 // The volume that faces enclose is negative where they look inwards. A closed box without one of
 // its walls has -5/6 of its volume, a ball turned inside out -0.52.
-bool is_room(const Scene& scene) {
+bool is_interior(const Scene& scene) {
   const Box box = bounding_box(scene);
   const glm::dvec3 size = box.high - box.low, middle = box.middle();
   double volume = 0.0;
@@ -83,12 +83,12 @@ bool is_room(const Scene& scene) {
   return volume < -0.6 * size.x * size.y * size.z;
 }
 
-View first_view(const Scene& scene, const glm::dvec3& up) {
-  if (is_room(scene)) return front_view(scene, up);
-  return {kFirstAzimuth, kFirstElevation, up};
+View default_view(const Scene& scene, const glm::dvec3& up) {
+  if (is_interior(scene)) return front_view(scene, up);
+  return {kDefaultAzimuth, kDefaultElevation, up};
 }
 
-glm::dvec3 guessed_up(const Scene& scene) {
+glm::dvec3 guess_up_axis(const Scene& scene) {
   if (scene.up) return *scene.up;
   const Box box = bounding_box(scene);
   constexpr double kClearly = 0.2;
@@ -96,8 +96,8 @@ glm::dvec3 guessed_up(const Scene& scene) {
   return is_z ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
 }
 
-CameraSetting framing(const Scene& scene, double aspect, double fov, const View& view,
-                      Filling filling) {
+CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view,
+                          FrameFit filling) {
   const Box box = bounding_box(scene);
   const glm::dvec3 centre = box.middle(), half = box.half();
   const Axes axes(view.up);
@@ -122,11 +122,11 @@ CameraSetting framing(const Scene& scene, double aspect, double fov, const View&
     const double upwards = std::abs(glm::dot(offset, at_centre.up())) / half_height;
     distance = std::max(distance, std::max(across, upwards) / kFilled + nearer);
   };
-  if (filling == Filling::kVertices) {
+  if (filling == FrameFit::kVertices) {
     for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
       for (const glm::vec3& corner : triangle) show(glm::dvec3(corner) - centre);
     });
-  } else if (filling == Filling::kBox) {
+  } else if (filling == FrameFit::kBox) {
     for (int corner = 0; corner < 8; ++corner) {
       show(half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
     }

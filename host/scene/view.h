@@ -17,24 +17,24 @@ struct View {
 };
 
 /// A view that shows what most models are: from the right of the front and from above.
-inline constexpr double kFirstAzimuth = 33.0, kFirstElevation = 24.0;
+inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 
 /// From the front: level for a tall scene (or the inside of a box), the higher the flatter it is.
 [[nodiscard]] View front_view(const Scene& scene, const glm::dvec3& up = {0.0, 1.0, 0.0});
 
 /// Whether most faces look inwards: the inside of a box, whose floor and walls are there.
-[[nodiscard]] bool is_room(const Scene& scene);
+[[nodiscard]] bool is_interior(const Scene& scene);
 
-/// The view of a first look: kFirstAzimuth and kFirstElevation; or front_view() of a room, whose
-/// walls would be in the way.
-[[nodiscard]] View first_view(const Scene& scene, const glm::dvec3& up);
+/// The view of a first look: kDefaultAzimuth and kDefaultElevation; or front_view() of a room,
+/// whose walls would be in the way.
+[[nodiscard]] View default_view(const Scene& scene, const glm::dvec3& up);
 
 /// +y or +z: the file's format says which (Scene::up), or on what the scene seems to stand. +z
 /// where faces that lie flat cover clearly more of its lower z end than of its lower y end.
-[[nodiscard]] glm::dvec3 guessed_up(const Scene& scene);
+[[nodiscard]] glm::dvec3 guess_up_axis(const Scene& scene);
 
 /// What fills the picture.
-enum class Filling {
+enum class FrameFit {
   kVertices,  ///< of the scene
   kBox,       ///< around them
   kCylinder,  ///< upright around the box, so that the camera may go round it
@@ -44,7 +44,7 @@ enum class Filling {
 /// the picture but for a margin of 4 %, and the box's middle is the target. `aspect` is width /
 /// height of the picture. Throws InputError for a scene without triangles or one too large for
 /// float.
-[[nodiscard]] CameraSetting framing(const Scene& scene, double aspect, double fov, const View& view,
-                                    Filling filling = Filling::kVertices);
+[[nodiscard]] CameraSetting frame_scene(const Scene& scene, double aspect, double fov,
+                                        const View& view, FrameFit filling = FrameFit::kVertices);
 
 }  // namespace raygate

@@ -121,7 +121,7 @@ void Answers::write(const RayBlock& block, const RayHit& found, Row& row) const 
   const Ray& ray = block.rays[found.ray];
   Corners corners{};
   std::int64_t number = -1;
-  StoredFace stored;
+  FaceRef stored;
   HitPlace place{std::numeric_limits<double>::infinity(), kNan, kNan};  // t of the scaled ray
   if (is_hit) {
     corners = bvh_.corners_of(hit.slot);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/base/vectors.h"
-#include "host/scene/placed.h"
+#include "host/scene/instance_transform.h"
 #include "host/scene/scene.h"
 #include "host/tree/placed_tree.h"
 #include "host/tree/runs.h"
@@ -112,7 +112,7 @@ class Bvh {
     return is_placed(slot) ? placed_triangle(slot) : triangles_[slot];
   }
   /// Where the scene stores it.
-  [[nodiscard]] RAYGATE_INLINE StoredFace face_of(std::uint32_t slot) const {
+  [[nodiscard]] RAYGATE_INLINE FaceRef face_of(std::uint32_t slot) const {
     if (is_placed(slot)) [[unlikely]]
       return placed_face(slot);
     return {kNoIndex, triangles_[slot]};
@@ -159,7 +159,7 @@ class Bvh {
   void place_corners(const Child& leaf, LeafRoom& room) const;
   [[nodiscard]] Corners placed_corners(std::uint32_t slot) const;
   [[nodiscard]] std::uint32_t placed_triangle(std::uint32_t slot) const;
-  [[nodiscard]] StoredFace placed_face(std::uint32_t slot) const;
+  [[nodiscard]] FaceRef placed_face(std::uint32_t slot) const;
   void prefetch_placed(const Child& child) const;
 
   [[nodiscard]] Corners stored_corners(std::uint32_t slot) const {

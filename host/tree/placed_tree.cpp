@@ -76,7 +76,8 @@ RAYGATE_INLINE void place(const PlacedTree& at, const Bvh::Node& from, Bvh::Node
   for (int i = 0; i < Bvh::kWidth; ++i) to.child[i] = placed(at, from.child[i]);
 }
 
-/// Makes the corners of a leaf's triangles: as `placed` (host/scene/placed.h) does of each.
+/// Makes the corners of a leaf's triangles: as `transform_point` (host/scene/instance_transform.h)
+/// does of each.
 RAYGATE_INLINE void place(const PlacedTree& at, const float* from, std::size_t count, float* to) {
   for (std::size_t v = 0; v < 3; ++v) {
     DoubleQuad corner[3];
@@ -87,7 +88,7 @@ RAYGATE_INLINE void place(const PlacedTree& at, const float* from, std::size_t c
     }
     for (std::size_t k = 0; k < 3; ++k) {  // what is beyond the last triangle is written over
       DoubleQuad coordinate;
-      place_coordinate(at.rows[k], corner, coordinate);
+      transform_coordinate(at.rows[k], corner, coordinate);
       const FloatQuad single = __builtin_convertvector(coordinate, FloatQuad);
       std::memcpy(to + (3 * v + k) * count, &single, sizeof single);
     }
@@ -186,7 +187,7 @@ void Bvh::place_corners(const Child& leaf, LeafRoom& room) const {
 Corners Bvh::placed_corners(std::uint32_t slot) const {
   const PlacedTree& at = placed_[placed_slots_.find(slot)];
   Corners corners = meshes_[at.mesh].stored_corners(slot - at.first_slot);
-  for (glm::vec3& corner : corners) corner = raygate::placed(at.rows, corner);
+  for (glm::vec3& corner : corners) corner = raygate::transform_point(at.rows, corner);
   return corners;
 }
 
@@ -195,7 +196,7 @@ std::uint32_t Bvh::placed_triangle(std::uint32_t slot) const {
   return at.first_triangle + meshes_[at.mesh].triangles_[slot - at.first_slot];
 }
 
-StoredFace Bvh::placed_face(std::uint32_t slot) const {
+FaceRef Bvh::placed_face(std::uint32_t slot) const {
   const std::uint32_t instance = placed_slots_.find(slot);
   const PlacedTree& at = placed_[instance];
   return {instance, meshes_[at.mesh].triangles_[slot - at.first_slot]};

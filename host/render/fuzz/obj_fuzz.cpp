@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   write(folder / "s.mtl", split < size ? bytes.substr(split + 1) : std::string_view());
   try {
     // In parts of a line or a few.
-    raygate::test::draw(raygate::load_obj(folder / "s.obj", {.threads = 2, .part_size = 1}));
+    raygate::test::draw(raygate::load_obj(folder / "s.obj", {.threads = 2, .chunk_size = 1}));
   } catch (const raygate::InputError&) {
     // What a bad file deserves.
   }

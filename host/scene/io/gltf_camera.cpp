@@ -37,7 +37,7 @@ void read_camera(const GltfFile& file, const tinygltf::Camera& camera, const glm
 
 void aim_camera(Scene& scene) {
   if (!scene.camera) return;
-  const auto [low, high] = position_box(scene);
+  const auto [low, high] = position_bounds(scene);
   const glm::dvec3 middle = 0.5 * (low + high);
   CameraSetting& camera = *scene.camera;
   glm::dvec3 forward = camera.target - camera.eye;

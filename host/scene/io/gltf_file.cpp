@@ -11,7 +11,7 @@
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {

@@ -22,7 +22,7 @@ namespace {
 /// A mesh that stands in several places.
 struct SharedMesh {
   Scene part;                      // until it is the scene's
-  PositionBox box;                 // around its positions
+  Bounds3 box;                     // around its positions
   std::optional<PlacedMesh> mesh;  // then
 };
 
@@ -55,14 +55,14 @@ class GltfReader {
     walk(roots());
     for (const auto& [node, world] : nodes_) count_uses(*node);
     for (const auto& [node, world] : nodes_) read_node(*node, world);
-    for (const Place& place : places_) make_room(place);
-    if (!places_.empty()) own_.builder.allow_nothing();
+    for (const Place& place : places_) expand_extent(place);
+    if (!places_.empty()) own_.builder.allow_empty();
     own_.builder.build(options_, scene_);
     for (const Place& place : places_) add_instance(place);
     if (is_empty(scene_)) throw InputError(file_.name() + ": no face has an area");
     lights_.place();
     aim_camera(scene_);
-    if (!options_.keep_instances) settle_instances(scene_, InstanceUse::kWritten, file_.name());
+    if (!options_.keep_instances) resolve_instances(scene_, InstanceMode::kFlatten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
     if (!file_.model().animations.empty() || !file_.model().skins.empty()) {
@@ -158,26 +158,26 @@ class GltfReader {
     const auto [at, is_new] = shared_.try_emplace(number);
     if (!is_new) return at->second;
     GltfGeometry geometry{MeshBuilder(file_.name())};
-    geometry.builder.allow_nothing();
+    geometry.builder.allow_empty();
     meshes_.read(file_.model().meshes[static_cast<std::size_t>(number)], glm::dmat4(1.0), 0,
                  geometry);
     Scene& part = at->second.part;
     geometry.builder.build(options_, part);
-    if (!part.triangles.empty()) at->second.box = box_around(part.positions);
+    if (!part.triangles.empty()) at->second.box = bounds_of(part.positions);
     return at->second;
   }
 
   /// The whole scene is recentred. And what will be written out is counted.
-  void make_room(const Place& place) {
+  void expand_extent(const Place& place) {
     const auto& [part, own_box, ignored] = shared(place.mesh);
     if (part.triangles.empty()) return;
     if (!options_.keep_instances) meshes_.count(part.positions.size() + 3 * part.triangles.size());
-    const PositionBox box = placed(rows_of(place.world), part.origin, own_box);
+    const Bounds3 box = transform_bounds(rows_of(place.world), part.origin, own_box);
     constexpr double kMost = std::numeric_limits<float>::max();
     if (!(largest(box.low) <= kMost && largest(box.high) <= kMost)) {
       file_.fail("a vertex is beyond the range of float");
     }
-    own_.builder.make_room(box);
+    own_.builder.expand_extent(box);
   }
 
   void add_instance(const Place& place) {

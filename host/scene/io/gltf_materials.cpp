@@ -161,7 +161,7 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   if (base.index < 0 || material.opacity == 0.0f) return;
   MaterialMap map = map_of(base.index, base.extensions, Texture::Content::kOpacity);
   const double least = is_mask ? cutoff / factor : cutoff;
-  if (map.texture == kNoIndex || scene_.textures[map.texture].least_code() >= least) return;
+  if (map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least) return;
   if (!is_mask)
     file_.warn_once("alphaMode BLEND: opacity in a texture is taken as a mask of one half",
                     scene_.warnings);

@@ -59,8 +59,8 @@ std::vector<glm::dmat4> places_in(const GltfFile& file, const tinygltf::Node& no
   return all;
 }
 
-PlaceRows rows_of(const glm::dmat4& matrix) {
-  PlaceRows rows;
+TransformRows rows_of(const glm::dmat4& matrix) {
+  TransformRows rows;
   for (int k = 0; k < 3; ++k) {
     rows[static_cast<std::size_t>(k)] = {matrix[0][k], matrix[1][k], matrix[2][k], matrix[3][k]};
   }

@@ -16,6 +16,6 @@ namespace raygate {
 /// Throws InputError: attributes that are none, or not as many of each.
 [[nodiscard]] std::vector<glm::dmat4> places_in(const GltfFile& file, const tinygltf::Node& node);
 
-[[nodiscard]] PlaceRows rows_of(const glm::dmat4& matrix);
+[[nodiscard]] TransformRows rows_of(const glm::dmat4& matrix);
 
 }  // namespace raygate

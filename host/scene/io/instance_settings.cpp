@@ -10,9 +10,10 @@
 namespace raygate {
 namespace {
 
-PlaceRows read_place(const JsonReader& reader, const JsonValue& value, const std::string& name) {
+TransformRows read_place(const JsonReader& reader, const JsonValue& value,
+                         const std::string& name) {
   const auto numbers = reader.array(&value, name);
-  PlaceRows rows = {glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0)};
+  TransformRows rows = {glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0)};
   const auto number = [&](std::size_t i) {
     return reader.number(numbers[i], name + "[" + std::to_string(i) + "]");
   };
@@ -55,7 +56,7 @@ std::vector<InstanceSetting> read_instances(const JsonReader& reader,
 namespace {
 
 /// From coordinates relative to `from` to those relative to `to`.
-void set_rows(const PlaceRows& rows, const glm::dvec3& from, const glm::dvec3& to,
+void set_rows(const TransformRows& rows, const glm::dvec3& from, const glm::dvec3& to,
               Instance& instance) {
   for (int k = 0; k < 3; ++k) {
     const glm::dvec4& row = rows[static_cast<std::size_t>(k)];
@@ -66,19 +67,19 @@ void set_rows(const PlaceRows& rows, const glm::dvec3& from, const glm::dvec3& t
 
 }  // namespace
 
-PositionBox placed(const PlaceRows& rows, const glm::dvec3& origin, const PositionBox& box) {
+Bounds3 transform_bounds(const TransformRows& rows, const glm::dvec3& origin, const Bounds3& box) {
   Instance instance;
   set_rows(rows, origin, glm::dvec3(0.0), instance);
-  return placed(instance.rows, box);
+  return transform_bounds(instance.rows, box);
 }
 
 PlacedMesh::PlacedMesh(Scene& scene, Scene&& part)
     : scene_(scene), origin_(part.origin), mesh_(add_mesh(scene, std::move(part))) {
-  const PositionBox box = box_around(scene.meshes[mesh_].positions);
+  const Bounds3 box = bounds_of(scene.meshes[mesh_].positions);
   size_ = glm::max(glm::abs(box.low), glm::abs(box.high));
 }
 
-bool PlacedMesh::add(const PlaceRows& rows, std::uint32_t object) {
+bool PlacedMesh::add(const TransformRows& rows, std::uint32_t object) {
   Instance instance{.mesh = mesh_, .object = object};
   set_rows(rows, origin_, scene_.origin, instance);
   for (const auto& row : instance.rows) {
@@ -90,15 +91,15 @@ bool PlacedMesh::add(const PlaceRows& rows, std::uint32_t object) {
   }
   const glm::dvec3 x(rows[0]), y(rows[1]), z(rows[2]);
   if (glm::dot(glm::cross(x, y), z) < 0.0) {
-    if (turned_ == kNoIndex) turned_ = add_turned(scene_, mesh_);
+    if (turned_ == kNoIndex) turned_ = add_mirrored(scene_, mesh_);
     instance.mesh = turned_;
   }
   scene_.instances.push_back(instance);
   return true;
 }
 
-void settle_instances(Scene& scene, InstanceUse use, const std::filesystem::path& file) {
-  if (!settle_instances(scene, use)) {
+void resolve_instances(Scene& scene, InstanceMode use, const std::filesystem::path& file) {
+  if (!resolve_instances(scene, use)) {
     throw InputError(file.string() + ": found " + std::to_string(triangle_count(scene)) +
                      " triangles with all instances, expected fewer than 2^31");
   }
@@ -112,7 +113,7 @@ void add_instances(const std::vector<InstanceSetting>& settings, const std::file
     Scene model = load_scene(setting.model, written);
     const std::vector<std::string> objects = std::move(model.objects);
     PlacedMesh mesh(scene, std::move(model));
-    for (const PlaceRows& rows : setting.places) {
+    for (const TransformRows& rows : setting.places) {
       const auto object = static_cast<std::uint32_t>(scene.objects.size());
       if (!mesh.add(rows, object)) {
         throw InputError(

@@ -16,12 +16,12 @@
 namespace raygate {
 
 /// Three rows of a matrix, from a model's coordinates to the world's.
-using PlaceRows = std::array<glm::dvec4, 3>;
+using TransformRows = std::array<glm::dvec4, 3>;
 
 /// A model, and where it stands.
 struct InstanceSetting {
   std::filesystem::path model;
-  std::vector<PlaceRows> places;
+  std::vector<TransformRows> places;
   std::size_t line = 0;
 };
 
@@ -45,7 +45,7 @@ class PlacedMesh {
 
   /// Adds one where `rows` put it in the world, by the scene's origin at this time. Mirrored ones
   /// have a mesh of their own. False, and none is added, where it is beyond the range of float.
-  [[nodiscard]] bool add(const PlaceRows& rows, std::uint32_t object);
+  [[nodiscard]] bool add(const TransformRows& rows, std::uint32_t object);
 
  private:
   Scene& scene_;
@@ -56,11 +56,11 @@ class PlacedMesh {
 };
 
 /// Around where `rows` put in the world what is in a box of coordinates relative to `origin`.
-[[nodiscard]] PositionBox placed(const PlaceRows& rows, const glm::dvec3& origin,
-                                 const PositionBox& box);
+[[nodiscard]] Bounds3 transform_bounds(const TransformRows& rows, const glm::dvec3& origin,
+                                       const Bounds3& box);
 
-/// As settle_instances does (host/scene/instances.h). Throws InputError, beginning with `file`,
+/// As resolve_instances does (host/scene/instances.h). Throws InputError, beginning with `file`,
 /// where there are too many triangles.
-void settle_instances(Scene& scene, InstanceUse use, const std::filesystem::path& file);
+void resolve_instances(Scene& scene, InstanceMode use, const std::filesystem::path& file);
 
 }  // namespace raygate

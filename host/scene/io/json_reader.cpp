@@ -6,7 +6,7 @@
 
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {

@@ -19,7 +19,7 @@ class TextureLoader {
     load(material.normal_map, Texture::Content::kColour);
     load(material.opacity_map, Texture::Content::kOpacity);
     if (material.opacity_map.texture != kNoIndex &&
-        scene_.textures[material.opacity_map.texture].least_code() >= material.opacity_cutoff) {
+        scene_.textures[material.opacity_map.texture].min_code() >= material.opacity_cutoff) {
       material.opacity_map.texture = kNoIndex;
     }
     if (material.metallic_roughness) load_pair(*material.metallic_roughness);
@@ -41,7 +41,7 @@ class TextureLoader {
       const auto texture = [&](std::uint32_t number) {
         return number == kNoIndex ? nullptr : &scene_.textures[number];
       };
-      Texture both = Texture::of_channels(texture(rough), texture(metal));
+      Texture both = Texture::combine_channels(texture(rough), texture(metal));
       entry->second = static_cast<std::uint32_t>(scene_.textures.size());
       scene_.textures.push_back(std::move(both));
     }

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "host/base/input_error.h"
 #include "host/exact/exact_sign.h"
-#include "host/scene/io/polygon_cutter.h"
+#include "host/scene/io/ear_clipper.h"
 #include "host/scene/io/smooth_normals.h"
 
 namespace raygate {
@@ -18,7 +18,7 @@ class MeshBuilder::Warner {
   }
   void report(const std::string& file, const std::string& what, Scene& scene) const {
     if (count_ == 0) return;
-    scene.warnings.push_back(InputError::place_of(file, first_line_) + what +
+    scene.warnings.push_back(InputError::location(file, first_line_) + what +
                              (count_ > 1 ? ", here and in " + std::to_string(count_ - 1) +
                                                " later face" + (count_ > 2 ? "s" : "")
                                          : ""));
@@ -128,7 +128,7 @@ void MeshBuilder::place_positions(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const Corner& corner : corners_) new_index[corner.position] = 0;
   const auto first = corners_.empty() ? glm::dvec3(0.0) : positions_[corners_[0].position];
-  auto [low, high] = others_.value_or(PositionBox{first, first});
+  auto [low, high] = others_.value_or(Bounds3{first, first});
   std::uint32_t used = 0;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     if (new_index[i] == kNoIndex) continue;
@@ -148,7 +148,7 @@ void MeshBuilder::place_positions(Scene& scene) {
 
 std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
   std::vector<std::uint32_t> groups;
-  PolygonCutter cutter;
+  EarClipper clipper;
   std::vector<glm::vec3> polygon;
   Warner dropped, touching, no_direction;
   scene.triangles.reserve(corners_.size() - 2 * faces_.size());
@@ -163,8 +163,8 @@ std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Sc
     std::span<const std::array<std::uint32_t, 3>> pieces(&kWhole, 1);
     PolygonKind kind = PolygonKind::kSimple;
     if (polygon.size() > 3) {
-      kind = cutter.cut(polygon);
-      pieces = cutter.triangles();
+      kind = clipper.cut(polygon);
+      pieces = clipper.triangles();
     } else if (collinear(polygon[0], polygon[1], polygon[2])) {
       kind = PolygonKind::kZeroArea;
     }
@@ -208,7 +208,7 @@ std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Sc
   return groups;
 }
 
-void MeshBuilder::make_room(const PositionBox& box) {
+void MeshBuilder::expand_extent(const Bounds3& box) {
   if (!others_) others_ = box;
   others_->low = glm::min(others_->low, box.low);
   others_->high = glm::max(others_->high, box.high);

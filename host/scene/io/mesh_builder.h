@@ -56,9 +56,9 @@ class MeshBuilder {
   void append(MeshBuilder&& part);
 
   /// What else the scene is to be recentred with.
-  void make_room(const PositionBox& box);
+  void expand_extent(const Bounds3& box);
   /// No face with an area is no error.
-  void allow_nothing() { may_be_nothing_ = true; }
+  void allow_empty() { may_be_nothing_ = true; }
 
   /// Fills positions, normals, texcoords, triangles and origin, and appends to the warnings.
   /// Throws InputError: an index of nothing, a face without area, no face at all.
@@ -84,7 +84,7 @@ class MeshBuilder {
                                                      Scene& scene) const;
 
   std::string file_name_;
-  std::optional<PositionBox> others_;
+  std::optional<Bounds3> others_;
   bool may_be_nothing_ = false;
   Counts earlier_;
   std::vector<glm::dvec3> positions_;

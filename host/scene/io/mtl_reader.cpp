@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -90,7 +90,7 @@ std::vector<Material> MtlReader::read() {
 }
 
 void MtlReader::read_statement(std::string_view statement) {
-  const std::string_view keyword = take_word(statement);
+  const std::string_view keyword = take_token(statement);
   if (keyword == "newmtl") return begin_material(statement);
   glm::vec3 unused;
   glm::vec3* const colour = colour_of(material_, unused, keyword);
@@ -150,14 +150,14 @@ void MtlReader::begin_material(std::string_view name) {
 
 void MtlReader::read_colour(std::string_view keyword, std::string_view words, glm::vec3& colour) {
   std::string_view peeked = words;
-  const std::string_view first = take_word_before_comment(peeked);
+  const std::string_view first = take_token_before_comment(peeked);
   if (first == "spectral" || first == "xyz") {
     return warn(std::string(keyword) + " " + std::string(first) + " is not supported, ignored");
   }
   std::array<double, 3> rgb{};
   std::size_t count = 0;
-  for (std::string_view word = take_word_before_comment(words); !word.empty();
-       word = take_word_before_comment(words)) {
+  for (std::string_view word = take_token_before_comment(words); !word.empty();
+       word = take_token_before_comment(words)) {
     if (count == 3) lines().fail(std::string(keyword) + " with more than 3 numbers");
     rgb[count] = expect_number(lines(), word, keyword);
     if (rgb[count] < 0.0) {
@@ -177,12 +177,12 @@ void MtlReader::read_colour(std::string_view keyword, std::string_view words, gl
 }
 
 void MtlReader::read_value(std::string_view keyword, std::string_view words) {
-  std::string_view word = take_word_before_comment(words);
+  std::string_view word = take_token_before_comment(words);
   if (keyword == "d" && word == "-halo") {
     warn("d -halo is not supported, taken as d");
-    word = take_word_before_comment(words);
+    word = take_token_before_comment(words);
   }
-  const std::string_view more = take_word_before_comment(words);
+  const std::string_view more = take_token_before_comment(words);
   if (word.empty() || !more.empty()) {
     // Tr of three numbers is what old exporters write for Tf; its meaning is anyone's guess.
     lines().fail(std::string(keyword) + ": expected one number");
@@ -222,26 +222,26 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
   float normal_scale = 1.0f;
   while (words.starts_with('-')) {
     std::string_view rest = words;
-    const std::string_view name = take_word(rest);
+    const std::string_view name = take_token(rest);
     const auto* const option =
         std::find_if(kTextureOptions.begin(), kTextureOptions.end(),
                      [&](const TextureOption& known) { return known.name == name; });
     if (option == kTextureOptions.end()) break;  // a file whose name begins with '-'
     words = rest;
     if (name == "-clamp") {
-      mapping.clamp = take_word(rest) == "on" || mapping.clamp;
+      mapping.clamp = take_token(rest) == "on" || mapping.clamp;
       words = rest;
     } else if (name == "-s") {
       mapping.scale = take_texture_vector(map + " -s", words);
     } else if (name == "-o") {
       mapping.offset = take_texture_vector(map + " -o", words);
     } else if (name == "-bm" && keyword == "norm") {
-      normal_scale = static_cast<float>(expect_number(lines(), take_word(rest), "norm -bm"));
+      normal_scale = static_cast<float>(expect_number(lines(), take_token(rest), "norm -bm"));
       words = rest;
     } else {
       warn_once(map + " option", map + " " + std::string(name) + " is not supported, ignored");
       for (int i = 0; i < option->words; ++i) {
-        const std::string_view word = take_word(rest);
+        const std::string_view word = take_token(rest);
         if (i > 0 && !to_number(word)) break;
         words = rest;
       }
@@ -275,7 +275,7 @@ glm::vec2 MtlReader::take_texture_vector(const std::string& of_what,
   uvw.fill(of_what.ends_with("-s") ? 1.0 : 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     std::string_view rest = words;
-    const std::string_view word = take_word(rest);
+    const std::string_view word = take_token(rest);
     if (i > 0 && !to_number(word)) break;
     uvw[i] = expect_number(lines(), word, of_what);
     words = rest;

@@ -5,7 +5,7 @@
 #include "host/scene/io/load_textures.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/obj_reader.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {

@@ -18,8 +18,8 @@ struct LoadOptions {
   /// Faces without normals are smooth over edges at which they are at most so far apart, in degrees
   /// from 0 to 180; none: as the file's smoothing groups say, where it can have any.
   std::optional<double> smooth = {};
-  int threads = 1;                   ///< that read the file; they change nothing of the scene
-  std::size_t part_size = 1u << 18;  ///< bytes of the file that are worth a thread's while
+  int threads = 1;                    ///< that read the file; they change nothing of the scene
+  std::size_t chunk_size = 1u << 18;  ///< bytes of the file that are worth a thread's while
 };
 
 /// Loads `file`, the MTL files that it names (relative to its own folder), and their textures.

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "host/base/threads.h"
-#include "host/scene/io/obj_part.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/obj_chunk.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 
@@ -15,14 +15,14 @@ namespace raygate {
 // what indices below 0 mean.
 void ObjReader::read(const LoadOptions& options) {
   const std::size_t most = options.threads > 1 ? std::size_t{4} * options.threads : 1;
-  std::vector<ObjPart> parts;
-  for (TextLines& part : lines().split(most, options.part_size))
+  std::vector<ObjChunk> parts;
+  for (TextLines& part : lines().split(most, options.chunk_size))
     parts.emplace_back(std::move(part));
   if (parts.size() > 1) {
-    std::vector<ObjPart::Counts> counts(parts.size());
+    std::vector<ObjChunk::Counts> counts(parts.size());
     for_each_on_threads(options.threads, parts.size(),
                         [&](std::size_t i) { counts[i] = parts[i].count(); });
-    ObjPart::Counts before;
+    ObjChunk::Counts before;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       parts[i].begin_after(before);
       before.lines += counts[i].lines;
@@ -30,14 +30,14 @@ void ObjReader::read(const LoadOptions& options) {
     }
   }
   for_each_on_threads(options.threads, parts.size(), [&](std::size_t i) { parts[i].read(); });
-  for (ObjPart& part : parts) take(part);
+  for (ObjChunk& part : parts) take(part);
 }
 
-void ObjReader::take(ObjPart& part) {
+void ObjReader::take(ObjChunk& part) {
   const std::size_t first = mesh_.face_count();
   std::size_t done = first;
   mesh_.append(std::move(part.mesh()));
-  for (const ObjPart::Rest& rest : part.rest()) {
+  for (const ObjChunk::Rest& rest : part.rest()) {
     assign_faces(done, first + rest.faces);
     done = first + rest.faces;
     lines().go_to(rest.line);
@@ -60,7 +60,7 @@ void ObjReader::assign_faces(std::size_t begin, std::size_t end) {
 }
 
 void ObjReader::read_statement(std::string_view statement) {
-  const std::string_view keyword = take_word(statement);
+  const std::string_view keyword = take_token(statement);
   if (keyword == "g") {
     set_group(statement);
   } else if (keyword == "o") {
@@ -83,14 +83,14 @@ void ObjReader::read_statement(std::string_view statement) {
 /// "a b" may be one group or two: it is one name here.
 void ObjReader::set_group(std::string_view names) {
   group_.clear();
-  for (std::string_view name = take_word(names); !name.empty(); name = take_word(names)) {
+  for (std::string_view name = take_token(names); !name.empty(); name = take_token(names)) {
     group_.append(group_.empty() ? "" : " ").append(name);
   }
   object_is_known_ = false;
 }
 
 void ObjReader::set_smoothing(std::string_view words) {
-  const std::string_view word = take_word_before_comment(words);
+  const std::string_view word = take_token_before_comment(words);
   const char* const end = word.data() + word.size();
   smoothing_group_ = 0;
   const auto [rest, error] = std::from_chars(word.data(), end, smoothing_group_);

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "host/scene/io/material_library.h"
 #include "host/scene/io/mesh_builder.h"
-#include "host/scene/io/mtl_loader.h"
-#include "host/scene/io/obj_part.h"
+#include "host/scene/io/obj_chunk.h"
 #include "host/scene/io/statement_reader.h"
 #include "host/scene/scene.h"
 
@@ -31,7 +31,7 @@ class NameTable {
   std::vector<std::string> names_;
 };
 
-/// Reads v, vt, vn, f, g, o, s, usemtl and mtllib; vertices and faces part by part (see ObjPart),
+/// Reads v, vt, vn, f, g, o, s, usemtl and mtllib; vertices and faces part by part (see ObjChunk),
 /// on several threads. Points, lines and free-form curves and surfaces are left out with a warning,
 /// what only concerns a modeller without one; all else is an InputError. (B. Wavefront's "Object
 /// Files", version 3.0, is the source of the statements.)
@@ -44,14 +44,14 @@ class ObjReader final : public StatementReader {
   /// All statements. Faces go to the mesh with numbers for their material and object.
   void read(const LoadOptions& options);
 
-  [[nodiscard]] const MtlLoader& mtl() const { return mtl_; }
+  [[nodiscard]] const MaterialLibrary& mtl() const { return mtl_; }
   [[nodiscard]] const std::vector<std::string>& objects() const { return objects_.names(); }
   /// The names of usemtl, which faces have numbers of (kNoIndex: none); where each came first.
   [[nodiscard]] const std::vector<std::string>& materials() const { return materials_.names(); }
   [[nodiscard]] const std::vector<std::string>& material_places() const { return places_; }
 
  private:
-  void take(ObjPart& part);
+  void take(ObjChunk& part);
   void assign_faces(std::size_t begin, std::size_t end);
   void read_statement(std::string_view statement);
   void use_material(const std::string& name);
@@ -59,7 +59,7 @@ class ObjReader final : public StatementReader {
   void set_smoothing(std::string_view words);
 
   MeshBuilder& mesh_;
-  MtlLoader mtl_;
+  MaterialLibrary mtl_;
   NameTable objects_, materials_;
   std::vector<std::string> places_;  // "file:line: " of the first use of each material
   std::string object_, group_;       // in force; empty: none

@@ -12,7 +12,7 @@
 #include "host/base/input_error.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/token_reader.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -67,7 +67,7 @@ class HeaderReader {
     if (next() != "ply") fail("not a PLY file: its first line is not \"ply\"");
     bool has_format = false;
     for (std::string_view line = next(); line != "end_header"; line = next()) {
-      const std::string_view keyword = take_word(line);
+      const std::string_view keyword = take_token(line);
       if (keyword == "format") {
         header.format = read_format(line);
         has_format = true;
@@ -77,7 +77,7 @@ class HeaderReader {
         if (header.elements.empty()) fail("a property before the first element");
         header.elements.back().properties.push_back(read_property(line));
       } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-        header.warnings.push_back(InputError::place_of(name_, line_) + in_quotes(keyword) +
+        header.warnings.push_back(InputError::location(name_, line_) + in_quotes(keyword) +
                                   " is no word of a PLY header, ignored");
       }
     }
@@ -100,7 +100,7 @@ class HeaderReader {
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name_, line_, what); }
 
   Format read_format(std::string_view words) {
-    const std::string_view format = take_word(words);
+    const std::string_view format = take_token(words);
     if (format == "ascii") return Format::kAscii;
     if (format == "binary_little_endian") return Format::kLittle;
     if (format == "binary_big_endian") return Format::kBig;
@@ -109,8 +109,8 @@ class HeaderReader {
   }
   Element read_element(std::string_view words) {
     Element element;
-    element.name = take_word(words);
-    const auto count = to_number(take_word(words));
+    element.name = take_token(words);
+    const auto count = to_number(take_token(words));
     if (!count || !(*count >= 0.0 && *count < 0x1p53) || std::floor(*count) != *count) {
       fail("element: expected its name and how many there are");
     }
@@ -118,7 +118,7 @@ class HeaderReader {
     return element;
   }
   Type read_type(std::string_view& words) {
-    const std::string_view word = take_word(words);
+    const std::string_view word = take_token(words);
     for (const TypeName& type : kTypes) {
       if (word == type.name || word == type.other) return type.type;
     }
@@ -127,7 +127,7 @@ class HeaderReader {
   Property read_property(std::string_view words) {
     Property property;
     std::string_view peeked = words;
-    if (take_word(peeked) == "list") {
+    if (take_token(peeked) == "list") {
       words = peeked;
       property.count_type = read_type(words);
       if (*property.count_type == Type::kFloat || *property.count_type == Type::kDouble) {
@@ -135,7 +135,7 @@ class HeaderReader {
       }
     }
     property.type = read_type(words);
-    property.name = take_word(words);
+    property.name = take_token(words);
     if (property.name.empty()) fail("property: without a name");
     return property;
   }

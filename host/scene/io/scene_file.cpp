@@ -138,7 +138,7 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   reader.require_object(root, "scene", known);
   SceneFile scene;
   scene.file = file;
-  scene.obj = scene_of_stem(std::filesystem::path(file).replace_extension());
+  scene.obj = find_scene_file(std::filesystem::path(file).replace_extension());
   if (const JsonValue* obj = JsonReader::find(root, "obj")) {
     if (obj->kind() != Kind::kString || obj->string().empty()) {
       reader.fail(*obj, "obj", "the name of a scene");
@@ -159,7 +159,7 @@ Scene load_scene(const SceneFile& file, const LoadOptions& options) {
   kept.keep_instances = true;
   Scene scene = load_scene(file.obj, kept);
   add_instances(file.instances, file.file, options, scene);
-  if (!options.keep_instances) settle_instances(scene, InstanceUse::kWritten, file.file);
+  if (!options.keep_instances) resolve_instances(scene, InstanceMode::kFlatten, file.file);
   return scene;
 }
 

@@ -36,7 +36,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
                    "Export > glTF 2.0 (with materials, lights and camera) or Wavefront");
 }
 
-std::filesystem::path scene_of_stem(const std::filesystem::path& stem) {
+std::filesystem::path find_scene_file(const std::filesystem::path& stem) {
   std::filesystem::path file;
   for (const Kind& kind : kKinds) {
     std::error_code ignored;

@@ -15,6 +15,6 @@ namespace raygate {
 
 /// The file of this stem that is there, by the first of those endings: "room" gives "room.obj",
 /// also where there is none.
-[[nodiscard]] std::filesystem::path scene_of_stem(const std::filesystem::path& stem);
+[[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
 
 }  // namespace raygate

@@ -10,7 +10,7 @@
 #include "host/base/input_error.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/token_reader.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {

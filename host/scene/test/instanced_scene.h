@@ -55,7 +55,7 @@ inline Scene instanced_scene(Random& random, int count) {
 
 /// The same without instances.
 inline Scene written_out(Scene scene) {
-  write_out(scene);
+  flatten_instances(scene);
   return scene;
 }
 

@@ -39,7 +39,7 @@ TEST(Instances, HaveTheNormalsAndObjectsOfThoseWrittenOut) {
       EXPECT_EQ(object_at(scene, {i, k}), flat.triangles[number].object);
       for (std::size_t c = 0; c < 3; ++c) {
         if (face.normals[c] == kNoIndex) continue;
-        const glm::vec3 normal = placed_normal(instance, scene.normals[face.normals[c]]);
+        const glm::vec3 normal = transform_normal(instance, scene.normals[face.normals[c]]);
         EXPECT_EQ(normal, flat.normals[flat.triangles[number].normals[c]]);
         EXPECT_NEAR(glm::length(normal), 1.0f, 1e-6f);
         ++smooth;
@@ -55,16 +55,17 @@ TEST(Instances, NormalsStandOnWhatIsTurnedAndStretched) {
   const Instance instance = test::placed_at_random(random, random.point(), 2.0f);
   for (int i = 0; i < 100; ++i) {
     const glm::vec3 along = random.point(), other = random.point(), zero(0.0f);
-    const glm::dvec3 normal(placed_normal(instance, glm::normalize(glm::cross(along, other))));
-    const glm::dvec3 from(placed(instance.rows, zero));
+    const glm::dvec3 normal(transform_normal(instance, glm::normalize(glm::cross(along, other))));
+    const glm::dvec3 from(transform_point(instance.rows, zero));
     for (const glm::vec3& edge : {along, other}) {
-      EXPECT_NEAR(glm::dot(normal, glm::dvec3(placed(instance.rows, edge)) - from), 0.0, 1e-5);
+      EXPECT_NEAR(glm::dot(normal, glm::dvec3(transform_point(instance.rows, edge)) - from), 0.0,
+                  1e-5);
     }
   }
   Instance flat;
   flat.rows[2][2] = 0.0;
-  EXPECT_EQ(placed_normal(flat, {1.0f, 0.0f, 0.0f}), glm::vec3(0.0f));
-  EXPECT_EQ(placed_normal(flat, {0.0f, 0.0f, 1.0f}), glm::vec3(0.0f, 0.0f, 1.0f));
+  EXPECT_EQ(transform_normal(flat, {1.0f, 0.0f, 0.0f}), glm::vec3(0.0f));
+  EXPECT_EQ(transform_normal(flat, {0.0f, 0.0f, 1.0f}), glm::vec3(0.0f, 0.0f, 1.0f));
 }
 
 TEST(Instances, BoxesAreThoseOfWhatIsWrittenOut) {
@@ -73,16 +74,16 @@ TEST(Instances, BoxesAreThoseOfWhatIsWrittenOut) {
   scene.triangles.clear();
   scene.positions.clear();
   const Scene flat = test::written_out(scene);
-  for (const auto box_of : {corner_box, position_box}) {
-    const PositionBox box = box_of(scene), expected = box_of(flat);
+  for (const auto box_of : {triangle_bounds, position_bounds}) {
+    const Bounds3 box = box_of(scene), expected = box_of(flat);
     EXPECT_EQ(box.low, expected.low);
     EXPECT_EQ(box.high, expected.high);
   }
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
-    const PositionBox box = placed(instance.rows, box_around(mesh.positions));
+    const Bounds3 box = transform_bounds(instance.rows, bounds_of(mesh.positions));
     for (const glm::vec3& position : mesh.positions) {
-      const glm::vec3 at = placed(instance.rows, position);
+      const glm::vec3 at = transform_point(instance.rows, position);
       EXPECT_TRUE(glm::all(glm::lessThanEqual(glm::vec3(box.low), at)));
       EXPECT_TRUE(glm::all(glm::lessThanEqual(at, glm::vec3(box.high))));
     }
@@ -116,7 +117,7 @@ TEST(Instances, MeshesBringWhatTheyName) {
 TEST(Instances, TurnedMeshesHaveTheirFrontOnTheOtherSide) {
   Random random;
   Scene scene = test::instanced_scene(random, 1);
-  const std::uint32_t turned = add_turned(scene, 0);
+  const std::uint32_t turned = add_mirrored(scene, 0);
   const Mesh &mesh = scene.meshes[0], &other = scene.meshes[turned];
   ASSERT_EQ(mesh.triangles.size(), other.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

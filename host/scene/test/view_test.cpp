@@ -41,7 +41,7 @@ Scene box(const glm::vec3& low, const glm::vec3& high) {
 }
 
 glm::dvec3 towards_eye(const Scene& scene, const View& view) {
-  const CameraSetting camera = framing(scene, 1.5, 35, view);
+  const CameraSetting camera = frame_scene(scene, 1.5, 35, view);
   return glm::normalize(camera.eye - camera.target);
 }
 
@@ -62,8 +62,8 @@ TEST(View, StandsWhereItsAnglesSay) {
   expect_near(towards_eye(scene, {0, 90, kZ}), kZ);
   expect_near(towards_eye(scene, {0, 30, 1e-200 * kZ}), {0, -std::sqrt(0.75), 0.5});
   // Straight from above the front is below in the picture.
-  expect_near(*framing(scene, 1, 35, {0, 90, kY}).up, -kZ);
-  expect_near(*framing(scene, 1, 35, {0, 90, kZ}).up, kY);
+  expect_near(*frame_scene(scene, 1, 35, {0, 90, kY}).up, -kZ);
+  expect_near(*frame_scene(scene, 1, 35, {0, 90, kZ}).up, kY);
 }
 
 /// How far from the middle of the picture the points of a box are seen: 1 at its edges.
@@ -97,7 +97,7 @@ TEST(View, FillsThePictureFromAllSides) {
                                         : -kX};
     const double aspect = std::exp(uniform(random));
     const Camera camera = Camera::look_at(
-        framing(scene, aspect, 35, view, round % 3 == 0 ? Filling::kBox : Filling::kVertices),
+        frame_scene(scene, aspect, 35, view, round % 3 == 0 ? FrameFit::kBox : FrameFit::kVertices),
         aspect);
     EXPECT_NEAR(reach(camera, aspect, low, high), 0.96, 1e-4) << "round " << round;
   }
@@ -108,7 +108,8 @@ TEST(View, AllRoundItStaysInThePicture) {
   double farthest = 0.0;
   for (int frame = 0; frame < 100; ++frame) {
     const View view = {33 + 3.6 * frame, 24, kY};
-    const Camera camera = Camera::look_at(framing(scene, 1.3, 35, view, Filling::kCylinder), 1.3);
+    const Camera camera =
+        Camera::look_at(frame_scene(scene, 1.3, 35, view, FrameFit::kCylinder), 1.3);
     farthest = std::max(farthest, reach(camera, 1.3, {-1, -1, -8}, {1, 1, 8}));
   }
   EXPECT_LE(farthest, 0.97);
@@ -116,32 +117,32 @@ TEST(View, AllRoundItStaysInThePicture) {
 }
 
 TEST(FirstView, ShowsThreeSidesOfAModel) {
-  const View view = first_view(box({0, 0, 0}, {1, 2, 3}), kZ);
-  EXPECT_EQ(view.azimuth, kFirstAzimuth);
-  EXPECT_EQ(view.elevation, kFirstElevation);
+  const View view = default_view(box({0, 0, 0}, {1, 2, 3}), kZ);
+  EXPECT_EQ(view.azimuth, kDefaultAzimuth);
+  EXPECT_EQ(view.elevation, kDefaultElevation);
   EXPECT_EQ(view.up, kZ);
 }
 
 TEST(FirstView, LooksIntoARoomFromItsFront) {
   Scene room;
   add_box(room, {0, 0, 0}, {1, 1, 1}, true, 5);
-  EXPECT_EQ(first_view(room, kY).azimuth, 0.0);
-  EXPECT_EQ(first_view(room, kY).elevation, 3.0);
+  EXPECT_EQ(default_view(room, kY).azimuth, 0.0);
+  EXPECT_EQ(default_view(room, kY).elevation, 3.0);
   Scene open_crate;
   add_box(open_crate, {0, 0, 0}, {1, 1, 1}, false, 3);
-  EXPECT_EQ(first_view(open_crate, kY).azimuth, kFirstAzimuth);
+  EXPECT_EQ(default_view(open_crate, kY).azimuth, kDefaultAzimuth);
 }
 
 TEST(GuessedUp, IsWhereTheSceneDoesNotStand) {
-  EXPECT_EQ(guessed_up(box({0, 0, 0}, {1, 1, 1})), kY) << "nothing speaks for z";
+  EXPECT_EQ(guess_up_axis(box({0, 0, 0}, {1, 1, 1})), kY) << "nothing speaks for z";
   Scene table;  // a broad foot and a column on it
   add_box(table, {0, 0, 0}, {1, 1, 0.1});
   add_box(table, {0.4f, 0.4f, 0.1f}, {0.6f, 0.6f, 1});
-  EXPECT_EQ(guessed_up(table), kZ);
+  EXPECT_EQ(guess_up_axis(table), kZ);
   for (glm::vec3& position : table.positions) std::swap(position.y, position.z);
-  EXPECT_EQ(guessed_up(table), kY);
+  EXPECT_EQ(guess_up_axis(table), kY);
   table.up = kZ;
-  EXPECT_EQ(guessed_up(table), kZ) << "the format has the last word";
+  EXPECT_EQ(guess_up_axis(table), kZ) << "the format has the last word";
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ void expect_sound(const Scene& scene) {
         const auto& vertices = flat.triangles[bvh.triangle_of(slot)].vertices;
         const Corners corners = bvh.corners_of(slot);
         for (std::size_t v = 0; v < 3; ++v) ASSERT_EQ(corners[v], flat.positions[vertices[v]]);
-        const StoredFace face = bvh.face_of(slot);
+        const FaceRef face = bvh.face_of(slot);
         EXPECT_EQ(bvh.is_placed(slot), face.instance != kNoIndex);
         EXPECT_EQ(object_at(scene, face), flat.triangles[bvh.triangle_of(slot)].object);
       }

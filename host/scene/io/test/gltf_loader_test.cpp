@@ -288,7 +288,7 @@ TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
   EXPECT_EQ(material.metallic_roughness->map.texture, 0u);
   EXPECT_EQ(material.opacity_map.texture, 1u);
   EXPECT_EQ(material.opacity_cutoff, 0.5f) << "of the texture alone";
-  EXPECT_EQ(scene.textures[1].least_code(), 16 / 255.0);
+  EXPECT_EQ(scene.textures[1].min_code(), 16 / 255.0);
   EXPECT_TRUE(scene.warnings.empty());
   const Scene bare = load(json, square_buffer() + picture, {.textures = false});
   EXPECT_TRUE(bare.textures.empty());

@@ -1,10 +1,9 @@
 // Materials: every field, the defaults, odd MTL files, and what is refused.
-#include "host/scene/io/mtl_loader.h"
-
 #include <gtest/gtest.h>
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
+#include "host/scene/io/material_library.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/test/tga.h"
 
@@ -150,7 +149,7 @@ TEST_F(LoadMtl, MapsOfRoughnessMetalnessOpacityAndNormals) {
   EXPECT_EQ(m.normal_scale, 0.5f);
   EXPECT_NE(m.normal_map.texture, kNoIndex);
   ASSERT_NE(m.opacity_map.texture, kNoIndex);
-  EXPECT_EQ(scene.textures[m.opacity_map.texture].least_code(), 0.0);
+  EXPECT_EQ(scene.textures[m.opacity_map.texture].min_code(), 0.0);
   EXPECT_EQ(material("newmtl a\nmap_d whole.tga\n").opacity_map.texture, kNoIndex)
       << "it hides nothing";
 }

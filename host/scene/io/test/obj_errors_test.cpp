@@ -5,7 +5,7 @@
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/obj_loader.h"
 #include "host/scene/io/obj_reader.h"
-#include "host/scene/io/test/in_parts.h"
+#include "host/scene/io/test/in_chunks.h"
 
 namespace raygate {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
-#include "host/scene/io/test/in_parts.h"
+#include "host/scene/io/test/in_chunks.h"
 
 namespace raygate {
 namespace {

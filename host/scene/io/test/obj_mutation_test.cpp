@@ -5,7 +5,7 @@
 #include "host/base/test/damage.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/obj_loader.h"
-#include "host/scene/io/test/in_parts.h"
+#include "host/scene/io/test/in_chunks.h"
 #include "host/scene/io/test/sound.h"
 #include "host/scene/test/tga.h"
 

@@ -36,11 +36,11 @@ TEST(LoadScene, GoesByTheEndingOfTheName) {
 
 TEST(LoadScene, AStemMeansTheFileThatIsThere) {
   const TempFolder folder;
-  EXPECT_EQ(scene_of_stem(folder.path() / "a"), folder.path() / "a.obj");
+  EXPECT_EQ(find_scene_file(folder.path() / "a"), folder.path() / "a.obj");
   (void)folder.write("a.stl", "");
-  EXPECT_EQ(scene_of_stem(folder.path() / "a"), folder.path() / "a.stl");
+  EXPECT_EQ(find_scene_file(folder.path() / "a"), folder.path() / "a.stl");
   (void)folder.write("a.glb", "");
-  EXPECT_EQ(scene_of_stem(folder.path() / "a"), folder.path() / "a.glb");
+  EXPECT_EQ(find_scene_file(folder.path() / "a"), folder.path() / "a.glb");
 }
 
 constexpr std::string_view kPly =

@@ -15,11 +15,12 @@
 
 namespace raygate {
 
-class MtlLoader {
+class MaterialLibrary {
  public:
   /// MTL files are looked for in `folder`. `obj` says where the OBJ file is being read. Both
   /// references must outlive this.
-  MtlLoader(std::filesystem::path folder, const TextLines& obj, std::vector<std::string>& warnings)
+  MaterialLibrary(std::filesystem::path folder, const TextLines& obj,
+                  std::vector<std::string>& warnings)
       : folder_(std::move(folder)), obj_(obj), warnings_(warnings) {}
 
   /// Loads what a mtllib statement names: one file whose name may hold spaces, or several files

@@ -1,4 +1,4 @@
-#include "host/scene/io/polygon_cutter.h"
+#include "host/scene/io/ear_clipper.h"
 
 #include <gtest/gtest.h>
 
@@ -25,10 +25,10 @@ Polygon in_plane(const std::vector<glm::vec2>& points) {
 // A right triangulation: n - 2 triangles, all with an area and the polygon's winding (here:
 // counter-clockwise from +z); each side of the polygon belongs to one of them, in its direction,
 // and each other side to two, in opposite directions. Then they cover the polygon exactly once.
-void expect_triangulation(const Polygon& polygon, const PolygonCutter& cutter, int winding = 1) {
-  ASSERT_EQ(cutter.triangles().size(), polygon.size() - 2);
+void expect_triangulation(const Polygon& polygon, const EarClipper& clipper, int winding = 1) {
+  ASSERT_EQ(clipper.triangles().size(), polygon.size() - 2);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
-  for (const auto& triangle : cutter.triangles()) {
+  for (const auto& triangle : clipper.triangles()) {
     const auto flat = [&](int i) { return glm::vec2(polygon[triangle[i]]); };
     ASSERT_EQ(turn(flat(0), flat(1), flat(2)), winding);
     for (int i = 0; i < 3; ++i) ++sides[{triangle[i], triangle[(i + 1) % 3]}];
@@ -45,21 +45,21 @@ void expect_triangulation(const Polygon& polygon, const PolygonCutter& cutter, i
 }
 
 void expect_simple(const std::vector<glm::vec2>& points, int winding = 1) {
-  PolygonCutter cutter;
+  EarClipper clipper;
   const Polygon polygon = in_plane(points);
-  ASSERT_EQ(cutter.cut(polygon), PolygonKind::kSimple);
-  expect_triangulation(polygon, cutter, winding);
+  ASSERT_EQ(clipper.cut(polygon), PolygonKind::kSimple);
+  expect_triangulation(polygon, clipper, winding);
 }
 
-TEST(PolygonCutter, CutsAConvexQuadFromFirstToThird) {
-  PolygonCutter cutter;
-  EXPECT_EQ(cutter.cut(in_plane({{0, 0}, {1, 0}, {1, 1}, {0, 1}})), PolygonKind::kSimple);
-  ASSERT_EQ(cutter.triangles().size(), 2u);
-  EXPECT_EQ(cutter.triangles()[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
-  EXPECT_EQ(cutter.triangles()[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
+TEST(EarClipper, CutsAConvexQuadFromFirstToThird) {
+  EarClipper clipper;
+  EXPECT_EQ(clipper.cut(in_plane({{0, 0}, {1, 0}, {1, 1}, {0, 1}})), PolygonKind::kSimple);
+  ASSERT_EQ(clipper.triangles().size(), 2u);
+  EXPECT_EQ(clipper.triangles()[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
+  EXPECT_EQ(clipper.triangles()[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
 }
 
-TEST(PolygonCutter, CutsConcavePolygonsFromWhateverCorner) {
+TEST(EarClipper, CutsConcavePolygonsFromWhateverCorner) {
   std::vector<glm::vec2> arrow{{0, 0}, {2, -1}, {0.5f, 0}, {2, 1}};
   std::vector<glm::vec2> letter{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
   for (int i = 0; i < 8; ++i) {
@@ -72,21 +72,21 @@ TEST(PolygonCutter, CutsConcavePolygonsFromWhateverCorner) {
   expect_simple(letter, -1);
 }
 
-TEST(PolygonCutter, KeepsCornersOnStraightSides) {
+TEST(EarClipper, KeepsCornersOnStraightSides) {
   expect_simple({{0, 0}, {1, 0}, {2, 0}, {1, 1}});
   expect_simple({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {3, 3}, {2, 2}, {1, 1}});
   expect_simple({{0, 0}, {0.1f, 0.1f}, {0.3f, 0.3f}, {0.7f, 0.7f}, {0, 1}});
 }
 
-TEST(PolygonCutter, CutsAHoleReachedByABridge) {
+TEST(EarClipper, CutsAHoleReachedByABridge) {
   // An outer square, and from its corner 0 a bridge to an inner one and back.
   const Polygon polygon =
       in_plane({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}});
-  PolygonCutter cutter;
-  ASSERT_EQ(cutter.cut(polygon), PolygonKind::kSimple);
-  ASSERT_EQ(cutter.triangles().size(), 8u);
+  EarClipper clipper;
+  ASSERT_EQ(clipper.cut(polygon), PolygonKind::kSimple);
+  ASSERT_EQ(clipper.triangles().size(), 8u);
   double area = 0.0;
-  for (const auto& t : cutter.triangles()) {
+  for (const auto& t : clipper.triangles()) {
     const glm::dvec2 a(polygon[t[0]]), b(polygon[t[1]]), c(polygon[t[2]]);
     const double twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     EXPECT_GT(twice, 0.0);
@@ -95,42 +95,42 @@ TEST(PolygonCutter, CutsAHoleReachedByABridge) {
   EXPECT_EQ(area, 12.0);
 }
 
-TEST(PolygonCutter, LeavesRepeatedCornersOut) {
-  PolygonCutter cutter;
-  EXPECT_EQ(cutter.cut(in_plane({{0, 0}, {1, 0}, {1, 0}, {1, 1}, {0, 0}})), PolygonKind::kSimple);
-  ASSERT_EQ(cutter.triangles().size(), 1u);
-  EXPECT_EQ(cutter.triangles()[0], (std::array<std::uint32_t, 3>{0, 1, 3}));
+TEST(EarClipper, LeavesRepeatedCornersOut) {
+  EarClipper clipper;
+  EXPECT_EQ(clipper.cut(in_plane({{0, 0}, {1, 0}, {1, 0}, {1, 1}, {0, 0}})), PolygonKind::kSimple);
+  ASSERT_EQ(clipper.triangles().size(), 1u);
+  EXPECT_EQ(clipper.triangles()[0], (std::array<std::uint32_t, 3>{0, 1, 3}));
 }
 
-TEST(PolygonCutter, KnowsWhatHasNoArea) {
-  PolygonCutter cutter;
-  EXPECT_EQ(cutter.cut(in_plane({{0, 0}, {1, 1}, {2, 2}, {3, 3}})), PolygonKind::kZeroArea);
-  EXPECT_EQ(cutter.cut(in_plane({{1, 1}, {1, 1}, {1, 1}, {1, 1}})), PolygonKind::kZeroArea);
-  EXPECT_EQ(cutter.cut(in_plane({{0, 0}, {1, 1}, {1, 0}, {0, 1}})), PolygonKind::kZeroArea);
-  EXPECT_TRUE(cutter.triangles().empty());
+TEST(EarClipper, KnowsWhatHasNoArea) {
+  EarClipper clipper;
+  EXPECT_EQ(clipper.cut(in_plane({{0, 0}, {1, 1}, {2, 2}, {3, 3}})), PolygonKind::kZeroArea);
+  EXPECT_EQ(clipper.cut(in_plane({{1, 1}, {1, 1}, {1, 1}, {1, 1}})), PolygonKind::kZeroArea);
+  EXPECT_EQ(clipper.cut(in_plane({{0, 0}, {1, 1}, {1, 0}, {0, 1}})), PolygonKind::kZeroArea);
+  EXPECT_TRUE(clipper.triangles().empty());
 }
 
-TEST(PolygonCutter, SaysWhenAPolygonCrossesItself) {
-  PolygonCutter cutter;
+TEST(EarClipper, SaysWhenAPolygonCrossesItself) {
+  EarClipper clipper;
   const Polygon polygon = in_plane({{0, 0}, {3, 3}, {3, 0}, {0, 2}});
-  EXPECT_EQ(cutter.cut(polygon), PolygonKind::kSelfTouching);
-  for (const auto& t : cutter.triangles()) {
+  EXPECT_EQ(clipper.cut(polygon), PolygonKind::kSelfTouching);
+  for (const auto& t : clipper.triangles()) {
     EXPECT_FALSE(collinear(polygon[t[0]], polygon[t[1]], polygon[t[2]]));
   }
 }
 
-TEST(PolygonCutter, CutsWhatIsNotFlat) {
-  PolygonCutter cutter;
+TEST(EarClipper, CutsWhatIsNotFlat) {
+  EarClipper clipper;
   const Polygon saddle{{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}};
-  EXPECT_EQ(cutter.cut(saddle), PolygonKind::kSimple);
-  EXPECT_EQ(cutter.triangles().size(), 2u);
+  EXPECT_EQ(clipper.cut(saddle), PolygonKind::kSimple);
+  EXPECT_EQ(clipper.triangles().size(), 2u);
   // Upright: its projection along z has no area.
   const Polygon upright{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0.5f, 0.25f}, {0, 0, 1}};
-  EXPECT_EQ(cutter.cut(upright), PolygonKind::kSimple);
-  EXPECT_EQ(cutter.triangles().size(), 3u);
+  EXPECT_EQ(clipper.cut(upright), PolygonKind::kSimple);
+  EXPECT_EQ(clipper.triangles().size(), 3u);
 }
 
-TEST(PolygonCutter, CutsRandomStarShapedPolygons) {
+TEST(EarClipper, CutsRandomStarShapedPolygons) {
   std::mt19937 random(4);
   for (int round = 0; round < 2000; ++round) {
     const std::size_t size = 4 + random() % 40;
@@ -182,21 +182,21 @@ std::vector<glm::vec2> spiral(int size) {
   return points;
 }
 
-TEST(PolygonCutter, CutsManyCorners) {
+TEST(EarClipper, CutsManyCorners) {
   expect_simple(star(20000));
   expect_simple(comb(20001));
   expect_simple(spiral(20000));
 }
 
 // Four times the corners take about four times as long; were it quadratic, sixteen times.
-TEST(PolygonCutter, IsNotQuadratic) {
+TEST(EarClipper, IsNotQuadratic) {
   const auto seconds = [](const std::vector<glm::vec2>& points) {
     const Polygon polygon = in_plane(points);
-    PolygonCutter cutter;
+    EarClipper clipper;
     double best = 1e9;
     for (int attempt = 0; attempt < 3; ++attempt) {
       const std::clock_t begin = std::clock();
-      EXPECT_EQ(cutter.cut(polygon), PolygonKind::kSimple);
+      EXPECT_EQ(clipper.cut(polygon), PolygonKind::kSimple);
       best = std::min(best, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     }
     return best;

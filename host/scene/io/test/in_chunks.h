@@ -46,7 +46,7 @@ inline std::string outcome(const std::filesystem::path& file, LoadOptions option
 /// Parts of a line or a few, read by several threads.
 inline std::string outcome_in_parts(const std::filesystem::path& file, LoadOptions options) {
   options.threads = 3;  // a dozen parts
-  options.part_size = 1;
+  options.chunk_size = 1;
   return outcome(file, options);
 }
 

@@ -17,8 +17,8 @@ enum class PolygonKind {
   kZeroArea,      ///< exactly no area: nothing to cut
 };
 
-/// One cutter serves many polygons one after the other, so that its storage is allocated once.
-class PolygonCutter {
+/// One clipper serves many polygons one after the other, so that its storage is allocated once.
+class EarClipper {
  public:
   /// Cuts the polygon with these corners (at least three, any finite floats; concave, not quite
   /// flat, with corners in the middle of straight sides, or holes joined by a bridge as may be)

@@ -1,4 +1,4 @@
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 #include <gtest/gtest.h>
 
@@ -11,19 +11,19 @@ namespace {
 
 TEST(Words, AreTakenOneByOne) {
   std::string_view text = "usemtl\t a  b ";
-  EXPECT_EQ(take_word(text), "usemtl");
+  EXPECT_EQ(take_token(text), "usemtl");
   EXPECT_EQ(text, "a  b ");
-  EXPECT_EQ(take_word(text), "a");
-  EXPECT_EQ(take_word(text), "b");
-  EXPECT_EQ(take_word(text), "");
+  EXPECT_EQ(take_token(text), "a");
+  EXPECT_EQ(take_token(text), "b");
+  EXPECT_EQ(take_token(text), "");
 }
 
 TEST(Words, ACommentEndsThem) {
   std::string_view text = "1 2#3 #4 5";
-  EXPECT_EQ(take_word_before_comment(text), "1");
-  EXPECT_EQ(take_word_before_comment(text), "2#3");
-  EXPECT_EQ(take_word_before_comment(text), "");
-  EXPECT_EQ(take_word_before_comment(text), "");
+  EXPECT_EQ(take_token_before_comment(text), "1");
+  EXPECT_EQ(take_token_before_comment(text), "2#3");
+  EXPECT_EQ(take_token_before_comment(text), "");
+  EXPECT_EQ(take_token_before_comment(text), "");
 }
 
 TEST(Quotes, ShowWhatCannotBePrinted) {

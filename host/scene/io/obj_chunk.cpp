@@ -1,9 +1,9 @@
-#include "host/scene/io/obj_part.h"
+#include "host/scene/io/obj_chunk.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -30,11 +30,11 @@ constexpr const char* kForms[4] = {"v", "v/vt", "v//vn", "v/vt/vn"};
 
 }  // namespace
 
-ObjPart::Counts ObjPart::count() const {
+ObjChunk::Counts ObjChunk::count() const {
   Counts counts;
   TextLines lines = lines_;
   while (auto statement = lines.next()) {
-    const std::string_view keyword = take_word(*statement);
+    const std::string_view keyword = take_token(*statement);
     if (keyword == "v") ++counts.mesh.positions;
     if (keyword == "vt") ++counts.mesh.texcoords;
     if (keyword == "vn") ++counts.mesh.normals;
@@ -43,12 +43,12 @@ ObjPart::Counts ObjPart::count() const {
   return counts;
 }
 
-void ObjPart::begin_after(const Counts& counts) {
+void ObjChunk::begin_after(const Counts& counts) {
   lines_.begin_after(counts.lines);
   mesh_.begin_after(counts.mesh);
 }
 
-void ObjPart::read() {
+void ObjChunk::read() {
   try {
     while (const auto statement = lines_.next()) read_statement(*statement);
   } catch (...) {
@@ -56,9 +56,9 @@ void ObjPart::read() {
   }
 }
 
-void ObjPart::read_statement(std::string_view statement) {
+void ObjChunk::read_statement(std::string_view statement) {
   std::string_view words = statement;
-  const std::string_view keyword = take_word(words);
+  const std::string_view keyword = take_token(words);
   if (keyword == "v") {
     const auto numbers = read_numbers(keyword, words);
     mesh_.add_position({numbers[0], numbers[1], numbers[2]});
@@ -84,19 +84,19 @@ void ObjPart::read_statement(std::string_view statement) {
   }
 }
 
-void ObjPart::keep(std::string_view statement) {
+void ObjChunk::keep(std::string_view statement) {
   rest_.push_back({std::string(statement), lines_.line(), mesh_.face_count()});
 }
 
 /// The first statement with this keyword alone, and of it the keyword.
-void ObjPart::keep_once(std::string_view keyword) {
+void ObjChunk::keep_once(std::string_view keyword) {
   if (kept_.emplace(keyword).second) keep(keyword);
 }
 
-std::span<const double> ObjPart::read_numbers(std::string_view keyword, std::string_view words) {
+std::span<const double> ObjChunk::read_numbers(std::string_view keyword, std::string_view words) {
   std::size_t count = 0;
-  for (std::string_view word = take_word_before_comment(words); !word.empty();
-       word = take_word_before_comment(words)) {
+  for (std::string_view word = take_token_before_comment(words); !word.empty();
+       word = take_token_before_comment(words)) {
     if (count == numbers_.size()) lines_.fail("too many numbers after " + in_quotes(keyword));
     numbers_[count++] = expect_number(lines_, word, keyword);
   }
@@ -119,11 +119,11 @@ std::span<const double> ObjPart::read_numbers(std::string_view keyword, std::str
   return {numbers_.data(), count};
 }
 
-void ObjPart::read_face(std::string_view words) {
+void ObjChunk::read_face(std::string_view words) {
   corners_.clear();
   int form = 0;
-  for (std::string_view corner = take_word_before_comment(words); !corner.empty();
-       corner = take_word_before_comment(words)) {
+  for (std::string_view corner = take_token_before_comment(words); !corner.empty();
+       corner = take_token_before_comment(words)) {
     // "1/" and "1//" have no texture coordinate and no normal.
     std::string_view plain = corner;
     while (plain.size() > 1 && plain.back() == '/' && corner.size() - plain.size() < 2) {
@@ -143,7 +143,7 @@ void ObjPart::read_face(std::string_view words) {
   mesh_.add_face(corners_, lines_.line());
 }
 
-FileCorner ObjPart::read_corner(std::string_view corner, int& form) const {
+FileCorner ObjChunk::read_corner(std::string_view corner, int& form) const {
   const auto malformed = [&] {
     lines_.fail("face corner " + in_quotes(corner) + ", expected v, v/vt, v//vn or v/vt/vn");
   };

@@ -11,10 +11,10 @@ namespace raygate {
 
 /// Takes the first word (up to a space or tab) off `text`, and the spaces and tabs after it.
 /// An empty word: nothing was left.
-[[nodiscard]] std::string_view take_word(std::string_view& text);
+[[nodiscard]] std::string_view take_token(std::string_view& text);
 
 /// The same, but a word that begins with # ends the statement: the rest is a comment.
-[[nodiscard]] std::string_view take_word_before_comment(std::string_view& text);
+[[nodiscard]] std::string_view take_token_before_comment(std::string_view& text);
 
 /// 'word' for a message: cut to 40 characters, what cannot be printed as \xHH.
 [[nodiscard]] std::string in_quotes(std::string_view word);

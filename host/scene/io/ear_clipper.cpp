@@ -1,4 +1,4 @@
-#include "host/scene/io/polygon_cutter.h"
+#include "host/scene/io/ear_clipper.h"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace raygate {
 
 // Fills ring_ with the corners, repeated ones left out; false if the polygon has no area.
-bool PolygonCutter::project(std::span<const glm::vec3> corners) {
+bool EarClipper::project(std::span<const glm::vec3> corners) {
   ring_.clear();
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     if (!ring_.empty() && corners[i] == corners[ring_.back().number]) continue;
@@ -54,7 +54,7 @@ bool PolygonCutter::project(std::span<const glm::vec3> corners) {
   return true;
 }
 
-int PolygonCutter::turn_at(std::uint32_t corner) const {
+int EarClipper::turn_at(std::uint32_t corner) const {
   const Corner& c = ring_[corner];
   return turn(ring_[c.previous].position, c.position, ring_[c.next].position);
 }
@@ -62,7 +62,7 @@ int PolygonCutter::turn_at(std::uint32_t corner) const {
 // An ear: a strictly convex corner whose triangle holds no other corner, not even on its border.
 // Only reflex (or straight) corners need to be looked at. One at the same place as a corner of the
 // triangle is not in the way: it is the other end of a bridge to a hole.
-bool PolygonCutter::is_ear(std::uint32_t corner) const {
+bool EarClipper::is_ear(std::uint32_t corner) const {
   if (turn_at(corner) <= 0) return false;
   if (!mind_obstacles_) return true;
   const Corner& c = ring_[corner];
@@ -70,7 +70,7 @@ bool PolygonCutter::is_ear(std::uint32_t corner) const {
       {ring_[c.previous].position, c.position, ring_[c.next].position});
 }
 
-void PolygonCutter::cut_off(std::uint32_t corner) {
+void EarClipper::cut_off(std::uint32_t corner) {
   Corner& c = ring_[corner];
   c.gone = true;
   ring_[c.previous].next = c.next;
@@ -84,7 +84,7 @@ void PolygonCutter::cut_off(std::uint32_t corner) {
   }
 }
 
-void PolygonCutter::list_all_left() {
+void EarClipper::list_all_left() {
   candidates_.clear();
   for (std::uint32_t i = 1; i <= ring_.size(); ++i) {
     const std::uint32_t corner = i == ring_.size() ? 0 : i;
@@ -95,7 +95,7 @@ void PolygonCutter::list_all_left() {
 // Rounds: in each, cut off the ears among the candidates, but no two neighbours (better shapes
 // than a fan); the neighbours are the candidates of the next round. A simple polygon always has an
 // ear (Meisters 1975; corners on straight sides change nothing, as an ear may not contain them).
-PolygonKind PolygonCutter::clip_ears() {
+PolygonKind EarClipper::clip_ears() {
   PolygonKind kind = PolygonKind::kSimple;
   std::size_t left = ring_.size();
   list_all_left();
@@ -145,7 +145,7 @@ PolygonKind PolygonCutter::clip_ears() {
   return kind;
 }
 
-PolygonKind PolygonCutter::cut(std::span<const glm::vec3> corners) {
+PolygonKind EarClipper::cut(std::span<const glm::vec3> corners) {
   triangles_.clear();
   if (!project(corners)) return PolygonKind::kZeroArea;
   reflex_corners_.clear();

@@ -14,18 +14,19 @@ namespace raygate {
 /// A coordinate of a point after a row of Instance::rows, before it is rounded to float. T: double,
 /// or a vector of them.
 template <class T>
-RAYGATE_INLINE void place_coordinate(const double (&row)[4], const T (&point)[3], T& result) {
+RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point)[3], T& result) {
   result = ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
 }
 
 /// Where an instance of these rows has a position of its mesh: everybody's corners are these
 /// floats.
-[[nodiscard]] inline glm::vec3 placed(const double (&rows)[3][4], const glm::vec3& position) {
+[[nodiscard]] inline glm::vec3 transform_point(const double (&rows)[3][4],
+                                               const glm::vec3& position) {
   const double point[3] = {position.x, position.y, position.z};
   glm::vec3 result;
   for (int k = 0; k < 3; ++k) {
     double coordinate;
-    place_coordinate(rows[k], point, coordinate);
+    transform_coordinate(rows[k], point, coordinate);
     result[k] = static_cast<float>(coordinate);
   }
   return result;
@@ -33,7 +34,7 @@ RAYGATE_INLINE void place_coordinate(const double (&row)[4], const T (&point)[3]
 
 /// A normal of the mesh as the instance has it, of unit length; 0 where the instance leaves nothing
 /// of it. The inverse transpose but for a factor, which a flat matrix has, too.
-[[nodiscard]] inline glm::vec3 placed_normal(const Instance& instance, const glm::vec3& normal) {
+[[nodiscard]] inline glm::vec3 transform_normal(const Instance& instance, const glm::vec3& normal) {
   glm::dvec3 row[3];
   for (int k = 0; k < 3; ++k) {
     row[k] = {instance.rows[k][0], instance.rows[k][1], instance.rows[k][2]};
@@ -49,24 +50,24 @@ RAYGATE_INLINE void place_coordinate(const double (&row)[4], const T (&point)[3]
 }
 
 /// A triangle, by where it is stored.
-struct StoredFace {
+struct FaceRef {
   std::uint32_t instance = kNoIndex;  ///< kNoIndex: it is one of Scene::triangles
   std::uint32_t triangle = 0;         ///< of these, or of the instance's mesh
 };
 
-[[nodiscard]] inline const Triangle& face_at(const Scene& scene, const StoredFace& face) {
+[[nodiscard]] inline const Triangle& face_at(const Scene& scene, const FaceRef& face) {
   if (face.instance == kNoIndex) [[likely]]
     return scene.triangles[face.triangle];
   return scene.meshes[scene.instances[face.instance].mesh].triangles[face.triangle];
 }
 
 /// The instance of a stored triangle; nullptr for one of Scene::triangles.
-[[nodiscard]] inline const Instance* instance_at(const Scene& scene, const StoredFace& face) {
+[[nodiscard]] inline const Instance* instance_at(const Scene& scene, const FaceRef& face) {
   return face.instance == kNoIndex ? nullptr : &scene.instances[face.instance];
 }
 
 /// The number of its object.
-[[nodiscard]] inline std::uint32_t object_at(const Scene& scene, const StoredFace& face) {
+[[nodiscard]] inline std::uint32_t object_at(const Scene& scene, const FaceRef& face) {
   const Instance* const instance = instance_at(scene, face);
   return face_at(scene, face).object + (instance != nullptr ? instance->object : 0);
 }

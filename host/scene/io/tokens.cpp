@@ -1,4 +1,4 @@
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 #include <locale.h>
 
@@ -11,7 +11,7 @@
 
 namespace raygate {
 
-std::string_view take_word(std::string_view& text) {
+std::string_view take_token(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && text[end] != ' ' && text[end] != '\t') ++end;
   const std::string_view word = text.substr(0, end);
@@ -20,9 +20,9 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-std::string_view take_word_before_comment(std::string_view& text) {
+std::string_view take_token_before_comment(std::string_view& text) {
   if (!text.empty() && text[0] == '#') text = {};
-  return take_word(text);
+  return take_token(text);
 }
 
 std::string in_quotes(std::string_view word) {

@@ -18,7 +18,7 @@ namespace raygate {
 
 /// Parts can be read at the same time, on several threads. What a part says of materials, groups
 /// and other files hangs on the parts before it: such statements are kept for ObjReader.
-class ObjPart {
+class ObjChunk {
  public:
   /// A statement that is neither of a vertex nor of a face.
   struct Rest {
@@ -27,7 +27,7 @@ class ObjPart {
     std::size_t faces;  ///< of the part, that come before it
   };
 
-  explicit ObjPart(TextLines lines) : lines_(std::move(lines)), mesh_(lines_.file_name()) {}
+  explicit ObjChunk(TextLines lines) : lines_(std::move(lines)), mesh_(lines_.file_name()) {}
 
   /// What the part has of lines and vertices: it reads all, but understands little.
   struct Counts {

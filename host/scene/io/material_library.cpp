@@ -1,19 +1,19 @@
-#include "host/scene/io/mtl_loader.h"
+#include "host/scene/io/material_library.h"
 
 #include <utility>
 
 #include "host/scene/io/mtl_reader.h"
-#include "host/scene/io/words.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 
-void MtlLoader::load_library(std::string_view names) {
+void MaterialLibrary::load_library(std::string_view names) {
   if (names.empty()) {
     warnings_.push_back(obj_.place() + "mtllib without a file");
     return;
   }
   if (const auto file = find_file(folder_, names)) return load(*file);
-  for (std::string_view name = take_word(names); !name.empty(); name = take_word(names)) {
+  for (std::string_view name = take_token(names); !name.empty(); name = take_token(names)) {
     if (const auto file = find_file(folder_, name)) {
       load(*file);
     } else {
@@ -23,7 +23,7 @@ void MtlLoader::load_library(std::string_view names) {
   }
 }
 
-void MtlLoader::load(const std::filesystem::path& file) {
+void MaterialLibrary::load(const std::filesystem::path& file) {
   if (!loaded_.insert(file.lexically_normal()).second) return;
   std::vector<Material> read = MtlReader(file, warnings_).read();
   if (read.empty()) warnings_.push_back(file.string() + ": defines no material");
@@ -33,7 +33,7 @@ void MtlLoader::load(const std::filesystem::path& file) {
   }
 }
 
-std::optional<std::uint32_t> MtlLoader::find(const std::string& name) const {
+std::optional<std::uint32_t> MaterialLibrary::find(const std::string& name) const {
   const auto found = index_of_name_.find(name);
   if (found == index_of_name_.end()) return std::nullopt;
   return found->second;
