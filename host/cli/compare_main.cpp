@@ -13,9 +13,9 @@
 #include "host/cli/command_line.h"
 #include "host/cli/option_text.h"
 #include "host/cli/process.h"
+#include "host/film/atomic_file.h"
 #include "host/film/compare.h"
 #include "host/film/false_color.h"
-#include "host/film/pending_file.h"
 #include "host/film/png.h"
 
 namespace raygate {
@@ -144,9 +144,9 @@ void write_difference(const CompareOptions& options, const ChannelPicture& pictu
   const Channel channel{"difference", Channel::Type::kFloat, values.data(), sizeof(float)};
   Scale scale{0.0, options.scale};
   if (options.scale == 0.0) scale.high = scale_of(channel, values.size()).high;
-  const Picture8 shown =
+  const Image8 shown =
       false_color(picture.width, picture.height, comparison.window, channel, scale);
-  PendingFile(options.difference, encode_png(shown)).commit();
+  AtomicFile(options.difference, encode_png(shown)).commit();
   print("wrote         " + options.difference + ", " + shown.texts.at(0).second + "\n",
         options.json ? stderr : stdout);
 }
@@ -155,7 +155,7 @@ int compare_files(const CompareOptions& options) {
   if (!options.difference.empty()) {
     const std::filesystem::path outputs[] = {options.difference};
     const std::filesystem::path inputs[] = {options.picture, options.reference};
-    require_others(outputs, inputs);
+    require_distinct(outputs, inputs);
     if (std::filesystem::path(options.difference).extension() != ".png") {
       fail_value("--difference", options.difference, "FILE.png");
     }

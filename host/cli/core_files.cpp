@@ -6,7 +6,7 @@
 #include "host/base/input_error.h"
 #include "host/cli/format.h"
 #include "host/cli/option_text.h"
-#include "host/film/pending_file.h"
+#include "host/film/atomic_file.h"
 #include "host/find/core/core_finder.h"
 #include "sim/core_wave.h"
 
@@ -86,7 +86,7 @@ std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine
                                                      const CoreFileOptions& files, const Bvh& bvh) {
   if (!engine.has_core()) return nullptr;
   auto image = std::make_shared<const MemoryImage>(bvh, static_cast<int>(engine.threads));
-  if (!files.image.empty()) PendingFile(files.image, image->bytes()).commit();
+  if (!files.image.empty()) AtomicFile(files.image, image->bytes()).commit();
   return image;
 }
 

@@ -28,12 +28,12 @@ IntegratorKind parse_integrator(const std::string& text) {
                                  {"path", IntegratorKind::kPath}});
 }
 
-PixelFilter parse_filter(const std::string& text) {
-  return choose<PixelFilter>("--filter", text,
-                             {{"box", PixelFilter::kBox},
-                              {"tent", PixelFilter::kTent},
-                              {"gauss", PixelFilter::kGauss},
-                              {"blackman-harris", PixelFilter::kBlackmanHarris}});
+ReconstructionFilter parse_filter(const std::string& text) {
+  return choose<ReconstructionFilter>("--filter", text,
+                                      {{"box", ReconstructionFilter::kBox},
+                                       {"tent", ReconstructionFilter::kTent},
+                                       {"gauss", ReconstructionFilter::kGauss},
+                                       {"blackman-harris", ReconstructionFilter::kBlackmanHarris}});
 }
 
 /// "inf": whatever the unit says.
@@ -67,15 +67,15 @@ Skips parse_no_skip(const std::string& text) {
 
 }  // namespace
 
-std::string to_string(PixelFilter filter) {
+std::string to_string(ReconstructionFilter filter) {
   switch (filter) {
-    case PixelFilter::kBox:
+    case ReconstructionFilter::kBox:
       return "box";
-    case PixelFilter::kTent:
+    case ReconstructionFilter::kTent:
       return "tent";
-    case PixelFilter::kGauss:
+    case ReconstructionFilter::kGauss:
       return "gauss";
-    case PixelFilter::kBlackmanHarris:
+    case ReconstructionFilter::kBlackmanHarris:
       return "blackman-harris";
   }
   return "";

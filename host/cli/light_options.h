@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "host/film/pixel_filter.h"
+#include "host/film/reconstruction_filter.h"
 #include "host/film/sample_range.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/point_error.h"
@@ -30,7 +30,7 @@ struct LightOptions {
   int samples = 1;
   double error = 0.0;  ///< RenderOptions::error: `samples` is the most; 0: is what all pixels get
   std::optional<SampleRange> range;  ///< those of them that are rendered; none: all
-  PixelFilter filter = PixelFilter::kBlackmanHarris;
+  ReconstructionFilter filter = ReconstructionFilter::kBlackmanHarris;
   Skips skips;
   float point_error = kPointError;
 
@@ -52,7 +52,7 @@ void declare_light_options(CLI::App& app, RawLightOptions& raw);
 [[nodiscard]] LightOptions parse_light_options(const RawLightOptions& raw);
 
 /// "box", "tent", "gauss", "blackman-harris".
-[[nodiscard]] std::string to_string(PixelFilter filter);
+[[nodiscard]] std::string to_string(ReconstructionFilter filter);
 
 /// "primary", "whitted", "path".
 [[nodiscard]] std::string to_string(IntegratorKind integrator);

@@ -56,7 +56,7 @@ int run(int argc, char** argv) {
   }
   const OutputOptions options = parse_output_options(raw, parts.front());
   const std::vector<std::filesystem::path> inputs(parts.begin(), parts.end());
-  require_others(options.paths(), inputs);
+  require_distinct(options.paths(), inputs);
   for (const auto& path : options.paths()) require_writable(path);
 
   std::vector<NamedFilm> films;
@@ -69,7 +69,7 @@ int run(int argc, char** argv) {
   whole.film.keeps_sums = options.channels.sums || is_part;
   ReadyPictures ready = make_ready(options, whole.film, whole.metadata);
   std::string text;
-  for (PendingFile& file : ready.files) file.commit();
+  for (AtomicFile& file : ready.files) file.commit();
   for (const auto& path : ready.paths) text += (text.empty() ? "" : ", ") + path.string();
   const SampleRange samples = samples_of(whole.metadata);
   print("wrote " + text + ": samples " + to_string(samples) +

@@ -18,7 +18,7 @@ ReadyPictures make_ready(const OutputOptions& options, const Film& film,
     ready.paths.push_back(path);
   };
   if (options.exr) add(*options.exr, encode_exr(film, metadata, threads));
-  const auto add_png = [&](const std::filesystem::path& path, Picture8 picture) {
+  const auto add_png = [&](const std::filesystem::path& path, Image8 picture) {
     if (metadata.partial) picture.texts.emplace_back("Comment", kPartial);
     add(path, encode_png(picture));
   };
@@ -30,7 +30,7 @@ ReadyPictures make_ready(const OutputOptions& options, const Film& film,
       throw InputError("--false-colour: found no channel " + output.channel +
                        " in the picture, expected one that it has");
     }
-    const Picture8 picture =
+    const Image8 picture =
         false_color(film.width, film.height, film.window, *channel, output.scale);
     add_png(output.path, picture);
     ready.legends.push_back(picture.texts.at(0).second);

@@ -6,21 +6,21 @@
 #include <vector>
 
 #include "host/cli/output_options.h"
+#include "host/film/atomic_file.h"
 #include "host/film/exr.h"
 #include "host/film/film.h"
-#include "host/film/pending_file.h"
 
 namespace raygate {
 
 /// The pictures of one film, written and not yet named.
 struct ReadyPictures {
-  std::vector<PendingFile> files;
+  std::vector<AtomicFile> files;
   std::vector<std::filesystem::path> paths;
   std::vector<std::string> legends;  ///< of the false-colour pictures
 };
 
 /// Encodes and writes; all or nothing. A picture of which only a part was rendered says so in its
-/// metadata (see ExrMetadata::partial). Throws InputError as PendingFile does.
+/// metadata (see ExrMetadata::partial). Throws InputError as AtomicFile does.
 [[nodiscard]] ReadyPictures make_ready(const OutputOptions& options, const Film& film,
                                        const ExrMetadata& metadata, int threads = 1);
 

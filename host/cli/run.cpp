@@ -70,10 +70,10 @@ void require_inputs_kept(const Options& options, const Scene& scene) {
   inputs.push_back(options.scene);
   const int frames = options.output.frames;
   for (int frame = frames == 0 ? 0 : 1; frame <= frames; ++frame) {
-    require_others(frame == 0 ? options.output.paths() : options.output.numbered(frame).paths(),
-                   inputs);
+    require_distinct(frame == 0 ? options.output.paths() : options.output.numbered(frame).paths(),
+                     inputs);
   }
-  require_others(options.core_files.paths(), inputs);
+  require_distinct(options.core_files.paths(), inputs);
 }
 
 ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shots& shots,
@@ -195,7 +195,7 @@ bool render_picture(const Options& options, const OutputOptions& outputs, const 
   report.write_seconds = seconds_since(write_start);
   report.total_seconds = seconds_since(start);
   if (outputs.stats) ready.files.emplace_back(*outputs.stats, to_json(report));
-  for (PendingFile& file : ready.files) file.commit();
+  for (AtomicFile& file : ready.files) file.commit();
   return true;
 }
 

@@ -66,7 +66,7 @@ void Saver::save(const Film& film, const OutputOptions& outputs) {
 void Saver::write(const Film& film, const OutputOptions& outputs) const {
   ExrMetadata metadata = metadata_;
   metadata.partial = true;
-  for (PendingFile& file : make_ready(outputs, film, metadata, threads_).files) file.commit();
+  for (AtomicFile& file : make_ready(outputs, film, metadata, threads_).files) file.commit();
 }
 
 }  // namespace raygate

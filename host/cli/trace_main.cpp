@@ -14,7 +14,7 @@
 #include "host/cli/option_text.h"
 #include "host/cli/process.h"
 #include "host/exact/ieee_floats.h"
-#include "host/film/pending_file.h"
+#include "host/film/atomic_file.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/trace/answers.h"
@@ -143,7 +143,7 @@ class Table {
 
  private:
   const Answers& answers_;
-  std::optional<PendingFile> file_;
+  std::optional<AtomicFile> file_;
 };
 
 std::string summary(const TraceOptions& options, const TraceCounts& counts, double seconds) {
@@ -178,7 +178,7 @@ int run(const TraceOptions& options) {
     inputs.push_back(options.scene);
     inputs.push_back(options.rays);
     const std::filesystem::path outputs[] = {options.output};
-    require_others(outputs, inputs);
+    require_distinct(outputs, inputs);
   }
   RaysIn rays(options.rays, scene.origin);
   const Answers answers(scene, bvh, options.columns, options.format());

@@ -30,13 +30,13 @@ void add_numbers(std::vector<Channel>& channels, const char* name,
 /// "sums.R.0" to "sums.R.5" and so on.
 template <std::size_t N>
 void add_sums(std::vector<Channel>& channels, const std::string& layer, const char* parts,
-              const std::vector<std::array<SampleSum, N>>& sums) {
+              const std::vector<std::array<ExactAccumulator, N>>& sums) {
   if (sums.empty()) return;
   for (std::size_t k = 0; k < N; ++k) {
-    for (int word = 0; word < SampleSum::kWords; ++word) {
+    for (int word = 0; word < ExactAccumulator::kWords; ++word) {
       channels.push_back({layer + "." + parts[k] + "." + std::to_string(word), Channel::Type::kUint,
                           static_cast<const std::uint32_t*>(sums.front()[k].words()) + word,
-                          sizeof(std::array<SampleSum, N>)});
+                          sizeof(std::array<ExactAccumulator, N>)});
     }
   }
 }

@@ -24,7 +24,8 @@ struct Channel {
 ///   P.X P.Y P.Z (the position)  Albedo.R .G .B
 ///   objectId  tests  doubts                           those that were asked for
 ///   samples  error                                    if its pixels got samples by their error
-///   samples  sums.R.0 to .5 and so on  sums.shown     if it keeps its sums: SampleSum's words
+///   samples  sums.R.0 to .5 and so on  sums.shown     if it keeps its sums: ExactAccumulator's
+///   words
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
 /// The channel's number at pixel `index` (row by row) as a double, exactly.

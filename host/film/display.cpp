@@ -13,7 +13,7 @@ double gain_of(double exposure) { return binary_power(std::clamp(exposure, -126.
 
 }  // namespace
 
-float toned(float light, Tone tone) {
+float tone_map(float light, Tone tone) {
   if (tone == Tone::kClip) return light;
   // The quotient of two squares would be NaN for infinite light.
   const double x = std::min(std::max(light, 0.0f), 1e6f);
@@ -27,14 +27,14 @@ float display_steps(const glm::vec3& light, double exposure) {
       255.0 * srgb_curve_above(gain_of(exposure) * (0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b)));
 }
 
-Picture8 to_display(const Film& film, const DisplayOptions& options) {
-  Picture8 picture{film.width, film.height, film.window, {}, {}};
+Image8 to_display(const Film& film, const DisplayOptions& options) {
+  Image8 picture{film.width, film.height, film.window, {}, {}};
   picture.pixels.reserve(film.color.size());
   const auto gain = static_cast<float>(gain_of(options.exposure));
   for (const glm::vec4& color : film.color) {
     Rgb8& codes = picture.pixels.emplace_back();
     for (int k = 0; k < 3; ++k) {
-      codes[static_cast<std::size_t>(k)] = linear_to_srgb(toned(gain * color[k], options.tone));
+      codes[static_cast<std::size_t>(k)] = linear_to_srgb(tone_map(gain * color[k], options.tone));
     }
   }
   return picture;

@@ -1,7 +1,7 @@
 // From the light of a film to the codes of a display.
 #pragma once
 
-#include "host/film/picture8.h"
+#include "host/film/image8.h"
 
 namespace raygate {
 
@@ -19,7 +19,7 @@ struct DisplayOptions {
 
 /// Light of one channel, after exposure, as the light that the display gives off: in [0, 1] for
 /// kFilmic; NaN stays. Source of the curve: K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
-[[nodiscard]] float toned(float light, Tone tone);
+[[nodiscard]] float tone_map(float light, Tone tone);
 
 /// Luminance as a display shows it after `exposure` stops, in steps of its 8 bits: 255 is white.
 /// The sRGB curve goes on above white, which another exposure may bring into sight. What errors of
@@ -27,6 +27,6 @@ struct DisplayOptions {
 [[nodiscard]] float display_steps(const glm::vec3& light, double exposure);
 
 /// The film over black, channel by channel. Each code is the one nearest to the exact value.
-[[nodiscard]] Picture8 to_display(const Film& film, const DisplayOptions& options = {});
+[[nodiscard]] Image8 to_display(const Film& film, const DisplayOptions& options = {});
 
 }  // namespace raygate

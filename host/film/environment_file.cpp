@@ -7,7 +7,7 @@
 
 #include "host/base/elementary.h"
 #include "host/film/exr_reader.h"
-#include "host/film/radiance_reader.h"
+#include "host/film/hdr_reader.h"
 
 namespace raygate {
 namespace {
@@ -32,7 +32,7 @@ glm::dvec3 ahead_of(const glm::dvec3& up) {
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene) {
   EnvironmentMap map;
   if (is_radiance(setting.file)) {
-    RadiancePicture picture = read_radiance(setting.file);
+    HdrImage picture = read_hdr(setting.file);
     map.width = picture.width;
     map.height = picture.height;
     map.texels = std::move(picture.pixels);

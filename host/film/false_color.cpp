@@ -75,9 +75,9 @@ Scale scale_of(const Channel& channel, std::size_t count) {
   return scale.low <= scale.high ? scale : Scale{};
 }
 
-Picture8 false_color(int width, int height, const PixelRect& window, const Channel& channel,
-                     const std::optional<Scale>& wanted) {
-  Picture8 picture{width, height, window, {}, {}};
+Image8 false_color(int width, int height, const PixelRect& window, const Channel& channel,
+                   const std::optional<Scale>& wanted) {
+  Image8 picture{width, height, window, {}, {}};
   const auto count =
       static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
   picture.pixels.reserve(count);

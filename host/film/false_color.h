@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/film/channels.h"
-#include "host/film/picture8.h"
+#include "host/film/image8.h"
 
 namespace raygate {
 
@@ -30,8 +30,8 @@ struct Scale {
 /// by `scale`, or from the least to the greatest of them; what is not finite stays black. Channels
 /// id and objectId get label colours, a miss stays black. The picture's text "Scale" says what was
 /// done, as legend() does.
-[[nodiscard]] Picture8 false_color(int width, int height, const PixelRect& window,
-                                   const Channel& channel, const std::optional<Scale>& scale = {});
+[[nodiscard]] Image8 false_color(int width, int height, const PixelRect& window,
+                                 const Channel& channel, const std::optional<Scale>& scale = {});
 
 /// "tests: 0 (dark violet) to 132 (yellow)", for people.
 [[nodiscard]] std::string legend(const std::string& name, const Scale& scale);

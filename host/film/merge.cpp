@@ -58,8 +58,8 @@ void place(const std::vector<T>& values, const PixelRect& from, std::vector<T>& 
 }
 
 template <std::size_t N>
-void add(std::vector<std::array<SampleSum, N>>& sums,
-         const std::vector<std::array<SampleSum, N>>& more) {
+void add(std::vector<std::array<ExactAccumulator, N>>& sums,
+         const std::vector<std::array<ExactAccumulator, N>>& more) {
   for (std::size_t i = 0; i < sums.size(); ++i) {
     for (std::size_t k = 0; k < N; ++k) sums[i][k] += more[i][k];
   }

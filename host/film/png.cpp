@@ -24,7 +24,7 @@ class PngWriter {
   PngWriter& operator=(const PngWriter&) = delete;
   ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
 
-  void write_header(const Picture8& picture) {
+  void write_header(const Image8& picture) {
     const PixelRect& window = picture.window;
     // libpng refuses sides of more than a million by default; the film has been made already.
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
@@ -62,7 +62,7 @@ class PngWriter {
 
 }  // namespace
 
-std::string encode_png(const Picture8& picture) {
+std::string encode_png(const Image8& picture) {
   static_assert(sizeof(Rgb8) == 3, "rows go to libpng as they are");
   std::string bytes;
   PngWriter writer(bytes);

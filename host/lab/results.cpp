@@ -9,7 +9,7 @@
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
 #include "host/cli/format.h"
-#include "host/film/pending_file.h"
+#include "host/film/atomic_file.h"
 
 namespace raygate::lab {
 namespace {
@@ -49,7 +49,7 @@ void Results::add(const std::vector<Row>& rows) {
     if (!run_.is_null()) added["run"] = run_;
     text_ += added.dump() + "\n";
   }
-  if (!file_.empty()) PendingFile(file_, text_).commit();
+  if (!file_.empty()) AtomicFile(file_, text_).commit();
 }
 
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {

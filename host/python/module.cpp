@@ -218,11 +218,12 @@ class PythonScene {
                                                 {{"primary", IntegratorKind::kPrimary},
                                                  {"whitted", IntegratorKind::kWhitted},
                                                  {"path", IntegratorKind::kPath}});
-    options.filter = choose<PixelFilter>("filter", filter,
-                                         {{"box", PixelFilter::kBox},
-                                          {"tent", PixelFilter::kTent},
-                                          {"gauss", PixelFilter::kGauss},
-                                          {"blackman-harris", PixelFilter::kBlackmanHarris}});
+    options.filter =
+        choose<ReconstructionFilter>("filter", filter,
+                                     {{"box", ReconstructionFilter::kBox},
+                                      {"tent", ReconstructionFilter::kTent},
+                                      {"gauss", ReconstructionFilter::kGauss},
+                                      {"blackman-harris", ReconstructionFilter::kBlackmanHarris}});
     options.max_depth = depth.value_or(options.integrator == IntegratorKind::kPath ? 64 : 4);
     const Camera camera = camera_of(eye, target, up, fov, static_cast<double>(width) / height);
     // A lamp for a dark scene depends on the camera: it is there for this picture alone.

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "host/film/pixel_filter.h"
+#include "host/film/reconstruction_filter.h"
 #include "host/light/sampler.h"
 #include "host/render/render_job.h"
 

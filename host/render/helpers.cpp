@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "host/film/film_slice.h"
+#include "host/film/film_region.h"
 #include "host/render/shared_tile.h"
 
 namespace raygate {
@@ -62,7 +62,7 @@ void Helpers::take(const Message& message, Schedule& schedule) {
     most_room_ += room;
   } else if (message.about == About::kTraced) {
     const auto tile = value_of<SharedTile>(message.bytes);
-    put_slice(film_, tile.rect, slice_in(message.bytes));
+    set_region(film_, tile.rect, slice_in(message.bytes));
     schedule.end(tile.number);
     seconds_ += tile.seconds;
     passes_ += (tile.last - tile.end) / tile.step + 1;
@@ -92,7 +92,7 @@ void Helpers::give(int rank, const Schedule::Step& step) {
                         .last = samples(step.end_pass - 1),
                         .seconds = 0.0};
   ranks_.send(rank, About::kTile,
-              message_of(tile, step.moves ? slice_of(film_, tile.rect) : std::string()));
+              message_of(tile, step.moves ? region_bytes(film_, tile.rect) : std::string()));
 }
 
 bool Helpers::finish(RenderStats& stats) {

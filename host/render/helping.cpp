@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "host/base/stopwatch.h"
-#include "host/film/film_slice.h"
+#include "host/film/film_region.h"
 #include "host/render/shared_tile.h"
 #include "host/render/tile_renderer.h"
 
@@ -67,7 +67,7 @@ class Helper {
       if (message->about == About::kFinish) return false;
       const auto tile = value_of<SharedTile>(message->bytes);
       if (const auto slice = slice_in(message->bytes); !slice.empty()) {
-        put_slice(film_, tile.rect, slice);
+        set_region(film_, tile.rect, slice);
       }
       const std::scoped_lock lock(mutex_);
       to_do_.push_back(tile);
@@ -81,7 +81,7 @@ class Helper {
     changed_.wait_for(lock, kLook, [this] { return error_ || !traced_.empty(); });
     if (error_) std::rethrow_exception(error_);
     for (const SharedTile& tile : std::exchange(traced_, {})) {
-      ranks.send(0, About::kTraced, message_of(tile, slice_of(film_, tile.rect)));
+      ranks.send(0, About::kTraced, message_of(tile, region_bytes(film_, tile.rect)));
     }
     return true;
   }

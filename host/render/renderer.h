@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "host/film/film.h"
-#include "host/film/pixel_filter.h"
+#include "host/film/reconstruction_filter.h"
 #include "host/find/finder.h"
 #include "host/light/clearance.h"
 #include "host/light/integrator_kind.h"
@@ -43,9 +43,10 @@ struct RenderOptions {
   /// rendered. The film has FilmSums::error.
   double error = 0.0;
   double exposure = 0.0;
-  PixelFilter filter = PixelFilter::kBlackmanHarris;  ///< with more than one sample
-  std::uint64_t seed = 0;                             ///< of everything random
-  ExtraChannels channels{};  ///< besides colour, depth, normal and primitive
+  ReconstructionFilter filter =
+      ReconstructionFilter::kBlackmanHarris;  ///< with more than one sample
+  std::uint64_t seed = 0;                     ///< of everything random
+  ExtraChannels channels{};                   ///< besides colour, depth, normal and primitive
   IntegratorKind integrator = IntegratorKind::kPrimary;
   int max_depth = 4;                ///< reflections and refractions in a row, at least 0
   double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced

@@ -11,7 +11,8 @@
 namespace raygate {
 
 /// Samples to trace: up to number `end`, `step` more, and so on to `last`. With it goes what the
-/// film has of the tile (film_slice.h), there where the helper lacks it, and back what it has then.
+/// film has of the tile (film_region.h), there where the helper lacks it, and back what it has
+/// then.
 struct SharedTile {
   int number;
   PixelRect rect;

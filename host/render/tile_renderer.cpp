@@ -213,8 +213,8 @@ void TileRenderer::write() {
     const PixelSamples& pixel = pixels_[p];
     const std::size_t at = pixel.index;
     if (pixel.first == 0) write_channels(at, i);
-    std::array<SampleSum, 4> color{};
-    std::array<SampleSum, 3> albedo{};
+    std::array<ExactAccumulator, 4> color{};
+    std::array<ExactAccumulator, 3> albedo{};
     if (!kept.color.empty()) color = kept.color[at];
     if (!kept.albedo.empty()) albedo = kept.albedo[at];
     for (int index = pixel.first; index < pixel.end; ++index, ++i) {

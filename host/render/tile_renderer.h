@@ -73,8 +73,8 @@ class TileRenderer {
   std::vector<Seen> seen_;   // by sample
   bool is_counting_;
   WaveOutput output_;
-  std::vector<glm::vec3> from_lamps_;                // by sample: what shadow rays have brought
-  std::vector<std::array<SampleSum, 3>> sharpened_;  // by pixel: see sharpen_lamps()
+  std::vector<glm::vec3> from_lamps_;  // by sample: what shadow rays have brought
+  std::vector<std::array<ExactAccumulator, 3>> sharpened_;  // by pixel: see sharpen_lamps()
   PixelRect tile_;
   std::vector<RayWork> lamp_work_;  // by pixel of the tile: of what sharpen_lamps() traced
   Wave wave_;

@@ -86,7 +86,7 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(path.integrator, IntegratorKind::kPath);
   EXPECT_EQ(path.max_depth(), 64);
   EXPECT_EQ(path.samples, 16);
-  EXPECT_EQ(path.filter, PixelFilter::kTent);
+  EXPECT_EQ(path.filter, ReconstructionFilter::kTent);
   EXPECT_EQ(path.threshold, 0.5);
   EXPECT_EQ(path.ambient, 0.0);
   EXPECT_FALSE(path.skips.culling || path.skips.records);

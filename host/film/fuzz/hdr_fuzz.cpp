@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "host/base/input_error.h"
-#include "host/film/radiance_reader.h"
+#include "host/film/hdr_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path file = std::filesystem::temp_directory_path() /
@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
-    for (const glm::vec3& pixel : raygate::read_radiance(file).pixels) {
+    for (const glm::vec3& pixel : raygate::read_hdr(file).pixels) {
       for (int k = 0; k < 3; ++k) {
         if (!(std::isfinite(pixel[k]) && pixel[k] >= 0.0f)) std::abort();
       }

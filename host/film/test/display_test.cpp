@@ -14,7 +14,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 void expect_codes(const Film& film, const DisplayOptions& options, float gain) {
-  const Picture8 picture = to_display(film, options);
+  const Image8 picture = to_display(film, options);
   EXPECT_EQ(picture.width, film.width);
   EXPECT_EQ(picture.window.x0, film.window.x0);
   ASSERT_EQ(picture.pixels.size(), film.color.size());
@@ -37,20 +37,20 @@ TEST(Display, AStopDoublesTheLight) {
 }
 
 TEST(Display, FilmicToneIsMonotoneAndBounded) {
-  EXPECT_EQ(toned(0.0f, Tone::kFilmic), 0.0f);
+  EXPECT_EQ(tone_map(0.0f, Tone::kFilmic), 0.0f);
   float last = 0.0f;
   for (float light = 1e-3f; light < 1e4f; light *= 1.1f) {
-    const float now = toned(light, Tone::kFilmic);
+    const float now = tone_map(light, Tone::kFilmic);
     EXPECT_GE(now, last);
     EXPECT_LE(now, 1.0f);
     last = now;
   }
-  EXPECT_NEAR(toned(0.18f, Tone::kFilmic), 0.26689f, 1e-4f);  // the formula by hand
-  EXPECT_LT(toned(1.0f, Tone::kFilmic), 0.9f) << "room is left for brighter light";
-  EXPECT_EQ(toned(kInfinity, Tone::kFilmic), 1.0f);
-  EXPECT_EQ(toned(-1.0f, Tone::kFilmic), 0.0f);
-  EXPECT_TRUE(std::isnan(toned(std::numeric_limits<float>::quiet_NaN(), Tone::kFilmic)));
-  EXPECT_EQ(toned(7.0f, Tone::kClip), 7.0f);
+  EXPECT_NEAR(tone_map(0.18f, Tone::kFilmic), 0.26689f, 1e-4f);  // the formula by hand
+  EXPECT_LT(tone_map(1.0f, Tone::kFilmic), 0.9f) << "room is left for brighter light";
+  EXPECT_EQ(tone_map(kInfinity, Tone::kFilmic), 1.0f);
+  EXPECT_EQ(tone_map(-1.0f, Tone::kFilmic), 0.0f);
+  EXPECT_TRUE(std::isnan(tone_map(std::numeric_limits<float>::quiet_NaN(), Tone::kFilmic)));
+  EXPECT_EQ(tone_map(7.0f, Tone::kClip), 7.0f);
 }
 
 }  // namespace

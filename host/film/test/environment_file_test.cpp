@@ -9,7 +9,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
-#include "host/film/radiance_reader.h"
+#include "host/film/hdr_reader.h"
 
 namespace raygate {
 namespace {
@@ -20,12 +20,12 @@ const std::string kHeader = "#?RADIANCE\n# made by hand\nFORMAT=32-bit_rle_rgbe\
 
 class EnvironmentFile : public testing::Test {
  protected:
-  [[nodiscard]] RadiancePicture hdr(const std::string& rest) const {
-    return read_radiance(folder_.write("a.hdr", kHeader + rest));
+  [[nodiscard]] HdrImage hdr(const std::string& rest) const {
+    return read_hdr(folder_.write("a.hdr", kHeader + rest));
   }
   void expect_refused(const std::string& bytes, const std::string& why) const {
     try {
-      (void)read_radiance(folder_.write("a.hdr", bytes));
+      (void)read_hdr(folder_.write("a.hdr", bytes));
       ADD_FAILURE() << "was read, in spite of: " << why;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("a.hdr: " + why), std::string::npos) << error.what();
@@ -36,7 +36,7 @@ class EnvironmentFile : public testing::Test {
 
 TEST_F(EnvironmentFile, PixelsOneByOne) {
   // 128 * 2^(136 - 136) / 2, and a pixel that is repeated twice.
-  const RadiancePicture picture =
+  const HdrImage picture =
       hdr("-Y 2 +X 2\n\x80\x40\x20\x88"s + "\0\0\0\0"s + "\x02\x04\x06\x89\x01\x01\x01\x01"s);
   EXPECT_EQ(picture.width, 2);
   ASSERT_EQ(picture.pixels.size(), 4u);
@@ -49,7 +49,7 @@ TEST_F(EnvironmentFile, PixelsOneByOne) {
 TEST_F(EnvironmentFile, RunsOfComponents) {
   const std::string row =
       "\x02\x02\0\x08"s + "\x88\x10"s + "\x03\x01\x02\x03\x85\x04"s + "\x88\0"s + "\x88\x88"s;
-  const RadiancePicture picture = hdr("-Y 1 +X 8\n" + row);
+  const HdrImage picture = hdr("-Y 1 +X 8\n" + row);
   ASSERT_EQ(picture.pixels.size(), 8u);
   EXPECT_EQ(picture.pixels[0], glm::vec3(8, 0.5, 0));
   EXPECT_EQ(picture.pixels[2], glm::vec3(8, 1.5, 0));
@@ -57,7 +57,7 @@ TEST_F(EnvironmentFile, RunsOfComponents) {
   // Any part of it is refused, whatever is missing.
   const std::string whole = kHeader + "-Y 1 +X 8\n" + row;
   for (std::size_t size = 1; size < whole.size(); ++size) {
-    EXPECT_THROW((void)read_radiance(folder_.write("a.hdr", whole.substr(0, size))), InputError);
+    EXPECT_THROW((void)read_hdr(folder_.write("a.hdr", whole.substr(0, size))), InputError);
   }
 }
 

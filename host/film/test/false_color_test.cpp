@@ -27,7 +27,7 @@ double lightness(const Rgb8& color) {
   return 116.0 * std::cbrt(y) - 16.0;
 }
 
-Picture8 shown(const Film& film, const std::string& name, const std::optional<Scale>& scale = {}) {
+Image8 shown(const Film& film, const std::string& name, const std::optional<Scale>& scale = {}) {
   const auto channels = channels_of(film);
   return false_color(film.width, film.height, film.window, find(channels, name), scale);
 }
@@ -64,14 +64,14 @@ TEST(FalseColor, ScalesFromTheLeastToTheGreatestFiniteNumber) {
   Film film = make_sample_film(4, 1, {0, 0, 4, 1}, true);
   film.depth = {2.0f, std::numeric_limits<float>::infinity(), 6.0f, 4.0f};
   film.tests = {5, 3, 8, 4};
-  const Picture8 depth = shown(film, "Z");
+  const Image8 depth = shown(film, "Z");
   EXPECT_EQ(depth.pixels,
             (std::vector<Rgb8>{viridis(0.0), Rgb8{0, 0, 0}, viridis(1.0), viridis(0.5)}));
   ASSERT_EQ(depth.texts.size(), 1u);
   EXPECT_EQ(depth.texts[0].second, "Z: 2 (dark violet) to 6 (yellow)");
-  const Picture8 tests = shown(film, "tests");
+  const Image8 tests = shown(film, "tests");
   EXPECT_EQ(tests.pixels[3], viridis(0.5)) << "counts begin at 0";
-  const Picture8 given = shown(film, "tests", Scale{4.0, 6.0});
+  const Image8 given = shown(film, "tests", Scale{4.0, 6.0});
   EXPECT_EQ(given.pixels,
             (std::vector<Rgb8>{viridis(0.5), viridis(0.0), viridis(1.0), viridis(0.0)}));
 }

@@ -36,8 +36,8 @@ std::string chunk(const std::string& bytes, const std::string& type) {
 }
 
 /// A picture whose every pixel is another one.
-Picture8 sample(int width, int height, PixelRect window) {
-  Picture8 picture{width, height, window, {}, {}};
+Image8 sample(int width, int height, PixelRect window) {
+  Image8 picture{width, height, window, {}, {}};
   for (int i = 0; i < window.width() * window.height(); ++i) {
     const auto code = [&](int factor) { return static_cast<std::uint8_t>(i * factor); };
     picture.pixels.push_back({code(1), code(7), code(i)});
@@ -45,7 +45,7 @@ Picture8 sample(int width, int height, PixelRect window) {
   return picture;
 }
 
-void expect_all_codes_kept(const Picture8& picture) {
+void expect_all_codes_kept(const Image8& picture) {
   const Decoded decoded = decode(encode_png(picture));
   ASSERT_EQ(decoded.image.width, static_cast<unsigned>(picture.window.width()));
   ASSERT_EQ(decoded.image.height, static_cast<unsigned>(picture.window.height()));
@@ -72,22 +72,22 @@ TEST(Png, SaysThatItIsSrgb) {
 }
 
 TEST(Png, CropHoldsTheWindowAndItsPlace) {
-  const Picture8 picture = sample(640, 480, {300, 258, 333, 298});
+  const Image8 picture = sample(640, 480, {300, 258, 333, 298});
   expect_all_codes_kept(picture);
   EXPECT_EQ(chunk(encode_png(picture), "oFFs"), std::string("\0\0\1\x2c\0\0\1\2\0", 9));
 }
 
 TEST(Png, SaysItsTexts) {
-  Picture8 picture = sample(3, 3, {0, 0, 3, 3});
+  Image8 picture = sample(3, 3, {0, 0, 3, 3});
   picture.texts.emplace_back("Scale", "tests: 0 to 9");
   EXPECT_EQ(chunk(encode_png(picture), "tEXt"), std::string("Scale\0tests: 0 to 9", 19));
   expect_all_codes_kept(picture);
 }
 
 TEST(Png, EqualPicturesGiveEqualBytes) {
-  Picture8 picture = sample(50, 40, {0, 0, 50, 40});
+  Image8 picture = sample(50, 40, {0, 0, 50, 40});
   const std::string first = encode_png(picture);
-  EXPECT_EQ(first, encode_png(Picture8(picture)));
+  EXPECT_EQ(first, encode_png(Image8(picture)));
   ++picture.pixels[9][1];
   EXPECT_NE(first, encode_png(picture));
 }

@@ -12,9 +12,9 @@
 
 #include "host/base/input_error.h"
 #include "host/cli/engines.h"
+#include "host/film/atomic_file.h"
 #include "host/film/compare.h"
 #include "host/film/display.h"
-#include "host/film/pending_file.h"
 #include "host/film/png.h"
 #include "host/find/unit/unit_finder.h"
 #include "host/lab/pictures/decision_audit.h"
@@ -177,7 +177,7 @@ class TimedRun {
 
   void write_picture() const {
     if (run_.picture.empty()) return;
-    PendingFile(run_.picture + ".png", encode_png(to_display(*film_))).commit();
+    AtomicFile(run_.picture + ".png", encode_png(to_display(*film_))).commit();
   }
 
  private:

@@ -62,7 +62,7 @@ class Set {
                                 .height = plan_.side,
                                 .window = {},
                                 .samples = samples,
-                                .filter = PixelFilter::kBox,
+                                .filter = ReconstructionFilter::kBox,
                                 .seed = static_cast<std::uint64_t>(seed),
                                 .integrator = IntegratorKind::kPath,
                                 .max_depth = options_.light.max_depth(),

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "host/film/pixel_filter.h"
+#include "host/film/reconstruction_filter.h"
 
 namespace raygate {
 namespace {
@@ -62,7 +62,7 @@ TEST(Sampler, DependsOnSeedPixelIndexAndDimensionAlone) {
 }
 
 // Each filter's variance, from its formula: integrals of x^2 w(x) over those of w(x).
-TEST(PixelFilter, OffsetsHaveTheFiltersSpread) {
+TEST(ReconstructionFilter, OffsetsHaveTheFiltersSpread) {
   const auto variance_of = [](auto weight, double radius) {
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < 100000; ++i) {
@@ -77,13 +77,13 @@ TEST(PixelFilter, OffsetsHaveTheFiltersSpread) {
     return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) - 0.01168 * std::cos(3 * a);
   };
   const struct {
-    PixelFilter filter;
+    ReconstructionFilter filter;
     double variance;
-  } kCases[] = {
-      {PixelFilter::kBox, 1.0 / 12.0},
-      {PixelFilter::kTent, 1.0 / 6.0},
-      {PixelFilter::kGauss, variance_of([](double x) { return std::exp(-2.0 * x * x); }, 1.5)},
-      {PixelFilter::kBlackmanHarris, variance_of(window, 1.5)}};
+  } kCases[] = {{ReconstructionFilter::kBox, 1.0 / 12.0},
+                {ReconstructionFilter::kTent, 1.0 / 6.0},
+                {ReconstructionFilter::kGauss,
+                 variance_of([](double x) { return std::exp(-2.0 * x * x); }, 1.5)},
+                {ReconstructionFilter::kBlackmanHarris, variance_of(window, 1.5)}};
   const Sampler sampler(0, 0, 0);
   for (const auto& c : kCases) {
     constexpr int kCount = 1 << 14;

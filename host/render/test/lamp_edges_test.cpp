@@ -39,7 +39,7 @@ struct Panel {
   }
 };
 
-RenderOptions options(int samples, PixelFilter filter = PixelFilter::kBox) {
+RenderOptions options(int samples, ReconstructionFilter filter = ReconstructionFilter::kBox) {
   return {.width = kSide,
           .height = kSide,
           .window = {},
@@ -48,7 +48,7 @@ RenderOptions options(int samples, PixelFilter filter = PixelFilter::kBox) {
           .integrator = IntegratorKind::kPath};
 }
 
-std::vector<LampEdge> marks(const Panel& panel, PixelFilter filter, std::size_t& rays) {
+std::vector<LampEdge> marks(const Panel& panel, ReconstructionFilter filter, std::size_t& rays) {
   const Bvh bvh(panel.scene);
   const Clearances clearances(bvh);
   const Lights lights(panel.scene, bvh);
@@ -65,7 +65,8 @@ std::vector<LampEdge> marks(const Panel& panel, PixelFilter filter, std::size_t&
 
 TEST(LampEdges, ArePixelsWithCornersOnBothSides) {
   std::size_t rays = 0;
-  const std::vector<LampEdge> found = marks(Panel(2.5f, 1.5f, 6.5f, 5.5f), PixelFilter::kBox, rays);
+  const std::vector<LampEdge> found =
+      marks(Panel(2.5f, 1.5f, 6.5f, 5.5f), ReconstructionFilter::kBox, rays);
   EXPECT_EQ(rays, std::size_t{kSide + 1} * (kSide + 1));
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -81,14 +82,14 @@ TEST(LampEdges, ArePixelsWithCornersOnBothSides) {
 TEST(LampEdges, AreAsFarAsTheFilterReaches) {
   std::size_t rays = 0;
   const std::vector<LampEdge> found =
-      marks(Panel(2.5f, -9.0f, 20.0f, 20.0f), PixelFilter::kBlackmanHarris, rays);
+      marks(Panel(2.5f, -9.0f, 20.0f, 20.0f), ReconstructionFilter::kBlackmanHarris, rays);
   for (int x = 0; x < kSide; ++x)
     EXPECT_EQ(found[std::size_t(x)], x >= 1 && x <= 3 ? LampEdge::kYes : LampEdge::kNo) << x;
 }
 
 TEST(LampEdges, AreNotLookedForWhereNoLampCanBe) {
   std::size_t rays = 0;
-  marks(Panel(20.0f, 2.0f, 22.0f, 3.0f), PixelFilter::kBox, rays);
+  marks(Panel(20.0f, 2.0f, 22.0f, 3.0f), ReconstructionFilter::kBox, rays);
   EXPECT_EQ(rays, 0u);
 }
 

@@ -1,4 +1,4 @@
-#include "host/film/radiance_reader.h"
+#include "host/film/hdr_reader.h"
 
 #include <array>
 #include <charconv>
@@ -22,9 +22,9 @@ class Reader {
  public:
   Reader(std::string name, std::string_view bytes) : name_(std::move(name)), rest_(bytes) {}
 
-  RadiancePicture read() {
+  HdrImage read() {
     read_header();
-    RadiancePicture picture;
+    HdrImage picture;
     read_size(picture);
     if (std::int64_t{picture.width} * picture.height > kMaxPixels) {
       fail("more than " + std::to_string(kMaxPixels) + " pixels");
@@ -78,7 +78,7 @@ class Reader {
     if (!(exposure_ > 1e-30 && exposure_ < 1e30)) fail("EXPOSURE: expected a positive number");
   }
 
-  void read_size(RadiancePicture& picture) {
+  void read_size(HdrImage& picture) {
     const std::string_view text = line();
     const auto number = [&](std::string_view before, std::size_t& at) {
       if (at > text.size() || text.substr(at, before.size()) != before) {
@@ -155,7 +155,7 @@ class Reader {
 
 }  // namespace
 
-RadiancePicture read_radiance(const std::filesystem::path& file) {
+HdrImage read_hdr(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   return Reader(file.string(), bytes).read();
 }

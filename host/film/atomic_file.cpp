@@ -1,4 +1,4 @@
-#include "host/film/pending_file.h"
+#include "host/film/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -87,7 +87,7 @@ int write_all(int fd, std::string_view bytes) {
 
 }  // namespace
 
-PendingFile::PendingFile(const fs::path& path) : name_(path) {
+AtomicFile::AtomicFile(const fs::path& path) : name_(path) {
   Target target = inspect(path);
   target_ = std::move(target.path);
   permissions_ = target.permissions;
@@ -98,36 +98,36 @@ PendingFile::PendingFile(const fs::path& path) : name_(path) {
   }
 }
 
-PendingFile::PendingFile(const fs::path& path, std::string_view bytes) : PendingFile(path) {
+AtomicFile::AtomicFile(const fs::path& path, std::string_view bytes) : AtomicFile(path) {
   append(bytes);
   finish();
 }
 
-PendingFile::PendingFile(PendingFile&& other) noexcept
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : name_(std::move(other.name_)),
       target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
       permissions_(other.permissions_),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
-PendingFile::~PendingFile() {
+AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-void PendingFile::fail_if(int error) {
+void AtomicFile::fail_if(int error) {
   if (error != 0) fail(name_, error);
 }
 
-void PendingFile::append(std::string_view bytes) { fail_if(write_all(descriptor_, bytes)); }
+void AtomicFile::append(std::string_view bytes) { fail_if(write_all(descriptor_, bytes)); }
 
-void PendingFile::replace_start(std::string_view bytes) {
+void AtomicFile::replace_start(std::string_view bytes) {
   if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail(name_, errno);
   append(bytes);
   if (::lseek(descriptor_, 0, SEEK_END) < 0) fail(name_, errno);
 }
 
-void PendingFile::finish() {
+void AtomicFile::finish() {
   if (descriptor_ < 0) return;
   int error = 0;
   if (permissions_ && ::fchmod(descriptor_, *permissions_) != 0) error = errno;
@@ -137,7 +137,7 @@ void PendingFile::finish() {
   fail_if(error);
 }
 
-void PendingFile::commit() {
+void AtomicFile::commit() {
   finish();
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(name_, errno);
@@ -151,7 +151,7 @@ bool is_standard_output(const fs::path& file) {
          named.st_dev == standard.st_dev && named.st_ino == standard.st_ino;
 }
 
-void require_others(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
+void require_distinct(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
   for (const fs::path& output : outputs) {
     for (const fs::path& input : inputs) {
       std::error_code ignored;  // one that is not there is no other's

@@ -6,7 +6,7 @@
 namespace raygate {
 
 /// Weights around a pixel's centre, all non-negative and separable.
-enum class PixelFilter {
+enum class ReconstructionFilter {
   kBox,             ///< 1 within the pixel: radius 0.5
   kTent,            ///< falls linearly to 0 at radius 1
   kGauss,           ///< standard deviation 0.5, cut off at radius 1.5
@@ -16,9 +16,9 @@ enum class PixelFilter {
 /// Where a sample falls, in pixels from the pixel's centre, for a point of the unit square: the
 /// filter is sampled by its weight, so that every sample of a pixel counts the same and no other
 /// pixel has a say in it. What is rendered of a window is what the whole picture has there.
-[[nodiscard]] glm::dvec2 filter_offset(PixelFilter filter, const glm::dvec2& u);
+[[nodiscard]] glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u);
 
 /// No offset is larger, on either axis.
-[[nodiscard]] double filter_radius(PixelFilter filter);
+[[nodiscard]] double filter_radius(ReconstructionFilter filter);
 
 }  // namespace raygate

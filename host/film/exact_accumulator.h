@@ -12,7 +12,7 @@ namespace raygate {
 /// A sum of numbers in 192 bits, two's complement, with a unit of 2^-96. What a number has below
 /// that is cut off; numbers count as at most 2^63 in size, so that 2^31 of them do not overflow. A
 /// NaN counts as 0.
-class SampleSum {
+class ExactAccumulator {
  public:
   static_assert(std::endian::native == std::endian::little, "words() are in files");
 
@@ -27,14 +27,14 @@ class SampleSum {
       shift = 0;
     }
     const int word = shift / 64, within = shift % 64;
-    SampleSum term;
+    ExactAccumulator term;
     term.words_[word] = significand << within;
     if (within != 0 && word < 2) term.words_[word + 1] = significand >> (64 - within);
     if (number < 0.0) term = -term;
     *this += term;
   }
 
-  SampleSum& operator+=(const SampleSum& other) {
+  ExactAccumulator& operator+=(const ExactAccumulator& other) {
     std::uint64_t carry = 0;
     for (int i = 0; i < 3; ++i) {
       const std::uint64_t with_carry = words_[i] + carry;
@@ -44,8 +44,8 @@ class SampleSum {
     return *this;
   }
 
-  [[nodiscard]] SampleSum operator-() const {
-    SampleSum result;
+  [[nodiscard]] ExactAccumulator operator-() const {
+    ExactAccumulator result;
     std::uint64_t carry = 1;
     for (int i = 0; i < 3; ++i) {
       result.words_[i] = ~words_[i] + carry;
@@ -66,7 +66,7 @@ class SampleSum {
   static constexpr int kWords = 6;
   [[nodiscard]] const void* words() const { return words_; }
 
-  friend bool operator==(const SampleSum&, const SampleSum&) = default;
+  friend bool operator==(const ExactAccumulator&, const ExactAccumulator&) = default;
 
  private:
   static constexpr int kFraction = 96;

@@ -14,7 +14,7 @@ namespace raygate {
 using Rgb8 = std::array<std::uint8_t, 3>;  ///< sRGB codes
 
 /// Pixels of `window` within a `width` x `height` frame, row by row from the top.
-struct Picture8 {
+struct Image8 {
   int width = 0, height = 0;
   PixelRect window;
   std::vector<Rgb8> pixels;

@@ -1,4 +1,4 @@
-#include "host/film/film_slice.h"
+#include "host/film/film_region.h"
 
 #include <cassert>
 #include <cstring>
@@ -24,21 +24,21 @@ void for_each_row(AnyFilm& film, const PixelRect& rect, const Visit& visit) {
 
 }  // namespace
 
-std::string slice_of(const Film& film, const PixelRect& rect) {
-  std::string slice;
+std::string region_bytes(const Film& film, const PixelRect& rect) {
+  std::string bytes;
   for_each_row(film, rect, [&](const auto* row, std::size_t size) {
-    slice.append(reinterpret_cast<const char*>(row), size);
+    bytes.append(reinterpret_cast<const char*>(row), size);
   });
-  return slice;
+  return bytes;
 }
 
-void put_slice(Film& film, const PixelRect& rect, std::string_view slice) {
+void set_region(Film& film, const PixelRect& rect, std::string_view bytes) {
   for_each_row(film, rect, [&](auto* row, std::size_t size) {
-    assert(slice.size() >= size);
-    std::memcpy(static_cast<void*>(row), slice.data(), size);
-    slice.remove_prefix(size);
+    assert(bytes.size() >= size);
+    std::memcpy(static_cast<void*>(row), bytes.data(), size);
+    bytes.remove_prefix(size);
   });
-  assert(slice.empty());
+  assert(bytes.empty());
 }
 
 }  // namespace raygate

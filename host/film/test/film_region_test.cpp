@@ -1,5 +1,5 @@
 // A rectangle of a film, there and back.
-#include "host/film/film_slice.h"
+#include "host/film/film_region.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Film with_sums(Film film) {
   return film;
 }
 
-TEST(FilmSlice, BringsAllChannelsOfItsPixelsAndNoOthers) {
+TEST(FilmRegion, BringsAllChannelsOfItsPixelsAndNoOthers) {
   const PixelRect window{3, 5, 16, 14};
   const Film source = with_sums(make_sample_film(20, 18, window, true));
   Film target = source;
@@ -32,31 +32,32 @@ TEST(FilmSlice, BringsAllChannelsOfItsPixelsAndNoOthers) {
   for_each_array(blank_out, target);
   const Film blank = target;
   const PixelRect rect{4, 7, 9, 14};
-  put_slice(target, rect, slice_of(source, rect));
+  set_region(target, rect, region_bytes(source, rect));
   int inside = 0;
   for (int y = window.y0; y < window.y1; ++y) {
     for (int x = window.x0; x < window.x1; ++x) {
       const bool is_in = x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1;
       const PixelRect pixel{x, y, x + 1, y + 1};
-      EXPECT_EQ(slice_of(target, pixel), slice_of(is_in ? source : blank, pixel));
+      EXPECT_EQ(region_bytes(target, pixel), region_bytes(is_in ? source : blank, pixel));
       inside += static_cast<int>(is_in);
     }
   }
   EXPECT_EQ(inside, 35);
 }
 
-TEST(FilmSlice, HasEachNumberOnce) {
+TEST(FilmRegion, HasEachNumberOnce) {
   const Film film = with_sums(make_sample_film(4, 4, {0, 0, 4, 4}, true));
   std::size_t bytes = 0;
   for_each_array([&](const auto& values) { bytes += sizeof(values[0]); }, film);
-  EXPECT_EQ(bytes, 4 * (4 + 1 + 3 + 1 + 3 + 3 + 1 + 1 + 1 + 1 + 1 + 1) + 7 * sizeof(SampleSum));
-  EXPECT_EQ(slice_of(film, {1, 1, 2, 2}).size(), bytes);
+  EXPECT_EQ(bytes,
+            4 * (4 + 1 + 3 + 1 + 3 + 3 + 1 + 1 + 1 + 1 + 1 + 1) + 7 * sizeof(ExactAccumulator));
+  EXPECT_EQ(region_bytes(film, {1, 1, 2, 2}).size(), bytes);
 }
 
-TEST(FilmSlice, LeavesOutWhatAFilmDoesNotHave) {
+TEST(FilmRegion, LeavesOutWhatAFilmDoesNotHave) {
   const Film film = make_sample_film(4, 4, {0, 0, 4, 4});
   const std::size_t bytes = sizeof(glm::vec4) + sizeof(float) + sizeof(glm::vec3) + 4;
-  EXPECT_EQ(slice_of(film, {1, 1, 3, 2}).size(), 2 * bytes);
+  EXPECT_EQ(region_bytes(film, {1, 1, 3, 2}).size(), 2 * bytes);
 }
 
 }  // namespace

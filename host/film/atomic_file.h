@@ -18,15 +18,15 @@ namespace raygate {
 /// Symbolic links are followed; an old file's permissions are kept. A device, a pipe or standard
 /// output (/dev/stdout) has nothing to keep whole: the bytes go there at once, or fail where nobody
 /// reads the pipe. All errors are InputError, "path: cannot write: reason".
-class PendingFile {
+class AtomicFile {
  public:
   /// Begins a file for `path`, to be written bit by bit.
-  explicit PendingFile(const std::filesystem::path& path);
+  explicit AtomicFile(const std::filesystem::path& path);
   /// Writes `bytes`, all of the file, for `path`.
-  PendingFile(const std::filesystem::path& path, std::string_view bytes);
-  PendingFile(PendingFile&& other) noexcept;
-  PendingFile& operator=(PendingFile&&) = delete;
-  ~PendingFile();  ///< removes the temporary file if commit() did not use it
+  AtomicFile(const std::filesystem::path& path, std::string_view bytes);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile();  ///< removes the temporary file if commit() did not use it
 
   /// Adds `bytes` at the end.
   void append(std::string_view bytes);
@@ -51,13 +51,13 @@ class PendingFile {
 
 /// Throws InputError where one of `outputs` is, under whatever name, one of `inputs`: "a.png: would
 /// overwrite scene.mtl".
-void require_others(std::span<const std::filesystem::path> outputs,
-                    std::span<const std::filesystem::path> inputs);
+void require_distinct(std::span<const std::filesystem::path> outputs,
+                      std::span<const std::filesystem::path> inputs);
 
 /// Whether writing to `file` is writing to standard output.
 [[nodiscard]] bool is_standard_output(const std::filesystem::path& file);
 
-/// Throws the InputError that a PendingFile for `path` would end in as things stand: folder
+/// Throws the InputError that a AtomicFile for `path` would end in as things stand: folder
 /// missing, no permission, a folder by that name, a pipe that nobody reads. Changes nothing. To be
 /// called before hours of work whose result goes to `path`.
 void require_writable(const std::filesystem::path& path);

@@ -9,9 +9,9 @@
 namespace raygate {
 
 /// All that `film` has of `rect`, a part of its window.
-[[nodiscard]] std::string slice_of(const Film& film, const PixelRect& rect);
+[[nodiscard]] std::string region_bytes(const Film& film, const PixelRect& rect);
 
-/// Gives `film`, of the same window and with the same arrays, what slice_of() has taken.
-void put_slice(Film& film, const PixelRect& rect, std::string_view slice);
+/// Gives `film`, of the same window and with the same arrays, what region_bytes() has taken.
+void set_region(Film& film, const PixelRect& rect, std::string_view bytes);
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-#include "host/film/pixel_filter.h"
+#include "host/film/reconstruction_filter.h"
 
 #include <algorithm>
 #include <array>
@@ -60,29 +60,29 @@ double tent(double u) {
 
 }  // namespace
 
-glm::dvec2 filter_offset(PixelFilter filter, const glm::dvec2& u) {
+glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u) {
   static const Inverse kGaussInverse(gauss), kBlackmanHarrisInverse(blackman_harris);
   switch (filter) {
-    case PixelFilter::kBox:
+    case ReconstructionFilter::kBox:
       return u - 0.5;
-    case PixelFilter::kTent:
+    case ReconstructionFilter::kTent:
       return {tent(u.x), tent(u.y)};
-    case PixelFilter::kGauss:
+    case ReconstructionFilter::kGauss:
       return {kGaussInverse(u.x), kGaussInverse(u.y)};
-    case PixelFilter::kBlackmanHarris:
+    case ReconstructionFilter::kBlackmanHarris:
       break;
   }
   return {kBlackmanHarrisInverse(u.x), kBlackmanHarrisInverse(u.y)};
 }
 
-double filter_radius(PixelFilter filter) {
+double filter_radius(ReconstructionFilter filter) {
   switch (filter) {
-    case PixelFilter::kBox:
+    case ReconstructionFilter::kBox:
       return 0.5;
-    case PixelFilter::kTent:
+    case ReconstructionFilter::kTent:
       return 1.0;
-    case PixelFilter::kGauss:
-    case PixelFilter::kBlackmanHarris:
+    case ReconstructionFilter::kGauss:
+    case ReconstructionFilter::kBlackmanHarris:
       break;
   }
   return kRadius;

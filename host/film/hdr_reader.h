@@ -8,7 +8,7 @@
 namespace raygate {
 
 /// Linear RGB, row by row from the top.
-struct RadiancePicture {
+struct HdrImage {
   int width = 0, height = 0;
   std::vector<glm::vec3> pixels;  ///< finite, none negative
 };
@@ -17,6 +17,6 @@ struct RadiancePicture {
 /// from the top down (Ward, "Real pixels", 1991; the format's page at radsite.lbl.gov). Its
 /// EXPOSURE lines are taken back. Throws InputError: what cannot be read or is none, is damaged, or
 /// is larger than 2^26 pixels.
-[[nodiscard]] RadiancePicture read_radiance(const std::filesystem::path& file);
+[[nodiscard]] HdrImage read_hdr(const std::filesystem::path& file);
 
 }  // namespace raygate

@@ -1,5 +1,5 @@
 // Whatever goes wrong, the file that was there stays as it was.
-#include "host/film/pending_file.h"
+#include "host/film/atomic_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::string read(const fs::path& path) {
 }
 
 void replace_file(const fs::path& path, std::string_view bytes) {
-  PendingFile(path, bytes).commit();
+  AtomicFile(path, bytes).commit();
 }
 
 std::string message_of(const fs::path& path, std::string_view bytes) {
@@ -38,7 +38,7 @@ std::string message_of(const fs::path& path, std::string_view bytes) {
   return "(written)";
 }
 
-class PendingFileTest : public testing::Test {
+class AtomicFileTest : public testing::Test {
  protected:
   void SetUp() override {
     std::string pattern = (fs::temp_directory_path() / "raygate-test-XXXXXX").string();
@@ -56,14 +56,14 @@ class PendingFileTest : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(PendingFileTest, WritesANewFile) {
+TEST_F(AtomicFileTest, WritesANewFile) {
   const std::string bytes("a\0b\r\n", 5);
   replace_file(folder_ / "new", bytes);
   EXPECT_EQ(read(folder_ / "new"), bytes);
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(PendingFileTest, NewFileHasTheUsualPermissions) {
+TEST_F(AtomicFileTest, NewFileHasTheUsualPermissions) {
   const mode_t old = ::umask(027);
   replace_file(folder_ / "new", "x");
   ::umask(old);
@@ -72,22 +72,22 @@ TEST_F(PendingFileTest, NewFileHasTheUsualPermissions) {
   EXPECT_EQ(status.st_mode & 0777, 0640u);
 }
 
-TEST_F(PendingFileTest, ChangesNothingBeforeCommit) {
+TEST_F(AtomicFileTest, ChangesNothingBeforeCommit) {
   replace_file(folder_ / "file", "old");
   {
-    PendingFile abandoned(folder_ / "file", "new");
+    AtomicFile abandoned(folder_ / "file", "new");
     EXPECT_EQ(read(folder_ / "file"), "old");
   }
   EXPECT_EQ(read(folder_ / "file"), "old");
   EXPECT_EQ(file_count(), 1);
-  PendingFile first(folder_ / "file", "new");
-  PendingFile second(std::move(first));
+  AtomicFile first(folder_ / "file", "new");
+  AtomicFile second(std::move(first));
   second.commit();
   EXPECT_EQ(read(folder_ / "file"), "new");
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(PendingFileTest, ReplacesAnOldFileAndKeepsItsPermissions) {
+TEST_F(AtomicFileTest, ReplacesAnOldFileAndKeepsItsPermissions) {
   replace_file(folder_ / "file", std::string(100000, 'x'));
   ::chmod((folder_ / "file").c_str(), 0604);
   replace_file(folder_ / "file", "short");
@@ -98,7 +98,7 @@ TEST_F(PendingFileTest, ReplacesAnOldFileAndKeepsItsPermissions) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(PendingFileTest, FollowsSymbolicLinks) {
+TEST_F(AtomicFileTest, FollowsSymbolicLinks) {
   replace_file(folder_ / "file", "old");
   fs::create_symlink("file", folder_ / "link");
   replace_file(folder_ / "link", "new");
@@ -106,7 +106,7 @@ TEST_F(PendingFileTest, FollowsSymbolicLinks) {
   EXPECT_EQ(read(folder_ / "file"), "new");
 }
 
-TEST_F(PendingFileTest, BareNameGoesToTheCurrentFolder) {
+TEST_F(AtomicFileTest, BareNameGoesToTheCurrentFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder_);
   require_writable("bare");
@@ -115,7 +115,7 @@ TEST_F(PendingFileTest, BareNameGoesToTheCurrentFolder) {
   EXPECT_EQ(read(folder_ / "bare"), "x");
 }
 
-TEST_F(PendingFileTest, RequireWritableLeavesNothing) {
+TEST_F(AtomicFileTest, RequireWritableLeavesNothing) {
   require_writable(folder_ / "new");
   EXPECT_EQ(file_count(), 0);
   replace_file(folder_ / "old", "old");
@@ -124,32 +124,32 @@ TEST_F(PendingFileTest, RequireWritableLeavesNothing) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(PendingFileTest, RefusesAMissingFolder) {
+TEST_F(AtomicFileTest, RefusesAMissingFolder) {
   const fs::path path = folder_ / "missing" / "file";
   EXPECT_EQ(message_of(path, "x"), path.string() + ": cannot write: No such file or directory");
   EXPECT_THROW(require_writable(path), InputError);
 }
 
-TEST_F(PendingFileTest, RefusesAFileAsFolder) {
+TEST_F(AtomicFileTest, RefusesAFileAsFolder) {
   replace_file(folder_ / "file", "old");
   EXPECT_THROW(require_writable(folder_ / "file" / "x"), InputError);
   EXPECT_THROW(replace_file(folder_ / "file" / "x", "new"), InputError);
   EXPECT_EQ(read(folder_ / "file"), "old");
 }
 
-TEST_F(PendingFileTest, RefusesAFolder) {
+TEST_F(AtomicFileTest, RefusesAFolder) {
   EXPECT_EQ(message_of(folder_, "x"), folder_.string() + ": cannot write: Is a directory");
   EXPECT_THROW(require_writable(folder_), InputError);
 }
 
-TEST_F(PendingFileTest, RefusesANameThatIsTooLong) {
+TEST_F(AtomicFileTest, RefusesANameThatIsTooLong) {
   EXPECT_THROW(require_writable(folder_ / std::string(300, 'n')), InputError);
   // As long as a name can be: the temporary file must not need more.
   replace_file(folder_ / std::string(255, 'n'), "x");
   EXPECT_EQ(read(folder_ / std::string(255, 'n')), "x");
 }
 
-TEST_F(PendingFileTest, RefusesWithoutPermission) {
+TEST_F(AtomicFileTest, RefusesWithoutPermission) {
   replace_file(folder_ / "file", "old");
   const bool is_root = ::geteuid() == 0;  // root may write anywhere: be somebody else
   ::chmod((folder_ / "file").c_str(), 0444);
@@ -177,7 +177,7 @@ TEST_F(PendingFileTest, RefusesWithoutPermission) {
 }
 
 /// The limit on file sizes stands in for a full disk: the write stops half way.
-TEST_F(PendingFileTest, FullDiskLeavesTheOldFile) {
+TEST_F(AtomicFileTest, FullDiskLeavesTheOldFile) {
   replace_file(folder_ / "file", "old");
   const auto old_handler = ::signal(SIGXFSZ, SIG_IGN);
   rlimit old_limit{};
@@ -192,7 +192,7 @@ TEST_F(PendingFileTest, FullDiskLeavesTheOldFile) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(PendingFileTest, DevicesAreWrittenToAsTheyAre) {
+TEST_F(AtomicFileTest, DevicesAreWrittenToAsTheyAre) {
   require_writable("/dev/full");
   EXPECT_EQ(message_of("/dev/full", "x"), "/dev/full: cannot write: No space left on device");
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
@@ -201,14 +201,14 @@ TEST_F(PendingFileTest, DevicesAreWrittenToAsTheyAre) {
 }
 
 /// Opening such a pipe would wait for ever.
-TEST_F(PendingFileTest, APipeThatNobodyReadsIsRefused) {
+TEST_F(AtomicFileTest, APipeThatNobodyReadsIsRefused) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(message_of(pipe, "x"), pipe.string() + ": cannot write: nobody reads it");
   EXPECT_THROW(require_writable(pipe), InputError);
 }
 
-TEST_F(PendingFileTest, APipesReaderGetsTheBytesThoughItWasAskedBefore) {
+TEST_F(AtomicFileTest, APipesReaderGetsTheBytesThoughItWasAskedBefore) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -222,7 +222,7 @@ TEST_F(PendingFileTest, APipesReaderGetsTheBytesThoughItWasAskedBefore) {
   ::close(reader);
 }
 
-TEST_F(PendingFileTest, InputsAreNoOutputsUnderWhateverName) {
+TEST_F(AtomicFileTest, InputsAreNoOutputsUnderWhateverName) {
   replace_file(folder_ / "in.mtl", "old");
   fs::create_hard_link(folder_ / "in.mtl", folder_ / "hard");
   fs::create_symlink("in.mtl", folder_ / "soft");
@@ -230,14 +230,14 @@ TEST_F(PendingFileTest, InputsAreNoOutputsUnderWhateverName) {
   for (const char* name : {"in.mtl", "hard", "soft"}) {
     const std::vector<fs::path> outputs{folder_ / "new", folder_ / name};
     try {
-      require_others(outputs, inputs);
+      require_distinct(outputs, inputs);
       ADD_FAILURE() << name;
     } catch (const InputError& error) {
       EXPECT_EQ(error.what(),
                 (folder_ / name).string() + ": would overwrite " + (folder_ / "in.mtl").string());
     }
   }
-  require_others(std::vector<fs::path>{folder_ / "new"}, inputs);
+  require_distinct(std::vector<fs::path>{folder_ / "new"}, inputs);
 }
 
 }  // namespace
