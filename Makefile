@@ -17,65 +17,81 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help verilate example wave render gallery contact-sheet frames test python check kill-ranks soak mutate fuzz lint analyze format clean
+.PHONY: help verilate example wave render gallery frames test python check mutate fuzz lint format clean
 
-help: ## list these targets
-	@sed -nE 's/^([a-z-]+):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
+help:
+	@for group in use test measure hardware develop; do \
+	  echo "$$group:"; \
+	  sed -nE "s/^([a-z-]+):.*## $$group: /  \1\t/p" $(MAKEFILE_LIST) | expand -t 13; \
+	done
 
-verilate: ## build ./render, ./trace, ./compare and ./merge, with the simulated hardware: make verilate [MPI=1]
+verilate: ## use: build ./render, ./trace, ./compare, ./merge and the simulated hardware: make verilate [MPI=1]
 	$(call build,$(if $(filter-out 0,$(MPI)),mpi,build),render trace compare merge scenes)
 
-example: ## the paper's worked example, its words and its waveform for GTKWave
+example: ## use: the paper's worked example, and its waveform for GTKWave
 	$(call build,build,worked_example)
 	@build/sim/worked_example --trace build/worked_example.vcd
 	@echo "With the paper's divider, whose quotients have 21 bits:"
 	@build/sim/worked_example --paper-divider | tail -n 1
 	@echo 'Waveform: gtkwave build/worked_example.vcd sim/worked_example.gtkw'
 
-render: verilate ## render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
+render: verilate ## use: render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
 	./render $(SCENE) $(ARGS)
 
-gallery: verilate ## render the pictures of the gallery again, each by the command beside it
+gallery: verilate ## use: render the gallery again, or models on one sheet: make gallery [MODELS='a.obj b.glb' | MODELS=all]
+ifdef MODELS
+	@$(SETUP) lab
+	@$(PYTHON) -B scenes/contact_sheet.py ./render build/contact_sheet.png $(filter-out all,$(MODELS))
+else
 	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
 	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
-
-contact-sheet: verilate ## models by their default view on one sheet: make contact-sheet [MODELS='a.obj b.glb']
-	@$(SETUP) lab
-	@$(PYTHON) -B scenes/contact_sheet.py ./render build/contact_sheet.png $(MODELS)
+endif
 
 # The program keeps its second model of the ray core until cmake -DRAYGATE_WAVES=OFF build.
 wave: configure += -DRAYGATE_WAVES=ON
-wave: ## the wave of one pixel's ray through the ray core: make wave PIXEL=64,64 [SCENE=... ARGS='--size 640x480']
+wave: ## use: the waveform of one pixel's ray through the ray core: make wave PIXEL=64,64 [SCENE= ARGS=]
 	$(call build,build,render)
 	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
 	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
 
-frames: verilate ## the paper's frame at 10 MHz: clocks, frames a second, bytes read; every polygon, and with culling
+frames: verilate ## measure: the paper's frame at 10 MHz: clocks, frames per second, bytes read
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj
 
-test: everything ## build and run all tests
+# Long runs of single tests: ten million tests of the pipelined unit; ranks that are killed; the intervals of --error.
+LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
+LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='KilledRanks.*'
+LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
+test: ## test: build and run all tests; long runs: make test LONG=unit | LONG=ranks KILLS=20 | LONG=error SEEDS=1000
+ifdef LONG
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, ranks or error))
+	$(call build,test,$(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))))
+	@$(LONG_$(LONG))
+else
+	$(call build,test,all)
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
+endif
 
-python: ## install the Python module into build/python, test it and its notebook there
+python: ## use: install the Python module into build/python, test it and its notebook
 	$(call build,build,float_cores)
 	@$(SETUP) python
 	@test -e build/python/bin/pip || python3 -m venv build/python
 	@build/python/bin/pip install --quiet --disable-pip-version-check . -r host/python/requirements.txt
 	@build/python/bin/python -m unittest discover -s host/python/test -p '*_test.py'
 
-check: everything ## clang-tidy, and the host's tests under the sanitizers
+check: everything ## test: clang-tidy and the sanitizers; clang's static analyser: make check ANALYZE=1
 	@$(SETUP) check
+ifdef ANALYZE
+	@.ci/lint analyze
+else
 	@.ci/lint tidy
 	@.ci/sanitize address,undefined
 	@.ci/sanitize thread
-
-soak: everything ## ten million tests of the pipelined unit with each number of lanes and arithmetic
-	@RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
+endif
 
 COUNT ?= $(if $(QUICK),100,1000)
-mutate: ## single faults in cores, pipeline and ray core that the tests' vectors catch: make mutate [COUNT=1000 | QUICK=1]
+mutate: ## test: single faults in the hardware that test vectors catch: make mutate [COUNT=1000 | QUICK=1]
 	@$(SETUP) test
 	@cmake -S . -B build/mutate -G Ninja -DBUILD_TESTING=ON -DRAYGATE_MUTANTS=$(COUNT) >/dev/null
 	@cmake --build build/mutate -j $(JOBS) --target mutants
@@ -86,7 +102,7 @@ FUZZ_SECONDS ?= 60
 FUZZ_LENGTH = $(if $(FUZZ_FILES),-runs=$(FUZZ_FILES) -seed=1,-max_total_time=$(FUZZ_SECONDS))
 FUZZ_LIMITS := -max_len=1048576 -rss_limit_mb=2048 -artifact_prefix=build/fuzz/
 FUZZ_SCENES := obj json ply stl gltf glb
-fuzz: ## run libFuzzer on readers, pictures of what they read, and exact arithmetic: make fuzz [FUZZ_SECONDS=60 | FUZZ_FILES=5000]
+fuzz: ## test: libFuzzer on the readers and exact arithmetic: make fuzz [FUZZ_SECONDS=60 | FUZZ_FILES=5000]
 	@$(SETUP) fuzz
 	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYGATE_FUZZ=ON
 	@cmake --build build/fuzz -j $(JOBS) --target $(FUZZ_SCENES:=_fuzz) hdr_fuzz rays_fuzz exact_fuzz
@@ -102,18 +118,14 @@ fuzz: ## run libFuzzer on readers, pictures of what they read, and exact arithme
 	  -artifact_prefix=build/fuzz/ build/fuzz/rays
 	@build/fuzz/exact_fuzz $(FUZZ_LENGTH) -artifact_prefix=build/fuzz/
 
-lint: everything ## check layout and pitfalls of all sources, but for clang-tidy's (make check)
+lint: everything ## develop: layout and pitfalls of all sources
 	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
 
-analyze: everything ## clang's static analyser over all sources: minutes
-	@$(SETUP) check
-	@.ci/lint analyze
-
-format: ## lay all sources out as lint wants them
+format: ## develop: lay out all sources as lint expects
 	@$(SETUP) test
 	@.ci/lint format --fix
 
-clean: ## remove what was built (scenes and pictures stay)
+clean: ## develop: remove what was built; scenes and pictures stay
 	rm -rf build render trace compare
 
 # What was chosen once stays, until `make MPI=0 ...` or 1.
@@ -121,13 +133,8 @@ ifdef MPI
 configure += -DRAYGATE_MPI=$(if $(filter 0,$(MPI)),OFF,ON)
 endif
 
-KILLS ?= 20
-kill-ranks: ## kill -9 of a rank, of rank 0, of all, KILLS times each: --resume gives the bytes of an undisturbed run
-	$(call build,test,ranks_test)
-	@RAYGATE_KILLS=$(KILLS) build/ranks_test --gtest_filter='KilledRanks.*'
-
 .PHONY: everything
-everything kill-ranks coverage: configure += -DBUILD_TESTING=ON
+everything test: configure += -DBUILD_TESTING=ON
 everything:
 	$(call build,test,all)
 

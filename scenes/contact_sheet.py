@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Renders models by their default view and puts the pictures on one sheet.
 
-  make contact-sheet                                    # the models at hand: build/contact_sheet.png
-  make contact-sheet MODELS='bunny.ply room.glb'        # these
+  make gallery MODELS=all                               # the models at hand: build/contact_sheet.png
+  make gallery MODELS='bunny.ply room.glb'        # these
 
 The models at hand are those of scenes/ and build/scenes/, without their scene files; one of each format that this
 script writes; and, if Debian's package assimp-testmodels is there, some of its models."""

@@ -145,7 +145,7 @@ def main() -> int:
             parser.error(f"{core}: expected one of {', '.join(CLAIMS)}")
     try:
         if not CHECK_VECTORS.exists():
-            raise tools.MissingTool(f"{CHECK_VECTORS} is not built: make refute builds it")
+            raise tools.MissingTool(f"{CHECK_VECTORS} is not built: make prove FAULTS=80 builds it")
         rows = [row for core in given.cores or CLAIMS
                 for row in refute(core, given.count, given.seed, given.limit)]
     except (tools.MissingTool, tools.ToolFailed) as error:

@@ -1,4 +1,4 @@
-"""The energy of a test in each format: `python3 -m synth.layout.formats` (`make energy`).
+"""The energy of a test in each format: `python3 -m synth.layout.formats` (`make layout TOP=energy`).
 
 Of cells alone, for wires are a few hundredths of it (synth/README.md); kept in build/synth/energies.json,
 which `make bench` takes its energies from. A test of equation 10 is six multiplications, two additions and

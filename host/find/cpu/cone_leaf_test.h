@@ -102,7 +102,7 @@ RAYGATE_INLINE void test_group(const ConeWalk& walk, const QuadRecord& record, i
 }
 
 /// Whether few enough of the groups' rays come to a leaf for tests ray by ray to be the faster.
-/// Without these `make rays` has 6 to 13 % fewer camera and shadow rays a second on sphere and
+/// Without these `make speed` has 6 to 13 % fewer camera and shadow rays a second on sphere and
 /// landscape, 11 % fewer camera rays on teapot.
 RAYGATE_INLINE bool is_sparse(std::uint64_t rays, LaneMask groups, std::uint32_t triangles) {
   return static_cast<std::uint32_t>(std::popcount(rays)) <

@@ -1,6 +1,5 @@
-"""`make gltf-pictures`: glTF models as raygate and Mitsuba render them, side by side, under the same lamp and sky."""
+"""glTF models as raygate and Mitsuba render them, side by side, under the same lamp and sky."""
 
-import argparse
 import json
 import math
 import pathlib
@@ -10,13 +9,13 @@ import tempfile
 
 import mitsuba
 import numpy
-from matplotlib import pyplot
 
 mitsuba.set_variant("scalar_rgb")
 
 from host.lab.peers.gltf_scene import mitsuba_meshes  # noqa: E402  (wants a variant)
 from host.lab.peers.renderers import light_of  # noqa: E402
-from host.lab.report.rows import ROOT  # noqa: E402
+from host.lab.report import plots  # noqa: E402
+from host.lab.rows import ROOT  # noqa: E402
 
 sys.path.insert(0, str(ROOT / "scenes"))
 from contact_sheet import ASSIMP, write_balls  # noqa: E402
@@ -80,36 +79,21 @@ def shown(picture: numpy.ndarray) -> numpy.ndarray:
     return numpy.where(limited <= 0.0031308, 12.92 * limited, 1.055 * limited ** (1 / 2.4) - 0.055)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(prog="gltf_pictures", description=__doc__)
-    parser.add_argument("models", nargs="*", type=pathlib.Path, metavar="MODEL.glb", help="(those at hand)")
-    parser.add_argument("--samples", type=int, default=64, help="(64)")
-    parser.add_argument("--render", type=pathlib.Path, default=ROOT / "render", help="raygate's program (./render)")
-    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build" / "results" / "gltf.png")
-    asked = parser.parse_args()
+def measure(program: pathlib.Path, samples: int) -> list[dict]:
+    """A row for each of the models at hand, and a strip: ours, Mitsuba's, their difference."""
+    rows = []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        models = asked.models or [write_balls(folder / "balls.glb")] + \
-            [ASSIMP / model for model in PACKAGED if (ASSIMP / model).is_file()]
-        figure, axes = pyplot.subplots(len(models), 3, figsize=(10, 2.6 * len(models)), squeeze=False)
-        for row, model in zip(axes, models, strict=True):
+        for model in [write_balls(folder / "balls.glb"), *(ASSIMP / file for file in PACKAGED if (ASSIMP / file).is_file())]:
             meshes = mitsuba_meshes(model, folder)
             camera, lamp = scene_of(meshes)
-            ours = by_raygate(asked.render, model.resolve(), camera, lamp, asked.samples, folder)
-            theirs = by_mitsuba(meshes, camera, lamp, asked.samples)
-            apart = ours - theirs
-            for cell, picture, title in zip(row, (shown(ours), shown(theirs), numpy.clip(0.5 + apart, 0, 1)), (
-                    f"{model.name}: raygate", "Mitsuba, principled", "difference + 0.5"), strict=True):
-                cell.imshow(picture)
-                cell.set_title(title, fontsize=8)
-                cell.axis("off")
-            print(f"{model.name}: mean {ours.mean():.4f} and {theirs.mean():.4f}, mean absolute difference "
-                  f"{numpy.abs(apart).mean():.4f}")
-    asked.output.parent.mkdir(parents=True, exist_ok=True)
-    figure.tight_layout()
-    figure.savefig(asked.output, dpi=110)
-    print(f"wrote {asked.output}")
-
-
-if __name__ == "__main__":
-    main()
+            ours = by_raygate(program, model.resolve(), camera, lamp, samples, folder)
+            theirs = by_mitsuba(meshes, camera, lamp, samples)
+            strip = numpy.concatenate([shown(ours), shown(theirs), numpy.clip(0.5 + ours - theirs, 0, 1)], axis=1)
+            picture = pathlib.Path("build/peers") / f"{model.stem}.png"
+            (ROOT / picture).parent.mkdir(parents=True, exist_ok=True)
+            plots.save_pixels(strip, ROOT / picture)
+            rows.append({"table": "gltf", "model": model.name, "mean_raygate": float(ours.mean()),
+                         "mean_mitsuba": float(theirs.mean()), "mean_difference": float(abs(ours - theirs).mean()),
+                         "picture": str(picture)})
+    return rows

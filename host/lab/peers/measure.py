@@ -3,13 +3,12 @@
 import pathlib
 import statistics
 import sys
-from collections.abc import Iterator
 
 import numpy
 
 from host.lab.peers import convert, scene as scenes
-from host.lab.report.machine import processors
-from host.lab.report.rows import ROOT
+from host.lab.machine import processors
+from host.lab.rows import ROOT
 
 # Scene -> width of its picture; the height is the same.
 SCENES = {"cornell": 128, "cornell_spheres": 128, "paper_room": 128, "still_life": 128, "columns": 128,
@@ -128,9 +127,8 @@ class Measurement:
                 "mse": error, "display_rmse": shown, "time_mse": seconds * error, "rays": runs[0].get("rays")}
 
 
-def measure(names: list[str], quick: bool, repeats: int, samples: int, program: pathlib.Path,
-            threads: set[int]) -> Iterator[list[dict]]:
-    """The rows of one scene after another."""
-    for name in names:
-        mine = Measurement(name, quick, program)
-        yield [mine.references_row(samples), *(row for count in sorted(threads) for row in mine.rows(count, repeats))]
+def measure(name: str, quick: bool, program: pathlib.Path, threads: set[int]) -> list[dict]:
+    """The rows of one scene."""
+    mine = Measurement(name, quick, program)
+    return [mine.references_row(128 if quick else 512),
+            *(row for count in sorted(threads) for row in mine.rows(count, 2 if quick else 3))]

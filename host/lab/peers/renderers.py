@@ -10,7 +10,7 @@ import mitsuba
 import numpy
 
 from host.lab.peers.convert import DEPTH
-from host.lab.report.rows import ROOT
+from host.lab.rows import ROOT
 
 mitsuba.set_variant("scalar_rgb")  # to read EXR files
 

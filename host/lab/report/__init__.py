@@ -1,1 +1,1 @@
-"""What the lab has found, on paper: `make bench`, `make stress`, `make profile`."""
+"""The report generator: templates, tables, plots."""

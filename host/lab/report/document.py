@@ -1,4 +1,4 @@
-"""Reports: a Jinja2 template of Markdown, beside its plots, also as one HTML page."""
+"""The report generator: rows and a Jinja2 template make a page of Markdown, beside its plots, and one of HTML."""
 
 import base64
 import pathlib
@@ -7,6 +7,9 @@ import re
 import jinja2
 import markdown
 import pandas
+
+from host.lab.report.statistics import median_seconds, spread, times
+from host.lab.rows import of, scene_name
 
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 1100px; margin: 2em auto; padding: 0 1em;
@@ -19,6 +22,13 @@ code { background: #f3f3f3; padding: 0 3px; font-size: 13px; }
 """
 
 
+# "HEAD = EXPRESSION :FORMAT": a column of a table. Without an expression the head names the row's value; without a
+# format the cells are text.
+COLUMN = re.compile(r"(?P<head>.*?)(?: = (?P<expression>.*?))?(?: :(?P<form>\S*))?$")
+ENVIRONMENT = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent),
+                                 undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+
+
 def number(value: object, form: str) -> str:
     """A cell: text as it is, numbers by `form`, a dash where there is none."""
     if isinstance(value, str):
@@ -26,25 +36,48 @@ def number(value: object, form: str) -> str:
     return "-" if value is None or pandas.isna(value) else format(value, form)
 
 
-def table(columns: dict[str, str], rows: list[list[object]]) -> str:
-    """Markdown: the head of each column with the format of its numbers; "" is text."""
+def table(rows: list[dict], *columns: str | list[str]) -> str:
+    """Markdown: a line for each row. Columns see its values, `row`, and what templates see."""
     if not rows:
         return "(none)\n"
-    cells = [[number(value, form) for value, form in zip(row, columns.values(), strict=True)]
-             for row in rows]
-    return pandas.DataFrame(cells, columns=list(columns)).to_markdown(
-        index=False, disable_numparse=True,
-        colalign=["right" if form else "left" for form in columns.values()]) + "\n"
+    parts = [COLUMN.match(column) for column in (one for each in columns for one in ([each] if isinstance(each, str) else each))]
+    forms = [part["form"] or "" for part in parts]
+    values = [ENVIRONMENT.compile_expression(part["expression"] or part["head"].replace(" ", "_")) for part in parts]
+
+    def cell(value: object, row: dict, form: str) -> str:
+        try:
+            return number(value(**row, row=row), form)
+        except (KeyError, TypeError, ZeroDivisionError, jinja2.UndefinedError):  # of something that the row does not have
+            return "-"
+
+    cells = [[cell(value, row, form) for value, form in zip(values, forms, strict=True)] for row in rows]
+    return pandas.DataFrame(cells).to_markdown(
+        index=False, headers=[part["head"] for part in parts], disable_numparse=True,
+        colalign=["right" if form else "left" for form in forms]) + "\n"
 
 
-def render(template: str, folder: pathlib.Path, **values: object) -> str:
-    """The Markdown of host/lab/report/<template>."""
-    loader = jinja2.FileSystemLoader(pathlib.Path(__file__).parent)
-    environment = jinja2.Environment(loader=loader, undefined=jinja2.StrictUndefined,
-                                     trim_blocks=True, lstrip_blocks=True)
-    environment.globals["figure"] = lambda file, caption: (
-        f"![{caption}]({file.relative_to(folder)})\n\n{caption}\n")
-    return environment.get_template(template).render(values)
+def each(values: list, *columns: str) -> list[str]:
+    """The columns for each of the values, which take the place of {}."""
+    return [column.replace("{}", str(value)) for column in columns for value in values]
+
+
+def rate(count: int, of_all: int) -> str:
+    """Per million; 0 only where there was none."""
+    value = 1e6 * count / of_all if of_all else 0.0
+    return "-" if not of_all else "0" if not count else f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
+
+
+ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name": scene_name, "median_seconds": median_seconds,
+                        "spread_percent": lambda row: 100 * spread(times(row))}
+
+
+def render(template: str, folder: pathlib.Path, rows: list[dict], **values: object) -> str:
+    """The Markdown of host/lab/report/<template>; `of(table, ...)` in it gives rows."""
+    def figure(file: pathlib.Path, caption: str) -> str:
+        return f"![{caption}]({file.relative_to(folder)})\n\n{caption}\n"
+
+    return ENVIRONMENT.get_template(template).render(
+        values, figure=figure, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0])
 
 
 def page(text: str, folder: pathlib.Path) -> str:

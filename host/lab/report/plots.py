@@ -3,6 +3,7 @@
 import math
 import pathlib
 
+import numpy
 from matplotlib import colors, ticker
 
 from host.lab.report import statistics
@@ -24,20 +25,40 @@ def save(figure: plt.Figure, file: pathlib.Path) -> pathlib.Path:
     return file
 
 
+def flip(reference: pathlib.Path, picture: pathlib.Path) -> tuple[numpy.ndarray, float]:
+    """The map of FLIP differences of two PNGs, and their mean."""
+    import flip_evaluator  # which tests of the tables do without
+
+    shown = [numpy.asarray(plt.imread(file), dtype=numpy.float32)[..., :3] for file in (reference, picture)]
+    error_map, mean, _ = flip_evaluator.evaluate(*shown, "LDR")
+    return error_map, float(mean)
+
+
+def save_pixels(pixels: numpy.ndarray, file: pathlib.Path) -> None:
+    """As they are, from 0 to 1."""
+    plt.imsave(file, numpy.clip(pixels, 0, 1))
+
+
+def panels(count: int, columns: int, size: tuple[float, float], **words: object) -> tuple[plt.Figure, list[plt.Axes]]:
+    """A figure of so many panels, in rows of `columns`, each of that size in inches."""
+    columns = min(count, columns)
+    lines = -(-count // columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(size[0] * columns, size[1] * lines), squeeze=False,
+                                layout="constrained", **words)
+    for axes in grid.flat[count:]:
+        axes.set_axis_off()
+    return figure, list(grid.flat[:count])
+
+
 def pareto(points: list[dict], costs: dict[str, str], error: str, title: str,
            file: pathlib.Path) -> pathlib.Path:
     """A panel for each cost (key: label) of points {name, unit, doubts, error, key ...}; the lower
     the better in both; the front is a line."""
-    columns = min(len(costs), 2)
-    lines = -(-len(costs) // 2)
-    figure, grid = plt.subplots(lines, columns, figsize=(6.5 * columns, 5 * lines), squeeze=False,
-                                layout="constrained")
-    for axes in grid.flat[len(costs):]:
-        axes.set_axis_off()
-    for axes, (key, label) in zip(grid.flat, costs.items(), strict=False):
+    figure, grid = panels(len(costs), 2, (6.5, 5))
+    for axes, (key, label) in zip(grid, costs.items(), strict=True):
         _pareto_panel(axes, [point for point in points if point.get(key)], key)
         axes.set(xlabel=label, ylabel=error)
-    grid.flat[0].legend(fontsize=8)
+    grid[0].legend(fontsize=8)
     figure.suptitle(title)
     return save(figure, file)
 
@@ -112,17 +133,13 @@ def scaling(series: dict[str, list[tuple[float, float]]], xlabel: str, ylabel: s
     return save(figure, file), laws
 
 
-def gallery(pictures: list[tuple[str, pathlib.Path]], file: pathlib.Path,
-            columns: int = 4) -> pathlib.Path:
-    """Pictures side by side with their titles."""
-    rows = -(-len(pictures) // columns)
-    figure, grid = plt.subplots(rows, columns, figsize=(3 * columns, 2.5 * rows), squeeze=False,
-                                layout="constrained")
-    for axes in grid.flat:
-        axes.set_axis_off()
-    for axes, (title, picture) in zip(grid.flat, pictures, strict=False):
+def gallery(pictures: list[tuple[str, pathlib.Path]], file: pathlib.Path, columns: int = 4) -> pathlib.Path:
+    """Pictures side by side with their titles; in one column they are strips, three times as wide."""
+    figure, grid = panels(len(pictures), columns, (9, 2.5) if columns == 1 else (3, 2.5))
+    for axes, (title, picture) in zip(grid, pictures, strict=True):
         axes.imshow(plt.imread(picture), interpolation="nearest")
         axes.set_title(title, fontsize=8)
+        axes.set_axis_off()
     return save(figure, file)
 
 

@@ -10,6 +10,11 @@ def times(row: dict) -> list[float]:
     return row["processor_seconds"] if row["threads"] == 1 else row["seconds"]
 
 
+def median_seconds(row: dict) -> float:
+    """Of the repeats."""
+    return statistics.median(times(row))
+
+
 def spread(values: list[float]) -> float:
     """The median distance from the median, as a part of the median; 0 for one value."""
     center = statistics.median(values)

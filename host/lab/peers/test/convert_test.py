@@ -7,8 +7,10 @@ import unittest
 
 import numpy
 
-from host.lab.peers import convert, measure, peers_report, scene
-from host.lab.report import rows as kept
+from host.lab.peers import convert, measure, scene
+from host.lab.report import document
+from host.lab.rows import of
+from host.lab.targets import peers
 
 OBJ = """\
 mtllib room.mtl
@@ -121,10 +123,12 @@ class Peers(unittest.TestCase):
                 row("raygate", "--error 4", 0.5)]
         rows += [row(f"Mitsuba {variant}", sampler, value) for variant, sampler, value in (
             ("scalar_rgb", "independent", 8.0), ("scalar_rgb", "multijitter", 4.0), ("llvm_ad_rgb", "multijitter", 1.0))]
-        cells = [cell.strip() for cell in peers_report.summary_table(rows).splitlines()[2].split("|")[1:-1]]
+        summary = document.table(peers.summary(rows), "scene", "seconds = median_seconds :.3f", "RMSE = mse ** 0.5 :.5f",
+                                 document.each(measure.VARIANTS, "over {} = over['{}'] :.2f"))
+        cells = [cell.strip() for cell in summary.splitlines()[2].split("|")[1:-1]]
         self.assertEqual(cells, ["room", "1.000", "0.20000", "0.75", "3.00"])
         with tempfile.TemporaryDirectory() as folder:
-            plot = peers_report.error_against_time(kept.of(rows, "peers"), "room", pathlib.Path(folder) / "room.png")
+            plot = peers.error_against_time(of(rows, "peers"), "room", pathlib.Path(folder) / "room.png")
             self.assertTrue(plot.exists())
 
     def test_closed_lamps_shine_outwards_alone(self):

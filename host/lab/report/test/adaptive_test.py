@@ -2,7 +2,7 @@
 
 import unittest
 
-from host.lab.report import adaptive
+from host.lab.peers import adaptive
 
 
 class Interpolated(unittest.TestCase):

@@ -3,7 +3,7 @@
 import copy
 import unittest
 
-from host.lab.report import compare
+from host.lab.bench import compare
 
 
 def row(**changes):

@@ -4,12 +4,13 @@ import pathlib
 import tempfile
 import unittest
 
-from host.lab.report import core_report
+from host.lab.report import document
+from host.lab.targets import core
 
 
 def row(run, rays, latency, **values):
     """A row of `lab core`."""
-    return {"table": "core", "run": run, "scene": "a", "rays": rays, "latency": latency, "cores": 1, "in_flight": 64,
+    return {"table": "core", "part": run, "scene": "a", "rays": rays, "latency": latency, "cores": 1, "in_flight": 64,
             "clocks_per_ray": latency / 10, "lines_per_ray": 0.5, "bytes_per_ray": 32.0, "nodes_percent": 70.0,
             "triangles_percent": 80.0, "busier_percent": 90.0, "waits_percent": 1.5, "doubts_per_1000": 0.25, **values}
 
@@ -17,14 +18,14 @@ def row(run, rays, latency, **values):
 class CoreReport(unittest.TestCase):
     def test_a_row_has_the_clocks_of_all_latencies(self):
         with tempfile.TemporaryDirectory() as name:
-            text = core_report.build(
+            rows = (
                 [*(row("scenes", "camera", latency) for latency in (1, 50, 200)),
-                 *(row("in flight", "camera", 1, in_flight=rays, clocks_per_ray=64 / rays) for rays in (1, 64)),
+                 *(row("in-flight", "camera", 1, in_flight=rays, clocks_per_ray=64 / rays) for rays in (1, 64)),
                  *(row("cores", "camera", 50, cores=cores, clocks_per_ray=6 / cores) for cores in (1, 2)),
                  row("wide", "camera", 200, in_flight=128, busier_percent=95.0, clocks_per_ray=3.0),
-                 {"table": "records", "run": "records", "scene": "a", "rays": "camera", "tests_per_ray": 2.5,
-                  "of_16_percent": 50.0, "of_64_percent": 60.0, "of_256_percent": 70.0}],
-                pathlib.Path(name))
+                 {"table": "records", "part": "records", "scene": "a", "rays": "camera", "tests_per_ray": 2.5,
+                  "of_16_percent": 50.0, "of_64_percent": 60.0, "of_256_percent": 70.0}])
+            text = document.render("core.md.j2", pathlib.Path(name), rows, **core.values(rows, pathlib.Path(name)))
             self.assertGreater((pathlib.Path(name) / "core.png").stat().st_size, 1000)
         rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| a ")]
         self.assertEqual(rows, [

@@ -5,7 +5,9 @@ import pathlib
 import tempfile
 import unittest
 
-from host.lab.report import bench, claims, costs, document, rows, profile, statistics
+from host.lab.bench import costs
+from host.lab.report import document, statistics
+from host.lab.targets import bench, speed, stress
 
 VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "exponent_bits": 8,
            "digits": 24, "rounding": "nearest-even", "flush": False, "quotient_digits": 0, "fused": False,
@@ -20,9 +22,16 @@ def core(top, area, delay, **parameters):
 
 class Document(unittest.TestCase):
     def test_cells(self):
-        text = document.table({"n": ",", "what": ""}, [[1234, "one"], [None, "none"]])
+        text = document.table([{"n": 1234, "what": "one"}, {"what": "none"}], "n :,", "what")
         self.assertEqual([[cell.strip() for cell in line.split("|")[1:-1]]
                           for line in text.splitlines()[2:]], [["1,234", "one"], ["-", "none"]])
+
+    def test_columns_compute(self):
+        row = {"scene": "scenes/a.obj", "at": {50: {"clocks": 3}}, "hits": 1, "rays": 0}
+        text = document.table([row], "scene = scene_name(row)", document.each([50, 99], "clocks, {} = at[{}].clocks :.2f"),
+                              "hits per ray = hits / rays :.1f", "sides: left = 'x' if hits == 1 else 'y'")
+        self.assertEqual([[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines()[::2]],
+                         [["scene", "clocks, 50", "clocks, 99", "hits per ray", "sides: left"], ["a", "3.00", "-", "-", "x"]])
 
     def test_a_page_has_its_pictures_in_it(self):
         with tempfile.TemporaryDirectory() as name:
@@ -56,23 +65,23 @@ calls=1 0
 
 class Profile(unittest.TestCase):
     def test_a_part_that_calls_itself_counts_once(self):
-        self.assertEqual(profile.inside(profile.calls(PROFILE), profile.PARTS["departures"]), 115)
+        self.assertEqual(speed.inside(speed.calls(PROFILE), speed.PARTS_OF_A_PICTURE["departures"]), 115)
 
 
 class Rows(unittest.TestCase):
     def test_quantiles_of_bins_of_several_runs(self):
         parts = [{"max": 3.0, "bins": [[1.0, 60], [4.0, 38]]}, {"max": 7.0, "bins": [[8.0, 2]]}]
-        self.assertEqual(rows.summary(parts), {"count": 100, "median": 1.0, "p99": 7.0, "max": 7.0})
-        self.assertEqual(rows.summary([{"max": 0, "bins": []}])["median"], None)
-        endless = rows.summary([{"max": None, "bins": [[2.0**64 * 65 / 64, 1]]}])
+        self.assertEqual(stress.summary(parts), {"count": 100, "median": 1.0, "p99": 7.0, "max": 7.0})
+        self.assertEqual(stress.summary([{"max": 0, "bins": []}])["median"], None)
+        endless = stress.summary([{"max": None, "bins": [[2.0**64 * 65 / 64, 1]]}])
         self.assertEqual(endless["median"], math.inf)
 
     def test_csv_explains_every_column(self):
-        text = rows.comma_separated([{"variant": "a", "seconds": [3.0, 1.0, 2.0],
+        text = bench.comma_separated([{"variant": "a", "seconds": [3.0, 1.0, 2.0],
                                       "decisions": {"tests": 7}}])
         self.assertEqual(text, "variant,seconds,decisions.tests\na,2.0,7\n")
         with self.assertRaisesRegex(ValueError, "nonsense"):
-            rows.comma_separated([{"nonsense": 1}])
+            bench.comma_separated([{"nonsense": 1}])
 
 
 class Statistics(unittest.TestCase):
@@ -148,12 +157,6 @@ class Frames(unittest.TestCase):
         self.assertAlmostEqual(frame["frame_ms"], 0.14)
         self.assertAlmostEqual(frame["area_time"], 7.0)
         self.assertAlmostEqual(frame["energy_uj"], 1.0)
-
-
-class Claims(unittest.TestCase):
-    def test_words_on_the_bus(self):
-        line = "   8  Ix " + " ".join(["40540000"] * 7)
-        self.assertEqual(claims.bus_words(f"edge in\n{line} 3DC873F8\n{line}\n"), ["3DC873F8"])
 
 
 if __name__ == "__main__":

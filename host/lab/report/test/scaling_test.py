@@ -4,8 +4,9 @@ import pathlib
 import tempfile
 import unittest
 
-from host.lab.report import scaling
-from host.lab.report.rows import ROOT
+from host.lab.report import document
+from host.lab.targets import scaling
+from host.lab.rows import ROOT
 
 COSTS = scaling.Costs(scene=2.0, scene_bytes=10**9, pixel=0.0, sample=1e-6, gather_byte=1e-9, slice_bytes=136)
 
@@ -16,7 +17,7 @@ def rows() -> list[dict]:
     for ranks in (*scaling.RANKS, *scaling.MORE_RANKS):
         for samples in scaling.SAMPLES if ranks in scaling.RANKS else scaling.SAMPLES[:1]:
             came = 10**6 if ranks > 1 else 0
-            found.append({"table": "scaling", "scene": "a.obj", "ranks": ranks, "samples": samples, "pixels": 10**4,
+            found.append({"table": "scaling", "scene": "a.obj", "ranks": ranks, "samples": samples, "width": 100, "height": 100, "pixels": 10**4,
                           "scene_bytes": 10**9, "gathered_bytes": came, "gathered_tiles": came // 10**5, "bytes": str(samples),
                           "seconds": {"load": 0.5, "tree": 1.5, "processor": 1e-2 * samples, "gather": 1e-9 * came}})
     return found
@@ -50,9 +51,10 @@ class Scaling(unittest.TestCase):
         wrong = rows()
         wrong[-1]["bytes"] = "other"
         with tempfile.TemporaryDirectory() as folder:
-            self.assertIn("one checksum", scaling.build(rows(), pathlib.Path(folder)))
+            page = document.render("scaling.md.j2", pathlib.Path(folder), rows(), **scaling.values(rows(), pathlib.Path(folder)))
+            self.assertIn("one checksum", page)
             with self.assertRaises(ValueError):
-                scaling.build(wrong, pathlib.Path(folder))
+                scaling.values(wrong, pathlib.Path(folder))
 
 
 if __name__ == "__main__":

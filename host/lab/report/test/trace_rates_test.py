@@ -6,7 +6,7 @@ import unittest
 
 import numpy
 
-from host.lab.report import trace_rates
+from host.lab.targets import speed
 
 
 class TraceRates(unittest.TestCase):
@@ -14,7 +14,7 @@ class TraceRates(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder) / "s.obj"
             scene.write_text("v 1 2 3\nv 2 4 6\n# v 9 9 9\nvn 0 0 1\nf 1 2 1\n")
-            rays = trace_rates.rays_around(scene, 500)
+            rays = speed.rays_around(scene, 500)
         self.assertEqual(rays.shape, (500, 6))
         self.assertEqual(rays.dtype, numpy.float32)
         origins, targets = rays[:, :3], rays[:, :3] + rays[:, 3:]

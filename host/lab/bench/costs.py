@@ -1,4 +1,4 @@
-"""Area, delay and energy of each variant's unit, from what `make synth` and `make energy` have measured.
+"""Area, delay and energy of each variant's unit, from what `make synth` and `make layout TOP=energy` have measured.
 
 A unit that synthesis has measured in the variant's format counts as it is. For others the cores
 are added up: multiplier, adder and divider for the paper's unit, whose slowest path is a
@@ -9,7 +9,7 @@ import dataclasses
 import json
 import sys
 
-from host.lab.report.rows import ROOT
+from host.lab.rows import ROOT
 
 LIBRARY = "osu035"  # the paper's era
 FLOWS = ("parts", "fast", "small")  # the first that there is
@@ -60,7 +60,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
 
 
 def energies() -> list[dict]:
-    """Rows of what `make energy` has kept: a core's operation in a format, pJ, and how many a test has."""
+    """Rows of what `make layout TOP=energy` has kept: a core's operation in a format, pJ, and how many a test has."""
     file = ROOT / "build" / "synth" / "energies.json"
     kept = json.loads(file.read_text()) if file.exists() else {"results": []}
     return [{"table": "energy", **record, "a_test": kept["operations"][record["top"]]}

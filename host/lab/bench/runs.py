@@ -2,8 +2,8 @@
 
 import pathlib
 
-from host.lab.report.machine import processors
-from host.lab.report.rows import ROOT
+from host.lab.machine import processors
+from host.lab.rows import ROOT
 
 SCENES = ROOT / "scenes"
 MADE = ROOT / "build" / "scenes"

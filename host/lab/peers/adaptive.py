@@ -9,18 +9,13 @@ import tempfile
 
 import numpy
 
-from host.lab.report.rows import ROOT
+from host.lab.report import plots
+from host.lab.rows import ROOT
 
 MEASURES = ("rmse", "flip")
-
-
-def flip(picture: pathlib.Path, reference: pathlib.Path) -> float:
-    """Mean FLIP of two PNGs, as report/bench.py has it."""
-    import flip_evaluator  # which tests of the tables do without
-    from matplotlib import image
-
-    shown = [numpy.asarray(image.imread(file), dtype=numpy.float32)[..., :3] for file in (reference, picture)]
-    return float(flip_evaluator.evaluate(*shown, "LDR")[1])
+# most: --spp with --error; counts: of uniform samples; reference: samples of the picture that is the truth.
+USUAL = {"size": "96x72", "error": 2.0, "most": 256, "counts": [16, 32, 64, 128, 256], "reference": 2048, "seeds": 2}
+QUICK = USUAL | {"size": "48x36", "most": 64, "counts": [8, 32], "reference": 128, "seeds": 1}
 
 
 def interpolated(errors: list[float], values: list[float], error: float) -> float:
@@ -35,7 +30,7 @@ def interpolated(errors: list[float], values: list[float], error: float) -> floa
 class Pictures:
     """Of one scene, by one program, in a folder that is removed."""
 
-    def __init__(self, program: pathlib.Path, scene: str, size: str, folder: pathlib.Path) -> None:
+    def __init__(self, program: pathlib.Path, scene: pathlib.Path, size: str, folder: pathlib.Path) -> None:
         self.command = [program, scene, "--engine", "cpu", "--integrator", "path", "--size", size, "--threads", "1",
                         "--quiet", "--stats", folder / "stats.json"]
         self.folder = folder
@@ -51,7 +46,7 @@ class Pictures:
         said = subprocess.run([ROOT / "compare", *files, "--json"], cwd=ROOT, check=True, capture_output=True, text=True)
         pngs = [file.with_suffix(".png") for file in files]
         measures = json.loads(said.stdout)
-        return {"rmse": measures["rmse"], "flip": flip(*pngs), "bias": measures["bias"]}
+        return {"rmse": measures["rmse"], "flip": plots.flip(*reversed(pngs))[1], "bias": measures["bias"]}
 
     def measured(self, seeds: int, *words: str) -> dict:
         """Processor seconds of rendering, samples a pixel and errors, over seeds: the root mean square of RMSE,
@@ -67,14 +62,14 @@ class Pictures:
         return mean | {"rmse": math.sqrt(statistics.fmean(row["rmse"] ** 2 for row in found))}
 
 
-def row(program: pathlib.Path, scene: str, given: dict) -> dict:
-    """`given`: size, error, most, counts (of samples), reference (samples), seeds."""
+def row(program: pathlib.Path, scene: pathlib.Path, given: dict) -> dict:
+    """`given`: as USUAL."""
     with tempfile.TemporaryDirectory() as name:
         pictures = Pictures(program, scene, given["size"], pathlib.Path(name))
         pictures.render("reference", "--seed", "99", "--spp", str(given["reference"]))
         adaptive = pictures.measured(given["seeds"], "--spp", str(given["most"]), "--error", str(given["error"]))
         uniform = [pictures.measured(given["seeds"], "--spp", str(count)) for count in given["counts"]]
-    found = {"table": "adaptive", "scene": scene, **given, "uniform": uniform, "adaptive": adaptive}
+    found = {"table": "adaptive", "scene": str(scene.relative_to(ROOT)), **given, "uniform": uniform, "adaptive": adaptive}
     for measure in MEASURES:
         errors = [each[measure] for each in uniform]
         found[f"{measure}_samples"] = interpolated(errors, [each["samples"] for each in uniform], adaptive[measure])

@@ -2,7 +2,7 @@
 
 import statistics
 
-from host.lab.report import rows as kept
+from host.lab import rows as kept
 from host.lab.report.statistics import spread, times
 
 # Rows of two runs are one when all of these are equal.

@@ -1,4 +1,4 @@
-"""How a picture's time grows smaller with ranks: measured here, and a model of more ranks than there are.
+"""`make scaling`: how a picture's time grows smaller with ranks: measured here, and a model of more ranks than there are.
 
 The model of a picture's seconds on N ranks of T threads each:
 
@@ -11,6 +11,7 @@ The model of a picture's seconds on N ranks of T threads each:
 Sizes of tiles and steps are those of host/render (tiles.h, helpers.cpp).
 """
 
+import argparse
 import dataclasses
 import hashlib
 import json
@@ -22,12 +23,11 @@ import tempfile
 
 import numpy
 
-from host.lab.report import plots, rows as kept
-from host.lab.report.document import render, table
-from host.lab.report.rows import ROOT
+from host.lab.report import plots
+from host.lab.rows import ROOT, of
+from host.lab.steps import Step
 from synth.drawing import plt
 
-SIZE = (240, 180)
 SAMPLES = (4, 16, 64)
 RANKS = (1, 2)
 MORE_RANKS = (4, 8)
@@ -39,27 +39,35 @@ JOB_SECONDS, RATE, EDGE, LEAST_EDGE, PASS = 1.0, 250e6, 64, 16, 4
 LINK, FILES, THREADS = 1.25e9, 5e9, 64
 
 
-def run(program: pathlib.Path, scene: str, ranks: int, samples: int) -> dict:
+def picture(program: pathlib.Path, scene: str, ranks: int, samples: int, size: tuple[int, int]) -> list[dict]:
     """One picture by so many ranks of a thread each: its statistics, and what its bytes are."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks), program, scene,
-                        "--engine", "cpu", "--integrator", "path", "--threads", "1", "--size", "{}x{}".format(*SIZE),
+                        "--engine", "cpu", "--integrator", "path", "--threads", "1", "--size", "{}x{}".format(*size),
                         "--spp", str(samples), "--quiet", "-o", folder / "a.exr", "--stats", folder / "a.json"],
                        cwd=ROOT, env=ENVIRONMENT, check=True)
         found = json.loads((folder / "a.json").read_text())
-        return {"table": "scaling", "scene": scene, "ranks": ranks, "samples": samples,
-                "pixels": SIZE[0] * SIZE[1], "triangles": found["triangles"], "seconds": found["seconds"],
-                "gathered_tiles": found["gathered_tiles"], "gathered_bytes": found["gathered_bytes"],
-                "scene_bytes": (ROOT / scene).stat().st_size,
-                "bytes": hashlib.sha256((folder / "a.exr").read_bytes()).hexdigest()}
+        return [{"table": "scaling", "scene": scene, "ranks": ranks, "samples": samples, "width": size[0], "height": size[1],
+                 "pixels": size[0] * size[1], "triangles": found["triangles"], "seconds": found["seconds"],
+                 "gathered_tiles": found["gathered_tiles"], "gathered_bytes": found["gathered_bytes"],
+                 "scene_bytes": (ROOT / scene).stat().st_size,
+                 "bytes": hashlib.sha256((folder / "a.exr").read_bytes()).hexdigest()}]
 
 
-def measure(program: pathlib.Path, scenes: list[str], repeats: int) -> list[dict]:
-    """All runs, taking turns."""
-    runs = [(scene, ranks, samples) for scene in scenes for samples in SAMPLES for ranks in RANKS] * repeats
-    runs += [(scene, ranks, SAMPLES[0]) for scene in scenes for ranks in MORE_RANKS]
-    return [run(program, *each) for each in runs]
+def steps(given: argparse.Namespace) -> list[Step]:
+    """A picture each, taking turns."""
+    scenes = ("scenes/cornell.obj",) if given.quick else ("scenes/cornell.obj", "build/scenes/landscape.obj")
+    runs = [(scene, ranks, samples, repeat) for repeat in range(1 if given.quick else 5) for scene in scenes
+            for samples in SAMPLES for ranks in RANKS]
+    runs += [(scene, ranks, SAMPLES[0], 0) for scene in scenes for ranks in MORE_RANKS]
+    size = (64, 48) if given.quick else (240, 180)
+    return [Step("ranks", f"{scene}, {ranks} ranks, {samples} samples, run {repeat + 1}",
+                 measure=lambda scene=scene, ranks=ranks, samples=samples: picture(given.render, scene, ranks, samples, size))
+            for scene, ranks, samples, repeat in runs]
+
+
+PARTS = {"ranks": steps}
 
 
 @dataclasses.dataclass
@@ -75,17 +83,17 @@ class Costs:
 
 def seconds(rows: list[dict], stage: str, **values: object) -> float:
     """The least of the repeats: what other programs took is in the others."""
-    return min(row["seconds"][stage] for row in kept.of(rows, "scaling", **values))
+    return min(row["seconds"][stage] for row in of(rows, "scaling", **values))
 
 
 def fit(rows: list[dict], scene: str) -> Costs:
     """From one rank's processor seconds, and what rank 0 measured of the others."""
     alone = {"scene": scene, "ranks": 1}
-    pixels = rows[0]["pixels"]
+    pixels = of(rows, "scaling")[0]["pixels"]
     samples = numpy.array(SAMPLES) * pixels
     sample, rest = numpy.polyfit(samples, [seconds(rows, "processor", samples=n, **alone) for n in SAMPLES], 1)
-    shared = [row for row in kept.of(rows, "scaling", scene=scene) if row["gathered_bytes"]]
-    one = kept.of(rows, "scaling", **alone)[0]
+    shared = [row for row in of(rows, "scaling", scene=scene) if row["gathered_bytes"]]
+    one = of(rows, "scaling", **alone)[0]
     # Every channel of a film with sums, see host/film/film_region.h: colour, depth, normal, triangle, sums.
     slice_bytes = 16 + 4 + 12 + 4 + 4 + 4 * 24
     return Costs(scene=seconds(rows, "load", **alone) + seconds(rows, "tree", **alone),
@@ -142,37 +150,30 @@ def measured(rows: list[dict], **values: object) -> float:
             + seconds(rows, "processor", **values) / values["ranks"])
 
 
-def measured_table(rows: list[dict], fits: dict[str, Costs]) -> str:
+def beside_the_model(rows: list[dict], fits: dict[str, Costs]) -> list[dict]:
     """Scene by scene: seconds of one and two ranks of a thread, and what the model says."""
-    cells = []
-    for scene, costs in fits.items():
-        for samples in SAMPLES:
-            picture = Picture(costs, rows[0]["pixels"], samples, threads=1)
-            for ranks in RANKS:
-                same = {"scene": scene, "samples": samples, "ranks": ranks}
-                found, told = measured(rows, **same), predict(picture, ranks).total()
-                cells.append([pathlib.Path(scene).stem, samples, ranks, found, told, told / found])
-    return table({"scene": "", "spp": "d", "ranks": "d", "seconds": ".2f", "model, seconds": ".2f",
-                  "model / measured": ".2f"}, cells)
-
-
-def costs_table(fits: dict[str, Costs]) -> str:
-    """What was fitted."""
-    return table({"scene": "", "reading and tree, s": ".3f", "a sample, us": ".2f", "a pixel besides, us": ".2f",
-                  "rank 0 takes in, GB/s": ".2f"},
-                 [[pathlib.Path(scene).stem, costs.scene, 1e6 * costs.sample, 1e6 * costs.pixel,
-                   1e-9 / costs.gather_byte] for scene, costs in fits.items()])
+    return [{"scene": scene, "samples": samples, "ranks": ranks,
+             "found": measured(rows, scene=scene, samples=samples, ranks=ranks),
+             "told": predict(Picture(costs, of(rows, "scaling")[0]["pixels"], samples, threads=1), ranks).total()}
+            for scene, costs in fits.items() for samples in SAMPLES for ranks in RANKS]
 
 
 def same_bytes(rows: list[dict]) -> str:
     """Whether all pictures of a scene and number of samples are one, and of how many ranks."""
+    mine, wrong = of(rows, "scaling"), failures(rows)
+    if wrong:
+        raise ValueError(wrong[0])
+    ranks = ", ".join(str(n) for n in sorted({row["ranks"] for row in mine}))
+    return f"{len(mine)} pictures by {ranks} ranks: one checksum for each scene and number of samples."
+
+
+def failures(rows: list[dict]) -> list[str]:
+    """Bytes that depend on the number of ranks."""
     found: dict[tuple, set] = {}
-    for row in rows:
+    for row in of(rows, "scaling"):
         found.setdefault((row["scene"], row["samples"]), set()).add(row["bytes"])
-    ranks = ", ".join(str(n) for n in sorted({row["ranks"] for row in rows}))
-    if any(len(digests) > 1 for digests in found.values()):
-        raise ValueError("pictures of different numbers of ranks are not the same bytes")
-    return f"{len(rows)} pictures by {ranks} ranks: one checksum for each scene and number of samples."
+    return [f"{scene}, {samples} samples: pictures of different numbers of ranks are not the same bytes"
+            for (scene, samples), digests in found.items() if len(digests) > 1]
 
 
 NODES = numpy.unique(numpy.logspace(0, 3, 61).round().astype(int))
@@ -207,26 +208,25 @@ def plot(fits: dict[str, Costs], file: pathlib.Path) -> pathlib.Path:
     return plots.save(figure, file)
 
 
-def limits_table(fits: dict[str, Costs]) -> str:
+def limits(fits: dict[str, Costs]) -> list[dict]:
     """At how many ranks half of them are idle, and why."""
-    cells = []
+    found = []
     for scene, costs in fits.items():
         for name, (pixels, samples) in PICTURES.items():
-            picture = Picture(costs, pixels, samples)
-            one = predict(picture, 1).total()
-            half = next((int(n) for n in NODES if one / (n * predict(picture, int(n)).total()) < 0.5), None)
-            time = predict(picture, half or 1000)
-            longest = max(("scene", "gather", "end"), key=lambda part: getattr(time, part))
-            cells.append([pathlib.Path(scene).stem, name, one, predict(picture, 1000).total(),
-                          "over 1,000" if half is None else f"{half:,}",
-                          "-" if half is None else longest])
-    return table({"scene": "", "picture": "", "1 rank, s": ",.0f", "1,000 ranks, s": ",.1f",
-                  "ranks at an efficiency of one half": "", "what holds it back there": ""}, cells)
+            wanted = Picture(costs, pixels, samples)
+            one = predict(wanted, 1).total()
+            half = next((int(n) for n in NODES if one / (n * predict(wanted, int(n)).total()) < 0.5), None)
+            time = predict(wanted, half or 1000)
+            found.append({"scene": scene, "picture": name, "one": one, "thousand": predict(wanted, 1000).total(),
+                          "half": half, "longest": max(("scene", "gather", "end"), key=lambda part: getattr(time, part))})
+    return found
 
 
-def build(rows: list[dict], folder: pathlib.Path) -> str:
-    """The report's Markdown; its plot beside it."""
-    fits = {scene: fit(rows, scene) for scene in dict.fromkeys(row["scene"] for row in rows)}
-    return render("scaling.md.j2", folder, size=SIZE, same=same_bytes(rows), costs=costs_table(fits),
-                  measured=measured_table(rows, fits), limits=limits_table(fits), link=LINK, files=FILES,
-                  threads=THREADS, plot=plot(fits, folder / "scaling.png"))
+def values(rows: list[dict], folder: pathlib.Path) -> dict:
+    """What was fitted, what it says, and the plot. ValueError where numbers of ranks differ in a byte."""
+    same = same_bytes(rows)
+    fits = {scene: fit(rows, scene) for scene in dict.fromkeys(row["scene"] for row in of(rows, "scaling"))}
+    return {"same": same, "costs": [{**dataclasses.asdict(costs), "scene": scene, "reading": costs.scene}
+                                    for scene, costs in fits.items()],
+            "measured": beside_the_model(rows, fits), "limits": limits(fits), "link": LINK, "files": FILES,
+            "threads": THREADS, "plot": plot(fits, folder / "scaling.png")}

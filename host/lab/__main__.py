@@ -1,0 +1,115 @@
+"""`python3 -m host.lab TARGET`: measures what `make TARGET` is about and writes its report, build/reports/TARGET/report.md.
+
+A target is a module of host/lab/targets: `PARTS` gives the steps of each part, `values` what its template
+host/lab/report/TARGET.md.j2 needs besides the rows, `failures` what is wrong in them (exit status 1).
+"""
+
+import argparse
+import importlib
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+
+from host.lab import rows as kept, steps
+from host.lab.machine import processors
+from host.lab.report import document
+from host.lab.rows import KEPT, ROOT
+
+REPORTS = ROOT / "build" / "reports"
+PUBLISHED = ROOT / "host" / "lab" / "results"
+TARGETS = ("stress", "bench", "peers", "speed", "core", "scaling")
+
+
+def arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="host.lab", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("target", choices=TARGETS)
+    parser.add_argument("--only", default="", metavar="PART,PART", help="some of the target's parts")
+    parser.add_argument("--quick", action="store_true", help="small pictures, few repeats")
+    parser.add_argument("--scenes", default="", metavar="'NAME NAME'", help="peers: some of the scenes")
+    parser.add_argument("--render", default=ROOT / "render", metavar="PROGRAM",
+                        type=lambda name: pathlib.Path(name).resolve(), help="peers, speed: measure another ./render")
+    parser.add_argument("--before", type=pathlib.Path, metavar="PROGRAM",
+                        help="speed: an older ./render, whose phase times are printed in brackets")
+    parser.add_argument("--tests", type=int, help="stress: tests in each suite")
+    parser.add_argument("--seed", type=int, default=1, help="stress (1)")
+    parser.add_argument("--jobs", type=int, default=processors(), help="stress: suites at once (all processors)")
+    parser.add_argument("--launcher", default="", help="stress, bench: shares the steps among ranks, 'mpirun -n 4'")
+    parser.add_argument("--base", type=pathlib.Path, metavar="OLD.jsonl",
+                        help="bench: say what got slower or less accurate since these rows")
+    parser.add_argument("--report-only", action="store_true", help="write the report of the last rows again")
+    parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results too")
+    return parser.parse_args()
+
+
+def make_command(given: argparse.Namespace) -> str:
+    """What makes the rows again."""
+    words = {"QUICK": int(given.quick), "ONLY": given.only, "SCENES": given.scenes, "TESTS": given.tests,
+             "SEED": given.seed if given.seed != 1 else 0, "RENDER": given.render if given.render != ROOT / "render" else "",
+             "BEFORE": given.before}
+    return " ".join(["make", given.target, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
+
+
+def publish(name: str, folder: pathlib.Path, text: str) -> None:
+    """Into host/lab/results, with the plots; those that no report shows any more go."""
+    (PUBLISHED / f"{name}.md").write_text(text)
+    for file in [*folder.glob("*.png"), *folder.glob("*.csv")]:
+        shutil.copy(file, PUBLISHED)
+    shown = "".join(page.read_text() for page in [PUBLISHED.parent / "README.md", *PUBLISHED.glob("*.md")])
+    for file in PUBLISHED.glob("*.*g"):
+        if file.name not in shown:
+            file.unlink()
+
+
+def run(given: argparse.Namespace) -> int:
+    """The exit status."""
+    target = importlib.import_module(f"host.lab.targets.{given.target}")
+    parts = given.only.split(",") if given.only else list(getattr(target, "USUAL", target.PARTS))
+    unknown = set(parts) - set(target.PARTS)
+    if unknown:
+        raise ValueError(f"{', '.join(sorted(unknown))}: expected parts of {', '.join(target.PARTS)}")
+    if given.publish and (given.only or given.quick or given.scenes):
+        raise ValueError("--publish: expected a whole run, without --only, --quick and --scenes")
+    base = kept.read(given.base) if given.base else None
+    file = KEPT / f"{'-'.join([given.target, *(parts if given.only else [])])}.jsonl"
+    if not given.report_only:
+        found = steps.run(given.target, [step for part in parts for step in target.PARTS[part](given)],
+                          make_command(given), given.launcher, given.jobs if given.target == "stress" else 1)
+        found[0] |= {"quick": given.quick, "command": make_command(given)}
+        kept.write(file, target.finish(found) if hasattr(target, "finish") else found)
+    rows = kept.read(file)
+    folder = REPORTS / given.target
+    folder.mkdir(parents=True, exist_ok=True)
+    text = document.render(f"{given.target}.md.j2", folder, rows, **target.values(rows, folder))
+    document.write(text, folder)
+    if base:
+        print("\n".join(target.compare(base, rows)))
+    if given.publish:
+        publish(given.target, folder, text)
+    if given.target not in ("bench", "stress"):  # of which nobody reads all
+        print(text)
+    print(f"Report: build/reports/{given.target}/report.md, and report.html beside it; rows: {file.relative_to(ROOT)}")
+    wrong = target.failures(rows) if hasattr(target, "failures") else []
+    print("".join(f"error: {line}\n" for line in wrong), end="", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+def main() -> int:
+    """Runs the command line; 2 for what the user can mend."""
+    try:
+        return run(arguments())
+    except subprocess.CalledProcessError as error:  # which has said why, or had its standard error kept
+        print(f"{error.stderr or ''}error: {shlex.join(map(str, error.cmd))}: ended with status {error.returncode}",
+              file=sys.stderr)
+    except FileNotFoundError as error:
+        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
+    except (OSError, ValueError) as error:
+        print(f"error: {error}", file=sys.stderr)
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

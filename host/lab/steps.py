@@ -1,0 +1,75 @@
+"""What a target measures, step by step. Each step's rows are kept when it is done, so that an interrupted run goes on."""
+
+import concurrent.futures
+import dataclasses
+import hashlib
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+
+from host.lab import machine, rows as kept
+from host.lab.rows import KEPT, ROOT
+
+LAB = ROOT / "build" / "lab"
+
+
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """One measurement: a command of build/lab, or a function that returns rows."""
+    part: str
+    name: str
+    words: tuple = ()
+    measure: Callable[[], list[dict]] | None = None
+
+    def command(self, target: str) -> str:
+        """What makes its rows again."""
+        return shlex.join(["build/lab", *map(str, self.words)]) if self.words else f"make {target} ONLY={self.part}"
+
+
+def _measure(step: Step, file: pathlib.Path) -> None:
+    print(step.part, step.name, file=sys.stderr)
+    if step.measure:
+        kept.write(file, step.measure())
+        return
+    done = subprocess.run([LAB, "--results", f"{file}.unfinished", *map(str, step.words)], cwd=ROOT,
+                          stdout=sys.stderr, check=False)
+    if done.returncode not in (0, 1):  # 1: something is wrong, which the rows say
+        raise subprocess.CalledProcessError(done.returncode, [LAB, *step.words])
+    os.replace(f"{file}.unfinished", file)
+
+
+def _share(launcher: str, steps: list[tuple[Step, pathlib.Path]]) -> None:
+    """Runs the commands of build/lab by `launcher`, "mpirun -n 4" or the like: each rank takes the next one."""
+    file = KEPT / "share.txt"
+    file.write_text("".join(
+        shlex.join(map(str, (LAB, "--results", f"{kept_in}.unfinished", *step.words)))
+        + f"; test $? -le 1 && mv {shlex.quote(f'{kept_in}.unfinished')} {shlex.quote(str(kept_in))}\n"
+        for step, kept_in in steps if step.words))
+    subprocess.run([*shlex.split(launcher), ROOT / "build" / "share", file], cwd=ROOT, stdout=sys.stderr, check=True)
+
+
+def run(target: str, steps: list[Step], asked: str = "", launcher: str = "", at_once: int = 1) -> list[dict]:
+    """The rows of all steps. Steps of an interrupted run of the same make command `asked`, at the same commit, stay as they are."""
+    about = machine.describe(ROOT)
+    stamp = {"commit": about["commit"], "machine": f"{about['processor']}, {about['processors']} processors"}
+    folder = KEPT / "unfinished" / target
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def file_of(step: Step) -> pathlib.Path:
+        digest = hashlib.sha256(f"{step.command(target)} {step.name} {asked} {stamp}".encode()).hexdigest()
+        return folder / f"{re.sub(r'[^A-Za-z0-9]+', '-', step.name)}-{digest[:10]}.jsonl"
+
+    files = [(step, file_of(step)) for step in steps]
+    if launcher:
+        _share(launcher, [(step, file) for step, file in files if not file.exists()])
+    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+        list(pool.map(lambda each: _measure(*each), [(step, file) for step, file in files if not file.exists()]))
+    found = [{"command": step.command(target)} | row | {"part": step.part} | stamp
+             for step, file in files for row in kept.read(file)]
+    shutil.rmtree(folder)
+    return [about, *found]

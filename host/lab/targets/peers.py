@@ -1,0 +1,109 @@
+"""`make peers`: raygate next to Mitsuba 3, time, error, and their product; its own --error and techniques in the same terms."""
+
+import argparse
+import pathlib
+import statistics
+
+from host.lab.machine import processors
+from host.lab.peers import adaptive
+from host.lab.peers.measure import BEST, COUNT, SCENES, VARIANTS, scene_file
+from host.lab.report import plots
+from host.lab.rows import ROOT, of
+from host.lab.steps import Step
+
+
+def scenes_of(given: argparse.Namespace, usual: tuple[str, ...]) -> list[str]:
+    """Those asked for; else all, or the usual ones of a quick run."""
+    unknown = set(given.scenes.split()) - set(SCENES)
+    if unknown:
+        raise ValueError(f"{', '.join(sorted(unknown))}: expected {', '.join(SCENES)}")
+    return given.scenes.split() or list(usual if given.quick else SCENES)
+
+
+def pictures_steps(given: argparse.Namespace) -> list[Step]:
+    """The same scenes by both renderers."""
+    from host.lab.peers import measure
+
+    return [Step("pictures", scene, measure=lambda scene=scene: measure.measure(
+        scene, given.quick, given.render, {1, processors()})) for scene in scenes_of(given, ("cornell", "cornell_spheres"))]
+
+
+def gltf_steps(given: argparse.Namespace) -> list[Step]:
+    """glTF models by both renderers."""
+    from host.lab.peers import gltf_pictures  # needs Mitsuba, which tests of the tables do without
+
+    return [Step("gltf", "models", measure=lambda: gltf_pictures.measure(given.render, 4 if given.quick else 64))]
+
+
+def adaptive_steps(given: argparse.Namespace) -> list[Step]:
+    """--error beside uniform --spp."""
+    return [Step("adaptive", scene, measure=lambda scene=scene: [adaptive.row(
+        given.render, scene_file(scene), adaptive.QUICK if given.quick else adaptive.USUAL)])
+        for scene in scenes_of(given, ("cornell",))]
+
+
+def techniques_steps(given: argparse.Namespace) -> list[Step]:
+    """Techniques of the path tracer, one changed at a time."""
+    size = ("--side", 32, "--spp", 4, "--reference", 64, "--repeats", 1) if given.quick else ()
+    return [Step("techniques", scene, ("techniques", scene_file(scene).relative_to(ROOT), *size))
+            for scene in scenes_of(given, ("cornell",))]
+
+
+PARTS = {"pictures": pictures_steps, "gltf": gltf_steps, "adaptive": adaptive_steps, "techniques": techniques_steps}
+
+
+def name(row: dict) -> str:
+    """Who rendered, and how."""
+    if row["renderer"] == "raygate":
+        return "raygate, --error" if row["sampler"].startswith("--error") else "raygate"
+    return f"{row['renderer']}, {row['sampler']}"
+
+
+def at_count(rows: list[dict]) -> list[dict]:
+    """Those of about COUNT samples."""
+    return [row for row in rows if COUNT / 2 < row["samples"] < 2 * COUNT and name(row) != "raygate, --error"]
+
+
+def beside_ours(rows: list[dict]) -> list[dict]:
+    """A line for each renderer, sampler and number of threads, with raygate's of as many threads."""
+    mine = at_count(rows)
+    ours = {row["threads"]: row for row in mine if row["renderer"] == "raygate"}
+    return [{**row, "by": name(row), "ours": ours[row["threads"]], "pixels": row["width"] * row["height"]} for row in mine]
+
+
+def summary(rows: list[dict]) -> list[dict]:
+    """raygate's product of time and MSE over that of each Mitsuba's best sampler, one thread: below 1 is better."""
+    found = []
+    for reference in of(rows, "references"):
+        mine = at_count(of(rows, "peers", scene=reference["scene"], threads=1))
+        (ours,) = (row for row in mine if row["renderer"] == "raygate")
+        found.append({**ours, "over": {
+            variant: ours["time_mse"] / min(row["time_mse"] for row in mine if row["renderer"] == f"Mitsuba {variant}")
+            for variant in VARIANTS}})
+    return found
+
+
+def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> pathlib.Path:
+    """Of one thread: a line for each renderer and sampler of several numbers of samples, a point for the others."""
+    series: dict[str, list] = {}
+    mine = of(rows, "peers", scene=scene, threads=1)
+    for row in mine:
+        if row["renderer"] == "raygate" or row["sampler"] in BEST or row in at_count(mine):
+            series.setdefault(name(row), []).append((row["median_seconds"], row["display_rmse"]))
+    plot, _ = plots.scaling(series, "seconds, one thread", "RMSE on a display, 8-bit steps", scene, file)
+    return plot
+
+
+def values(rows: list[dict], folder: pathlib.Path) -> dict:
+    """Tables by scene, and plots."""
+    found = of(rows, "adaptive")
+    extremes = [{"scene": word, **{f"{kind}_ratio": of_all(row[f"{kind}_ratio"] for row in found) for kind in adaptive.MEASURES}}
+                for word, of_all in (("median", statistics.median), ("most", max))] if found else []
+    gltf = of(rows, "gltf")
+    return {"variants": VARIANTS, "summary": summary(rows), "adaptive": found + extremes, "gltf_plot": plots.gallery(
+        [(f"{row['model']}: raygate, Mitsuba, difference + 0.5", ROOT / row["picture"]) for row in gltf],
+        folder / "gltf.png", 1) if gltf else None,
+        "scenes": [{"reference": reference,
+                    "rows": beside_ours(of(rows, "peers", scene=reference["scene"])),
+                    "plot": error_against_time(rows, reference["scene"], folder / f"peers-{reference['scene']}.png")}
+                   for reference in of(rows, "references")]}

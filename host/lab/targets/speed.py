@@ -1,0 +1,176 @@
+"""`make speed`: rays per second, exact decisions, skips; where a picture's work and time go; rates of ./trace."""
+
+import argparse
+import collections
+import json
+import pathlib
+import re
+import subprocess
+import tempfile
+
+import numpy
+
+from host.lab.rows import ROOT, grouped, of
+from host.lab.steps import Step
+
+SMALL = ("scenes/cornell.obj", "scenes/teapot.obj")
+LARGE = ("build/scenes/sphere.obj", "build/scenes/sphereflake.obj", "build/scenes/landscape.obj")
+PHASES = ("load", "tree", "render", "write", "total")
+HITS = ("nearest", "any", "all")
+
+# Where each part begins, as callgrind names the functions. What is neither of the others is shading: making rays,
+# materials, lamps, sampling, the film.
+WHOLE = r"raygate::TileRenderer::trace\("
+PARTS_OF_A_PICTURE = {"hit_tests": r"raygate::CpuFinder::find\(", "doubts": r"raygate::settle_doubt\(",
+         "departures": r"raygate::DeparturePoint::"}
+
+
+def calls(profile: str) -> collections.Counter:
+    """(caller, callee) -> instructions in the callee and all it calls, of a file of callgrind's."""
+    names: dict[str, str] = {}
+    found: collections.Counter = collections.Counter()
+    caller = callee = ""
+    is_call = False
+    for line in profile.splitlines():
+        if is_call:
+            found[caller, callee] += int(line.split()[1])
+            is_call = False
+        elif match := re.match(r"(c?)fn=(\(\d+\))(?: (.*))?", line):
+            name = names.setdefault(match[2], match[3] or "")
+            caller, callee = (caller, name) if match[1] else (name, callee)
+        is_call = is_call or line.startswith("calls=")
+    return found
+
+
+def inside(found: collections.Counter, part: str) -> int:
+    """Instructions of a part: of its functions where others call them."""
+    return sum(count for (caller, callee), count in found.items()
+               if re.match(part, callee) and not re.match(part, caller))
+
+
+
+def stats_of(command: list, *words: object) -> dict:
+    """What ./render says about a picture by the cpu engine."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        subprocess.run([*command, "--engine", "cpu", "--quiet", *words, "--output", folder / "picture.exr",
+                        "--stats", folder / "stats.json"], cwd=ROOT, check=True)
+        return json.loads((folder / "stats.json").read_text())
+
+
+def profile(program: pathlib.Path, scene: str, size: str) -> dict:
+    """Shares of the instructions of a path-traced picture, in percent; the same in every run."""
+    with tempfile.TemporaryDirectory() as name:
+        file = pathlib.Path(name) / "profile"
+        counts = stats_of(["valgrind", "--quiet", "--tool=callgrind", f"--callgrind-out-file={file}", program, scene],
+                          "--threads", "1", "--integrator", "path", "--size", size, "--spp", "4")
+        found = calls(file.read_text())
+    whole = inside(found, WHOLE)
+    shares = {part: 100 * inside(found, names) / whole for part, names in PARTS_OF_A_PICTURE.items()}
+    return {"table": "profile", "scene": scene, "triangles": counts["triangles"], "rays": counts["rays"],
+            "edge_doubts_percent": 100 * counts["edge_doubts"] / max(counts["tests"], 1),
+            "instructions_per_ray": whole / max(counts["rays"], 1), **shares,
+            "shading": 100 - shares["hit_tests"] - shares["departures"]}
+
+
+def phases(programs: list[pathlib.Path], scene: str, size: str, repeats: int) -> list[dict]:
+    """A row for each program, which take turns: seconds of each phase of a picture, the least of the repeats."""
+    runs = [[stats_of([program, scene], "--integrator", "whitted", "--spp", "1", "--size", size)
+             for program in programs] for _ in range(repeats)]
+    return [{"table": "phase_times", "scene": scene, "program": number, "triangles": mine[0]["triangles"],
+             "seconds": {phase: min(run["seconds"][phase] for run in mine) for phase in PHASES}}
+            for number, mine in enumerate(zip(*runs, strict=True))]
+
+
+def positions_of(scene: pathlib.Path) -> numpy.ndarray:
+    """The vertices of an OBJ file."""
+    with open(scene, encoding="utf-8") as file:
+        return numpy.array([line.split()[1:4] for line in file if line.startswith("v ")], float)
+
+
+def rays_around(scene: pathlib.Path, count: int) -> numpy.ndarray:
+    """From a sphere around the scene to points of its box: origins and directions, seeded."""
+    numbers = numpy.random.default_rng(1)
+    positions = positions_of(scene)
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    middle, radius = (low + high) / 2, float(numpy.linalg.norm(high - low))
+    towards = numbers.normal(size=(count, 3))
+    origins = middle + radius * towards / numpy.linalg.norm(towards, axis=1, keepdims=True)
+    targets = numbers.uniform(low, high, size=(count, 3))
+    return numpy.hstack([origins, targets - origins]).astype(numpy.float32)
+
+
+def trace_rates(program: pathlib.Path, scene: str, count: int) -> list[dict]:
+    """A row for each kind of question; the summary of ./trace says how long it took, tables in and out included."""
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        rays, hits = pathlib.Path(folder) / "rays.npy", pathlib.Path(folder) / "hits.npy"
+        numpy.save(rays, rays_around(ROOT / scene, count))
+        for kind in HITS:
+            said = subprocess.run([program, scene, rays, "-o", hits, "--hits", kind], cwd=ROOT, check=True,
+                                  capture_output=True, text=True).stderr
+            rate = re.search(r"([\d,]+) rays/s", said)
+            answers = numpy.load(hits, mmap_mode="r")
+            number = numpy.count_nonzero(answers["hit"]) if kind != "all" else len(answers)
+            found.append({"table": "trace", "scene": scene, "kind": kind, "rays": count, "hits": int(number),
+                          "rays_per_second": int(rate[1].replace(",", "")) if rate else 0})
+    return found
+
+
+def rays_steps(given: argparse.Namespace) -> list[Step]:
+    """Rays per second next to Embree 3."""
+    scenes = SMALL[:1] if given.quick else (*SMALL, "scenes/paper.obj", *LARGE)
+    size = ("--size", 128, "--repeats", 1) if given.quick else ()
+    return [Step("rays", scene, ("rays", scene, *size)) for scene in scenes]
+
+
+def predicates_steps(_: argparse.Namespace) -> list[Step]:
+    """What an exact decision costs."""
+    return [Step("predicates", "exact decisions", ("predicates",))]
+
+
+def skips_steps(given: argparse.Namespace) -> list[Step]:
+    """What each skip saves."""
+    scenes = ("scenes/cornell.obj",) if given.quick else \
+        ("scenes/paper.obj", "build/scenes/teapot_coarse.obj", "scenes/teapot.obj", *LARGE[:2])
+    return [Step("skips", scene, ("skips", scene)) for scene in scenes]
+
+
+def profile_steps(given: argparse.Namespace) -> list[Step]:
+    """Where the instructions of a picture go."""
+    gallery = sorted(str(file.relative_to(ROOT)) for file in (ROOT / "scenes").glob("*_*.json"))
+    scenes = SMALL[:1] if given.quick else (*SMALL, *gallery, "scenes/columns.json", "scenes/sphereflake.json", LARGE[2])
+    size = "32x24" if given.quick else "128x96"
+    return [Step("profile", scene, measure=lambda scene=scene: [profile(given.render, scene, size)]) for scene in scenes]
+
+
+def phases_steps(given: argparse.Namespace) -> list[Step]:
+    """How long each phase of a picture takes."""
+    programs = [given.render] + ([given.before.resolve()] if given.before else [])
+    size, repeats = ("64x48", 2) if given.quick else ("640x480", 9)
+    return [Step("phases", scene, measure=lambda scene=scene: phases(programs, scene, size, repeats))
+            for scene in (SMALL[:1] if given.quick else (*SMALL, *LARGE[1:]))]
+
+
+def trace_steps(given: argparse.Namespace) -> list[Step]:
+    """Rays per second of ./trace."""
+    count = 10_000 if given.quick else 1_000_000
+    return [Step("trace", scene, measure=lambda scene=scene: trace_rates(ROOT / "trace", scene, count))
+            for scene in (SMALL[:1] if given.quick else (*SMALL, *LARGE))]
+
+
+PARTS = {"rays": rays_steps, "predicates": predicates_steps, "skips": skips_steps, "profile": profile_steps,
+         "phases": phases_steps, "trace": trace_steps}
+
+
+def values(rows: list[dict], _: pathlib.Path) -> dict:
+    """The phase times of two programs side by side."""
+    return {"phases": PHASES, "phase_times": grouped(of(rows, "phase_times"), ("scene",), "program")}
+
+
+def failures(rows: list[dict]) -> list[str]:
+    """Decisions that are not exact, and skips that change the picture."""
+    return [f"{row['suite']}: exact decisions are {row['raygate']}" for row in of(rows, "predicates")
+            if row["raygate"] != "right"] + \
+        [f"{row['scene']}: {row['what']}: {row['picture']} picture" for row in of(rows, "skips")
+         if row["picture"] != "same"]

@@ -1,0 +1,126 @@
+"""`make stress`: every engine and variant of arithmetic in suites of hard cases, judged by exact integers."""
+
+import argparse
+import collections
+import math
+import pathlib
+import subprocess
+
+from host.lab.report import plots
+from host.lab.rows import grouped, of
+from host.lab.steps import LAB, Step
+
+# A report of fewer tests in each suite is not published.
+ENOUGH = 1_000_000
+COUNTS = ("tests", "rays", "wrong", "wrong_ties", "leaks", "escapes", "double_hits",
+          "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
+ERRORS = ("t_ulp", "t_relative", "point_ulp", "delivered_t_ulp", "delivered_point_ulp")
+LARGEST = ("t_of_bound", "point_of_bound", "point_of_said")
+DECADES = 8
+
+
+def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> list[Step]:
+    """Each suite by itself. ValueError where there is too little to publish."""
+    tests = given.tests or (20_000 if given.quick else tests)
+    if given.publish and tests < ENOUGH:
+        raise ValueError(f"found {tests:,} tests in each suite, expected {ENOUGH:,} to publish")
+    suites = subprocess.run([LAB, "stress", "--list"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
+    return [Step(part, suite, ("stress", "--suite", suite, "--tests", tests, "--seed", given.seed, "--threads", 1, *words))
+            for suite in suites]
+
+
+# Half a million tests a suite by the core's reference model, 50,000 by the simulated hardware.
+PARTS = {"all": lambda given: steps("all", given, 10_000_000),
+         "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core")}
+USUAL = ("all",)
+
+
+def summary(binned: list[dict]) -> dict:
+    """Median, 99th percentile and largest of errors that `lab stress` has counted in bins.
+
+    Quantiles are rounded up to the end of their bins, by 1/64 at most; JSON's null is infinity.
+    """
+    counts: collections.Counter = collections.Counter()
+    largest = 0.0
+    for errors in binned:
+        counts.update(dict(map(tuple, errors["bins"])))
+        largest = max(largest, math.inf if errors["max"] is None else errors["max"])
+    total = sum(counts.values())
+    if not total:
+        return {"count": 0, "median": None, "p99": None, "max": None}
+
+    def quantile(rank: int) -> float:
+        """Of the error with `rank` smaller ones."""
+        seen = 0
+        for end in sorted(counts):
+            seen += counts[end]
+            if seen > rank:
+                return largest if end > 2.0**64 else min(end, largest)
+        raise AssertionError("rank beyond the errors")
+
+    return {"count": total, "median": quantile((total - 1) // 2),
+            "p99": quantile((total - 1) - (total - 1) // 100), "max": largest}
+
+
+def total(rows: list[dict]) -> dict:
+    """A subject's rows of all suites as one."""
+    return {**rows[0], **{key: sum(row[key] for row in rows) for key in COUNTS},
+            **{key: max(row[key] for row in rows) for key in LARGEST},
+            **{key: summary([row[key] for row in rows]) for key in ERRORS},
+            "t_ulp_by_angle": [summary([row["t_ulp_by_angle"][decade] for row in rows]) for decade in range(DECADES)]}
+
+
+def with_errors(totals: list[dict]) -> list[dict]:
+    """Those that give any t or P."""
+    return [found for found in totals if any(found[key]["count"] for key in ERRORS)]
+
+
+def curve(subject: dict, key: str) -> list[tuple[float, float]]:
+    """Errors of t by the sine of the angle between ray and plane."""
+    return [(10 ** -(decade + 0.5), errors[key]) for decade, errors in enumerate(subject["t_ulp_by_angle"])
+            if errors["count"] > 100 and errors[key]]
+
+
+def plot(suites: list[dict], totals: list[dict], unit: dict | None, bounds: dict, folder: pathlib.Path) -> dict:
+    """The heat map of wrong decisions and the errors by angle; None where no subject has any."""
+    others = [t for t in totals if not t["exact"]]
+    found = {"wrong_plot": None, "angle_plot": None}
+    if others:
+        shares = [[suite["at"][t["subject"]]["wrong"] / max(suite["at"][t["subject"]]["tests"], 1) for suite in suites]
+                  for t in others]
+        found["wrong_plot"] = plots.heat_map(shares, [t["subject"] for t in others], [suite["suite"] for suite in suites],
+                                             "Wrong decisions, % of tests (the exact ones: 0 everywhere)",
+                                             folder / "stress-wrong.png")
+    if unit and curve(unit, "p99"):
+        found["angle_plot"] = plots.error_by_angle(
+            {t["subject"]: curve(t, "p99") for t in others if len(curve(t, "p99")) > 1}, curve(unit, "p99"),
+            curve(unit, "max"), [(sine, ulp) for sine, ulp in zip(bounds["sine"], bounds["t_ulp"], strict=True)
+                                 if ulp is not None], folder / "stress-angles.png")
+    return found
+
+
+def values(rows: list[dict], folder: pathlib.Path) -> dict:
+    """Sums over the suites, and suites side by side."""
+    # Where only the tie-break decides, exact subjects alone can be wrong.
+    mine = [row | {"wrong": row["wrong"] + row["exact"] * row["wrong_ties"]} for row in of(rows, "stress")]
+    suites, bounds = grouped(mine, ("suite",), "subject"), of(rows, "bounds")[0]
+    totals = [total([suite["at"][name] for suite in suites]) for name in suites[0]["at"]]
+    unit = next((t for t in totals if t["exact"] and t["t_ulp"]["count"]), None)
+    angles = [{"low": 10 ** -(decade + 1), "high": 10 ** -decade, "bound": bounds["t_ulp"][10 * (decade + 1)],
+               **unit["t_ulp_by_angle"][decade]} for decade in range(DECADES)] if unit else []
+    return {"suites": suites, "totals": totals, "names": list(suites[0]["at"]), "unit": unit, "angles": angles,
+            "passed": not failures(rows),
+            "all_errors": with_errors(totals),
+            "random_errors": with_errors([total([row]) for row in mine if row["suite"] == "random"]),
+            "leaky": [{**suite, "key": key} for suite in suites
+                      if any(row["leaks"] or row["double_hits"] for row in suite["at"].values())
+                      for key in ("leaks", "escapes", "double_hits")],
+            **plot(suites, totals, unit, bounds, folder)}
+
+
+def failures(rows: list[dict]) -> list[str]:
+    """Exact subjects that were wrong, and suites whose rays from inside a mesh are not inside."""
+    return [f"{row['subject']}, suite {row['suite']}: wrong, or beyond a proven bound"
+            for row in of(rows, "stress") if row["exact"] and not (row["spotless"] and row["tests"])] + \
+        [f"suite {suite['suite']}: {suite['broken_claims']} rays are not inside their mesh"
+         for suite in grouped(of(rows, "stress"), ("suite",), "subject") if suite["broken_claims"]]
