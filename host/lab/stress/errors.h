@@ -9,7 +9,7 @@
 namespace raygate::lab {
 
 /// Counts errors in bins that are 1/64 of themselves wide or less, so that what several runs have
-/// counted adds up exactly, in any order (host/lab/report/rows.py does that).
+/// counted adds up exactly, in any order (host/lab/targets/stress.py does that).
 class Errors {
  public:
   /// Not negative, no NaN; infinity is an error like others.
