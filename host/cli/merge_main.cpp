@@ -7,8 +7,8 @@
 
 #include "host/base/input_error.h"
 #include "host/cli/command_line.h"
+#include "host/cli/output_files.h"
 #include "host/cli/output_options.h"
-#include "host/cli/outputs.h"
 #include "host/cli/process.h"
 #include "host/film/merge.h"
 #include "host/film/sample_range.h"
@@ -67,7 +67,7 @@ int run(int argc, char** argv) {
                                          &std::pair<std::string, std::string>::first) !=
                        whole.metadata.options.end();
   whole.film.keeps_sums = options.channels.sums || is_part;
-  ReadyPictures ready = make_ready(options, whole.film, whole.metadata);
+  StagedFiles ready = stage_files(options, whole.film, whole.metadata);
   std::string text;
   for (AtomicFile& file : ready.files) file.commit();
   for (const auto& path : ready.paths) text += (text.empty() ? "" : ", ") + path.string();

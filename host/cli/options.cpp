@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "host/base/input_error.h"
+#include "host/cli/camera_options.h"
 #include "host/cli/command_line.h"
 #include "host/cli/help.h"
 #include "host/cli/option_text.h"
-#include "host/cli/sky_lens_options.h"
 #include "host/cli/values.h"
-#include "host/render/sample_choice.h"
+#include "host/render/adaptive_sampling.h"
 
 namespace raygate {
 namespace {
@@ -21,7 +21,7 @@ struct RawValues {
   RawCoreFileOptions core_files;
   RawOutputOptions output;
   RawLightOptions light;
-  RawSkyLensOptions sky_lens;
+  RawCameraOptions camera_values;
   bool no_scene_file = false;
 };
 
@@ -43,7 +43,7 @@ void declare(CLI::App& app, RawValues& raw, Options& options) {
   value("--ground", raw.ground);
   declare_output_options(app, raw.output);
   declare_light_options(app, raw.light);
-  declare_sky_lens_options(app, raw.sky_lens);
+  declare_camera_options(app, raw.camera_values);
   declare_engine_options(app, raw.engine);
   declare_core_file_options(app, raw.core_files);
   value("--seed", raw.seed);
@@ -68,9 +68,10 @@ RawValues read_line(const std::vector<std::string>& words, Options& options) {
 /// What --error asks for beside it.
 void check_error(const RawValues& raw, Options& options) {
   if (raw.light.samples.empty()) options.light.samples = kMostSamples;
-  if (options.light.samples <= kFirstJudged) {
-    fail_value("--spp", raw.light.samples,
-               "more than the " + std::to_string(kFirstJudged) + " that --error begins with");
+  if (options.light.samples <= kMinAdaptiveSamples) {
+    fail_value(
+        "--spp", raw.light.samples,
+        "more than the " + std::to_string(kMinAdaptiveSamples) + " that --error begins with");
   }
   if (options.light.range) throw InputError("--samples: expected no --error beside it");
   const PixelRect& window = options.window;
@@ -100,8 +101,8 @@ void check_values(const RawValues& raw, Options& options) {
   if (!raw.view.empty()) options.view.angles = parse_view(raw.view);
   if (!raw.up.empty()) options.view.up = parse_axis(raw.up);
   if (!raw.fov.empty()) options.view.fov = parse_fov(raw.fov);
-  options.view.lens = parse_lens(raw.sky_lens, options.view.lens);
-  options.environment = parse_environment(raw.sky_lens, options.environment);
+  options.view.lens = parse_lens(raw.camera_values, options.view.lens);
+  options.environment = parse_environment(raw.camera_values, options.environment);
   if (!raw.ground.empty()) {
     options.ground = choose<bool>("--ground", raw.ground, {{"on", true}, {"off", false}});
   }
@@ -131,7 +132,7 @@ void check_values(const RawValues& raw, Options& options) {
     const auto& film = options.output.exr;
     if (options.output.frames > 0 && (!film || *film != options.resume)) {
       fail_value("--resume", raw.resume,
-                 film ? film->string() + " beside --frames, the film's own name"
+                 film ? film->string() + " beside --frames, the animation's own name"
                       : "an EXR among the outputs of --frames");
     }
   }

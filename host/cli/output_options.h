@@ -31,7 +31,7 @@ struct OutputOptions {
   std::optional<std::filesystem::path> stats;  ///< run statistics as JSON
   ExtraChannels channels;                      ///< that the EXR shall have
   DisplayOptions display;                      ///< of the PNG
-  int frames = 0;                              ///< of a film, 1 to 9999; 0: a single picture
+  int frames = 0;                              ///< of an animation, 1 to 9999; 0: a single picture
   double save_seconds = 0.0;                   ///< between saves of what there is; 0: only the end
 
   /// All files, statistics last.

@@ -9,7 +9,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
-#include "host/ranks/helper_guard.h"
+#include "host/ranks/rank_guard.h"
 
 namespace raygate {
 namespace {
@@ -97,7 +97,7 @@ Ending ending_of(const std::exception_ptr& error, int internal_error) {
     return {kSignalBase + interrupted.signal(), interrupted.what()};
   } catch (const std::bad_alloc&) {
     return {kUserError, "out of memory; a smaller picture needs less"};
-  } catch (const RankTrouble& trouble) {
+  } catch (const RankFailure& trouble) {
     return {trouble.status(), trouble.what()};
   } catch (const std::exception& fault) {
     return {internal_error, fault.what()};
@@ -124,7 +124,7 @@ void work_as_rank(Ranks& ranks, const std::function<void()>& work) {
   if (ranks.index() == 0) {
     work();
   } else {
-    run_helper(ranks, work, [](const std::exception_ptr& error) { return ending_of(error, 1); });
+    run_rank(ranks, work, [](const std::exception_ptr& error) { return ending_of(error, 1); });
   }
 }
 

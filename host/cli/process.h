@@ -25,7 +25,7 @@ void print_warning(std::string_view what);
 void flush_standard_output();
 
 /// What a program ends with that has thrown `error`: status 2 for InputError and where memory is
-/// short, `internal_error` for a fault of ours, 128 + signal for Interrupted, for RankTrouble that
+/// short, `internal_error` for a fault of ours, 128 + signal for Interrupted, for RankFailure that
 /// rank's.
 [[nodiscard]] Ending ending_of(const std::exception_ptr& error, int internal_error);
 

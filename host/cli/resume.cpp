@@ -63,8 +63,8 @@ std::vector<std::string> channels_of_file(const ExtraChannels& extra, bool with_
 
 }  // namespace
 
-Film begun_film(const Options& options, const std::filesystem::path& path,
-                const ExrMetadata& metadata) {
+Film read_unfinished(const Options& options, const std::filesystem::path& path,
+                     const ExrMetadata& metadata) {
   const std::string name = path.string();
   FilmFile file = read_film(path);
   Film& film = file.film;
@@ -94,8 +94,8 @@ Film begun_film(const Options& options, const std::filesystem::path& path,
   return film;
 }
 
-FoundFrame found_frame(const Options& options, const OutputOptions& outputs,
-                       const ExrMetadata& metadata) {
+FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
+                      const ExrMetadata& metadata) {
   std::error_code ignored;
   if (!std::filesystem::exists(*outputs.exr, ignored)) return {};
   const std::string name = outputs.exr->string();
@@ -103,7 +103,7 @@ FoundFrame found_frame(const Options& options, const OutputOptions& outputs,
   const bool has_sums = std::ranges::find(found.channels, "sums.R.0") != found.channels.end();
   const auto difference = different_picture(found.metadata, metadata);
   if (has_sums && (found.metadata.partial || difference)) {
-    return {false, begun_film(options, *outputs.exr, metadata)};
+    return {false, read_unfinished(options, *outputs.exr, metadata)};
   }
   if (difference) throw InputError(name + ": found " + *difference + " as this run has it");
   require_place(options, name, metadata, found, found.metadata);

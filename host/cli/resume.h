@@ -13,18 +13,18 @@ namespace raygate {
 /// What is in `file`, with the channels that this run's outputs need and no others. `metadata` is
 /// what this run's picture says of itself. Throws InputError: a file that cannot be read, keeps no
 /// sums, or is not of the picture that this run renders; only --spp may have grown.
-[[nodiscard]] Film begun_film(const Options& options, const std::filesystem::path& file,
-                              const ExrMetadata& metadata);
+[[nodiscard]] Film read_unfinished(const Options& options, const std::filesystem::path& file,
+                                   const ExrMetadata& metadata);
 
-/// What --resume finds of one frame of a film.
+/// What --resume finds of one frame of an animation.
 struct FoundFrame {
   bool is_finished = false;   ///< all its files are there
   std::optional<Film> begun;  ///< if not, and there is something to go on from
 };
 
 /// Looks at the files of a frame, `outputs`. One that was broken off without sums counts as none.
-/// Throws InputError as begun_film does.
-[[nodiscard]] FoundFrame found_frame(const Options& options, const OutputOptions& outputs,
-                                     const ExrMetadata& metadata);
+/// Throws InputError as read_unfinished does.
+[[nodiscard]] FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
+                                    const ExrMetadata& metadata);
 
 }  // namespace raygate

@@ -11,19 +11,19 @@
 #include <vector>
 
 #include "host/base/input_error.h"
+#include "host/cli/camera_sequence.h"
+#include "host/cli/checkpointer.h"
 #include "host/cli/engines.h"
 #include "host/cli/format.h"
-#include "host/cli/outputs.h"
+#include "host/cli/output_files.h"
 #include "host/cli/process.h"
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
 #include "host/cli/resume.h"
-#include "host/cli/saver.h"
-#include "host/cli/shots.h"
 #include "host/cli/version.h"
 #include "host/film/environment_file.h"
 #include "host/light/clearance.h"
-#include "host/ranks/shared_jobs.h"
+#include "host/ranks/job_queue.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/ground.h"
@@ -76,7 +76,7 @@ void require_inputs_kept(const Options& options, const Scene& scene) {
   require_distinct(options.core_files.paths(), inputs);
 }
 
-ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shots& shots,
+ExrMetadata make_metadata(const Options& options, const Scene& scene, const CameraSequence& cameras,
                           const Camera& camera) {
   const glm::dvec3 eye = scene.origin + glm::dvec3(camera.eye());
   glm::mat4 world_to_camera(1.0f);
@@ -92,7 +92,7 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Shot
       .software = kSoftware,
       .scene = options.obj().filename().string(),
       .seed = options.seed,
-      .options = shots.options(),
+      .options = cameras.options(),
       .world_to_camera = world_to_camera,
       .screen_window_width = static_cast<float>(height * options.width / options.height)};
   if (options.light.range) set_samples(metadata, *options.light.range);
@@ -129,20 +129,20 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
   if (ranks.count() > 1) render_options.channels.sums = true;
   ProgressBar bar(!options.quiet && ranks.index() == 0,
                   ranks.count() > 1 ? ProgressBar::Style::kLines : ProgressBar::Style::kBar);
-  Saver saver(outputs, options.output, metadata, threads, bar);
+  Checkpointer checkpointer(outputs, options.output, metadata, threads, bar);
   if (outputs.save_seconds > 0.0) {
-    render_options.snapshot = [&](const Film& film) { saver.save(film); };
+    render_options.snapshot = [&](const Film& film) { checkpointer.save(film); };
     render_options.snapshot_seconds = outputs.save_seconds;
   }
   if (ranks.count() > 1) {
     note_warnings();
     render_options.is_urgent = take_warning;
-    render_options.urgent_snapshot = [&](const Film& film) { saver.save_urgently(film); };
+    render_options.urgent_snapshot = [&](const Film& film) { checkpointer.save_urgently(film); };
   }
   // The threads are deep in a search and will not stop soon: end without them.
   render_options.abandon = [&](const Film& film) {
     bar.erase();
-    std::_Exit(run_guarded([&]() -> int { saver.end_interrupted(film); }, 1));
+    std::_Exit(run_guarded([&]() -> int { checkpointer.end_interrupted(film); }, 1));
   };
   Film film = render(scene, clearances, camera, render_options,
                      make_finder_factory(options, clearances.bvh(), options.light.skips, image),
@@ -155,7 +155,7 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
   bar.erase();
   if (stats.cancelled) {
     if (ranks.index() != 0) throw Interrupted(interruption(), "rank 0 has the picture");
-    saver.end_interrupted(film);
+    checkpointer.end_interrupted(film);
   }
   if (stats.missing_threads > 0) {
     print_warning("only " + std::to_string(options.threads - stats.missing_threads) + " of " +
@@ -167,16 +167,17 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
 /// Renders one picture and writes it with `report` completed; false if it is a frame whose files
 /// are there.
 bool render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                    const Clearances& clearances, const CoreImage& image, const Shots& shots,
-                    const Camera& camera, Clock::time_point start, Ranks& ranks, Report& report) {
-  const ExrMetadata metadata = make_metadata(options, scene, shots, camera);
+                    const Clearances& clearances, const CoreImage& image,
+                    const CameraSequence& cameras, const Camera& camera, Clock::time_point start,
+                    Ranks& ranks, Report& report) {
+  const ExrMetadata metadata = make_metadata(options, scene, cameras, camera);
   const bool is_ours = ranks.index() == 0;
   std::optional<Film> begun;
   if (is_ours && !options.resume.empty()) {
     if (options.output.frames == 0) {
-      begun = begun_film(options, options.resume, metadata);
+      begun = read_unfinished(options, options.resume, metadata);
     } else {
-      FoundFrame found = found_frame(options, outputs, metadata);
+      FoundFrame found = find_frame(options, outputs, metadata);
       if (found.is_finished) return false;
       begun = std::move(found.begun);
     }
@@ -189,7 +190,7 @@ bool render_picture(const Options& options, const OutputOptions& outputs, const 
 
   // All files are made ready before the first takes its name: a full disk changes none of them.
   const Clock::time_point write_start = Clock::now();
-  ReadyPictures ready = make_ready(outputs, film, metadata, static_cast<int>(options.threads));
+  StagedFiles ready = stage_files(outputs, film, metadata, static_cast<int>(options.threads));
   report.pictures = ready.paths;
   report.legends = ready.legends;
   report.write_seconds = seconds_since(write_start);
@@ -200,18 +201,18 @@ bool render_picture(const Options& options, const OutputOptions& outputs, const 
 }
 
 /// One picture after the other, each by the rank that is free; a line for each.
-void render_film_of_frames(const Options& options, Scene& scene, const Clearances& clearances,
-                           const CoreImage& image, const Shots& shots, Ranks& ranks, Report& report,
-                           std::FILE* console) {
+void render_animation(const Options& options, Scene& scene, const Clearances& clearances,
+                      const CoreImage& image, const CameraSequence& cameras, Ranks& ranks,
+                      Report& report, std::FILE* console) {
   const int frames = options.output.frames;
-  SharedJobs jobs(ranks, frames);
+  JobQueue jobs(ranks, frames);
   while (const auto job = jobs.next()) {
     const int frame = *job + 1;
     const Clock::time_point start = Clock::now();
     Ranks alone;
     const OutputOptions outputs = options.output.numbered(frame);
-    const bool is_new = render_picture(options, outputs, scene, clearances, image, shots,
-                                       shots.light(frame, scene), start, alone, report);
+    const bool is_new = render_picture(options, outputs, scene, clearances, image, cameras,
+                                       cameras.light(frame, scene), start, alone, report);
     if (options.quiet) continue;
     print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
               (is_new ? format_duration(report.total_seconds) + ", wrote " + listed(report.pictures)
@@ -266,9 +267,9 @@ void run(const Options& options, Ranks& ranks) {
   require_inputs_kept(options, scene);
 
   // Cameras and lamps are found before there is a ground, which is not to be framed.
-  const Shots shots(options, scene);
-  if (shots.has_ground()) add_ground(scene, shots.up());
-  report.view = shots.text();
+  const CameraSequence cameras(options, scene);
+  if (cameras.has_ground()) add_ground(scene, cameras.up());
+  report.view = cameras.text();
   resolve_instances(scene, options.instances, options.scene);
 
   const Clock::time_point tree_start = Clock::now();
@@ -277,8 +278,8 @@ void run(const Options& options, Ranks& ranks) {
   const Clearances clearances(bvh);
   const CoreImage image = make_memory_image(options, options.core_files, bvh);
   if (const auto& pixel = options.core_files.pixel) {
-    const Ray ray = shots.light(1, scene).ray((pixel->x + 0.5) / options.width,
-                                              (pixel->y + 0.5) / options.height, glm::dvec2(0.0));
+    const Ray ray = cameras.light(1, scene).ray((pixel->x + 0.5) / options.width,
+                                                (pixel->y + 0.5) / options.height, glm::dvec2(0.0));
     if (ranks.index() == 0) {
       print(trace_pixel(options, options.core_files, bvh, image, ray), console);
     }
@@ -286,10 +287,10 @@ void run(const Options& options, Ranks& ranks) {
   }
 
   if (frames > 0) {
-    render_film_of_frames(options, scene, clearances, image, shots, ranks, report, console);
+    render_animation(options, scene, clearances, image, cameras, ranks, report, console);
   } else {
-    render_picture(options, options.output, scene, clearances, image, shots, shots.light(1, scene),
-                   start, ranks, report);
+    render_picture(options, options.output, scene, clearances, image, cameras,
+                   cameras.light(1, scene), start, ranks, report);
     if (!options.quiet && ranks.index() == 0) print(to_text(report), console);
   }
 }

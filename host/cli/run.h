@@ -11,8 +11,8 @@ namespace raygate {
 /// FinderMismatch, and other exceptions for our own faults: then no output file of the picture
 /// at hand has changed, unless the failure is that a later one could not be written. Throws
 /// Interrupted after writing what had been rendered, marked as partial.
-/// Each of several ranks calls it: they share the picture, and rank 0 writes it; of a film each
-/// renders and writes some frames.
+/// Each of several ranks calls it: they share the picture, and rank 0 writes it; of an animation
+/// each renders and writes some frames.
 void run(const Options& options, Ranks& ranks);
 
 }  // namespace raygate

@@ -10,9 +10,9 @@
 
 #include "host/base/input_error.h"
 #include "host/cli/process.h"
+#include "host/ranks/job_queue.h"
 #include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
-#include "host/ranks/shared_jobs.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ std::vector<std::string> read_lines(const std::string& file) {
 }
 
 void run_shared(const std::vector<std::string>& commands, Ranks& ranks) {
-  SharedJobs jobs(ranks, static_cast<int>(commands.size()));
+  JobQueue jobs(ranks, static_cast<int>(commands.size()));
   while (const auto job = jobs.next()) {
     const std::string& command = commands[static_cast<std::size_t>(*job)];
     const int status = std::system(command.c_str());  // NOLINT(bugprone-command-processor)

@@ -79,7 +79,7 @@ class MpiRanks : public Ranks {
       is_over_ = true;
       throw RunIsOver();
     }
-    if (message->about == About::kTrouble) throw RankTrouble(*message);
+    if (message->about == About::kFailure) throw RankFailure(*message);
     return message;
   }
 

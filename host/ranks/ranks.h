@@ -22,7 +22,7 @@ enum class About : int {
   kCounts,   ///< to rank 0: the sender's statistics
   kNext,     ///< to rank 0: asks for the number of the next job
   kJob,      ///< from rank 0: that number
-  kTrouble,  ///< to rank 0: the Ending of a sender that cannot go on
+  kFailure,  ///< to rank 0: the Ending of a sender that cannot go on
   kEnd,      ///< from rank 0: the run is over, whatever the others are doing
 };
 
@@ -53,9 +53,9 @@ struct Ending {
 };
 
 /// What rank 0 throws when another one has ended so.
-class RankTrouble : public std::runtime_error {
+class RankFailure : public std::runtime_error {
  public:
-  explicit RankTrouble(const Message& message)
+  explicit RankFailure(const Message& message)
       : std::runtime_error("rank " + std::to_string(message.from) + ": " +
                            message.bytes.substr(sizeof(int))),
         status_(value_of<int>(message.bytes)) {}
@@ -89,7 +89,7 @@ class Ranks {
   // NOLINTNEXTLINE(performance-unnecessary-value-param): those that have others keep the bytes
   virtual void send(int /*to*/, About /*about*/, std::string /*bytes*/) {}
   /// The next message, if one is there. Of those that are never handed on, throws: on rank 0
-  /// RankTrouble for kTrouble; on others RunIsOver for kEnd.
+  /// RankFailure for kFailure; on others RunIsOver for kEnd.
   [[nodiscard]] virtual std::optional<Message> receive() { return std::nullopt; }
 
   /// Nothing is shared from now on. Rank 0 says so to the others, which wait for that; all wait for

@@ -11,7 +11,7 @@
 namespace raygate {
 
 // Streams of random numbers; the integrators' are made from others.
-inline constexpr std::uint32_t kFilterStream = 0, kLampStream = 7, kLensStream = 8;
+inline constexpr std::uint32_t kFilterStream = 0, kEmitterEdgeStream = 7, kLensStream = 8;
 
 /// Sample `index` of the pixel that `sampler` is of, where `stream` has it in the filter. With one
 /// sample a pixel its ray goes through the middles of pixel and lens.

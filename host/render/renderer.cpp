@@ -9,10 +9,10 @@
 #include "host/light/clearance.h"
 #include "host/light/lights.h"
 #include "host/ranks/ranks.h"
-#include "host/render/crew.h"
-#include "host/render/helping.h"
-#include "host/render/lamp_edges.h"
+#include "host/render/coordinator.h"
+#include "host/render/emitter_edges.h"
 #include "host/render/tiles.h"
+#include "host/render/worker.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -29,15 +29,15 @@ Film empty_film(const RenderOptions& options) {
 
 }  // namespace
 
-void add(RenderStats& stats, const RenderStats& of_helper) {
-  stats.rays += of_helper.rays;
-  stats.camera_rays += of_helper.camera_rays;
-  stats.shadow_rays += of_helper.shadow_rays;
-  stats.point_doubts += of_helper.point_doubts;
-  stats.skipped += of_helper.skipped;
-  stats.find += of_helper.find;
-  stats.shade_seconds += of_helper.shade_seconds;
-  stats.processor_seconds += of_helper.processor_seconds;
+void add(RenderStats& stats, const RenderStats& of_worker) {
+  stats.rays += of_worker.rays;
+  stats.camera_rays += of_worker.camera_rays;
+  stats.shadow_rays += of_worker.shadow_rays;
+  stats.point_doubts += of_worker.point_doubts;
+  stats.skipped += of_worker.skipped;
+  stats.find += of_worker.find;
+  stats.shade_seconds += of_worker.shade_seconds;
+  stats.processor_seconds += of_worker.processor_seconds;
 }
 
 Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
@@ -65,9 +65,9 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
   const Lights lights(scene, bvh, is_path ? options.techniques.lights : LightChoice::kNone);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lamps
   // have no edges.
-  std::vector<LampEdge> lamp_edges;
+  std::vector<EmitterEdge> emitter_edges;
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
-    lamp_edges.assign(film.color.size(), LampEdge::kUnknown);
+    emitter_edges.assign(film.color.size(), EmitterEdge::kUnknown);
   }
   const RenderJob job{scene,
                       bvh,
@@ -79,11 +79,11 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
                       : is_path       ? glm::dvec3(0.0)
                                       : lights.ambient()};
   if (ranks > 1 && options.ranks->index() != 0) {
-    help(*options.ranks, job, std::move(first_finder), make_finder, progress, film, lamp_edges,
-         stats);
+    run_worker(*options.ranks, job, std::move(first_finder), make_finder, progress, film,
+               emitter_edges, stats);
     return film;
   }
-  trace_all(job, tiles, std::move(first_finder), make_finder, progress, film, lamp_edges, stats);
+  trace_all(job, tiles, std::move(first_finder), make_finder, progress, film, emitter_edges, stats);
   if (stats.find.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
     const std::uint64_t every_record = bvh.slot_count() * origins * std::uint64_t(ranks);

@@ -29,7 +29,7 @@ struct RenderOptions {
   /// Those that share this render, each called with the same of everything that the film depends
   /// on; null: nobody else. Rank 0 has the film in the end; the others have parts, and call back
   /// for nothing but progress, to be told to stop. If one of them cannot go on, rank 0 calls
-  /// `urgent_snapshot` and throws RankTrouble.
+  /// `urgent_snapshot` and throws RankFailure.
   Ranks* ranks = nullptr;
   int samples = 1;       ///< of each pixel, at least 1; a single one is its middle
   int first_sample = 0;  ///< those from this one ...
@@ -38,9 +38,9 @@ struct RenderOptions {
   /// with its sums: the render goes on from there. Null: nothing.
   const Film* begun = nullptr;
   /// Above 0: `samples` is the most, and pixels go without those that their error does not need
-  /// (is_done in sample_choice.h); in steps of an 8-bit display after `exposure` stops. The window
-  /// then begins and ends at multiples of kErrorBlock, or with the frame, and all samples are
-  /// rendered. The film has FilmSums::error.
+  /// (has_converged in sample_choice.h); in steps of an 8-bit display after `exposure` stops. The
+  /// window then begins and ends at multiples of kErrorBlock, or with the frame, and all samples
+  /// are rendered. The film has FilmSums::error.
   double error = 0.0;
   double exposure = 0.0;
   ReconstructionFilter filter =
@@ -92,7 +92,7 @@ struct RenderStats {
 };
 
 /// What another rank has counted. Its clock is not.
-void add(RenderStats& stats, const RenderStats& of_helper);
+void add(RenderStats& stats, const RenderStats& of_worker);
 
 /// Called with the fraction done, in [0, 1], now and then on the thread that called render(); false
 /// stops the render. May be empty.

@@ -6,15 +6,15 @@
 
 #include "host/base/stopwatch.h"
 #include "host/film/film_sums.h"
+#include "host/render/adaptive_sampling.h"
 #include "host/render/camera_ray.h"
-#include "host/render/lamp_edges.h"
-#include "host/render/sample_choice.h"
-#include "host/render/view_pyramid.h"
+#include "host/render/emitter_edges.h"
+#include "host/render/tile_frustum.h"
 
 namespace raygate {
 namespace {
 
-constexpr int kLooks = 8;                         // at a lamp's edge, for each sample
+constexpr int kEdgeSamples = 8;                   // at a lamp's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
 std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
@@ -32,11 +32,11 @@ std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film,
-                           std::span<LampEdge> lamp_edges)
+                           std::span<EmitterEdge> emitter_edges)
     : job_(job),
       finder_(finder),
       film_(film),
-      lamp_edges_(lamp_edges),
+      emitter_edges_(emitter_edges),
       integrator_(integrator_of(job)),
       shadow_rays_(job.scene, job.clearances, job.lights, finder, job.options.skips,
                    integrator_->shadows_through_refraction()),
@@ -66,14 +66,14 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   for (const PixelSamples& pixel : pixels_) {
     samples_ += static_cast<std::size_t>(pixel.end - pixel.first);
   }
-  seen_.assign(samples_, {});
+  first_hits_.assign(samples_, {});
   output_.radiance.assign(samples_, glm::vec3(0.0f));
   output_.first_surface.assign(samples_, {});
   output_.shadows.clear();
-  from_lamps_.assign(samples_, glm::vec3(0.0f));
-  sharpened_.assign(pixels_.size(), {});
+  direct_light_.assign(samples_, glm::vec3(0.0f));
+  edge_emission_.assign(pixels_.size(), {});
   tile_ = tile;
-  lamp_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
+  edge_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
   if (job_.options.skips.empty_tiles && !integrator_->sees_environment() &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
@@ -89,27 +89,27 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
     if (!keep_going()) return false;
     trace_wave();
   }
-  sharpen_lamps(tile);
+  supersample_emitter_edges(tile);
   return true;
 }
 
 /// Where a lamp's edge runs through a pixel, looks more often what camera rays see of lamps: the
-/// mean of that takes the place of what the samples have seen. A lamp's own light is all that is
-/// exchanged, whatever else the samples brought; and that is so whatever emission_of() says.
-void TileRenderer::sharpen_lamps(const PixelRect& tile) {
-  if (lamp_edges_.empty()) return;
+/// mean of that takes the place of what the samples have first_hit. A lamp's own light is all that
+/// is exchanged, whatever else the samples brought; and that is so whatever emission_of() says.
+void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
+  if (emitter_edges_.empty()) return;
   Stopwatch watch;
   std::size_t rays = 0;
-  if (lamp_edges_[pixels_[0].index] == LampEdge::kUnknown) {
-    rays = find_lamp_edges(job_, finder_, film_, tile, lamp_edges_, lamp_work_);
+  if (emitter_edges_[pixels_[0].index] == EmitterEdge::kUnknown) {
+    rays = find_emitter_edges(job_, finder_, film_, tile, emitter_edges_, edge_work_);
   }
   wave_.clear();
   for (const PixelSamples& pixel : pixels_) {
-    if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
+    if (emitter_edges_[pixel.index] == EmitterEdge::kNo) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
-    for (int look = pixel.first * kLooks; look < pixel.end * kLooks; ++look) {
+    for (int look = pixel.first * kEdgeSamples; look < pixel.end * kEdgeSamples; ++look) {
       wave_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler,
-                                      static_cast<std::uint32_t>(look), kLampStream));
+                                      static_cast<std::uint32_t>(look), kEmitterEdgeStream));
     }
   }
   rays += wave_.rays.size();
@@ -131,16 +131,16 @@ void TileRenderer::sharpen_lamps(const PixelRect& tile) {
     const PixelSamples& pixel = pixels_[p];
     const std::size_t first = sample;
     sample += static_cast<std::size_t>(pixel.end - pixel.first);
-    if (lamp_edges_[pixel.index] == LampEdge::kNo) continue;
+    if (emitter_edges_[pixel.index] == EmitterEdge::kNo) continue;
     const auto add = [&](std::uint32_t slot, double share) {
       const glm::vec3 emission = job_.emission_of(slot);
-      for (int k = 0; k < 3; ++k) sharpened_[p][k].add(share * double{emission[k]});
+      for (int k = 0; k < 3; ++k) edge_emission_[p][k].add(share * double{emission[k]});
     };
-    for (std::size_t i = first * kLooks; i < sample * kLooks; ++i, ++ray) {
-      add(hits_[ray].slot, 1.0 / kLooks);
-      if (is_counting_) lamp_work_[place_in_tile(pixel)] += work_[ray];
+    for (std::size_t i = first * kEdgeSamples; i < sample * kEdgeSamples; ++i, ++ray) {
+      add(hits_[ray].slot, 1.0 / kEdgeSamples);
+      if (is_counting_) edge_work_[place_in_tile(pixel)] += work_[ray];
     }
-    for (std::size_t i = first; i < sample; ++i) add(seen_[i].slot, -1.0);
+    for (std::size_t i = first; i < sample; ++i) add(first_hits_[i].slot, -1.0);
   }
   stats_.shade_seconds += watch.lap();
 }
@@ -163,7 +163,7 @@ void TileRenderer::trace_wave() {
   output_.next.clear();
   output_.next.depth = wave_.depth + 1;
   for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], wave_.burdens[i].sample);
-  if (wave_.depth == 0) see();
+  if (wave_.depth == 0) record_first_hits();
   for (std::size_t i = 0; i < rays.size();) {
     const std::size_t end = std::min(rays.size(), i + integrator_->block_size());
     integrator_->shade(wave_, hits_, i, end, output_);
@@ -183,26 +183,26 @@ void TileRenderer::trace_shadows() {
   };
   shadow_rays_.resolve(output_.shadows,
                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
-  for (const ShadowRay& shadow : output_.shadows) from_lamps_[shadow.sample] += shadow.light;
+  for (const ShadowRay& shadow : output_.shadows) direct_light_[shadow.sample] += shadow.light;
   output_.shadows.clear();
 }
 
 /// Notes what the camera's rays hit.
-void TileRenderer::see() {
+void TileRenderer::record_first_hits() {
   for (std::size_t i = 0; i < hits_.size(); ++i) {
     const NearestHit& hit = hits_[i];
-    seen_[i].slot = hit.slot;
+    first_hits_[i].slot = hit.slot;
     if (hit.slot == NearestHit::kNone || wave_.burdens[i].index != 0) continue;
-    seen_[i].origin = wave_.rays[i].origin;
-    seen_[i].point = is_point_doubt(hit, job_.options.point_error)
-                         ? precise_hit(wave_.rays[i], job_.bvh.corners_of(hit.slot)).point
-                         : hit.point;
+    first_hits_[i].origin = wave_.rays[i].origin;
+    first_hits_[i].point = is_point_doubt(hit, job_.options.point_error)
+                               ? precise_hit(wave_.rays[i], job_.bvh.corners_of(hit.slot)).point
+                               : hit.point;
   }
 }
 
 void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
-  seen_[sample].work.tests += work.tests;
-  seen_[sample].work.doubts += work.doubts;
+  first_hits_[sample].work.tests += work.tests;
+  first_hits_[sample].work.doubts += work.doubts;
 }
 
 void TileRenderer::write() {
@@ -218,19 +218,19 @@ void TileRenderer::write() {
     if (!kept.color.empty()) color = kept.color[at];
     if (!kept.albedo.empty()) albedo = kept.albedo[at];
     for (int index = pixel.first; index < pixel.end; ++index, ++i) {
-      const Seen& seen = seen_[i];
-      const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(from_lamps_[i]);
+      const FirstHit& first_hit = first_hits_[i];
+      const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(direct_light_[i]);
       for (int k = 0; k < 3; ++k) {
         color[k].add(light[k]);
         albedo[k].add(output_.first_surface[i].albedo[k]);
       }
-      color[3].add(seen.slot == NearestHit::kNone ? 0.0 : 1.0);
-      if (!film_.tests.empty()) film_.tests[at] += seen.work.tests;
-      if (!film_.doubts.empty()) film_.doubts[at] += seen.work.doubts;
+      color[3].add(first_hit.slot == NearestHit::kNone ? 0.0 : 1.0);
+      if (!film_.tests.empty()) film_.tests[at] += first_hit.work.tests;
+      if (!film_.doubts.empty()) film_.doubts[at] += first_hit.work.doubts;
     }
-    for (int k = 0; k < 3; ++k) color[k] += sharpened_[p][k];
+    for (int k = 0; k < 3; ++k) color[k] += edge_emission_[p][k];
     if (is_counting_) {
-      const RayWork& work = lamp_work_[place_in_tile(pixel)];
+      const RayWork& work = edge_work_[place_in_tile(pixel)];
       if (!film_.tests.empty()) film_.tests[at] += work.tests;
       if (!film_.doubts.empty()) film_.doubts[at] += work.doubts;
     }
@@ -241,24 +241,25 @@ void TileRenderer::write() {
     film_.color[at] = mean_of(color, samples);
     if (!film_.albedo.empty()) film_.albedo[at] = mean_of(albedo, samples);
   }
-  if (job_.options.error > 0.0) look();
+  if (job_.options.error > 0.0) update_errors();
   stats_.shade_seconds += watch.lap();
 }
 
 /// At blocks whose samples that were traced last are enough for that.
-void TileRenderer::look() {
+void TileRenderer::update_errors() {
   for (const PixelSamples& pixel : pixels_) {
-    if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_look(pixel.end)) continue;
-    look_at_block(film_, pixel.x, pixel.y, job_.options.exposure);
+    if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_error_check(pixel.end))
+      continue;
+    update_block_error(film_, pixel.x, pixel.y, job_.options.exposure);
   }
 }
 
 /// Those that are the first sample's.
 void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
-  const Seen& seen = seen_[sample];
-  if (seen.slot == NearestHit::kNone) return;
-  const std::uint32_t triangle = job_.bvh.triangle_of(seen.slot);
-  const glm::dvec3 origin(seen.origin), point(seen.point);
+  const FirstHit& first_hit = first_hits_[sample];
+  if (first_hit.slot == NearestHit::kNone) return;
+  const std::uint32_t triangle = job_.bvh.triangle_of(first_hit.slot);
+  const glm::dvec3 origin(first_hit.origin), point(first_hit.point);
   const glm::dvec3 from_eye = origin - glm::dvec3(job_.camera.eye()) + point;
   film_.depth[pixel] = static_cast<float>(job_.camera.depth(from_eye));
   film_.normal[pixel] = output_.first_surface[sample].normal;
@@ -267,7 +268,7 @@ void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
     film_.position[pixel] = glm::vec3(job_.scene.origin + origin + point);
   }
   if (!film_.object.empty())
-    film_.object[pixel] = object_at(job_.scene, job_.bvh.face_of(seen.slot));
+    film_.object[pixel] = object_at(job_.scene, job_.bvh.face_of(first_hit.slot));
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

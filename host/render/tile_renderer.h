@@ -14,7 +14,7 @@
 #include "host/light/integrator.h"
 #include "host/light/shadow_rays.h"
 #include "host/light/wave.h"
-#include "host/render/lamp_edges.h"
+#include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
 #include "host/render/tile_samples.h"
 
@@ -25,8 +25,9 @@ namespace raygate {
 /// the tile: each sample's light is added up by itself, depth by depth.
 class TileRenderer {
  public:
-  /// `lamp_edges`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
-  TileRenderer(const RenderJob& job, Finder& finder, Film& film, std::span<LampEdge> lamp_edges);
+  /// `emitter_edges`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
+  TileRenderer(const RenderJob& job, Finder& finder, Film& film,
+               std::span<EmitterEdge> emitter_edges);
 
   /// Traces the samples that samples_to_trace() names. `keep_going` is asked between waves; when it
   /// says no, what was traced is not worth writing, and false is returned.
@@ -39,7 +40,7 @@ class TileRenderer {
 
  private:
   /// What a camera ray saw.
-  struct Seen {
+  struct FirstHit {
     std::uint32_t slot = NearestHit::kNone;
     glm::vec3 origin{0.0f};  // of the ray
     glm::vec3 point{0.0f};   // relative to it
@@ -47,18 +48,18 @@ class TileRenderer {
   };
 
   void make_camera_rays();
-  void sharpen_lamps(const PixelRect& tile);
+  void supersample_emitter_edges(const PixelRect& tile);
   void trace_wave();
   void trace_shadows();
-  void see();
+  void record_first_hits();
   void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, std::size_t sample);
-  void look();
+  void update_errors();
 
   RenderJob job_;
   Finder& finder_;
   Film& film_;
-  std::span<LampEdge> lamp_edges_;
+  std::span<EmitterEdge> emitter_edges_;
   std::unique_ptr<Integrator> integrator_;
   ShadowRays shadow_rays_;
   RenderStats stats_;
@@ -69,14 +70,16 @@ class TileRenderer {
   }
 
   std::vector<PixelSamples> pixels_;
-  std::size_t samples_ = 0;  // of all of them
-  std::vector<Seen> seen_;   // by sample
+  std::size_t samples_ = 0;           // of all of them
+  std::vector<FirstHit> first_hits_;  // by sample
   bool is_counting_;
   WaveOutput output_;
-  std::vector<glm::vec3> from_lamps_;  // by sample: what shadow rays have brought
-  std::vector<std::array<ExactAccumulator, 3>> sharpened_;  // by pixel: see sharpen_lamps()
+  std::vector<glm::vec3> direct_light_;  // by sample: what shadow rays have brought
+  std::vector<std::array<ExactAccumulator, 3>>
+      edge_emission_;  // by pixel: see supersample_emitter_edges()
   PixelRect tile_;
-  std::vector<RayWork> lamp_work_;  // by pixel of the tile: of what sharpen_lamps() traced
+  std::vector<RayWork>
+      edge_work_;  // by pixel of the tile: of what supersample_emitter_edges() traced
   Wave wave_;
   std::vector<NearestHit> hits_;  // of the wave
   std::vector<RayWork> work_;     // of the wave, if it is counted

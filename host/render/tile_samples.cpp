@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "host/render/sample_choice.h"
+#include "host/render/adaptive_sampling.h"
 
 namespace raygate {
 namespace {
@@ -28,7 +28,8 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
 bool needs_no_more(const RenderOptions& options, const Film& film, const PixelRect& block) {
   if (options.error == 0.0) return false;
   const std::size_t index = film.index_of(block.x0, block.y0);
-  return is_done(film.sums.error[index], static_cast<int>(film.sums.samples[index]), options.error);
+  return has_converged(film.sums.error[index], static_cast<int>(film.sums.samples[index]),
+                       options.error);
 }
 
 /// How many samples each pixel that needs more may take at once.
@@ -59,7 +60,7 @@ std::vector<PixelSamples> samples_to_trace(const RenderOptions& options, const F
         const int first = options.first_sample + (done.empty() ? 0 : static_cast<int>(done[index]));
         if (first >= end) return;
         const int last =
-            std::max(end, std::min({first + ahead, next_look(first), options.samples}));
+            std::max(end, std::min({first + ahead, next_error_check(first), options.samples}));
         pixels.push_back({pixel.x0, pixel.y0, index, first, last});
       });
     });

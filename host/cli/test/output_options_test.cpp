@@ -114,7 +114,7 @@ TEST(OutputOptions, LightByName) {
   expect_error({"a.obj", "--no-skip", "rays"}, "--no-skip: expected some of culling, records");
 }
 
-TEST(OutputOptions, Films) {
+TEST(OutputOptions, Animations) {
   EXPECT_EQ(parse({"a.obj"}).output.frames, 0);
   const OutputOptions output = parse({"a.obj", "--frames", "24", "-o", "f/x", "--stats", "s.json",
                                       "--false-colour", "Z=z.png"})

@@ -177,8 +177,8 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
                  "--false-colour: found no channel error in the picture");
 }
 
-TEST_F(Parts, FinishedFramesOfAFilmAreKept) {
-  const auto film = [](std::vector<std::string> more) {
+TEST_F(Parts, FinishedFramesOfAnAnimationAreKept) {
+  const auto animation = [](std::vector<std::string> more) {
     more.insert(more.end(), {"--spp", "2", "--frames", "3"});
     return more;
   };
@@ -188,12 +188,12 @@ TEST_F(Parts, FinishedFramesOfAFilmAreKept) {
       ++count;
     return count;
   };
-  make(film({"-o", "whole"}));
-  make(film({"-o", "a"}));
+  make(animation({"-o", "whole"}));
+  make(animation({"-o", "a"}));
   const auto time = fs::last_write_time(folder_.path() / "a-0001.exr");
   fs::remove(folder_.path() / "a-0002.exr");
   fs::remove(folder_.path() / "a-0003.png");
-  const std::vector<std::string> again = film({"-o", "a", "--resume", "a.exr"});
+  const std::vector<std::string> again = animation({"-o", "a", "--resume", "a.exr"});
   EXPECT_EQ(kept(part(again)), 1);
   EXPECT_EQ(fs::last_write_time(folder_.path() / "a-0001.exr"), time);
   EXPECT_EQ(kept(part(again)), 3);
@@ -215,14 +215,14 @@ TEST_F(Parts, FinishedFramesOfAFilmAreKept) {
     return words;
   };
   make(with(longer, {"-o", "long"}));
-  make(film({"-o", "b.exr", "--channels", "sums"}));
+  make(animation({"-o", "b.exr", "--channels", "sums"}));
   make(with(longer, {"-o", "b.exr", "--resume", "b.exr"}));
   for (const char* frame : {"-0001", "-0002", "-0003"}) {
     EXPECT_EQ(folder_.read("b"s + frame + ".exr"), folder_.read("long"s + frame + ".exr"));
   }
 }
 
-TEST_F(Parts, FramesOfAnotherFilmAreRefused) {
+TEST_F(Parts, FramesOfAnotherAnimationAreRefused) {
   make({"-o", "a.exr", "--spp", "1", "--frames", "2"});
   const std::string before = folder_.read("a-0002.exr");
   const auto refuse = [&](std::vector<std::string> more, const std::string& line) {
@@ -237,7 +237,7 @@ TEST_F(Parts, FramesOfAnotherFilmAreRefused) {
   refuse({"--spp", "1", "--frames", "3"}, "a-0002.exr: found another camera");
   EXPECT_EQ(folder_.read("a-0002.exr"), before);
   expect_refused(part({"--frames", "2", "-o", "a.exr", "--resume", "b.exr"}),
-                 "--resume: expected a.exr beside --frames, the film's own name, got 'b.exr'");
+                 "--resume: expected a.exr beside --frames, the animation's own name, got 'b.exr'");
   expect_refused(part({"--frames", "2", "-o", "a.png", "--resume", "a.exr"}),
                  "--resume: expected an EXR among the outputs of --frames");
 }

@@ -127,7 +127,7 @@ TEST_F(Ranks, GoOnWhereAnotherNumberOfThemWas) {
   expect_same_pictures("resumed", "whole");
 }
 
-TEST_F(Ranks, ShareTheFramesOfAFilm) {
+TEST_F(Ranks, ShareTheFramesOfAnAnimation) {
   const Words arguments = {kCornell, "--size", "40x30", "--engine", "cpu", "--frames", "5"};
   alone(arguments + Words{"-o", "a"});
   const Outcome outcome = on_ranks(3, arguments + Words{"-o", "b"});
@@ -197,7 +197,7 @@ TEST_F(Ranks, EndAlikeWhoeverIsInTrouble) {
 /// but the tiles in flight. RAYGATE_KILLS says how often; each takes up what the last one left.
 class KilledRanks : public Ranks {
  protected:
-  enum class Who { kHelper, kRank0, kAll };
+  enum class Who { kWorker, kRank0, kAll };
   void kill_at_random(Who who, const Words& more) {
     const Words arguments = {kCornell,   "--size",   "200x150",      "--spp", "128",
                              "--engine", "cpu",      "--integrator", "path",  "--threads",
@@ -231,7 +231,7 @@ class KilledRanks : public Ranks {
         fs::remove(folder_.path() / "a.exr");  // from the beginning again
       else
         saved += folder_.read("a.exr") != before;
-      if (who == Who::kHelper && outcome.status != 0) {
+      if (who == Who::kWorker && outcome.status != 0) {
         EXPECT_NE(outcome.err.find("--resume a.exr goes on from there"), std::string::npos)
             << outcome.err;
       }
@@ -247,7 +247,7 @@ class KilledRanks : public Ranks {
   }
 };
 
-TEST_F(KilledRanks, OneOfThem) { kill_at_random(Who::kHelper, {}); }
+TEST_F(KilledRanks, OneOfThem) { kill_at_random(Who::kWorker, {}); }
 TEST_F(KilledRanks, Rank0) { kill_at_random(Who::kRank0, {"--save-every", "0.2"}); }
 TEST_F(KilledRanks, AllAndTheLauncher) { kill_at_random(Who::kAll, {"--save-every", "0.2"}); }
 

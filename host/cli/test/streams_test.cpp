@@ -42,13 +42,13 @@ TEST_F(Render, StatisticsGoToStandardOutputAlone) {
       EXPECT_NE(outcome.err.find("cornell.obj: "), std::string::npos) << "the summary is elsewhere";
     }
   }
-  const Outcome film =
+  const Outcome animation =
       run_program({.arguments = small({"--stats", "-", "-o", "f.png", "--frames", "2", "-q"}),
                    .folder = folder_.path()});
-  EXPECT_EQ(film.status, 0) << film.err;
-  const std::size_t first_end = film.out.find("\n}\n") + 3;
-  EXPECT_FALSE(json::parse(film.out.substr(0, first_end), nullptr, false).is_discarded());
-  EXPECT_FALSE(json::parse(film.out.substr(first_end), nullptr, false).is_discarded());
+  EXPECT_EQ(animation.status, 0) << animation.err;
+  const std::size_t first_end = animation.out.find("\n}\n") + 3;
+  EXPECT_FALSE(json::parse(animation.out.substr(0, first_end), nullptr, false).is_discarded());
+  EXPECT_FALSE(json::parse(animation.out.substr(first_end), nullptr, false).is_discarded());
 }
 
 TEST_F(Render, APipeThatNobodyReadsIsRefused) {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "host/cli/camera_sequence.h"
 #include "host/cli/engines.h"
 #include "host/cli/options.h"
-#include "host/cli/shots.h"
 #include "host/lab/commands.h"
 #include "host/lab/results.h"
 #include "host/lab/timing.h"
@@ -48,8 +48,8 @@ class Set {
   Set(const std::string& file, const Plan& plan) : plan_(plan), options_(options_of(file, plan)) {
     scene_ = options_.scene_file ? load_scene(*options_.scene_file) : load_scene(options_.scene);
     if (options_.scene_file) add_lights(*options_.scene_file, scene_);
-    shots_ = std::make_unique<Shots>(options_, scene_);
-    camera_ = shots_->light(1, scene_);
+    cameras_ = std::make_unique<CameraSequence>(options_, scene_);
+    camera_ = cameras_->light(1, scene_);
     bvh_ = std::make_unique<Bvh>(scene_);
     clearances_ = std::make_unique<Clearances>(*bvh_);
   }
@@ -82,7 +82,7 @@ class Set {
   const Plan& plan_;
   Options options_;
   Scene scene_;
-  std::unique_ptr<Shots> shots_;
+  std::unique_ptr<CameraSequence> cameras_;
   std::optional<Camera> camera_;
   std::unique_ptr<Bvh> bvh_;
   std::unique_ptr<Clearances> clearances_;

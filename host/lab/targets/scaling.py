@@ -8,7 +8,7 @@ The model of a picture's seconds on N ranks of T threads each:
                goes on during compute, so only what is longer of both counts
     end        the last pass over a tile, while others have nothing left to do
 
-Sizes of tiles and steps are those of host/render (tiles.h, helpers.cpp).
+Sizes of tiles and steps are those of host/render (tiles.h, remote_workers.cpp).
 """
 
 import argparse

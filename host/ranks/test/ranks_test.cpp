@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/ranks/helper_guard.h"
-#include "host/ranks/shared_jobs.h"
+#include "host/ranks/job_queue.h"
+#include "host/ranks/rank_guard.h"
 
 namespace raygate {
 namespace {
@@ -50,7 +50,7 @@ class ThreadRanks : public Ranks {
   }
   [[nodiscard]] std::optional<Message> receive() override {
     auto message = post_.take(index_);
-    if (message && message->about == About::kTrouble) throw RankTrouble(*message);
+    if (message && message->about == About::kFailure) throw RankFailure(*message);
     return message;
   }
 
@@ -59,7 +59,7 @@ class ThreadRanks : public Ranks {
   int index_;
 };
 
-TEST(SharedJobs, EachIsTakenOnce) {
+TEST(JobQueue, EachIsTakenOnce) {
   for (const int count : {1, 2, 5}) {
     for (const int jobs : {0, 1, 40}) {
       Post post(count);
@@ -70,7 +70,7 @@ TEST(SharedJobs, EachIsTakenOnce) {
         for (int rank = 0; rank < count; ++rank) {
           ranks.emplace_back([&, rank] {
             ThreadRanks own(post, rank);
-            SharedJobs shared(own, jobs);
+            JobQueue shared(own, jobs);
             while (const auto job = shared.next()) ++taken[static_cast<std::size_t>(*job)];
           });
         }
@@ -80,29 +80,29 @@ TEST(SharedJobs, EachIsTakenOnce) {
   }
 }
 
-TEST(SharedJobs, TroubleOfOneEndsRank0) {
+TEST(JobQueue, TroubleOfOneEndsRank0) {
   Post post(2);
   ThreadRanks first(post, 0), second(post, 1);
-  run_helper(
+  run_rank(
       second, [] { throw InputError("no memory"); },
       [](const std::exception_ptr&) {
         return Ending{7, "no room"};
       });
-  SharedJobs shared(first, 1);
+  JobQueue shared(first, 1);
   try {
     while (shared.next()) {
     }
     ADD_FAILURE();
-  } catch (const RankTrouble& trouble) {
+  } catch (const RankFailure& trouble) {
     EXPECT_EQ(trouble.status(), 7);
     EXPECT_STREQ(trouble.what(), "rank 1: no room");
   }
 }
 
-TEST(HelperGuard, TheEndOfARunIsNoTrouble) {
+TEST(RankGuard, TheEndOfARunIsNoTrouble) {
   Post post(2);
   ThreadRanks ranks(post, 1);
-  run_helper(
+  run_rank(
       ranks, [] { throw RunIsOver(); },
       [](const std::exception_ptr&) {
         ADD_FAILURE();

@@ -40,10 +40,10 @@ class Scaling(unittest.TestCase):
         self.assertAlmostEqual(fixed.compute, one.compute / 2560)  # as many as there are tiles
 
     def test_numbers_are_those_of_the_program(self) -> None:
-        helpers = (ROOT / "host/render/helpers.cpp").read_text()
+        workers = (ROOT / "host/render/workers.cpp").read_text()
         tiles = (ROOT / "host/render/tiles.h").read_text()
-        self.assertIn(f"kSeconds = {scaling.JOB_SECONDS};", helpers)
-        self.assertIn(f"kRate = {scaling.RATE / 1e6:.0f}e6;", helpers)
+        self.assertIn(f"kSeconds = {scaling.JOB_SECONDS};", workers)
+        self.assertIn(f"kRate = {scaling.RATE / 1e6:.0f}e6;", workers)
         self.assertIn(f": {scaling.EDGE};", tiles)
         self.assertIn(f"edge > {scaling.LEAST_EDGE} ", tiles)
 

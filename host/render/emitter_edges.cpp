@@ -1,16 +1,16 @@
-#include "host/render/lamp_edges.h"
+#include "host/render/emitter_edges.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "host/render/view_pyramid.h"
+#include "host/render/tile_frustum.h"
 
 namespace raygate {
 
-std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
-                            const PixelRect& tile, std::span<LampEdge> is_edge,
-                            std::span<RayWork> work) {
+std::size_t find_emitter_edges(const RenderJob& job, Finder& finder, const Film& film,
+                               const PixelRect& tile, std::span<EmitterEdge> is_edge,
+                               std::span<RayWork> work) {
   // Corners of pixels, up to so many beyond the tile's own.
   const int beyond = static_cast<int>(std::ceil(filter_radius(job.options.filter) - 0.5));
   const auto may_see = [&](const AreaLight& lamp) {
@@ -19,7 +19,7 @@ std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& fi
   if (std::ranges::none_of(job.lights.areas(), may_see)) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       const auto row = is_edge.subspan(film.index_of(tile.x0, y), std::size_t(tile.width()));
-      std::ranges::fill(row, LampEdge::kNo);
+      std::ranges::fill(row, EmitterEdge::kNo);
     }
     return 0;
   }
@@ -57,7 +57,8 @@ std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& fi
           is_one = emission_at(x + dx, y + dy) == first;
         }
       }
-      is_edge[film.index_of(tile.x0 + x, tile.y0 + y)] = is_one ? LampEdge::kNo : LampEdge::kYes;
+      is_edge[film.index_of(tile.x0 + x, tile.y0 + y)] =
+          is_one ? EmitterEdge::kNo : EmitterEdge::kYes;
     }
   }
   return rays.size();

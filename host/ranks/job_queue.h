@@ -14,11 +14,11 @@ namespace raygate {
 /// Jobs 0 to count - 1: each goes to the rank that asks first. Rank 0 hands the numbers out on a
 /// thread of its own while it works on jobs itself. All ranks make one of the same count; nobody
 /// else may use `ranks` meanwhile.
-class SharedJobs {
+class JobQueue {
  public:
-  SharedJobs(Ranks& ranks, int count) : ranks_(ranks), count_(count) {}
-  SharedJobs(const SharedJobs&) = delete;
-  SharedJobs& operator=(const SharedJobs&) = delete;
+  JobQueue(Ranks& ranks, int count) : ranks_(ranks), count_(count) {}
+  JobQueue(const JobQueue&) = delete;
+  JobQueue& operator=(const JobQueue&) = delete;
 
   /// A job for this rank; none when all have been begun. On rank 0 not before those of the other
   /// ranks have ended, or one of them could not go on; then throws what receive() does.

@@ -17,12 +17,12 @@ namespace raygate {
 
 /// Saves what there is of a picture now and then, and when a signal ends the run. The files say
 /// that they are partial.
-class Saver {
+class Checkpointer {
  public:
   /// The references must outlive this.
-  /// `outputs` are of the picture, `all` of the run: the same, but for a film.
-  Saver(const OutputOptions& outputs, const OutputOptions& all, const ExrMetadata& metadata,
-        int threads, ProgressBar& bar)
+  /// `outputs` are of the picture, `all` of the run: the same, but for an animation.
+  Checkpointer(const OutputOptions& outputs, const OutputOptions& all, const ExrMetadata& metadata,
+               int threads, ProgressBar& bar)
       : outputs_(outputs), all_(all), metadata_(metadata), threads_(threads), bar_(bar) {}
 
   /// What goes wrong is said once and tried again.

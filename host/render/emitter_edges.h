@@ -11,7 +11,7 @@
 namespace raygate {
 
 /// Whether a pixel is one of them.
-enum class LampEdge : std::uint8_t { kUnknown, kNo, kYes };
+enum class EmitterEdge : std::uint8_t { kUnknown, kNo, kYes };
 
 /// Finds them in a tile: `is_edge` is by pixel of the film's window.
 ///
@@ -24,8 +24,8 @@ enum class LampEdge : std::uint8_t { kUnknown, kNo, kYes };
 /// where it is so favour nothing. Lamps between all corners, smaller than pixels, are not found.
 /// Returns how many rays it took;
 /// what they cost is added to `work`, by pixel of the tile, unless that is empty.
-std::size_t find_lamp_edges(const RenderJob& job, Finder& finder, const Film& film,
-                            const PixelRect& tile, std::span<LampEdge> is_edge,
-                            std::span<RayWork> work);
+std::size_t find_emitter_edges(const RenderJob& job, Finder& finder, const Film& film,
+                               const PixelRect& tile, std::span<EmitterEdge> is_edge,
+                               std::span<RayWork> work);
 
 }  // namespace raygate

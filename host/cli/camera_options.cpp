@@ -1,4 +1,4 @@
-#include "host/cli/sky_lens_options.h"
+#include "host/cli/camera_options.h"
 
 #include <CLI/CLI.hpp>
 #include <limits>
@@ -21,7 +21,7 @@ double number_in(const char* option, const std::string& text, double low, double
 
 }  // namespace
 
-void declare_sky_lens_options(CLI::App& app, RawSkyLensOptions& raw) {
+void declare_camera_options(CLI::App& app, RawCameraOptions& raw) {
   const auto value = [&app](const char* names, std::string& text) {
     app.add_option(names, text)->take_last();
   };
@@ -33,7 +33,7 @@ void declare_sky_lens_options(CLI::App& app, RawSkyLensOptions& raw) {
   value("--environment-strength", raw.strength);
 }
 
-LensSetting parse_lens(const RawSkyLensOptions& raw, const LensSetting& setting) {
+LensSetting parse_lens(const RawCameraOptions& raw, const LensSetting& setting) {
   LensSetting lens = setting;
   if (!raw.projection.empty()) {
     lens.projection = choose<Projection>("--projection", raw.projection,
@@ -53,7 +53,7 @@ LensSetting parse_lens(const RawSkyLensOptions& raw, const LensSetting& setting)
 }
 
 std::optional<EnvironmentSetting> parse_environment(
-    const RawSkyLensOptions& raw, const std::optional<EnvironmentSetting>& setting) {
+    const RawCameraOptions& raw, const std::optional<EnvironmentSetting>& setting) {
   std::optional<EnvironmentSetting> environment = setting;
   if (!raw.environment.empty()) {
     environment.emplace();
@@ -75,7 +75,7 @@ std::optional<EnvironmentSetting> parse_environment(
   return environment;
 }
 
-std::vector<std::pair<std::string, std::string>> sky_lens_words(
+std::vector<std::pair<std::string, std::string>> camera_option_values(
     const Camera& camera, const std::optional<EnvironmentSetting>& environment) {
   std::vector<std::pair<std::string, std::string>> words;
   if (camera.projection() != Projection::kPerspective) {

@@ -1,4 +1,4 @@
-#include "host/render/view_pyramid.h"
+#include "host/render/tile_frustum.h"
 
 #include <array>
 
@@ -7,10 +7,10 @@
 namespace raygate {
 namespace {
 
-/// The pyramid from the eye through a part of the picture.
-class ViewPyramid {
+/// The frustum from the eye through a part of the picture.
+class TileFrustum {
  public:
-  ViewPyramid(const Camera& camera, const Film& film, const PixelRect& tile, double margin)
+  TileFrustum(const Camera& camera, const Film& film, const PixelRect& tile, double margin)
       : eye_(camera.eye()) {
     const double x0 = (tile.x0 - margin) / film.width, y0 = (tile.y0 - margin) / film.height,
                  x1 = (tile.x1 + margin) / film.width, y1 = (tile.y1 + margin) / film.height;
@@ -23,7 +23,7 @@ class ViewPyramid {
 
   /// Whether the box is surely outside one of the planes. Directions are floats: they turn by less
   /// than 2^-23, and the planes by little more.
-  [[nodiscard]] bool is_beside(const glm::vec3& low, const glm::vec3& high) const {
+  [[nodiscard]] bool is_outside(const glm::vec3& low, const glm::vec3& high) const {
     for (const glm::dvec3& normal : inwards_) {
       glm::dvec3 farthest_in;
       for (int k = 0; k < 3; ++k) {
@@ -39,9 +39,9 @@ class ViewPyramid {
   std::array<glm::dvec3, 4> inwards_;
 };
 
-/// Meets the boxes that are not surely beside the pyramid.
-struct PyramidVisitor {
-  const ViewPyramid& pyramid;
+/// Meets the boxes that are not surely beside the frustum.
+struct FrustumVisitor {
+  const TileFrustum& frustum;
 
   [[nodiscard]] static bool goes_on(float, Whole) { return true; }
   [[nodiscard]] static Whole rays_at(int) { return {}; }
@@ -50,7 +50,7 @@ struct PyramidVisitor {
     LaneMask met = 0;
     for (int i = 0; i < Bvh::kWidth; ++i) {
       const auto [low, high] = node.box(i);
-      if (low.x <= high.x && !pyramid.is_beside(low, high)) met |= 1u << i;
+      if (low.x <= high.x && !frustum.is_outside(low, high)) met |= 1u << i;
     }
     return met;
   }
@@ -61,8 +61,8 @@ struct PyramidVisitor {
 bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, const PixelRect& tile,
                       double margin) {
   if (!camera.is_pinhole()) return true;
-  const ViewPyramid pyramid(camera, film, tile, margin);
-  PyramidVisitor visitor{pyramid};
+  const TileFrustum frustum(camera, film, tile, margin);
+  FrustumVisitor visitor{frustum};
   WalkStack<Whole> stack({});
   Waiting<Whole> leaf;
   return next_leaf(bvh, visitor, stack, leaf);
@@ -70,7 +70,7 @@ bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, co
 
 bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
                  const Film& film, const PixelRect& tile, double margin) {
-  return !camera.is_pinhole() || !ViewPyramid(camera, film, tile, margin).is_beside(low, high);
+  return !camera.is_pinhole() || !TileFrustum(camera, film, tile, margin).is_outside(low, high);
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-#include "host/render/helping.h"
+#include "host/render/worker.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,28 +15,28 @@
 
 #include "host/base/stopwatch.h"
 #include "host/film/film_region.h"
-#include "host/render/shared_tile.h"
+#include "host/render/tile_message.h"
 #include "host/render/tile_renderer.h"
 
 namespace raygate {
 namespace {
 
 /// Threads that trace, and the one that called, which talks with rank 0.
-class Helper {
+class Worker {
  public:
-  Helper(const RenderJob& job, std::unique_ptr<Finder> first_finder,
+  Worker(const RenderJob& job, std::unique_ptr<Finder> first_finder,
          const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
-         std::span<LampEdge> lamp_edges, RenderStats& stats)
+         std::span<EmitterEdge> emitter_edges, RenderStats& stats)
       : job_(job),
         first_finder_(std::move(first_finder)),
         make_finder_(make_finder),
         progress_(progress),
         film_(film),
-        lamp_edges_(lamp_edges),
+        emitter_edges_(emitter_edges),
         stats_(stats) {}
-  Helper(const Helper&) = delete;
-  Helper& operator=(const Helper&) = delete;
-  ~Helper() { stop(); }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+  ~Worker() { stop(); }
 
   void run(Ranks& ranks) {
     const double busy = processor_seconds();
@@ -65,7 +65,7 @@ class Helper {
   bool talk(Ranks& ranks) {
     while (auto message = ranks.receive()) {
       if (message->about == About::kFinish) return false;
-      const auto tile = value_of<SharedTile>(message->bytes);
+      const auto tile = value_of<TileMessage>(message->bytes);
       if (const auto slice = slice_in(message->bytes); !slice.empty()) {
         set_region(film_, tile.rect, slice);
       }
@@ -80,7 +80,7 @@ class Helper {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, kLook, [this] { return error_ || !traced_.empty(); });
     if (error_) std::rethrow_exception(error_);
-    for (const SharedTile& tile : std::exchange(traced_, {})) {
+    for (const TileMessage& tile : std::exchange(traced_, {})) {
       ranks.send(0, About::kTraced, message_of(tile, region_bytes(film_, tile.rect)));
     }
     return true;
@@ -91,7 +91,7 @@ class Helper {
     try {
       auto finder = take_first_finder();
       if (!finder) finder = make_finder_();
-      TileRenderer renderer(job_, *finder, film_, lamp_edges_);
+      TileRenderer renderer(job_, *finder, film_, emitter_edges_);
       while (auto tile = next()) {
         Stopwatch watch;
         if (!trace(renderer, *tile)) break;
@@ -109,7 +109,7 @@ class Helper {
   }
 
   /// False if it was to stop. Nobody else has this tile's pixels meanwhile.
-  bool trace(TileRenderer& renderer, const SharedTile& tile) {
+  bool trace(TileRenderer& renderer, const TileMessage& tile) {
     const auto keep_going = [this] {
       const std::scoped_lock lock(mutex_);
       return !stopped_;
@@ -126,11 +126,11 @@ class Helper {
     return std::move(first_finder_);
   }
 
-  std::optional<SharedTile> next() {
+  std::optional<TileMessage> next() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return stopped_ || !to_do_.empty(); });
     if (stopped_) return std::nullopt;
-    const SharedTile tile = to_do_.front();
+    const TileMessage tile = to_do_.front();
     to_do_.pop_front();
     return tile;
   }
@@ -148,10 +148,10 @@ class Helper {
   const FinderFactory& make_finder_;
   const ProgressFunction& progress_;
   Film& film_;
-  std::span<LampEdge> lamp_edges_;
+  std::span<EmitterEdge> emitter_edges_;
   RenderStats& stats_;
-  std::deque<SharedTile> to_do_;
-  std::vector<SharedTile> traced_;
+  std::deque<TileMessage> to_do_;
+  std::vector<TileMessage> traced_;
   bool stopped_ = false;
   std::exception_ptr error_;
   std::vector<std::jthread> threads_;  // last: they use the others
@@ -159,10 +159,11 @@ class Helper {
 
 }  // namespace
 
-void help(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
-          const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
-          std::span<LampEdge> lamp_edges, RenderStats& stats) {
-  Helper(job, std::move(first_finder), make_finder, progress, film, lamp_edges, stats).run(ranks);
+void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
+                const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
+                std::span<EmitterEdge> emitter_edges, RenderStats& stats) {
+  Worker(job, std::move(first_finder), make_finder, progress, film, emitter_edges, stats)
+      .run(ranks);
 }
 
 }  // namespace raygate

@@ -13,7 +13,7 @@
 namespace raygate {
 
 /// The pictures of one film, written and not yet named.
-struct ReadyPictures {
+struct StagedFiles {
   std::vector<AtomicFile> files;
   std::vector<std::filesystem::path> paths;
   std::vector<std::string> legends;  ///< of the false-colour pictures
@@ -21,7 +21,7 @@ struct ReadyPictures {
 
 /// Encodes and writes; all or nothing. A picture of which only a part was rendered says so in its
 /// metadata (see ExrMetadata::partial). Throws InputError as AtomicFile does.
-[[nodiscard]] ReadyPictures make_ready(const OutputOptions& options, const Film& film,
-                                       const ExrMetadata& metadata, int threads = 1);
+[[nodiscard]] StagedFiles stage_files(const OutputOptions& options, const Film& film,
+                                      const ExrMetadata& metadata, int threads = 1);
 
 }  // namespace raygate

@@ -1,5 +1,5 @@
 // Samples by error: the estimate holds, and the film does not depend on how it came about.
-#include "host/render/sample_choice.h"
+#include "host/render/adaptive_sampling.h"
 
 #include <gtest/gtest.h>
 
@@ -140,18 +140,18 @@ TEST(ErrorEstimate, IsCarefulWhereSamplesAreEvenlySpread) {
   }
 }
 
-TEST(SampleChoice, LooksAreAtPowersOfTwo) {
-  EXPECT_EQ(next_look(0), 8);
-  EXPECT_EQ(next_look(7), 8);
-  EXPECT_EQ(next_look(8), 16);
-  EXPECT_EQ(next_look(100), 128);
-  EXPECT_TRUE(is_look(8) && is_look(16) && is_look(1024));
-  EXPECT_FALSE(is_look(4) || is_look(12) || is_look(0));
-  EXPECT_TRUE(is_done(2.0f, 16, 2.0));
-  EXPECT_FALSE(is_done(2.1f, 16, 2.0));
-  EXPECT_TRUE(is_done(4.0f, 32, 2.0));
-  EXPECT_FALSE(is_done(0.0f, 8, 2.0)) << "it has not been judged";
-  EXPECT_FALSE(is_done(0.0f, 24, 2.0)) << "no look";
+TEST(AdaptiveSampling, LooksAreAtPowersOfTwo) {
+  EXPECT_EQ(next_error_check(0), 8);
+  EXPECT_EQ(next_error_check(7), 8);
+  EXPECT_EQ(next_error_check(8), 16);
+  EXPECT_EQ(next_error_check(100), 128);
+  EXPECT_TRUE(is_error_check(8) && is_error_check(16) && is_error_check(1024));
+  EXPECT_FALSE(is_error_check(4) || is_error_check(12) || is_error_check(0));
+  EXPECT_TRUE(has_converged(2.0f, 16, 2.0));
+  EXPECT_FALSE(has_converged(2.1f, 16, 2.0));
+  EXPECT_TRUE(has_converged(4.0f, 32, 2.0));
+  EXPECT_FALSE(has_converged(0.0f, 8, 2.0)) << "it has not been judged";
+  EXPECT_FALSE(has_converged(0.0f, 24, 2.0)) << "no look";
 }
 
 /// Blocks that need many samples and such that need few.
@@ -175,7 +175,7 @@ bool same_film(const Film& a, const Film& b) {
          same_bytes(a.sums.color, b.sums.color);
 }
 
-TEST(SampleChoice, GivesSamplesWhereTheErrorIs) {
+TEST(AdaptiveSampling, GivesSamplesWhereTheErrorIs) {
   const Uneven uneven;
   RenderStats stats;
   const Film film = uneven.film(adaptive(44, 34, 200, 0.4), cpu(uneven.bvh), stats);
@@ -191,7 +191,8 @@ TEST(SampleChoice, GivesSamplesWhereTheErrorIs) {
       counts.insert(samples);
       taken += samples;
       if (samples < 200) {
-        EXPECT_TRUE(is_done(film.sums.error[i], static_cast<int>(samples), 0.4)) << x << " " << y;
+        EXPECT_TRUE(has_converged(film.sums.error[i], static_cast<int>(samples), 0.4))
+            << x << " " << y;
       }
     }
   }
@@ -199,11 +200,11 @@ TEST(SampleChoice, GivesSamplesWhereTheErrorIs) {
   EXPECT_EQ(*counts.rbegin(), 200u);
   EXPECT_GE(counts.size(), 4u);
   EXPECT_EQ(stats.spare_samples, 44u * 34u * 200u - taken);
-  EXPECT_EQ(share_done(film, 200, 0.4), 1.0);
-  EXPECT_LT(share_done(film, 400, 0.4), 1.0);
+  EXPECT_EQ(fraction_done(film, 200, 0.4), 1.0);
+  EXPECT_LT(fraction_done(film, 400, 0.4), 1.0);
 }
 
-TEST(SampleChoice, FilmDoesNotDependOnThreadsTilesOrEngine) {
+TEST(AdaptiveSampling, FilmDoesNotDependOnThreadsTilesOrEngine) {
   const Uneven uneven;
   const RenderOptions options = adaptive(44, 34, 72, 1.0);
   const Film whole = uneven.film(options);
@@ -227,7 +228,7 @@ TEST(SampleChoice, FilmDoesNotDependOnThreadsTilesOrEngine) {
   }
 }
 
-TEST(SampleChoice, GoesOnFromAnyFilm) {
+TEST(AdaptiveSampling, GoesOnFromAnyFilm) {
   const Uneven uneven;
   const RenderOptions options = adaptive(44, 34, 150, 0.5);
   const Film whole = uneven.film(options);
@@ -249,7 +250,7 @@ TEST(SampleChoice, GoesOnFromAnyFilm) {
 }
 
 // Blocks stop where they happen to have a small error, which could favour values on one side.
-TEST(SampleChoice, StoppingFavoursNoSideInTheLarge) {
+TEST(AdaptiveSampling, StoppingFavoursNoSideInTheLarge) {
   double sum = 0.0, squares = 0.0, samples = 0.0;
   int blocks = 0;
   with_seeds(furnace(0.8f), kInside, adaptive(8, 8, 512, 1.5), [&](const Film& film) {

@@ -1,4 +1,4 @@
-#include "host/render/crew.h"
+#include "host/render/coordinator.h"
 
 #include <algorithm>
 #include <chrono>
@@ -13,9 +13,9 @@
 
 #include "host/base/stopwatch.h"
 #include "host/ranks/ranks.h"
-#include "host/render/helpers.h"
-#include "host/render/sample_choice.h"
-#include "host/render/schedule.h"
+#include "host/render/adaptive_sampling.h"
+#include "host/render/remote_workers.h"
+#include "host/render/tile_queue.h"
 #include "host/render/tile_renderer.h"
 
 namespace raygate {
@@ -23,23 +23,23 @@ namespace {
 
 /// The threads that trace, and the one that called, which watches over them: only this one reports
 /// and saves, so that nobody waits for a terminal or a disk.
-class Crew {
+class Coordinator {
  public:
-  Crew(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
-       const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
-       std::span<LampEdge> lamp_edges, RenderStats& stats)
+  Coordinator(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
+              const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
+              std::span<EmitterEdge> emitter_edges, RenderStats& stats)
       : job_(job),
         tiles_(tiles),
         first_finder_(std::move(first_finder)),
         make_finder_(make_finder),
         report_(report),
         film_(film),
-        lamp_edges_(lamp_edges),
+        emitter_edges_(emitter_edges),
         stats_(stats),
-        schedule_(tiles.count, tiles.passes(), job.options.begun != nullptr) {
+        queue_(tiles.count, tiles.passes(), job.options.begun != nullptr) {
     Ranks* const ranks = job.options.ranks;
     if (ranks == nullptr || ranks->count() == 1) return;
-    helpers_.emplace(*ranks, tiles, job.options.first_sample, film);
+    remote_.emplace(*ranks, tiles, job.options.first_sample, film);
     grace_ = {};
   }
 
@@ -49,7 +49,7 @@ class Crew {
     {
       const int wanted = std::min(job_.options.threads, tiles_.count);
       std::jthread server;
-      if (helpers_) server = std::jthread([this] { serve(); });
+      if (remote_) server = std::jthread([this] { serve(); });
       std::vector<std::jthread> threads;
       try {
         while (static_cast<int>(threads.size()) < wanted) threads.emplace_back([this] { work(); });
@@ -63,10 +63,10 @@ class Crew {
       watch(static_cast<int>(threads.size()));
     }
     if (error_) {
-      if (helpers_ && job_.options.urgent_snapshot) job_.options.urgent_snapshot(film_);
+      if (remote_ && job_.options.urgent_snapshot) job_.options.urgent_snapshot(film_);
       std::rethrow_exception(error_);
     }
-    stats_.cancelled = !schedule_.all_ended();
+    stats_.cancelled = !queue_.all_ended();
     if (!stats_.cancelled && report_) report_(1.0);
   }
 
@@ -81,7 +81,7 @@ class Crew {
     try {
       auto finder = take_first_finder();
       if (!finder) finder = make_finder_();
-      TileRenderer renderer(job_, *finder, film_, lamp_edges_);
+      TileRenderer renderer(job_, *finder, film_, emitter_edges_);
       const auto keep_going = [this] {
         if (is_alone_) look();
         const std::scoped_lock lock(mutex_);
@@ -92,7 +92,7 @@ class Crew {
         if (!renderer.trace(tiles_[step->tile], end, keep_going)) break;
         const std::scoped_lock lock(mutex_);
         renderer.write();
-        schedule_.end(step->tile);
+        queue_.end(step->tile);
         changed_.notify_all();
       }
       const std::scoped_lock lock(mutex_);
@@ -109,8 +109,8 @@ class Crew {
   void serve() {
     try {
       std::unique_lock lock(mutex_);
-      while (!stopped_ && !(schedule_.all_ended() && helpers_->finish(stats_))) {
-        if (!schedule_.all_ended() && helpers_->serve(schedule_)) changed_.notify_all();
+      while (!stopped_ && !(queue_.all_ended() && remote_->finish(stats_))) {
+        if (!queue_.all_ended() && remote_->serve(queue_)) changed_.notify_all();
         changed_.wait_for(lock, kServe);
       }
     } catch (...) {
@@ -127,12 +127,12 @@ class Crew {
   }
 
   /// None when there is none left, or the render is to stop.
-  std::optional<Schedule::Step> next() {
+  std::optional<TileQueue::Step> next() {
     std::unique_lock lock(mutex_);
-    std::optional<Schedule::Step> step;
+    std::optional<TileQueue::Step> step;
     changed_.wait(lock, [&] {
-      if (stopped_ || schedule_.all_begun()) return true;
-      step = schedule_.begin();
+      if (stopped_ || queue_.all_begun()) return true;
+      step = queue_.begin();
       return step.has_value();
     });
     return step;
@@ -141,7 +141,7 @@ class Crew {
   /// Until so many threads are gone, and all other ranks have said their last word.
   void watch(int threads) {
     std::unique_lock lock(mutex_);
-    while (gone_ < threads || (helpers_ && !served_)) {
+    while (gone_ < threads || (remote_ && !served_)) {
       changed_.wait_for(lock, kLook);
       lock.unlock();
       look();
@@ -161,17 +161,17 @@ class Crew {
         }
         return;
       }
-      const double fraction = share_done();
+      const double fraction = fraction_done();
       lock.unlock();
       if (report_ && !report_(fraction)) stop();
       lock.lock();
-      if (helpers_ && job_.options.is_urgent && job_.options.is_urgent()) {
+      if (remote_ && job_.options.is_urgent && job_.options.is_urgent()) {
         const Film film = film_;
         lock.unlock();
         job_.options.urgent_snapshot(film);
         return;
       }
-      if (stopped_ || schedule_.all_ended() || !job_.options.snapshot) return;
+      if (stopped_ || queue_.all_ended() || !job_.options.snapshot) return;
       since_snapshot_ += watch_.lap();
       if (since_snapshot_ < job_.options.snapshot_seconds) return;
       const Film film = film_;
@@ -185,12 +185,12 @@ class Crew {
   }
 
   /// Looks at the film now and then, if that tells.
-  double share_done() {
+  double fraction_done() {
     const double wanted = job_.options.error;
-    if (wanted == 0.0) return schedule_.fraction();
+    if (wanted == 0.0) return queue_.fraction();
     const Clock::time_point now = Clock::now();
     if (now >= next_share_) {
-      share_ = raygate::share_done(film_, job_.options.samples, wanted);
+      share_ = raygate::fraction_done(film_, job_.options.samples, wanted);
       next_share_ = now + kShare;
     }
     return share_;
@@ -219,10 +219,10 @@ class Crew {
   std::mutex mutex_;  // of all that follows
   std::condition_variable changed_;
   Film& film_;
-  std::span<LampEdge> lamp_edges_;
+  std::span<EmitterEdge> emitter_edges_;
   RenderStats& stats_;
-  Schedule schedule_;
-  std::optional<Helpers> helpers_;  // none: there is one rank
+  TileQueue queue_;
+  std::optional<RemoteWorkers> remote_;  // none: there is one rank
   bool served_ = false;
   int gone_ = 0;
   bool stopped_ = false;
@@ -241,8 +241,9 @@ class Crew {
 
 void trace_all(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
                const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
-               std::span<LampEdge> lamp_edges, RenderStats& stats) {
-  Crew(job, tiles, std::move(first_finder), make_finder, report, film, lamp_edges, stats).run();
+               std::span<EmitterEdge> emitter_edges, RenderStats& stats) {
+  Coordinator(job, tiles, std::move(first_finder), make_finder, report, film, emitter_edges, stats)
+      .run();
 }
 
 }  // namespace raygate

@@ -6,7 +6,7 @@
 
 #include "host/film/film.h"
 #include "host/find/finder.h"
-#include "host/render/lamp_edges.h"
+#include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
 #include "host/render/renderer.h"
 #include "host/render/tiles.h"
@@ -14,9 +14,9 @@
 namespace raygate {
 
 /// Traces on options.threads threads until all is in `film`, or `report` says stop
-/// (RenderStats::cancelled). Throws what a finder throws, and RankTrouble.
+/// (RenderStats::cancelled). Throws what a finder throws, and RankFailure.
 void trace_all(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
                const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
-               std::span<LampEdge> lamp_edges, RenderStats& stats);
+               std::span<EmitterEdge> emitter_edges, RenderStats& stats);
 
 }  // namespace raygate

@@ -16,17 +16,17 @@ inline constexpr int kErrorBlock = 4;
 
 /// Looks are at 8, 16, 32, ... samples a pixel; the first tells no error yet, the second is the
 /// first after which a block may be done.
-inline constexpr int kFirstLook = 8, kFirstJudged = 16;
+inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 
 /// The first look after `samples` of them.
-[[nodiscard]] inline int next_look(int samples) {
-  int look = kFirstLook;
+[[nodiscard]] inline int next_error_check(int samples) {
+  int look = kFirstErrorCheck;
   while (look <= samples) look *= 2;
   return look;
 }
 
-[[nodiscard]] inline bool is_look(int samples) {
-  return samples >= kFirstLook && (samples & (samples - 1)) == 0;
+[[nodiscard]] inline bool is_error_check(int samples) {
+  return samples >= kFirstErrorCheck && (samples & (samples - 1)) == 0;
 }
 
 /// Whether pixels of so many samples need no more, if FilmSums::error says `error`, and `wanted`
@@ -37,15 +37,16 @@ inline constexpr int kFirstLook = 8, kFirstJudged = 16;
 /// stops where that is no longer worth it, whatever the pixel. A limit that is the same for all n
 /// would give pixels samples by the square of their noise (s, of one sample), where the mean error
 /// is least for the samples if they get them by the power 2/3.
-[[nodiscard]] inline bool is_done(float error, int samples, double wanted) {
-  return samples >= kFirstJudged && is_look(samples) && error <= wanted * samples / kFirstJudged;
+[[nodiscard]] inline bool has_converged(float error, int samples, double wanted) {
+  return samples >= kMinAdaptiveSamples && is_error_check(samples) &&
+         error <= wanted * samples / kMinAdaptiveSamples;
 }
 
 /// How many samples a pixel will have before that, if its error goes on falling as 1 / sqrt(n).
 /// At least `samples` + 1.
 [[nodiscard]] inline double expected_samples(float error, int samples, double wanted) {
   const double noise = double{error} * std::sqrt(samples);
-  return std::max(samples + 1.0, std::cbrt(std::pow(kFirstJudged * noise / wanted, 2.0)));
+  return std::max(samples + 1.0, std::cbrt(std::pow(kMinAdaptiveSamples * noise / wanted, 2.0)));
 }
 
 /// Looks at the block from pixel (x, y) on, all of whose pixels have the same number of samples:
@@ -57,9 +58,9 @@ inline constexpr int kFirstLook = 8, kFirstJudged = 16;
 /// is (a + b) / 2, a change of (b - a) / 2. They are scrambled Sobol points, whose halves
 /// fill each other's gaps, so the change is a little larger than the error, never smaller on
 /// average. The interval of 95 % is 2.12 errors to each side: Student's t of 16 numbers.
-void look_at_block(Film& film, int x, int y, double exposure);
+void update_block_error(Film& film, int x, int y, double exposure);
 
 /// The share of a render that is done, in [0, 1], by `film`; samples of up to `most` a pixel.
-[[nodiscard]] double share_done(const Film& film, int most, double wanted);
+[[nodiscard]] double fraction_done(const Film& film, int most, double wanted);
 
 }  // namespace raygate

@@ -1,9 +1,9 @@
-#include "host/cli/saver.h"
+#include "host/cli/checkpointer.h"
 
 #include <algorithm>
 #include <exception>
 
-#include "host/cli/outputs.h"
+#include "host/cli/output_files.h"
 #include "host/cli/process.h"
 
 namespace raygate {
@@ -26,7 +26,7 @@ std::string listed(const std::vector<std::filesystem::path>& paths) {
   return text;
 }
 
-void Saver::save_urgently(const Film& film) {
+void Checkpointer::save_urgently(const Film& film) {
   if (!outputs_.exr) return;
   OutputOptions film_alone = outputs_;
   film_alone.png.reset();
@@ -36,7 +36,7 @@ void Saver::save_urgently(const Film& film) {
   print_warning("a rank may have died; " + going_on(all_));
 }
 
-void Saver::end_interrupted(const Film& film) const {
+void Checkpointer::end_interrupted(const Film& film) const {
   const int signal = interruption();
   if (is_empty(film)) {
     throw Interrupted(signal, "no file was changed");
@@ -49,7 +49,7 @@ void Saver::end_interrupted(const Film& film) const {
                                 (goes_on ? "; " + going_on(all_) : ""));
 }
 
-void Saver::save(const Film& film, const OutputOptions& outputs) {
+void Checkpointer::save(const Film& film, const OutputOptions& outputs) {
   std::string trouble;
   try {
     write(film, outputs);
@@ -63,10 +63,10 @@ void Saver::save(const Film& film, const OutputOptions& outputs) {
   last_trouble_ = trouble;
 }
 
-void Saver::write(const Film& film, const OutputOptions& outputs) const {
+void Checkpointer::write(const Film& film, const OutputOptions& outputs) const {
   ExrMetadata metadata = metadata_;
   metadata.partial = true;
-  for (AtomicFile& file : make_ready(outputs, film, metadata, threads_).files) file.commit();
+  for (AtomicFile& file : stage_files(outputs, film, metadata, threads_).files) file.commit();
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-#include "host/cli/outputs.h"
+#include "host/cli/output_files.h"
 
 #include <algorithm>
 
@@ -10,9 +10,9 @@
 
 namespace raygate {
 
-ReadyPictures make_ready(const OutputOptions& options, const Film& film,
-                         const ExrMetadata& metadata, int threads) {
-  ReadyPictures ready;
+StagedFiles stage_files(const OutputOptions& options, const Film& film, const ExrMetadata& metadata,
+                        int threads) {
+  StagedFiles ready;
   const auto add = [&](const std::filesystem::path& path, const std::string& bytes) {
     ready.files.emplace_back(path, bytes);
     ready.paths.push_back(path);

@@ -1,5 +1,5 @@
 // Lamps that the camera sees begin and end where they do, to a fraction of what a sample is.
-#include "host/render/lamp_edges.h"
+#include "host/render/emitter_edges.h"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ RenderOptions options(int samples, ReconstructionFilter filter = ReconstructionF
           .integrator = IntegratorKind::kPath};
 }
 
-std::vector<LampEdge> marks(const Panel& panel, ReconstructionFilter filter, std::size_t& rays) {
+std::vector<EmitterEdge> marks(const Panel& panel, ReconstructionFilter filter, std::size_t& rays) {
   const Bvh bvh(panel.scene);
   const Clearances clearances(bvh);
   const Lights lights(panel.scene, bvh);
@@ -57,15 +57,15 @@ std::vector<LampEdge> marks(const Panel& panel, ReconstructionFilter filter, std
   Film film;
   film.width = film.height = kSide;
   film.window = {0, 0, kSide, kSide};
-  std::vector<LampEdge> found(std::size_t{kSide} * kSide);
-  rays = find_lamp_edges({panel.scene, bvh, panel.camera, asked, lights, clearances, {}}, finder,
-                         film, film.window, found, {});
+  std::vector<EmitterEdge> found(std::size_t{kSide} * kSide);
+  rays = find_emitter_edges({panel.scene, bvh, panel.camera, asked, lights, clearances, {}}, finder,
+                            film, film.window, found, {});
   return found;
 }
 
-TEST(LampEdges, ArePixelsWithCornersOnBothSides) {
+TEST(EmitterEdges, ArePixelsWithCornersOnBothSides) {
   std::size_t rays = 0;
-  const std::vector<LampEdge> found =
+  const std::vector<EmitterEdge> found =
       marks(Panel(2.5f, 1.5f, 6.5f, 5.5f), ReconstructionFilter::kBox, rays);
   EXPECT_EQ(rays, std::size_t{kSide + 1} * (kSide + 1));
   for (int y = 0; y < kSide; ++y) {
@@ -73,21 +73,21 @@ TEST(LampEdges, ArePixelsWithCornersOnBothSides) {
       const bool is_near = x >= 2 && x <= 6 && y >= 1 && y <= 5;
       const bool is_within = x >= 3 && x <= 5 && y >= 2 && y <= 4;
       EXPECT_EQ(found[std::size_t(y * kSide + x)],
-                is_near && !is_within ? LampEdge::kYes : LampEdge::kNo)
+                is_near && !is_within ? EmitterEdge::kYes : EmitterEdge::kNo)
           << x << " " << y;
     }
   }
 }
 
-TEST(LampEdges, AreAsFarAsTheFilterReaches) {
+TEST(EmitterEdges, AreAsFarAsTheFilterReaches) {
   std::size_t rays = 0;
-  const std::vector<LampEdge> found =
+  const std::vector<EmitterEdge> found =
       marks(Panel(2.5f, -9.0f, 20.0f, 20.0f), ReconstructionFilter::kBlackmanHarris, rays);
   for (int x = 0; x < kSide; ++x)
-    EXPECT_EQ(found[std::size_t(x)], x >= 1 && x <= 3 ? LampEdge::kYes : LampEdge::kNo) << x;
+    EXPECT_EQ(found[std::size_t(x)], x >= 1 && x <= 3 ? EmitterEdge::kYes : EmitterEdge::kNo) << x;
 }
 
-TEST(LampEdges, AreNotLookedForWhereNoLampCanBe) {
+TEST(EmitterEdges, AreNotLookedForWhereNoLampCanBe) {
   std::size_t rays = 0;
   marks(Panel(20.0f, 2.0f, 22.0f, 3.0f), ReconstructionFilter::kBox, rays);
   EXPECT_EQ(rays, 0u);
@@ -118,7 +118,7 @@ double error(const Panel& panel, float left, float upper, float right, float low
 
 // Of an edge along an axis, n samples alone are off by 0.4 / n in the mean. Eight times as many are
 // off by an eighth, and by a little more at corners, and where their number is no power of two.
-TEST(LampEdges, AreSharperThanTheSamplesAlone) {
+TEST(EmitterEdges, AreSharperThanTheSamplesAlone) {
   for (const Projection projection : {Projection::kPerspective, Projection::kOrthographic}) {
     for (const int samples : {4, 10, 16}) {
       const float left = 2.3f, upper = 1.6f, right = 6.45f, lower = 5.2f;

@@ -15,7 +15,7 @@ namespace raygate {
 /// are added up in their order; tiles do not wait for each other. A tile stays with the rank that
 /// has begun it as long as there is another one for whoever asks: what there is of it need not
 /// travel then.
-class Schedule {
+class TileQueue {
  public:
   struct Step {
     int tile, pass, end_pass;  ///< passes [pass, end_pass)
@@ -23,7 +23,7 @@ class Schedule {
   };
 
   /// `is_begun`: rank 0 has something of all tiles, from an earlier run.
-  Schedule(int tiles, int passes, bool is_begun = false)
+  TileQueue(int tiles, int passes, bool is_begun = false)
       : passes_(passes),
         steps_(std::int64_t{tiles} * passes),
         waiting_(static_cast<std::size_t>(tiles)),

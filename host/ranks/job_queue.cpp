@@ -1,4 +1,4 @@
-#include "host/ranks/shared_jobs.h"
+#include "host/ranks/job_queue.h"
 
 #include <chrono>
 
@@ -9,7 +9,7 @@ constexpr std::chrono::milliseconds kLook{1};  // between looks for a message
 
 }  // namespace
 
-std::optional<int> SharedJobs::next() {
+std::optional<int> JobQueue::next() {
   if (ranks_.index() != 0) {
     ranks_.send(0, About::kNext, {});
     while (true) {
@@ -30,7 +30,7 @@ std::optional<int> SharedJobs::next() {
 }
 
 /// Until each of the others has heard that there is no more.
-void SharedJobs::serve(const std::stop_token& stop) {
+void JobQueue::serve(const std::stop_token& stop) {
   try {
     for (int gone = 0; gone < ranks_.count() - 1 && !stop.stop_requested();) {
       if (const auto message = ranks_.receive()) {

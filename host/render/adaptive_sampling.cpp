@@ -1,4 +1,4 @@
-#include "host/render/sample_choice.h"
+#include "host/render/adaptive_sampling.h"
 
 #include <algorithm>
 #include <cassert>
@@ -7,7 +7,7 @@
 
 namespace raygate {
 
-void look_at_block(Film& film, int x, int y, double exposure) {
+void update_block_error(Film& film, int x, int y, double exposure) {
   FilmSums& sums = film.sums;
   const PixelRect block{x, y, std::min(x + kErrorBlock, film.window.x1),
                         std::min(y + kErrorBlock, film.window.y1)};
@@ -25,13 +25,13 @@ void look_at_block(Film& film, int x, int y, double exposure) {
     sums.shown[i] = shown;
     squares += change * change;
   });
-  if (samples < kFirstJudged) return;
+  if (samples < kMinAdaptiveSamples) return;
   const double pixels = static_cast<double>(block.width()) * block.height();
   const auto error = static_cast<float>(std::sqrt(squares / pixels));
   visit([&](std::size_t i) { sums.error[i] = error; });
 }
 
-double share_done(const Film& film, int most, double wanted) {
+double fraction_done(const Film& film, int most, double wanted) {
   constexpr std::size_t kAsked = 4096;  // pixels, about
   const FilmSums& sums = film.sums;
   const std::size_t step = sums.samples.size() / kAsked | 1;  // odd, to come through all columns
@@ -39,13 +39,13 @@ double share_done(const Film& film, int most, double wanted) {
   for (std::size_t i = 0; i < sums.samples.size(); i += step) {
     const auto samples = static_cast<int>(sums.samples[i]);
     taken += samples;
-    if (samples < kFirstJudged) {
+    if (samples < kMinAdaptiveSamples) {
       ++unknown;
       left -= samples;
       continue;
     }
     double in_the_end = samples;
-    if (!is_done(sums.error[i], samples, wanted) && samples < most) {
+    if (!has_converged(sums.error[i], samples, wanted) && samples < most) {
       in_the_end = std::min<double>(most, expected_samples(sums.error[i], samples, wanted));
     }
     ++judged;

@@ -6,7 +6,7 @@
 
 #include "host/film/film.h"
 #include "host/find/finder.h"
-#include "host/render/lamp_edges.h"
+#include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
 #include "host/render/renderer.h"
 
@@ -14,8 +14,8 @@ namespace raygate {
 
 /// Helps rank 0, on options.threads threads, until all is traced. `film`, with sums, becomes its
 /// notebook. Throws what a finder throws, and RunIsOver.
-void help(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
-          const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
-          std::span<LampEdge> lamp_edges, RenderStats& stats);
+void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
+                const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
+                std::span<EmitterEdge> emitter_edges, RenderStats& stats);
 
 }  // namespace raygate

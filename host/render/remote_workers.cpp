@@ -1,4 +1,4 @@
-#include "host/render/helpers.h"
+#include "host/render/remote_workers.h"
 
 #include <time.h>
 
@@ -6,7 +6,7 @@
 #include <cassert>
 
 #include "host/film/film_region.h"
-#include "host/render/shared_tile.h"
+#include "host/render/tile_message.h"
 
 namespace raygate {
 namespace {
@@ -24,18 +24,18 @@ double thread_seconds() {
 
 }  // namespace
 
-Helpers::Helpers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film)
+RemoteWorkers::RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film)
     : ranks_(ranks),
       tiles_(tiles),
       first_sample_(first_sample),
       film_(film),
       room_(static_cast<std::size_t>(ranks.count()), 0) {}
 
-bool Helpers::serve(Schedule& schedule) {
+bool RemoteWorkers::serve(TileQueue& queue) {
   const double start = thread_seconds();
   bool came_back = false, did_something = false;
   while (const auto message = ranks_.receive()) {
-    take(*message, schedule);
+    take(*message, queue);
     came_back = came_back || message->about == About::kTraced;
     did_something = true;
   }
@@ -44,7 +44,7 @@ bool Helpers::serve(Schedule& schedule) {
     for (int rank = 1; rank < ranks_.count(); ++rank) {
       int& room = room_[static_cast<std::size_t>(rank)];
       if (room == 0) continue;
-      const auto step = schedule.begin(rank, most_passes(schedule));
+      const auto step = queue.begin(rank, most_passes(queue));
       if (!step) break;
       give(rank, *step);
       --room;
@@ -55,15 +55,15 @@ bool Helpers::serve(Schedule& schedule) {
   return came_back;
 }
 
-void Helpers::take(const Message& message, Schedule& schedule) {
+void RemoteWorkers::take(const Message& message, TileQueue& queue) {
   int& room = room_[static_cast<std::size_t>(message.from)];
   if (message.about == About::kRoom) {
     room = value_of<int>(message.bytes);
     most_room_ += room;
   } else if (message.about == About::kTraced) {
-    const auto tile = value_of<SharedTile>(message.bytes);
+    const auto tile = value_of<TileMessage>(message.bytes);
     set_region(film_, tile.rect, slice_in(message.bytes));
-    schedule.end(tile.number);
+    queue.end(tile.number);
     seconds_ += tile.seconds;
     passes_ += (tile.last - tile.end) / tile.step + 1;
     ++tiles_back_;
@@ -74,8 +74,8 @@ void Helpers::take(const Message& message, Schedule& schedule) {
 
 /// Fewer and fewer towards the end, for all to end at once; and no more than take a second, or as
 /// long as so many ranks need for rank 0 to keep up with them.
-int Helpers::most_passes(const Schedule& schedule) const {
-  const double share = static_cast<double>(schedule.left()) / (4.0 * most_room_);
+int RemoteWorkers::most_passes(const TileQueue& queue) const {
+  const double share = static_cast<double>(queue.left()) / (4.0 * most_room_);
   if (passes_ == 0) return 1;
   const double slice = static_cast<double>(bytes_back_) / static_cast<double>(tiles_back_);
   const double seconds = std::max(kSeconds, most_room_ * slice / kRate);
@@ -83,19 +83,19 @@ int Helpers::most_passes(const Schedule& schedule) const {
   return static_cast<int>(std::clamp(std::min(share, in_time), 1.0, 1e6));
 }
 
-void Helpers::give(int rank, const Schedule::Step& step) {
+void RemoteWorkers::give(int rank, const TileQueue::Step& step) {
   const auto samples = [&](int pass) { return first_sample_ + tiles_.samples_after(pass); };
-  const SharedTile tile{.number = step.tile,
-                        .rect = tiles_[step.tile],
-                        .end = samples(step.pass),
-                        .step = tiles_.samples_per_pass,
-                        .last = samples(step.end_pass - 1),
-                        .seconds = 0.0};
+  const TileMessage tile{.number = step.tile,
+                         .rect = tiles_[step.tile],
+                         .end = samples(step.pass),
+                         .step = tiles_.samples_per_pass,
+                         .last = samples(step.end_pass - 1),
+                         .seconds = 0.0};
   ranks_.send(rank, About::kTile,
               message_of(tile, step.moves ? region_bytes(film_, tile.rect) : std::string()));
 }
 
-bool Helpers::finish(RenderStats& stats) {
+bool RemoteWorkers::finish(RenderStats& stats) {
   for (int rank = 1; !told_ && rank < ranks_.count(); ++rank) ranks_.send(rank, About::kFinish, {});
   told_ = true;
   while (const auto message = ranks_.receive()) {

@@ -16,11 +16,11 @@ namespace raygate {
 
 /// The cameras of all frames, or of the one picture; lamps for a scene that has none, which go with
 /// the camera, so that no frame shows the scene's shadowed side; and whether there is a ground.
-class Shots {
+class CameraSequence {
  public:
   /// Of a scene as the file has it, which is left as it is. `options` must outlive this. Throws
   /// InputError as Camera::look_at and frame_scene.
-  Shots(const Options& options, Scene& scene);
+  CameraSequence(const Options& options, Scene& scene);
 
   /// Gives `scene`, the same one, the light of frame `number`, from 1; returns its camera.
   const Camera& light(int number, Scene& scene) const;
@@ -36,7 +36,7 @@ class Shots {
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> options() const;
 
  private:
-  struct Shot {
+  struct Frame {
     Camera camera;
     std::vector<PointLight> lights;
     glm::vec3 background{0.0f};
@@ -48,7 +48,7 @@ class Shots {
   const Options& options_;
   std::optional<CameraSetting> given_;  // on the command line, in the scene file or the scene
   View view_;                           // where it is not given
-  std::vector<Shot> shots_;
+  std::vector<Frame> frames_;
   bool has_ground_ = false;
   std::string text_;
 };

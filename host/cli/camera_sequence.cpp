@@ -1,10 +1,10 @@
-#include "host/cli/shots.h"
+#include "host/cli/camera_sequence.h"
 
 #include <cmath>
 #include <initializer_list>
 
+#include "host/cli/camera_options.h"
 #include "host/cli/format.h"
-#include "host/cli/sky_lens_options.h"
 #include "host/exact/exact.h"
 #include "host/light/studio.h"
 #include "host/scene/camera_path.h"
@@ -35,7 +35,7 @@ double aspect_of(const Options& options) {
 
 }  // namespace
 
-Shots::Shots(const Options& options, Scene& scene)
+CameraSequence::CameraSequence(const Options& options, Scene& scene)
     : options_(options),
       given_(options.camera        ? options.camera
              : options.view.angles ? std::nullopt
@@ -45,28 +45,29 @@ Shots::Shots(const Options& options, Scene& scene)
   const std::vector<PointLight> lights = scene.lights;
   const glm::vec3 background = scene.background;
   for (int number = 1; number <= std::max(1, options.output.frames); ++number) {
-    Shot& shot = shots_.emplace_back(Camera::look_at(setting(scene, number), aspect_of(options)));
+    Frame& frame =
+        frames_.emplace_back(Camera::look_at(setting(scene, number), aspect_of(options)));
     if (given_) {
-      light_if_dark(scene, shot.camera);
+      light_if_dark(scene, frame.camera);
     } else {
-      has_lamps = light_first_look(scene, shot.camera);
+      has_lamps = light_first_look(scene, frame.camera);
     }
-    shot.lights = std::exchange(scene.lights, lights);
-    shot.background = std::exchange(scene.background, background);
+    frame.lights = std::exchange(scene.lights, lights);
+    frame.background = std::exchange(scene.background, background);
   }
   const bool is_first_look = has_lamps && view_.elevation > 0.0 && !is_interior(scene);
   has_ground_ = options.ground.value_or(is_first_look);
   if (!given_) text_ = view_text(scene);
 }
 
-const Camera& Shots::light(int number, Scene& scene) const {
-  const Shot& shot = shots_[static_cast<std::size_t>(number - 1)];
-  scene.lights = shot.lights;
-  scene.background = shot.background;
-  return shot.camera;
+const Camera& CameraSequence::light(int number, Scene& scene) const {
+  const Frame& frame = frames_[static_cast<std::size_t>(number - 1)];
+  scene.lights = frame.lights;
+  scene.background = frame.background;
+  return frame.camera;
 }
 
-CameraSetting Shots::setting(const Scene& scene, int number) const {
+CameraSetting CameraSequence::setting(const Scene& scene, int number) const {
   const int frames = options_.output.frames;
   if (frames > 1 && !options_.path.empty()) {
     const double time = (number - 1.0) / (frames - 1.0);
@@ -86,7 +87,7 @@ CameraSetting Shots::setting(const Scene& scene, int number) const {
   return whole;
 }
 
-std::string Shots::view_text(const Scene& scene) const {
+std::string CameraSequence::view_text(const Scene& scene) const {
   const CameraSetting camera = setting(scene, 1);
   const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
   std::string text =
@@ -102,7 +103,7 @@ std::string Shots::view_text(const Scene& scene) const {
   return text + format_number(*camera.fov);
 }
 
-std::vector<std::pair<std::string, std::string>> Shots::options() const {
+std::vector<std::pair<std::string, std::string>> CameraSequence::options() const {
   const LightOptions& light = options_.light;
   std::vector<std::pair<std::string, std::string>> all = {
       {"integrator", to_string(light.integrator)},
@@ -138,7 +139,7 @@ std::vector<std::pair<std::string, std::string>> Shots::options() const {
     up = view_.up;
   }
   if (up) all.emplace_back("up", numbers({up->x, up->y, up->z}));
-  for (auto& word : sky_lens_words(shots_.front().camera, options_.environment)) {
+  for (auto& word : camera_option_values(frames_.front().camera, options_.environment)) {
     all.push_back(std::move(word));
   }
   if (has_ground_ || !given_) all.emplace_back("ground", has_ground_ ? "on" : "off");

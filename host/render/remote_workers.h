@@ -6,29 +6,29 @@
 #include "host/film/film.h"
 #include "host/ranks/ranks.h"
 #include "host/render/renderer.h"
-#include "host/render/schedule.h"
+#include "host/render/tile_queue.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
 
 /// Hands out tiles and puts what comes back into the film. For one thread at a time, which also
-/// has the film and the schedule to itself meanwhile.
-class Helpers {
+/// has the film and the queue to itself meanwhile.
+class RemoteWorkers {
  public:
   /// `first_sample`: of the render. All else must outlive this.
-  Helpers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film);
+  RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film);
 
   /// Takes what has come and gives everyone with room for it more to do. True if a tile came back.
-  bool serve(Schedule& schedule);
+  bool serve(TileQueue& queue);
 
   /// Says that all is traced, and waits for what everyone has to say about it: true once that is
   /// in `stats`, with what serve() has done. False: not yet.
   bool finish(RenderStats& stats);
 
  private:
-  void take(const Message& message, Schedule& schedule);
-  [[nodiscard]] int most_passes(const Schedule& schedule) const;
-  void give(int rank, const Schedule::Step& step);
+  void take(const Message& message, TileQueue& queue);
+  [[nodiscard]] int most_passes(const TileQueue& queue) const;
+  void give(int rank, const TileQueue::Step& step);
 
   Ranks& ranks_;
   const Tiles& tiles_;
