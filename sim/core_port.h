@@ -41,11 +41,11 @@ class CorePort {
   void offer(const CoreRay& ray) {
     std::memcpy(&model_->ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
     std::memcpy(&model_->ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
-    model_->ray_limit_i = std::bit_cast<std::uint32_t>(ray.limit);
-    model_->ray_ignored_i = ray.ignored;
+    model_->ray_t_max_i = std::bit_cast<std::uint32_t>(ray.limit);
+    model_->ray_skip_id_i = ray.ignored;
     model_->ray_start_i = ray.start;
     model_->ray_any_hit_i = ray.any_hit;
-    model_->ray_every_box_i = ray.every_box;
+    model_->ray_no_cull_i = ray.every_box;
     model_->ray_tag_i = ray.tag;
     model_->ray_valid_i = 1;
     ++rays_;
@@ -81,17 +81,17 @@ class CorePort {
   // ---- Memory
 
   /// Whether lines are on their way, or will be: memory must not change.
-  [[nodiscard]] bool is_busy_with_memory() const { return model_->reading_o != 0; }
+  [[nodiscard]] bool is_busy_with_memory() const { return model_->outstanding_o != 0; }
   /// Whether a line is asked for; of which number, with which tag.
   [[nodiscard]] bool is_reading() const { return model_->read_valid_o != 0; }
   [[nodiscard]] std::uint32_t line() const { return model_->read_line_o; }
-  [[nodiscard]] std::uint64_t tag() const { return model_->read_tag_o; }
+  [[nodiscard]] std::uint64_t tag() const { return model_->read_id_o; }
   void set_read_ready(bool ready) { model_->read_ready_i = ready; }
   /// Whether a line can be put at the port.
   [[nodiscard]] bool has_room() const { return model_->line_valid_i == 0; }
   void put(const MemoryLine& line, std::uint64_t tag) {
     model_->line_valid_i = 1;
-    model_->line_tag_i = tag;
+    model_->line_id_i = tag;
     std::memcpy(&model_->line_i, &line, sizeof line);
   }
 

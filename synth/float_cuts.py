@@ -24,9 +24,9 @@ class Cut:
 
 ALL = 2 ** 32 - 1
 CUTS = [
-    Cut("add", "fp_adder_stages", "Cuts 7", "add", {"binary16": 3, "binary32": 3}),
-    Cut("multiply", "fp_multiplier_stages", "Cuts 3", "multiply", {"binary16": 2, "binary32": 2}),
-    Cut("divide", "fp_divider_stages", f"Cuts {ALL}", "divide_whole",
+    Cut("add", "fp_adder_stages", "PipeRegs 7", "add", {"binary16": 3, "binary32": 3}),
+    Cut("multiply", "fp_multiplier_stages", "PipeRegs 3", "multiply", {"binary16": 2, "binary32": 2}),
+    Cut("divide", "fp_divider_stages", f"PipeRegs {ALL}", "divide_whole",
         {"binary16": 11, "binary32": 17}),
 ]
 

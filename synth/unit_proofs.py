@@ -79,50 +79,50 @@ def array() -> tuple[dict, bool]:
                  "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")
 
 
-def slots_answer_once() -> tuple[dict, bool]:
+def contexts_answer_once() -> tuple[dict, bool]:
     """A ray that comes into a ray core has a slot of its own and leaves it once, by induction."""
-    slots = PROOFS / "contracts" / "ray_slots.sv"  # and a divider in place of that of hw/fp
+    slots = PROOFS / "contracts" / "ray_contexts.sv"  # and a divider in place of that of hw/fp
     rtl = [file for file in cores.files("ray_core") if file.stem != "fp_divider_stages"]
-    return holds("slots_answer_once", "Bitwuzla", cores.used("ray_slots", [*rtl, slots]), "open.tcl", steps=1,
-                 prepared="ray_slots {} {u_intake.free_q u_ends.active_q *dividing_q *pointing_q *.count_q "
-                 "*u_rays.valid_o *u_rays.space_o *u_inverses.valid_o *u_ends.u_ends.valid_o "
-                 "*u_ends.u_ends.space_o *u_points.valid_o}")
+    return holds("contexts_answer_once", "Bitwuzla", cores.used("ray_contexts", [*rtl, slots]), "open.tcl", steps=1,
+                 prepared="ray_contexts {} {u_alloc.free_q u_retire.active_q *dividing_q *pointing_q *.count_q "
+                 "*u_rays.valid_o *u_rays.space_o *u_inverses.valid_o *u_retire.u_ends.valid_o "
+                 "*u_retire.u_ends.space_o *u_points.valid_o}")
 
 
 def stack_keeps_nodes() -> tuple[dict, bool]:
     """What a ray's stack holds is asked for once, or beyond, by induction: of two rays and two levels."""
-    wires = "busy_q waiting_q picked_q ray_q asked_q started_q asking_ray_q chosen_q mask_q rest_q"
+    wires = "busy_q waiting_q picked_q ray_q asked_q started_q asking_ray_q chosen_q mask_q remaining_q"
     memories = "levels 2 2 groups 4 184 " + " ".join(
         f"gen_level[{d}].nexts 2 19 gen_level[{d}].exponents 2 9" for d in range(2))
-    return holds("stack_keeps_nodes", "Bitwuzla", cores.used("ray_walk", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=14, prepared=f"ray_walk {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
+    return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")), "open.tcl",
+                 steps=1, reach=14, prepared=f"traversal {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
 
 
 def hits_keep_nearest() -> tuple[dict, bool]:
-    """ray_hits keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
+    """closest_hit keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
     wires = "found_q any_hit_q replace u_doubts.push_i u_doubts.data_i *.count_q u_points.read_q u_points.write_q"
-    memories = ("limits 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 points 2 96 tests 2 16 "
+    memories = ("t_max 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 points 2 96 tests 2 16 "
                 "counts 2 10 u_points.words 2 2")
-    return holds("hits_keep_nearest", "Bitwuzla", cores.used("ray_hits", cores.files("ray_core")), "open.tcl",
+    return holds("hits_keep_nearest", "Bitwuzla", cores.used("closest_hit", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,
-                 prepared=f"ray_hits {{Rays 2 InFlight 2}} {{{wires}}} {{{memories}}}")
+                 prepared=f"closest_hit {{Rays 2 InFlight 2}} {{{wires}}} {{{memories}}}")
 
 
 def leaves_are_asked_for() -> tuple[dict, bool]:
-    """leaf_walk asks for the triangles of each group in order, or they are beyond, by induction: of two rays."""
+    """primitive_fetch asks for the triangles of each group in order, or they are beyond, by induction: of two rays."""
     wires = "valid_q ray_q group_q mask_q number_q u_groups.count_q u_groups.valid_o u_groups.read_q u_groups.write_q"
-    return holds("leaves_are_asked_for", "Bitwuzla", cores.used("leaf_walk", cores.files("ray_core")), "open.tcl",
+    return holds("leaves_are_asked_for", "Bitwuzla", cores.used("primitive_fetch", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,
-                 prepared=f"leaf_walk {{Rays 2}} {{{wires}}} {{u_groups.words 2 192}}")
+                 prepared=f"primitive_fetch {{Rays 2}} {{{wires}}} {{u_groups.words 2 192}}")
 
 
 def cache_answers_once() -> tuple[dict, bool]:
     """line_cache answers each request once, by its line, by induction: of two sets, and two that may wait."""
-    wires = ("held_q pending_q free_q follows_q draining_q current_q waiter current somebody leaves place room "
+    wires = ("valid_q pending_q free_q follows_q draining_q current_q target current somebody leaves entry room "
              "u_hits.count_q u_hits.valid_o u_hits.read_q u_hits.write_q")
-    memories = "words 16 2 labels 2 216 heads 16 2 nexts 2 1 rays 2 1 u_hits.words 16 3"
+    memories = "words 16 2 tags 2 216 heads 16 2 nexts 2 1 rays 2 1 u_hits.words 16 3"
     return holds("cache_answers_once", "Bitwuzla", cores.used("line_cache", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=10, prepared="line_cache {Lines 16 Waiters 2 RayWidth 1 Width 2} "
+                 steps=1, reach=10, prepared="line_cache {Lines 16 Targets 2 RayWidth 1 Width 2} "
                  f"{{{wires}}} {{{memories}}}")
 
 
@@ -199,8 +199,8 @@ ALL = [
     Proof("unit.computes.serial", "the paper's unit makes P of its words, whatever it did before", "Bitwuzla",
           serial_computes, False),
     Proof("unit.computes.general", "the general unit, likewise", "Bitwuzla", general_computes, False),
-    Proof("unit.slots", "a ray in a ray core has a slot of its own, and is answered once", "Bitwuzla",
-          slots_answer_once),
+    Proof("unit.contexts", "a ray in a ray core has a slot of its own, and is answered once", "Bitwuzla",
+          contexts_answer_once),
     Proof("unit.stack", "a node on a ray's stack is asked for once, unless it is beyond the limit", "Bitwuzla",
           stack_keeps_nodes, False),
     Proof("unit.hits", "a ray's nearest hit is kept, what may be nearer is a doubt, once; tests are counted",
@@ -210,10 +210,10 @@ ALL = [
     Proof("unit.cache", "a request for a line is answered once, by that line, in whichever order memory answers",
           "Bitwuzla", cache_answers_once, False),
     Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
-          functools.partial(of_ray_core, "sort_seven_sorts", "sort_seven", 2)),
-    Proof("unit.pick", "the first request from a place on is picked", "Bitwuzla",
-          functools.partial(of_ray_core, "pick_is_fair", "rotating_pick")),
-    Proof("unit.grid_way", "ways on a node's grid are products, cut off", "Bitwuzla",
-          functools.partial(of_ray_core, "grid_way_multiplies", "grid_way")),
+          functools.partial(of_ray_core, "sort7_sorts", "sort7", 2)),
+    Proof("unit.arbiter", "the first request from a place on is picked", "Bitwuzla",
+          functools.partial(of_ray_core, "arbiter_is_fair", "rr_arbiter")),
+    Proof("unit.plane_offset", "ways on a node's grid are products, cut off", "Bitwuzla",
+          functools.partial(of_ray_core, "plane_offset_multiplies", "plane_offset")),
     Proof("unit.array", "an array is its lanes, and its counters are their sums", "Bitwuzla", array),
 ]

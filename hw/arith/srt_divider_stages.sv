@@ -8,7 +8,7 @@
 // nothing). quotient_o: two integer bits and 2 * Rows fraction bits, exact and cut off. side_i goes
 // along and comes out with its quotient.
 //
-// Cuts: registers behind the first digit (bit 0), each row (1 to Rows), the remainder (Rows + 1) and the
+// PipeRegs: registers behind the first digit (bit 0), each row (1 to Rows), the remainder (Rows + 1) and the
 // quotient (Rows + 2). As many clocks of latency as cuts, a division a clock. Registers load only what is
 // valid: valid_o is valid_i, as much later, and while it is low the outputs of a cut divider mean nothing.
 // Nothing is reset, so that valid_o means nothing at first.
@@ -20,7 +20,7 @@ module srt_divider_stages #(
   parameter int unsigned SideWidth = 1,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
-  parameter bit [31:0]   Cuts  = 32'd0
+  parameter bit [31:0]   PipeRegs = 32'd0
 ) (
   input  logic                 clk_i,
   input  logic                 valid_i,
@@ -92,7 +92,7 @@ module srt_divider_stages #(
 
     delay_line #(
       .Width(1),
-      .Depth(32'(Cuts[r]))
+      .Depth(32'(PipeRegs[r]))
     ) u_valid (
       .clk_i,
       .enable_i(1'b1),
@@ -101,7 +101,7 @@ module srt_divider_stages #(
     );
     delay_line #(
       .Width(ResWidth),
-      .Depth(32'(Cuts[r]))
+      .Depth(32'(PipeRegs[r]))
     ) u_sum (
       .clk_i,
       .enable_i(valid),
@@ -110,7 +110,7 @@ module srt_divider_stages #(
     );
     delay_line #(
       .Width(ResWidth),
-      .Depth(32'(Cuts[r]))
+      .Depth(32'(PipeRegs[r]))
     ) u_carry (
       .clk_i,
       .enable_i(valid),
@@ -119,8 +119,8 @@ module srt_divider_stages #(
     );
     delay_line #(
       .Width(ResWidth + 2 * DigitsWidth + SideWidth),
-      .Depth(32'(Cuts[r]))
-    ) u_beside (
+      .Depth(32'(PipeRegs[r]))
+    ) u_sideband (
       .clk_i,
       .enable_i(valid),
       .data_i({divisor, positives, negatives, side}),
@@ -153,7 +153,7 @@ module srt_divider_stages #(
 
   delay_line #(
     .Width(1),
-    .Depth(32'(Cuts[Rows+1]))
+    .Depth(32'(PipeRegs[Rows+1]))
   ) u_valid_remainder (
     .clk_i,
     .enable_i(1'b1),
@@ -162,7 +162,7 @@ module srt_divider_stages #(
   );
   delay_line #(
     .Width(2 * QuotientWidth + SideWidth + 2),
-    .Depth(32'(Cuts[Rows+1]))
+    .Depth(32'(PipeRegs[Rows+1]))
   ) u_cut_remainder (
     .clk_i,
     .enable_i(gen_row[Rows].valid_q),
@@ -190,7 +190,7 @@ module srt_divider_stages #(
 
   delay_line #(
     .Width(1),
-    .Depth(32'(Cuts[Rows+2]))
+    .Depth(32'(PipeRegs[Rows+2]))
   ) u_valid_quotient (
     .clk_i,
     .enable_i(1'b1),
@@ -199,7 +199,7 @@ module srt_divider_stages #(
   );
   delay_line #(
     .Width(QuotientWidth + SideWidth + 1),
-    .Depth(32'(Cuts[Rows+2]))
+    .Depth(32'(PipeRegs[Rows+2]))
   ) u_cut_quotient (
     .clk_i,
     .enable_i(remainder_valid),

@@ -5,7 +5,7 @@
 //   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least
 //         the leading bit: exact, so only a leading-zero count and a left shift
 //
-// Cuts: bit 0, 1, 2 puts registers between ordering and adding, between adding and rounding, behind
+// PipeRegs: bit 0, 1, 2 puts registers between ordering and adding, between adding and rounding, behind
 // the result. As many clocks of latency as cuts, one operation a clock. No cut: combinational. The rounding mode is used in several stages and should stay the same.
 //
 // Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when
@@ -17,7 +17,7 @@ module fp_adder_stages #(
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = arith_pkg::Structural,
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
-  parameter bit [2:0]    Cuts      = 3'b000
+  parameter bit [2:0]    PipeRegs  = 3'b000
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -143,7 +143,7 @@ module fp_adder_stages #(
 
   delay_line #(
     .Width(2 * ExpWidth + 8),
-    .Depth(32'(Cuts[0]))
+    .Depth(32'(PipeRegs[0]))
   ) u_ordered (
     .clk_i,
     .enable_i(1'b1),
@@ -153,7 +153,7 @@ module fp_adder_stages #(
   );
   delay_line #(
     .Width(2 * SigWidth),
-    .Depth(32'(Cuts[0]))
+    .Depth(32'(PipeRegs[0]))
   ) u_significands (
     .clk_i,
     .enable_i(1'b1),
@@ -247,7 +247,7 @@ module fp_adder_stages #(
 
   delay_line #(
     .Width(2 * ExpWidth + FarWidth + 6),
-    .Depth(32'(Cuts[1]))
+    .Depth(32'(PipeRegs[1]))
   ) u_far (
     .clk_i,
     .enable_i(1'b1),
@@ -257,7 +257,7 @@ module fp_adder_stages #(
   );
   delay_line #(
     .Width(2 * NearWidth),
-    .Depth(32'(Cuts[1]))
+    .Depth(32'(PipeRegs[1]))
   ) u_near (
     .clk_i,
     .enable_i(1'b1),
@@ -332,7 +332,7 @@ module fp_adder_stages #(
 
   delay_line #(
     .Width(ExpWidth + FracWidth + 1),
-    .Depth(32'(Cuts[2]))
+    .Depth(32'(PipeRegs[2]))
   ) u_result (
     .clk_i,
     .enable_i(1'b1),
@@ -341,7 +341,7 @@ module fp_adder_stages #(
   );
   delay_line #(
     .Width($bits(flags)),
-    .Depth(32'(Cuts[2]))
+    .Depth(32'(PipeRegs[2]))
   ) u_flags (
     .clk_i,
     .enable_i(1'b1),

@@ -7,7 +7,7 @@
 // printed in the paper's worked example, up to 5 ulp low in binary32). Only a subnormal result is
 // then still rounded, from what the cut has left; what was cut off raises no flag.
 //
-// Cuts: registers behind normalising (bit 0), each stage of the significands' division (bits 1 to
+// PipeRegs: registers behind normalising (bit 0), each stage of the significands' division (bits 1 to
 // Rows + 3, see srt_divider_stages; Rows: two bits of the quotient each, 12 in binary32) and the result
 // (bit Rows + 4). As many clocks of latency as cuts, a division a clock. No cut: combinational. Registers
 // load only what came with valid_i; in other clocks the outputs of a cut divider mean nothing. The
@@ -21,7 +21,7 @@ module fp_divider_stages #(
   parameter int unsigned Arith        = arith_pkg::Structural,
   parameter int unsigned Adder        = arith_pkg::AdderGraded,
   parameter int unsigned QuotientBits = 0,
-  parameter bit [31:0]   Cuts         = 32'd0
+  parameter bit [31:0]   PipeRegs     = 32'd0
 ) (
   input  logic                        clk_i,
   input  logic                        valid_i,
@@ -171,7 +171,7 @@ module fp_divider_stages #(
 
   delay_line #(
     .Width(1),
-    .Depth(32'(Cuts[0]))
+    .Depth(32'(PipeRegs[0]))
   ) u_valid (
     .clk_i,
     .enable_i(1'b1),
@@ -180,7 +180,7 @@ module fp_divider_stages #(
   );
   delay_line #(
     .Width(2 * SigWidth),
-    .Depth(32'(Cuts[0]))
+    .Depth(32'(PipeRegs[0]))
   ) u_significands (
     .clk_i,
     .enable_i(valid_i),
@@ -189,7 +189,7 @@ module fp_divider_stages #(
   );
   delay_line #(
     .Width(2 * RoundExpWidth + 6),
-    .Depth(32'(Cuts[0]))
+    .Depth(32'(PipeRegs[0]))
   ) u_exponents (
     .clk_i,
     .enable_i(valid_i),
@@ -221,7 +221,7 @@ module fp_divider_stages #(
     .SideWidth(RoundExpWidth + 6),
     .Arith(Arith),
     .Adder(Adder),
-    .Cuts(Cuts >> 1)
+    .PipeRegs(PipeRegs >> 1)
   ) u_divide (
     .clk_i,
     .valid_i(valid_1),
@@ -282,7 +282,7 @@ module fp_divider_stages #(
 
   delay_line #(
     .Width(ExpWidth + FracWidth + 6),
-    .Depth(32'(Cuts[Rows+4]))
+    .Depth(32'(PipeRegs[Rows+4]))
   ) u_result (
     .clk_i,
     .enable_i(divided),

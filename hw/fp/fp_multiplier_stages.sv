@@ -6,7 +6,7 @@
 // result. Behind the multiplier are left one shift and the shared rounder.
 //
 // Arith, Adder: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
-// Cuts: registers behind the product (bit 0) and behind the result (bit 1). As many clocks of latency
+// PipeRegs: registers behind the product (bit 0) and behind the result (bit 1). As many clocks of latency
 // as cuts, one operation a clock. No cut: combinational. The rounding mode is the second stage's.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
@@ -18,7 +18,7 @@ module fp_multiplier_stages #(
   parameter int unsigned Arith       = arith_pkg::Structural,
   parameter int unsigned Adder       = arith_pkg::AdderGraded,
   parameter bit          ConstantRow = 1'b0,
-  parameter bit [1:0]    Cuts        = 2'b00
+  parameter bit [1:0]    PipeRegs    = 2'b00
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -166,7 +166,7 @@ module fp_multiplier_stages #(
 
   delay_line #(
     .Width(ProdWidth),
-    .Depth(32'(Cuts[0]))
+    .Depth(32'(PipeRegs[0]))
   ) u_product (
     .clk_i,
     .enable_i(1'b1),
@@ -175,8 +175,8 @@ module fp_multiplier_stages #(
   );
   delay_line #(
     .Width(ExpWidth + LeftWidth + 7),
-    .Depth(32'(Cuts[0]))
-  ) u_beside_product (
+    .Depth(32'(PipeRegs[0]))
+  ) u_sideband_product (
     .clk_i,
     .enable_i(1'b1),
     .data_i({exp_negative ? exp : exp_less_left, left, exp_negative, sign, nan, infinity, zero,
@@ -231,7 +231,7 @@ module fp_multiplier_stages #(
 
   delay_line #(
     .Width(ExpWidth + FracWidth + 1),
-    .Depth(32'(Cuts[1]))
+    .Depth(32'(PipeRegs[1]))
   ) u_result (
     .clk_i,
     .enable_i(1'b1),
@@ -240,7 +240,7 @@ module fp_multiplier_stages #(
   );
   delay_line #(
     .Width($bits(flags)),
-    .Depth(32'(Cuts[1]))
+    .Depth(32'(PipeRegs[1]))
   ) u_flags (
     .clk_i,
     .enable_i(1'b1),

@@ -2,8 +2,8 @@
 // of each test, and the nearest hit of each burst of tests with its t and P.
 //
 //   take     I, record                        registers
-//   scale    each coordinate of I times five  15 multipliers, see scaler
-//   add      V = N . I, U_k = E_k . I         8 adders, see sum_of_three
+//   scale    each coordinate of I times five  15 multipliers, see vec_scale
+//   add      V = N . I, U_k = E_k . I         8 adders, see fp_add3
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
@@ -95,14 +95,14 @@ module hit_test_pipeline #(
   logic [3*ScaledWords*Width-1:0] scaled;  // not an array: Yosys 0.23 takes one for a memory here
 
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
-    scaler #(
+    vec_scale #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Arith(Arith),
       .Adder(Adder),
       .RoundingMode(RoundingMode),
       .Words(ScaledWords)
-    ) u_scaler (
+    ) u_scale (
       .clk_i,
       .words_i({record_q[Width*hit_test_pkg::RecordD +: Width],
                 record_q[Width*(hit_test_pkg::RecordEdges+6+k) +: Width],
@@ -124,7 +124,7 @@ module hit_test_pipeline #(
   assign u = dots[Width*ScaledEdges+:3*Width];
 
   for (genvar n = 0; n < 4; n++) begin : gen_dot
-    sum_of_three #(
+    fp_add3 #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Arith(Arith),
@@ -157,7 +157,7 @@ module hit_test_pipeline #(
   delay_line #(
     .Width(4 * Width + TagWidth + ExpWidth + 2),
     .Depth(DotLatency)
-  ) u_beside_dot (
+  ) u_sideband_dot (
     .clk_i,
     .enable_i(1'b1),
     .data_i({normal_exponent, first_q, last_q, tag_q,
@@ -230,7 +230,7 @@ module hit_test_pipeline #(
     .FracWidth(FracWidth),
     .Arith(Arith),
     .Adder(Adder),
-    .Cuts(hit_test_pkg::DividerCuts)
+    .PipeRegs(hit_test_pkg::DividerPipeRegs)
   ) u_divider (
     .clk_i,
     .valid_i(decided_q & hit_q),
@@ -253,7 +253,7 @@ module hit_test_pipeline #(
   delay_line #(
     .Width(DividedWidth),
     .Depth(DivideLatency)
-  ) u_beside_divider (
+  ) u_sideband_divider (
     .clk_i,
     .enable_i(1'b1),
     .data_i({t_error_q, decided_first_q, decided_last_q, hit_q, doubt_q, decided_tag_q,

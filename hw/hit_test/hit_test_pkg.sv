@@ -40,9 +40,9 @@ package hit_test_pkg;
 
   // ---- Pipeline stages: where the cores are cut (see them), and how many clocks that makes
 
-  localparam bit [1:0] MultiplierCuts = 2'b11;
-  localparam bit [2:0] AdderCuts = 3'b111;
-  localparam bit [31:0] DividerCuts = 32'hffff_ffff;
+  localparam bit [1:0] MultiplierPipeRegs = 2'b11;
+  localparam bit [2:0] AdderPipeRegs = 3'b111;
+  localparam bit [31:0] DividerPipeRegs = 32'hffff_ffff;
   localparam int unsigned MultiplierLatency = 2;
   localparam int unsigned AdderLatency = 3;
   localparam int unsigned DotLatency = MultiplierLatency + 2 * AdderLatency;

@@ -40,7 +40,7 @@ module point_unit #(
       .FracWidth(FracWidth),
       .Arith(Arith),
       .Adder(Adder),
-      .Cuts(hit_test_pkg::DividerCuts)
+      .PipeRegs(hit_test_pkg::DividerPipeRegs)
     ) u_divider (
       .clk_i,
       .valid_i,

@@ -2,29 +2,29 @@
 //
 //   take        node, ray                                                   registers
 //   subtract    D_k = origin_k - O_k                                        3 adders
-//   scale       2**E, how far the ray may go in this node; caps of 1 / I_k  see box_scale
+//   scale       2**E, how far the ray may go in this node; caps of 1 / I_k  see ray_scale
 //   multiply    a_k = D_k / I_k                                             3 multipliers
-//   align       a_k and the grid's step s_k in units of 2**(E - 22),        see box_axis
+//   align       a_k and the grid's step s_k in units of 2**(E - 22),        see slab_setup
 //               room r_k for errors
-//   step        q s_k for the planes of all boxes                           42 multipliers, 8 x 33, see box_child
+//   step        q s_k for the planes of all boxes                           42 multipliers, 8 x 33, see slab_test
 //   enter       largest near plane, smallest far plane                      42 adders, 49 comparators
-//   sort        near first; the group                                       see box_group, sort_seven
+//   sort        near first; the group                                       see child_sort, sort7
 //
 // No valid: what belongs to a node is the user's to carry along for BoxLatency clocks. Throughput one a clock.
 //
 // In:  node_i       a node line, see ray_core_pkg
 //      origin_i     O, binary32; word x lowest, here and below
 //      inverse_i    1 / I_k, rounded to nearest (infinite where I_k is zero); the largest I_k is in [1, 2)
-//      limit_i      a positive binary32 number without its sign, or infinity: a hit farther than it is
+//      t_max_i      a positive binary32 number without its sign, or infinity: a hit farther than it is
 //                   not wanted
-//      every_box_i  all children are entered
+//      no_cull_i    all children are entered
 // Out: group_o      ray_core_pkg's group; entries that are in neither mask mean nothing
 //      inner_o, leaf_o  which entries there are, of which kind
 //
-// No box is left out in which the ray has a point O + t I with 0 < t <= limit, in exact arithmetic:
+// No box is left out in which the ray has a point O + t I with 0 < t <= t_max, in exact arithmetic:
 //
 //  1. E. Such a t is at most (|origin_k - O_k| + 255 * 2**e_k) / |I_k| for each k (e_k without its bias), and
-//     at most the limit. With D_k and 1 / I_k as computed the first is below 2**(M + exponent(1 / I_k) + 2),
+//     at most the t_max. With D_k and 1 / I_k as computed the first is below 2**(M + exponent(1 / I_k) + 2),
 //     where 2**M is above |D_k| and 2**(e_k + 8): the rounding of D_k is less than 2**e_k to spare. E is the
 //     least of these exponents, but at least -100, so that what underflows is less than a unit.
 //  2. A plane of the grid is met at t = (D_k + q 2**e_k) / I_k = a_k +- q s_k, with s_k = 2**e_k / |I_k|.
@@ -49,8 +49,8 @@ module box_unit #(
   input  logic [ray_core_pkg::LineWidth-1:0]  node_i,
   input  logic [95:0]                         origin_i,
   input  logic [95:0]                         inverse_i,
-  input  logic [30:0]                         limit_i,
-  input  logic                                every_box_i,
+  input  logic [30:0]                         t_max_i,
+  input  logic                                no_cull_i,
   output logic [ray_core_pkg::GroupWidth-1:0] group_o,
   output logic [ray_core_pkg::Children-1:0]   inner_o,
   output logic [ray_core_pkg::Children-1:0]   leaf_o
@@ -60,7 +60,7 @@ module box_unit #(
   localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
   localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
   localparam int unsigned StepWidth = ray_core_pkg::StepWidth;
-  localparam int unsigned PlaceWidth = ray_core_pkg::PlaceWidth;
+  localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth;
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
 
   if (ray_core_pkg::BoxLatency
@@ -72,41 +72,41 @@ module box_unit #(
 
   logic [ray_core_pkg::LineWidth-1:0] node_q;
   logic [95:0] origin_q, inverse_q;
-  logic [30:0] limit_q;
-  logic every_box_q;
+  logic [30:0] t_max_q;
+  logic no_cull_q;
 
   always_ff @(posedge clk_i) begin
-    node_q      <= node_i;
-    origin_q    <= origin_i;
-    inverse_q   <= inverse_i;
-    limit_q     <= limit_i;
-    every_box_q <= every_box_i;
+    node_q    <= node_i;
+    origin_q  <= origin_i;
+    inverse_q <= inverse_i;
+    t_max_q   <= t_max_i;
+    no_cull_q <= no_cull_i;
   end
 
   // What goes along: all but the origins.
-  localparam int unsigned BesideWidth = ray_core_pkg::LineWidth - 96;
+  localparam int unsigned SidebandWidth = ray_core_pkg::LineWidth - 96;
   localparam int unsigned NodeBase = ray_core_pkg::NodeBase - 96;
-  localparam int unsigned ChildrenWidth = BesideWidth - NodeBase;  // base, kinds and boxes
-  logic [BesideWidth-1:0] sub_node;
+  localparam int unsigned ChildrenWidth = SidebandWidth - NodeBase;  // base, kinds and boxes
+  logic [SidebandWidth-1:0] sub_node;
   logic [95:0] sub_inverse;
-  logic [30:0] sub_limit;
-  logic sub_every_box;
+  logic [30:0] sub_t_max;
+  logic sub_no_cull;
 
   delay_line #(
-    .Width(BesideWidth + 96 + 31 + 1),
+    .Width(SidebandWidth + 96 + 31 + 1),
     .Depth(hit_test_pkg::AdderLatency)
-  ) u_beside_subtract (
+  ) u_sideband_subtract (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({node_q[ray_core_pkg::LineWidth-1:96], inverse_q, limit_q, every_box_q}),
-    .data_o({sub_node, sub_inverse, sub_limit, sub_every_box})
+    .data_i({node_q[ray_core_pkg::LineWidth-1:96], inverse_q, t_max_q, no_cull_q}),
+    .data_o({sub_node, sub_inverse, sub_t_max, sub_no_cull})
   );
 
   // ---- Subtract
 
   logic [95:0] distance;
 
-  vector_adder #(
+  vec_add #(
     .Subtract(1'b1),
     .Arith(Arith),
     .Adder(Adder)
@@ -126,11 +126,11 @@ module box_unit #(
   logic [95:0] capped_inverse;
   logic [2:0] capped, open;
 
-  box_scale u_scale (
+  ray_scale u_scale (
     .distances_i({distance[94:87], distance[62:55], distance[30:23]}),
     .inverse_i(sub_inverse),
     .cells_i(sub_node[NodeExponents +: 24]),
-    .limit_i(sub_limit[30:23]),
+    .t_max_i(sub_t_max[30:23]),
     .exponent_o(scale_exponent),
     .inverse_o(capped_inverse),
     .caps_o(caps),
@@ -141,21 +141,21 @@ module box_unit #(
   logic [95:0] scaled_distance_q, scaled_inverse_q;
   logic [ChildrenWidth-1:0] scaled_node_q;
   logic [32:0] scaled_caps_q;
-  logic [30:0] scaled_limit_q;
+  logic [30:0] scaled_t_max_q;
   logic [2:0] scaled_capped_q, scaled_open_q;
   logic [8:0] scaled_exponent_q;
-  logic scaled_every_box_q;
+  logic scaled_no_cull_q;
 
   always_ff @(posedge clk_i) begin
-    scaled_distance_q  <= distance;
-    scaled_inverse_q   <= capped_inverse;
-    scaled_node_q      <= sub_node[BesideWidth-1:NodeBase];
-    scaled_caps_q      <= caps;
-    scaled_limit_q     <= sub_limit;
-    scaled_capped_q    <= capped;
-    scaled_open_q      <= open;
-    scaled_exponent_q  <= scale_exponent;
-    scaled_every_box_q <= sub_every_box;
+    scaled_distance_q <= distance;
+    scaled_inverse_q  <= capped_inverse;
+    scaled_node_q     <= sub_node[SidebandWidth-1:NodeBase];
+    scaled_caps_q     <= caps;
+    scaled_t_max_q    <= sub_t_max;
+    scaled_capped_q   <= capped;
+    scaled_open_q     <= open;
+    scaled_exponent_q <= scale_exponent;
+    scaled_no_cull_q  <= sub_no_cull;
   end
 
   // ---- Multiply
@@ -163,12 +163,12 @@ module box_unit #(
   logic [95:0] product, mul_inverse;
   logic [ChildrenWidth-1:0] mul_node;
   logic [32:0] mul_caps;
-  logic [30:0] mul_limit;
+  logic [30:0] mul_t_max;
   logic [2:0] mul_capped, mul_open;
   logic [8:0] mul_exponent;
-  logic mul_every_box;
+  logic mul_no_cull;
 
-  vector_multiplier #(
+  vec_mul #(
     .Arith(Arith),
     .Adder(Adder)
   ) u_multiply (
@@ -180,30 +180,30 @@ module box_unit #(
   delay_line #(
     .Width(ChildrenWidth + 96 + 33 + 31 + 3 + 3 + 9 + 1),
     .Depth(hit_test_pkg::MultiplierLatency)
-  ) u_beside_multiply (
+  ) u_sideband_multiply (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({scaled_node_q, scaled_inverse_q, scaled_caps_q, scaled_limit_q, scaled_capped_q,
-             scaled_open_q, scaled_exponent_q, scaled_every_box_q}),
-    .data_o({mul_node, mul_inverse, mul_caps, mul_limit, mul_capped, mul_open, mul_exponent,
-             mul_every_box})
+    .data_i({scaled_node_q, scaled_inverse_q, scaled_caps_q, scaled_t_max_q, scaled_capped_q,
+             scaled_open_q, scaled_exponent_q, scaled_no_cull_q}),
+    .data_o({mul_node, mul_inverse, mul_caps, mul_t_max, mul_capped, mul_open, mul_exponent,
+             mul_no_cull})
   );
 
   // ---- Align
 
-  logic [3*PlaceWidth-1:0] near_q, far_q;  // a_k -+ r_k
+  logic [3*PlaneWidth-1:0] near_q, far_q;  // a_k -+ r_k
   logic [3*StepWidth-1:0] step_q;
   logic [2:0] back_q;
-  logic [UnitBits:0] limit_units_q;
+  logic [UnitBits:0] t_max_units_q;
   logic [ChildrenWidth-1:0] aligned_node_q;
   logic [8:0] aligned_exponent_q;
-  logic aligned_every_box_q;
+  logic aligned_no_cull_q;
 
   for (genvar k = 0; k < 3; k++) begin : gen_align
-    logic [PlaceWidth-1:0] near, far;
+    logic [PlaneWidth-1:0] near, far;
     logic [StepWidth-1:0] step;
 
-    box_axis #(
+    slab_setup #(
       .Arith(Arith),
       .Adder(Adder)
     ) u_axis (
@@ -219,25 +219,25 @@ module box_unit #(
     );
 
     always_ff @(posedge clk_i) begin
-      near_q[PlaceWidth*k +: PlaceWidth] <= near;
-      far_q[PlaceWidth*k +: PlaceWidth]  <= far;
+      near_q[PlaneWidth*k +: PlaneWidth] <= near;
+      far_q[PlaneWidth*k +: PlaneWidth]  <= far;
       step_q[StepWidth*k +: StepWidth]   <= step;
       back_q[k]                          <= mul_inverse[32*k+31];
     end
   end
 
-  logic signed [10:0] limit_amount;
-  logic [UnitBits:0] limit_units;
-  assign limit_amount = $signed({2'b0, mul_exponent}) + 11'sd1 - $signed({3'b0, mul_limit[30:23]});
-  assign limit_units  = (limit_amount > 11'sd24) ? (UnitBits + 1)'(1)
-                      : (UnitBits + 1)'({1'b1, mul_limit[22:0]} >> limit_amount[4:0])
+  logic signed [10:0] t_max_amount;
+  logic [UnitBits:0] t_max_units;
+  assign t_max_amount = $signed({2'b0, mul_exponent}) + 11'sd1 - $signed({3'b0, mul_t_max[30:23]});
+  assign t_max_units  = (t_max_amount > 11'sd24) ? (UnitBits + 1)'(1)
+                      : (UnitBits + 1)'({1'b1, mul_t_max[22:0]} >> t_max_amount[4:0])
                         + (UnitBits + 1)'(1);
 
   always_ff @(posedge clk_i) begin
-    limit_units_q       <= (limit_amount <= 11'sd1) ? Whole : limit_units;
-    aligned_node_q      <= mul_node;
-    aligned_exponent_q  <= mul_exponent;
-    aligned_every_box_q <= mul_every_box;
+    t_max_units_q      <= (t_max_amount <= 11'sd1) ? Whole : t_max_units;
+    aligned_node_q     <= mul_node;
+    aligned_exponent_q <= mul_exponent;
+    aligned_no_cull_q  <= mul_no_cull;
   end
 
   // ---- Step and enter: a key for each child, {left out, enter}
@@ -247,28 +247,28 @@ module box_unit #(
   localparam int unsigned Kinds = ray_core_pkg::NodeKinds - ray_core_pkg::NodeBase;
   localparam int unsigned KeyWidth = UnitBits + 2;
 
-  logic [3*PlaceWidth-1:0] step_near_q, step_far_q;
+  logic [3*PlaneWidth-1:0] step_near_q, step_far_q;
   logic [2:0] step_back_q;
-  logic [UnitBits:0] step_limit_q;
+  logic [UnitBits:0] step_t_max_q;
   logic [NodeBoxes-1:0] step_node_q, keys_node_q;  // base and kinds
   logic [8:0] step_exponent_q, keys_exponent_q;
-  logic step_every_box_q;
+  logic step_no_cull_q;
   logic [Children*KeyWidth-1:0] keys;
 
   always_ff @(posedge clk_i) begin
-    step_near_q      <= near_q;
-    step_far_q       <= far_q;
-    step_back_q      <= back_q;
-    step_limit_q     <= limit_units_q;
-    step_node_q      <= aligned_node_q[NodeBoxes-1:0];
-    step_exponent_q  <= aligned_exponent_q;
-    step_every_box_q <= aligned_every_box_q;
-    keys_node_q      <= step_node_q;
-    keys_exponent_q  <= step_exponent_q;
+    step_near_q     <= near_q;
+    step_far_q      <= far_q;
+    step_back_q     <= back_q;
+    step_t_max_q    <= t_max_units_q;
+    step_node_q     <= aligned_node_q[NodeBoxes-1:0];
+    step_exponent_q <= aligned_exponent_q;
+    step_no_cull_q  <= aligned_no_cull_q;
+    keys_node_q     <= step_node_q;
+    keys_exponent_q <= step_exponent_q;
   end
 
   for (genvar i = 0; i < Children; i++) begin : gen_child
-    box_child #(
+    slab_test #(
       .Arith(Arith),
       .Adder(Adder)
     ) u_child (
@@ -279,16 +279,16 @@ module box_unit #(
       .near_i(step_near_q),
       .far_i(step_far_q),
       .next_back_i(step_back_q),
-      .limit_i(step_limit_q),
+      .t_max_i(step_t_max_q),
       .kind_i(step_node_q[Kinds+KindWidth*i +: KindWidth]),
-      .every_box_i(step_every_box_q),
+      .no_cull_i(step_no_cull_q),
       .key_o(keys[KeyWidth*i +: KeyWidth])
     );
   end
 
   // ---- Sort
 
-  box_group #(
+  child_sort #(
     .Arith(Arith)
   ) u_group (
     .clk_i,

@@ -27,7 +27,7 @@ module cross_product #(
 
   logic [95:0] left, right;  // a_i b_j, a_j b_i
 
-  vector_multiplier #(
+  vec_mul #(
     .Words(6),
     .Arith(Arith),
     .Adder(Adder)
@@ -37,7 +37,7 @@ module cross_product #(
     .b_i({b_next, b_last}),
     .product_o({right, left})
   );
-  vector_adder #(
+  vec_add #(
     .Subtract(1'b1),
     .Arith(Arith),
     .Adder(Adder)
@@ -47,7 +47,7 @@ module cross_product #(
     .b_i(right),
     .sum_o(product_o)
   );
-  vector_adder #(
+  vec_add #(
     .Arith(Arith),
     .Adder(Adder)
   ) u_size (

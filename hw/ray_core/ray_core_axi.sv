@@ -1,11 +1,11 @@
 // The ray core with its camera, on AXI: registers by AXI4-Lite, the scene by AXI4, rays and results as they are.
 //
-//   core_registers   what to draw, counters, flags
-//   camera_unit      the rays of a rectangle; the tag of each is its pixel, {y, x}
+//   csr              what to draw, counters, flags
+//   ray_generator    the rays of a rectangle; the tag of each is its pixel, {y, x}
 //   ray_core
-//   axi_line_reader  its memory port
+//   axi_read_manager  its memory port
 //
-// Rays of the user's (ray_*) come while the camera makes none. A camera's ray has no limit, ignores nothing, and
+// Rays of the user's (ray_*) come while the camera makes none. A camera's ray has no t_max, ignores nothing, and
 // begins at the root. The rest as in those modules.
 module ray_core_axi #(
   parameter int unsigned Rays  = 64,
@@ -61,11 +61,11 @@ module ray_core_axi #(
   output logic                   ray_ready_o,
   input  logic [95:0]            ray_origin_i,
   input  logic [95:0]            ray_direction_i,
-  input  logic [30:0]            ray_limit_i,
-  input  logic [31:0]            ray_ignored_i,
+  input  logic [30:0]            ray_t_max_i,
+  input  logic [31:0]            ray_skip_id_i,
   input  logic [AddressWidth-1:0] ray_start_i,
   input  logic                   ray_any_hit_i,
-  input  logic                   ray_every_box_i,
+  input  logic                   ray_no_cull_i,
   input  logic [31:0]            ray_tag_i,
   // results
   output logic                   result_valid_o,
@@ -82,7 +82,7 @@ module ray_core_axi #(
   output logic [NodesWidth-1:0]  result_nodes_o
 );
 
-  localparam int unsigned TagWidth = 1 + $clog2(
+  localparam int unsigned ReadIdWidth = 1 + $clog2(
     NodeLines > TriangleLines ? NodeLines : TriangleLines
   );
   localparam logic [30:0] Infinity = 31'h7f80_0000;
@@ -90,18 +90,18 @@ module ray_core_axi #(
 
   // ---- Registers
 
-  logic start, invalidate, reading, camera_busy, failed, result_given, is_doubt, ended;
+  logic start, invalidate, outstanding, camera_busy, bus_error, result_fire, is_doubt, ended;
   logic [63:0] base;
   logic [31:0] corner, size;
   logic [4*96-1:0] camera;
   logic [ray_core_pkg::NumEvents-1:0] events;
-  logic [31:0] inside_q;  // rays taken whose end has not been given
+  logic [31:0] in_flight_q;  // rays ray_fire whose end has not been given
 
-  assign result_given = result_valid_o & result_ready_i;
-  assign is_doubt     = result_given & (result_kind_o == ray_core_pkg::ResultDoubt);
-  assign ended        = result_given & (result_kind_o == ray_core_pkg::ResultEnd);
+  assign result_fire = result_valid_o & result_ready_i;
+  assign is_doubt    = result_fire & (result_kind_o == ray_core_pkg::ResultDoubt);
+  assign ended       = result_fire & (result_kind_o == ray_core_pkg::ResultEnd);
 
-  core_registers u_registers (
+  csr u_csr (
     .clk_i,
     .rst_ni,
     .axi_awvalid_i(reg_awvalid_i),
@@ -128,9 +128,9 @@ module ray_core_axi #(
     .size_o(size),
     .camera_o(camera),
     .camera_busy_i(camera_busy),
-    .core_busy_i((inside_q != '0) | reading),
+    .core_busy_i((in_flight_q != '0) | outstanding),
     .doubt_i(is_doubt),
-    .failed_i(failed),
+    .bus_error_i(bus_error),
     .events_i(events),
     .interrupt_o
   );
@@ -141,10 +141,10 @@ module ray_core_axi #(
   logic [95:0] camera_direction;
   logic [31:0] pixel;
 
-  camera_unit #(
+  ray_generator #(
     .Arith(Arith),
     .Adder(Adder)
-  ) u_camera (
+  ) u_generator (
     .clk_i,
     .rst_ni,
     .first_i(camera[96 +: 96]),
@@ -164,16 +164,16 @@ module ray_core_axi #(
 
   // ---- Rays: the camera's first
 
-  logic core_ready, core_valid, taken;
+  logic core_ready, core_valid, ray_fire;
   assign core_valid   = camera_valid | (ray_valid_i & ~camera_busy);
   assign camera_ready = core_ready;
   assign ray_ready_o  = core_ready & ~camera_busy;
-  assign taken        = core_valid & core_ready;
+  assign ray_fire     = core_valid & core_ready;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) inside_q <= '0;
+    if (!rst_ni) in_flight_q <= '0;
     else begin
-      inside_q <= inside_q + 32'(taken) - 32'(ended);
+      in_flight_q <= in_flight_q + 32'(ray_fire) - 32'(ended);
     end
   end
 
@@ -181,7 +181,7 @@ module ray_core_axi #(
 
   logic read_valid, read_ready, line_valid, line_ready;
   logic [AddressWidth-1:0] read_line;
-  logic [TagWidth-1:0] read_tag, line_tag;
+  logic [ReadIdWidth-1:0] read_id, line_id;
   logic [ray_core_pkg::LineWidth-1:0] line;
 
   ray_core #(
@@ -195,16 +195,16 @@ module ray_core_axi #(
     .clk_i,
     .rst_ni,
     .invalidate_i(invalidate),
-    .reading_o(reading),
+    .outstanding_o(outstanding),
     .ray_valid_i(core_valid),
     .ray_ready_o(core_ready),
     .ray_origin_i(camera_valid ? camera[0 +: 96] : ray_origin_i),
     .ray_direction_i(camera_valid ? camera_direction : ray_direction_i),
-    .ray_limit_i(camera_valid ? Infinity : ray_limit_i),
-    .ray_ignored_i(camera_valid ? NoTriangle : ray_ignored_i),
+    .ray_t_max_i(camera_valid ? Infinity : ray_t_max_i),
+    .ray_skip_id_i(camera_valid ? NoTriangle : ray_skip_id_i),
     .ray_start_i(camera_valid ? '0 : ray_start_i),
     .ray_any_hit_i(~camera_valid & ray_any_hit_i),
-    .ray_every_box_i(~camera_valid & ray_every_box_i),
+    .ray_no_cull_i(~camera_valid & ray_no_cull_i),
     .ray_tag_i(camera_valid ? pixel : ray_tag_i),
     .result_valid_o,
     .result_ready_i,
@@ -221,29 +221,29 @@ module ray_core_axi #(
     .read_valid_o(read_valid),
     .read_ready_i(read_ready),
     .read_line_o(read_line),
-    .read_tag_o(read_tag),
+    .read_id_o(read_id),
     .line_valid_i(line_valid),
     .line_ready_o(line_ready),
-    .line_tag_i(line_tag),
+    .line_id_i(line_id),
     .line_i(line),
     .events_o(events)
   );
 
-  axi_line_reader #(
+  axi_read_manager #(
     .DataWidth(DataWidth),
     .IdWidth(IdWidth),
-    .TagWidth(TagWidth)
-  ) u_reader (
+    .ReadIdWidth(ReadIdWidth)
+  ) u_read_manager (
     .clk_i,
     .rst_ni,
     .base_i(base),
     .read_valid_i(read_valid),
     .read_ready_o(read_ready),
     .read_line_i(read_line),
-    .read_tag_i(read_tag),
+    .read_id_i(read_id),
     .line_valid_o(line_valid),
     .line_ready_i(line_ready),
-    .line_tag_o(line_tag),
+    .line_id_o(line_id),
     .line_o(line),
     .axi_arvalid_o(mem_arvalid_o),
     .axi_arready_i(mem_arready_i),
@@ -257,7 +257,7 @@ module ray_core_axi #(
     .axi_rid_i(mem_rid_i),
     .axi_rdata_i(mem_rdata_i),
     .axi_rresp_i(mem_rresp_i),
-    .failed_o(failed)
+    .bus_error_o(bus_error)
   );
 
 endmodule

@@ -49,15 +49,15 @@ package ray_core_pkg;
   // {base, exponent, entries}
   localparam int unsigned GroupWidth = AddressWidth + ExponentWidth + Children * EntryWidth;
 
-  // Whether a child begins surely beyond the limit, a binary32 number without its sign: the limit in the
+  // Whether a child begins surely beyond the t_max, a binary32 number without its sign: the t_max in the
   // entry's units, rounded down, is below `enter`.
   function automatic logic is_beyond(logic [ExponentWidth-1:0] exponent,
-                                     logic [EnterWidth-1:0] enter, logic [30:0] limit);
+                                     logic [EnterWidth-1:0] enter, logic [30:0] t_max);
     logic signed [10:0] amount;
-    amount    = $signed({2'b0, exponent}) + 11'sd11 - $signed({3'b0, limit[30:23]});
+    amount    = $signed({2'b0, exponent}) + 11'sd11 - $signed({3'b0, t_max[30:23]});
     is_beyond = (amount > 11'sd11)
               && (amount > 11'sd23 ? enter != '0
-                                   : {12'b0, enter} > ({1'b1, limit[22:0]} >> amount[4:0]));
+                                   : {12'b0, enter} > ({1'b1, t_max[22:0]} >> amount[4:0]));
   endfunction
 
   // From the clock edge that takes a node to the one after which its group is there, see box_unit.
@@ -67,30 +67,30 @@ package ray_core_pkg;
 
   localparam int unsigned UnitBits = 22;
   localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
-  localparam int unsigned PlaceWidth = 36;  // of planes, two's complement
+  localparam int unsigned PlaneWidth = 36;  // of planes, two's complement
 
   // ---- A ray, as it comes
 
   typedef struct packed {
     logic [95:0]             origin;     // binary32, x lowest
     logic [95:0]             direction;
-    logic [30:0]             limit;
-    logic [31:0]             ignored;
+    logic [30:0]             t_max;
+    logic [31:0]             skip_id;
     logic [AddressWidth-1:0] start;
     logic                    any_hit;
-    logic                    every_box;
+    logic                    no_cull;
     logic [31:0]             tag;
   } ray_t;
 
   // ---- Results: what the core says of a ray
 
   typedef enum logic [1:0] {
-    ResultEnd   = 2'd0,  // the ray's last word: the nearest sure hit, if there is one
-    ResultDoubt = 2'd1,  // a triangle that the host must look at: hit or not, or how far
-    ResultRest  = 2'd2   // subtrees for which the stack had no room: the host sends the ray there
+    ResultEnd      = 2'd0,  // the ray's last word: the nearest sure hit, if there is one
+    ResultDoubt    = 2'd1,  // a triangle that the host must look at: hit or not, or how far
+    ResultOverflow = 2'd2  // subtrees for which the stack had no room: the host sends the ray there
   } result_e;
 
-  localparam int unsigned NodesWidth = 7 * Children;  // of a rest: bit i is the node at line + i
+  localparam int unsigned NodesWidth = 7 * Children;  // of an overflow: bit i: the node at line + i
   localparam int unsigned TestsWidth = 16;
 
   // ---- Events of a clock, for counters
@@ -103,7 +103,7 @@ package ray_core_pkg;
     EventMiss     = 4'd4,  // surely missed, or the triangle that the ray ignores,
     EventDoubt    = 4'd5,  // or neither
     EventNearTie  = 4'd6,  // a sure hit leaves as a doubt
-    EventRest     = 4'd7,
+    EventOverflow = 4'd7,
     EventRead     = 4'd8,  // a line is asked for
     EventWait     = 4'd9   // memory does not take what is asked for
   } event_e;

@@ -3,7 +3,7 @@
 //
 //   subtract  A, B, C: vertices - O; the edges B-A, C-B, A-C      18 adders
 //   cross     N = (A-C) x (B-A); A x (B-A), B x (C-B), C x (A-C)  24 multipliers, 24 adders, see cross_product
-//   sum       d = N . A; the edges' terms, for their bounds        3 multipliers, 8 adders, see sum_of_three
+//   sum       d = N . A; the edges' terms, for their bounds        3 multipliers, 8 adders, see fp_add3
 //
 // Throughput one triangle a clock, latency set_up_pkg::Latency. Takes every bit pattern.
 //
@@ -67,7 +67,7 @@ module set_up_unit #(
   logic [9*Width-1:0] corner;  // A, B, C
   logic [9*Width-1:0] edge_vector;  // B-A, C-B, A-C
 
-  vector_adder #(
+  vec_add #(
     .Words(18),
     .Subtract(1'b1),
     .Arith(Arith),
@@ -126,7 +126,7 @@ module set_up_unit #(
   logic [Width-1:0] d;
   logic [3*Width-1:0] sums;
 
-  vector_multiplier #(
+  vec_mul #(
     .Arith(Arith),
     .Adder(Adder)
   ) u_shares (
@@ -136,7 +136,7 @@ module set_up_unit #(
     .product_o(shares)
   );
   for (genvar k = 0; k < 3; k++) begin : gen_sum
-    sum_of_three #(
+    fp_add3 #(
       .Arith(Arith),
       .Adder(Adder)
     ) u_terms (
@@ -148,7 +148,7 @@ module set_up_unit #(
     );
   end
 
-  sum_of_three #(
+  fp_add3 #(
     .Arith(Arith),
     .Adder(Adder)
   ) u_d (
@@ -177,7 +177,7 @@ module set_up_unit #(
   // ---- The plane's errors, from exponents: those of A, N and M go beside d
 
   logic [ExpWidth-1:0] vertex_field, normal_field, terms_field;
-  logic [ExpWidth-1:0] beside_vertex, beside_normal, beside_terms, d_field;
+  logic [ExpWidth-1:0] sideband_vertex, sideband_normal, sideband_terms, d_field;
 
   function automatic logic [ExpWidth-1:0] largest(logic [ExpWidth-1:0] x, logic [ExpWidth-1:0] y,
                                                   logic [ExpWidth-1:0] z);
@@ -206,7 +206,7 @@ module set_up_unit #(
     .clk_i,
     .enable_i(1'b1),
     .data_i({vertex_field, normal_field, terms_field}),
-    .data_o({beside_vertex, beside_normal, beside_terms})
+    .data_o({sideband_vertex, sideband_normal, sideband_terms})
   );
   assign d_field = d[FracWidth+:ExpWidth];
 
@@ -215,11 +215,11 @@ module set_up_unit #(
   logic [ExpWidth+1:0] normal_error, distance_error;  // two's complement
   logic fields_good, plane_good;
 
-  assign normal_error   = (ExpWidth + 2)'(beside_terms) - (ExpWidth + 2)'(beside_normal);
-  assign distance_error = (ExpWidth + 2)'(beside_vertex) + (ExpWidth + 2)'(beside_terms)
+  assign normal_error   = (ExpWidth + 2)'(sideband_terms) - (ExpWidth + 2)'(sideband_normal);
+  assign distance_error = (ExpWidth + 2)'(sideband_vertex) + (ExpWidth + 2)'(sideband_terms)
                         - (ExpWidth + 2)'(d_field) - Bias;
-  assign fields_good = (beside_terms >= ExpWidth'(LeastField)) & ~(&beside_terms)
-                     & ~(&beside_vertex)
+  assign fields_good = (sideband_terms >= ExpWidth'(LeastField)) & ~(&sideband_terms)
+                     & ~(&sideband_vertex)
                      & (d_field >= ExpWidth'(LeastField)) & ~(&d_field);
   assign plane_good = fields_good & (normal_error <= (ExpWidth + 2)'(MostError))
                     & (distance_error[ExpWidth+1] | (distance_error <= (ExpWidth + 2)'(MostError)));

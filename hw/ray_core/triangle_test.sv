@@ -1,10 +1,10 @@
 // A triangle and a ray in each clock: set_up_unit's record of it, then hit_test_pipeline's verdict.
 //
 // What comes in is never held up; a word of the results, word_*_o and hit_*_o, is there in each clock that says so.
-// The ray is given by its slot: its origin when the triangle comes, its direction when direction_slot_o asks
+// The ray is given by its context: its origin when the triangle comes, its direction when direction_ctx_o asks
 // for it, in the same clock.
 //
-// Every test is a burst of its own. closed_o: one is over, of slot_o and triangle_o: a doubt_o, a sure hit
+// Every test is a burst of its own. closed_o: one is over, of ctx_o and triangle_o: a doubt_o, a sure hit
 // (found_o), or a miss. A hit's P is there later, point_valid_o, in the order of the hits: up to
 // divide_latency + 4 clocks after it.
 module triangle_test #(
@@ -18,16 +18,16 @@ module triangle_test #(
   input  logic                       clk_i,
   input  logic                       rst_ni,
   input  logic                       valid_i,
-  input  logic [RayWidth-1:0]        slot_i,
+  input  logic [RayWidth-1:0]        ctx_i,
   input  logic [TriangleWidth-1:0]   triangle_i,  // a triangle line
   input  logic [95:0]                origin_i,
-  input  logic [31:0]                ignored_i,   // a triangle that counts for nothing
-  output logic [RayWidth-1:0]        direction_slot_o,
+  input  logic [31:0]                skip_id_i,   // a triangle that counts for nothing
+  output logic [RayWidth-1:0]        direction_ctx_o,
   input  logic [95:0]                direction_i,
   output logic                       closed_o,
-  output logic [RayWidth-1:0]        slot_o,
+  output logic [RayWidth-1:0]        ctx_o,
   output logic [31:0]                triangle_o,
-  output logic                       is_ignored_o,
+  output logic                       is_skipped_o,
   output logic                       doubt_o,
   output logic                       found_o,
   output logic [31:0]                t_o,  // off by t_error_o and the plane's: see set_up_pkg
@@ -44,7 +44,7 @@ module triangle_test #(
   logic [PlaneErrorWidth-1:0] set_normal_error, set_distance_error;
   logic [set_up_pkg::Latency-1:0] setting_q;
   logic [31:0] index, set_triangle;
-  logic set_ignored;
+  logic set_skipped;
 
   assign index = triangle_i[ray_core_pkg::TriangleIndex+:32];
 
@@ -62,11 +62,11 @@ module triangle_test #(
   delay_line #(
     .Width(RayWidth + 32 + 1),
     .Depth(set_up_pkg::Latency)
-  ) u_beside_set_up (
+  ) u_sideband_set_up (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({slot_i, index, index == ignored_i}),
-    .data_o({direction_slot_o, set_triangle, set_ignored})
+    .data_i({ctx_i, index, index == skip_id_i}),
+    .data_o({direction_ctx_o, set_triangle, set_skipped})
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -94,7 +94,7 @@ module triangle_test #(
     .ready_o(unused_ready),  // always, as results are always taken
     .first_i(1'b1),
     .last_i(1'b1),
-    .tag_i({set_normal_error, set_distance_error, set_ignored, direction_slot_o, set_triangle}),
+    .tag_i({set_normal_error, set_distance_error, set_skipped, direction_ctx_o, set_triangle}),
     .direction_i,
     .record_i(set_record),
     .valid_o(word_valid),
@@ -115,6 +115,6 @@ module triangle_test #(
   assign doubt_o       = report == hit_test_pkg::ReportDoubt;
   assign point_valid_o = word_valid & point_valid;
   assign tag           = found_o ? found_tag : report_tag;
-  assign {normal_error_o, distance_error_o, is_ignored_o, slot_o, triangle_o} = tag;
+  assign {normal_error_o, distance_error_o, is_skipped_o, ctx_o, triangle_o} = tag;
 
 endmodule

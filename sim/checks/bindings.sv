@@ -35,17 +35,17 @@ bind hit_test_pipeline burst_checks #(
 ) u_burst_checks (
   .clk_i,
   .rst_ni,
-  .taken (valid_i & ready_o),
+  .in_fire(valid_i & ready_o),
   .first_i,
   .last_i,
   .direction_i,
-  .given (valid_o & ready_i),
+  .out_fire(valid_o & ready_i),
   .report(report_o),
   .closed_o,
   .found_o,
   .point_valid_o
 );
-bind camera_unit stream_checks #(
+bind ray_generator stream_checks #(
   .Width($bits({direction_o, pixel_o}))
 ) u_output_checks (
   .clk_i,
@@ -54,7 +54,7 @@ bind camera_unit stream_checks #(
   .ready(ready_i),
   .data ({direction_o, pixel_o})
 );
-bind axi_line_reader stream_checks #(
+bind axi_read_manager stream_checks #(
   .Width($bits({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o}))
 ) u_request_checks (
   .clk_i,
@@ -63,7 +63,7 @@ bind axi_line_reader stream_checks #(
   .ready(axi_arready_i),
   .data ({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o})
 );
-bind core_registers stream_checks #(
+bind csr stream_checks #(
   .Width($bits(axi_bresp_o))
 ) u_write_checks (
   .clk_i,
@@ -72,7 +72,7 @@ bind core_registers stream_checks #(
   .ready(axi_bready_i),
   .data (axi_bresp_o)
 );
-bind core_registers stream_checks #(
+bind csr stream_checks #(
   .Width($bits({axi_rdata_o, axi_rresp_o}))
 ) u_read_checks (
   .clk_i,
@@ -82,13 +82,13 @@ bind core_registers stream_checks #(
   .data ({axi_rdata_o, axi_rresp_o})
 );
 bind ray_core stream_checks #(
-  .Width($bits({read_line_o, read_tag_o}))
+  .Width($bits({read_line_o, read_id_o}))
 ) u_read_checks (
   .clk_i,
   .rst_ni,
   .valid(read_valid_o),
   .ready(read_ready_i),
-  .data ({read_line_o, read_tag_o})
+  .data ({read_line_o, read_id_o})
 );
 bind ray_core stream_checks #(
   .Width($bits({result_kind_o, result_tag_o, result_found_o, result_triangle_o, result_t_o,

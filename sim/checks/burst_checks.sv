@@ -6,11 +6,11 @@ module burst_checks #(
 ) (
   input logic                      clk_i,
   input logic                      rst_ni,
-  input logic                      taken,        // a test, at this clock edge
+  input logic                      in_fire,      // a test, at this clock edge
   input logic                      first_i,
   input logic                      last_i,
   input logic [DirectionWidth-1:0] direction_i,
-  input logic                      given,        // a result, at this clock edge
+  input logic                      out_fire,     // a result, at this clock edge
   input logic [1:0]                report,
   input logic                      closed_o,
   input logic                      found_o,
@@ -27,20 +27,20 @@ module burst_checks #(
       open_q      <= '0;
       pointless_q <= '0;
     end else begin
-      if (taken) in_burst_q <= !last_i;
-      open_q <= open_q + 16'(taken && last_i) - 16'(given && closed_o);
-      pointless_q <= pointless_q + 16'(given && closed_o && found_o)
-                   - 16'(given && point_valid_o);
+      if (in_fire) in_burst_q <= !last_i;
+      open_q <= open_q + 16'(in_fire && last_i) - 16'(out_fire && closed_o);
+      pointless_q <= pointless_q + 16'(out_fire && closed_o && found_o)
+                   - 16'(out_fire && point_valid_o);
     end
   end
-  always_ff @(posedge clk_i) if (taken && first_i) direction_q <= direction_i;
+  always_ff @(posedge clk_i) if (in_fire && first_i) direction_q <= direction_i;
 
   always_ff @(posedge clk_i) begin
-    if (rst_ni && taken) begin
+    if (rst_ni && in_fire) begin
       a_first : assert (first_i != in_burst_q);
       a_one_direction : assert (first_i || direction_i == direction_q);
     end
-    if (rst_ni && given) begin
+    if (rst_ni && out_fire) begin
       a_closed : assert (!closed_o || open_q != '0);
       a_point : assert (!point_valid_o || pointless_q != '0);
       a_says_something : assert (report != 2'd0 || closed_o || point_valid_o);

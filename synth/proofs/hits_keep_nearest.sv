@@ -1,8 +1,8 @@
 // What tests say of a ray, whatever they say and whenever, from reset and for ever: no sure hit is lost in silence. A hit is
-// kept, or was told as a doubt, once, or it is farther, by both its error and the kept one's, than the limit, which
-// is the least upper bound of all hits so far and the user's limit. What has no verdict is told as a doubt, once. P and t
+// kept, or was told as a doubt, once, or it is farther, by both its error and the kept one's, than the t_max, which
+// is the least upper bound of all hits so far and the user's t_max. What has no verdict is told as a doubt, once. P and t
 // are the kept hit's. Tests on their way are counted rightly, and there is room for the doubts of all of them.
-// opened_ray_hits is ray_hits of two rays with its registers and memories as outputs; that its queues keep order is fifo_keeps_order's.
+// opened_closest_hit is closest_hit of two rays with its registers and memories as outputs; that its queues keep order is fifo_keeps_order's.
 module hits_keep_nearest #(
   localparam int unsigned Rays     = 2,
   localparam int unsigned InFlight = 2,
@@ -13,7 +13,7 @@ module hits_keep_nearest #(
   input logic        clk,
   input logic        load,
   input logic        load_ray,
-  input logic [30:0] load_limit,
+  input logic [30:0] load_t_max,
   input logic        load_any_hit,
   input logic        test,
   input logic        test_ray,
@@ -21,7 +21,7 @@ module hits_keep_nearest #(
   input logic        result,
   input logic        result_ray,
   input logic [31:0] result_triangle,
-  input logic        result_ignored,
+  input logic        result_skipped,
   input logic        result_doubt,
   input logic        result_hit,
   input logic [31:0] result_t,
@@ -29,10 +29,10 @@ module hits_keep_nearest #(
   input logic [3:0]  result_normal_error,
   input logic [3:0]  result_distance_error,
   input logic        point_valid,
-  input logic        walk_ray,
+  input logic        traversal_ray,
   input logic        leaf_ray,
   input logic        box_ray,
-  input logic        doubt_taken,
+  input logic        doubt_fire,
   input logic        end_ray,
   input logic        point_ray,
   input logic        choose  // the hit told now is the one that is watched
@@ -47,8 +47,8 @@ module hits_keep_nearest #(
   (* anyseq *) logic [95:0] point;
   (* anyseq *) logic [31:0] load_tag;
 
-  logic tests_allowed, walk_ended, leaf_ended, crowded, doubt_valid, end_found, near_tie;
-  logic [30:0] walk_limit, leaf_limit, box_limit;
+  logic tests_allowed, traversal_ended, leaf_ended, counter_full, doubt_valid, end_found, near_tie;
+  logic [30:0] traversal_t_max, leaf_t_max, box_t_max;
   logic [Rays-1:0] testing, found_q, any_hit_q;
   logic [31:0] result_tag, end_triangle, end_t;
   logic [TErrorWidth-1:0] end_t_error;
@@ -58,7 +58,7 @@ module hits_keep_nearest #(
   logic [63:0] pushed;
   logic [4:0] doubts;
   logic [1:0] points_count;
-  logic [Rays*31-1:0] limits;
+  logic [Rays*31-1:0] t_max_words;
   logic [Rays*32-1:0] nearest_t, nearest_triangle;
   logic [Rays*TErrorWidth-1:0] nearest_error;
   logic [Rays*96-1:0] points;
@@ -66,12 +66,12 @@ module hits_keep_nearest #(
   logic [Rays*TestsWidth-1:0] tests;
   logic [InFlight*2-1:0] points_words;
 
-  opened_ray_hits dut (
+  opened_closest_hit dut (
     .clk_i(clk),
     .rst_ni(reset_n),
     .load_i(load),
     .load_ray_i(load_ray),
-    .load_limit_i(load_limit),
+    .load_t_max_i(load_t_max),
     .load_any_hit_i(load_any_hit),
     .test_i(test),
     .test_ray_i(test_ray),
@@ -80,7 +80,7 @@ module hits_keep_nearest #(
     .result_ray_i(result_ray),
     .result_tag_i(result_tag),
     .result_triangle_i(result_triangle),
-    .result_ignored_i(result_ignored),
+    .result_skipped_i(result_skipped),
     .result_doubt_i(result_doubt),
     .result_hit_i(result_hit),
     .result_t_i(result_t),
@@ -89,18 +89,18 @@ module hits_keep_nearest #(
     .result_distance_error_i(result_distance_error),
     .point_valid_i(point_valid),
     .point_i(point),
-    .walk_ray_i(walk_ray),
-    .walk_limit_o(walk_limit),
-    .walk_ended_o(walk_ended),
+    .traversal_ray_i(traversal_ray),
+    .traversal_t_max_o(traversal_t_max),
+    .traversal_ended_o(traversal_ended),
     .leaf_ray_i(leaf_ray),
-    .leaf_limit_o(leaf_limit),
+    .leaf_t_max_o(leaf_t_max),
     .leaf_ended_o(leaf_ended),
-    .leaf_crowded_o(crowded),
+    .leaf_counter_full_o(counter_full),
     .box_ray_i(box_ray),
-    .box_limit_o(box_limit),
+    .box_t_max_o(box_t_max),
     .testing_o(testing),
     .doubt_valid_o(doubt_valid),
-    .doubt_taken_i(doubt_taken),
+    .doubt_fire_i(doubt_fire),
     .end_ray_i(end_ray),
     .end_found_o(end_found),
     .end_triangle_o(end_triangle),
@@ -119,7 +119,7 @@ module hits_keep_nearest #(
     .\u_points.read_q (points_read),
     .\u_points.write_q (points_write),
     .\u_points.count_q (points_count),
-    .limits(limits),
+    .t_max(t_max_words),
     .nearest_t(nearest_t),
     .nearest_error(nearest_error),
     .nearest_triangle(nearest_triangle),
@@ -135,7 +135,7 @@ module hits_keep_nearest #(
   logic [11:0] flight_0, flight_1;  // a ray's tests on their way
   logic [TestsWidth-1:0] made_0, made_1;  // its tests
   logic [31:0] tag_0, tag_1;
-  logic [30:0] user_0, user_1;  // its limit at first
+  logic [30:0] user_0, user_1;  // its t_max at first
   logic [2:0] flying;  // tests in the pipeline
 
   assign result_tag = result_ray ? tag_1 : tag_0;
@@ -156,11 +156,11 @@ module hits_keep_nearest #(
         any_hit[load_ray] <= load_any_hit;
         if (load_ray) begin
           tag_1 <= load_tag;
-          user_1 <= load_limit;
+          user_1 <= load_t_max;
           made_1 <= '0;
         end else begin
           tag_0 <= load_tag;
-          user_0 <= load_limit;
+          user_0 <= load_t_max;
           made_0 <= '0;
         end
       end
@@ -169,17 +169,17 @@ module hits_keep_nearest #(
 
   always_comb begin
     if (reset_n) begin
-      assume (!load || ((load_ray ? flight_1 : flight_0) == '0 && load_limit <= Infinity[30:0]
+      assume (!load || ((load_ray ? flight_1 : flight_0) == '0 && load_t_max <= Infinity[30:0]
                         && !(test && test_ray == load_ray)));
-      assume (!test || (loaded[test_ray] && test_ray == leaf_ray && !crowded));
+      assume (!test || (loaded[test_ray] && test_ray == leaf_ray && !counter_full));
       assume (!enter || (tests_allowed && (flying < 3'(InFlight) || result)));
       assume (!result || ((result_ray ? flight_1 : flight_0) != '0 && flying != '0));
       assume (!(result_hit && result_doubt) && result_t <= Infinity);
       assume (!(result && result_hit) || points_count < 2'(InFlight) || point_valid);
       assume (!point_valid || points_count != '0);
-      assume (!doubt_taken || doubt_valid);
+      assume (!doubt_fire || doubt_valid);
     end else begin
-      assume (!load && !test && !enter && !result && !point_valid && !doubt_taken);
+      assume (!load && !test && !enter && !result && !point_valid && !doubt_fire);
     end
   end
 
@@ -190,8 +190,8 @@ module hits_keep_nearest #(
   assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_t_error), result_normal_error);
   assign t_error = set_up_pkg::t_error_exponent(TErrorWidth'(result_t_error), result_normal_error,
                                                 result_distance_error);
-  assign sure  = result && !result_ignored && result_hit && good;
-  assign vague = result && !result_ignored && (result_doubt || (result_hit && !good));
+  assign sure  = result && !result_skipped && result_hit && good;
+  assign vague = result && !result_skipped && (result_doubt || (result_hit && !good));
 
   // Exact bounds
   logic signed [33:0] low, high;
@@ -207,11 +207,11 @@ module hits_keep_nearest #(
   logic [TErrorWidth-1:0] w_error;
   logic [95:0] w_point;
   logic signed [33:0] w_low, w_high;
-  logic [30:0] w_limit;  // of its ray
+  logic [30:0] w_t_max;  // of its ray
   logic ousted;
   initial state = Nowhere;
 
-  assign w_limit = w_ray ? limits[61:31] : limits[30:0];
+  assign w_t_max = w_ray ? t_max_words[61:31] : t_max_words[30:0];
   assign ousted  = state == Kept && result && result_ray == w_ray && replace;
 
   always_ff @(posedge clk) begin
@@ -243,22 +243,22 @@ module hits_keep_nearest #(
 
   logic [1:0] behind;  // the word of the queue of hits that is behind the watched one's, or in front of it
   assign behind = w_place ? points_words[1:0] : points_words[3:2];
-  logic [30:0] result_limit;
-  assign result_limit = result_ray ? limits[61:31] : limits[30:0];
+  logic [30:0] result_t_max;
+  assign result_t_max = result_ray ? t_max_words[61:31] : t_max_words[30:0];
 
   always_comb begin
     if (reset_n) begin
       if (vague) assert (push && pushed == {result_tag, result_triangle} && !replace);
       if (sure && !replace && push) assert (pushed == {result_tag, result_triangle});
-      if (sure && !replace && !push) assert (low > $signed({3'b000, result_limit}));
+      if (sure && !replace && !push) assert (low > $signed({3'b000, result_t_max}));
       if (replace) assert (sure);
       if (push) assert (vague || sure);
       if (push && replace) assert (found_q[result_ray] && near_tie);
       if (ousted && push) assert (pushed == {result_tag, w_triangle});
-      if (state == Beyond) assert (w_low > $signed({3'b000, w_limit}));
-      if (state != Nowhere) assert ($signed({3'b000, w_limit}) <= w_high);
+      if (state == Beyond) assert (w_low > $signed({3'b000, w_t_max}));
+      if (state != Nowhere) assert ($signed({3'b000, w_t_max}) <= w_high);
       if (state == Kept) begin
-        assert (found_q[w_ray] && $signed({3'b000, w_limit}) == w_high);
+        assert (found_q[w_ray] && $signed({3'b000, w_t_max}) == w_high);
         assert (nearest_t[32*w_ray+:32] == w_t && nearest_triangle[32*w_ray+:32] == w_triangle
                 && nearest_error[TErrorWidth*w_ray+:TErrorWidth] == w_error);
         if (has_point) assert (points[96*w_ray+:96] == w_point);
@@ -267,18 +267,18 @@ module hits_keep_nearest #(
               && end_triangle == nearest_triangle[32*end_ray+:32]
               && end_t_error == nearest_error[TErrorWidth*end_ray+:TErrorWidth]
               && end_point == points[96*point_ray+:96]);
-      // The user's limit holds until a hit is kept
-      if (loaded[0]) assert (found_q[0] ? limits[30:0] < user_0 : limits[30:0] == user_0);
-      if (loaded[1]) assert (found_q[1] ? limits[61:31] < user_1 : limits[61:31] == user_1);
-      if (loaded[walk_ray]) begin
-        assert (walk_limit == (walk_ray ? limits[61:31] : limits[30:0])
-                && walk_ended == (found_q[walk_ray] && any_hit[walk_ray]));
+      // The user's t_max holds until a hit is kept
+      if (loaded[0]) assert (found_q[0] ? t_max_words[30:0] < user_0 : t_max_words[30:0] == user_0);
+      if (loaded[1]) assert (found_q[1] ? t_max_words[61:31] < user_1 : t_max_words[61:31] == user_1);
+      if (loaded[traversal_ray]) begin
+        assert (traversal_t_max == (traversal_ray ? t_max_words[61:31] : t_max_words[30:0])
+                && traversal_ended == (found_q[traversal_ray] && any_hit[traversal_ray]));
       end
       if (loaded[leaf_ray]) begin
-        assert (leaf_limit == (leaf_ray ? limits[61:31] : limits[30:0])
+        assert (leaf_t_max == (leaf_ray ? t_max_words[61:31] : t_max_words[30:0])
                 && leaf_ended == (found_q[leaf_ray] && any_hit[leaf_ray]));
       end
-      assert (box_limit == (box_ray ? limits[61:31] : limits[30:0]));
+      assert (box_t_max == (box_ray ? t_max_words[61:31] : t_max_words[30:0]));
       // Tests
       assert (testing == {flight_1 != '0, flight_0 != '0});
       if (loaded[0]) assert ({2'b00, counts[9:0]} == flight_0);

@@ -1,8 +1,8 @@
 // The triangles of leaves that a ray enters, whatever groups come and whichever rays wait, from reset and for ever:
 // those of a group are asked for in order, near leaves first, each once, by the lines that the group gives; of those
-// that are not, the leaf was beyond the ray's limit or the ray had ended in the clock in which they were dropped. Until
-// then the ray counts as held. No more groups wait than there is room for.
-// opened_leaf_walk is leaf_walk of two rays with its registers and its queue as outputs.
+// that are not, the leaf was beyond the ray's t_max or the ray had ended in the clock in which they were dropped. Until
+// then the ray counts as leaf_pending. No more groups wait than there is room for.
+// opened_primitive_fetch is primitive_fetch of two rays with its registers and its queue as outputs.
 module leaves_are_asked_for #(
   localparam int unsigned Rays = 2,
   localparam int unsigned Children = ray_core_pkg::Children,
@@ -19,9 +19,9 @@ module leaves_are_asked_for #(
   input logic                  box,
   input logic                  box_ray,
   input logic [Children-1:0]   box_leaf,
-  input logic [30:0]           limit,
+  input logic [30:0]           t_max,
   input logic                  ended,
-  input logic                  crowded,
+  input logic                  counter_full,
   input logic                  ready,
   input logic                  choose,  // triangle `number` of leaf `which` of the group that comes now is watched
   input logic [2:0]            which,
@@ -34,27 +34,27 @@ module leaves_are_asked_for #(
 
   (* anyseq *) logic [GroupWidth-1:0] box_group;
 
-  logic limit_ray, triangle, triangle_ray, valid_q, ray_q, queued, read_q, write_q;
+  logic t_max_ray, triangle, triangle_ray, valid_q, ray_q, queued, read_q, write_q;
   logic [AddressWidth-1:0] line;
-  logic [Rays-1:0] held;
+  logic [Rays-1:0] leaf_pending;
   logic [GroupWidth-1:0] group_q;
   logic [Children-1:0] mask_q;
   logic [CountWidth-1:0] number_q;
   logic [1:0] count;
   logic [Rays*WordWidth-1:0] words;
 
-  opened_leaf_walk dut (
+  opened_primitive_fetch dut (
     .clk_i(clk),
     .rst_ni(reset_n),
     .box_valid_i(box),
     .box_ray_i(box_ray),
     .box_group_i(box_group),
     .box_leaf_i(box_leaf),
-    .limit_ray_o(limit_ray),
-    .limit_i(limit),
+    .t_max_ray_o(t_max_ray),
+    .t_max_i(t_max),
     .ended_i(ended),
-    .crowded_i(crowded),
-    .held_o(held),
+    .counter_full_i(counter_full),
+    .leaf_pending_o(leaf_pending),
     .triangle_valid_o(triangle),
     .triangle_ready_i(ready),
     .triangle_ray_o(triangle_ray),
@@ -98,10 +98,10 @@ module leaves_are_asked_for #(
     end
   endfunction
 
-  // ---- What the user promises: groups are sorted, and a ray that is held has no other
+  // ---- What the user promises: groups are sorted, and a ray that is leaf_pending has no other
 
   always_comb begin
-    if (reset_n) assume (!box || box_leaf == '0 || (!held[box_ray] && is_group(box_group, box_leaf)));
+    if (reset_n) assume (!box || box_leaf == '0 || (!leaf_pending[box_ray] && is_group(box_group, box_leaf)));
     else assume (!box);
   end
 
@@ -115,7 +115,7 @@ module leaves_are_asked_for #(
     end
   end
   assign dropped = ended || ray_core_pkg::is_beyond(group_q[Children*EntryWidth+:ray_core_pkg::ExponentWidth],
-                                                    enter_of(group_q, nearest), limit);
+                                                    enter_of(group_q, nearest), t_max);
   assign leaves = valid_q && (dropped || (triangle && ready && (mask_q & (mask_q - 1'b1)) == '0
                                           && number_q + 1'b1 == count_of(group_q, nearest)));
 
@@ -135,7 +135,7 @@ module leaves_are_asked_for #(
   assign given      = state == Walked && triangle && ready;
   assign asked_next = asked + TotalWidth'(given);
   assign w_beyond   = ended || ray_core_pkg::is_beyond(w_group[Children*EntryWidth+:ray_core_pkg::ExponentWidth],
-                                                       enter_of(w_group, w_leaf), limit);
+                                                       enter_of(w_group, w_leaf), t_max);
 
   always_ff @(posedge clk) begin
     if (!reset_n) begin
@@ -170,10 +170,10 @@ module leaves_are_asked_for #(
 
   always_comb begin
     if (reset_n) begin
-      if (crowded) assert (!triangle);
-      assert (limit_ray == ray_q && triangle_ray == ray_q);
+      if (counter_full) assert (!triangle);
+      assert (t_max_ray == ray_q && triangle_ray == ray_q);
       if (triangle) assert (valid_q);
-      if (state != Nowhere) assert (held[w_ray]);
+      if (state != Nowhere) assert (leaf_pending[w_ray]);
       if (given && asked == rank) begin
         assert (triangle_ray == w_ray
                 && line == w_group[GroupWidth-1-:AddressWidth]
@@ -186,9 +186,9 @@ module leaves_are_asked_for #(
       // Invariants
       assert (queued == (count != '0) && count <= 2'd2);
       assert ((read_q == write_q) == (count != 2'd1));
-      if (valid_q) assert (held[ray_q] && mask_q != '0);
-      if (count != '0) assert (held[first[WordWidth-1]] && (!valid_q || first[WordWidth-1] != ray_q));
-      if (count == 2'd2) assert (!valid_q && held[second[WordWidth-1]] && first[WordWidth-1] != second[WordWidth-1]);
+      if (valid_q) assert (leaf_pending[ray_q] && mask_q != '0);
+      if (count != '0) assert (leaf_pending[first[WordWidth-1]] && (!valid_q || first[WordWidth-1] != ray_q));
+      if (count == 2'd2) assert (!valid_q && leaf_pending[second[WordWidth-1]] && first[WordWidth-1] != second[WordWidth-1]);
       if (count != '0) assert (first[Children-1:0] != '0 && is_group(first[Children+:GroupWidth], first[Children-1:0]));
       if (count == 2'd2) begin
         assert (second[Children-1:0] != '0 && is_group(second[Children+:GroupWidth], second[Children-1:0]));

@@ -1,8 +1,8 @@
 // A ray's stack, whatever box_unit says, whichever rays wait, from reset and for ever: a node that was pushed is
-// asked for, once, by the line that its group gives, unless it was beyond the ray's limit, or the ray had ended, in
-// a clock in which its stack was looked at; until then the ray counts as walking. Of groups for which there is room; others leave
+// asked for, once, by the line that its group gives, unless it was beyond the ray's t_max, or the ray had ended, in
+// a clock in which its stack was looked at; until then the ray counts as traversing. Of groups for which there is room; others leave
 // as rests. No more nodes wait than there are rays.
-// opened_ray_walk is ray_walk of two rays, with stacks of two groups, with its registers and memories as outputs.
+// opened_traversal is traversal of two rays, with stacks of two groups, with its registers and memories as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
   localparam int unsigned Depth = 2,
@@ -22,11 +22,11 @@ module stack_keeps_nodes #(
   input logic                  box,
   input logic                  box_ray,
   input logic [Children-1:0]   box_inner,
-  input logic [Rays-1:0]       held,
+  input logic [Rays-1:0]       leaf_pending,
   input logic [Rays-1:0]       testing,
-  input logic [30:0]           limit,
+  input logic [30:0]           t_max,
   input logic                  ended,
-  input logic                  rest_taken,
+  input logic                  overflow_fire,
   input logic                  choose,  // the child `which` of the group pushed now is the one that is watched
   input logic [2:0]            which
 );
@@ -38,41 +38,41 @@ module stack_keeps_nodes #(
   (* anyseq *) logic [AddressWidth-1:0] start_line;
   (* anyseq *) logic [GroupWidth-1:0] box_group;
 
-  logic start_taken, node, node_ray, rest;
-  logic limit_ray;
+  logic start_fire, node, node_ray, overflow;
+  logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
-  logic [Rays-1:0] walking, busy_q, waiting_q;
+  logic [Rays-1:0] traversing, busy_q, waiting_q;
   logic picked_q, ray_q, asked_q, started_q, asking_ray_q;
   logic [1:0] chosen_q;
-  logic [Children-1:0] mask_q, rest_q;
+  logic [Children-1:0] mask_q, remaining_q;
   logic [Rays*2-1:0] levels;
   logic [Rays*NextWidth-1:0] nexts_0, nexts_1;
   logic [Rays*ExponentWidth-1:0] exponents_0, exponents_1;
   logic [Rays*Depth*GroupWidth-1:0] groups;
 
-  opened_ray_walk dut (
+  opened_traversal dut (
     .clk_i(clk),
     .rst_ni(reset_n),
     .start_valid_i(start),
     .start_ray_i(start_ray),
     .start_line_i(start_line),
-    .start_taken_o(start_taken),
+    .start_fire_o(start_fire),
     .box_valid_i(box),
     .box_ray_i(box_ray),
     .box_tag_i(32'd0),
     .box_group_i(box_group),
     .box_inner_i(box_inner),
-    .held_i(held),
+    .leaf_pending_i(leaf_pending),
     .testing_i(testing),
-    .limit_ray_o(limit_ray),
-    .limit_i(limit),
+    .t_max_ray_o(t_max_ray),
+    .t_max_i(t_max),
     .ended_i(ended),
-    .walking_o(walking),
+    .traversing_o(traversing),
     .node_valid_o(node),
     .node_ray_o(node_ray),
     .node_line_o(node_line),
-    .rest_valid_o(rest),
-    .rest_taken_i(rest_taken),
+    .overflow_valid_o(overflow),
+    .overflow_fire_i(overflow_fire),
     .busy_q(busy_q),
     .waiting_q(waiting_q),
     .picked_q(picked_q),
@@ -82,7 +82,7 @@ module stack_keeps_nodes #(
     .asking_ray_q(asking_ray_q),
     .chosen_q(chosen_q),
     .mask_q(mask_q),
-    .rest_q(rest_q),
+    .remaining_q(remaining_q),
     .levels(levels),
     .groups(groups),
     .\gen_level[0]_nexts (nexts_0),
@@ -122,11 +122,11 @@ module stack_keeps_nodes #(
   end
   always_comb begin
     if (reset_n) begin
-      assume (!start || !walking[start_ray]);
+      assume (!start || !traversing[start_ray]);
       assume (!box || (wanted[box_ray] && is_sorted(box_group)));
-      assume (!rest_taken || rest);
+      assume (!overflow_fire || overflow);
     end else begin
-      assume (!start && !box && !rest_taken);
+      assume (!start && !box && !overflow_fire);
     end
   end
 
@@ -154,15 +154,15 @@ module stack_keeps_nodes #(
 
   logic asking;  // its group's level is being asked
   assign asking  = asked_q && asking_ray_q == w_ray && chosen_q == {1'b0, w_level};
-  assign w_mask  = asking ? rest_q : next_mask;
+  assign w_mask  = asking ? remaining_q : next_mask;
   assign present = w_levels > {1'b0, w_level} && w_mask[w_entry];
   assign asked   = asking && mask_q[w_entry] && (mask_q & ((Children'(1) << w_entry) - 1'b1)) == '0;
   assign push_here = box && box_inner != '0 && box_ray == w_ray && box_level == {1'b0, w_level};
 
   always_ff @(posedge clk) begin
-    dropped <= picked_q && limit_ray == w_ray
+    dropped <= picked_q && t_max_ray == w_ray
                && (ended || ray_core_pkg::is_beyond(
-                     w_group[Children*EntryWidth+:ExponentWidth], enter_of(w_group, w_entry), limit));
+                     w_group[Children*EntryWidth+:ExponentWidth], enter_of(w_group, w_entry), t_max));
     if (!reset_n) begin
       watching <= 1'b0;
       done <= 1'b0;
@@ -177,7 +177,7 @@ module stack_keeps_nodes #(
       end else if (watching && !present) begin
         watching <= 1'b0;
         done <= asked;
-      end else if (done && (push_here || (start_taken && start_ray == w_ray))) begin
+      end else if (done && (push_here || (start_fire && start_ray == w_ray))) begin
         done <= 1'b0;
       end
     end
@@ -189,7 +189,7 @@ module stack_keeps_nodes #(
     if (reset_n) begin
       if (watching) begin
         assert (present || asked || dropped);
-        if (present) assert (walking[w_ray] && !asked);
+        if (present) assert (traversing[w_ray] && !asked);
         if (asked) assert (node && node_ray == w_ray && node_line == line_of(w_group, w_entry));
       end
       if (done) assert (!asked && !present);
@@ -200,7 +200,7 @@ module stack_keeps_nodes #(
                               || ((asked_q || started_q) && asking_ray_q == 1'(r))));
         assert (!(wanted[r] && picked_q && ray_q == 1'(r)));
         assert (!(wanted[r] && (asked_q || started_q) && asking_ray_q == 1'(r)));
-        if (walking[r]) begin
+        if (traversing[r]) begin
           assert (levels[2*r+:2] <= 2'd2);
           assert (waiting_q[r] == (levels[2*r+:2] != 2'd0));
         end
@@ -211,7 +211,7 @@ module stack_keeps_nodes #(
       if (started_q) assert (levels[2*asking_ray_q+:2] == 2'd0);
       if (watching && (present || asked)) begin
         assert (kept == w_group && w_entry < 3'd7 && is_sorted(w_group));
-        if (asking) assert (rest_q == (mask_q & (mask_q - 1'b1)) && mask_q == next_mask);
+        if (asking) assert (remaining_q == (mask_q & (mask_q - 1'b1)) && mask_q == next_mask);
         assert (w_exponent == w_group[Children*EntryWidth+:ExponentWidth]);
         if (!asking) assert (w_next <= enter_of(w_group, w_entry));
       end

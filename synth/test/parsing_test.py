@@ -116,27 +116,27 @@ STAT = r"""
 
    Chip area for module '$paramod$12ab\line_cache': 100.000000
 
-=== $paramod$34cd\line_port ===
+=== $paramod$34cd\memory_subsystem ===
 
      $paramod$12ab\line_cache       2
      NAND2X1                        3
 
-   Chip area for module '$paramod$34cd\line_port': 30.500000
+   Chip area for module '$paramod$34cd\memory_subsystem': 30.500000
 
-=== $paramod\leaf_walk\Rays=32'00000000000000000000000001000000 ===
+=== $paramod\primitive_fetch\Rays=32'00000000000000000000000001000000 ===
 
      NAND2X1                        5
 
-   Chip area for module '$paramod\leaf_walk\Rays=32'00000000000000000000000001000000': 50.000000
+   Chip area for module '$paramod\primitive_fetch\Rays=32'00000000000000000000000001000000': 50.000000
 
-=== $paramod$56ef\vector_adder ===
+=== $paramod$56ef\vec_add ===
 
-     $paramod\leaf_walk\Rays=32'00000000000000000000000001000000      3
+     $paramod\primitive_fetch\Rays=32'00000000000000000000000001000000      3
 
 === ray_core ===
 
-     $paramod$34cd\line_port        2
-     $paramod$56ef\vector_adder        1
+     $paramod$34cd\memory_subsystem        2
+     $paramod$56ef\vec_add        1
      kept_memory                    1
 
    Area for cell type \kept_memory is unknown!
@@ -174,8 +174,8 @@ class Blocks(unittest.TestCase):
         self.assertEqual(memories, {r"$paramod$12ab\line_cache": 6144, "ray_core": 6144})
         self.assertEqual(mapping.block_costs(STAT, memories), {
             "the rest": {"count": 1, "area": 7, "bits": 6144},
-            "line_port": {"count": 2, "area": 461, "bits": 4 * 6144},
-            "vector_adder": {"count": 1, "area": 150, "bits": 0}})
+            "memory_subsystem": {"count": 2, "area": 461, "bits": 4 * 6144},
+            "vec_add": {"count": 1, "area": 150, "bits": 0}})
 
     def test_a_dump_of_one_module_names_none(self):
         text = "  cell \\kept_memory \\words\n    parameter \\BITS 40\n  end\n"

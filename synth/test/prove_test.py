@@ -22,12 +22,12 @@ HITS = [("(low <= limit)", "(low < limit)"),
         ("if (test_i && !same) counts", "if (test_i) counts")]
 
 LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
-          ("given & last & (rest == '0)", "given & (rest == '0)"),
+          ("given & last & (remaining == '0)", "given & (remaining == '0)"),
           ("triangle_valid_o & triangle_ready_i;", "triangle_valid_o;"),
-          ("if (push) held_o[box_ray_i] <= 1'b1;", "if (push && !done) held_o[box_ray_i] <= 1'b1;")]
+          ("if (push) leaf_pending_o[box_ray_i] <= 1'b1;", "if (push && !done) leaf_pending_o[box_ray_i] <= 1'b1;")]
 
-CACHE = [("some_free & ~(arrive & fill_place_i == place)", "some_free"),
-         ("<= follow & head[WaiterWidth]", "<= follow"),
+CACHE = [("some_free & ~(arrive & fill_entry_i == entry)", "some_free"),
+         ("<= follow & head[TargetWidth]", "<= follow"),
          (".requests_i(~pending)", ".requests_i({Ways{1'b1}})")]
 
 
@@ -56,10 +56,10 @@ class ProofsRefuseFaults(unittest.TestCase):
         self.refuse("hit_test_pipeline", RESULTS, lambda: unit_proofs.queues_results("binary16", 5, 10))
 
     def test_of_a_rays_hits(self):
-        self.refuse("ray_hits", HITS, unit_proofs.hits_keep_nearest)
+        self.refuse("closest_hit", HITS, unit_proofs.hits_keep_nearest)
 
     def test_of_leaves(self):
-        self.refuse("leaf_walk", LEAVES, unit_proofs.leaves_are_asked_for)
+        self.refuse("primitive_fetch", LEAVES, unit_proofs.leaves_are_asked_for)
 
     def test_of_the_cache(self):
         self.refuse("line_cache", CACHE, unit_proofs.cache_answers_once)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-// The steps are those of hw/ray_core/camera_unit.sv.
+// The steps are those of hw/ray_core/ray_generator.sv.
 
 namespace raygate {
 

@@ -221,7 +221,7 @@ module pieces_top (
       .side_o(unused_side), .valid_o(unused_valid));
     assign quotient_o[32*n+27 +: 5] = '0;
     srt_divider_stages #(
-      .Width(24), .Rows(12), .SideWidth(20), .Arith(n), .Cuts(32'hffff_ffff)
+      .Width(24), .Rows(12), .SideWidth(20), .Arith(n), .PipeRegs(32'hffff_ffff)
     ) u_pipelined (
       .clk_i, .valid_i, .dividend_i, .divisor_i,
       .side_i({dividend_i[9:0], divisor_i[9:0]}),

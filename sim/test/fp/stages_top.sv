@@ -32,32 +32,32 @@ module stages_top #(
   localparam bit [3*6-1:0] MultiplierKinds = {3'h7, 3'h4, 3'h3, 3'h2, 3'h1, 3'h0};
 
   for (genvar n = 0; n < 10; n++) begin : gen_adder
-    localparam bit [2:0] Cuts = AdderKinds[4*n +: 3];
+    localparam bit [2:0] PipeRegs = AdderKinds[4*n +: 3];
     logic [Width+4:0] result, late;
 
     fp_adder_stages #(
-      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(32'(AdderKinds[4*n+3])), .Cuts(Cuts)
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(32'(AdderKinds[4*n+3])), .PipeRegs(PipeRegs)
     ) u_adder (
       .clk_i, .a_i, .b_i, .subtract_i, .rounding_mode_i, .tininess_after_i,
       .result_o(result[Width+4:5]), .flags_o(result[4:0]));
     delay_line #(
-      .Width(Width + 5), .Depth(Latency - 32'(Cuts[0]) - 32'(Cuts[1]) - 32'(Cuts[2]))
+      .Width(Width + 5), .Depth(Latency - 32'(PipeRegs[0]) - 32'(PipeRegs[1]) - 32'(PipeRegs[2]))
     ) u_late (.clk_i, .enable_i(1'b1), .data_i(result), .data_o(late));
     assign differ_sum_o[n] = late != sum_o;
   end
   assign sum_o = gen_adder[0].late;
 
   for (genvar n = 0; n < 6; n++) begin : gen_multiplier
-    localparam bit [1:0] Cuts = MultiplierKinds[3*n +: 2];
+    localparam bit [1:0] PipeRegs = MultiplierKinds[3*n +: 2];
     logic [Width+4:0] result, late;
 
     fp_multiplier_stages #(
-      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(32'(MultiplierKinds[3*n+2])), .Cuts(Cuts)
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(32'(MultiplierKinds[3*n+2])), .PipeRegs(PipeRegs)
     ) u_multiplier (
       .clk_i, .a_i, .b_i, .rounding_mode_i, .tininess_after_i,
       .result_o(result[Width+4:5]), .flags_o(result[4:0]));
     delay_line #(
-      .Width(Width + 5), .Depth(Latency - 32'(Cuts[0]) - 32'(Cuts[1]))
+      .Width(Width + 5), .Depth(Latency - 32'(PipeRegs[0]) - 32'(PipeRegs[1]))
     ) u_late (.clk_i, .enable_i(1'b1), .data_i(result), .data_o(late));
     assign differ_product_o[n] = late != product_o;
   end
@@ -69,7 +69,7 @@ module stages_top #(
     logic [Width+4:0] result, late;
 
     fp_divider_stages #(
-      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(n / 2), .Cuts({32{n % 2 == 1}})
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(n / 2), .PipeRegs({32{n % 2 == 1}})
     ) u_divider (
       .clk_i, .valid_i, .a_i, .b_i, .rounding_mode_i, .tininess_after_i,
       .result_o(result[Width+4:5]), .flags_o(result[4:0]));

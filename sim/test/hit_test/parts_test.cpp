@@ -1,4 +1,4 @@
-// scaler, sum_of_three, point_unit, hit_decision, hit_test_control and nearest_hit, each against
+// vec_scale, fp_add3, point_unit, hit_decision, hit_test_control and nearest_hit, each against
 // plain C++, with inputs that aren't valid.
 #include <gtest/gtest.h>
 

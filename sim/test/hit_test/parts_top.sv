@@ -3,7 +3,7 @@ module parts_top (
   input  logic         clk_i,
   input  logic         rst_ni,
   input  logic         valid_i,
-  // scaler, sum_of_three, point_unit: five words and a factor
+  // vec_scale, fp_add3, point_unit: five words and a factor
   input  logic [159:0] words_i,
   input  logic [31:0]  factor_i,
   output logic [159:0] products_o,
@@ -41,8 +41,8 @@ module parts_top (
   output logic [31:0]  payload_o
 );
 
-  scaler #(.Arith(1)) u_scaler (.clk_i, .words_i, .factor_i, .products_o);
-  sum_of_three #(.Arith(1)) u_sum (
+  vec_scale #(.Arith(1)) u_scaler (.clk_i, .words_i, .factor_i, .products_o);
+  fp_add3 #(.Arith(1)) u_sum (
     .clk_i, .x_i(words_i[31:0]), .y_i(words_i[63:32]), .z_i(words_i[95:64]), .sum_o);
   point_unit #(.Arith(1)) u_point (
     .clk_i, .rst_ni, .valid_i, .dividends_i(words_i[95:0]), .v_i(factor_i),

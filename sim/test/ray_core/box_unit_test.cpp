@@ -1,5 +1,5 @@
 // box_unit against its reference, bit for bit, a node in every clock.
-// Tests: box_axis, box_child, box_group, box_scale, grid_way, add_subtract, largest, sort_seven
+// Tests: slab_setup, slab_test, child_sort, ray_scale, plane_offset, add_subtract, max4, sort7
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -40,8 +40,8 @@ TYPED_TEST(BoxUnitTest, EqualsItsReference) {
     std::memcpy(&model->node_i, &line, sizeof line);
     std::memcpy(&model->origin_i, &ray.origin, sizeof ray.origin);
     std::memcpy(&model->inverse_i, &ray.inverse, sizeof ray.inverse);
-    model->limit_i = std::bit_cast<std::uint32_t>(ray.limit);
-    model->every_box_i = ray.every_box;
+    model->t_max_i = std::bit_cast<std::uint32_t>(ray.limit);
+    model->no_cull_i = ray.every_box;
     taken.push_front(box);
     model.clock();
     if (taken.size() < kLatency) continue;

@@ -26,7 +26,7 @@ class LineCacheTest : public testing::Test {
 
   LineCacheTest() {
     model_->invalidate_i = model_->valid_i = model_->miss_ready_i = model_->fill_i = 0;
-    model_->wanted_i = 1;
+    model_->demand_i = 1;
     model_->ready_i = 0;
     model_.reset();
   }
@@ -40,10 +40,10 @@ class LineCacheTest : public testing::Test {
   /// A clock: a request of `of_8` chances, among `range` lines, wanted or not. One that is not may
   /// be withdrawn.
   void clock(unsigned of_8, unsigned range, bool all_wanted = true) {
-    if (model_->wanted_i == 0 && random_() % 4 == 0) model_->valid_i = 0;
+    if (model_->demand_i == 0 && random_() % 4 == 0) model_->valid_i = 0;
     if (model_->valid_i == 0 && random_() % 8 < of_8) {
       model_->valid_i = 1;
-      model_->wanted_i = all_wanted || random_() % 2 != 0;
+      model_->demand_i = all_wanted || random_() % 2 != 0;
       model_->ray_i = random_() % 16;
       model_->line_number_i = line(random_() % range);
     }
@@ -56,14 +56,14 @@ class LineCacheTest : public testing::Test {
       filling_ = true;
     }
     model_->fill_i = filling_ && model_->ready_i != 0;
-    model_->fill_place_i = fill_.place;
+    model_->fill_entry_i = fill_.place;
     model_->fill_line_i = content(fill_.line);
     model_.eval();
     const bool taken = (model_->valid_i & model_->ready_o) != 0;
     if ((model_->miss_valid_o & model_->miss_ready_i) != 0) {
       ASSERT_TRUE(taken);
       ASSERT_EQ(model_->miss_number_o, model_->line_number_i);
-      const Miss miss{model_->miss_place_o, model_->miss_number_o};
+      const Miss miss{model_->miss_entry_o, model_->miss_number_o};
       ASSERT_EQ(miss.place / kWays, miss.line % (kLines / kWays)) << "a place of its set";
       for (const Miss& other : asked_) {
         ASSERT_NE(other.line, miss.line);
@@ -72,7 +72,7 @@ class LineCacheTest : public testing::Test {
       asked_.push_back(miss);
       ++misses_;
     }
-    if (taken && model_->wanted_i != 0) {
+    if (taken && model_->demand_i != 0) {
       ++waiting_[{model_->ray_i, content(model_->line_number_i)}];
       ++requests_;
     }
@@ -137,7 +137,7 @@ TEST_F(LineCacheTest, LinesThatWereNotWantedAreRead) {
     model_.clock();
     model_->invalidate_i = 0;
     model_->valid_i = 1;
-    model_->wanted_i = 0;
+    model_->demand_i = 0;
     model_->line_number_i = 5;
     const unsigned before = misses_, answered = answers_;
     while (misses_ == before) {
@@ -145,7 +145,7 @@ TEST_F(LineCacheTest, LinesThatWereNotWantedAreRead) {
       if (misses_ == before) model_->valid_i = 1;
     }
     if (part % 2 == 0) drain();
-    model_->valid_i = model_->wanted_i = 1;
+    model_->valid_i = model_->demand_i = 1;
     while (answers_ == answered) clock(0, 1);
     ASSERT_EQ(misses_ - before, 1u);
   }

@@ -1,6 +1,6 @@
 // The ray core in simulation finds what CpuFinder finds, whatever makes it wait.
-// Tests: ray_core, ray_intake, ray_walk, leaf_walk, line_port, triangle_test, ray_hits
-// Tests: ray_table, box_test, ray_ends, rotating_pick
+// Tests: ray_core, ray_alloc, traversal, primitive_fetch, memory_subsystem, triangle_test
+// Tests: closest_hit, ray_context, box_pipeline, ray_retire, rr_arbiter
 #include <gtest/gtest.h>
 
 #include <algorithm>

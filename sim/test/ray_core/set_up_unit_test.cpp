@@ -1,5 +1,5 @@
 // set_up_unit against its reference model, bit for bit.
-// Tests: cross_product, vector_adder, vector_multiplier
+// Tests: cross_product, vec_add, vec_mul
 #include <gtest/gtest.h>
 
 #include <array>

@@ -13,7 +13,7 @@ module bench;
     .tininess_after_i(1'b1), .result_o(sum), .flags_o(flags)
   );
 
-  // After two clocks, the latency of Cuts = 3'b110.
+  // After two clocks, the latency of PipeRegs = 3'b110.
   task check(input [15:0] x, input [15:0] y, input minus, input [2:0] rounding, input [15:0] expected,
              input inexact);
     begin

@@ -8,7 +8,7 @@ module fp_adder_stages #(
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = 0,
   parameter int unsigned Adder     = 0,
-  parameter bit [2:0]    Cuts      = 3'd0
+  parameter bit [2:0]    PipeRegs  = 3'd0
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -25,7 +25,7 @@ module fp_adder_stages #(
 
   delay_line #(
     .Width(Width),
-    .Depth((Cuts == 0) ? 0 : hit_test_pkg::AdderLatency)
+    .Depth((PipeRegs == 0) ? 0 : hit_test_pkg::AdderLatency)
   ) u_operands (
     .clk_i,
     .enable_i(1'b1),
@@ -41,7 +41,7 @@ module fp_multiplier_stages #(
   parameter int unsigned Arith       = 0,
   parameter int unsigned Adder       = 0,
   parameter bit          ConstantRow = 1'b0,
-  parameter bit [1:0]    Cuts        = 2'd0
+  parameter bit [1:0]    PipeRegs    = 2'd0
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -57,7 +57,7 @@ module fp_multiplier_stages #(
 
   delay_line #(
     .Width(Width),
-    .Depth((Cuts == 0) ? 0 : hit_test_pkg::MultiplierLatency)
+    .Depth((PipeRegs == 0) ? 0 : hit_test_pkg::MultiplierLatency)
   ) u_operands (
     .clk_i,
     .enable_i(1'b1),
@@ -73,7 +73,7 @@ module fp_divider_stages #(
   parameter int unsigned Arith        = 0,
   parameter int unsigned Adder        = 0,
   parameter int unsigned QuotientBits = 0,
-  parameter bit [31:0]   Cuts         = 32'd0
+  parameter bit [31:0]   PipeRegs     = 32'd0
 ) (
   input  logic                        clk_i,
   input  logic                        valid_i,
@@ -92,7 +92,7 @@ module fp_divider_stages #(
 
   delay_line #(
     .Width(1 + Width),
-    .Depth((Cuts == 0) ? 0 : hit_test_pkg::divide_latency(FracWidth))
+    .Depth((PipeRegs == 0) ? 0 : hit_test_pkg::divide_latency(FracWidth))
   ) u_operands (
     .clk_i,
     .enable_i(1'b1),

@@ -1,6 +1,6 @@
 // The arithmetic of the pipelined unit, promising nothing: any word, and any one verdict. For what
 // control does, that is enough.
-module scaler #(
+module vec_scale #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = 0,
@@ -18,7 +18,7 @@ module scaler #(
   assign products_o = any;
 endmodule
 
-module sum_of_three #(
+module fp_add3 #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = 0,
@@ -65,7 +65,7 @@ module fp_divider_stages #(
   parameter int unsigned Arith     = 0,
   parameter int unsigned Adder     = 0,
   parameter int unsigned QuotientBits = 0,
-  parameter bit [31:0]   Cuts      = 32'd0
+  parameter bit [31:0]   PipeRegs  = 32'd0
 ) (
   input  logic                        clk_i,
   input  logic                        valid_i,

@@ -5,7 +5,7 @@ module srt_divider_stages #(
   parameter int unsigned SideWidth = 1,
   parameter int unsigned Arith = 0,
   parameter int unsigned Adder = 0,
-  parameter bit [31:0]   Cuts = 32'd0
+  parameter bit [31:0]   PipeRegs = 32'd0
 ) (
   input  logic                clk_i,
   input  logic                valid_i,

@@ -1,14 +1,14 @@
-// The way to a plane of a node's grid: way_o = floor(q s / 256), for q of eight bits. Combinational.
+// The way to a plane of a node's grid: offset_o = floor(q s / 256), for q of eight bits. Combinational.
 //
 // Structural is a carry-save tree of s shifted, a row for each bit of q, and an adder; Behavioural is `*`.
-module grid_way #(
+module plane_offset #(
   parameter int unsigned Width = 33,  // of s
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
   input  logic [7:0]       q_i,
   input  logic [Width-1:0] step_i,
-  output logic [Width-1:0] way_o
+  output logic [Width-1:0] offset_o
 );
 
   logic [Width+7:0] product;
@@ -43,7 +43,7 @@ module grid_way #(
     );
   end
 
-  assign way_o = product[Width+7:8];
+  assign offset_o = product[Width+7:8];
 
   logic unused;  // fractions of a unit
   assign unused = ^product[7:0];

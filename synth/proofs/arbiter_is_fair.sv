@@ -1,5 +1,5 @@
 // The rotating pick takes a request where there is one: the first from `from` on, around the end.
-module pick_is_fair #(
+module arbiter_is_fair #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)
 ) (
@@ -11,7 +11,7 @@ module pick_is_fair #(
   logic valid;
   logic [IndexWidth-1:0] index;
 
-  rotating_pick #(
+  rr_arbiter #(
     .Width(Width)
   ) dut (
     .requests_i(requests),
@@ -20,14 +20,14 @@ module pick_is_fair #(
     .index_o(index)
   );
 
-  logic [IndexWidth-1:0] way, other_way;  // from `from` on
-  assign way       = index - from;
-  assign other_way = other - from;
+  logic [IndexWidth-1:0] distance, other_distance;  // from `from` on
+  assign distance       = index - from;
+  assign other_distance = other - from;
 
   always_comb begin
     assert (valid == (requests != '0));
     if (valid) assert (requests[index]);
-    if (requests[other]) assert (way <= other_way);
+    if (requests[other]) assert (distance <= other_distance);
   end
 
 endmodule

@@ -1,11 +1,11 @@
 // Rays go out: notices that a ray has ended, and queues what the core says of rays.
 //
-// A ray has ended when it has nothing to walk, to ask for or to test. Its slot is free at once: what is known of
+// A ray has ended when it has nothing to walk, to ask for or to test. Its context is free at once: what is known of
 // its nearest hit waits in a queue for P, which comes PointDelay clocks later at most, before another ray
-// in the slot could have one. A ray's doubts and rests leave before its end.
+// in the context could have one. A ray's doubts and overflows leave before its end.
 //
 // A ray ends a clock at most, a result leaves a clock.
-module ray_ends #(
+module ray_retire #(
   parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
@@ -15,31 +15,31 @@ module ray_ends #(
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
-  input  logic                   start_i,        // a ray is in a slot
-  input  logic [RayWidth-1:0]    start_slot_i,
-  input  logic [Rays-1:0]        busy_i,         // something is to be done for a slot's ray
-  // a ray ends, its slot is free; what is known of it, in the same clock
+  input  logic                   start_i,        // a ray is in a context
+  input  logic [RayWidth-1:0]    start_ctx_i,
+  input  logic [Rays-1:0]        busy_i,         // something is to be done for a context's ray
+  // a ray ends, its context is free; what is known of it, in the same clock
   output logic                   ending_o,
-  output logic [RayWidth-1:0]    ending_slot_o,
+  output logic [RayWidth-1:0]    ending_ctx_o,
   input  logic [31:0]            ending_tag_i,
   input  logic                   ending_found_i,
   input  logic [31:0]            ending_triangle_i,
   input  logic [31:0]            ending_t_i,
   input  logic [TErrorWidth-1:0] ending_t_error_i,
   input  logic [TestsWidth-1:0]  ending_tests_i,
-  // the P of a slot's last ray, in the same clock
-  output logic [RayWidth-1:0]    point_slot_o,
+  // the P of a context's last ray, in the same clock
+  output logic [RayWidth-1:0]    point_ctx_o,
   input  logic [95:0]            point_i,
-  // doubts and rests
+  // doubts and overflows
   input  logic                   doubt_valid_i,
   input  logic [31:0]            doubt_tag_i,
   input  logic [31:0]            doubt_triangle_i,
-  output logic                   doubt_taken_o,
-  input  logic                   rest_valid_i,
-  input  logic [31:0]            rest_tag_i,
-  input  logic [AddressWidth-1:0] rest_line_i,
-  input  logic [NodesWidth-1:0]  rest_nodes_i,
-  output logic                   rest_taken_o,
+  output logic                   doubt_fire_o,
+  input  logic                   overflow_valid_i,
+  input  logic [31:0]            overflow_tag_i,
+  input  logic [AddressWidth-1:0] overflow_line_i,
+  input  logic [NodesWidth-1:0]  overflow_nodes_i,
+  output logic                   overflow_fire_o,
   // results
   output logic                   result_valid_o,
   input  logic                   result_ready_i,
@@ -61,16 +61,16 @@ module ray_ends #(
 
   // ---- The end of a ray
 
-  logic [Rays-1:0] active_q;  // in its slot, and its end not noticed
+  logic [Rays-1:0] active_q;  // in its context, and its end not noticed
   logic some, space;
 
-  rotating_pick #(
+  rr_arbiter #(
     .Width(Rays)
   ) u_pick (
     .requests_i(active_q & ~busy_i),
     .start_i('0),
     .valid_o(some),
-    .index_o(ending_slot_o)
+    .index_o(ending_ctx_o)
   );
   assign ending_o = some & space;
 
@@ -78,15 +78,15 @@ module ray_ends #(
     if (!rst_ni) begin
       active_q <= '0;
     end else begin
-      if (start_i) active_q[start_slot_i] <= 1'b1;
-      if (ending_o) active_q[ending_slot_o] <= 1'b0;
+      if (start_i) active_q[start_ctx_i] <= 1'b1;
+      if (ending_o) active_q[ending_ctx_o] <= 1'b0;
     end
   end
 
   // ---- What is known of it, and P: as many points at most as there are ends
 
   logic [PointDelay-1:0] pointing_q;
-  logic end_valid, end_given, unused_valid, unused_space;
+  logic end_valid, end_fire, unused_valid, unused_space;
   logic [EndWidth-1:0] end_words;
   logic [95:0] end_point;
   logic [31:0] end_tag, end_triangle, end_t;
@@ -104,7 +104,7 @@ module ray_ends #(
     .data_i({ending_tag_i, ending_found_i, ending_triangle_i, ending_t_i, ending_t_error_i,
              ending_tests_i}),
     .space_o(space),
-    .pop_i(end_given),
+    .pop_i(end_fire),
     .valid_o(unused_valid),
     .data_o(end_words)
   );
@@ -116,8 +116,8 @@ module ray_ends #(
   ) u_pointing (
     .clk_i,
     .enable_i(1'b1),
-    .data_i(ending_slot_o),
-    .data_o(point_slot_o)
+    .data_i(ending_ctx_o),
+    .data_o(point_ctx_o)
   );
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) pointing_q <= '0;
@@ -132,7 +132,7 @@ module ray_ends #(
     .push_i(pointing_q[PointDelay-1]),
     .data_i(point_i),
     .space_o(unused_space),
-    .pop_i(end_given),
+    .pop_i(end_fire),
     .valid_o(end_valid),
     .data_o(end_point)
   );
@@ -141,28 +141,30 @@ module ray_ends #(
 
   logic load;
 
-  assign load          = ~result_valid_o | result_ready_i;
-  assign doubt_taken_o = load & doubt_valid_i;
-  assign rest_taken_o  = load & rest_valid_i & ~doubt_valid_i;
-  assign end_given     = load & end_valid & ~doubt_valid_i & ~rest_valid_i;
+  assign load            = ~result_valid_o | result_ready_i;
+  assign doubt_fire_o    = load & doubt_valid_i;
+  assign overflow_fire_o = load & overflow_valid_i & ~doubt_valid_i;
+  assign end_fire        = load & end_valid & ~doubt_valid_i & ~overflow_valid_i;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) result_valid_o <= 1'b0;
-    else if (load) result_valid_o <= doubt_valid_i | rest_valid_i | end_valid;
+    else if (load) result_valid_o <= doubt_valid_i | overflow_valid_i | end_valid;
   end
   always_ff @(posedge clk_i) begin
     if (load) begin
       result_kind_o     <= doubt_valid_i ? ray_core_pkg::ResultDoubt
-                         : rest_valid_i ? ray_core_pkg::ResultRest : ray_core_pkg::ResultEnd;
-      result_tag_o      <= doubt_valid_i ? doubt_tag_i : rest_valid_i ? rest_tag_i : end_tag;
-      result_found_o    <= end_found & ~doubt_valid_i & ~rest_valid_i;
+                         : overflow_valid_i ? ray_core_pkg::ResultOverflow
+                         : ray_core_pkg::ResultEnd;
+      result_tag_o      <= doubt_valid_i ? doubt_tag_i
+                         : overflow_valid_i ? overflow_tag_i : end_tag;
+      result_found_o    <= end_found & ~doubt_valid_i & ~overflow_valid_i;
       result_triangle_o <= doubt_valid_i ? doubt_triangle_i : end_triangle;
       result_t_o        <= end_t;
       result_t_error_o  <= end_t_error;
       result_point_o    <= end_point;
       result_tests_o    <= end_tests;
-      result_line_o     <= rest_line_i;
-      result_nodes_o    <= rest_nodes_i;
+      result_line_o     <= overflow_line_i;
+      result_nodes_o    <= overflow_nodes_i;
     end
   end
 

@@ -1,9 +1,9 @@
-// Rays come in: the reciprocals of their directions, then a slot of the table for each.
+// Rays come in: the reciprocals of their directions, then a context of the table for each.
 //
-// A ray waits in a queue until its reciprocals have come, a division's latency later, and until a slot is
-// free: the lowest free one is start_slot_o. So no slot is held by a division. Throughput a ray a clock.
-module ray_intake #(
-  parameter int unsigned Rays  = 64,  // slots; a power of two
+// A ray waits in a queue until its reciprocals have come, a division's latency later, and until a context is
+// free: the lowest free one is start_ctx_o. So no context is held by a division. Throughput a ray a clock.
+module ray_alloc #(
+  parameter int unsigned Rays  = 64,  // contexts; a power of two
   parameter int unsigned Width = 32,  // of what else there is of a ray
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
@@ -15,50 +15,50 @@ module ray_intake #(
   output logic                ready_o,
   input  logic [95:0]         direction_i,
   input  logic [Width-1:0]    ray_i,
-  input  logic                free_valid_i,   // a slot is free again
-  input  logic [RayWidth-1:0] free_slot_i,
-  output logic                start_valid_o,  // a ray and its slot
-  output logic [RayWidth-1:0] start_slot_o,
+  input  logic                free_valid_i,   // a context is free again
+  input  logic [RayWidth-1:0] free_ctx_i,
+  output logic                start_valid_o,  // a ray and its context
+  output logic [RayWidth-1:0] start_ctx_o,
   output logic [95:0]         start_inverse_o,
   output logic [Width-1:0]    start_ray_o,
-  input  logic                start_taken_i
+  input  logic                start_fire_i
 );
 
   localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(23);
   localparam int unsigned Depth = DivideLatency + 3;  // for a ray a clock
   localparam logic [31:0] One = 32'h3f80_0000;
 
-  // ---- Slots
+  // ---- Contexts
 
   logic [Rays-1:0] free_q;
   logic some_free;
 
-  rotating_pick #(
+  rr_arbiter #(
     .Width(Rays)
   ) u_pick (
     .requests_i(free_q),
     .start_i('0),
     .valid_o(some_free),
-    .index_o(start_slot_o)
+    .index_o(start_ctx_o)
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       free_q <= '1;
     end else begin
-      if (start_taken_i) free_q[start_slot_o] <= 1'b0;
-      if (free_valid_i) free_q[free_slot_i] <= 1'b1;
+      if (start_fire_i) free_q[start_ctx_o] <= 1'b0;
+      if (free_valid_i) free_q[free_ctx_i] <= 1'b1;
     end
   end
 
   // ---- Divide
 
-  logic taken, space, divided;
+  logic fire, space, divided;
   logic [DivideLatency-1:0] dividing_q;
   logic [95:0] inverse;
 
   assign ready_o = rst_ni & space;
-  assign taken   = valid_i & ready_o;
+  assign fire    = valid_i & ready_o;
   assign divided = dividing_q[DivideLatency-1];
 
   for (genvar k = 0; k < 3; k++) begin : gen_word
@@ -67,10 +67,10 @@ module ray_intake #(
     fp_divider_stages #(
       .Arith(Arith),
       .Adder(Adder),
-      .Cuts(hit_test_pkg::DividerCuts)
+      .PipeRegs(hit_test_pkg::DividerPipeRegs)
     ) u_divider (
       .clk_i,
-      .valid_i(taken),
+      .valid_i(fire),
       .a_i(One),
       .b_i(direction_i[32*k +: 32]),
       .rounding_mode_i(fp_pkg::RoundNearestEven),
@@ -82,7 +82,7 @@ module ray_intake #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) dividing_q <= '0;
-    else dividing_q <= {dividing_q[DivideLatency-2:0], taken};
+    else dividing_q <= {dividing_q[DivideLatency-2:0], fire};
   end
 
   // ---- Wait: as many inverses at most as there are rays
@@ -95,10 +95,10 @@ module ray_intake #(
   ) u_rays (
     .clk_i,
     .rst_ni,
-    .push_i(taken),
+    .push_i(fire),
     .data_i(ray_i),
     .space_o(space),
-    .pop_i(start_taken_i),
+    .pop_i(start_fire_i),
     .valid_o(unused_valid),
     .data_o(start_ray_o)
   );
@@ -111,7 +111,7 @@ module ray_intake #(
     .push_i(divided),
     .data_i(inverse),
     .space_o(unused_space),
-    .pop_i(start_taken_i),
+    .pop_i(start_fire_i),
     .valid_o(inverse_valid),
     .data_o(start_inverse_o)
   );

@@ -1,7 +1,7 @@
 // Adds three words: (x + y) + z, rounded after each addition.
 //
 // Throughput one a clock, latency 2 * hit_test_pkg::AdderLatency. Takes every bit pattern; no flags.
-module sum_of_three #(
+module fp_add3 #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = arith_pkg::Structural,
@@ -24,7 +24,7 @@ module sum_of_three #(
     .FracWidth(FracWidth),
     .Arith(Arith),
     .Adder(Adder),
-    .Cuts(hit_test_pkg::AdderCuts)
+    .PipeRegs(hit_test_pkg::AdderPipeRegs)
   ) u_first (
     .clk_i,
     .a_i(x_i),
@@ -49,7 +49,7 @@ module sum_of_three #(
     .FracWidth(FracWidth),
     .Arith(Arith),
     .Adder(Adder),
-    .Cuts(hit_test_pkg::AdderCuts)
+    .PipeRegs(hit_test_pkg::AdderPipeRegs)
   ) u_second (
     .clk_i,
     .a_i(first_sum),

@@ -1,11 +1,11 @@
-// core_registers by AXI4-Lite with random pauses on every channel, against a model of what the
+// csr by AXI4-Lite with random pauses on every channel, against a model of what the
 // header says.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <random>
 
-#include "Vcore_registers.h"
+#include "Vcsr.h"
 #include "sim/model.h"
 
 namespace raygate {
@@ -19,7 +19,7 @@ class CoreRegistersTest : public testing::Test {
   CoreRegistersTest() {
     model_->axi_awvalid_i = model_->axi_wvalid_i = model_->axi_bready_i = 0;
     model_->axi_arvalid_i = model_->axi_rready_i = 0;
-    model_->camera_busy_i = model_->core_busy_i = model_->doubt_i = model_->failed_i = 0;
+    model_->camera_busy_i = model_->core_busy_i = model_->doubt_i = model_->bus_error_i = 0;
     model_->events_i = 0;
     model_.reset();
   }
@@ -81,7 +81,7 @@ class CoreRegistersTest : public testing::Test {
     return data;
   }
 
-  Model<Vcore_registers> model_;
+  Model<Vcsr> model_;
   std::mt19937 random_{kSeed};
   int started_ = 0, invalidated_ = 0;
 };
@@ -137,9 +137,9 @@ TEST_F(CoreRegistersTest, FlagsRiseFallAndInterrupt) {
   write(0x010, 1);
   EXPECT_EQ(read(0x010), 0u);
   EXPECT_EQ(model_->interrupt_o, 0);
-  model_->failed_i = 1;
+  model_->bus_error_i = 1;
   clock();
-  model_->failed_i = 0;
+  model_->bus_error_i = 0;
   EXPECT_EQ(read(0x010), 4u);
   EXPECT_EQ(model_->interrupt_o, 0) << "not enabled";
   // A rectangle is drawn when neither camera nor core has rays left.
@@ -228,7 +228,7 @@ TEST_F(CoreRegistersTest, AnyTrafficIsAsTheHeaderSays) {
     if (random_() % 16 == 0) model_->camera_busy_i = random_() % 2;
     if (random_() % 16 == 0) model_->core_busy_i = random_() % 2;
     model_->doubt_i = random_() % 16 == 0;
-    model_->failed_i = random_() % 16 == 0;
+    model_->bus_error_i = random_() % 16 == 0;
     model_->events_i = random_() & ((1u << kEvents) - 1);
     model_.eval();
     ASSERT_EQ(model_->axi_bvalid_o, written);
@@ -261,7 +261,7 @@ TEST_F(CoreRegistersTest, AnyTrafficIsAsTheHeaderSays) {
     const bool busy = (model_->camera_busy_i | model_->core_busy_i) != 0;
     if (word == 3) enable = (data | (enable & ~mask)) & 7;
     if (word == 4) flags &= ~data;
-    flags |= model_->doubt_i | (drawing && !busy ? 2u : 0u) | (model_->failed_i != 0 ? 4u : 0u);
+    flags |= model_->doubt_i | (drawing && !busy ? 2u : 0u) | (model_->bus_error_i != 0 ? 4u : 0u);
     drawing = model_->camera_busy_i != 0 || (drawing && busy);
     if (word >= 5 && word < 27) words[word] = data | (words[word] & ~mask);
     counts[0] += model_->core_busy_i;

@@ -1,18 +1,18 @@
 // Rays that come into a ray core and leave it, whatever is done for them and however long it takes, from reset
-// and for ever: a slot of the table is given to one ray at a time; what ends is a ray that began and had not ended;
+// and for ever: a context of the table is given to one ray at a time; what ends is a ray that began and had not ended;
 // every ray that came in is in one place, and leaves as one end. No queue overflows, and no end leaves
 // before its P is there.
-// opened_ray_slots is contracts/ray_slots.sv with its registers as outputs.
-module slots_answer_once #(
+// opened_ray_contexts is contracts/ray_contexts.sv with its registers as outputs.
+module contexts_answer_once #(
   parameter int unsigned Rays = 4,
-  localparam int unsigned SlotWidth = $clog2(Rays)
+  localparam int unsigned CtxWidth = $clog2(Rays)
 ) (
   input logic            clk,
   input logic            ray,    // one is offered
   input logic            begin_walk,
   input logic [Rays-1:0] busy,
   input logic            doubt,
-  input logic            rest,
+  input logic            overflow,
   input logic            take    // ready for results
 );
 
@@ -30,7 +30,7 @@ module slots_answer_once #(
 
   logic ready, started, ending, valid;
   logic [1:0] kind;
-  logic [SlotWidth-1:0] started_slot, ending_slot;
+  logic [CtxWidth-1:0] started_ctx, ending_ctx;
   logic [Rays-1:0] free_q, active_q;
   logic [Divide-1:0] dividing_q;
   logic [Delay-1:0] pointing_q;
@@ -38,7 +38,7 @@ module slots_answer_once #(
   logic [EndCountWidth-1:0] ends_count, points_count;
   logic rays_valid, inverses_valid, ends_valid, points_valid, rays_space, ends_space;
 
-  opened_ray_slots dut (
+  opened_ray_contexts dut (
     .clk_i(clk),
     .rst_ni(reset_n),
     .ray_valid_i(ray),
@@ -46,28 +46,28 @@ module slots_answer_once #(
     .start_i(begin_walk),
     .busy_i(busy),
     .started_o(started),
-    .started_slot_o(started_slot),
+    .started_ctx_o(started_ctx),
     .ending_o(ending),
-    .ending_slot_o(ending_slot),
+    .ending_ctx_o(ending_ctx),
     .doubt_valid_i(doubt),
-    .rest_valid_i(rest),
+    .overflow_valid_i(overflow),
     .result_valid_o(valid),
     .result_ready_i(take),
     .result_kind_o(kind),
-    .\u_intake.free_q (free_q),
-    .\u_intake.dividing_q (dividing_q),
-    .\u_intake.u_rays.count_q (rays_count),
-    .\u_intake.u_rays.valid_o (rays_valid),
-    .\u_intake.u_rays.space_o (rays_space),
-    .\u_intake.u_inverses.count_q (inverses_count),
-    .\u_intake.u_inverses.valid_o (inverses_valid),
-    .\u_ends.active_q (active_q),
-    .\u_ends.pointing_q (pointing_q),
-    .\u_ends.u_ends.count_q (ends_count),
-    .\u_ends.u_ends.valid_o (ends_valid),
-    .\u_ends.u_ends.space_o (ends_space),
-    .\u_ends.u_points.count_q (points_count),
-    .\u_ends.u_points.valid_o (points_valid)
+    .\u_alloc.free_q (free_q),
+    .\u_alloc.dividing_q (dividing_q),
+    .\u_alloc.u_rays.count_q (rays_count),
+    .\u_alloc.u_rays.valid_o (rays_valid),
+    .\u_alloc.u_rays.space_o (rays_space),
+    .\u_alloc.u_inverses.count_q (inverses_count),
+    .\u_alloc.u_inverses.valid_o (inverses_valid),
+    .\u_retire.active_q (active_q),
+    .\u_retire.pointing_q (pointing_q),
+    .\u_retire.u_ends.count_q (ends_count),
+    .\u_retire.u_ends.valid_o (ends_valid),
+    .\u_retire.u_ends.space_o (ends_space),
+    .\u_retire.u_points.count_q (points_count),
+    .\u_retire.u_points.valid_o (points_valid)
   );
 
   function automatic logic [TotalWidth-1:0] ones(logic [31:0] word);
@@ -78,28 +78,28 @@ module slots_answer_once #(
   // ---- What the user sees: rays that came, and ends that left
 
   logic ended, end_offered;
-  logic [TotalWidth-1:0] inside;  // rays that came and have not left
-  logic [Rays-1:0] used;          // slots whose ray began and has not ended
+  logic [TotalWidth-1:0] in_flight;  // rays that came and have not left
+  logic [Rays-1:0] used;          // contexts whose ray began and has not ended
   assign ended       = valid && take && kind == ray_core_pkg::ResultEnd;
   assign end_offered = valid && kind == ray_core_pkg::ResultEnd;
 
   always_ff @(posedge clk) begin
     if (!reset_n) begin
-      inside <= '0;
+      in_flight <= '0;
       used <= '0;
     end else begin
-      inside <= inside + TotalWidth'(ray && ready) - TotalWidth'(ended);
-      if (started) used[started_slot] <= 1'b1;
-      if (ending) used[ending_slot] <= 1'b0;
+      in_flight <= in_flight + TotalWidth'(ray && ready) - TotalWidth'(ended);
+      if (started) used[started_ctx] <= 1'b1;
+      if (ending) used[ending_ctx] <= 1'b0;
     end
   end
 
   always_comb begin
     if (reset_n) begin
-      if (started) assert (!used[started_slot]);
-      if (ending) assert (used[ending_slot] && !busy[ending_slot]);
-      if (ended) assert (inside != '0);
-      assert (inside == TotalWidth'(rays_count) + ones(32'(used)) + TotalWidth'(ends_count)
+      if (started) assert (!used[started_ctx]);
+      if (ending) assert (used[ending_ctx] && !busy[ending_ctx]);
+      if (ended) assert (in_flight != '0);
+      assert (in_flight == TotalWidth'(rays_count) + ones(32'(used)) + TotalWidth'(ends_count)
                         + TotalWidth'(end_offered));
       assert (rays_count <= InCountWidth'(InDepth) && ends_count <= EndCountWidth'(EndDepth));
 

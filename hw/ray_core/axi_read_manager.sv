@@ -5,13 +5,13 @@
 // may be answered in any order, and their beats come mixed. base_i is the address of line 0.
 //
 // At most 2**IdWidth lines are on their way; more wait. A line is offered in the clock of its last beat.
-// failed_o: a beat has come with an error; its line goes on as it came.
+// bus_error_o: a beat has come with an error; its line goes on as it came.
 //
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
-module axi_line_reader #(
+module axi_read_manager #(
   parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two
   parameter int unsigned IdWidth   = 6,
-  parameter int unsigned TagWidth  = 9,    // ray_core's
+  parameter int unsigned ReadIdWidth = 9,  // ray_core's
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned LineWidth = ray_core_pkg::LineWidth
 ) (
@@ -22,10 +22,10 @@ module axi_line_reader #(
   input  logic                    read_valid_i,
   output logic                    read_ready_o,
   input  logic [AddressWidth-1:0] read_line_i,
-  input  logic [TagWidth-1:0]     read_tag_i,
+  input  logic [ReadIdWidth-1:0]  read_id_i,
   output logic                    line_valid_o,
   input  logic                    line_ready_i,
-  output logic [TagWidth-1:0]     line_tag_o,
+  output logic [ReadIdWidth-1:0]  line_id_o,
   output logic [LineWidth-1:0]    line_o,
   // AXI4, read address
   output logic                    axi_arvalid_o,
@@ -41,7 +41,7 @@ module axi_line_reader #(
   input  logic [IdWidth-1:0]      axi_rid_i,
   input  logic [DataWidth-1:0]    axi_rdata_i,
   input  logic [1:0]              axi_rresp_i,
-  output logic                    failed_o
+  output logic                    bus_error_o
 );
 
   localparam int unsigned Ids = 2 ** IdWidth;
@@ -53,10 +53,10 @@ module axi_line_reader #(
 
   logic [Ids-1:0] free_q;
   logic [IdWidth-1:0] id;
-  logic some_free, load, taken, given;
-  logic [TagWidth-1:0] tags[Ids];
+  logic some_free, load, request_fire, line_fire;
+  logic [ReadIdWidth-1:0] read_ids[Ids];
 
-  rotating_pick #(
+  rr_arbiter #(
     .Width(Ids)
   ) u_pick (
     .requests_i(free_q),
@@ -66,21 +66,21 @@ module axi_line_reader #(
   );
   assign load         = ~axi_arvalid_o | axi_arready_i;
   assign read_ready_o = load & some_free;
-  assign taken        = read_valid_i & read_ready_o;
+  assign request_fire = read_valid_i & read_ready_o;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       free_q        <= '1;
       axi_arvalid_o <= 1'b0;
     end else begin
-      if (taken) free_q[id] <= 1'b0;
-      if (given) free_q[axi_rid_i] <= 1'b1;
-      if (load) axi_arvalid_o <= taken;
+      if (request_fire) free_q[id] <= 1'b0;
+      if (line_fire) free_q[axi_rid_i] <= 1'b1;
+      if (load) axi_arvalid_o <= request_fire;
     end
   end
   always_ff @(posedge clk_i) begin
-    if (taken) begin
-      tags[id]     <= read_tag_i;
+    if (request_fire) begin
+      read_ids[id] <= read_id_i;
       axi_arid_o   <= id;
       axi_araddr_o <= base_i + {{(58 - AddressWidth) {1'b0}}, read_line_i, 6'd0};
     end
@@ -91,7 +91,7 @@ module axi_line_reader #(
 
   // ---- Beats: all but a line's last one wait for it
 
-  logic [BeatWidth-1:0] counts[Ids];  // beats that have come; set back when the ID is given
+  logic [BeatWidth-1:0] counts[Ids];  // beats that have come; set back when the ID is line_fire
   logic last;
 
   if (Beats == 1) begin : gen_whole
@@ -110,15 +110,15 @@ module axi_line_reader #(
   end
 
   always_ff @(posedge clk_i) begin
-    if (taken) counts[id] <= '0;
+    if (request_fire) counts[id] <= '0;
     if (axi_rvalid_i && !last) counts[axi_rid_i] <= counts[axi_rid_i] + 1'b1;
   end
 
   assign axi_rready_o = ~last | line_ready_i;
   assign line_valid_o = axi_rvalid_i & last;
-  assign line_tag_o   = tags[axi_rid_i];
-  assign given        = line_valid_o & line_ready_i;
-  assign failed_o     = axi_rvalid_i & axi_rready_o & axi_rresp_i[1];
+  assign line_id_o    = read_ids[axi_rid_i];
+  assign line_fire    = line_valid_o & line_ready_i;
+  assign bus_error_o  = axi_rvalid_i & axi_rready_o & axi_rresp_i[1];
 
   logic unused;  // EXOKAY is never answered
   assign unused = axi_rresp_i[0];

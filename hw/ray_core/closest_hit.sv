@@ -1,14 +1,14 @@
-// What tests say of each ray: its nearest sure hit, its limit, its doubts, and how many tests are on their way.
+// What tests say of each ray: its nearest sure hit, its old_t_max, its doubts, and how many tests are on their way.
 //
-// Of a ray's sure hits the one whose upper bound is the smallest is kept; that bound is the ray's limit. What is
+// Of a ray's sure hits the one whose upper bound is the smallest is kept; that bound is the ray's old_t_max. What is
 // surely farther is forgotten. What is neither, of a hit that is ousted too, leaves as a doubt, as do tests
 // without a verdict. Distances are words of positive floats, ordered as integers; a hit's may be off by
-// 2**t_error of them (set_up_pkg). At first the limit is the user's, so that a hit that may be beyond it is a
+// 2**t_error of them (set_up_pkg). At first the old_t_max is the user's, so that a hit that may be beyond it is a
 // doubt. A ray that wants any hit has ended with its first sure one.
 //
 // A result is taken in each clock; a ray's tests are over when test_i has been high as often for it as
 // result_i. P comes later, in the order of the results that were hits, PointDelay clocks at most.
-module ray_hits #(
+module closest_hit #(
   parameter int unsigned Rays = 64,
   parameter int unsigned InFlight = 64,  // tests that are on their way when tests_allowed_o falls
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -21,7 +21,7 @@ module ray_hits #(
   // a ray comes in
   input  logic                       load_i,
   input  logic [RayWidth-1:0]        load_ray_i,
-  input  logic [30:0]                load_limit_i,
+  input  logic [30:0]                load_t_max_i,
   input  logic                       load_any_hit_i,
   // a test sets out, a ray's triangle was asked for
   input  logic                       test_i,
@@ -32,7 +32,7 @@ module ray_hits #(
   input  logic [RayWidth-1:0]        result_ray_i,
   input  logic [31:0]                result_tag_i,      // the ray's, for doubts
   input  logic [31:0]                result_triangle_i,
-  input  logic                       result_ignored_i,  // it counts for nothing
+  input  logic                       result_skipped_i,  // it counts for nothing
   input  logic                       result_doubt_i,
   input  logic                       result_hit_i,
   input  logic [31:0]                result_t_i,
@@ -41,22 +41,22 @@ module ray_hits #(
   input  logic [PlaneErrorWidth-1:0] result_distance_error_i,
   input  logic                       point_valid_i,
   input  logic [95:0]                point_i,
-  // limits, by ray, in the same clock
-  input  logic [RayWidth-1:0]        walk_ray_i,
-  output logic [30:0]                walk_limit_o,
-  output logic                       walk_ended_o,
+  // t_max, by ray, in the same clock
+  input  logic [RayWidth-1:0]        traversal_ray_i,
+  output logic [30:0]                traversal_t_max_o,
+  output logic                       traversal_ended_o,
   input  logic [RayWidth-1:0]        leaf_ray_i,
-  output logic [30:0]                leaf_limit_o,
+  output logic [30:0]                leaf_t_max_o,
   output logic                       leaf_ended_o,
-  output logic                       leaf_crowded_o,
+  output logic                       leaf_counter_full_o,
   input  logic [RayWidth-1:0]        box_ray_i,
-  output logic [30:0]                box_limit_o,
+  output logic [30:0]                box_t_max_o,
   output logic [Rays-1:0]            testing_o,
   // doubts
   output logic                       doubt_valid_o,
   output logic [31:0]                doubt_tag_o,
   output logic [31:0]                doubt_triangle_o,
-  input  logic                       doubt_taken_i,
+  input  logic                       doubt_fire_i,
   // the nearest hit of a ray, in the same clock
   input  logic [RayWidth-1:0]        end_ray_i,
   output logic                       end_found_o,
@@ -74,7 +74,7 @@ module ray_hits #(
   localparam int unsigned CountWidth = 10;
   localparam logic [31:0] Infinity = 32'h7f80_0000;
 
-  logic [30:0] limits[Rays];
+  logic [30:0] t_max[Rays];
   logic [31:0] nearest_t[Rays];
   logic [TErrorWidth-1:0] nearest_error[Rays];
   logic [31:0] nearest_triangle[Rays];
@@ -83,36 +83,36 @@ module ray_hits #(
   logic [CountWidth-1:0] counts[Rays];  // tests on their way
   logic [Rays-1:0] found_q, any_hit_q;
 
-  assign walk_limit_o   = limits[walk_ray_i];
-  assign walk_ended_o   = found_q[walk_ray_i] & any_hit_q[walk_ray_i];
-  assign leaf_limit_o   = limits[leaf_ray_i];
-  assign leaf_ended_o   = found_q[leaf_ray_i] & any_hit_q[leaf_ray_i];
-  assign leaf_crowded_o = &counts[leaf_ray_i];
-  assign box_limit_o    = limits[box_ray_i];
+  assign traversal_t_max_o   = t_max[traversal_ray_i];
+  assign traversal_ended_o   = found_q[traversal_ray_i] & any_hit_q[traversal_ray_i];
+  assign leaf_t_max_o        = t_max[leaf_ray_i];
+  assign leaf_ended_o        = found_q[leaf_ray_i] & any_hit_q[leaf_ray_i];
+  assign leaf_counter_full_o = &counts[leaf_ray_i];
+  assign box_t_max_o         = t_max[box_ray_i];
 
   // ---- The result against the nearest so far
 
   logic good, hit, doubt, replace, open, old_open;
   logic [TErrorWidth-1:0] t_error;
-  logic [31:0] margin, old_margin, low, high, old_low, sum, old_t, limit;
+  logic [31:0] margin, old_margin, low, high, old_low, sum, old_t, old_t_max;
 
   assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_t_error_i), result_normal_error_i);
   assign t_error = set_up_pkg::t_error_exponent(
       TErrorWidth'(result_t_error_i), result_normal_error_i, result_distance_error_i);
-  assign hit   = result_i & ~result_ignored_i & result_hit_i & good;
-  assign doubt = result_i & ~result_ignored_i & (result_doubt_i | (result_hit_i & ~good));
+  assign hit   = result_i & ~result_skipped_i & result_hit_i & good;
+  assign doubt = result_i & ~result_skipped_i & (result_doubt_i | (result_hit_i & ~good));
 
   assign margin     = 32'd1 << t_error;
   assign old_t      = nearest_t[result_ray_i];
   assign old_margin = 32'd1 << nearest_error[result_ray_i];
-  assign limit      = {1'b0, limits[result_ray_i]};
+  assign old_t_max  = {1'b0, t_max[result_ray_i]};
   assign low        = (result_t_i > margin) ? result_t_i - margin : '0;
   assign sum        = result_t_i + margin;
   assign high       = (sum < Infinity) ? sum : Infinity;
   assign old_low    = (old_t > old_margin) ? old_t - old_margin : '0;
-  assign replace    = hit & (high < limit);
+  assign replace    = hit & (high < old_t_max);
   assign old_open   = replace & found_q[result_ray_i] & (old_low <= high);
-  assign open       = hit & ~replace & (low <= limit);
+  assign open       = hit & ~replace & (low <= old_t_max);
   assign near_tie_o = old_open | open;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -128,9 +128,9 @@ module ray_hits #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (load_i) limits[load_ray_i] <= load_limit_i;
+    if (load_i) t_max[load_ray_i] <= load_t_max_i;
     if (replace) begin
-      limits[result_ray_i]           <= high[30:0];
+      t_max[result_ray_i]            <= high[30:0];
       nearest_t[result_ray_i]        <= result_t_i;
       nearest_error[result_ray_i]    <= t_error;
       nearest_triangle[result_ray_i] <= result_triangle_i;
@@ -149,7 +149,7 @@ module ray_hits #(
     .push_i(doubt | open | old_open),
     .data_i({result_tag_i, old_open ? nearest_triangle[result_ray_i] : result_triangle_i}),
     .space_o(tests_allowed_o),
-    .pop_i(doubt_taken_i),
+    .pop_i(doubt_fire_i),
     .valid_o(doubt_valid_o),
     .data_o({doubt_tag_o, doubt_triangle_o})
   );

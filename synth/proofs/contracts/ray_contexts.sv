@@ -1,8 +1,8 @@
-// A ray core of which nothing is left but rays that come and go: ray_intake and ray_ends as ray_core joins them.
+// A ray core of which nothing is left but rays that come and go: ray_alloc and ray_retire as ray_core joins them.
 // What is to be done for a ray is anything, and so is when its walk begins.
-module ray_slots #(
+module ray_contexts #(
   parameter int unsigned Rays = 4,
-  localparam int unsigned SlotWidth = $clog2(Rays)
+  localparam int unsigned CtxWidth = $clog2(Rays)
 ) (
   input  logic                 clk_i,
   input  logic                 rst_ni,
@@ -11,11 +11,11 @@ module ray_slots #(
   input  logic                 start_i,  // the walk takes a ray that is there
   input  logic [Rays-1:0]      busy_i,
   output logic                 started_o,
-  output logic [SlotWidth-1:0] started_slot_o,
+  output logic [CtxWidth-1:0] started_ctx_o,
   output logic                 ending_o,
-  output logic [SlotWidth-1:0] ending_slot_o,
+  output logic [CtxWidth-1:0] ending_ctx_o,
   input  logic                 doubt_valid_i,
-  input  logic                 rest_valid_i,
+  input  logic                 overflow_valid_i,
   output logic                 result_valid_o,
   input  logic                 result_ready_i,
   output logic [1:0]           result_kind_o
@@ -26,10 +26,10 @@ module ray_slots #(
   logic ray;
   assign started_o = start_valid & start_i;
 
-  ray_intake #(
+  ray_alloc #(
     .Rays(Rays),
     .Width(1)
-  ) u_intake (
+  ) u_alloc (
     .clk_i,
     .rst_ni,
     .valid_i(ray_valid_i),
@@ -37,19 +37,19 @@ module ray_slots #(
     .direction_i('0),
     .ray_i(1'b0),
     .free_valid_i(ending_o),
-    .free_slot_i(ending_slot_o),
+    .free_ctx_i(ending_ctx_o),
     .start_valid_o(start_valid),
-    .start_slot_o(started_slot_o),
+    .start_ctx_o(started_ctx_o),
     .start_inverse_o(inverse),
     .start_ray_o(ray),
-    .start_taken_i(started_o)
+    .start_fire_i(started_o)
   );
 
   (* anyseq *) logic [31:0] tag, triangle, t;
   (* anyseq *) logic [95:0] point;
   logic found;
-  logic [SlotWidth-1:0] point_slot;
-  logic doubt_taken, rest_taken;
+  logic [CtxWidth-1:0] point_ctx;
+  logic doubt_fire, overflow_fire;
   logic [31:0] result_tag, result_triangle, result_t;
   logic result_found;
   logic [4:0] result_t_error;
@@ -59,33 +59,33 @@ module ray_slots #(
   logic [48:0] result_nodes;
   assign found = tag[0];
 
-  ray_ends #(
+  ray_retire #(
     .Rays(Rays)
-  ) u_ends (
+  ) u_retire (
     .clk_i,
     .rst_ni,
     .start_i(started_o),
-    .start_slot_i(started_slot_o),
+    .start_ctx_i(started_ctx_o),
     .busy_i,
     .ending_o,
-    .ending_slot_o,
+    .ending_ctx_o,
     .ending_tag_i(tag),
     .ending_found_i(found),
     .ending_triangle_i(triangle),
     .ending_t_i(t),
     .ending_t_error_i('0),
     .ending_tests_i('0),
-    .point_slot_o(point_slot),
+    .point_ctx_o(point_ctx),
     .point_i(point),
     .doubt_valid_i,
     .doubt_tag_i('0),
     .doubt_triangle_i('0),
-    .doubt_taken_o(doubt_taken),
-    .rest_valid_i,
-    .rest_tag_i('0),
-    .rest_line_i('0),
-    .rest_nodes_i('0),
-    .rest_taken_o(rest_taken),
+    .doubt_fire_o(doubt_fire),
+    .overflow_valid_i,
+    .overflow_tag_i('0),
+    .overflow_line_i('0),
+    .overflow_nodes_i('0),
+    .overflow_fire_o(overflow_fire),
     .result_valid_o,
     .result_ready_i,
     .result_kind_o,
@@ -109,7 +109,7 @@ module fp_divider_stages #(
   parameter int unsigned Arith        = 0,
   parameter int unsigned Adder        = 0,
   parameter int unsigned QuotientBits = 0,
-  parameter bit [31:0]   Cuts         = 32'd0
+  parameter bit [31:0]   PipeRegs     = 32'd0
 ) (
   input  logic                        clk_i,
   input  logic                        valid_i,

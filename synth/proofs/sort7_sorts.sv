@@ -1,6 +1,6 @@
 // The sorting network puts any seven words in order and loses none: each word is as often among what comes out as
 // among what went in, a clock earlier.
-module sort_seven_sorts #(
+module sort7_sorts #(
   localparam int unsigned Width = 4
 ) (
   input logic               clk,
@@ -18,7 +18,7 @@ module sort_seven_sorts #(
     word_q <= word;
   end
 
-  sort_seven #(
+  sort7 #(
     .Width(Width)
   ) dut (
     .clk_i(clk),

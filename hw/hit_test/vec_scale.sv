@@ -2,7 +2,7 @@
 //
 // The factor is what the multipliers recode, alike in all of them: tools keep one recoder.
 // Throughput one factor a clock, latency hit_test_pkg::MultiplierLatency. Takes every bit pattern; no flags.
-module scaler #(
+module vec_scale #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = arith_pkg::Structural,
@@ -25,7 +25,7 @@ module scaler #(
       .FracWidth(FracWidth),
       .Arith(Arith),
       .Adder(Adder),
-      .Cuts(hit_test_pkg::MultiplierCuts)
+      .PipeRegs(hit_test_pkg::MultiplierPipeRegs)
     ) u_multiplier (
       .clk_i,
       .a_i(words_i[Width*n +: Width]),

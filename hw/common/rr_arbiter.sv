@@ -1,7 +1,7 @@
 // Picks one of Width requests: the first at or above start_i, or else the first of all.
 //
 // Combinational. Width is a power of two, at least 2.
-module rotating_pick #(
+module rr_arbiter #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)
 ) (

@@ -1,7 +1,7 @@
 // Adds vectors word by word, sum[n] = a[n] + b[n], or subtracts them, a[n] - b[n]; binary32, rounded to nearest.
 //
 // Throughput one a clock, latency hit_test_pkg::AdderLatency. Takes every bit pattern; no flags.
-module vector_adder #(
+module vec_add #(
   parameter int unsigned Words    = 3,
   parameter bit          Subtract = 1'b0,
   parameter int unsigned Arith    = arith_pkg::Structural,
@@ -19,7 +19,7 @@ module vector_adder #(
     fp_adder_stages #(
       .Arith(Arith),
       .Adder(Adder),
-      .Cuts(hit_test_pkg::AdderCuts)
+      .PipeRegs(hit_test_pkg::AdderPipeRegs)
     ) u_adder (
       .clk_i,
       .a_i(a_i[32*n +: 32]),

@@ -1,4 +1,4 @@
-// axi_line_reader before a memory that answers bursts in any order, their beats mixed, with random
+// axi_read_manager before a memory that answers bursts in any order, their beats mixed, with random
 // pauses on every channel: each tag gets its own line, once. sim/checks watches the handshakes.
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "Vaxi_line_reader_128.h"
-#include "Vaxi_line_reader_32.h"
-#include "Vaxi_line_reader_512.h"
+#include "Vaxi_read_manager_128.h"
+#include "Vaxi_read_manager_32.h"
+#include "Vaxi_read_manager_512.h"
 #include "sim/model.h"
 
 namespace raygate {
@@ -33,7 +33,7 @@ void set_words(Port& port, const std::vector<std::uint32_t>& words) {
 
 template <class Top>
 class AxiLineReaderTest : public testing::Test {};
-using Tops = testing::Types<Vaxi_line_reader_32, Vaxi_line_reader_128, Vaxi_line_reader_512>;
+using Tops = testing::Types<Vaxi_read_manager_32, Vaxi_read_manager_128, Vaxi_read_manager_512>;
 TYPED_TEST_SUITE(AxiLineReaderTest, Tops);
 
 TYPED_TEST(AxiLineReaderTest, EveryTagGetsItsLineOnce) {
@@ -60,7 +60,7 @@ TYPED_TEST(AxiLineReaderTest, EveryTagGetsItsLineOnce) {
       model->read_valid_i = 1;
       model->base_i = (std::uint64_t{random()} << 32 | random()) & ~std::uint64_t{63};
       model->read_line_i = random() % (1u << 28);
-      model->read_tag_i = next_tag++ % 512;
+      model->read_id_i = next_tag++ % 512;
     }
     // Every other while it takes nothing that is not there yet.
     model->axi_arready_i =
@@ -85,7 +85,7 @@ TYPED_TEST(AxiLineReaderTest, EveryTagGetsItsLineOnce) {
     const bool read = (model->read_valid_i & model->read_ready_o) != 0;
     const bool asked = (model->axi_arvalid_o & model->axi_arready_i) != 0;
     const bool answered = (model->axi_rvalid_i & model->axi_rready_o) != 0;
-    if (read) waiting[model->read_tag_i] = model->read_line_i;
+    if (read) waiting[model->read_id_i] = model->read_line_i;
     full += waiting.size() >= kIds && model->read_valid_i != 0 && !read;
     if (asked) {
       const unsigned id = model->axi_arid_o;
@@ -100,10 +100,10 @@ TYPED_TEST(AxiLineReaderTest, EveryTagGetsItsLineOnce) {
       line = model->read_line_i;
       address = model->base_i + 64 * std::uint64_t{line};
     }
-    ASSERT_EQ(model->failed_o, answered && fails);
-    failed += model->failed_o;
+    ASSERT_EQ(model->bus_error_o, answered && fails);
+    failed += model->bus_error_o;
     if ((model->line_valid_o & model->line_ready_i) != 0) {
-      const auto tag = waiting.find(model->line_tag_o);
+      const auto tag = waiting.find(model->line_id_o);
       ASSERT_NE(tag, waiting.end()) << "a tag that waits";
       for (unsigned n = 0; n < 16; ++n) ASSERT_EQ(model->line_o[n], word_of(tag->second, n));
       waiting.erase(tag);

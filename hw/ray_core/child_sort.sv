@@ -1,7 +1,7 @@
 // The group of a node: its children in order, near first, those that the ray does not enter left out.
 //
-// keys_i are box_child's. Two registers: half way through the sort, and behind the group.
-module box_group #(
+// keys_i are slab_test's. Two registers: half way through the sort, and behind the group.
+module child_sort #(
   parameter int unsigned Arith = arith_pkg::Structural,
   localparam int unsigned Children = ray_core_pkg::Children,
   localparam int unsigned KindWidth = ray_core_pkg::KindWidth,
@@ -36,7 +36,7 @@ module box_group #(
   for (genvar i = 0; i < Children; i++) begin : gen_word
     assign words[WordWidth*i+:WordWidth] = {keys_i[KeyWidth*i+:KeyWidth], NumberWidth'(i)};
   end
-  sort_seven #(
+  sort7 #(
     .Width(WordWidth),
     .Arith(Arith)
   ) u_sort (

@@ -1,8 +1,8 @@
 // Leaves that rays enter: asks for their triangles, one a clock, near ones first.
 //
-// A group of leaves at a time, in the order in which they came. Where a leaf is beyond its ray's limit by
+// A group of leaves at a time, in the order in which they came. Where a leaf is beyond its ray's t_max by
 // then, it and the rest of the group are dropped: they are no nearer. A ray has one group here at most.
-module leaf_walk #(
+module primitive_fetch #(
   parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
@@ -15,11 +15,11 @@ module leaf_walk #(
   input  logic [RayWidth-1:0]     box_ray_i,
   input  logic [GroupWidth-1:0]   box_group_i,
   input  logic [Children-1:0]     box_leaf_i,
-  output logic [RayWidth-1:0]     limit_ray_o,
-  input  logic [30:0]             limit_i,   // of limit_ray_o, in the same clock
-  input  logic                    ended_i,   // of limit_ray_o: it needs nothing any more
-  input  logic                    crowded_i, // of limit_ray_o: no more tests can be counted
-  output logic [Rays-1:0]         held_o,    // has a group here
+  output logic [RayWidth-1:0]     t_max_ray_o,
+  input  logic [30:0]             t_max_i,   // of t_max_ray_o, in the same clock
+  input  logic                    ended_i,   // of t_max_ray_o: it needs nothing any more
+  input  logic                    counter_full_i, // of t_max_ray_o: no more tests can be counted
+  output logic [Rays-1:0]         leaf_pending_o,  // has a group here
   // triangles asked for
   output logic                    triangle_valid_o,
   input  logic                    triangle_ready_i,
@@ -60,13 +60,13 @@ module leaf_walk #(
   logic valid_q;
   logic [RayWidth-1:0] ray_q;
   logic [GroupWidth-1:0] group_q;
-  logic [Children-1:0] mask_q, lowest, rest;
+  logic [Children-1:0] mask_q, lowest, remaining;
   logic [CountWidth-1:0] number_q;  // of the triangle in its leaf
   logic [EntryWidth-1:0] entry;
-  logic beyond, given, last, done;
+  logic beyond, fire, last, done;
 
-  assign lowest = mask_q & -mask_q;
-  assign rest   = mask_q & ~lowest;
+  assign lowest    = mask_q & -mask_q;
+  assign remaining = mask_q & ~lowest;
 
   always_comb begin
     entry = '0;
@@ -75,28 +75,28 @@ module leaf_walk #(
     end
   end
 
-  assign limit_ray_o = ray_q;
+  assign t_max_ray_o = ray_q;
   assign beyond = ended_i | ray_core_pkg::is_beyond(
       group_q[Children*EntryWidth +: ray_core_pkg::ExponentWidth],
-      entry[EntryWidth-1 -: EnterWidth], limit_i);
-  assign triangle_valid_o = valid_q & ~beyond & ~crowded_i;
+      entry[EntryWidth-1 -: EnterWidth], t_max_i);
+  assign triangle_valid_o = valid_q & ~beyond & ~counter_full_i;
   assign triangle_ray_o   = ray_q;
   assign triangle_line_o  = group_q[GroupWidth-1 -: AddressWidth]
                           + AddressWidth'(entry[CountWidth +: OffsetWidth])
                           + AddressWidth'(number_q);
-  assign given = triangle_valid_o & triangle_ready_i;
-  assign last  = number_q + 1'b1 == entry[CountWidth-1:0];
-  assign done  = valid_q & (beyond | (given & last & (rest == '0)));
-  assign load  = queued & (~valid_q | done);
+  assign fire = triangle_valid_o & triangle_ready_i;
+  assign last = number_q + 1'b1 == entry[CountWidth-1:0];
+  assign done = valid_q & (beyond | (fire & last & (remaining == '0)));
+  assign load = queued & (~valid_q | done);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      valid_q <= 1'b0;
-      held_o  <= '0;
+      valid_q        <= 1'b0;
+      leaf_pending_o <= '0;
     end else begin
       valid_q <= load | (valid_q & ~done);
-      if (done) held_o[ray_q] <= 1'b0;
-      if (push) held_o[box_ray_i] <= 1'b1;
+      if (done) leaf_pending_o[ray_q] <= 1'b0;
+      if (push) leaf_pending_o[box_ray_i] <= 1'b1;
     end
   end
   always_ff @(posedge clk_i) begin
@@ -105,9 +105,9 @@ module leaf_walk #(
       group_q  <= queued_group;
       mask_q   <= queued_leaf;
       number_q <= '0;
-    end else if (given) begin
+    end else if (fire) begin
       number_q <= last ? '0 : number_q + 1'b1;
-      if (last) mask_q <= rest;
+      if (last) mask_q <= remaining;
     end
   end
 

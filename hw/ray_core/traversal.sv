@@ -2,11 +2,11 @@
 //
 // A stack holds groups of children that a ray enters, the nearest last; of a group those that wait. Each
 // clock one ray is picked that neither waits for a node nor has leaves that nobody has asked for. Of its
-// groups those whose nearest child is beyond the limit are dropped, all at once; the nearest child of the
+// groups those whose nearest child is beyond the t_max are dropped, all at once; the nearest child of the
 // topmost that is left is asked for. Rays that have no tests on their way come first: what they ask for is
 // needed as far as anybody knows.
 //
-// Where a stack has no room for a group, the group leaves as a rest: the host sends the ray there. Rests are
+// Where a stack has no room for a group, the group leaves as an overflow: the host sends the ray there. Overflows are
 // few; while one waits, no node is asked for, so Rays words are room enough.
 //
 //   pick    a ray
@@ -14,7 +14,7 @@
 //   ask     the node's line, out of the group
 //
 // A ray that starts waits for one that was picked before, and then has its turn: starts and picks alternate.
-module ray_walk #(
+module traversal #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,  // groups on a stack, at least 1
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -29,33 +29,33 @@ module ray_walk #(
   input  logic                    start_valid_i,
   input  logic [RayWidth-1:0]     start_ray_i,
   input  logic [AddressWidth-1:0] start_line_i,
-  output logic                    start_taken_o,
+  output logic                    start_fire_o,
   // what box_unit says of a node
   input  logic                    box_valid_i,
   input  logic [RayWidth-1:0]     box_ray_i,
-  input  logic [31:0]             box_tag_i,  // the ray's, for rests
+  input  logic [31:0]             box_tag_i,  // the ray's, for overflows
   input  logic [GroupWidth-1:0]   box_group_i,
   input  logic [Children-1:0]     box_inner_i,
   // what is known of rays
-  input  logic [Rays-1:0]         held_i,      // has leaves to be asked for
+  input  logic [Rays-1:0]         leaf_pending_i,  // has leaves to be asked for
   input  logic [Rays-1:0]         testing_i,   // has tests on their way
-  output logic [RayWidth-1:0]     limit_ray_o,
-  input  logic [30:0]             limit_i,     // of limit_ray_o, in the same clock
-  input  logic                    ended_i,     // of limit_ray_o: it needs nothing any more
-  output logic [Rays-1:0]         walking_o,   // waits for a node, or has some on its stack
+  output logic [RayWidth-1:0]     t_max_ray_o,
+  input  logic [30:0]             t_max_i,     // of t_max_ray_o, in the same clock
+  input  logic                    ended_i,     // of t_max_ray_o: it needs nothing any more
+  output logic [Rays-1:0]         traversing_o,  // waits for a node, or has some on its stack
   // nodes asked for; as many as there are rays at most
   output logic                    node_valid_o,
   output logic [RayWidth-1:0]     node_ray_o,
   output logic [AddressWidth-1:0] node_line_o,
   // the next of the same group, where there is one
-  output logic                    soon_o,
-  output logic [AddressWidth-1:0] soon_line_o,
-  // rests
-  output logic                    rest_valid_o,
-  output logic [31:0]             rest_tag_o,
-  output logic [AddressWidth-1:0] rest_line_o,
-  output logic [NodesWidth-1:0]   rest_nodes_o,
-  input  logic                    rest_taken_i
+  output logic                    prefetch_o,
+  output logic [AddressWidth-1:0] prefetch_line_o,
+  // overflows
+  output logic                    overflow_valid_o,
+  output logic [31:0]             overflow_tag_o,
+  output logic [AddressWidth-1:0] overflow_line_o,
+  output logic [NodesWidth-1:0]   overflow_nodes_o,
+  input  logic                    overflow_fire_i
 );
 
   localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
@@ -63,7 +63,7 @@ module ray_walk #(
   localparam int unsigned CountWidth = ray_core_pkg::CountWidth;
   localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth;
   localparam int unsigned LevelWidth = $clog2(Depth + 1);
-  localparam int unsigned PlaceWidth = $clog2(Rays * Depth);
+  localparam int unsigned StackAddressWidth = $clog2(Rays * Depth);
 
   localparam int unsigned NextWidth = Children + EnterWidth;
 
@@ -72,11 +72,11 @@ module ray_walk #(
   logic [Rays-1:0] busy_q;     // waits for a node
   logic [Rays-1:0] waiting_q;  // levels is not 0
 
-  assign walking_o = busy_q | waiting_q;
+  assign traversing_o = busy_q | waiting_q;
 
-  function automatic logic [PlaceWidth-1:0] place(logic [RayWidth-1:0] slot,
-                                                  logic [LevelWidth-1:0] depth);
-    place = PlaceWidth'(slot) * PlaceWidth'(Depth) + PlaceWidth'(depth);
+  function automatic logic [StackAddressWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
+                                                                 logic [LevelWidth-1:0] depth);
+    stack_address = StackAddressWidth'(ctx) * StackAddressWidth'(Depth) + StackAddressWidth'(depth);
   endfunction
 
   // The nearest of the entries that are among `which`, 0 for none: {enter, offset}.
@@ -96,11 +96,11 @@ module ray_walk #(
   logic some, pick, picked_q, go;
   logic [RayWidth-1:0] picked_ray, ray_q;
 
-  assign ready = waiting_q & ~busy_q & ~held_i;
+  assign ready = waiting_q & ~busy_q & ~leaf_pending_i;
   assign sure  = ready & ~testing_i;
-  assign pick  = some & ~(start_valid_i & ~start_taken_o) & ~rest_valid_o;
+  assign pick  = some & ~(start_valid_i & ~start_fire_o) & ~overflow_valid_o;
 
-  rotating_pick #(
+  rr_arbiter #(
     .Width(Rays)
   ) u_pick (
     .requests_i((sure != '0) ? sure : ready),
@@ -124,12 +124,12 @@ module ray_walk #(
   logic push, asked_q;
   logic [LevelWidth-1:0] box_level, level, chosen, left, chosen_q;
   logic [Depth*Children-1:0] masks;
-  logic [Depth-1:0] open;  // levels that have a child within the limit
-  logic [Children-1:0] mask, rest, mask_q, rest_q;
+  logic [Depth-1:0] open;  // levels that have a child within the t_max
+  logic [Children-1:0] mask, remaining, mask_q, remaining_q;
   logic [RayWidth-1:0] asking_ray_q;
-  logic [EnterWidth-1:0] box_enter, rest_enter;
+  logic [EnterWidth-1:0] box_enter, remaining_enter;
 
-  assign limit_ray_o = ray_q;
+  assign t_max_ray_o = ray_q;
   assign level       = levels[ray_q];
 
   for (genvar d = 0; d < Depth; d++) begin : gen_level
@@ -137,7 +137,9 @@ module ray_walk #(
     logic [ray_core_pkg::ExponentWidth-1:0] exponents[Rays];
 
     always_ff @(posedge clk_i) begin
-      if (asked_q && chosen_q == LevelWidth'(d)) nexts[asking_ray_q] <= {rest_q, rest_enter};
+      if (asked_q && chosen_q == LevelWidth'(d)) begin
+        nexts[asking_ray_q] <= {remaining_q, remaining_enter};
+      end
       if (push && box_level == LevelWidth'(d)) begin
         nexts[box_ray_i]     <= {box_inner_i, box_enter};
         exponents[box_ray_i] <= box_group_i[Children*EntryWidth +: ray_core_pkg::ExponentWidth];
@@ -146,7 +148,7 @@ module ray_walk #(
 
     assign masks[Children*d +: Children] = nexts[ray_q][NextWidth-1 -: Children];
     assign open[d] = (level > LevelWidth'(d)) & ~ended_i & ~ray_core_pkg::is_beyond(
-        exponents[ray_q], nexts[ray_q][EnterWidth-1:0], limit_i);
+        exponents[ray_q], nexts[ray_q][EnterWidth-1:0], t_max_i);
   end
 
   always_comb begin
@@ -160,11 +162,11 @@ module ray_walk #(
     end
   end
 
-  assign rest = mask & (mask - 1'b1);
-  assign go   = picked_q & (open != '0);
-  assign left = (open == '0) ? '0 : (rest == '0) ? chosen : chosen + 1'b1;  // of the levels
+  assign remaining = mask & (mask - 1'b1);
+  assign go        = picked_q & (open != '0);
+  assign left      = (open == '0) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
 
-  assign start_taken_o = start_valid_i & ~go & ~rest_valid_o;
+  assign start_fire_o = start_valid_i & ~go & ~overflow_valid_o;
 
   // ---- Ask
 
@@ -173,7 +175,7 @@ module ray_walk #(
   logic [GroupWidth-1:0] group;
   logic [OffsetWidth-1:0] offset;
   logic [EnterWidth-1:0] unused_enter;
-  logic [OffsetWidth-1:0] soon_offset, unused_box_offset;
+  logic [OffsetWidth-1:0] prefetch_offset, unused_box_offset;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -181,27 +183,27 @@ module ray_walk #(
       started_q <= 1'b0;
     end else begin
       asked_q   <= go;
-      started_q <= start_taken_o;
+      started_q <= start_fire_o;
     end
   end
   always_ff @(posedge clk_i) begin
     asking_ray_q <= go ? ray_q : start_ray_i;
     chosen_q     <= chosen;
     mask_q       <= mask;
-    rest_q       <= rest;
+    remaining_q  <= remaining;
     start_line_q <= start_line_i;
   end
 
-  assign group = groups[place(asking_ray_q, chosen_q)];
+  assign group = groups[stack_address(asking_ray_q, chosen_q)];
   assign {unused_enter, offset} = nearest(group, mask_q);
-  assign {rest_enter, soon_offset} = nearest(group, rest_q);
+  assign {remaining_enter, prefetch_offset} = nearest(group, remaining_q);
   assign node_valid_o = asked_q | started_q;
   assign node_ray_o   = asking_ray_q;
   assign node_line_o  = started_q ? start_line_q
                                   : group[GroupWidth-1 -: AddressWidth] + AddressWidth'(offset);
 
-  assign soon_o      = asked_q & (rest_q != '0);
-  assign soon_line_o = group[GroupWidth-1 -: AddressWidth] + AddressWidth'(soon_offset);
+  assign prefetch_o      = asked_q & (remaining_q != '0);
+  assign prefetch_line_o = group[GroupWidth-1 -: AddressWidth] + AddressWidth'(prefetch_offset);
 
   // ---- Push what box_unit found
 
@@ -213,7 +215,7 @@ module ray_walk #(
   assign {box_enter, unused_box_offset} = nearest(box_group_i, box_inner_i);
 
   always_ff @(posedge clk_i) begin
-    if (push) groups[place(box_ray_i, box_level)] <= box_group_i;
+    if (push) groups[stack_address(box_ray_i, box_level)] <= box_group_i;
   end
 
   // ---- State; a ray is picked, starts, or hears of a node, never two of these at once
@@ -224,7 +226,7 @@ module ray_walk #(
       waiting_q <= '0;
     end else begin
       if (pick) busy_q[picked_ray] <= 1'b1;
-      if (start_taken_o) busy_q[start_ray_i] <= 1'b1;
+      if (start_fire_o) busy_q[start_ray_i] <= 1'b1;
       if (picked_q && !go) busy_q[ray_q] <= 1'b0;
       if (box_valid_i) busy_q[box_ray_i] <= 1'b0;
       if (picked_q) waiting_q[ray_q] <= left != '0;
@@ -232,12 +234,12 @@ module ray_walk #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (start_taken_o) levels[start_ray_i] <= '0;
+    if (start_fire_o) levels[start_ray_i] <= '0;
     if (picked_q) levels[ray_q] <= left;
     if (push) levels[box_ray_i] <= box_level + 1'b1;
   end
 
-  // ---- Rests
+  // ---- Overflows
 
   logic [NodesWidth-1:0] nodes;
   logic unused_space;
@@ -252,15 +254,15 @@ module ray_walk #(
   fifo #(
     .Width(32 + AddressWidth + NodesWidth),
     .Depth(Rays)
-  ) u_rests (
+  ) u_overflows (
     .clk_i,
     .rst_ni,
     .push_i(box_valid_i & (box_inner_i != '0) & ~room),
     .data_i({box_tag_i, box_group_i[GroupWidth-1 -: AddressWidth], nodes}),
     .space_o(unused_space),
-    .pop_i(rest_taken_i),
-    .valid_o(rest_valid_o),
-    .data_o({rest_tag_o, rest_line_o, rest_nodes_o})
+    .pop_i(overflow_fire_i),
+    .valid_o(overflow_valid_o),
+    .data_o({overflow_tag_o, overflow_line_o, overflow_nodes_o})
   );
 
 endmodule

@@ -1,10 +1,10 @@
 // The largest of four unsigned words. Combinational, two comparators deep.
-module largest #(
+module max4 #(
   parameter int unsigned Width = 36,
   parameter int unsigned Arith = arith_pkg::Structural
 ) (
   input  logic [4*Width-1:0] words_i,
-  output logic [Width-1:0]   largest_o
+  output logic [Width-1:0]   max_o
 );
 
   for (genvar n = 0; n < 2; n++) begin : gen_pair
@@ -36,6 +36,6 @@ module largest #(
     .less_o(last_less),
     .equal_o(unused_last_equal)
   );
-  assign largest_o = last_less ? gen_pair[1].larger : gen_pair[0].larger;
+  assign max_o = last_less ? gen_pair[1].larger : gen_pair[0].larger;
 
 endmodule

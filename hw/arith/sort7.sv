@@ -2,7 +2,7 @@
 // words_i before it. 16 comparators in six steps.
 //
 // Source: Batcher's network for eight, less one input.
-module sort_seven #(
+module sort7 #(
   parameter int unsigned Width = 27,
   parameter int unsigned Arith = arith_pkg::Structural
 ) (
@@ -11,21 +11,21 @@ module sort_seven #(
   output logic [7*Width-1:0] sorted_o
 );
 
-  // Whom each word is compared with, a step a line, word 6 first: itself where it rests
+  // Whom each word is compared with, a step a line, word 6 first: itself where it overflows
   localparam logic [6*21-1:0] Partners = {
     21'o5634120, 21'o6452310, 21'o4563120, 21'o6234501, 21'o3516042, 21'o0452316
   };
 
   for (genvar s = 0; s < 6; s++) begin : gen_step
-    logic [7*Width-1:0] given, ordered;
+    logic [7*Width-1:0] unsorted, ordered;
 
     for (genvar n = 0; n < 7; n++) begin : gen_word
       localparam int unsigned Partner = 32'(Partners[21*s+3*n+:3]);
       if (Partner > n) begin : gen_pair
         logic less, unused_equal;
         logic [Width-1:0] low, high;
-        assign low  = given[Width*n +: Width];
-        assign high = given[Width*Partner +: Width];
+        assign low  = unsorted[Width*n +: Width];
+        assign high = unsorted[Width*Partner +: Width];
 
         comparator #(
           .Width(Width),
@@ -39,17 +39,17 @@ module sort_seven #(
         assign ordered[Width*n +: Width]       = less ? high : low;
         assign ordered[Width*Partner +: Width] = less ? low : high;
       end else if (Partner == n) begin : gen_rest
-        assign ordered[Width*n+:Width] = given[Width*n+:Width];
+        assign ordered[Width*n+:Width] = unsorted[Width*n+:Width];
       end
     end
   end
 
-  assign gen_step[0].given = words_i;
-  assign gen_step[1].given = gen_step[0].ordered;
-  assign gen_step[2].given = gen_step[1].ordered;
-  always_ff @(posedge clk_i) gen_step[3].given <= gen_step[2].ordered;
-  assign gen_step[4].given = gen_step[3].ordered;
-  assign gen_step[5].given = gen_step[4].ordered;
+  assign gen_step[0].unsorted = words_i;
+  assign gen_step[1].unsorted = gen_step[0].ordered;
+  assign gen_step[2].unsorted = gen_step[1].ordered;
+  always_ff @(posedge clk_i) gen_step[3].unsorted <= gen_step[2].ordered;
+  assign gen_step[4].unsorted = gen_step[3].ordered;
+  assign gen_step[5].unsorted = gen_step[4].ordered;
   assign sorted_o = gen_step[5].ordered;
 
 endmodule

@@ -1,7 +1,7 @@
 // Multiplies vectors word by word, product[n] = a[n] b[n]; binary32, rounded to nearest.
 //
 // Throughput one a clock, latency hit_test_pkg::MultiplierLatency. Takes every bit pattern; no flags.
-module vector_multiplier #(
+module vec_mul #(
   parameter int unsigned Words = 3,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
@@ -18,7 +18,7 @@ module vector_multiplier #(
     fp_multiplier_stages #(
       .Arith(Arith),
       .Adder(Adder),
-      .Cuts(hit_test_pkg::MultiplierCuts)
+      .PipeRegs(hit_test_pkg::MultiplierPipeRegs)
     ) u_multiplier (
       .clk_i,
       .a_i(a_i[32*n +: 32]),

@@ -8,7 +8,7 @@
 //
 // start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. Throughput a ray a
 // clock. valid_o, ready_i: as everywhere.
-module camera_unit #(
+module ray_generator #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
@@ -95,47 +95,47 @@ module camera_unit #(
 
   // ---- first + y down, then + x right
 
-  logic [191:0] ways;  // x right, y down
-  logic [95:0] right_way, row_first, way;
+  logic [191:0] products;  // x right, y down
+  logic [95:0] right_product, row_first, direction;
 
-  for (genvar n = 0; n < 2; n++) begin : gen_way
-    scaler #(
+  for (genvar n = 0; n < 2; n++) begin : gen_product
+    vec_scale #(
       .Arith(Arith),
       .Adder(Adder),
       .Words(3)
-    ) u_scaler (
+    ) u_scale (
       .clk_i,
       .words_i((n == 0) ? right_i : down_i),
       .factor_i(number_q[n]),
-      .products_o(ways[96*n +: 96])
+      .products_o(products[96*n +: 96])
     );
   end
-  vector_adder #(
+  vec_add #(
     .Arith(Arith),
     .Adder(Adder)
   ) u_row (
     .clk_i,
     .a_i(first_i),
-    .b_i(ways[96 +: 96]),
+    .b_i(products[96 +: 96]),
     .sum_o(row_first)
   );
   delay_line #(
     .Width(96),
     .Depth(hit_test_pkg::AdderLatency)
-  ) u_beside_row (
+  ) u_sideband_row (
     .clk_i,
     .enable_i(1'b1),
-    .data_i(ways[0 +: 96]),
-    .data_o(right_way)
+    .data_i(products[0 +: 96]),
+    .data_o(right_product)
   );
-  vector_adder #(
+  vec_add #(
     .Arith(Arith),
     .Adder(Adder)
-  ) u_way (
+  ) u_direction (
     .clk_i,
     .a_i(row_first),
-    .b_i(right_way),
-    .sum_o(way)
+    .b_i(right_product),
+    .sum_o(direction)
   );
 
   // ---- Scale: exponents alone
@@ -146,17 +146,17 @@ module camera_unit #(
   always_comb begin
     largest = '0;
     for (int unsigned k = 0; k < 3; k++) begin
-      if (way[32*k+23+:8] > largest) largest = way[32*k+23+:8];
+      if (direction[32*k+23+:8] > largest) largest = direction[32*k+23+:8];
     end
   end
   for (genvar k = 0; k < 3; k++) begin : gen_scaled
     logic [7:0] below;  // so many orders below the largest
-    assign below = largest - way[32*k+23 +: 8];
-    assign scaled[32*k +: 32] = ((way[32*k+23 +: 8] == '0) | (below > 8'd126))
-        ? {way[32*k+31], 31'd0} : {way[32*k+31], 8'd127 - below, way[32*k +: 23]};
+    assign below = largest - direction[32*k+23 +: 8];
+    assign scaled[32*k +: 32] = ((direction[32*k+23 +: 8] == '0) | (below > 8'd126))
+        ? {direction[32*k+31], 31'd0} : {direction[32*k+31], 8'd127 - below, direction[32*k +: 23]};
   end
 
-  // ---- Rays on their way, and those that wait
+  // ---- Rays on their direction, and those that wait
 
   logic [Latency-1:0] valid_q;
   logic [31:0] pixel;

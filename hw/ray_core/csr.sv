@@ -14,7 +14,7 @@
 //   0x014  base       rw   two words: address of line 0, low word first; a multiple of 64
 //   0x020  corner     rw   the rectangle's first pixel: x in bits 15:0, y in 31:16
 //   0x024  size       rw   its width and height, likewise
-//   0x030  eye        rw   where the camera's rays begin; 0x040 first, 0x050 right, 0x060 down: see camera_unit
+//   0x030  eye        rw   where the camera's rays begin; 0x040 first, 0x050 right, 0x060 down: see ray_generator
 //   0x100  counters   ro   two words each, low word first: clocks with status bit 1 high, then those of
 //                          ray_core_pkg::event_e in their order. Of 48 bits, modulo 2**48
 //
@@ -24,7 +24,7 @@
 // One write and one read at a time: a write is taken when its address and its data are there.
 // interrupt_o is high while a flag is that is enabled.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
-module core_registers #(
+module csr #(
   localparam int unsigned AddressWidth = 12
 ) (
   input  logic                    clk_i,
@@ -57,7 +57,7 @@ module core_registers #(
   input  logic                    camera_busy_i,
   input  logic                    core_busy_i,
   input  logic                    doubt_i,       // this clock's
-  input  logic                    failed_i,
+  input  logic                    bus_error_i,
   input  logic [ray_core_pkg::NumEvents-1:0] events_i,
   output logic                    interrupt_o
 );
@@ -125,7 +125,7 @@ module core_registers #(
   logic drawing_q, done;  // a rectangle's rays are on their way
 
   assign done    = drawing_q & ~camera_busy_i & ~core_busy_i;
-  assign raised  = {failed_i, done, doubt_i};
+  assign raised  = {bus_error_i, done, doubt_i};
   assign lowered = (write && write_word == WordFlags) ? axi_wdata_i[2:0] & written[2:0] : '0;
   assign interrupt_o = (enable_q & flags_q) != '0;
 

@@ -3,32 +3,32 @@
 // What the caches lack goes out in turn, with a tag, {is a triangle's, place in its cache}; its line may come
 // back at any time and in any order. Each clock gives a node and a triangle where both caches have one.
 //
-// A node that is not asked for, but may be soon (soon_i), is read into its cache in clocks in which no ray asks for
+// A node that is not asked for, but may be soon (prefetch_i), is read into its cache in clocks in which no ray asks for
 // one; where too many of them wait, it is forgotten. Its line may come when the last ray has long ended: memory must
-// not change, nor the caches be emptied, while reading_o.
-module line_port #(
+// not change, nor the caches be emptied, while outstanding_o.
+module memory_subsystem #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
   parameter int unsigned TriangleLines = 256,  // of the triangles'
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned PlaceWidth =
+  localparam int unsigned EntryWidth =
       $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
-  localparam int unsigned TagWidth = 1 + PlaceWidth,
+  localparam int unsigned ReadIdWidth = 1 + EntryWidth,
   localparam int unsigned LineWidth = ray_core_pkg::LineWidth,
   localparam int unsigned TriangleWidth = ray_core_pkg::TriangleWidth
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    invalidate_i,  // the caches: memory has changed
-  output logic                    reading_o,  // a line is on its way, or will be
+  output logic                    outstanding_o,  // a line is on its way, or will be
   // nodes asked for: one for each ray at most
   input  logic                    node_i,
   input  logic [RayWidth-1:0]     node_ray_i,
   input  logic [AddressWidth-1:0] node_line_i,
   // a node that may be asked for soon
-  input  logic                    soon_i,
-  input  logic [AddressWidth-1:0] soon_line_i,
+  input  logic                    prefetch_i,
+  input  logic [AddressWidth-1:0] prefetch_line_i,
   // triangles asked for
   input  logic                    triangle_i,
   output logic                    triangle_ready_o,
@@ -38,10 +38,10 @@ module line_port #(
   output logic                    read_valid_o,
   input  logic                    read_ready_i,
   output logic [AddressWidth-1:0] read_line_o,
-  output logic [TagWidth-1:0]     read_tag_o,
+  output logic [ReadIdWidth-1:0]  read_id_o,
   input  logic                    line_valid_i,
   output logic                    line_ready_o,
-  input  logic [TagWidth-1:0]     line_tag_i,
+  input  logic [ReadIdWidth-1:0]  line_id_i,
   input  logic [LineWidth-1:0]    line_i,
   // lines
   input  logic                    tests_allowed_i,  // else no triangle leaves
@@ -54,14 +54,14 @@ module line_port #(
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
-  localparam int unsigned MissWidth = PlaceWidth + AddressWidth;
+  localparam int unsigned MissWidth = EntryWidth + AddressWidth;
 
   // ---- What is asked for
 
-  logic node_valid, node_taken, triangle_valid, triangle_taken, unused_space;
+  logic node_valid, node_ready, triangle_valid, triangle_ready, unused_space;
   logic [RequestWidth-1:0] node, triangle;
-  logic soon_valid, soon_taken, soon_space;
-  logic [AddressWidth-1:0] soon_line;
+  logic prefetch_valid, prefetch_fire, prefetch_space;
+  logic [AddressWidth-1:0] prefetch_line;
 
   fifo #(
     .Width(RequestWidth),
@@ -72,22 +72,22 @@ module line_port #(
     .push_i(node_i),
     .data_i({node_ray_i, node_line_i}),
     .space_o(unused_space),
-    .pop_i(node_valid & node_taken),
+    .pop_i(node_valid & node_ready),
     .valid_o(node_valid),
     .data_o(node)
   );
   fifo #(
     .Width(AddressWidth),
     .Depth(8)
-  ) u_soon (
+  ) u_prefetches (
     .clk_i,
     .rst_ni,
-    .push_i(soon_i & soon_space),
-    .data_i(soon_line_i),
-    .space_o(soon_space),
-    .pop_i(soon_taken),
-    .valid_o(soon_valid),
-    .data_o(soon_line)
+    .push_i(prefetch_i & prefetch_space),
+    .data_i(prefetch_line_i),
+    .space_o(prefetch_space),
+    .pop_i(prefetch_fire),
+    .valid_o(prefetch_valid),
+    .data_o(prefetch_line)
   );
   fifo #(
     .Width(RequestWidth),
@@ -98,7 +98,7 @@ module line_port #(
     .push_i(triangle_i & triangle_ready_o),
     .data_i({triangle_ray_i, triangle_line_i}),
     .space_o(triangle_ready_o),
-    .pop_i(triangle_valid & triangle_taken),
+    .pop_i(triangle_valid & triangle_ready),
     .valid_o(triangle_valid),
     .data_o(triangle)
   );
@@ -106,50 +106,50 @@ module line_port #(
   // ---- Caches
 
   logic line_valid, line_done, fill, fill_triangle, node_done, triangle_done;
-  logic [PlaceWidth-1:0] fill_place;
+  logic [EntryWidth-1:0] fill_entry;
   logic [LineWidth-1:0] line;
   logic [AddressWidth-1:0] node_number, triangle_number;
-  logic [$clog2(NodeLines)-1:0] node_place;
-  logic [$clog2(TriangleLines)-1:0] triangle_place;
+  logic [$clog2(NodeLines)-1:0] node_entry;
+  logic [$clog2(TriangleLines)-1:0] triangle_entry;
   logic [MissWidth-1:0] node_miss, triangle_miss;
   logic node_miss_valid, node_miss_ready, triangle_miss_valid, triangle_miss_ready;
 
   fifo #(
-    .Width(TagWidth + LineWidth),
+    .Width(ReadIdWidth + LineWidth),
     .Depth(2)
   ) u_lines (
     .clk_i,
     .rst_ni,
     .push_i(line_valid_i & line_ready_o),
-    .data_i({line_tag_i, line_i}),
+    .data_i({line_id_i, line_i}),
     .space_o(line_ready_o),
     .pop_i(line_done),
     .valid_o(line_valid),
-    .data_o({fill_triangle, fill_place, line})
+    .data_o({fill_triangle, fill_entry, line})
   );
-  assign soon_taken = soon_valid & ~node_valid & node_taken;
-  assign fill       = line_valid & tests_allowed_i;
+  assign prefetch_fire = prefetch_valid & ~node_valid & node_ready;
+  assign fill          = line_valid & tests_allowed_i;
 
   line_cache #(
     .Lines(NodeLines),
-    .Waiters(Rays),
+    .Targets(Rays),
     .RayWidth(RayWidth)
   ) u_node_cache (
     .clk_i,
     .rst_ni,
     .invalidate_i,
-    .valid_i(node_valid | soon_valid),
-    .ready_o(node_taken),
-    .wanted_i(node_valid),
+    .valid_i(node_valid | prefetch_valid),
+    .ready_o(node_ready),
+    .demand_i(node_valid),
     .ray_i(node[RequestWidth-1 -: RayWidth]),
-    .line_number_i(node_valid ? node[AddressWidth-1:0] : soon_line),
+    .line_number_i(node_valid ? node[AddressWidth-1:0] : prefetch_line),
     .miss_valid_o(node_miss_valid),
     .miss_ready_i(node_miss_ready),
-    .miss_place_o(node_place),
+    .miss_entry_o(node_entry),
     .miss_number_o(node_number),
     .fill_i(fill & ~fill_triangle),
     .fill_done_o(node_done),
-    .fill_place_i(fill_place[$clog2(NodeLines)-1:0]),
+    .fill_entry_i(fill_entry[$clog2(NodeLines)-1:0]),
     .fill_line_i(line),
     .valid_o(node_valid_o),
     .ready_i(1'b1),
@@ -158,7 +158,7 @@ module line_port #(
   );
   line_cache #(
     .Lines(TriangleLines),
-    .Waiters(2 * Rays),
+    .Targets(2 * Rays),
     .RayWidth(RayWidth),
     .Width(TriangleWidth)
   ) u_triangle_cache (
@@ -166,17 +166,17 @@ module line_port #(
     .rst_ni,
     .invalidate_i,
     .valid_i(triangle_valid),
-    .ready_o(triangle_taken),
-    .wanted_i(1'b1),
+    .ready_o(triangle_ready),
+    .demand_i(1'b1),
     .ray_i(triangle[RequestWidth-1 -: RayWidth]),
     .line_number_i(triangle[AddressWidth-1:0]),
     .miss_valid_o(triangle_miss_valid),
     .miss_ready_i(triangle_miss_ready),
-    .miss_place_o(triangle_place),
+    .miss_entry_o(triangle_entry),
     .miss_number_o(triangle_number),
     .fill_i(fill & fill_triangle),
     .fill_done_o(triangle_done),
-    .fill_place_i(fill_place[$clog2(TriangleLines)-1:0]),
+    .fill_entry_i(fill_entry[$clog2(TriangleLines)-1:0]),
     .fill_line_i(line[TriangleWidth-1:0]),
     .valid_o(triangle_valid_o),
     .ready_i(tests_allowed_i),
@@ -184,8 +184,8 @@ module line_port #(
     .line_o(triangle_o)
   );
 
-  assign node_miss     = {PlaceWidth'(node_place), node_number};
-  assign triangle_miss = {PlaceWidth'(triangle_place), triangle_number};
+  assign node_miss     = {EntryWidth'(node_entry), node_number};
+  assign triangle_miss = {EntryWidth'(triangle_entry), triangle_number};
 
   // ---- What they lack, in turn
 
@@ -199,7 +199,7 @@ module line_port #(
   assign triangle_miss_ready = out_ready & ~(node_miss_valid & node_miss_ready);
   assign ask                 = out_ready & (node_miss_valid | triangle_miss_valid);
   assign line_done           = fill & (fill_triangle ? triangle_done : node_done);
-  assign reading_o           = (lines_q != '0) | soon_valid;
+  assign outstanding_o       = (lines_q != '0) | prefetch_valid;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -225,6 +225,6 @@ module line_port #(
     .data_o(out)
   );
   assign read_line_o = out[AddressWidth-1:0];
-  assign read_tag_o  = out[MissWidth -: TagWidth];
+  assign read_id_o   = out[MissWidth -: ReadIdWidth];
 
 endmodule

@@ -5,11 +5,11 @@
 //      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap, with binary32's bias
 //      is_capped_i  the inverse was above the cap; is_open_i: and the cap is no binary32 number
 // Out: near_o, far_o  a - r and a + r, two's complement; step_o: s in 256ths of a unit
-module box_axis #(
+module slab_setup #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
-  localparam int unsigned PlaceWidth = ray_core_pkg::PlaceWidth
+  localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth
 ) (
   input  logic [31:0]           product_i,
   input  logic [30:0]           inverse_i,
@@ -17,20 +17,20 @@ module box_axis #(
   input  logic [10:0]           cap_i,
   input  logic                  is_capped_i,
   input  logic                  is_open_i,
-  output logic [PlaceWidth-1:0] near_o,
-  output logic [PlaceWidth-1:0] far_o,
+  output logic [PlaneWidth-1:0] near_o,
+  output logic [PlaneWidth-1:0] far_o,
   output logic [StepWidth-1:0]  step_o
 );
 
   localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33
   localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
-  localparam logic [PlaceWidth-1:0] Far = PlaceWidth'(1) << 33;
+  localparam logic [PlaneWidth-1:0] Far = PlaneWidth'(1) << 33;
 
   logic [7:0] product_field, inverse_field;
   logic signed [10:0] amount, step_amount;
   logic [SizeWidth-1:0] size;
   logic [StepWidth-1:0] step;
-  logic [PlaceWidth-1:0] a, room, near, far;
+  logic [PlaneWidth-1:0] a, room, near, far;
   logic says_nothing;
 
   assign product_field = product_i[23 +: 8];
@@ -47,22 +47,22 @@ module box_axis #(
 
   logic [11:0] few;
   assign few  = size[SizeWidth-1:22] + 12'(step[StepWidth-1:24]) + 12'd6;
-  assign room = PlaceWidth'(few) | (is_capped_i ? PlaceWidth'(1) << UnitBits : '0);
+  assign room = PlaneWidth'(few) | (is_capped_i ? PlaneWidth'(1) << UnitBits : '0);
 
   // ---- a -+ r
 
   add_subtract #(
-    .Width(PlaceWidth),
+    .Width(PlaneWidth),
     .Arith(Arith),
     .Adder(Adder)
   ) u_sign (
     .a_i('0),
-    .b_i(PlaceWidth'(size)),
+    .b_i(PlaneWidth'(size)),
     .subtract_i(product_i[31]),
     .sum_o(a)
   );
   add_subtract #(
-    .Width(PlaceWidth),
+    .Width(PlaneWidth),
     .Arith(Arith),
     .Adder(Adder)
   ) u_near (
@@ -72,7 +72,7 @@ module box_axis #(
     .sum_o(near)
   );
   add_subtract #(
-    .Width(PlaceWidth),
+    .Width(PlaneWidth),
     .Arith(Arith),
     .Adder(Adder)
   ) u_far (

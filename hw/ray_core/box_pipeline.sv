@@ -1,5 +1,5 @@
 // A node and a ray in each clock, never held up: what box_unit says of them, and of which ray, BoxLatency clocks later.
-module box_test #(
+module box_pipeline #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
@@ -8,14 +8,14 @@ module box_test #(
   input  logic                                clk_i,
   input  logic                                rst_ni,
   input  logic                                valid_i,
-  input  logic [RayWidth-1:0]                 slot_i,
+  input  logic [RayWidth-1:0]                 ctx_i,
   input  logic [ray_core_pkg::LineWidth-1:0]  node_i,
   input  logic [95:0]                         origin_i,
   input  logic [95:0]                         inverse_i,
-  input  logic [30:0]                         limit_i,
-  input  logic                                every_box_i,
+  input  logic [30:0]                         t_max_i,
+  input  logic                                no_cull_i,
   output logic                                valid_o,
-  output logic [RayWidth-1:0]                 slot_o,
+  output logic [RayWidth-1:0]                 ctx_o,
   output logic [ray_core_pkg::GroupWidth-1:0] group_o,
   output logic [ray_core_pkg::Children-1:0]   inner_o,
   output logic [ray_core_pkg::Children-1:0]   leaf_o
@@ -34,11 +34,11 @@ module box_test #(
   delay_line #(
     .Width(RayWidth),
     .Depth(Latency)
-  ) u_slot (
+  ) u_ctx (
     .clk_i,
     .enable_i(1'b1),
-    .data_i(slot_i),
-    .data_o(slot_o)
+    .data_i(ctx_i),
+    .data_o(ctx_o)
   );
   box_unit #(
     .Arith(Arith),
@@ -48,8 +48,8 @@ module box_test #(
     .node_i,
     .origin_i,
     .inverse_i,
-    .limit_i,
-    .every_box_i,
+    .t_max_i,
+    .no_cull_i,
     .group_o,
     .inner_o,
     .leaf_o

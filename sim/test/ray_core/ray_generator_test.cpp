@@ -1,4 +1,4 @@
-// camera_unit against its reference, bit for bit, with random pauses: each pixel once, row by row.
+// ray_generator against its reference, bit for bit, with random pauses: each pixel once.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -8,8 +8,8 @@
 #include <tuple>
 #include <utility>
 
-#include "Vcamera_unit_behavioural.h"
-#include "Vcamera_unit_structural.h"
+#include "Vray_generator_behavioural.h"
+#include "Vray_generator_structural.h"
 #include "host/find/core/pixel_grid.h"
 #include "sim/model.h"
 
@@ -20,7 +20,7 @@ constexpr std::uint32_t kSeed = 20261122;
 
 template <class Top>
 class CameraUnitTest : public testing::Test {};
-using Tops = testing::Types<Vcamera_unit_behavioural, Vcamera_unit_structural>;
+using Tops = testing::Types<Vray_generator_behavioural, Vray_generator_structural>;
 TYPED_TEST_SUITE(CameraUnitTest, Tops);
 
 TYPED_TEST(CameraUnitTest, EqualsItsReference) {

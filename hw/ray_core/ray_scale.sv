@@ -5,17 +5,17 @@
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits an axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest
 //      cells_i      the grid's exponents e_k, eight bits an axis
-//      limit_i      the limit's exponent
+//      t_max_i      the t_max's exponent
 // Out: exponent_o   E, at least -100
 //      inverse_o    1 / I_k, or 2**(E + 2 - e_k), with its sign, where s_k is above 2**(E + 2)
 //      caps_o       the exponent of that power of two, 11 signed bits an axis
 //      is_capped_o  it is given
 //      is_open_o    it is not a binary32 number: the axis says nothing
-module box_scale (
+module ray_scale (
   input  logic [23:0] distances_i,
   input  logic [95:0] inverse_i,
   input  logic [23:0] cells_i,
-  input  logic [7:0]  limit_i,
+  input  logic [7:0]  t_max_i,
   output logic [8:0]  exponent_o,
   output logic [95:0] inverse_o,
   output logic [32:0] caps_o,
@@ -49,7 +49,7 @@ module box_scale (
   end
 
   always_comb begin
-    least = (&limit_i) ? NoExponent : $signed({3'b0, limit_i}) + 11'sd1;
+    least = (&t_max_i) ? NoExponent : $signed({3'b0, t_max_i}) + 11'sd1;
     for (int unsigned k = 0; k < 3; k++) begin
       if ($signed(reaches[11*k+:11]) < least) least = $signed(reaches[11*k+:11]);
     end

@@ -1,0 +1,99 @@
+// The table of rays: what is known of each from its beginning, by its context.
+//
+// A ray is given its context and its reciprocals by ray_alloc; it is in the table from the clock after
+// start_fire_i until its context is another's. What is read of a context is there in the same clock.
+module ray_context #(
+  parameter int unsigned Rays  = 64,
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  localparam int unsigned RayWidth = $clog2(Rays)
+) (
+  input  logic                clk_i,
+  input  logic                rst_ni,
+  input  logic                valid_i,
+  output logic                ready_o,
+  input  ray_core_pkg::ray_t  ray_i,
+  // a ray begins
+  output logic                start_valid_o,
+  output logic [RayWidth-1:0] start_ctx_o,
+  output logic [30:0]         start_t_max_o,
+  output logic [ray_core_pkg::AddressWidth-1:0] start_line_o,
+  output logic                start_any_hit_o,
+  input  logic                start_fire_i,
+  // a ray has ended: its context is free
+  input  logic                ending_i,
+  input  logic [RayWidth-1:0] ending_ctx_i,
+  output logic [31:0]         ending_tag_o,
+  // for the boxes of a node, and for what is found among them
+  input  logic [RayWidth-1:0] node_ctx_i,
+  output logic [95:0]         node_origin_o,
+  output logic [95:0]         node_inverse_o,
+  output logic                node_no_cull_o,
+  input  logic [RayWidth-1:0] box_ctx_i,
+  output logic [31:0]         box_tag_o,
+  // for a test: its triangle, then its ray, then its result
+  input  logic [RayWidth-1:0] triangle_ctx_i,
+  output logic [95:0]         triangle_origin_o,
+  output logic [31:0]         triangle_skip_id_o,
+  input  logic [RayWidth-1:0] direction_ctx_i,
+  output logic [95:0]         direction_o,
+  input  logic [RayWidth-1:0] result_ctx_i,
+  output logic [31:0]         result_tag_o
+);
+
+  ray_core_pkg::ray_t start;
+  logic [95:0] inverse;
+
+  ray_alloc #(
+    .Rays(Rays),
+    .Width($bits(ray_i)),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_alloc (
+    .clk_i,
+    .rst_ni,
+    .valid_i,
+    .ready_o,
+    .direction_i(ray_i.direction),
+    .ray_i,
+    .free_valid_i(ending_i),
+    .free_ctx_i(ending_ctx_i),
+    .start_valid_o,
+    .start_ctx_o,
+    .start_inverse_o(inverse),
+    .start_ray_o(start),
+    .start_fire_i
+  );
+
+  logic [95:0] origins[Rays];
+  logic [95:0] directions[Rays];
+  logic [95:0] inverses[Rays];
+  logic [31:0] skip_ids[Rays];
+  logic [31:0] tags[Rays];
+  logic [Rays-1:0] no_cull_q;
+
+  always_ff @(posedge clk_i) begin
+    if (start_fire_i) begin
+      origins[start_ctx_o]    <= start.origin;
+      directions[start_ctx_o] <= start.direction;
+      inverses[start_ctx_o]   <= inverse;
+      skip_ids[start_ctx_o]   <= start.skip_id;
+      tags[start_ctx_o]       <= start.tag;
+      no_cull_q[start_ctx_o]  <= start.no_cull;
+    end
+  end
+
+  assign start_t_max_o      = start.t_max;
+  assign start_line_o       = start.start;
+  assign start_any_hit_o    = start.any_hit;
+  assign node_origin_o      = origins[node_ctx_i];
+  assign node_inverse_o     = inverses[node_ctx_i];
+  assign node_no_cull_o     = no_cull_q[node_ctx_i];
+  assign triangle_origin_o  = origins[triangle_ctx_i];
+  assign triangle_skip_id_o = skip_ids[triangle_ctx_i];
+  assign direction_o        = directions[direction_ctx_i];
+  assign box_tag_o          = tags[box_ctx_i];
+  assign result_tag_o       = tags[result_ctx_i];
+  assign ending_tag_o       = tags[ending_ctx_i];
+
+endmodule
