@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "host/find/core/core_unit.h"
+#include "host/intersect/core/core_unit.h"
 #include "sim/core_port.h"
 #include "sim/memory_model.h"
 #include "sim/rtl_core.h"

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "host/find/core/core_unit.h"
+#include "host/intersect/core/core_unit.h"
 #include "sim/model.h"
 
 namespace raygate {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "host/find/core/core_unit.h"
+#include "host/intersect/core/core_unit.h"
 #include "sim/memory_timing.h"
 
 namespace raygate {

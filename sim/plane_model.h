@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "host/find/unit/plane_unit.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "sim/model.h"
 #include "sim/port_numbers.h"
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "host/find/unit/burst_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
 

@@ -1,9 +1,9 @@
-// The pipelined hit-test units in simulation, behind the interface of host/find/unit.
+// The pipelined hit-test units in simulation, behind the interface of host/intersect/unit.
 #pragma once
 
 #include <memory>
 
-#include "host/find/unit/burst_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "sim/arith.h"
 
 namespace raygate {

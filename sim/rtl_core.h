@@ -1,9 +1,9 @@
-// The ray core in simulation, behind the interface of host/find/core.
+// The ray core in simulation, behind the interface of host/intersect/core.
 #pragma once
 
 #include <memory>
 
-#include "host/find/core/core_unit.h"
+#include "host/intersect/core/core_unit.h"
 #include "sim/arith.h"
 #include "sim/memory_timing.h"
 

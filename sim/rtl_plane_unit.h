@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "host/find/unit/plane_unit.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "sim/arith.h"
 
 namespace raygate {

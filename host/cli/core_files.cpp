@@ -7,7 +7,7 @@
 #include "host/cli/format.h"
 #include "host/cli/option_text.h"
 #include "host/film/atomic_file.h"
-#include "host/find/core/core_finder.h"
+#include "host/intersect/core/core_intersector.h"
 #include "sim/core_wave.h"
 
 namespace raygate {
@@ -97,7 +97,7 @@ std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& file
   CoreCounters counters;
   {
     const std::shared_ptr<CoreUnit> core = make_core_wave(file.unnamed(), engine.memory);
-    CoreFinder(bvh, std::move(image), core).find({&ray, 1}, {}, {&hit, 1});
+    CoreIntersector(bvh, std::move(image), core).intersect({&ray, 1}, {}, {&hit, 1});
     counters = core->counters();
   }
   file.name();

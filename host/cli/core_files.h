@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "host/bvh/bvh.h"
 #include "host/cli/engine_options.h"
-#include "host/find/core/memory_image.h"
-#include "host/tree/bvh.h"
+#include "host/intersect/core/memory_image.h"
 
 namespace raygate {
 

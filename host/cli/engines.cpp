@@ -3,16 +3,16 @@
 #include <memory>
 #include <utility>
 
-#include "host/find/check_finder.h"
-#include "host/find/core/core_finder.h"
-#include "host/find/core/reference_core.h"
-#include "host/find/cpu/cpu_finder.h"
-#include "host/find/unit/pipeline_hit_tester.h"
-#include "host/find/unit/record_cache.h"
-#include "host/find/unit/reference_burst_unit.h"
-#include "host/find/unit/reference_plane_unit.h"
-#include "host/find/unit/serial_hit_tester.h"
-#include "host/find/unit/unit_finder.h"
+#include "host/intersect/check_intersector.h"
+#include "host/intersect/core/core_intersector.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/record_cache.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/reference_plane_unit.h"
+#include "host/intersect/unit/serial_hit_tester.h"
+#include "host/intersect/unit/unit_intersector.h"
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_core.h"
 #include "sim/rtl_plane_unit.h"
@@ -36,43 +36,45 @@ std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips
 }
 
 /// Cores for each thread, all of one image.
-FinderFactory make_core_factory(const EngineOptions& options, const Bvh& bvh,
-                                std::shared_ptr<const MemoryImage> image) {
+IntersectorFactory make_core_factory(const EngineOptions& options, const Bvh& bvh,
+                                     std::shared_ptr<const MemoryImage> image) {
   if (!image) {
     image = std::make_shared<const MemoryImage>(bvh, static_cast<int>(options.threads));
   }
-  return [options, &bvh, image]() -> std::unique_ptr<Finder> {
+  return [options, &bvh, image]() -> std::unique_ptr<Intersector> {
     std::unique_ptr<CoreUnit> core;
     if (options.engine == Engine::kModel) {
       core = std::make_unique<ReferenceCore>();
     } else {
       core = make_rtl_core(options.arith, options.memory, {}, {.cores = options.cores});
     }
-    return std::make_unique<CoreFinder>(bvh, image, std::move(core));
+    return std::make_unique<CoreIntersector>(bvh, image, std::move(core));
   };
 }
 
 /// Of the unit in `options`.
-FinderFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh, const Skips& skips,
-                                std::shared_ptr<const MemoryImage> image) {
+IntersectorFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh,
+                                     const Skips& skips, std::shared_ptr<const MemoryImage> image) {
   if (options.unit == "core") return make_core_factory(options, bvh, std::move(image));
   const auto caches = std::make_shared<RecordCaches>(bvh, skips.records);
   return [options, &bvh, skips, caches] {
-    return std::make_unique<UnitFinder>(bvh, make_tester(options, skips), caches);
+    return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips), caches);
   };
 }
 
 }  // namespace
 
-FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh, const Skips& skips,
-                                  std::shared_ptr<const MemoryImage> image) {
+IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
+                                            const Skips& skips,
+                                            std::shared_ptr<const MemoryImage> image) {
   if (options.engine == Engine::kCpu) {
-    return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
+    return [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
   }
-  FinderFactory make_unit = make_unit_factory(options, bvh, skips, std::move(image));
+  IntersectorFactory make_unit = make_unit_factory(options, bvh, skips, std::move(image));
   if (options.engine != Engine::kCheck) return make_unit;
   return [&bvh, make_unit] {
-    return std::make_unique<CheckFinder>(bvh, make_unit(), std::make_unique<CpuFinder>(bvh));
+    return std::make_unique<CheckIntersector>(bvh, make_unit(),
+                                              std::make_unique<CpuIntersector>(bvh));
   };
 }
 

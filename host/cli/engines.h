@@ -1,21 +1,21 @@
-// Engines by name: which finder stands behind --engine.
+// Engines by name: which intersector stands behind --engine.
 #pragma once
 
 #include <memory>
 
 #include "host/cli/engine_options.h"
-#include "host/find/core/memory_image.h"
-#include "host/find/finder.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/intersector.h"
 #include "host/light/skips.h"
 
 namespace raygate {
 
-/// Makes finders of the engine, unit and number of lanes in `options`. Each one owns its simulated
-/// model; polygon records of common origins they share. Of `skips`, records and divisions count.
-/// The tree must outlive factory and finders. `image`: what cores read of that tree; null: it is
-/// made where it is needed.
-[[nodiscard]] FinderFactory make_finder_factory(const EngineOptions& options, const Bvh& bvh,
-                                                const Skips& skips = {},
-                                                std::shared_ptr<const MemoryImage> image = nullptr);
+/// Makes intersectors of the engine, unit and number of lanes in `options`. Each one owns its
+/// simulated model; polygon records of common origins they share. Of `skips`, records and divisions
+/// count. The tree must outlive factory and intersectors. `image`: what cores read of that tree;
+/// null: it is made where it is needed.
+[[nodiscard]] IntersectorFactory make_intersector_factory(
+    const EngineOptions& options, const Bvh& bvh, const Skips& skips = {},
+    std::shared_ptr<const MemoryImage> image = nullptr);
 
 }  // namespace raygate

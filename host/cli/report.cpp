@@ -51,9 +51,9 @@ std::string headline(const Report& report) {
 
 /// "hit tests 80 %, boxes 15 %, ...": of the time of all threads.
 std::string shares(const RenderStats& render) {
-  const std::pair<const char*, double> parts[] = {{"hit tests", render.find.hit_tests},
-                                                  {"boxes", render.find.traverse},
-                                                  {"records", render.find.record},
+  const std::pair<const char*, double> parts[] = {{"hit tests", render.intersect.hit_tests},
+                                                  {"boxes", render.intersect.traverse},
+                                                  {"records", render.intersect.record},
                                                   {"shading", render.shade_seconds}};
   double sum = 0.0;
   for (const auto& [name, seconds] : parts) sum += seconds;
@@ -68,7 +68,7 @@ std::string shares(const RenderStats& render) {
 /// "testing 98.2 %, no input 1.8 %, ...": what the lanes of the pipelined unit did with their
 /// clocks.
 std::string lane_clocks(const Report& report) {
-  const HitCounters& hit = report.render.find.hit;
+  const HitCounters& hit = report.render.intersect.hit;
   const double all = static_cast<double>(hit.clocks) * report.options.lanes;
   const std::pair<const char*, std::uint64_t> parts[] = {
       {"testing", hit.unit_tests},
@@ -94,10 +94,10 @@ std::vector<Skipped> skipped(const Report& report) {
   const RenderStats& render = report.render;
   const SkipCounters& counts = render.skipped;
   const auto rays = static_cast<double>(render.rays),
-             tests = static_cast<double>(render.find.hit.tests);
+             tests = static_cast<double>(render.intersect.hit.tests);
   const double ray_seconds =
-      ratio(render.find.traverse + render.find.record + render.shade_seconds, rays);
-  const double test_seconds = ratio(render.find.hit_tests, tests);
+      ratio(render.intersect.traverse + render.intersect.record + render.shade_seconds, rays);
+  const double test_seconds = ratio(render.intersect.hit_tests, tests);
   const auto of_rays = [&](std::uint64_t count, const char* what) {
     const double saved = static_cast<double>(count) * ratio(tests, rays);
     return Skipped{count, what, saved,
@@ -112,10 +112,10 @@ std::vector<Skipped> skipped(const Report& report) {
       of_rays(counts.dim, "reflected and refracted rays below --threshold"),
       of_rays(counts.empty_tile_rays, "camera rays where there is nothing"),
       {counts.first_occluders, "searches for a nearer occluder than the first", 0.0, 0.0}};
-  if (render.find.hit.unit_tests != 0 &&
+  if (render.intersect.hit.unit_tests != 0 &&
       (report.options.unit == "pipeline" || report.options.light.skips.divisions)) {
-    const std::uint64_t quotients = 3 * render.find.hit.tests;
-    all.push_back({quotients - std::min(quotients, render.find.hit.quotients),
+    const std::uint64_t quotients = 3 * render.intersect.hit.tests;
+    all.push_back({quotients - std::min(quotients, render.intersect.hit.quotients),
                    "divisions of the paper's three per test", 0.0, 0.0});
   }
   std::erase_if(all, [](const Skipped& kind) { return kind.count == 0; });
@@ -165,7 +165,7 @@ std::string skipped_table(const Report& report) {
 
 std::string details(const Report& report) {
   const RenderStats& render = report.render;
-  const HitCounters& hit = render.find.hit;
+  const HitCounters& hit = render.intersect.hit;
   std::string text = row("hits", format_count(hit.hits));
   text += row("doubts", format_count(hit.edge_doubts) + " about edges, " +
                             format_count(hit.depth_doubts) +
@@ -192,7 +192,7 @@ double clocks_per_test(const HitCounters& counters) {
 
 std::string to_text(const Report& report) {
   const RenderStats& render = report.render;
-  const HitCounters& hit = render.find.hit;
+  const HitCounters& hit = render.intersect.hit;
   const std::uint64_t others = render.rays - render.camera_rays - render.shadow_rays;
   std::string text = headline(report);
   text += row("rays", format_count(render.rays) + " (" + format_count(render.camera_rays) +
@@ -224,7 +224,7 @@ std::string to_json(const Report& report) {
   using nlohmann::ordered_json;
   const Options& options = report.options;
   const RenderStats& render = report.render;
-  const HitCounters& hit = render.find.hit;
+  const HitCounters& hit = render.intersect.hit;
   const PixelRect& window = options.window;
   ordered_json pictures = ordered_json::array();
   for (const auto& path : report.pictures) pictures.push_back(path.string());
@@ -253,15 +253,15 @@ std::string to_json(const Report& report) {
       {"shadow_rays", render.shadow_rays},
       {"gathered_tiles", render.gathered_tiles},
       {"gathered_bytes", render.gathered_bytes},
-      {"records", render.find.own_records + render.find.common_records},
-      {"common_records", render.find.common_records},
+      {"records", render.intersect.own_records + render.intersect.common_records},
+      {"common_records", render.intersect.common_records},
       {"tests", hit.tests},
       {"misses", hit.misses},
       {"hits", hit.hits},
       {"edge_doubts", hit.edge_doubts},
       {"depth_doubts", hit.depth_doubts},
-      {"exact_inside", render.find.exact_inside},
-      {"exact_depth", render.find.exact_depth},
+      {"exact_inside", render.intersect.exact_inside},
+      {"exact_depth", render.intersect.exact_depth},
       {"point_doubts", render.point_doubts},
       {"plane_tests", hit.plane_tests},
       {"unit_tests", hit.unit_tests},
@@ -289,9 +289,9 @@ std::string to_json(const Report& report) {
         {"write", report.write_seconds},
         {"total", report.total_seconds}}},
       {"thread_seconds",
-       {{"boxes", render.find.traverse},
-        {"records", render.find.record},
-        {"hit_tests", render.find.hit_tests},
+       {{"boxes", render.intersect.traverse},
+        {"records", render.intersect.record},
+        {"hit_tests", render.intersect.hit_tests},
         {"shading", render.shade_seconds}}},
   };
   // File names need not be UTF-8, JSON must be.

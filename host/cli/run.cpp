@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/base/input_error.h"
+#include "host/bvh/bvh.h"
 #include "host/cli/camera_sequence.h"
 #include "host/cli/checkpointer.h"
 #include "host/cli/engines.h"
@@ -30,7 +31,6 @@
 #include "host/scene/instances.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 namespace {
@@ -144,14 +144,15 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
     bar.erase();
     std::_Exit(run_guarded([&]() -> int { checkpointer.end_interrupted(film); }, 1));
   };
-  Film film = render(scene, clearances, camera, render_options,
-                     make_finder_factory(options, clearances.bvh(), options.light.skips, image),
-                     stats, [&](double fraction) {
-                       // Before there is something to save, a signal simply ends the program.
-                       if (interruption() == 0) note_interruptions();
-                       bar.update(fraction);
-                       return interruption() == 0;
-                     });
+  Film film =
+      render(scene, clearances, camera, render_options,
+             make_intersector_factory(options, clearances.bvh(), options.light.skips, image), stats,
+             [&](double fraction) {
+               // Before there is something to save, a signal simply ends the program.
+               if (interruption() == 0) note_interruptions();
+               bar.update(fraction);
+               return interruption() == 0;
+             });
   bar.erase();
   if (stats.cancelled) {
     if (ranks.index() != 0) throw Interrupted(interruption(), "rank 0 has the picture");

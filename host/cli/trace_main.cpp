@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/base/input_error.h"
+#include "host/bvh/bvh.h"
 #include "host/cli/command_line.h"
 #include "host/cli/engine_options.h"
 #include "host/cli/engines.h"
@@ -21,7 +22,6 @@
 #include "host/trace/question.h"
 #include "host/trace/rays_in.h"
 #include "host/trace/tracer.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 namespace {
@@ -187,7 +187,7 @@ int run(const TraceOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const TraceCounts counts =
       trace([&](std::size_t most, RayBlock& block) { return rays.read(most, block); }, options.hits,
-            bvh, answers, make_finder_factory(options.engine, bvh), options.engine.threads,
+            bvh, answers, make_intersector_factory(options.engine, bvh), options.engine.threads,
             [&](std::string_view rows) { table.write(rows); }, [] { return interruption() == 0; });
   if (interruption() != 0) {
     throw Interrupted(interruption(), options.is_to_standard_output() ? "the table is not whole"

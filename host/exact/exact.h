@@ -34,7 +34,7 @@ template <class T>
 /// nothing.
 [[nodiscard]] bool is_usable(const glm::vec3& direction);
 
-/// Whether the largest component's magnitude is in [1, 2): how finders, trees and units want
+/// Whether the largest component's magnitude is in [1, 2): how intersectors, trees and units want
 /// directions. Multiplying one by a power of two changes no rounding and no hit.
 [[nodiscard]] bool is_scaled(const glm::vec3& direction);
 
@@ -43,8 +43,8 @@ template <class T>
 
 /// A ray: origin + t direction for t > 0, an open beginning: what the origin lies on, and what is
 /// behind it, is not hit. Where a ray has a limit, its end is open too: hits have t < limit (see
-/// Search in host/find). All components finite; coordinates, the triangles' too,
-/// of magnitude at most 2^126. Finders want the direction scaled (see is_scaled).
+/// RayQuery in host/intersect). All components finite; coordinates, the triangles' too,
+/// of magnitude at most 2^126. Intersectors want the direction scaled (see is_scaled).
 struct Ray {
   glm::vec3 origin{0.0f};
   glm::vec3 direction{0.0f};

@@ -4,8 +4,8 @@
 #include <bit>
 #include <utility>
 
+#include "host/bvh/box_query.h"
 #include "host/light/clearance_search.h"
-#include "host/tree/box_query.h"
 
 namespace raygate {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "host/base/vectors.h"
+#include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/light/crowd.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 

@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "host/bvh/box_query.h"
 #include "host/exact/exact.h"
-#include "host/tree/box_query.h"
 
 namespace raygate {
 namespace {

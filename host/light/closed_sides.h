@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "host/tree/bvh.h"
+#include "host/bvh/bvh.h"
 
 namespace raygate {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "host/bvh/box_query.h"
 #include "host/light/plain_departure.h"
-#include "host/tree/box_query.h"
 
 // How far O' is from X
 //

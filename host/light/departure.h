@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "host/base/vectors.h"
+#include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/light/clearance.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 

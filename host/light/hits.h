@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/base/lane_math.h"
-#include "host/find/nearest_hit.h"
+#include "host/intersect/nearest_hit.h"
 #include "host/light/bsdf.h"
 #include "host/light/departure.h"
 #include "host/light/finish.h"

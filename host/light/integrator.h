@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/find/nearest_hit.h"
+#include "host/intersect/nearest_hit.h"
 #include "host/light/departure.h"
 #include "host/light/finish.h"
 #include "host/light/hits.h"

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "host/base/lane_math.h"
+#include "host/bvh/bvh.h"
 #include "host/light/closed_sides.h"
 #include "host/light/environment.h"
 #include "host/light/light_tree.h"
 #include "host/light/sampler.h"
 #include "host/light/spot.h"
 #include "host/scene/scene.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 

@@ -51,12 +51,12 @@ struct Aim {
 }  // namespace
 
 ShadowRays::ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights,
-                       Finder& finder, const Skips& skips, bool through_refraction)
+                       Intersector& intersector, const Skips& skips, bool through_refraction)
     : scene_(scene),
       finishes_(finishes_of(scene)),
       bvh_(clearances.bvh()),
       lights_(lights),
-      finder_(finder),
+      intersector_(intersector),
       departure_(clearances),
       culling_(skips.culling),
       through_refraction_(through_refraction),
@@ -167,13 +167,13 @@ void ShadowRays::trace(bool from_light, float enough) {
     limits_[i] = aim.whole_way * segment.share;
     enough_[i] = aim.whole_way * std::min(enough, segment.share);
   }
-  Search search{
+  RayQuery search{
       .common_origin = from_light, .limits = limits_, .ignored = ignored_, .culling = culling_};
   if (first_occluder_) search.enough_before = enough_;
   work_.resize(traced_ != nullptr ? wave_.size() : 0);
   search.work = work_;
   hits_.resize(wave_.size());
-  finder_.find(wave_, search, hits_);
+  intersector_.intersect(wave_, search, hits_);
   rays_ += wave_.size();
   for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/find/finder.h"
+#include "host/intersect/intersector.h"
 #include "host/light/departure.h"
 #include "host/light/finish.h"
 #include "host/light/lights.h"
@@ -41,8 +41,8 @@ struct ShadowRay {
 class ShadowRays {
  public:
   /// `through_refraction`: glass that bends light casts the shadow of one that does not.
-  ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights, Finder& finder,
-             const Skips& skips, bool through_refraction);
+  ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights,
+             Intersector& intersector, const Skips& skips, bool through_refraction);
 
   /// Called for each ray that was traced with what its search took, by its shadow ray's index.
   using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
@@ -73,7 +73,7 @@ class ShadowRays {
   std::vector<Finish> finishes_;  // of the materials
   const Bvh& bvh_;
   const Lights& lights_;
-  Finder& finder_;
+  Intersector& intersector_;
   DeparturePoint departure_;
   std::vector<DepartureQuestion> departures_;  // beyond clear surfaces, and their answers
   std::vector<DepartureOrigin> origins_;

@@ -5,15 +5,15 @@
 #include <glm/glm.hpp>
 
 #include "host/base/lane_math.h"
+#include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/light/finish.h"
 #include "host/scene/instance_transform.h"
 #include "host/scene/scene.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 
-/// A hit, as the finder gives it.
+/// A hit, as the intersector gives it.
 struct HitPlace {
   const Ray* ray = nullptr;
   std::uint32_t slot = 0;

@@ -4,13 +4,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "host/bvh/bvh.h"
 #include "host/exact/ieee_floats.h"
-#include "host/find/cpu/all_hits.h"
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/cpu/all_hits.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/scene/scene.h"
 #include "host/trace/hit_place.h"
 #include "host/trace/ray_block.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 namespace {
@@ -81,9 +81,9 @@ struct Tracer::Tree {
 
   [[nodiscard]] std::vector<NearestHit> find(const RayBlock& block, bool any) const {
     std::vector<NearestHit> hits(block.rays.size());
-    Search search{.limits = block.limits};
+    RayQuery search{.limits = block.limits};
     if (any) search.enough_before = block.limits;
-    CpuFinder(bvh).find(block.rays, search, hits);
+    CpuIntersector(bvh).intersect(block.rays, search, hits);
     return hits;
   }
 

@@ -18,14 +18,15 @@
 #include <vector>
 
 #include "host/base/input_error.h"
+#include "host/bvh/bvh.h"
 #include "host/exact/exact_sign.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/environment_file.h"
-#include "host/find/cpu/cpu_finder.h"
-#include "host/find/unit/pipeline_hit_tester.h"
-#include "host/find/unit/record_cache.h"
-#include "host/find/unit/reference_burst_unit.h"
-#include "host/find/unit/unit_finder.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/record_cache.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_intersector.h"
 #include "host/light/clearance.h"
 #include "host/light/studio.h"
 #include "host/python/float_reference.h"
@@ -39,7 +40,6 @@
 #include "host/trace/question.h"
 #include "host/trace/ray_block.h"
 #include "host/trace/tracer.h"
-#include "host/tree/bvh.h"
 
 namespace nb = nanobind;
 
@@ -191,7 +191,8 @@ class PythonScene {
     {
       const nb::gil_scoped_release release;
       (void)trace(
-          read, asked, *bvh_, answers, finders(engine), static_cast<unsigned>(threads_of(threads)),
+          read, asked, *bvh_, answers, intersectors(engine),
+          static_cast<unsigned>(threads_of(threads)),
           [&](std::string_view bytes) { rows->append(bytes); }, keep_going);
     }
     std::string* const kept = rows.release();
@@ -238,7 +239,7 @@ class PythonScene {
     {
       const nb::gil_scoped_release release;
       RenderStats stats;
-      *film = render(scene_, *clearances_, camera, options, finders(engine), stats,
+      *film = render(scene_, *clearances_, camera, options, intersectors(engine), stats,
                      [](double) { return keep_going(); });
     }
     scene_.lights = lights;
@@ -262,15 +263,15 @@ class PythonScene {
     clearances_ = std::make_unique<Clearances>(*bvh_);
   }
 
-  [[nodiscard]] FinderFactory finders(const std::string& engine) const {
+  [[nodiscard]] IntersectorFactory intersectors(const std::string& engine) const {
     if (choose<bool>("engine", engine, {{"cpu", false}, {"model", true}})) {
       return [this, caches = std::make_shared<RecordCaches>(*bvh_)] {
-        return std::make_unique<UnitFinder>(
+        return std::make_unique<UnitIntersector>(
             *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()),
             caches);
       };
     }
-    return [this] { return std::make_unique<CpuFinder>(*bvh_); };
+    return [this] { return std::make_unique<CpuIntersector>(*bvh_); };
   }
 
   [[nodiscard]] std::optional<CameraSetting> given_camera() const {

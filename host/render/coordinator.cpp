@@ -25,13 +25,14 @@ namespace {
 /// and saves, so that nobody waits for a terminal or a disk.
 class Coordinator {
  public:
-  Coordinator(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
-              const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
-              std::span<EmitterEdge> emitter_edges, RenderStats& stats)
+  Coordinator(const RenderJob& job, const Tiles& tiles,
+              std::unique_ptr<Intersector> first_intersector,
+              const IntersectorFactory& make_intersector, const ProgressFunction& report,
+              Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats)
       : job_(job),
         tiles_(tiles),
-        first_finder_(std::move(first_finder)),
-        make_finder_(make_finder),
+        first_intersector_(std::move(first_intersector)),
+        make_intersector_(make_intersector),
         report_(report),
         film_(film),
         emitter_edges_(emitter_edges),
@@ -79,9 +80,9 @@ class Coordinator {
   /// A thread's: until there is nothing left to begin.
   void work() {
     try {
-      auto finder = take_first_finder();
-      if (!finder) finder = make_finder_();
-      TileRenderer renderer(job_, *finder, film_, emitter_edges_);
+      auto intersector = take_first_intersector();
+      if (!intersector) intersector = make_intersector_();
+      TileRenderer renderer(job_, *intersector, film_, emitter_edges_);
       const auto keep_going = [this] {
         if (is_alone_) look();
         const std::scoped_lock lock(mutex_);
@@ -121,9 +122,9 @@ class Coordinator {
     changed_.notify_all();
   }
 
-  std::unique_ptr<Finder> take_first_finder() {
+  std::unique_ptr<Intersector> take_first_intersector() {
     const std::scoped_lock lock(mutex_);
-    return std::move(first_finder_);
+    return std::move(first_intersector_);
   }
 
   /// None when there is none left, or the render is to stop.
@@ -213,8 +214,8 @@ class Coordinator {
 
   const RenderJob& job_;
   const Tiles& tiles_;
-  std::unique_ptr<Finder> first_finder_;  // of the thread that begins first
-  const FinderFactory& make_finder_;
+  std::unique_ptr<Intersector> first_intersector_;  // of the thread that begins first
+  const IntersectorFactory& make_intersector_;
   const ProgressFunction& report_;
   std::mutex mutex_;  // of all that follows
   std::condition_variable changed_;
@@ -239,10 +240,12 @@ class Coordinator {
 
 }  // namespace
 
-void trace_all(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
-               const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
-               std::span<EmitterEdge> emitter_edges, RenderStats& stats) {
-  Coordinator(job, tiles, std::move(first_finder), make_finder, report, film, emitter_edges, stats)
+void trace_all(const RenderJob& job, const Tiles& tiles,
+               std::unique_ptr<Intersector> first_intersector,
+               const IntersectorFactory& make_intersector, const ProgressFunction& report,
+               Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats) {
+  Coordinator(job, tiles, std::move(first_intersector), make_intersector, report, film,
+              emitter_edges, stats)
       .run();
 }
 

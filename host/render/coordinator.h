@@ -5,7 +5,7 @@
 #include <span>
 
 #include "host/film/film.h"
-#include "host/find/finder.h"
+#include "host/intersect/intersector.h"
 #include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
 #include "host/render/renderer.h"
@@ -14,9 +14,10 @@
 namespace raygate {
 
 /// Traces on options.threads threads until all is in `film`, or `report` says stop
-/// (RenderStats::cancelled). Throws what a finder throws, and RankFailure.
-void trace_all(const RenderJob& job, const Tiles& tiles, std::unique_ptr<Finder> first_finder,
-               const FinderFactory& make_finder, const ProgressFunction& report, Film& film,
-               std::span<EmitterEdge> emitter_edges, RenderStats& stats);
+/// (RenderStats::cancelled). Throws what a intersector throws, and RankFailure.
+void trace_all(const RenderJob& job, const Tiles& tiles,
+               std::unique_ptr<Intersector> first_intersector,
+               const IntersectorFactory& make_intersector, const ProgressFunction& report,
+               Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats);
 
 }  // namespace raygate

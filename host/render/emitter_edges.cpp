@@ -8,7 +8,7 @@
 
 namespace raygate {
 
-std::size_t find_emitter_edges(const RenderJob& job, Finder& finder, const Film& film,
+std::size_t find_emitter_edges(const RenderJob& job, Intersector& intersector, const Film& film,
                                const PixelRect& tile, std::span<EmitterEdge> is_edge,
                                std::span<RayWork> work) {
   // Corners of pixels, up to so many beyond the tile's own.
@@ -33,11 +33,11 @@ std::size_t find_emitter_edges(const RenderJob& job, Finder& finder, const Film&
   }
   std::vector<NearestHit> hits(rays.size());
   std::vector<RayWork> of_rays(work.empty() ? 0 : rays.size());
-  finder.find(rays,
-              {.common_origin = job.camera.has_common_origin(),
-               .culling = job.options.skips.culling,
-               .work = of_rays},
-              hits);
+  intersector.intersect(rays,
+                        {.common_origin = job.camera.has_common_origin(),
+                         .culling = job.options.skips.culling,
+                         .work = of_rays},
+                        hits);
   for (std::size_t i = 0; i < of_rays.size(); ++i) {  // to the nearest pixel
     const int x = static_cast<int>(i % std::size_t(columns)) - beyond;
     const int y = static_cast<int>(i / std::size_t(columns)) - beyond;

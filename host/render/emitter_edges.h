@@ -5,7 +5,7 @@
 #include <span>
 
 #include "host/film/film.h"
-#include "host/find/finder.h"
+#include "host/intersect/intersector.h"
 #include "host/render/render_job.h"
 
 namespace raygate {
@@ -24,7 +24,7 @@ enum class EmitterEdge : std::uint8_t { kUnknown, kNo, kYes };
 /// where it is so favour nothing. Lamps between all corners, smaller than pixels, are not found.
 /// Returns how many rays it took;
 /// what they cost is added to `work`, by pixel of the tile, unless that is empty.
-std::size_t find_emitter_edges(const RenderJob& job, Finder& finder, const Film& film,
+std::size_t find_emitter_edges(const RenderJob& job, Intersector& intersector, const Film& film,
                                const PixelRect& tile, std::span<EmitterEdge> is_edge,
                                std::span<RayWork> work);
 

@@ -35,24 +35,24 @@ void add(RenderStats& stats, const RenderStats& of_worker) {
   stats.shadow_rays += of_worker.shadow_rays;
   stats.point_doubts += of_worker.point_doubts;
   stats.skipped += of_worker.skipped;
-  stats.find += of_worker.find;
+  stats.intersect += of_worker.find;
   stats.shade_seconds += of_worker.shade_seconds;
   stats.processor_seconds += of_worker.processor_seconds;
 }
 
 Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
-            const RenderOptions& options, const FinderFactory& make_finder, RenderStats& stats,
-            const ProgressFunction& progress) {
+            const RenderOptions& options, const IntersectorFactory& make_intersector,
+            RenderStats& stats, const ProgressFunction& progress) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
   const double busy = processor_seconds();
   stats = {};
   const Bvh& bvh = clearances.bvh();
   Film film = empty_film(options);
-  auto first_finder = make_finder();
+  auto first_intersector = make_intersector();
   const int end = options.end_sample > 0 ? options.end_sample : options.samples;
   const int ranks = options.ranks == nullptr ? 1 : options.ranks->count();
-  const Tiles tiles(film.window, end - options.first_sample, first_finder->preferred_batch(),
+  const Tiles tiles(film.window, end - options.first_sample, first_intersector->preferred_batch(),
                     options.threads, ranks, options.error > 0.0);
   if (options.begun != nullptr) {
     film = *options.begun;
@@ -79,18 +79,19 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
                       : is_path       ? glm::dvec3(0.0)
                                       : lights.ambient()};
   if (ranks > 1 && options.ranks->index() != 0) {
-    run_worker(*options.ranks, job, std::move(first_finder), make_finder, progress, film,
+    run_worker(*options.ranks, job, std::move(first_intersector), make_intersector, progress, film,
                emitter_edges, stats);
     return film;
   }
-  trace_all(job, tiles, std::move(first_finder), make_finder, progress, film, emitter_edges, stats);
-  if (stats.find.common_records != 0) {
+  trace_all(job, tiles, std::move(first_intersector), make_intersector, progress, film,
+            emitter_edges, stats);
+  if (stats.intersect.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
     const std::uint64_t every_record = bvh.slot_count() * origins * std::uint64_t(ranks);
-    stats.skipped.records = every_record - stats.find.common_records;
+    stats.skipped.records = every_record - stats.intersect.common_records;
   }
   const std::uint64_t every_test = stats.rays * bvh.triangle_count();
-  stats.skipped.culled_tests = every_test - std::min(every_test, stats.find.hit.tests);
+  stats.skipped.culled_tests = every_test - std::min(every_test, stats.intersect.hit.tests);
   if (options.error > 0.0) {
     for (const std::uint32_t samples : film.sums.samples) {
       stats.spare_samples += static_cast<std::uint32_t>(options.samples) - samples;

@@ -5,16 +5,16 @@
 #include <functional>
 #include <optional>
 
+#include "host/bvh/bvh.h"
 #include "host/film/film.h"
 #include "host/film/reconstruction_filter.h"
-#include "host/find/finder.h"
+#include "host/intersect/intersector.h"
 #include "host/light/clearance.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/point_error.h"
 #include "host/light/skips.h"
 #include "host/light/techniques.h"
 #include "host/scene/scene.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 
@@ -79,8 +79,8 @@ struct RenderStats {
   std::uint64_t shadow_rays = 0;   ///< of these, between surfaces and lights
   std::uint64_t point_doubts = 0;  ///< hits of the others whose P the host computed
   SkipCounters skipped;
-  FindCounters find;           ///< summed over the threads' finders
-  double shade_seconds = 0.0;  ///< making the rays and shading them
+  IntersectCounters intersect;  ///< summed over the threads' intersectors
+  double shade_seconds = 0.0;   ///< making the rays and shading them
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
   std::uint64_t spare_samples = 0;   ///< not taken, as RenderOptions::error had no need of them
@@ -99,18 +99,19 @@ void add(RenderStats& stats, const RenderStats& of_worker);
 using ProgressFunction = std::function<bool(double)>;
 
 /// The clearances are for renders of the same tree to share, one after the other or at once.
-/// The film is the same, bit for bit, for every finder, number of threads and skip, and a window's
-/// is that part of the whole one's. An exception of a finder ends the render and is thrown on.
-/// Scenes without any light are black, but for kPrimary: see light_if_dark.
+/// The film is the same, bit for bit, for every intersector, number of threads and skip, and a
+/// window's is that part of the whole one's. An exception of a intersector ends the render and is
+/// thrown on. Scenes without any light are black, but for kPrimary: see light_if_dark.
 [[nodiscard]] Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
-                          const RenderOptions& options, const FinderFactory& make_finder,
+                          const RenderOptions& options, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const ProgressFunction& progress = {});
 
 /// The same for a tree that is rendered once.
 [[nodiscard]] inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
-                                 const RenderOptions& options, const FinderFactory& make_finder,
-                                 RenderStats& stats, const ProgressFunction& progress = {}) {
-  return render(scene, Clearances(bvh), camera, options, make_finder, stats, progress);
+                                 const RenderOptions& options,
+                                 const IntersectorFactory& make_intersector, RenderStats& stats,
+                                 const ProgressFunction& progress = {}) {
+  return render(scene, Clearances(bvh), camera, options, make_intersector, stats, progress);
 }
 
 }  // namespace raygate

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "host/tree/walk.h"
+#include "host/bvh/traversal.h"
 
 namespace raygate {
 namespace {

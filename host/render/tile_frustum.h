@@ -1,9 +1,9 @@
 // Parts of a picture in which there is nothing to see.
 #pragma once
 
+#include "host/bvh/bvh.h"
 #include "host/film/film.h"
 #include "host/scene/camera.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 

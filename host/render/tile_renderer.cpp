@@ -31,14 +31,14 @@ std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
 
 }  // namespace
 
-TileRenderer::TileRenderer(const RenderJob& job, Finder& finder, Film& film,
+TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
                            std::span<EmitterEdge> emitter_edges)
     : job_(job),
-      finder_(finder),
+      intersector_(intersector),
       film_(film),
       emitter_edges_(emitter_edges),
       integrator_(integrator_of(job)),
-      shadow_rays_(job.scene, job.clearances, job.lights, finder, job.options.skips,
+      shadow_rays_(job.scene, job.clearances, job.lights, intersector, job.options.skips,
                    integrator_->shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
@@ -101,7 +101,7 @@ void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
   Stopwatch watch;
   std::size_t rays = 0;
   if (emitter_edges_[pixels_[0].index] == EmitterEdge::kUnknown) {
-    rays = find_emitter_edges(job_, finder_, film_, tile, emitter_edges_, edge_work_);
+    rays = find_emitter_edges(job_, intersector_, film_, tile, emitter_edges_, edge_work_);
   }
   wave_.clear();
   for (const PixelSamples& pixel : pixels_) {
@@ -119,11 +119,11 @@ void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
   hits_.resize(wave_.rays.size());
   work_.resize(is_counting_ ? wave_.rays.size() : 0);
   stats_.shade_seconds += watch.lap();
-  finder_.find(wave_.rays,
-               {.common_origin = job_.camera.has_common_origin(),
-                .culling = job_.options.skips.culling,
-                .work = work_},
-               hits_);
+  intersector_.intersect(wave_.rays,
+                         {.common_origin = job_.camera.has_common_origin(),
+                          .culling = job_.options.skips.culling,
+                          .work = work_},
+                         hits_);
   watch.lap();
   std::size_t ray = 0;
   std::size_t sample = 0;
@@ -154,11 +154,11 @@ void TileRenderer::trace_wave() {
   stats_.rays += rays.size();
   hits_.resize(rays.size());
   work_.resize(is_counting_ ? rays.size() : 0);
-  finder_.find(rays,
-               {.common_origin = wave_.depth == 0 && job_.camera.has_common_origin(),
-                .culling = job_.options.skips.culling,
-                .work = work_},
-               hits_);
+  intersector_.intersect(rays,
+                         {.common_origin = wave_.depth == 0 && job_.camera.has_common_origin(),
+                          .culling = job_.options.skips.culling,
+                          .work = work_},
+                         hits_);
   watch.lap();
   output_.next.clear();
   output_.next.depth = wave_.depth + 1;
@@ -277,10 +277,10 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.camera_rays += stats_.camera_rays;
   stats.shadow_rays += shadow_rays;
   stats.point_doubts += integrator_->point_doubts();
-  stats.find += finder_.counters();
+  stats.intersect += intersector_.counters();
   stats.skipped += stats_.skipped;
   stats.skipped += integrator_->skipped();
-  stats.skipped.first_occluders += finder_.counters().ended_early;
+  stats.skipped.first_occluders += intersector_.counters().ended_early;
   stats.shade_seconds += stats_.shade_seconds;
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/film/film.h"
-#include "host/find/finder.h"
+#include "host/intersect/intersector.h"
 #include "host/light/integrator.h"
 #include "host/light/shadow_rays.h"
 #include "host/light/wave.h"
@@ -21,12 +21,12 @@
 namespace raygate {
 
 /// Renders tiles into a film. All rays of one depth are one wave, and all shadow rays of a depth
-/// another: finders like many at once. What a pixel gets does not depend on
+/// another: intersectors like many at once. What a pixel gets does not depend on
 /// the tile: each sample's light is added up by itself, depth by depth.
 class TileRenderer {
  public:
   /// `emitter_edges`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
-  TileRenderer(const RenderJob& job, Finder& finder, Film& film,
+  TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
                std::span<EmitterEdge> emitter_edges);
 
   /// Traces the samples that samples_to_trace() names. `keep_going` is asked between waves; when it
@@ -57,7 +57,7 @@ class TileRenderer {
   void update_errors();
 
   RenderJob job_;
-  Finder& finder_;
+  Intersector& intersector_;
   Film& film_;
   std::span<EmitterEdge> emitter_edges_;
   std::unique_ptr<Integrator> integrator_;

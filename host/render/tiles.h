@@ -10,16 +10,16 @@
 namespace raygate {
 
 /// The window cut into tiles, numbered row by row, and each pixel's samples into passes, so that a
-/// tile's samples of a pass are about as many as a finder likes at once. Fewer where some of the
-/// threads would have no tile; and where there are other ranks, smaller tiles and longer passes,
-/// unless these are to stay short, as long as a thread has not four tiles.
+/// tile's samples of a pass are about as many as a intersector likes at once. Fewer where some of
+/// the threads would have no tile; and where there are other ranks, smaller tiles and longer
+/// passes, unless these are to stay short, as long as a thread has not four tiles.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
   int width, height;  ///< of a tile
   int columns, count;
 
-  /// `batch`: Finder::preferred_batch. `threads` of each of so many `ranks`.
+  /// `batch`: Intersector::preferred_batch. `threads` of each of so many `ranks`.
   Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads, int ranks = 1,
         bool short_passes = false)
       : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {

@@ -24,12 +24,12 @@ namespace {
 /// Threads that trace, and the one that called, which talks with rank 0.
 class Worker {
  public:
-  Worker(const RenderJob& job, std::unique_ptr<Finder> first_finder,
-         const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
+  Worker(const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+         const IntersectorFactory& make_intersector, const ProgressFunction& progress, Film& film,
          std::span<EmitterEdge> emitter_edges, RenderStats& stats)
       : job_(job),
-        first_finder_(std::move(first_finder)),
-        make_finder_(make_finder),
+        first_intersector_(std::move(first_intersector)),
+        make_intersector_(make_intersector),
         progress_(progress),
         film_(film),
         emitter_edges_(emitter_edges),
@@ -89,9 +89,9 @@ class Worker {
   /// A thread's.
   void work() {
     try {
-      auto finder = take_first_finder();
-      if (!finder) finder = make_finder_();
-      TileRenderer renderer(job_, *finder, film_, emitter_edges_);
+      auto intersector = take_first_intersector();
+      if (!intersector) intersector = make_intersector_();
+      TileRenderer renderer(job_, *intersector, film_, emitter_edges_);
       while (auto tile = next()) {
         Stopwatch watch;
         if (!trace(renderer, *tile)) break;
@@ -121,9 +121,9 @@ class Worker {
     }
   }
 
-  std::unique_ptr<Finder> take_first_finder() {
+  std::unique_ptr<Intersector> take_first_intersector() {
     const std::scoped_lock lock(mutex_);
-    return std::move(first_finder_);
+    return std::move(first_intersector_);
   }
 
   std::optional<TileMessage> next() {
@@ -144,8 +144,8 @@ class Worker {
   const RenderJob& job_;
   std::mutex mutex_;  // of what follows, but for the film
   std::condition_variable changed_;
-  std::unique_ptr<Finder> first_finder_;
-  const FinderFactory& make_finder_;
+  std::unique_ptr<Intersector> first_intersector_;
+  const IntersectorFactory& make_intersector_;
   const ProgressFunction& progress_;
   Film& film_;
   std::span<EmitterEdge> emitter_edges_;
@@ -159,10 +159,10 @@ class Worker {
 
 }  // namespace
 
-void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
-                const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
-                std::span<EmitterEdge> emitter_edges, RenderStats& stats) {
-  Worker(job, std::move(first_finder), make_finder, progress, film, emitter_edges, stats)
+void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+                const IntersectorFactory& make_intersector, const ProgressFunction& progress,
+                Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats) {
+  Worker(job, std::move(first_intersector), make_intersector, progress, film, emitter_edges, stats)
       .run(ranks);
 }
 

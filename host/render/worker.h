@@ -5,7 +5,7 @@
 #include <span>
 
 #include "host/film/film.h"
-#include "host/find/finder.h"
+#include "host/intersect/intersector.h"
 #include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
 #include "host/render/renderer.h"
@@ -13,9 +13,9 @@
 namespace raygate {
 
 /// Helps rank 0, on options.threads threads, until all is traced. `film`, with sums, becomes its
-/// notebook. Throws what a finder throws, and RunIsOver.
-void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Finder> first_finder,
-                const FinderFactory& make_finder, const ProgressFunction& progress, Film& film,
-                std::span<EmitterEdge> emitter_edges, RenderStats& stats);
+/// notebook. Throws what a intersector throws, and RunIsOver.
+void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+                const IntersectorFactory& make_intersector, const ProgressFunction& progress,
+                Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats);
 
 }  // namespace raygate

@@ -1,7 +1,7 @@
 """The drawings of host/README.md against the includes of the code.
 
 A drawing is a mermaid graph. Its nodes are rooms (folders of host/, or `sim`) or, with a path as
-their label, sources: `a["find/finder"]`. An arrow says that one includes the other. Every arrow
+their label, sources: `a["intersect/intersector"]`. An arrow says that one includes the other. Every arrow
 must be such an include, and where all nodes are rooms, every include must be an arrow or follow
 from several.
 """
@@ -15,7 +15,7 @@ INCLUDE = re.compile(r'^#include "((?:host|sim)/[^"]+)"', re.MULTILINE)
 
 
 def room(path: str) -> str:
-    """host/find/unit/x.h -> find; sim/x.h -> sim."""
+    """host/intersect/unit/x.h -> intersect; sim/x.h -> sim."""
     parts = path.split("/")
     return "sim" if parts[0] == "sim" else parts[1]
 
@@ -52,7 +52,7 @@ def reachable(arrows: set[tuple[str, str]], start: str) -> set[str]:
 
 
 def stem(path: str) -> str:
-    """host/find/finder.cpp -> find/finder."""
+    """host/intersect/intersector.cpp -> intersect/intersector."""
     return re.sub(r"^host/|\.(h|cpp)$", "", path)
 
 

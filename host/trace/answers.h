@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "host/find/finder.h"
+#include "host/bvh/bvh.h"
+#include "host/intersect/intersector.h"
 #include "host/scene/scene.h"
 #include "host/trace/ray_block.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 

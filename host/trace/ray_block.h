@@ -1,4 +1,4 @@
-// Rays of the scene file's coordinates, made ready for a finder.
+// Rays of the scene file's coordinates, made ready for a intersector.
 #pragma once
 
 #include <cstddef>

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "host/base/threads.h"
-#include "host/find/cpu/all_hits.h"
+#include "host/intersect/cpu/all_hits.h"
 
 namespace raygate {
 namespace {
 
 /// What one thread works with.
 struct Desk {
-  std::unique_ptr<Finder> finder;  ///< none where all hits are asked for
+  std::unique_ptr<Intersector> intersector;  ///< none where all hits are asked for
   RayBlock block;
   std::vector<NearestHit> nearest;
   std::vector<RayWork> work;
@@ -26,9 +26,9 @@ void find_one(Desk& desk, Hits asked) {
   const std::size_t count = desk.block.rays.size();
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
-  Search search{.limits = desk.block.limits, .work = desk.work};
+  RayQuery search{.limits = desk.block.limits, .work = desk.work};
   if (asked == Hits::kAny) search.enough_before = desk.block.limits;
-  desk.finder->find(desk.block.rays, search, desk.nearest);
+  desk.intersector->intersect(desk.block.rays, search, desk.nearest);
   for (std::uint32_t i = 0; i < count; ++i) {
     desk.found.push_back({i, desk.nearest[i], desk.work[i].doubts});
   }
@@ -45,7 +45,7 @@ void find_all(Desk& desk, const Bvh& bvh) {
 }  // namespace
 
 TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const Answers& answers,
-                  const FinderFactory& make_finder, unsigned threads,
+                  const IntersectorFactory& make_intersector, unsigned threads,
                   const std::function<void(std::string_view)>& write,
                   const std::function<bool()>& keep_going) {
   constexpr std::size_t kBlock = std::size_t{1} << 14;
@@ -62,7 +62,7 @@ TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const Answer
       if (asked == Hits::kAll) {
         find_all(desk, bvh);
       } else {
-        if (!desk.finder) desk.finder = make_finder();
+        if (!desk.intersector) desk.intersector = make_intersector();
         find_one(desk, asked);
       }
       answers.append(desk.block, desk.found, desk.rows);

@@ -5,11 +5,11 @@
 #include <functional>
 #include <string_view>
 
-#include "host/find/finder.h"
+#include "host/bvh/bvh.h"
+#include "host/intersect/intersector.h"
 #include "host/trace/answers.h"
 #include "host/trace/question.h"
 #include "host/trace/ray_block.h"
-#include "host/tree/bvh.h"
 
 namespace raygate {
 
@@ -26,7 +26,7 @@ using ReadRays = std::function<bool(std::size_t, RayBlock&)>;
 /// `threads` blocks are in memory at a time. What `read` and `write` throw ends it. `keep_going` is
 /// asked between blocks.
 [[nodiscard]] TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh,
-                                const Answers& answers, const FinderFactory& make_finder,
+                                const Answers& answers, const IntersectorFactory& make_intersector,
                                 unsigned threads,
                                 const std::function<void(std::string_view)>& write,
                                 const std::function<bool()>& keep_going);

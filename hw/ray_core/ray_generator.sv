@@ -4,7 +4,7 @@
 // first goes through the pixel (0, 0), right and down lead from a pixel to the next. It is then scaled by a
 // power of two, so that the largest component is in [1, 2); a component that becomes smaller than
 // 2**-126 is zero. Vectors are three words, x lowest; directions that are not finite or zero are the user's
-// mistake. Host: host/find/core/pixel_grid.h, bit for bit.
+// mistake. Host: host/intersect/core/pixel_grid.h, bit for bit.
 //
 // start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. Throughput a ray a
 // clock. valid_o, ready_i: as everywhere.

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/find/unit/burst_unit.h"
-#include "host/find/unit/plane_unit.h"
+#include "host/intersect/unit/burst_unit.h"
+#include "host/intersect/unit/plane_unit.h"
 
 namespace raygate {
 

@@ -7,7 +7,7 @@
 
 #include "host/base/input_error.h"
 #include "host/cli/process.h"
-#include "host/find/check_finder.h"
+#include "host/intersect/check_intersector.h"
 
 int main(int argc, char** argv) {
   using namespace raygate;
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   const auto work = [&] {
     const std::string why = argv[1];
     if (ranks->index() == std::stoi(argv[2])) {
-      if (why == "difference") throw FinderMismatch("a ray");
+      if (why == "difference") throw IntersectorMismatch("a ray");
       throw Interrupted(SIGTERM, "no file was changed");
     }
     while (true) {  // until somebody ends it

@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "host/find/check_finder.h"
-#include "host/find/core/core_finder.h"
-#include "host/find/core/memory_image.h"
-#include "host/find/core/reference_core.h"
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/check_intersector.h"
+#include "host/intersect/core/core_intersector.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/lab/commands.h"
 #include "host/lab/core/record_cache.h"
 #include "host/lab/rays/peer.h"
@@ -85,15 +85,15 @@ class CoreBench {
   void count_records(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image,
                      const RaySet& set) {
     std::array caches{RecordCache(16), RecordCache(64), RecordCache(256)};
-    CoreFinder finder(
+    CoreIntersector intersector(
         bvh, image,
         std::make_shared<ReferenceCore>([&](const glm::vec3& origin, std::uint32_t triangle) {
           for (RecordCache& cache : caches) cache.use(origin, triangle);
         }));
     std::vector<NearestHit> hits(set.rays.size());
-    Search search{.limits = set.limits};
+    RayQuery search{.limits = set.limits};
     if (set.any_hit) search.enough_before = set.limits;
-    finder.find(set.rays, search, hits);
+    intersector.intersect(set.rays, search, hits);
     Row row = {{"table", "records"},
                {"scene", name_},
                {"rays", set.name},
@@ -116,13 +116,13 @@ class CoreBench {
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const RaySet& set,
            const MemoryTiming& timing, const CoreSet& cores) {
     const std::shared_ptr<CoreUnit> core = make_core(timing, cores);
-    CheckFinder finder(bvh, std::make_unique<CoreFinder>(bvh, image, core),
-                       std::make_unique<CpuFinder>(bvh));
+    CheckIntersector intersector(bvh, std::make_unique<CoreIntersector>(bvh, image, core),
+                                 std::make_unique<CpuIntersector>(bvh));
     std::vector<NearestHit> hits(set.rays.size());
-    Search search{.limits = set.limits};
+    RayQuery search{.limits = set.limits};
     if (set.any_hit) search.enough_before = set.limits;
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-    finder.find(set.rays, search, hits);
+    intersector.intersect(set.rays, search, hits);
     const double seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     const CoreCounters counters = core->counters();
     const auto rays = static_cast<double>(set.rays.size());

@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include "host/find/cpu/cpu_finder.h"
-#include "host/find/unit/reference_burst_unit.h"
-#include "host/find/unit/unit_finder.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/timing.h"
 #include "host/lab/variants/variant_hit_tester.h"
 #include "host/lab/variants/variant_units.h"
@@ -130,9 +130,9 @@ DecisionAudit audit_decisions(const Bvh& bvh, const Camera& camera, int width, i
   const glm::vec3 eye = camera.eye();
   const std::vector<Ray> rays = camera_rays(camera, width, height);
   std::vector<NearestHit> seen(rays.size()), exact(rays.size());
-  UnitFinder(bvh, std::make_shared<AuditTester>(bvh, eye, variant, tester, audit))
-      .find(rays, {.common_origin = true}, seen);
-  CpuFinder(bvh).find(rays, {.common_origin = true}, exact);
+  UnitIntersector(bvh, std::make_shared<AuditTester>(bvh, eye, variant, tester, audit))
+      .intersect(rays, {.common_origin = true}, seen);
+  CpuIntersector(bvh).intersect(rays, {.common_origin = true}, exact);
   std::vector<double> t_errors, point_errors;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const NearestHit &got = seen[i], &truth = exact[i];

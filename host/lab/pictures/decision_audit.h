@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/find/unit/hit_tester.h"
+#include "host/bvh/bvh.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/lab/results.h"
 #include "host/lab/variants/variant_table.h"
 #include "host/scene/camera.h"
-#include "host/tree/bvh.h"
 
 namespace raygate::lab {
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
+#include "host/bvh/bvh.h"
 #include "host/light/studio.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/obj_loader.h"
-#include "host/tree/bvh.h"
 
 namespace raygate::lab {
 

@@ -16,7 +16,7 @@
 #include "host/film/compare.h"
 #include "host/film/display.h"
 #include "host/film/png.h"
-#include "host/find/unit/unit_finder.h"
+#include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/pictures/decision_audit.h"
 #include "host/lab/pictures/lit_scene.h"
 #include "host/lab/timing.h"
@@ -60,13 +60,13 @@ std::unique_ptr<HitTester> tester_of(const PictureRun& run, const Variant& varia
   return run.engine == "unit" ? make_rtl_variant_tester(variant) : make_variant_tester(variant);
 }
 
-FinderFactory factory_of(const PictureRun& run, const Variant& variant, const Bvh& bvh) {
+IntersectorFactory factory_of(const PictureRun& run, const Variant& variant, const Bvh& bvh) {
   if (run.engine == "cpu" || run.engine == "rtl") {
-    return make_finder_factory(options_of(run, variant), bvh);
+    return make_intersector_factory(options_of(run, variant), bvh);
   }
   const auto caches = std::make_shared<RecordCaches>(bvh);
   return [&run, &variant, &bvh, caches] {
-    return std::make_unique<UnitFinder>(bvh, tester_of(run, variant), caches);
+    return std::make_unique<UnitIntersector>(bvh, tester_of(run, variant), caches);
   };
 }
 
@@ -147,25 +147,25 @@ class TimedRun {
     row.update(row_of(run_));
     row.update(Row{{"command", "build/lab pictures --run '" + row_of(run_).dump() + "'"},
                    {"triangles", stage_.scene.triangles.size()},
-                   {"records", stats_.find.own_records + stats_.find.common_records},
+                   {"records", stats_.intersect.own_records + stats_.intersect.common_records},
                    {"rays", stats_.rays},
                    {"shadow_rays", stats_.shadow_rays},
-                   {"tests", stats_.find.hit.tests},
-                   {"unit_tests", stats_.find.hit.unit_tests},
-                   {"edge_doubts", stats_.find.hit.edge_doubts},
-                   {"exact_inside", stats_.find.exact_inside},
-                   {"exact_depth", stats_.find.exact_depth},
+                   {"tests", stats_.intersect.hit.tests},
+                   {"unit_tests", stats_.intersect.hit.unit_tests},
+                   {"edge_doubts", stats_.intersect.hit.edge_doubts},
+                   {"exact_inside", stats_.intersect.exact_inside},
+                   {"exact_depth", stats_.intersect.exact_depth},
                    {"point_doubts", stats_.point_doubts},
-                   {"clocks", stats_.find.hit.clocks},
-                   {"idle_clocks", stats_.find.hit.idle_clocks},
-                   {"output_stalls", stats_.find.hit.output_stalls},
+                   {"clocks", stats_.intersect.hit.clocks},
+                   {"idle_clocks", stats_.intersect.hit.idle_clocks},
+                   {"output_stalls", stats_.intersect.hit.output_stalls},
                    {"seconds", seconds_},
                    {"processor_seconds", processor_seconds_},
                    {"yardstick_seconds", yardstick_seconds_},
                    {"thread_seconds",
-                    {{"boxes", stats_.find.traverse},
-                     {"hit_tests", stats_.find.hit_tests},
-                     {"records", stats_.find.record},
+                    {{"boxes", stats_.intersect.traverse},
+                     {"hit_tests", stats_.intersect.hit_tests},
+                     {"records", stats_.intersect.record},
                      {"shading", stats_.shade_seconds}}}});
     if (run_.audit) {
       row["decisions"] = audit_decisions(stage_.bvh, camera_, run_.width, run_.height, variant_,

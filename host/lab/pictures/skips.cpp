@@ -41,7 +41,7 @@ Run timed(const LitScene& stage, const Options& options) {
   for (int i = 0; i < 3; ++i) {
     Run run;
     run.film = render(stage.scene, stage.bvh, stage.camera(kWidth, kHeight), render_options,
-                      make_finder_factory(options, stage.bvh, options.light.skips), run.stats);
+                      make_intersector_factory(options, stage.bvh, options.light.skips), run.stats);
     if (i == 0 || run.stats.wall_seconds < best.stats.wall_seconds) best = std::move(run);
     if (best.stats.wall_seconds > 5.0) break;
   }
@@ -92,9 +92,9 @@ class SceneRows {
         {"polygons", stage_.scene.triangles.size()},
         {"what", what},
         {"rays", run.stats.rays},
-        {"tests", run.stats.find.hit.tests},
-        {"times_fewer_tests", every_test() / static_cast<double>(run.stats.find.hit.tests)},
-        {"records", run.stats.find.own_records + run.stats.find.common_records},
+        {"tests", run.stats.intersect.hit.tests},
+        {"times_fewer_tests", every_test() / static_cast<double>(run.stats.intersect.hit.tests)},
+        {"records", run.stats.intersect.own_records + run.stats.intersect.common_records},
         {"milliseconds", 1e3 * run.stats.wall_seconds},
         {"time_over_all_skips", run.stats.wall_seconds / all_.stats.wall_seconds},
         {"picture", fine ? "same" : "ANOTHER"}};

@@ -68,7 +68,7 @@ class Set {
                                 .max_depth = options_.light.max_depth(),
                                 .techniques = techniques};
     return render(scene_, *clearances_, *camera_, options,
-                  make_finder_factory(options_, *bvh_, options_.light.skips), stats);
+                  make_intersector_factory(options_, *bvh_, options_.light.skips), stats);
   }
 
  private:

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "host/find/cpu/cpu_finder.h"
+#include "host/bvh/bvh.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/lab/rays/peer.h"
-#include "host/tree/bvh.h"
 
 namespace raygate::lab {
 namespace {
@@ -20,16 +20,16 @@ class RaygatePeer : public Peer {
   void prepare(const RaySet& set) override { set_ = &set; }
 
   void run(Found& found) override {
-    CpuFinder finder(bvh_);
-    Search search;
+    CpuIntersector intersector(bvh_);
+    RayQuery search;
     search.common_origin = set_->common_origin;
     const std::span<const Ray> rays(set_->rays);
-    std::vector<NearestHit> hits(finder.preferred_batch());
+    std::vector<NearestHit> hits(intersector.preferred_batch());
     for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
       const std::size_t count = std::min(hits.size(), rays.size() - first);
       if (!set_->limits.empty()) search.limits = std::span(set_->limits).subspan(first, count);
       if (set_->any_hit) search.enough_before = search.limits;
-      finder.find(rays.subspan(first, count), search, std::span(hits).first(count));
+      intersector.intersect(rays.subspan(first, count), search, std::span(hits).first(count));
       for (std::size_t i = 0; i < count; ++i) {
         found.triangle[first + i] = triangle_of(hits[i]);
         found.t[first + i] = static_cast<float>(hits[i].t.low);

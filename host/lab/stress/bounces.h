@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "host/bvh/bvh.h"
 #include "host/lab/stress/random.h"
 #include "host/lab/stress/shot.h"
 #include "host/light/departure.h"
-#include "host/tree/bvh.h"
 
 namespace raygate::lab {
 

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <cstring>
 
+#include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/lab/stress/subjects.h"
 #include "host/trace/tracer.h"
-#include "host/tree/bvh.h"
 
 namespace raygate::lab {
 namespace {
@@ -49,7 +49,7 @@ class TraceSubject : public Subject {
     raygate::Answers table;
   };
 
-  /// Directions are not scaled as finders want them, but by powers of two from 2^-20 to 2^20.
+  /// Directions are not scaled as intersectors want them, but by powers of two from 2^-20 to 2^20.
   static int exponent(std::size_t ray) { return static_cast<int>(ray % 41) - 20; }
 
   std::vector<RowOfTable> rows(std::span<const Shot> shots, Hits hits) const {
@@ -71,7 +71,7 @@ class TraceSubject : public Subject {
     std::string bytes;
     (void)trace(
         read, hits, target_->bvh, target_->table,
-        [this] { return std::make_unique<CpuFinder>(target_->bvh); }, 1,
+        [this] { return std::make_unique<CpuIntersector>(target_->bvh); }, 1,
         [&](std::string_view more) { bytes += more; }, [] { return true; });
     std::vector<RowOfTable> rows(bytes.size() / sizeof(RowOfTable));
     std::memcpy(rows.data(), bytes.data(), bytes.size());

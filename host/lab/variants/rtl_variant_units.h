@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "host/find/unit/burst_unit.h"
-#include "host/find/unit/plane_unit.h"
+#include "host/intersect/unit/burst_unit.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "host/lab/variants/variant_table.h"
 
 namespace raygate {

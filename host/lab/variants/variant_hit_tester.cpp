@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "host/find/unit/pipeline_hit_tester.h"
-#include "host/find/unit/serial_hit_tester.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/serial_hit_tester.h"
 #include "host/lab/variants/variant_units.h"
 
 // The bound of an edge test in a format of u = 2^-digits

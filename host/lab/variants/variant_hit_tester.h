@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "host/find/unit/hit_tester.h"
-#include "host/find/unit/plane_unit.h"
+#include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "host/lab/variants/variant_table.h"
 #include "host/lab/variants/variant_units.h"
 

@@ -1,8 +1,8 @@
 // The hit-test units with a variant's arithmetic, in C++: the twins of what is Verilated.
 #pragma once
 
-#include "host/find/unit/plane_unit.h"
-#include "host/find/unit/reference_burst_unit.h"
+#include "host/intersect/unit/plane_unit.h"
+#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/lab/variants/arithmetic.h"
 
 namespace raygate {

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "host/base/vectors.h"
-#include "host/find/cpu/cpu_finder.h"
-#include "host/find/unit/reference_plane_unit.h"
-#include "host/find/unit/serial_hit_tester.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/reference_plane_unit.h"
+#include "host/intersect/unit/serial_hit_tester.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -16,10 +16,10 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-/// A finder that likes larger tiles.
-class ManyAtOnce : public CpuFinder {
+/// A intersector that likes larger tiles.
+class ManyAtOnce : public CpuIntersector {
  public:
-  ManyAtOnce(const Bvh& bvh, std::size_t lanes) : CpuFinder(bvh), lanes_(lanes) {}
+  ManyAtOnce(const Bvh& bvh, std::size_t lanes) : CpuIntersector(bvh), lanes_(lanes) {}
   [[nodiscard]] std::size_t preferred_batch() const override { return lanes_ * kBatch; }
 
  private:
@@ -57,15 +57,15 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
   }
   RenderStats stats;
   for (const std::size_t lanes : {4, 8}) {  // larger tiles
-    const FinderFactory several = [&] { return std::make_unique<ManyAtOnce>(bvh_, lanes); };
+    const IntersectorFactory several = [&] { return std::make_unique<ManyAtOnce>(bvh_, lanes); };
     EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), several, stats)));
   }
-  const FinderFactory serial = [&] {
-    return std::make_unique<UnitFinder>(
+  const IntersectorFactory serial = [&] {
+    return std::make_unique<UnitIntersector>(
         bvh_, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>()));
   };
   EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), serial, stats)));
-  const FinderFactory cpu = [&] { return std::make_unique<CpuFinder>(bvh_); };
+  const IntersectorFactory cpu = [&] { return std::make_unique<CpuIntersector>(bvh_); };
   EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), cpu, stats)));
 }
 
@@ -169,14 +169,14 @@ TEST_P(EveryIntegrator, SkipsChangeNoByteAndSaveWork) {
       none.skips.*skip = false;
       RenderStats stats;
       EXPECT_TRUE(same(expected, film(one, stats)));
-      EXPECT_GE(stats.find.hit.tests, all_on.find.hit.tests);
+      EXPECT_GE(stats.intersect.hit.tests, all_on.intersect.hit.tests);
     }
     none.max_depth = 1;  // weightless rays are many
     RenderOptions some = options(20, 15);
     some.max_depth = 1;
     RenderStats stats;
     EXPECT_TRUE(same(film(some), film(none, stats)));
-    EXPECT_EQ(stats.find.hit.tests, stats.rays * scene_.triangles.size());
+    EXPECT_EQ(stats.intersect.hit.tests, stats.rays * scene_.triangles.size());
     EXPECT_EQ(stats.skipped.lights_behind + stats.skipped.weightless, 0u);
   }
 }
@@ -230,7 +230,7 @@ TEST(Skips, AreCounted) {
   RenderOptions options = light(IntegratorKind::kWhitted, 400, 400, 1);
   RenderStats stats;
   const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
-  EXPECT_GT(stats.skipped.culled_tests, 100 * stats.find.hit.tests);
+  EXPECT_GT(stats.skipped.culled_tests, 100 * stats.intersect.hit.tests);
   EXPECT_GT(stats.skipped.records, 0u);
   EXPECT_GT(stats.skipped.lights_behind, 0u);
   EXPECT_GT(stats.skipped.weightless, 0u);

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "host/exact/test/meshes.h"
-#include "host/find/unit/pipeline_hit_tester.h"
-#include "host/find/unit/reference_burst_unit.h"
-#include "host/find/unit/unit_finder.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_intersector.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 
@@ -71,13 +71,13 @@ inline void add(Scene& scene, const std::vector<Corners>& triangles, const Mater
 }
 
 /// The pipelined unit's reference model, in batches.
-inline std::unique_ptr<Finder> pipeline_finder(const Bvh& bvh) {
-  return std::make_unique<UnitFinder>(
+inline std::unique_ptr<Intersector> pipeline_intersector(const Bvh& bvh) {
+  return std::make_unique<UnitIntersector>(
       bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
 }
 
-inline FinderFactory pipeline_model(const Bvh& bvh) {
-  return [&bvh] { return pipeline_finder(bvh); };
+inline IntersectorFactory pipeline_model(const Bvh& bvh) {
+  return [&bvh] { return pipeline_intersector(bvh); };
 }
 
 inline RenderOptions light(IntegratorKind integrator, int width, int height, int samples) {

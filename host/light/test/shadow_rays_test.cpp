@@ -38,7 +38,7 @@ class ShadowRaysTest : public testing::Test {
       rays.push_back({eye, scaled_direction(glm::dvec3(random_.point()) - 1e-9)});
     }
     std::vector<NearestHit> hits(rays.size());
-    finder_->find(rays, {}, hits);
+    intersector_->intersect(rays, {}, hits);
     for (int i = 0; i < count; ++i) {
       const std::uint32_t slot = hits[i].slot;
       if (slot == NearestHit::kNone) continue;
@@ -99,7 +99,7 @@ class ShadowRaysTest : public testing::Test {
   Bvh bvh_{scene_};
   Clearances clearances_{bvh_};
   Lights lights_{scene_, bvh_};
-  std::unique_ptr<Finder> finder_ = pipeline_finder(bvh_);
+  std::unique_ptr<Intersector> intersector_ = pipeline_intersector(bvh_);
   Random random_;
   std::vector<ShadowRay> questions_;
 };
@@ -109,7 +109,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
     add_questions(eye, 2000);
   }
   std::vector<ShadowRay> nearest = questions_;
-  ShadowRays(scene_, clearances_, lights_, *finder_, {}, true).resolve(questions_);
+  ShadowRays(scene_, clearances_, lights_, *intersector_, {}, true).resolve(questions_);
   int dark = 0, lit = 0, different = 0;
   for (const ShadowRay& answer : questions_) {
     const bool blocked = is_blocked(answer);
@@ -126,7 +126,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   // Without the first-occluder skip: the same, to the last one.
   Skips skips;
   skips.first_occluder = false;
-  ShadowRays(scene_, clearances_, lights_, *finder_, skips, true).resolve(nearest);
+  ShadowRays(scene_, clearances_, lights_, *intersector_, skips, true).resolve(nearest);
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     ASSERT_EQ(nearest[i].light, questions_[i].light) << i;
   }

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/studio.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
@@ -29,7 +29,7 @@ inline void draw(Scene scene) {
   options.integrator = IntegratorKind::kPath;
   RenderStats stats;
   const Film film = render(
-      scene, bvh, camera, options, [&] { return std::make_unique<CpuFinder>(bvh); }, stats);
+      scene, bvh, camera, options, [&] { return std::make_unique<CpuIntersector>(bvh); }, stats);
   for (const glm::vec4& colour : film.color) {
     for (int k = 0; k < 4; ++k) {
       if (!(std::isfinite(colour[k]) && colour[k] >= 0.0f)) std::abort();

@@ -12,7 +12,7 @@
 #include <set>
 
 #include "host/film/display.h"
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -35,8 +35,8 @@ RenderOptions adaptive(int width, int height, int most, double error) {
   return options;
 }
 
-FinderFactory cpu(const Bvh& bvh) {
-  return [&bvh] { return std::make_unique<CpuFinder>(bvh); };
+IntersectorFactory cpu(const Bvh& bvh) {
+  return [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
 }
 
 /// Of one scene, with each seed.
@@ -159,9 +159,10 @@ struct Uneven {
   Scene scene = everything();
   Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 45.0, 44.0 / 34.0);
   Bvh bvh{scene};
-  Film film(RenderOptions options, const FinderFactory& finders, RenderStats& stats) const {
+  Film film(RenderOptions options, const IntersectorFactory& intersectors,
+            RenderStats& stats) const {
     options.channels.sums = true;
-    return render(scene, bvh, camera, options, finders, stats);
+    return render(scene, bvh, camera, options, intersectors, stats);
   }
   Film film(const RenderOptions& options) const {
     RenderStats stats;

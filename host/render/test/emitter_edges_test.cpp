@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -53,13 +53,13 @@ std::vector<EmitterEdge> marks(const Panel& panel, ReconstructionFilter filter, 
   const Clearances clearances(bvh);
   const Lights lights(panel.scene, bvh);
   const RenderOptions asked = options(4, filter);
-  CpuFinder finder(bvh);
+  CpuIntersector intersector(bvh);
   Film film;
   film.width = film.height = kSide;
   film.window = {0, 0, kSide, kSide};
   std::vector<EmitterEdge> found(std::size_t{kSide} * kSide);
-  rays = find_emitter_edges({panel.scene, bvh, panel.camera, asked, lights, clearances, {}}, finder,
-                            film, film.window, found, {});
+  rays = find_emitter_edges({panel.scene, bvh, panel.camera, asked, lights, clearances, {}},
+                            intersector, film, film.window, found, {});
   return found;
 }
 
@@ -99,7 +99,7 @@ double error(const Panel& panel, float left, float upper, float right, float low
   const Bvh bvh(panel.scene);
   const Film film = render(
       panel.scene, bvh, panel.camera, options(samples),
-      [&] { return std::make_unique<CpuFinder>(bvh); }, stats);
+      [&] { return std::make_unique<CpuIntersector>(bvh); }, stats);
   const auto covered = [](float low, float high, int pixel) {
     return std::max(0.0,
                     std::min(double{high}, pixel + 1.0) - std::max(double{low}, double(pixel)));

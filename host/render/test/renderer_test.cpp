@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "host/exact/test/meshes.h"
-#include "host/find/unit/reference_plane_unit.h"
-#include "host/find/unit/serial_hit_tester.h"
-#include "host/find/unit/unit_finder.h"
+#include "host/intersect/unit/reference_plane_unit.h"
+#include "host/intersect/unit/serial_hit_tester.h"
+#include "host/intersect/unit/unit_intersector.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -20,9 +20,9 @@ namespace {
 
 using Order = SerialHitTester::Order;
 
-FinderFactory serial(const Bvh& bvh, Order order = Order::kEdgesFirst) {
+IntersectorFactory serial(const Bvh& bvh, Order order = Order::kEdgesFirst) {
   return [&bvh, order, caches = std::make_shared<RecordCaches>(bvh)] {
-    return std::make_unique<UnitFinder>(
+    return std::make_unique<UnitIntersector>(
         bvh, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>(), order),
         caches);
   };
@@ -90,9 +90,9 @@ TEST(Renderer, EveryPixelIsTheExactNearestPolygon) {
     }
   }
   EXPECT_EQ(stats.rays, 65u * 65u);
-  EXPECT_GT(stats.find.exact_inside, 0u);
-  EXPECT_GT(stats.find.common_records, 0u);
-  EXPECT_LE(stats.find.common_records, scene.triangles.size());
+  EXPECT_GT(stats.intersect.exact_inside, 0u);
+  EXPECT_GT(stats.intersect.common_records, 0u);
+  EXPECT_LE(stats.intersect.common_records, scene.triangles.size());
   EXPECT_FALSE(stats.cancelled);
 }
 
@@ -104,8 +104,8 @@ TEST(Renderer, FilmDoesNotDependOnThreadsOrOrder) {
   for (const int threads : {2, 3, 8}) {
     EXPECT_TRUE(
         same(film, render(scene, bvh, kCamera, size(200, 150, threads), serial(bvh), other)));
-    EXPECT_EQ(one.find.hit.tests, other.find.hit.tests);
-    EXPECT_EQ(one.find.common_records, other.find.common_records);
+    EXPECT_EQ(one.intersect.hit.tests, other.intersect.hit.tests);
+    EXPECT_EQ(one.intersect.common_records, other.intersect.common_records);
   }
   EXPECT_TRUE(same(
       film, render(scene, bvh, kCamera, size(200, 150), serial(bvh, Order::kPlanesFirst), other)));
@@ -137,7 +137,7 @@ TEST(Renderer, MissesLeaveNothing) {
   EXPECT_EQ(film.primitive, std::vector<std::uint32_t>(45, kNoPrimitive));
   EXPECT_EQ(film.depth[0], std::numeric_limits<float>::infinity());
   EXPECT_EQ(film.color[44], glm::vec4(0.0f));
-  EXPECT_EQ(stats.find.hit.tests, 0u);
+  EXPECT_EQ(stats.intersect.hit.tests, 0u);
 }
 
 // Straight at a wall two units away: the colour is the material's, the depth two.
@@ -220,7 +220,7 @@ TEST(Renderer, AThreadThatDoesNotStopIsAbandoned) {
   const Scene scene = sphere_in_box();
   const Bvh bvh(scene);
   std::atomic<int> made = 0;
-  const FinderFactory stuck = [&, usual = serial(bvh)] {
+  const IntersectorFactory stuck = [&, usual = serial(bvh)] {
     while (made++ > 0) std::this_thread::sleep_for(std::chrono::hours(1));
     return usual();
   };
@@ -233,11 +233,11 @@ TEST(Renderer, AThreadThatDoesNotStopIsAbandoned) {
               testing::ExitedWithCode(7), "");
 }
 
-TEST(Renderer, AFindersExceptionReachesTheCaller) {
+TEST(Renderer, AnIntersectorsExceptionReachesTheCaller) {
   const Scene scene = sphere_in_box();
   RenderStats stats;
   const Bvh bvh(scene);
-  const FinderFactory broken = []() -> std::unique_ptr<Finder> {
+  const IntersectorFactory broken = []() -> std::unique_ptr<Intersector> {
     throw std::runtime_error("no unit");
   };
   EXPECT_THROW((void)render(scene, bvh, kCamera, size(64, 64, 3), broken, stats),

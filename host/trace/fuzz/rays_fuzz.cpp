@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     raygate::RayBlock block;
     while (rays.read(7, block)) {
       for (const raygate::Ray& ray : block.rays) {
-        // What finders refuse must not get to them.
+        // What intersectors refuse must not get to them.
         if (raygate::is_usable(ray.direction) && !raygate::is_scaled(ray.direction)) std::abort();
       }
     }

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "host/exact/test/meshes.h"
-#include "host/find/cpu/all_hits.h"
+#include "host/intersect/cpu/all_hits.h"
 #include "host/trace/ray_block.h"
 
 namespace raygate {

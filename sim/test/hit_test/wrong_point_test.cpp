@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "Vhit_test_array_wrong_point.h"
-#include "host/find/check_finder.h"
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/check_intersector.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/test/light_scenes.h"
 #include "sim/array_model.h"
 #include "sim/rtl_burst_unit.h"
@@ -30,26 +30,26 @@ class WrongPointUnit : public BurstUnit {
 };
 
 template <class Unit, class... Arguments>
-std::unique_ptr<Finder> finder_of(const Bvh& bvh, Arguments... arguments) {
-  return std::make_unique<UnitFinder>(
+std::unique_ptr<Intersector> intersector_of(const Bvh& bvh, Arguments... arguments) {
+  return std::make_unique<UnitIntersector>(
       bvh, std::make_unique<PipelineHitTester>(std::make_unique<Unit>(arguments...)));
 }
 
 class WrongPointTest : public testing::Test {
  protected:
-  Film film(const FinderFactory& finder, float point_error) {
+  Film film(const IntersectorFactory& intersector, float point_error) {
     RenderOptions options = test::light(IntegratorKind::kWhitted, 24, 18, 1);
     options.channels.position = true;
     options.point_error = point_error;
     RenderStats stats;
-    return render(scene_, bvh_, camera_, options, finder, stats);
+    return render(scene_, bvh_, camera_, options, intersector, stats);
   }
 
   Scene scene_ = test::everything();
   Bvh bvh_{scene_};
   Camera camera_ = test::camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
-  FinderFactory sound_ = [this] { return finder_of<RtlBurstUnit>(bvh_, 1); };
-  FinderFactory wrong_ = [this] { return finder_of<WrongPointUnit>(bvh_); };
+  IntersectorFactory sound_ = [this] { return intersector_of<RtlBurstUnit>(bvh_, 1); };
+  IntersectorFactory wrong_ = [this] { return intersector_of<WrongPointUnit>(bvh_); };
 };
 
 TEST_F(WrongPointTest, ChangesThePicture) {
@@ -76,10 +76,11 @@ TEST_F(WrongPointTest, IsOfNoConsequenceWhereTheHostComputesEveryPoint) {
 }
 
 TEST_F(WrongPointTest, IsNoticedByTheCheck) {
-  const FinderFactory check = [this] {
-    return std::make_unique<CheckFinder>(bvh_, wrong_(), std::make_unique<CpuFinder>(bvh_));
+  const IntersectorFactory check = [this] {
+    return std::make_unique<CheckIntersector>(bvh_, wrong_(),
+                                              std::make_unique<CpuIntersector>(bvh_));
   };
-  EXPECT_THROW((void)film(check, kPointError), FinderMismatch);
+  EXPECT_THROW((void)film(check, kPointError), IntersectorMismatch);
 }
 
 }  // namespace

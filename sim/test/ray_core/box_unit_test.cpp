@@ -6,7 +6,7 @@
 
 #include "Vbox_unit_behavioural.h"
 #include "Vbox_unit_structural.h"
-#include "host/find/core/test/box_cases.h"
+#include "host/intersect/core/test/box_cases.h"
 #include "sim/model.h"
 
 namespace raygate {

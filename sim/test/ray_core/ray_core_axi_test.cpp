@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "Vray_core_axi.h"
-#include "host/find/core/memory_image.h"
-#include "host/find/core/pixel_grid.h"
-#include "host/find/core/reference_core.h"
-#include "host/find/core/test/core_cases.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/core/pixel_grid.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/core/test/core_cases.h"
 #include "sim/model.h"
 
 namespace raygate {

@@ -1,4 +1,4 @@
-// The ray core in simulation finds what CpuFinder finds, whatever makes it wait.
+// The ray core in simulation finds what CpuIntersector finds, whatever makes it wait.
 // Tests: ray_core, ray_alloc, traversal, primitive_fetch, memory_subsystem, triangle_test
 // Tests: closest_hit, ray_context, box_pipeline, ray_retire, rr_arbiter
 #include <gtest/gtest.h>
@@ -7,12 +7,12 @@
 #include <cstdlib>
 
 #include "Vray_core_small.h"
-#include "host/find/check_finder.h"
-#include "host/find/core/core_finder.h"
-#include "host/find/core/memory_image.h"
-#include "host/find/core/reference_core.h"
-#include "host/find/core/test/core_cases.h"
-#include "host/find/cpu/cpu_finder.h"
+#include "host/intersect/check_intersector.h"
+#include "host/intersect/core/core_intersector.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/core/test/core_cases.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "sim/core_model.h"
 #include "sim/rtl_core.h"
 
@@ -25,13 +25,14 @@ using test::some_rays;
 
 class RayCoreTest : public testing::Test {
  protected:
-  /// Throws where the core, with the host's help, and CpuFinder differ.
-  void check(const std::vector<Ray>& rays, const Search& search, std::unique_ptr<CoreUnit> core) {
+  /// Throws where the core, with the host's help, and CpuIntersector differ.
+  void check(const std::vector<Ray>& rays, const RayQuery& search, std::unique_ptr<CoreUnit> core) {
     const CoreUnit& unit = *core;
-    CheckFinder finder(bvh_, std::make_unique<CoreFinder>(bvh_, image_, std::move(core)),
-                       std::make_unique<CpuFinder>(bvh_));
+    CheckIntersector intersector(bvh_,
+                                 std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
+                                 std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
-    finder.find(rays, search, hits);
+    intersector.intersect(rays, search, hits);
     counters_ = unit.counters();
   }
 
@@ -46,7 +47,7 @@ class RayCoreTest : public testing::Test {
   CoreCounters counters_;
 };
 
-TEST_F(RayCoreTest, NearestHitsAreTheCpuFinders) {
+TEST_F(RayCoreTest, NearestHitsAreTheCpuIntersectors) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 10'000);
   check(rays, {}, core(Arith::kBehavioural));
   EXPECT_GT(counters_.doubts, 50u);

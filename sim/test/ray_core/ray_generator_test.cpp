@@ -10,7 +10,7 @@
 
 #include "Vray_generator_behavioural.h"
 #include "Vray_generator_structural.h"
-#include "host/find/core/pixel_grid.h"
+#include "host/intersect/core/pixel_grid.h"
 #include "sim/model.h"
 
 namespace raygate {

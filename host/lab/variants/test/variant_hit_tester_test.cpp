@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "host/exact/exact.h"
-#include "host/find/unit/reference_burst_unit.h"
-#include "host/find/unit/same_results.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/same_results.h"
 #include "host/lab/stress/random.h"
 #include "host/lab/variants/variant_units.h"
 #include "host/scene/camera.h"

@@ -1,0 +1,64 @@
+// What is near: the triangles whose boxes touch a given box.
+#pragma once
+
+#include <bit>
+#include <glm/glm.hpp>
+
+#include "host/base/lanes.h"
+#include "host/bvh/bvh.h"
+#include "host/exact/exact.h"
+
+namespace raygate {
+
+/// Calls visit(leaf) for all leaves of the tree whose boxes touch the closed box from `low` to
+/// `high`, in no particular order, until it says true; whether it did. For bodies of in_vectors.
+template <Vectors kCode, class Visit>
+RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                                  const Visit& visit) {
+  std::uint32_t waiting[Bvh::kStackSize];
+  waiting[0] = 0;
+  for (int depth = 1; depth > 0;) {
+    Bvh::Node room;
+    const Bvh::Node& node = bvh.node(waiting[--depth], room);
+    IntLanes touches = IntLanes{} - 1;
+    for (int k = 0; k < 3; ++k) {
+      FloatLanes lows, highs;
+      load_lanes(node.bounds[0][k], lows);
+      load_lanes(node.bounds[1][k], highs);
+      touches &= (lows <= high[k]) & (highs >= low[k]);
+    }
+    for (LaneMask met = sign_mask<kCode>(touches); met != 0; met &= met - 1) {
+      const Bvh::Child child = node.child[std::countr_zero(met)];
+      bvh.prefetch(child);
+      if (child.count == 0) {
+        waiting[depth++] = child.first;
+      } else if (visit(child)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Calls visit(slot, corners) for all triangles whose axis-aligned boxes touch that box, until it
+/// says true; whether it did.
+template <class Visit>
+[[nodiscard]] bool any_slot_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                                 const Visit& visit) {
+  return in_vectors([&](auto code) RAYGATE_BODY {
+    const auto look = [&](const Bvh::Child& leaf) RAYGATE_BODY {
+      for (std::uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
+        const Corners t = bvh.corners_of(slot);
+        if (glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
+            glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2]))) &&
+            visit(slot, t)) {
+          return true;
+        }
+      }
+      return false;
+    };
+    return any_leaf_near<code()>(bvh, low, high, look);
+  });
+}
+
+}  // namespace raygate

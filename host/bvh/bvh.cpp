@@ -1,0 +1,295 @@
+#include "host/bvh/bvh.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "host/base/threads.h"
+#include "host/bvh/sah_builder.h"
+
+// Which nodes of the binary tree are nodes of the wide one
+//
+// A wide node's children are a cut through the binary tree below it, and the best of all trees is
+// found from the leaves up (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs
+// through compressed wide BVHs", 2017). Let C(n, i) be what it costs to make binary node n, with
+// all below it, into at most i children:
+//   C(n, 1) = A kNodeCost + C(n, 8) as an inner node; A kLeafCost (up to kMaxLeafSize) as a leaf;
+//   C(n, i) = C(n, i - 1), or C(left, k) + C(right, i - k) for the best k.
+// A is the chance that a ray which meets the root's box meets n's: the ratio of their surfaces.
+
+namespace raygate {
+namespace {
+
+using Ref = BinaryTree::Ref;
+
+constexpr std::uint32_t kTaskSize = 4096;  // slots below a node that is one thread's work
+constexpr float kNodeCost = 1.0f;
+/// Of a leaf of 1 to 4 triangles, which are tested at once.
+constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.95f, 1.0f, 1.05f, 1.1f};
+
+/// The cheapest ways of a binary node.
+struct Plan {
+  float cost[Bvh::kWidth];  ///< [i]: C(n, i + 1); of [0]: as a child
+  std::uint8_t
+      left[Bvh::kWidth];  ///< [i]: how many of i + 1 children are the left side's; 0: do with i
+  bool is_leaf;
+};
+
+}  // namespace
+
+/// Makes a binary tree wide.
+class BvhWriter {
+ public:
+  BvhWriter(Bvh& bvh, const TreeContent& content, const BinaryTree& tree, int threads)
+      : bvh_(bvh), content_(content), tree_(tree), threads_(threads), plans_(tree.size()) {}
+
+  void write() {
+    bvh_.nodes_.assign(1, {});
+    clear(bvh_.nodes_[0]);
+    const std::size_t slots = content_.triangles.size();
+    bvh_.triangles_.resize(slots);
+    bvh_.places_.resize(slots);
+    bvh_.corners_.resize(9 * slots + Bvh::kMaxLeafSize);
+    if (tree_.size() == 0) return;
+    number_slots();
+    Box whole;
+    tree_.get_box(tree_.root(), whole);
+    unit_ = unit_of(whole);
+    plan_all();
+    if (tree_.is_leaf(tree_.root()) || plans_[tree_.root()].is_leaf) {
+      put_child(bvh_.nodes_[0], 0, tree_.root());
+    } else {
+      write_all();
+    }
+  }
+
+ private:
+  /// Others, which have no slots, stand between the triangles.
+  void number_slots() {
+    if (content_.others.empty()) return;
+    slots_.reserve(tree_.size());
+    std::uint32_t slots = 0;
+    for (const Primitive& primitive : tree_.primitives) {
+      slots_.push_back(slots);
+      slots += is_triangle(primitive);
+    }
+  }
+  [[nodiscard]] bool is_triangle(const Primitive& primitive) const {
+    return primitive.triangle < content_.triangles.size();
+  }
+  [[nodiscard]] bool are_triangles(Ref ref) const {
+    return content_.others.empty() ||
+           std::ranges::all_of(
+               std::span(tree_.primitives).subspan(tree_.first(ref), tree_.count(ref)),
+               [&](const Primitive& p) { return is_triangle(p); });
+  }
+
+  /// A task: a binary node with as many leaves as one thread is to see to.
+  struct Task {
+    Ref ref;
+    std::uint32_t parent;  ///< whose child it is, in the tree
+    int child;
+    std::vector<Bvh::Node> nodes;
+    std::uint32_t offset;
+  };
+
+  static void clear(Bvh::Node& node) {
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < Bvh::kWidth; ++i) {
+        node.bounds[0][k][i] = std::numeric_limits<float>::infinity();
+        node.bounds[1][k][i] = -std::numeric_limits<float>::infinity();
+      }
+    }
+    for (Bvh::Child& child : node.child) child = {};
+  }
+
+  [[nodiscard]] float area(Ref ref) const {
+    Box box;
+    tree_.get_box(ref, box);
+    return half_area(box, unit_);
+  }
+  [[nodiscard]] float cost(Ref ref, int children) const {
+    return tree_.is_leaf(ref) ? kLeafCost[1] * area(ref) : plans_[ref].cost[children - 1];
+  }
+
+  /// Plans a node whose children have been planned.
+  void plan(Ref ref) {
+    const auto [left, right] = tree_.nodes[ref].child;
+    Plan& plan = plans_[ref];
+    float left_cost[Bvh::kWidth], right_cost[Bvh::kWidth];
+    for (int i = 1; i < Bvh::kWidth; ++i) {
+      left_cost[i] = cost(left, i);
+      right_cost[i] = cost(right, i);
+    }
+    for (int i = Bvh::kWidth; i > 1; --i) {
+      float best = std::numeric_limits<float>::infinity();
+      for (int k = 1; k < i; ++k) {
+        const float both = left_cost[k] + right_cost[i - k];
+        if (both >= best) continue;
+        best = both;
+        plan.left[i - 1] = static_cast<std::uint8_t>(k);
+      }
+      plan.cost[i - 1] = best;
+    }
+    const std::uint32_t count = tree_.count(ref);
+    const float own_area = area(ref);
+    plan.cost[0] = plan.cost[Bvh::kWidth - 1] + kNodeCost * own_area;
+    plan.is_leaf = count <= Bvh::kMaxLeafSize && kLeafCost[count] * own_area <= plan.cost[0] &&
+                   are_triangles(ref);
+    if (plan.is_leaf) plan.cost[0] = kLeafCost[count] * own_area;
+    for (int i = 2; i < Bvh::kWidth; ++i) {
+      if (plan.cost[i - 1] < plan.cost[i - 2]) continue;
+      plan.cost[i - 1] = plan.cost[i - 2];
+      plan.left[i - 1] = 0;
+    }
+  }
+
+  void plan_below(Ref ref) {
+    if (tree_.is_leaf(ref)) return;
+    plan_below(tree_.nodes[ref].child[0]);
+    plan_below(tree_.nodes[ref].child[1]);
+    plan(ref);
+  }
+
+  void plan_all() {
+    std::vector<Ref> large, tasks;  // parents before children
+    collect_tasks(tree_.root(), large, tasks);
+    for_each_on_threads(threads_, tasks.size(), [&](std::size_t i) { plan_below(tasks[i]); });
+    for (auto ref = large.rbegin(); ref != large.rend(); ++ref) plan(*ref);
+  }
+
+  void collect_tasks(Ref ref, std::vector<Ref>& large, std::vector<Ref>& tasks) const {
+    if (tree_.count(ref) <= kTaskSize) {
+      tasks.push_back(ref);
+      return;
+    }
+    large.push_back(ref);
+    for (const Ref child : tree_.nodes[ref].child) collect_tasks(child, large, tasks);
+  }
+
+  /// Finds what becomes the children of a wide node when `ref` becomes `most` of them.
+  void collect_children(Ref ref, int most, Ref (&children)[Bvh::kWidth], int& count) const {
+    if (most > 1 && !tree_.is_leaf(ref)) {
+      const Plan& plan = plans_[ref];
+      int i = most;
+      while (i > 1 && plan.left[i - 1] == 0) --i;
+      if (i > 1) {
+        const int left = plan.left[i - 1];
+        collect_children(tree_.nodes[ref].child[0], left, children, count);
+        collect_children(tree_.nodes[ref].child[1], i - left, children, count);
+        return;
+      }
+    }
+    children[count++] = ref;
+  }
+
+  /// Puts a leaf or, its number being for the caller to say, an inner node into a node.
+  void put_child(Bvh::Node& node, int i, Ref ref) {
+    Box box;
+    tree_.get_box(ref, box);
+    for (int k = 0; k < 3; ++k) {
+      node.bounds[0][k][i] = box[k];
+      node.bounds[1][k][i] = -box[k + 4];
+    }
+    if (!is_leaf(ref)) return;
+    const std::uint32_t first = tree_.first(ref);
+    const Primitive& primitive = tree_.primitives[first];
+    if (!is_triangle(primitive)) {
+      node.child[i] = {content_.others[primitive.triangle - content_.triangles.size()].root, 0};
+      return;
+    }
+    node.child[i] = {slots_.empty() ? first : slots_[first], tree_.count(ref)};
+    write_slots(node.child[i], first);
+  }
+
+  [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || plans_[ref].is_leaf; }
+
+  /// Writes a leaf of the primitives from number `first` on.
+  void write_slots(const Bvh::Child& leaf, std::uint32_t first) {
+    float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t slot = leaf.first + i, triangle = tree_.primitives[first + i].triangle;
+      bvh_.triangles_[slot] = triangle;
+      bvh_.places_[slot] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(leaf.count)};
+      for (std::uint32_t v = 0; v < 3; ++v) {
+        const glm::vec3& corner = content_.positions[content_.triangles[triangle].vertices[v]];
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          to[(3 * v + k) * leaf.count + i] = corner[static_cast<int>(k)];
+        }
+      }
+    }
+  }
+
+  /// Writes the node `ref` to nodes[index], and what is below it behind; large ones become tasks,
+  /// where there are any.
+  void write_below(std::vector<Bvh::Node>& nodes, std::uint32_t index, Ref ref,
+                   std::vector<Task>* tasks) {
+    Ref children[Bvh::kWidth];
+    int count = 0;
+    collect_children(tree_.nodes[ref].child[0], plans_[ref].left[Bvh::kWidth - 1], children, count);
+    collect_children(tree_.nodes[ref].child[1], Bvh::kWidth - plans_[ref].left[Bvh::kWidth - 1],
+                     children, count);
+    clear(nodes[index]);
+    for (int i = 0; i < count; ++i) {
+      put_child(nodes[index], i, children[i]);
+      if (is_leaf(children[i])) continue;
+      if (tasks != nullptr && tree_.count(children[i]) <= kTaskSize) {
+        tasks->push_back({children[i], index, i, {}, 0});
+        continue;
+      }
+      const auto next = static_cast<std::uint32_t>(nodes.size());
+      nodes[index].child[i] = {next, 0};
+      nodes.emplace_back();
+      write_below(nodes, next, children[i], tasks);
+    }
+  }
+
+  void write_all() {
+    std::vector<Bvh::Node>& nodes = bvh_.nodes_;
+    std::vector<Task> tasks;
+    write_below(nodes, 0, tree_.root(), &tasks);
+    for_each_on_threads(threads_, tasks.size(), [&](std::size_t i) {
+      tasks[i].nodes.reserve(tree_.count(tasks[i].ref) / 4 + 1);
+      tasks[i].nodes.emplace_back();
+      write_below(tasks[i].nodes, 0, tasks[i].ref, nullptr);
+    });
+    std::size_t size = nodes.size();
+    for (Task& task : tasks) {
+      task.offset = static_cast<std::uint32_t>(size);
+      nodes[task.parent].child[task.child] = {task.offset, 0};
+      size += task.nodes.size();
+    }
+    nodes.resize(size);
+    for_each_on_threads(threads_, tasks.size(), [&](std::size_t i) {
+      Bvh::Node* to = &nodes[tasks[i].offset];
+      for (Bvh::Node& node : tasks[i].nodes) {
+        for (Bvh::Child& child : node.child) {
+          if (child.count == 0 && !bvh_.is_placed(child.first)) child.first += tasks[i].offset;
+        }
+        *to++ = node;
+      }
+    });
+  }
+
+  Bvh& bvh_;
+  const TreeContent& content_;
+  const BinaryTree& tree_;
+  int threads_;
+  float unit_ = 0.0f;
+  std::vector<Plan> plans_;
+  std::vector<std::uint32_t> slots_;  // of the primitives; empty: each has its own number
+};
+
+void Bvh::build(const TreeContent& content, int most_levels, int threads) {
+  const BinaryTree tree(content, most_levels, threads);
+  BvhWriter(*this, content, tree, threads).write();
+}
+
+Bvh::Bvh(const Scene& scene, int threads) {
+  TreeContent content{scene.positions, scene.triangles};
+  const int levels = scene.instances.empty() ? 0 : place_instances(scene, threads, content);
+  build(content, kMaxDepth - levels, threads);
+}
+
+}  // namespace raygate

@@ -1,0 +1,224 @@
+#include "host/bvh/instance_bvh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "host/base/lanes.h"
+#include "host/bvh/bvh.h"
+#include "host/bvh/sah_builder.h"
+#include "host/exact/exact.h"
+
+// Why placed boxes hold placed triangles
+//
+// Let u = 2^-24, m one of the instance's rows, m' its first three elements in float, v a corner of
+// the mesh, and [l, h] the box of a node that holds it. The corner's coordinate is
+// c = float32(double(m.v + m3)), so c is off m.v + m3 by 1.01 u S + 2^-150 at most, where S is the
+// sum of |m_k| V_k and |m3|, and V_k the largest magnitude of a bound of the mesh along axis k.
+//
+// The low bound is made in float of low <= m3 - e and, for each axis, m'_k x_k, where x_k is the
+// end of [l, h] at which that is least: so m'.v >= m'.x. Three products and three sums are off by
+// 4.1 u (S + e) + 3 2^-150 in all, and m'.v is off m.v by D = sum |m_k - m'_k| V_k at most. The
+// float below c is 2.02 u S + 2^-149 away. So the bound is at or below it if
+//   e >= D + (4.1 + 1.01 + 2.02) u S + 4.1 u e + 2^-147,
+// which e = D + 12 u S + 2^-140 is: D <= u S but for numbers that underflow, and D <= S for those.
+// By symmetry the same holds of the high bound. All operations are monotonic: a box in another one
+// is placed in where that one is.
+
+namespace raygate {
+
+PlacedTree::PlacedTree(const Instance& instance, const glm::dvec3& size) : mesh(instance.mesh) {
+  std::memcpy(rows, instance.rows, sizeof rows);
+  for (int k = 0; k < 3; ++k) {
+    double lost = 0.0, sum = std::abs(rows[k][3]);
+    for (int axis = 0; axis < 3; ++axis) {
+      matrix[k][axis] = static_cast<float>(rows[k][axis]);
+      lost += std::abs(rows[k][axis] - double{matrix[k][axis]}) * size[axis];
+      sum += std::abs(rows[k][axis]) * size[axis];
+    }
+    const double e = lost + 12.0 * 0x1p-24 * sum + 0x1p-140;
+    low[k] = float_below(rows[k][3] - e);
+    high[k] = float_above(rows[k][3] + e);
+  }
+}
+
+namespace {
+
+Bvh::Child placed(const PlacedTree& at, const Bvh::Child& child) {
+  return {child.first + (child.count == 0 ? at.first_node : at.first_slot), child.count};
+}
+
+/// Makes a node of the instance out of one of its mesh.
+RAYGATE_INLINE void place(const PlacedTree& at, const Bvh::Node& from, Bvh::Node& to) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  FloatLanes bounds[2][3];
+  for (int end = 0; end < 2; ++end) {
+    for (int k = 0; k < 3; ++k) load_lanes(from.bounds[end][k], bounds[end][k]);
+  }
+  // Their bounds are infinite: times 0, no numbers.
+  const IntLanes absent = bounds[0][0] > bounds[1][0];
+  for (int k = 0; k < 3; ++k) {
+    FloatLanes low = FloatLanes{} + at.low[k], high = FloatLanes{} + at.high[k];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float m = at.matrix[k][axis];
+      const int turned = m < 0.0f ? 1 : 0;
+      low += m * bounds[turned][axis];
+      high += m * bounds[turned ^ 1][axis];
+    }
+    low = absent ? FloatLanes{} + kInfinity : low;
+    high = absent ? FloatLanes{} - kInfinity : high;
+    std::memcpy(to.bounds[0][k], &low, sizeof low);
+    std::memcpy(to.bounds[1][k], &high, sizeof high);
+  }
+  for (int i = 0; i < Bvh::kWidth; ++i) to.child[i] = placed(at, from.child[i]);
+}
+
+/// Makes the corners of a leaf's triangles: as `transform_point` (host/scene/instance_transform.h)
+/// does of each.
+RAYGATE_INLINE void place(const PlacedTree& at, const float* from, std::size_t count, float* to) {
+  for (std::size_t v = 0; v < 3; ++v) {
+    DoubleQuad corner[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      FloatQuad single;
+      load_quad(from + (3 * v + k) * count, single);
+      corner[k] = __builtin_convertvector(single, DoubleQuad);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {  // what is beyond the last triangle is written over
+      DoubleQuad coordinate;
+      transform_coordinate(at.rows[k], corner, coordinate);
+      const FloatQuad single = __builtin_convertvector(coordinate, FloatQuad);
+      std::memcpy(to + (3 * v + k) * count, &single, sizeof single);
+    }
+  }
+}
+
+/// The box around a node's children.
+void box_around(const Bvh::Node& node, Box& box) {
+  clear(box);
+  for (int i = 0; i < Bvh::kWidth; ++i) {
+    const auto [low, high] = node.box(i);
+    if (low.x <= high.x) {
+      grow(box, Box{low.x, low.y, low.z, 0.0f, -high.x, -high.y, -high.z, 0.0f});
+    }
+  }
+}
+
+}  // namespace
+
+int Bvh::place_instances(const Scene& scene, int threads, TreeContent& content) {
+  int most_levels = 0;
+  std::vector<glm::dvec3> sizes;
+  for (const Mesh& mesh : scene.meshes) {
+    const TreeContent triangles{mesh.positions, mesh.triangles, {}};
+    Bvh& tree = meshes_.emplace_back(Bvh());
+    tree.build(triangles, kMaxDepth, threads);
+    // Hardly ever: half of the levels are for what is above.
+    if (tree.levels() > kMaxDepth / 2) tree.build(triangles, kMaxDepth / 2, threads);
+    most_levels = std::max(most_levels, tree.levels());
+    Box box;
+    box_around(tree.nodes_[0], box);
+    sizes.emplace_back(0.0);
+    for (int k = 0; k < 3; ++k) {
+      sizes.back()[k] = std::max(std::abs(double{box[k]}), std::abs(double{box[k + 4]}));
+    }
+  }
+  // More than the tree's own nodes and slots will be.
+  first_placed_ = static_cast<std::uint32_t>(scene.triangles.size() + scene.instances.size()) + 1;
+  std::vector<std::uint32_t> node_counts, slot_counts;
+  auto triangle = static_cast<std::uint32_t>(scene.triangles.size());
+  std::uint64_t slots = first_placed_;
+  for (const Instance& instance : scene.instances) {
+    const Bvh& tree = meshes_[instance.mesh];
+    node_counts.push_back(static_cast<std::uint32_t>(tree.nodes_.size()));
+    slot_counts.push_back(tree.slot_count());
+    slots += tree.slot_count();
+  }
+  if (slots >= std::uint64_t{1} << 31) throw std::length_error("2^31 triangles or more");
+  placed_nodes_ = Runs(first_placed_, node_counts);
+  placed_slots_ = Runs(first_placed_, slot_counts);
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    PlacedTree& at = placed_.emplace_back(scene.instances[i], sizes[scene.instances[i].mesh]);
+    at.first_node = placed_nodes_.begin(i);
+    at.first_slot = placed_slots_.begin(i);
+    at.first_triangle = triangle;
+    triangle += slot_counts[i];
+    Node root;
+    place_node(at.first_node, root);
+    TreeContent::Other& other = content.others.emplace_back();
+    box_around(root, other.box);
+    other.root = at.first_node;
+  }
+  if (static_cast<int>(std::bit_width(first_placed_)) > kMaxDepth - most_levels) {
+    throw std::length_error("meshes and instances too many for one tree");
+  }
+  return most_levels;
+}
+
+int Bvh::levels(std::uint32_t index) const {
+  int most = 0;
+  const Node& node = nodes_[index];
+  for (int i = 0; i < kWidth && node.bounds[0][0][i] <= node.bounds[1][0][i]; ++i) {
+    if (node.child[i].count == 0) most = std::max(most, levels(node.child[i].first));
+  }
+  return most + 1;
+}
+
+void Bvh::place_node(std::uint32_t index, Node& room) const {
+  const PlacedTree& at = placed_[placed_nodes_.find(index)];
+  const Node& from = meshes_[at.mesh].nodes_[index - at.first_node];
+  in_vectors([&](auto) RAYGATE_BODY { place(at, from, room); });
+}
+
+Bvh::Child Bvh::placed_child(std::uint32_t index, int i) const {
+  const PlacedTree& at = placed_[placed_nodes_.find(index)];
+  return placed(at, meshes_[at.mesh].nodes_[index - at.first_node].child[i]);
+}
+
+void Bvh::place_corners(const Child& leaf, LeafRoom& room) const {
+  const PlacedTree& at = placed_[placed_slots_.find(leaf.first)];
+  const float* const from =
+      meshes_[at.mesh].stored_corners({leaf.first - at.first_slot, leaf.count});
+  in_vectors([&](auto) RAYGATE_BODY { place(at, from, leaf.count, room.corners); });
+}
+
+Corners Bvh::placed_corners(std::uint32_t slot) const {
+  const PlacedTree& at = placed_[placed_slots_.find(slot)];
+  Corners corners = meshes_[at.mesh].stored_corners(slot - at.first_slot);
+  for (glm::vec3& corner : corners) corner = raygate::transform_point(at.rows, corner);
+  return corners;
+}
+
+std::uint32_t Bvh::placed_triangle(std::uint32_t slot) const {
+  const PlacedTree& at = placed_[placed_slots_.find(slot)];
+  return at.first_triangle + meshes_[at.mesh].triangles_[slot - at.first_slot];
+}
+
+FaceRef Bvh::placed_face(std::uint32_t slot) const {
+  const std::uint32_t instance = placed_slots_.find(slot);
+  const PlacedTree& at = placed_[instance];
+  return {instance, meshes_[at.mesh].triangles_[slot - at.first_slot]};
+}
+
+void Bvh::prefetch_placed(const Child& child) const {
+  const PlacedTree& at =
+      placed_[child.count == 0 ? placed_nodes_.find(child.first) : placed_slots_.find(child.first)];
+  meshes_[at.mesh].prefetch_stored(
+      {child.first - (child.count == 0 ? at.first_node : at.first_slot), child.count});
+}
+
+std::vector<Bvh::Child> Bvh::leaves() const {
+  std::vector<Child> leaves;
+  for (const Node& node : nodes_) {
+    std::ranges::copy_if(node.child, std::back_inserter(leaves),
+                         [](const Child& child) { return child.count != 0; });
+  }
+  for (const PlacedTree& at : placed_) {
+    for (const Child& leaf : meshes_[at.mesh].leaves()) leaves.push_back(placed(at, leaf));
+  }
+  return leaves;
+}
+
+}  // namespace raygate

@@ -1,0 +1,174 @@
+#include "host/bvh/packet_traversal.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "host/bvh/box.h"
+
+// Why no true hit is culled
+//
+// Let the ray meet a triangle at t* > 0, t* at most the exact cutoff, I its direction, and
+// u = 2^-24. On each axis t* I = x - O for a coordinate x inside the triangle's box, which the tree
+// stores at least one float, so at least 2^-149, wider: low' + 2^-149 <= x <= high' - 2^-149. By
+// symmetry let I > 0; near = low', far = high'.
+//
+// Entry: float32((near - O) * inverse_near). A difference of floats is off by a factor 1 + u and
+// never
+//   underflows; with |coordinates| <= 2^126 it does not overflow.
+//   * I >= 2^-100: inverse_near = float32(1/I), a normal number off by 1 + u. The product is off
+//     by 1 + u or by 2^-150 if it underflows; (near - O) <= t* I - 2^-149 and 1/I > 1/2, so the
+//     2^-150 is paid for by the widening, and the entry is at most t* (1 + 3.1 u), or negative.
+//     If the product overflows, t* > 2^127, while the axis of the largest I, in [1, 2), says
+//     t* <= 2^127: it does not happen.
+//   * I < 2^-100, or 0: inverse_near = 2^100 <= 1/I, so a positive entry comes out no later than
+//     above, and a negative or zero one never later than 0. With I = 0, near - O < 0.
+// Exit: float32((far - O) * inverse_far).
+//   * I >= 2^-100: inverse_far = float32((1 + 8 u) float32(1/I)) (Ize, "Robust BVH ray traversal",
+//     2013, grows the exit likewise). Four roundings: the exit is at least
+//     t* (1 + 8 u) (1 - u)^4 > t* (1 + 3.9 u); underflow is paid for as above.
+//   * I < 2^-100: inverse_far = +infinity, and far - O > 0: the exit is +infinity.
+// Cutoff: stored as t (1 + 8 u), rounded up; finite, so that an entry of +infinity stands for a ray
+//   that does not enter.
+// So every axis' entry <= t* (1 + 3.1 u) < every axis' exit and the cutoff, and the box is visited.
+//
+// A product may be 0 * infinity = NaN (far = O, I = 0: a ray within a face that the widening
+// has moved away from its triangle). Each comparison is written so that a NaN loses.
+
+namespace raygate {
+namespace {
+
+constexpr float kFarthest = std::numeric_limits<float>::max();  // no t is, nor any entry
+
+/// The smallest lane; no NaN.
+RAYGATE_INLINE float smallest_of(const FloatLanes& lanes) {
+  FloatLanes x = lanes, other = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
+  x = x < other ? x : other;
+  other = __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
+  x = x < other ? x : other;
+  other = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
+  x = x < other ? x : other;
+  return x[0];
+}
+
+}  // namespace
+
+PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
+    : cutoff_(FloatLanes{} - 1.0f),  // below any entry: no ray
+      bvh_(&bvh),
+      octant_(octant) {}
+
+void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction) {
+  assert(octant_of(direction) == octant_);
+  cutoff_[lane] = kFarthest;
+  const Beam beam(origin, direction);
+  for (int k = 0; k < 3; ++k) {
+    origin_[k][lane] = origin[k];
+    inverse_near_[k][lane] = beam.inverse_near[k];
+    inverse_far_[k][lane] = beam.inverse_far[k];
+  }
+}
+
+void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_beyond(t); }
+
+/// A packet on its way, at hand in registers.
+struct PacketVisitor {
+  int octant;
+  FloatLanes origin[3], inverse_near[3], inverse_far[3], cutoff;
+  LaneMask lanes[Bvh::kWidth];  ///< the rays that meet the children of the last node
+
+  RAYGATE_INLINE explicit PacketVisitor(const PacketTraversal& packet)
+      : octant(packet.octant_), cutoff(packet.cutoff_) {
+    for (int k = 0; k < 3; ++k) {
+      origin[k] = packet.origin_[k];
+      inverse_near[k] = packet.inverse_near_[k];
+      inverse_far[k] = packet.inverse_far_[k];
+    }
+  }
+
+  /// The rays that meet a box, given as the planes that they come to first and last, and where.
+  RAYGATE_INLINE LaneMask lanes_at(const float (&near)[3], const float (&far)[3],
+                                   FloatLanes& enter) const {
+    FloatLanes leave = cutoff;
+    enter = FloatLanes{};
+    for (int k = 0; k < 3; ++k) {
+      const FloatLanes t_near = (near[k] - origin[k]) * inverse_near[k];
+      const FloatLanes t_far = (far[k] - origin[k]) * inverse_far[k];
+      enter = t_near > enter ? t_near : enter;
+      leave = t_far < leave ? t_far : leave;
+    }
+    return sign_mask(enter <= leave);
+  }
+
+  RAYGATE_INLINE bool goes_on(float entry, LaneMask& rays) const {
+    rays &= sign_mask(cutoff >= entry);
+    return rays != 0;
+  }
+
+  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, LaneMask, FloatLanes& entry) {
+    LaneMask met = 0;
+    entry = FloatLanes{};
+    for (int i = 0; i < Bvh::kWidth && node.bounds[0][0][i] <= node.bounds[1][0][i]; ++i) {
+      float near[3], far[3];
+      for (int k = 0; k < 3; ++k) {
+        const int negative = octant >> k & 1;
+        near[k] = node.bounds[negative][k][i];
+        far[k] = node.bounds[negative ^ 1][k][i];
+      }
+      FloatLanes enter;
+      lanes[i] = lanes_at(near, far, enter);
+      if (lanes[i] == 0) continue;
+      met |= 1u << i;
+      enter = enter <= cutoff ? enter : FloatLanes{} + kFarthest;
+      entry[i] = smallest_of(enter);
+    }
+    return met;
+  }
+
+  RAYGATE_INLINE LaneMask rays_at(int i) const { return lanes[i]; }
+
+  /// The rays that meet the box of one triangle of a leaf.
+  RAYGATE_INLINE LaneMask lanes_at(const Bvh::Corners& corners) const {
+    Box box;
+    box_around(corners[0], corners[1], corners[2], box);
+    float near[3], far[3];
+    for (int k = 0; k < 3; ++k) {
+      const bool negative = (octant >> k & 1) != 0;
+      near[k] = negative ? -box[k + 4] : box[k];
+      far[k] = negative ? box[k] : -box[k + 4];
+    }
+    FloatLanes enter;
+    return lanes_at(near, far, enter);
+  }
+};
+
+/// Goes on to the next leaf.
+void advance(PacketTraversal& packet, LeafVisits& leaf) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    PacketVisitor visitor(packet);
+    Waiting<LaneMask> waiting;
+    leaf.count = 0;
+    while (leaf.count == 0 && next_leaf(*packet.bvh_, visitor, packet.stack_, waiting)) {
+      const std::uint32_t end = waiting.child.first + waiting.child.count;
+      for (std::uint32_t slot = waiting.child.first; slot < end; ++slot) {
+        const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(slot));
+        if (lanes == 0) continue;
+        LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
+        if (last != nullptr && last->lanes == lanes && last->first + last->count == slot) {
+          ++last->count;
+        } else {
+          leaf.visits[leaf.count++] = {slot, 1, lanes};
+        }
+      }
+    }
+  });
+}
+
+LeafVisits PacketTraversal::next_leaf() {
+  LeafVisits leaf;
+  advance(*this, leaf);
+  return leaf;
+}
+
+}  // namespace raygate

@@ -1,0 +1,305 @@
+#include "host/bvh/sah_builder.h"
+
+#include <algorithm>
+#include <bit>
+#include <condition_variable>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <span>
+
+#include "host/base/threads.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::uint32_t kTaskSize = 4096;  // runs no longer than that are one thread's
+constexpr std::uint32_t kFew = 4;  // of these all cuts are tried, of more those between slices
+constexpr int kBins = 16;  // most slices of an axis; half as many where not many are to be cut
+constexpr std::uint32_t kMany = 64;
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+/// A run of primitives that becomes a node, and whose child it is.
+struct Run {
+  std::uint32_t begin, end;
+  int depth;
+  std::uint32_t parent;
+  int side;
+  [[nodiscard]] std::uint32_t size() const { return end - begin; }
+};
+
+/// A box's middle in lanes 0 to 2, and turned in lanes 4 to 6: a box of no size.
+RAYGATE_INLINE void middle_of(const Box& box, Box& middle) {
+  const FloatLanes half = 0.5f * box;
+  middle = half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
+}
+
+/// What is around a run, and around the middles of what is in it.
+struct Around {
+  Box box, middles;
+};
+
+/// Equal slices of the middles' box on each axis.
+struct Slices {
+  int count;
+  FloatLanes low, scale;  ///< in lanes 0 to 2
+
+  RAYGATE_INLINE Slices(const Box& middles, std::uint32_t size)
+      : count(size < kMany ? kBins / 2 : kBins), low(middles), scale{} {
+    for (int k = 0; k < 3; ++k) {
+      const float extent = -(middles[k + 4] + middles[k]);
+      constexpr float kMost = std::numeric_limits<float>::max();
+      scale[k] = extent > 0.0f ? std::min(static_cast<float>(count) / extent, kMost) : 0.0f;
+    }
+  }
+  /// Which slices a box's middle is in; lanes 0 to 2.
+  RAYGATE_INLINE void of(const Box& box, IntLanes& slice) const {
+    Box middle;
+    middle_of(box, middle);
+    middle = (middle - low) * scale;
+    middle[3] = 0.0f;
+    slice = __builtin_convertvector(middle, IntLanes);
+    slice = slice < count - 1 ? slice : IntLanes{} + (count - 1);
+  }
+};
+
+/// Where to cut a run: what is in slices below `part` goes left; or, of a few, the first `part`.
+struct Cut {
+  float cost = kNever;  ///< a sum of area times count
+  int axis = 0;
+  int part = 0;
+};
+
+RAYGATE_INLINE void look_at(std::span<const Primitive> run, Around& around) {
+  clear(around.box);
+  clear(around.middles);
+  for (const Primitive& primitive : run) {
+    Box box, middle;
+    primitive.get(box);
+    middle_of(box, middle);
+    grow(around.box, box);
+    grow(around.middles, middle);
+  }
+}
+
+/// The cheapest cut between parts of these boxes and counts.
+RAYGATE_INLINE void find_cut(const Box* boxes, const std::uint32_t* counts, int parts, int axis,
+                             float unit, Cut& best) {
+  float right_cost[kBins];
+  Box box;
+  clear(box);
+  std::uint32_t count = 0;
+  for (int part = parts - 1; part > 0; --part) {
+    grow(box, boxes[part]);
+    count += counts[part];
+    right_cost[part] = count == 0 ? kNever : half_area(box, unit) * static_cast<float>(count);
+  }
+  clear(box);
+  count = 0;
+  for (int part = 1; part < parts; ++part) {
+    grow(box, boxes[part - 1]);
+    count += counts[part - 1];
+    if (count == 0) continue;
+    const float cost = half_area(box, unit) * static_cast<float>(count) + right_cost[part];
+    if (cost < best.cost) best = {cost, axis, part};
+  }
+}
+
+RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Slices& slices,
+                                       float unit, Cut& best) {
+  Box boxes[3][kBins];
+  std::uint32_t counts[3][kBins] = {};
+  for (auto& axis : boxes) {
+    for (int i = 0; i < slices.count; ++i) clear(axis[i]);
+  }
+  const auto put = [&](const Primitive& primitive) __attribute__((always_inline)) {
+    Box box;
+    IntLanes slice;
+    primitive.get(box);
+    slices.of(box, slice);
+    for (int axis = 0; axis < 3; ++axis) {
+      grow(boxes[axis][slice[axis]], box);
+      ++counts[axis][slice[axis]];
+    }
+  };
+  // Neighbours are often in the same slices, and would wait for each other.
+  const std::size_t half = run.size() / 2;
+  for (std::size_t i = 0; i < half; ++i) {
+    put(run[i]);
+    put(run[half + i]);
+  }
+  if (run.size() % 2 != 0) put(run.back());
+  for (int axis = 0; axis < 3; ++axis) {
+    if (slices.scale[axis] > 0.0f) {
+      find_cut(boxes[axis], counts[axis], slices.count, axis, unit, best);
+    }
+  }
+}
+
+/// Puts what is in slices below the cut first; how many these are. Keeps the order on both sides.
+/// `room` is as large as the run.
+RAYGATE_INLINE std::uint32_t part_at(const Cut& cut, const Slices& slices, std::span<Primitive> run,
+                                     Primitive* room) {
+  const float low = slices.low[cut.axis], scale = slices.scale[cut.axis];
+  const auto limit = static_cast<float>(cut.part);
+  std::uint32_t left = 0, right = 0;
+  for (const Primitive& primitive : run) {
+    const bool is_left = (primitive.middle(cut.axis) - low) * scale < limit;
+    room[right] = primitive;
+    run[left] = primitive;  // itself, or one that has been moved
+    left += is_left;
+    right += !is_left;
+  }
+  std::copy_n(room, right, run.begin() + left);
+  return left;
+}
+
+/// Puts a few primitives in the order of their middles along an axis; stable.
+RAYGATE_INLINE void sort_along(std::span<Primitive> run, int axis) {
+  for (std::size_t i = 1; i < run.size(); ++i) {
+    const Primitive moved = run[i];
+    std::size_t place = i;
+    for (; place > 0 && run[place - 1].middle(axis) > moved.middle(axis); --place) {
+      run[place] = run[place - 1];
+    }
+    run[place] = moved;
+  }
+}
+
+RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
+  constexpr std::uint32_t kOnes[kFew] = {1, 1, 1, 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    sort_along(run, axis);
+    Box boxes[kFew];
+    for (std::size_t i = 0; i < run.size(); ++i) run[i].get(boxes[i]);
+    find_cut(boxes, kOnes, static_cast<int>(run.size()), axis, unit, best);
+  }
+  if (best.axis != 2) sort_along(run, best.axis);
+}
+
+}  // namespace
+
+/// Where the run is cut in two; puts its primitives on their sides, in a room as large as it. Not
+/// far from the largest depth, `depths_left` away, and where no cut is found, halves are split.
+std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left, Box& box) {
+  return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
+    const auto size = static_cast<std::uint32_t>(run.size());
+    Around around;
+    look_at(run, around);
+    box = around.box;
+    if (size == 2) return 1;
+    Cut cut;
+    const bool is_deep = static_cast<int>(std::bit_width(size)) >= depths_left;
+    if (is_deep) {
+      std::ranges::stable_sort(run, {},
+                               [](const Primitive& primitive) { return primitive.middle(0); });
+    } else if (size <= kFew) {
+      cut_few(run, unit_of(box), cut);
+      return static_cast<std::uint32_t>(cut.part);
+    } else {
+      const Slices slices(around.middles, size);
+      cut_between_slices(run, slices, unit_of(box), cut);
+      if (cut.cost < kNever) return part_at(cut, slices, run, room);
+    }
+    return size / 2;
+  });
+}
+
+namespace {
+
+/// Cuts runs up to the last one.
+class Divider {
+ public:
+  Divider(BinaryTree& tree, int max_depth)
+      : tree_(tree),
+        max_depth_(max_depth),
+        room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {
+    waiting_.push_back({0, tree.size(), 0, 0, 0});
+  }
+
+  /// What each thread does.
+  void work() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [&] { return !waiting_.empty() || busy_ == 0; });
+      if (waiting_.empty()) return;
+      const Run run = waiting_.back();
+      waiting_.pop_back();
+      ++busy_;
+      lock.unlock();
+      Run sides[2];
+      if (run.size() <= kTaskSize) {
+        divide_all(run);
+      } else {
+        divide(run, sides);
+      }
+      lock.lock();
+      --busy_;
+      if (run.size() > kTaskSize) waiting_.insert(waiting_.end(), {sides[0], sides[1]});
+      changed_.notify_all();
+    }
+  }
+
+ private:
+  void divide(const Run& run, Run (&sides)[2]) {
+    if (run.size() == 1) {
+      tree_.nodes[run.parent].child[run.side] = tree_.size() + run.begin;
+      return;
+    }
+    Box box;
+    const std::span<Primitive> primitives(tree_.primitives);
+    const std::uint32_t middle =
+        run.begin + cut_run(primitives.subspan(run.begin, run.size()), &room_[run.begin],
+                            max_depth_ - run.depth, box);
+    BinaryTree::Node& node = tree_.nodes[middle];
+    node.box = box;
+    node.first = run.begin;
+    node.count = run.size();
+    tree_.nodes[run.parent].child[run.side] = middle;
+    sides[0] = {run.begin, middle, run.depth + 1, middle, 0};
+    sides[1] = {middle, run.end, run.depth + 1, middle, 1};
+  }
+
+  void divide_all(const Run& run) {
+    Run sides[2];
+    divide(run, sides);
+    if (run.size() == 1) return;
+    divide_all(sides[0]);
+    divide_all(sides[1]);
+  }
+
+  BinaryTree& tree_;
+  int max_depth_;
+  std::unique_ptr<Primitive[]> room_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Run> waiting_;
+  int busy_ = 0;
+};
+
+}  // namespace
+
+BinaryTree::BinaryTree(const TreeContent& content, int max_depth, int threads)
+    : primitives(content.size()), nodes(content.size()) {
+  if (primitives.empty()) return;
+  const std::size_t tasks = (primitives.size() + kTaskSize - 1) / kTaskSize;
+  for_each_on_threads(threads, tasks, [&](std::size_t task) {
+    const std::size_t begin = task * kTaskSize;
+    const std::size_t end = std::min(begin + kTaskSize, primitives.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      Box box;
+      if (i < content.triangles.size()) {
+        const auto& [a, b, c] = content.triangles[i].vertices;
+        box_around(content.positions[a], content.positions[b], content.positions[c], box);
+      } else {
+        box = content.others[i - content.triangles.size()].box;
+      }
+      std::memcpy(&primitives[i], &box, sizeof box);
+      primitives[i].triangle = static_cast<std::uint32_t>(i);
+    }
+  });
+  Divider divider(*this, max_depth);
+  on_threads(static_cast<int>(std::min<std::size_t>(threads, tasks)), [&] { divider.work(); });
+}
+
+}  // namespace raygate

@@ -1,0 +1,82 @@
+// How triangles are divided, two ways at a time: the plan of a tree.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "host/bvh/box.h"
+#include "host/bvh/bvh.h"
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// What a tree is built around.
+struct TreeContent {
+  /// Whatever has a tree of its own: an instance.
+  struct Other {
+    Box box;
+    std::uint32_t root;  ///< the number of its tree's root, as a node
+  };
+  std::span<const glm::vec3> positions;
+  std::span<const Triangle> triangles;  ///< of these positions
+  std::vector<Other> others = {};
+
+  [[nodiscard]] std::size_t size() const { return triangles.size() + others.size(); }
+};
+
+/// A triangle and its grown box; or, of a number beyond those of triangles, one of the others.
+struct Primitive {
+  float low[3];
+  std::uint32_t triangle;
+  float turned_high[3];
+  std::uint32_t unused;
+
+  RAYGATE_INLINE void get(Box& box) const { std::memcpy(&box, this, sizeof box); }
+  /// The box's along an axis; halved before it is added up, so that it is finite.
+  [[nodiscard]] RAYGATE_INLINE float middle(int axis) const {
+    return 0.5f * low[axis] - 0.5f * turned_high[axis];
+  }
+};
+
+/// A binary tree of boxes with one triangle to a leaf, split top-down by the surface area heuristic
+/// (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007). Its nodes are
+/// runs of `primitives`, which it has put in order; the node whose run is cut in two at m is
+/// nodes[m]. So each thread knows where its nodes go, and the tree does not depend on which thread
+/// made what.
+struct BinaryTree {
+  /// A node's number; from `size()` on: that of a leaf's primitive, plus size().
+  using Ref = std::uint32_t;
+
+  struct Node {
+    Box box;
+    Ref child[2];
+    std::uint32_t first, count;  ///< the run
+  };
+
+  /// All positions finite, of magnitude at most 2^126; fewer than 2^31 primitives. No leaf is
+  /// deeper than `max_depth`, the root's depth being 0, if halves are not.
+  BinaryTree(const TreeContent& content, int max_depth, int threads);
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }
+  [[nodiscard]] bool is_leaf(Ref ref) const { return ref >= size(); }
+  RAYGATE_INLINE void get_box(Ref ref, Box& box) const {
+    if (is_leaf(ref)) {
+      primitives[ref - size()].get(box);
+    } else {
+      box = nodes[ref].box;
+    }
+  }
+  [[nodiscard]] std::uint32_t first(Ref ref) const {
+    return is_leaf(ref) ? ref - size() : nodes[ref].first;
+  }
+  [[nodiscard]] std::uint32_t count(Ref ref) const { return is_leaf(ref) ? 1 : nodes[ref].count; }
+  /// Of a tree that is not empty.
+  [[nodiscard]] Ref root() const { return nodes[0].child[0]; }
+
+  std::vector<Primitive> primitives;
+  std::vector<Node> nodes;  ///< nodes[0] is above the root
+};
+
+}  // namespace raygate

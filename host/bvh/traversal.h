@@ -1,0 +1,98 @@
+// The way of a bundle of rays through the tree, or of whatever else meets boxes: leaf by leaf, near
+// before far.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "host/base/lanes.h"
+#include "host/bvh/bvh.h"
+
+namespace raygate {
+
+/// What waits to be visited: where the first of the bundle enters its box, a little less at most,
+/// and which of the bundle may meet it.
+template <class Rays>
+struct Waiting {
+  Bvh::Child child;
+  float entry;
+  [[no_unique_address]] Rays rays;
+};
+
+/// Of what waits, the nearest comes last, as far as one node knows.
+template <class Rays>
+struct WalkStack {
+  int depth;
+  Waiting<Rays> waiting[Bvh::kStackSize];
+
+  explicit WalkStack(const Rays& rays) : depth(1) { waiting[0] = {{0, 0}, 0.0f, rays}; }
+};
+
+/// A bundle that is one thing, which goes where it goes.
+struct Whole {};
+
+/// Goes on to the next leaf; false when there is none. To be called again and again, whatever the
+/// visitor has learned in between. The visitor is asked
+///   * goes_on(entry, rays): whether a child still matters to any of `rays`; may narrow them;
+///   * meet(node, rays, entry): which children the rays meet, bit i for child i, and where they
+///     enter them, 0 or more;
+///   * rays_at(i): which of the rays meet child i, after that.
+template <class Visitor, class Rays>
+RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>& stack,
+                              Waiting<Rays>& leaf) {
+  using Key = std::int32_t;  // a child's number in the place of the last bits of its entry
+  constexpr Key kNumber = Bvh::kWidth - 1;
+  constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  while (stack.depth > 0) {
+    leaf = stack.waiting[--stack.depth];
+    while (visitor.goes_on(leaf.entry, leaf.rays)) {
+      if (leaf.child.count != 0) return true;
+      Bvh::Node room;
+      const Bvh::Node& node = tree.node(leaf.child.first, room);
+      FloatLanes entry;
+      LaneMask met = visitor.meet(node, leaf.rays, entry);
+      if (met == 0) break;
+      IntLanes keys;
+      bits_of(entry, keys);
+      keys = (keys & ~kNumber) | kNumbers;
+      const auto take = [&]() __attribute__((always_inline)) {
+        const Key key = keys[std::countr_zero(met)];
+        met &= met - 1;
+        return key;
+      };
+      const auto child_at = [&](Key key, Waiting<Rays> & child) __attribute__((always_inline)) {
+        const int i = key & kNumber;
+        child = {node.child[i], std::bit_cast<float>(key & ~kNumber), visitor.rays_at(i)};
+        tree.prefetch(child.child);
+      };
+      const auto push = [&](Key key) __attribute__((always_inline)) {
+        Waiting<Rays>& child = stack.waiting[stack.depth++];
+        child_at(key, child);
+      };
+      Key nearest = take();
+      if (met != 0) {
+        const Key next = take();
+        if (met == 0) {
+          push(std::max(nearest, next));
+          nearest = std::min(nearest, next);
+        } else {
+          Key sorted[Bvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
+          int count = 2;
+          while (met != 0) {  // NOLINT(bugprone-infinite-loop): take() takes one of them
+            const Key key = take();
+            int place = count++;
+            for (; place > 0 && sorted[place - 1] < key; --place) sorted[place] = sorted[place - 1];
+            sorted[place] = key;
+          }
+          nearest = sorted[--count];
+          for (int i = 0; i < count; ++i) push(sorted[i]);
+        }
+      }
+      child_at(nearest, leaf);
+    }
+  }
+  return false;
+}
+
+}  // namespace raygate

@@ -1,0 +1,64 @@
+#include "host/intersect/check_intersector.h"
+
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "host/intersect/hex_words.h"
+
+namespace raygate {
+namespace {
+
+bool same_bits(const glm::vec3& a, const glm::vec3& b) {
+  using Bits = std::array<std::uint32_t, 3>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+std::string hex(const glm::vec3& v) { return hex_words({&v.x, 3}); }
+
+std::string describe(const Bvh& bvh, const NearestHit& hit) {
+  if (hit.slot == NearestHit::kNone) return "no hit";
+  char t[64];
+  std::snprintf(t, sizeof t, ", t in [%.17g, %.17g]", hit.t.low, hit.t.high);
+  return "triangle " + std::to_string(bvh.triangle_of(hit.slot)) + ", P" + hex(hit.point) +
+         " within " + hex_words({&hit.point_error, 1}) + t;
+}
+
+}  // namespace
+
+CheckIntersector::CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
+                                   std::unique_ptr<Intersector> reference)
+    : bvh_(bvh), intersector_(std::move(intersector)), reference_(std::move(reference)) {}
+
+void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& search,
+                                 std::span<NearestHit> hits) {
+  intersector_->intersect(rays, search, hits);
+  RayQuery same = search;
+  same.work = {};
+  expected_.resize(rays.size());
+  reference_->intersect(rays, same, expected_);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (agree(rays[i], search, i, hits[i], expected_[i])) continue;
+    const float limit = search.limit(i);
+    throw IntersectorMismatch("the intersectors differ: ray" + hex(rays[i].origin) + "," +
+                              hex(rays[i].direction) + ", limit" + hex_words({&limit, 1}) + ": " +
+                              describe(bvh_, hits[i]) +
+                              "; reference: " + describe(bvh_, expected_[i]));
+  }
+}
+
+bool CheckIntersector::agree(const Ray& ray, const RayQuery& search, std::size_t number,
+                             const NearestHit& a, const NearestHit& b) const {
+  if (a.slot == NearestHit::kNone || b.slot == NearestHit::kNone) return a.slot == b.slot;
+  if (!search.enough_before.empty() && a.slot != b.slot) {
+    const float enough = search.enough_before[number];
+    return is_before(bvh_, ray, a, enough) && is_before(bvh_, ray, b, enough);
+  }
+  const bool with_point = search.ignored.empty() && search.enough_before.empty();
+  return a.slot == b.slot && a.t.low <= b.t.high && b.t.low <= a.t.high &&
+         (!with_point || (same_bits(a.point, b.point) && a.point_error == b.point_error));
+}
+
+}  // namespace raygate

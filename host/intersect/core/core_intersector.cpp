@@ -1,0 +1,97 @@
+#include "host/intersect/core/core_intersector.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "host/base/stopwatch.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+
+namespace raygate {
+namespace {
+
+CoreRay core_ray(const Ray& ray, const RayQuery& search, std::uint32_t number) {
+  CoreRay core{.ray = ray, .limit = search.limit(number), .tag = number};
+  if (!search.ignored.empty()) core.ignored = search.ignored[number];
+  // A hit before the limit is before what is enough.
+  core.any_hit = !search.enough_before.empty() && search.enough_before[number] >= core.limit;
+  core.every_box = !search.culling;
+  return core;
+}
+
+}  // namespace
+
+IntersectCounters CoreIntersector::counters() const {
+  IntersectCounters counters = counters_;
+  const CoreCounters core = core_->counters();
+  counters.hit.tests = counters.hit.unit_tests = core.hits + core.misses + core.doubts;
+  counters.hit.misses = core.misses;
+  counters.hit.hits = core.hits;
+  counters.hit.edge_doubts = core.doubts;
+  counters.hit.depth_doubts = core.near_ties;
+  counters.hit.quotients = 3 * core.rays + 4 * core.hits;  // 1 / I, t, P
+  counters.hit.input_bytes = core.lines * sizeof(MemoryLine);
+  counters.hit.clocks = core.clocks;
+  return counters;
+}
+
+void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& search,
+                                std::span<NearestHit> hits) {
+  assert(hits.size() == rays.size());
+  Stopwatch watch;
+  for (NearestHit& hit : hits) hit.slot = NearestHit::kNone;  // the rest has no meaning
+  std::ranges::fill(search.work, RayWork{});
+  sent_.clear();
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    if (!is_usable(rays[i].direction)) continue;
+    if (!is_scaled(rays[i].direction)) refuse_unscaled(rays[i]);
+    sent_.push_back(core_ray(rays[i], search, i));
+  }
+  while (!sent_.empty()) {
+    results_.clear();
+    core_->trace(image_->lines(), sent_, results_);
+    sent_.clear();
+    for (const CoreResult& result : results_) {
+      const Ray& ray = rays[result.tag];
+      if (!search.work.empty()) {
+        search.work[result.tag].tests += result.kind == CoreResult::Kind::kEnd ? result.tests : 0;
+        search.work[result.tag].doubts += result.kind == CoreResult::Kind::kDoubt;
+      }
+      if (result.kind != CoreResult::Kind::kRest) {
+        settle(ray, search, result, hits[result.tag]);
+        continue;
+      }
+      for (std::uint64_t left = result.nodes; left != 0; left &= left - 1) {
+        CoreRay& again = sent_.emplace_back(core_ray(ray, search, result.tag));
+        again.start = result.line + static_cast<std::uint32_t>(std::countr_zero(left));
+      }
+    }
+  }
+  counters_.traverse += watch.lap();
+  if (search.enough_before.empty()) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits[i].slot == NearestHit::kNone) continue;
+      const UnitPoint unit =
+          plane_point(make_plane(rays[i].origin, bvh_.corners_of(hits[i].slot)), rays[i].direction);
+      hits[i].point = unit.point;
+      hits[i].point_error = unit.error;
+      ++counters_.hit.plane_tests;
+    }
+  }
+  counters_.record += watch.lap();
+}
+
+/// Takes a hit, or what may be one.
+void CoreIntersector::settle(const Ray& ray, const RayQuery& search, const CoreResult& result,
+                             NearestHit& best) {
+  NearestHit hit{.slot = result.triangle};
+  const float limit = search.limit(result.tag);
+  if (result.kind == CoreResult::Kind::kDoubt) {
+    settle_doubt(bvh_, ray, limit, hit, best, counters_);
+  } else if (result.found) {
+    hit.t = hit_distance(ray, bvh_.corners_of(hit.slot));
+    take_if_nearer(bvh_, ray, limit, hit, best, counters_);
+  }
+}
+
+}  // namespace raygate

@@ -1,0 +1,40 @@
+// Hits found by a ray core: rays go to hardware that walks the tree by itself.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "host/bvh/bvh.h"
+#include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/intersector.h"
+
+namespace raygate {
+
+/// Sends rays to a core and settles by exact arithmetic what it leaves open. P is the hit-test
+/// unit's, from a record that the host makes, once for each hit: so that it has the bits of other
+/// intersectors'.
+class CoreIntersector : public Intersector {
+ public:
+  /// `image`, of `bvh`, is what the core reads. The tree must outlive this. Intersectors of one
+  /// thread may share a core.
+  CoreIntersector(const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
+                  std::shared_ptr<CoreUnit> core)
+      : bvh_(bvh), image_(std::move(image)), core_(std::move(core)) {}
+
+  void intersect(std::span<const Ray> rays, const RayQuery& search,
+                 std::span<NearestHit> hits) override;
+  [[nodiscard]] IntersectCounters counters() const override;
+
+ private:
+  void settle(const Ray& ray, const RayQuery& search, const CoreResult& result, NearestHit& best);
+
+  const Bvh& bvh_;
+  std::shared_ptr<const MemoryImage> image_;
+  std::shared_ptr<CoreUnit> core_;
+  IntersectCounters counters_;
+  std::vector<CoreRay> sent_;
+  std::vector<CoreResult> results_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,102 @@
+// The ray core as software sees it: rays in, sure hits and doubts out.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "host/exact/exact.h"
+#include "host/intersect/core/memory_image.h"
+
+namespace raygate {
+
+/// A ray for the core.
+struct CoreRay {
+  static constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
+
+  Ray ray;  ///< the direction scaled (see is_scaled)
+  /// Positive, +infinity for none: hits at t >= limit do not count. The exact t.
+  float limit = std::numeric_limits<float>::infinity();
+  std::uint32_t ignored = kNoTriangle;       ///< a triangle that does not count
+  std::uint32_t start = MemoryImage::kRoot;  ///< the line of the inner node where its walk begins
+  std::uint32_t tag = 0;                     ///< comes back with all that concerns the ray
+  bool any_hit = false;                      ///< the first sure hit that is found will do
+  bool every_box = false;                    ///< it enters all boxes
+};
+
+/// A word of the core about a ray. Words of several rays come mixed; a ray's end is its last one.
+struct CoreResult {
+  enum class Kind : std::uint8_t {
+    kEnd = 0,  ///< of the walk; with the nearest sure hit, if there is one
+    kDoubt =
+        1,      ///< a triangle that may be hit, nearer than the sure hit: exact arithmetic must say
+    kRest = 2,  ///< inner nodes for which the stack had no room: a walk must begin at each
+  };
+
+  Kind kind = Kind::kEnd;
+  bool found = false;     ///< kEnd: whether there is a sure hit; the next three are its
+  std::uint32_t tag = 0;  ///< the ray's
+  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt
+  float t = 0.0f;                                 ///< kEnd: off by fewer than 2^t_error numbers
+  std::uint32_t t_error = 0;
+  glm::vec3 point{0.0f};    ///< kEnd: P in the core's own bits, relative to the origin
+  std::uint32_t tests = 0;  ///< kEnd: triangles tested
+  std::uint32_t line = 0;   ///< kRest: of the node that is bit 0 of `nodes`
+  std::uint64_t nodes = 0;  ///< kRest: bit i: the node at line + i
+};
+
+/// What a core has done since it was made. Clocks are 0 where nothing is simulated.
+struct CoreCounters {
+  static constexpr std::uint64_t kSpan = 256;
+
+  std::uint64_t rays = 0;
+  std::uint64_t nodes = 0;                         ///< node lines that the box unit took
+  std::uint64_t triangles = 0;                     ///< triangle lines that the set-up unit took
+  std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< of tests
+  std::uint64_t near_ties = 0;                     ///< sure hits that leave as doubts
+  std::uint64_t rests = 0;                         ///< words of kind kRest
+  std::uint64_t lines = 0;                         ///< read from memory
+  std::uint64_t waits = 0;  ///< clocks in which memory did not take what was asked for
+  /// Clocks of the busier of both units in each span of kSpan clocks: rays that keep boxes busy and
+  /// rays that keep triangles busy come in turns.
+  std::uint64_t busier = 0;
+  std::uint64_t clocks = 0;
+
+  CoreCounters& operator+=(const CoreCounters& other) {
+    rays += other.rays;
+    nodes += other.nodes;
+    triangles += other.triangles;
+    hits += other.hits;
+    misses += other.misses;
+    doubts += other.doubts;
+    near_ties += other.near_ties;
+    rests += other.rests;
+    lines += other.lines;
+    waits += other.waits;
+    busier += other.busier;
+    clocks += other.clocks;
+    return *this;
+  }
+};
+
+/// Walks rays through a memory image.
+///
+/// Promises: the ray's nearest hit, in exact arithmetic, is the sure hit of its end, or a triangle
+/// of its doubts, or below a node of its rests; with any_hit the first that is found may be in its
+/// place. What is a doubt may differ between cores, and for a core that waits for memory from run
+/// to run.
+class CoreUnit {
+ public:
+  virtual ~CoreUnit() = default;
+
+  /// Adds what the rays give to `results`; all words of all rays. The memory holds `lines`, a
+  /// MemoryImage's.
+  virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+                     std::vector<CoreResult>& results) = 0;
+
+  [[nodiscard]] virtual CoreCounters counters() const = 0;
+};
+
+}  // namespace raygate

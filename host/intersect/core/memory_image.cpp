@@ -1,0 +1,199 @@
+#include "host/intersect/core/memory_image.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "host/bvh/sah_builder.h"
+#include "host/scene/scene.h"
+
+namespace raygate {
+namespace {
+
+using Ref = BinaryTree::Ref;
+
+/// The exact bounds of triangles.
+struct Bounds {
+  glm::vec3 low{std::numeric_limits<float>::infinity()};
+  glm::vec3 high{-std::numeric_limits<float>::infinity()};
+
+  void add(const Bounds& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  /// Half its surface.
+  [[nodiscard]] double area() const {
+    const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+  }
+};
+
+/// The tree's triangles as a scene, triangle i being slot i.
+Scene scene_of(const Bvh& bvh) {
+  Scene scene;
+  scene.positions.reserve(3 * std::size_t{bvh.slot_count()});
+  scene.triangles.resize(bvh.slot_count());
+  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+    for (std::uint32_t v = 0; v < 3; ++v) {
+      scene.triangles[slot].vertices[v] = static_cast<std::uint32_t>(scene.positions.size());
+      scene.positions.push_back(bvh.corners_of(slot)[v]);
+    }
+  }
+  return scene;
+}
+
+double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
+
+/// The difference of two floats, rounded up or down (Knuth's two-sum says which way it was
+/// rounded).
+double above(double a, double b) {
+  const double d = a - b, minus_b = d - a, error = (a - (d - minus_b)) + (-b - minus_b);
+  return error > 0.0 ? up(d) : d;
+}
+double below(double a, double b) { return -above(b, a); }
+
+}  // namespace
+
+/// Makes a binary tree seven wide.
+class ImageWriter {
+ public:
+  ImageWriter(MemoryImage& image, const Bvh& bvh, const BinaryTree& tree)
+      : image_(image), bvh_(bvh), tree_(tree), bounds_(tree.size()), leaf_(tree.size()) {}
+
+  void write() {
+    image_.lines_.resize(1);
+    if (tree_.size() == 0) {
+      image_.lines_[0] = NodeLine().line();
+      image_.node_count_ = 1;
+      image_.depth_ = 1;
+      return;
+    }
+    plan(tree_.root());
+    write_node(MemoryImage::kRoot, tree_.root(), 1);
+  }
+
+ private:
+  // Triangles whose boxes are hardly smaller than the box of all of them share a leaf: whoever
+  // enters one box enters all.
+  static constexpr std::uint32_t kMostInLeaf = 4;
+  static constexpr double kSameBox = 0.8;
+
+  [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || leaf_[ref]; }
+
+  [[nodiscard]] Bounds bounds(Ref ref) const {
+    if (!tree_.is_leaf(ref)) return bounds_[ref];
+    Bounds bounds;
+    for (const glm::vec3& corner : bvh_.corners_of(slot(tree_.first(ref)))) {
+      bounds.add({corner, corner});
+    }
+    return bounds;
+  }
+  [[nodiscard]] std::uint32_t slot(std::uint32_t primitive) const {
+    return tree_.primitives[primitive].triangle;
+  }
+
+  /// Bounds, and which nodes are leaves; the sum of the triangles' areas.
+  double plan(Ref ref) {
+    if (tree_.is_leaf(ref)) return bounds(ref).area();
+    const double sum = plan(tree_.nodes[ref].child[0]) + plan(tree_.nodes[ref].child[1]);
+    for (const Ref child : tree_.nodes[ref].child) bounds_[ref].add(bounds(child));
+    const std::uint32_t count = tree_.count(ref);
+    leaf_[ref] = count <= kMostInLeaf && sum >= kSameBox * count * bounds_[ref].area();
+    return sum;
+  }
+
+  /// The children of the wide node `ref`: those of the binary one, the largest opened again and
+  /// again.
+  [[nodiscard]] std::vector<Ref> children(Ref ref) const {
+    std::vector<Ref> refs = {ref};
+    while (refs.size() < NodeLine::kChildren) {
+      auto largest = refs.end();
+      double area = -1.0;
+      for (auto at = refs.begin(); at != refs.end(); ++at) {
+        if (is_leaf(*at) || bounds(*at).area() <= area) continue;
+        largest = at;
+        area = bounds(*at).area();
+      }
+      if (largest == refs.end()) break;
+      const Ref opened = *largest;
+      *largest = tree_.nodes[opened].child[0];
+      refs.insert(largest + 1, tree_.nodes[opened].child[1]);
+    }
+    return refs;
+  }
+
+  /// The grid on which the box goes from 0 to at most 255. An axis without extent gets cells
+  /// much smaller than the others'.
+  static void set_grid(const Bounds& bounds, NodeLine& node) {
+    constexpr int kFinest = 24;  // so many binary orders below the coarsest
+    node.origin = bounds.low;
+    int coarsest = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double cell = above(bounds.high[k], bounds.low[k]) / 255.0;
+      node.exponent[k] = cell > 0.0 ? std::clamp(std::ilogb(up(cell)) + 128, 1, 254) : 1;
+      coarsest = std::max(coarsest, node.exponent[k]);
+    }
+    for (int& exponent : node.exponent) exponent = std::max({exponent, coarsest - kFinest, 1});
+  }
+
+  static void set_box(const Bounds& bounds, const NodeLine& node, NodeLine::Child& child) {
+    for (int k = 0; k < 3; ++k) {
+      const double cell = std::ldexp(1.0, node.exponent[k] - 127);
+      const double low = below(bounds.low[k], node.origin[k]) / cell;
+      const double high = above(bounds.high[k], node.origin[k]) / cell;
+      child.low[k] = static_cast<std::uint8_t>(std::floor(low));
+      child.high[k] = static_cast<std::uint8_t>(std::ceil(high));
+    }
+  }
+
+  void write_node(std::uint32_t number, Ref ref, int depth) {
+    NodeLine node;
+    set_grid(bounds(ref), node);
+    node.base = static_cast<std::uint32_t>(image_.lines_.size());
+    const std::vector<Ref> refs = children(ref);
+    std::uint32_t size = 0;
+    for (std::size_t i = 0; i < refs.size(); ++i) {
+      node.child[i].kind = is_leaf(refs[i]) ? tree_.count(refs[i]) : NodeLine::kInner;
+      set_box(bounds(refs[i]), node, node.child[i]);
+      size += node.child[i].size();
+    }
+    image_.lines_[number] = node.line();
+    image_.lines_.resize(image_.lines_.size() + size);
+    image_.node_count_ += 1;
+    image_.depth_ = std::max(image_.depth_, depth);
+    std::uint32_t next = node.base;
+    for (std::size_t i = 0; i < refs.size(); ++i) {
+      if (node.child[i].kind == NodeLine::kInner) {
+        write_node(next, refs[i], depth + 1);
+      } else {
+        for (std::uint32_t k = 0; k < node.child[i].kind; ++k) {
+          const std::uint32_t name = slot(tree_.first(refs[i]) + k);
+          image_.lines_[next + k] = TriangleLine(bvh_.corners_of(name), name).line();
+        }
+      }
+      next += node.child[i].size();
+    }
+  }
+
+  MemoryImage& image_;
+  const Bvh& bvh_;
+  const BinaryTree& tree_;
+  std::vector<Bounds> bounds_;  // of inner nodes
+  std::vector<char> leaf_;
+};
+
+MemoryImage::MemoryImage(const Bvh& bvh, int threads) {
+  if (bvh.has_instances()) throw std::invalid_argument("instances, expected them written out");
+  const Scene scene = scene_of(bvh);
+  const BinaryTree tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, threads);
+  ImageWriter(*this, bvh, tree).write();
+}
+
+std::string_view MemoryImage::bytes() const {
+  static_assert(std::endian::native == std::endian::little, "the lowest bits come first");
+  return {reinterpret_cast<const char*>(lines_.data()), lines_.size() * sizeof(MemoryLine)};
+}
+
+}  // namespace raygate

@@ -1,0 +1,42 @@
+// The ray core's box unit in C++, bit for bit: which children of a node a ray enters, near first.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "host/intersect/core/memory_line.h"
+
+namespace raygate {
+
+/// What box_unit reads of a ray.
+struct BoxRay {
+  glm::vec3 origin{0.0f};
+  glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite where I_k is 0
+  float limit = 0.0f;       ///< positive, or +infinity: hits beyond it are not wanted
+  bool every_box = false;   ///< all children are entered, whatever their boxes
+};
+
+/// Children that a ray enters, the nearest first: hw/ray_core/ray_core_pkg.sv, "group".
+struct BoxGroup {
+  struct Entry {
+    std::uint32_t enter = 0;   ///< lower bound of t, in units of 2^(exponent - 127 - 12)
+    std::uint32_t offset = 0;  ///< of the child's first line from `base`
+    std::uint32_t count = 0;   ///< of a leaf's triangles; 0: an inner node
+
+    friend bool operator==(const Entry&, const Entry&) = default;
+  };
+
+  std::uint32_t base = 0, exponent = 0;
+  int size = 0;
+  std::array<Entry, NodeLine::kChildren> entry{};
+
+  friend bool operator==(const BoxGroup&, const BoxGroup&) = default;
+};
+
+[[nodiscard]] BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray);
+
+/// Whether the entry begins surely beyond `limit` (not negative; +infinity for none).
+[[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
+
+}  // namespace raygate

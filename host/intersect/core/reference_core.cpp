@@ -1,0 +1,116 @@
+#include "host/intersect/core/reference_core.h"
+
+#include "host/intersect/core/nearest_sure_hit.h"
+#include "host/intersect/core/reference_box_unit.h"
+#include "host/intersect/core/set_up.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+
+namespace raygate {
+namespace {
+
+/// Inner nodes of a group that wait.
+struct Waiting {
+  BoxGroup group;
+  int next = 0;  // entry
+};
+
+}  // namespace
+
+void ReferenceCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+                          std::vector<CoreResult>& results) {
+  for (const CoreRay& ray : rays) trace(lines, ray, results);
+}
+
+void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
+                          std::vector<CoreResult>& results) {
+  const ReferenceBurstUnit unit;
+  NearestSureHit nearest(ray.limit);
+  glm::vec3 point{0.0f};
+  std::uint32_t tests = 0;
+  bool ended = false;
+  const auto doubt = [&](std::uint32_t triangle) {
+    results.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray.tag, .triangle = triangle});
+  };
+  const auto test = [&](const TriangleLine& triangle) {
+    ++tests;
+    if (listener_) listener_(ray.ray.origin, triangle.index);
+    if (triangle.index == ray.ignored) return;
+    const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
+    const UnitVerdict verdict = unit.verdict(set.record, ray.ray.direction);
+    counters_.misses += verdict == UnitVerdict::kMiss;
+    counters_.hits += verdict == UnitVerdict::kHit;
+    counters_.doubts += verdict == UnitVerdict::kDoubt;
+    if (verdict == UnitVerdict::kMiss) return;
+    const HitDistance distance = unit.distance(set.record, ray.ray.direction);
+    if (verdict == UnitVerdict::kDoubt || !is_good_hit(set, distance.error)) {
+      doubt(triangle.index);
+      return;
+    }
+    const std::uint32_t open =
+        nearest.take(triangle.index, distance.t, t_error_exponent(set, distance.error));
+    if (nearest.triangle == triangle.index) point = unit.point(set.record, ray.ray.direction);
+    if (open != CoreRay::kNoTriangle) {
+      ++counters_.near_ties;
+      doubt(open);
+    }
+    ended = ray.any_hit && nearest.found;
+  };
+
+  std::vector<Waiting> stack;
+  std::uint32_t line = ray.start;
+  for (;;) {
+    ++counters_.nodes;
+    const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.every_box};
+    const BoxGroup group = enter_boxes(NodeLine(lines[line]), box_ray);
+    // Leaves first, then what is inside: as the core does.
+    Waiting inside{group};
+    inside.group.size = 0;
+    for (int n = 0; n < group.size; ++n) {
+      const BoxGroup::Entry& entry = group.entry[static_cast<std::size_t>(n)];
+      if (entry.count == 0) {
+        inside.group.entry[static_cast<std::size_t>(inside.group.size++)] = entry;
+        continue;
+      }
+      if (ended || is_beyond(group, entry, nearest.limit())) continue;
+      for (std::uint32_t k = 0; k < entry.count; ++k) {
+        test(TriangleLine(lines[group.base + entry.offset + k]));
+      }
+    }
+    if (inside.group.size != 0) {
+      if (static_cast<int>(stack.size()) < stack_depth_) {
+        stack.push_back(inside);
+      } else {
+        CoreResult rest{.kind = CoreResult::Kind::kRest, .tag = ray.tag, .line = group.base};
+        for (int n = 0; n < inside.group.size; ++n) {
+          rest.nodes |= std::uint64_t{1} << inside.group.entry[static_cast<std::size_t>(n)].offset;
+        }
+        results.push_back(rest);
+        ++counters_.rests;
+      }
+    }
+    const auto is_done = [&](const Waiting& top) {
+      return ended || top.next == top.group.size ||
+             is_beyond(top.group, top.group.entry[static_cast<std::size_t>(top.next)],
+                       nearest.limit());
+    };
+    while (!stack.empty() && is_done(stack.back())) stack.pop_back();
+    if (stack.empty()) break;
+    Waiting& top = stack.back();
+    line = top.group.base + top.group.entry[static_cast<std::size_t>(top.next++)].offset;
+    // A group that has given its last node makes room.
+    if (top.next == top.group.size) stack.pop_back();
+  }
+  ++counters_.rays;
+  counters_.triangles += tests;
+  counters_.lines = counters_.nodes + counters_.triangles;
+  results.push_back({.kind = CoreResult::Kind::kEnd,
+                     .found = nearest.found,
+                     .tag = ray.tag,
+                     .triangle = nearest.triangle,
+                     .t = std::bit_cast<float>(nearest.t_word),
+                     .t_error = nearest.t_error,
+                     .point = point,
+                     .tests = tests});
+}
+
+}  // namespace raygate

@@ -1,0 +1,38 @@
+// The ray core in C++, without its clocks: the same units, one ray after the other.
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "host/intersect/core/core_unit.h"
+
+namespace raygate {
+
+/// Boxes, records and tests have the bits of the hardware's. The order of its tests is that of a
+/// core which waits for each; so the hardware, which does not, may test more, and leave other
+/// doubts.
+class ReferenceCore : public CoreUnit {
+ public:
+  /// What hears of each test: where its ray begins, and its triangle.
+  using Listener = std::function<void(const glm::vec3& origin, std::uint32_t triangle)>;
+
+  /// `stack_depth`: see ray_core.sv.
+  explicit ReferenceCore(int stack_depth = kStackDepth) : stack_depth_(stack_depth) {}
+  explicit ReferenceCore(Listener listener) : listener_(std::move(listener)) {}
+
+  void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+             std::vector<CoreResult>& results) override;
+  [[nodiscard]] CoreCounters counters() const override { return counters_; }
+
+ private:
+  static constexpr int kStackDepth = 8;
+
+  void trace(std::span<const MemoryLine> lines, const CoreRay& ray,
+             std::vector<CoreResult>& results);
+
+  int stack_depth_ = kStackDepth;
+  Listener listener_;
+  CoreCounters counters_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,88 @@
+// Nodes and rays that try the box unit: from plain ones to those at the ends of binary32.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "host/intersect/core/reference_box_unit.h"
+
+namespace raygate {
+
+/// A node, and a ray towards it.
+struct BoxCase {
+  NodeLine node;
+  Ray ray;  ///< scaled; what the unit reads of it is `read()`
+  float limit = std::numeric_limits<float>::infinity();
+  bool every_box = false;
+
+  [[nodiscard]] BoxRay read() const { return {ray.origin, 1.0f / ray.direction, limit, every_box}; }
+};
+
+/// Always the same cases for the same seed.
+class BoxCases {
+ public:
+  explicit BoxCases(std::uint32_t seed) : random_(seed) {}
+
+  BoxCase next() {
+    BoxCase box;
+    const int scale = one_in(8) ? between(-60, 60) : between(-6, 6);
+    NodeLine& node = box.node;
+    for (int k = 0; k < 3; ++k) {
+      node.origin[k] =
+          one_in(8) ? 0.0f : std::ldexp(number(), scale + (one_in(8) ? between(-9, 9) : 3));
+      node.exponent[k] =
+          std::clamp(127 + scale - 6 - (one_in(8) ? between(0, 24) : between(0, 2)), 1, 254);
+    }
+    node.base = random_() & 0xFFFFFFF;
+    for (NodeLine::Child& child : node.child) {
+      child.kind = one_in(6) ? NodeLine::kAbsent : one_in(2) ? NodeLine::kInner : 1 + random_() % 7;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto a = static_cast<std::uint8_t>(random_()),
+                   b = static_cast<std::uint8_t>(random_());
+        child.low[k] = std::min(a, b);
+        child.high[k] = one_in(6) ? child.low[k] : std::max(a, b);
+      }
+    }
+    // Through a point of a box, as a rule one on its border, from any distance; or within a plane.
+    const NodeLine::Child& aim = node.child[random_() % NodeLine::kChildren];
+    const float distance = std::ldexp(1.0f, one_in(8) ? between(-20, 20) : between(-2, 3));
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const std::uint8_t q = one_in(2) ? aim.low[at] : aim.high[at];
+      const float cell = std::ldexp(1.0f, node.exponent[at] - 127),
+                  target = node.origin[k] + static_cast<float>(q) * cell;
+      box.ray.direction[k] =
+          one_in(8) ? 0.0f : number() * (one_in(8) ? std::ldexp(1.0f, between(-149, 0)) : 1.0f);
+      box.ray.origin[k] = target - box.ray.direction[k] * distance * 64.0f * cell;
+    }
+    const float size = largest(box.ray.direction);
+    if (size == 0.0f) {
+      box.ray.direction.x = 1.0f;
+    } else {
+      box.ray.direction = glm::vec3(std::ldexp(box.ray.direction.x, -std::ilogb(size)),
+                                    std::ldexp(box.ray.direction.y, -std::ilogb(size)),
+                                    std::ldexp(box.ray.direction.z, -std::ilogb(size)));
+    }
+    if (one_in(3))
+      box.limit = std::abs(distance * 64.0f * std::ldexp(1.0f, node.exponent[0] - 127) * size *
+                           (one_in(2) ? 1.0f : number()));
+    if (one_in(64)) box.limit = std::ldexp(1.0f, between(-149, 127));
+    if (box.limit == 0.0f) box.limit = 1.0f;
+    box.every_box = one_in(16);
+    return box;
+  }
+
+ private:
+  bool one_in(unsigned n) { return random_() % n == 0; }
+  int between(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
+  /// From -1 to 1, often a short one.
+  float number() {
+    const auto bits = static_cast<float>(between(-(1 << 23), 1 << 23));
+    return one_in(4) ? std::ldexp(static_cast<float>(between(-8, 8)), -3) : std::ldexp(bits, -23);
+  }
+
+  std::mt19937 random_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,112 @@
+// Rays through a core, its reference model, find what CpuIntersector finds, bit for bit.
+#include "host/intersect/core/core_intersector.h"
+
+#include <gtest/gtest.h>
+
+#include "host/intersect/check_intersector.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/core/test/core_cases.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+
+namespace raygate {
+namespace {
+
+using test::bodies;
+using test::Random;
+using test::some_rays;
+
+class CoreIntersectorTest : public testing::Test {
+ protected:
+  /// Throws where the two differ.
+  void check(const std::vector<Ray>& rays, const RayQuery& search, int stack_depth) {
+    auto core = std::make_unique<ReferenceCore>(stack_depth);
+    core_ = core.get();
+    CheckIntersector intersector(bvh_,
+                                 std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
+                                 std::make_unique<CpuIntersector>(bvh_));
+    std::vector<NearestHit> hits(rays.size());
+    intersector.intersect(rays, search, hits);
+    for (const NearestHit& hit : hits) found_ += hit.slot != NearestHit::kNone;
+    counters_ = core_->counters();
+  }
+
+  std::vector<Corners> mesh_ = bodies();
+  Bvh bvh_{test::scene_of(mesh_)};
+  std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
+  Random random_;
+  ReferenceCore* core_ = nullptr;
+  CoreCounters counters_;
+  int found_ = 0;
+};
+
+TEST_F(CoreIntersectorTest, NearestHitsAreTheCpuIntersectors) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 20'000);
+  check(rays, {}, 8);
+  EXPECT_GT(found_, 19'000);
+  EXPECT_GT(counters_.doubts, 100u);
+  EXPECT_GT(counters_.near_ties, 100u);
+  EXPECT_EQ(counters_.rests, 0u);
+  EXPECT_LT(counters_.triangles, rays.size() * mesh_.size() / 16) << "boxes cull";
+}
+
+TEST_F(CoreIntersectorTest, AShortStackCostsWalksAndNoHits) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
+  check(rays, {}, 1);
+  EXPECT_GT(counters_.rests, 1'000u);
+  EXPECT_GT(counters_.rays, rays.size());
+}
+
+TEST_F(CoreIntersectorTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 10'000);
+  std::vector<float> limits, enough;
+  std::vector<std::uint32_t> ignored;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    limits.push_back(random_.below(4) == 0 ? std::numeric_limits<float>::infinity()
+                                           : random_.uniform(0.01f, 3.0f));
+    enough.push_back(random_.below(2) == 0 ? limits.back() : 0.5f * limits.back());
+    ignored.push_back(static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
+  }
+  check(rays, {.limits = limits}, 8);
+  EXPECT_GT(found_, 1'000);
+  check(rays, {.limits = limits, .ignored = ignored}, 8);
+  const std::uint64_t nodes = counters_.nodes;
+  check(rays, {.limits = limits, .ignored = ignored, .enough_before = enough}, 8);
+  EXPECT_LT(counters_.nodes, nodes);
+}
+
+TEST_F(CoreIntersectorTest, WithoutCullingEveryTriangleIsTested) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 50);
+  std::vector<RayWork> work(rays.size());
+  check(rays, {.culling = false, .work = work}, 8);
+  EXPECT_EQ(counters_.triangles, rays.size() * mesh_.size());
+  for (const RayWork& ray : work) EXPECT_EQ(ray.tests, mesh_.size());
+}
+
+TEST(MemoryImage, OfNothingIsANodeWithoutChildren) {
+  const Bvh bvh(Scene{});
+  const auto image = std::make_shared<const MemoryImage>(bvh);
+  ASSERT_EQ(image->lines().size(), 1u);
+  CoreIntersector intersector(bvh, image, std::make_unique<ReferenceCore>());
+  const Ray ray{glm::vec3(0), glm::vec3(1, 0, 0)};
+  NearestHit hit;
+  intersector.intersect({&ray, 1}, {}, {&hit, 1});
+  EXPECT_EQ(hit.slot, NearestHit::kNone);
+}
+
+TEST(MemoryImage, LinesHoldWhatTheyAreMadeOf) {
+  NodeLine node;
+  node.origin = {1.0f, -2.0f, 3.0f};
+  node.exponent = {1, 254, 127};
+  node.base = 0x8000001;
+  for (std::uint32_t i = 0; i < NodeLine::kChildren; ++i) {
+    node.child[i] = {
+        i + 2, {static_cast<std::uint8_t>(i), 1, 255}, {static_cast<std::uint8_t>(i + 9), 2, 255}};
+  }
+  EXPECT_EQ(NodeLine(node.line()).line().words, node.line().words);
+  EXPECT_EQ(NodeLine(node.line()).child[6].high[0], 15);
+  EXPECT_EQ(NodeLine(node.line()).base, 0x8000001u);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,51 @@
+// Up to 64 rays of one origin and octant, and cones around them: eight groups of eight.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "host/base/lanes.h"
+#include "host/bvh/packet_bounds.h"
+#include "host/exact/exact.h"
+
+namespace raygate {
+
+/// The directions of up to 64 rays, ray k of group g being number 8 g + k of the block.
+struct RayBlock {
+  static constexpr int kGroups = 8, kRays = kGroups * kLanes;
+
+  FloatLanes direction[3][kGroups];
+  LaneMask negative[3][kGroups];  ///< whose component is below 0
+  LaneMask usable[kGroups];       ///< see is_usable; no bits beyond the end of the rays
+  std::uint32_t octants;          ///< bit i: usable rays may go into octant i; else none does
+
+  [[nodiscard]] LaneMask into_octant(int octant, int group) const {
+    LaneMask lanes = usable[group];
+    for (int k = 0; k < 3; ++k) {
+      lanes &= (octant >> k & 1) != 0 ? negative[k][group] : ~negative[k][group];
+    }
+    return lanes;
+  }
+};
+
+/// Loads up to 64 rays. Bit k of the result is set where ray k is usable but not scaled.
+[[nodiscard]] std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block);
+
+/// Cones around rays of one octant, whatever the lengths of their directions. Lane g of a member
+/// stands for group g; absent groups have a radius of 0. A ray I stands here as I / pace, where its
+/// pace is one component's magnitude, the same one's for all, or 1 for all; its t becomes pace t.
+/// On each axis |I_k / pace - center[k][g]| <= radius[k][g].
+struct Cones {
+  LaneMask active[RayBlock::kGroups];  ///< the rays of each group
+  LaneMask groups;                     ///< the groups with any
+  FloatLanes pace[RayBlock::kGroups];  ///< of each ray; an absent one's is 1
+  FloatLanes center[3], radius[3];
+  Beams beams;  ///< cutoffs are left to the caller
+  Beam whole;   ///< around all groups
+};
+
+/// Cones around the block's rays in `cones.active`, which are of this octant. `cones.groups` is
+/// found here, and so is all else.
+void make_cones(const RayBlock& block, const glm::vec3& origin, int octant, Cones& cones);
+
+}  // namespace raygate

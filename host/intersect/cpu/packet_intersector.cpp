@@ -1,0 +1,279 @@
+#include "host/intersect/cpu/packet_intersector.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+#include "host/bvh/bvh.h"
+#include "host/intersect/cpu/cone_leaf_test.h"
+#include "host/intersect/cpu/cone_node_step.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
+
+float float_of(std::int32_t bits) { return std::bit_cast<float>(bits); }
+std::int32_t bits_of(float x) { return std::bit_cast<std::int32_t>(x); }
+
+/// What is wished for a group's rays; what is beyond the last one means nothing.
+template <class Wish>
+RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first, IntLanes& lanes) {
+  static_assert(sizeof(Wish) == sizeof(std::int32_t));
+  if (first + kLanes <= wishes.size()) {
+    std::memcpy(&lanes, &wishes[first], sizeof lanes);
+  } else {
+    std::memcpy(&lanes, &wishes[first], (wishes.size() - first) * sizeof(Wish));
+  }
+}
+
+/// A test of each of these rays, some of which it leaves in doubt.
+void count_work(RayWork (&work)[kLanes], LaneMask tested, LaneMask doubts) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    work[lane].tests += tested >> lane & 1;
+    work[lane].doubts += doubts >> lane & 1;
+  }
+}
+
+}  // namespace
+
+/// Everything of a walk but its cones and where it begins.
+void set_out(const PacketIntersector& search, ConeTraversal& walk) {
+  in_vectors([&](auto) RAYGATE_BODY {
+    const std::span limits = search.search_.limits, enough = search.search_.enough_before;
+    const std::span ignored = search.search_.ignored;
+    slack_of(walk.cones.radius, walk.slack);
+    walk.split = 0;
+    walk.going = 0;
+    walk.cones.beams.cutoff = FloatLanes{} - 1.0f;
+    for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
+      const int g = std::countr_zero(left);
+      walk.slot[g] = IntLanes{} - 1;
+      IntLanes end = IntLanes{} + kFarthest;
+      const std::uint32_t first = walk.number(g, 0);
+      if (!limits.empty()) {
+        load_group(limits, first, end);
+        end = end < kFarthest ? end : IntLanes{} + kFarthest;
+      }
+      walk.low[g] = walk.high[g] = end;
+      if (!enough.empty()) load_group(enough, first, walk.enough[g]);
+      if (!ignored.empty()) load_group(ignored, first, walk.ignored[g]);
+      walk.going |= std::uint64_t{walk.cones.active[g]} << (8 * g);
+      shorten(walk, g);
+    }
+    walk.cutoff = largest_of(walk.cones.beams.cutoff);
+    if (!search.search_.work.empty()) {
+      std::memset(walk.work, 0, sizeof walk.work);
+      std::memcpy(walk.started, walk.cones.active, sizeof walk.started);
+    }
+    walk.depth = 0;
+    walk.stack[walk.depth++] = {{0, 0}, 0.0f, walk.going};
+  });
+}
+
+/// Tests a leaf's triangles that are there against the rays, a triangle and a group at a time. Sets
+/// the bits of the groups whose nearest hits change.
+template <Vectors kCode>
+RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const QuadRecord& record,
+                                                   const Bvh::Child& leaf, LaneMask there,
+                                                   std::uint64_t rays, LaneMask& changed) {
+  const bool ignoring = !search_.ignored.empty(), counting = !search_.work.empty();
+  HitCounters& counters = counters_.hit;
+  for (; there != 0; there &= there - 1) {
+    const int i = std::countr_zero(there);
+    const auto slot = static_cast<std::int32_t>(leaf.first) + i;
+    LaneMask left = groups_near<kCode>(walk, record, i, groups_of(rays));
+    for (; left != 0; left &= left - 1) {
+      const int g = std::countr_zero(left);
+      const LaneMask tested = rays_of(rays, g);
+      GroupVerdict verdict;
+      test_group<kCode>(walk, record, i, g, tested, verdict);
+      counters.tests += static_cast<std::uint64_t>(std::popcount(tested));
+      if (counting) count_work(walk.work[g], tested, verdict.open & ~verdict.hit);
+      if (verdict.open == 0) continue;
+      counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+      counters.edge_doubts +=
+          static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
+      if (ignoring) verdict.open &= ~sign_mask<kCode>(walk.ignored[g] == slot);
+      const LaneMask sure = verdict.open & verdict.hit;
+      const LaneMask nearer = sure & sign_mask<kCode>(verdict.high < walk.low[g]);
+      if (nearer != 0) {
+        IntLanes take;
+        lanes_of(nearer, take);
+        walk.low[g] = take ? verdict.low : walk.low[g];
+        walk.high[g] = take ? verdict.high : walk.high[g];
+        walk.slot[g] = take ? IntLanes{} + slot : walk.slot[g];
+        changed |= 1u << g;
+      }
+      LaneMask open =
+          verdict.open & ~nearer & ~(sure & sign_mask<kCode>(verdict.low > walk.high[g]));
+      for (; open != 0; open &= open - 1) {
+        const int lane = std::countr_zero(open);
+        const Interval t = {float_of(verdict.low[lane]), float_of(verdict.high[lane])};
+        if (settle(walk, g, lane, slot, (sure >> lane & 1) != 0 ? &t : nullptr)) {
+          changed |= 1u << g;
+        }
+      }
+    }
+  }
+}
+
+/// The same, a ray at a time.
+RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const QuadRecord& record,
+                                                 const Bvh::Child& leaf, LaneMask there,
+                                                 std::uint64_t rays, LaneMask& changed) {
+  const bool ignoring = !search_.ignored.empty(), counting = !search_.work.empty();
+  HitCounters& counters = counters_.hit;
+  counters.tests += static_cast<std::uint64_t>(std::popcount(rays) * std::popcount(there));
+  for (; rays != 0; rays &= rays - 1) {
+    const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
+    RayVerdict verdict;
+    test_ray(walk, record, g, lane, there, verdict);
+    if (counting) {
+      walk.work[g][lane].tests += static_cast<std::uint32_t>(std::popcount(there));
+      walk.work[g][lane].doubts +=
+          static_cast<std::uint32_t>(std::popcount(verdict.open & ~verdict.hit));
+    }
+    if (verdict.open == 0) continue;
+    counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+    counters.edge_doubts += static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
+    for (LaneMask open = verdict.open; open != 0; open &= open - 1) {
+      const int i = std::countr_zero(open);
+      const auto slot = static_cast<std::int32_t>(leaf.first) + i;
+      if (ignoring && walk.ignored[g][lane] == slot) continue;
+      const bool sure = (verdict.hit >> i & 1) != 0;
+      const Interval t = {verdict.low[i], verdict.high[i]};
+      if (sure && t.low > float_of(walk.high[g][lane])) continue;
+      if (sure && t.high < float_of(walk.low[g][lane])) {
+        walk.low[g][lane] = bits_of(verdict.low[i]);
+        walk.high[g][lane] = bits_of(verdict.high[i]);
+        walk.slot[g][lane] = slot;
+      } else if (!settle(walk, g, lane, slot, sure ? &t : nullptr)) {
+        continue;
+      }
+      changed |= 1u << g;
+    }
+  }
+}
+
+/// Walks the tree, near before far, and tests what is there.
+void walk_tree(PacketIntersector& search, ConeTraversal& walk) {
+  in_vectors([&](auto code) RAYGATE_BODY {
+    const Bvh& tree = search.bvh_;
+    const bool ending = !search.search_.enough_before.empty();
+    Cones& cones = walk.cones;
+    while (walk.depth > 0 && walk.going != 0) {
+      const ConeTraversal::Waiting item = walk.stack[--walk.depth];
+      if (item.entry > walk.cutoff) continue;
+      const std::uint64_t rays =
+          item.rays & walk.going &
+          0xFF * ones_of(sign_mask<code()>(cones.beams.cutoff >= item.entry));
+      if (rays == 0) continue;
+      const LaneMask groups = groups_of(rays);
+      if (item.child.count == 0) {
+        step_through<code()>(walk, tree, item.child.first, rays, groups);
+        continue;
+      }
+      QuadRecord record;
+      Bvh::LeafRoom room;
+      make_quad_record(cones.whole.origin, tree.corners_of(item.child, room), item.child.count,
+                       record);
+      LaneMask there = (1u << item.child.count) - 1;
+      if (record.unsure != 0) search.settle_sides(item.child, record, there);
+      LaneMask changed = 0;
+      if (is_sparse(rays, groups, item.child.count)) {
+        search.test_rays(walk, record, item.child, there, rays, changed);
+      } else {
+        search.template test_groups<code()>(walk, record, item.child, there, rays, changed);
+      }
+      if (changed == 0) continue;
+      for (; changed != 0; changed &= changed - 1) {
+        const int g = std::countr_zero(changed);
+        if (ending) {
+          const LaneMask ended = cones.active[g] & ~sign_mask<code()>(walk.slot[g]) &
+                                 sign_mask<code()>(walk.high[g] < walk.enough[g]);
+          cones.active[g] &= ~ended;
+          search.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
+        }
+        shorten(walk, g);
+      }
+      walk.cutoff = largest_of(cones.beams.cutoff);
+    }
+  });
+}
+
+void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& search,
+                              std::span<NearestHit> hits) {
+  rays_ = rays;
+  search_ = search;
+  hits_ = hits;
+  origin_ = rays[0].origin;
+  assert(std::ranges::all_of(rays, [&](const Ray& ray) { return ray.origin == origin_; }));
+  HitCounters& counters = counters_.hit;
+  const HitCounters before = counters;
+  RayBlock block;
+  ConeTraversal walk;
+  walk.block = &block;
+  for (std::size_t first = 0; first < rays.size(); first += RayBlock::kRays) {
+    const std::size_t count = std::min<std::size_t>(RayBlock::kRays, rays.size() - first);
+    const std::uint64_t unscaled = load_block(rays.subspan(first, count), block);
+    if (unscaled != 0) refuse_unscaled(rays[first + std::countr_zero(unscaled)]);
+    walk.first = static_cast<std::uint32_t>(first);
+    for (std::uint32_t octants = block.octants; octants != 0; octants &= octants - 1) {
+      const int octant = std::countr_zero(octants);
+      for (int g = 0; g < ConeTraversal::kGroups; ++g) {
+        walk.cones.active[g] = block.into_octant(octant, g);
+      }
+      make_cones(block, origin_, octant, walk.cones);
+      if (walk.cones.groups == 0) continue;
+      set_out(*this, walk);
+      walk_tree(*this, walk);
+      finish(*this, walk);
+    }
+  }
+  counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
+                     (counters.edge_doubts - before.edge_doubts);
+}
+
+/// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it
+/// is are hit by no ray: they leave those that are there.
+void PacketIntersector::settle_sides(const Bvh::Child& leaf, QuadRecord& record,
+                                     LaneMask& there) const {
+  for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
+    const int i = std::countr_zero(unsure);
+    const int side =
+        plane_side(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
+    if (side == 0) {
+      there &= ~(1u << i);
+    } else {
+      set_side(record, i, side);
+    }
+  }
+}
+
+/// The last word on what float32 leaves open about a ray and a slot. `sure`: bounds of its t, or
+/// nullptr where it is not even sure that it is hit. True where it is the nearest hit now.
+bool PacketIntersector::settle(ConeTraversal& walk, int group, int lane, std::int32_t slot,
+                               const Interval* sure) {
+  const std::uint32_t number = walk.number(group, lane);
+  const Ray& ray = rays_[number];
+  NearestHit best, hit = {.slot = static_cast<std::uint32_t>(slot)};
+  if (walk.slot[group][lane] >= 0) {
+    best.slot = static_cast<std::uint32_t>(walk.slot[group][lane]);
+    best.t = walk.t(group, lane);
+    counters_.hit.depth_doubts += sure != nullptr;
+  }
+  const float limit = search_.limit(number);
+  if (sure != nullptr) hit.t = *sure;
+  if (!(sure != nullptr ? take_if_nearer(bvh_, ray, limit, hit, best, counters_)
+                        : settle_doubt(bvh_, ray, limit, hit, best, counters_))) {
+    return false;
+  }
+  walk.low[group][lane] = bits_of(float_below(best.t.low));
+  walk.high[group][lane] = bits_of(float_above(best.t.high));
+  walk.slot[group][lane] = slot;
+  return true;
+}
+
+}  // namespace raygate

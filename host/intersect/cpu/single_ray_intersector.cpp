@@ -1,0 +1,261 @@
+#include "host/intersect/cpu/single_ray_intersector.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "host/intersect/cpu/ray_traversal.h"
+#include "host/intersect/unit/point_error.h"
+#include "host/intersect/unit/record_batch.h"
+
+namespace raygate {
+
+/// The second half of a leaf's tests. False where the ray need not go on.
+RAYGATE_INLINE bool SingleRayIntersector::judge(RayTraversal& walk, const Bvh::Child& leaf,
+                                                const QuadSides& sides, LaneMask open) {
+  QuadVerdict verdict;
+  judge_sides(walk.sheared, sides, open, verdict);
+  open = verdict.hit | verdict.level | verdict.doubt;
+  HitCounters& counters = counters_.hit;
+  counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+  walk.work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
+  for (; open != 0; open &= open - 1) {
+    const int i = std::countr_zero(open);
+    const std::uint32_t slot = leaf.first + static_cast<std::uint32_t>(i);
+    const float low = verdict.low[i], high = verdict.high[i];
+    if (low > walk.high || slot == walk.ignored) continue;
+    if ((verdict.level >> i & 1) != 0) {
+      if (!is_ahead(rays_[walk.number], bvh_.corners_of(slot))) continue;
+      ++counters.hits;
+    }
+    if ((verdict.doubt >> i & 1) != 0) {
+      if (!settle(walk, slot, false)) continue;
+    } else if (high < walk.low) {
+      walk.slot = slot;
+      walk.end_at(std::max(low, 0.0f), high);
+    } else if (!settle(walk, slot, true)) {
+      continue;
+    }
+    if (walk.high < walk.enough) {
+      ++counters_.ended_early;
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,
+/// does hit. True where that is the nearest hit now.
+bool SingleRayIntersector::settle(RayTraversal& walk, std::uint32_t slot, bool sure) {
+  const Ray& ray = rays_[walk.number];
+  NearestHit best;
+  if (walk.slot != NearestHit::kNone) {
+    best.slot = walk.slot;
+    best.t = walk.t();
+    counters_.hit.depth_doubts += sure;
+  }
+  NearestHit hit = {.slot = slot};
+  const float limit = search_.limit(walk.number);
+  if (sure) hit.t = hit_distance(ray, bvh_.corners_of(slot));
+  if (!(sure ? take_if_nearer(bvh_, ray, limit, hit, best, counters_)
+             : settle_doubt(bvh_, ray, limit, hit, best, counters_))) {
+    return false;
+  }
+  walk.slot = slot;
+  walk.end_at(best.t);
+  return true;
+}
+
+/// Sends the next rays on their ways, with these walks; bit i of the result where walk i is on one.
+RAYGATE_INLINE LaneMask SingleRayIntersector::set_out(RayTraversal* const (&walks)[kQuad]) {
+  const auto first = static_cast<std::uint32_t>(next_);
+  const std::size_t count = std::min<std::size_t>(kQuad, rays_.size() - next_);
+  const Ray* rays[kQuad];
+  for (std::size_t i = 0; i < kQuad; ++i) rays[i] = &rays_[next_ + std::min(i, count - 1)];
+  next_ += count;
+  const LaneMask all = (1u << count) - 1, scaled = raygate::set_out(rays, walks) & all;
+  for (LaneMask left = all & ~scaled; left != 0; left &= left - 1) {
+    const Ray& ray = *rays[std::countr_zero(left)];
+    if (is_usable(ray.direction)) refuse_unscaled(ray);
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    RayTraversal& walk = *walks[i];
+    const std::uint32_t number = walk.number = first + i;
+    if (!search_.limits.empty()) {
+      walk.end_at(Interval{search_.limits[number], search_.limits[number]});
+    }
+    if (!search_.ignored.empty()) walk.ignored = search_.ignored[number];
+    if (!search_.enough_before.empty()) {
+      walk.enough = float_below(search_.enough_before[number] * walk.pace());
+    }
+  }
+  return scaled;
+}
+
+/// A ray's way is at its end.
+RAYGATE_INLINE void SingleRayIntersector::arrive(const RayTraversal& walk) {
+  HitCounters& counters = counters_.hit;
+  counters.tests += walk.work.tests;
+  counters.edge_doubts += walk.work.doubts;
+  if (!search_.work.empty()) search_.work[walk.number] = walk.work;
+  hits_[walk.number].slot = walk.slot;
+  hits_[walk.number].t = walk.slot != NearestHit::kNone ? walk.t() : Interval{};
+  pointless_[pointless_count_] = walk.number;
+  pointless_count_ += walk.slot != NearestHit::kNone ? 1 : 0;
+}
+
+/// Each ray tests everything.
+void SingleRayIntersector::visit_all() {
+  const std::vector<Bvh::Child> leaves = bvh_.leaves();
+  const auto walks = std::make_unique<RayTraversal[]>(kQuad);
+  while (next_ < rays_.size()) {
+    LaneMask open = set_out({&walks[0], &walks[1], &walks[2], &walks[3]});
+    for (; open != 0; open &= open - 1) {
+      RayTraversal& walk = walks[std::countr_zero(open)];
+      for (const Bvh::Child& leaf : leaves) {
+        QuadSides sides;
+        Bvh::LeafRoom room;
+        const LaneMask near =
+            find_sides(walk.sheared, bvh_.corners_of(leaf, room), leaf.count, sides);
+        walk.work.tests += leaf.count;
+        if (near != 0 && !judge(walk, leaf, sides, near)) break;
+      }
+      arrive(walk);
+    }
+    add_points(kPlanes);
+  }
+}
+
+/// All rays walk the tree, near before far, and test what is there: kAtOnce of them take turns, so
+/// that none waits for memory. What depends on where a ray goes chooses between numbers, not
+/// between branches: a branch would be guessed wrongly as often as not.
+void SingleRayIntersector::walk_all() {
+  const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
+  in_vectors([&](auto code) RAYGATE_BODY {
+    QuadSides sides[kAtOnce];
+    LaneMask open[kAtOnce];
+    std::uint32_t near[kAtOnce];
+    RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];  // by where they are
+    std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+    for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
+    for (;;) {
+      while (idle_count >= kQuad && next_ < rays_.size()) {
+        idle_count -= kQuad;
+        RayTraversal* four[kQuad];
+        std::copy_n(idle + idle_count, kQuad, four);
+        const LaneMask started = set_out(four);
+        for (int i = 0; i < kQuad; ++i) {
+          const std::size_t on_its_way = started >> i & 1;
+          inside[inside_count] = idle[idle_count] = four[i];
+          inside_count += on_its_way;
+          idle_count += on_its_way ^ 1;
+        }
+      }
+      if (inside_count + leaf_count == 0) return;
+      for (std::size_t i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, *inside[i]);
+      std::size_t open_count = 0;
+      for (std::size_t i = 0; i < leaf_count; ++i) {
+        RayTraversal& walk = *leaves[i];
+        walk.work.tests += walk.at.count;
+        Bvh::LeafRoom room;
+        open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at, room), walk.at.count, sides[i]);
+        near[open_count] = static_cast<std::uint32_t>(i);
+        open_count += open[i] != 0 ? 1 : 0;
+        inside[inside_count + i] = &walk;
+      }
+      for (std::size_t k = 0; k < open_count; ++k) {
+        const std::uint32_t i = near[k];
+        RayTraversal& walk = *leaves[i];
+        if (!judge(walk, walk.at, sides[i], open[i])) walk.end();
+      }
+      const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
+      inside_count = leaf_count = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        RayTraversal& walk = *inside[i];
+        go_on(bvh_, walk);
+        const std::size_t ended = walk.has_ended() ? 1 : 0, in_leaf = walk.at.count != 0 ? 1 : 0;
+        inside[inside_count] = leaves[leaf_count] = idle[idle_count] = &walk;
+        inside_count += (ended | in_leaf) ^ 1;
+        leaf_count += in_leaf & ~ended;
+        idle_count += ended;
+      }
+      for (std::size_t i = were_idle; i < idle_count; ++i) arrive(*idle[i]);
+      add_points(kPlanes);
+    }
+  });
+}
+
+void SingleRayIntersector::trace(std::span<const Ray> rays, const RayQuery& search,
+                                 std::span<NearestHit> hits) {
+  rays_ = rays;
+  search_ = search;
+  hits_ = hits;
+  next_ = 0;
+  HitCounters& counters = counters_.hit;
+  const HitCounters before = counters;
+  if (search.culling) {
+    walk_all();
+  } else {
+    visit_all();
+  }
+  add_points(1);
+  counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
+                     (counters.edge_doubts - before.edge_doubts);
+}
+
+/// P, which the search did without: four at a time, until fewer than `enough` rays wait for theirs.
+void SingleRayIntersector::add_points(int enough) {
+  if (!search_.enough_before.empty()) pointless_count_ = 0;
+  while (pointless_count_ >= enough) {
+    const int count = std::min(pointless_count_, kPlanes);
+    pointless_count_ -= count;
+    add_points(std::span<const std::uint32_t>(pointless_).subspan(pointless_count_, count));
+  }
+}
+
+/// Of these rays, up to four, with the bits of plane_point.
+void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
+  PlaneViews views;
+  NearestHit* hits[kPlanes];
+  FloatQuad d[kQuad], n[kQuad];  // n[3]: d of the plane
+  static_assert(kPlanes == kQuad);
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    const std::uint32_t number = numbers[std::min(i, numbers.size() - 1)];
+    const Ray& ray = rays_[number];
+    hits[i] = &hits_[number];
+    views.set(i, ray.origin, bvh_.corners_of(hits[i]->slot));
+    load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, d[i]);
+  }
+  Planes planes;
+  make_planes(views, planes);
+  std::memcpy(n, planes.words, sizeof n);
+  in_vectors([&](auto) RAYGATE_BODY {
+    transpose(d);  // of d[0] nothing is wanted: it is the last coordinate of the origins
+    const FloatQuad v = 0.0f + ((n[0] * d[1] + n[1] * d[2]) + n[2] * d[3]);
+    IntQuad fields[3], grazing, error;
+    for (int k = 0; k < 3; ++k) fields[k] = reinterpret_cast<IntQuad>(n[k]) >> 23 & 0xFF;
+    IntQuad largest = fields[0] > fields[1] ? fields[0] : fields[1];
+    largest = largest > fields[2] ? largest : fields[2];
+    grazing_of(largest, reinterpret_cast<IntQuad>(v), grazing);
+    point_error_of(reinterpret_cast<IntQuad>(n[3]), reinterpret_cast<IntQuad>(v), grazing, error);
+    FloatQuad rows[kQuad];
+    for (int k = 0; k < 3; ++k) {
+      const FloatQuad p = n[3] * d[k + 1] / v;
+      const IntQuad nan = IntQuad{} + 0x7FC00000;
+      rows[k] = p == p ? p : reinterpret_cast<FloatQuad>(nan);
+    }
+    rows[3] = reinterpret_cast<FloatQuad>(error);
+    transpose(rows);
+    static_assert(offsetof(NearestHit, point_error) ==
+                  offsetof(NearestHit, point) + 3 * sizeof(float));
+    for (std::size_t i = 0; i < numbers.size(); ++i) std::memcpy(&hits[i]->point, &rows[i], 16);
+  });
+  counters_.hit.plane_tests += numbers.size();
+}
+
+}  // namespace raygate

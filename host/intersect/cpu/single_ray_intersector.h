@@ -1,0 +1,49 @@
+// Rays of any origins, tested in place, one by one: no records, no batches.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "host/bvh/bvh.h"
+#include "host/intersect/cpu/ray_traversal.h"
+#include "host/intersect/intersector.h"
+#include "host/intersect/unit/record_batch.h"
+
+namespace raygate {
+
+/// A part of CpuIntersector, for rays that share nothing. Several walk the tree at once, in turns.
+/// A leaf's triangles are tested straight from their corners by quad_test; what float32 leaves
+/// open, and which hit is nearest, exact arithmetic settles: decisions are the same, whatever
+/// decides first.
+class SingleRayIntersector {
+ public:
+  SingleRayIntersector(const Bvh& bvh, IntersectCounters& counters)
+      : bvh_(bvh), counters_(counters) {}
+
+  /// As Intersector::find. `hits` are empty.
+  void trace(std::span<const Ray> rays, const RayQuery& search, std::span<NearestHit> hits);
+
+ private:
+  LaneMask set_out(RayTraversal* const (&walks)[kQuad]);
+  void arrive(const RayTraversal& walk);
+  void walk_all();
+  void visit_all();
+  bool judge(RayTraversal& walk, const Bvh::Child& leaf, const QuadSides& sides, LaneMask open);
+  bool settle(RayTraversal& walk, std::uint32_t slot, bool sure);
+  void add_points(int enough);
+  void add_points(std::span<const std::uint32_t> numbers);
+
+  static constexpr int kAtOnce = 48;  // rays that take turns
+
+  const Bvh& bvh_;
+  IntersectCounters& counters_;
+  std::span<const Ray> rays_;
+  RayQuery search_;
+  std::span<NearestHit> hits_;
+  std::size_t next_ = 0;                                    // ray to set out
+  std::array<std::uint32_t, kAtOnce + kPlanes> pointless_;  // rays whose P is still to be found
+  int pointless_count_ = 0;
+};
+
+}  // namespace raygate

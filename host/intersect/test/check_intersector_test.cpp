@@ -1,0 +1,109 @@
+// Two intersectors that agree are one; the first answer in which they differ is thrown, with its
+// ray.
+#include "host/intersect/check_intersector.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <functional>
+
+#include "host/exact/test/meshes.h"
+#include "host/intersect/cpu/test/compare_in_place.h"
+
+namespace raygate {
+namespace {
+
+/// The cpu intersector, but for what is done to its answers.
+class FaultyIntersector : public CpuIntersector {
+ public:
+  using Fault = std::function<void(std::span<NearestHit>)>;
+  FaultyIntersector(const Bvh& bvh, Fault fault) : CpuIntersector(bvh), fault_(std::move(fault)) {}
+
+  void intersect(std::span<const Ray> rays, const RayQuery& search,
+                 std::span<NearestHit> hits) override {
+    CpuIntersector::intersect(rays, search, hits);
+    fault_(hits);
+  }
+
+ private:
+  Fault fault_;
+};
+
+class CheckIntersectorTest : public testing::Test {
+ protected:
+  CheckIntersectorTest() {
+    test::Random random;
+    for (int i = 0; i < 100; ++i) {
+      rays_.push_back({glm::vec3(0.25f), scaled_direction(glm::dvec3(random.point()))});
+    }
+  }
+
+  /// What is thrown; nothing where the intersectors agree.
+  std::string complaint(const FaultyIntersector::Fault& fault, const RayQuery& search) {
+    CheckIntersector check(bvh_, std::make_unique<FaultyIntersector>(bvh_, fault),
+                           test::reference_intersector(bvh_));
+    std::vector<NearestHit> hits(rays_.size());
+    try {
+      check.intersect(rays_, search, hits);
+    } catch (const IntersectorMismatch& mismatch) {
+      return mismatch.what();
+    }
+    return "";
+  }
+
+  Bvh bvh_{test::scene_of(test::sphere(2))};
+  std::vector<Ray> rays_;
+};
+
+TEST_F(CheckIntersectorTest, IntersectorsThatAgreePass) {
+  for (const bool common : {false, true}) {
+    EXPECT_EQ(complaint([](auto) {}, {.common_origin = common}), "");
+  }
+  const std::vector<float> limits(rays_.size(), 0.9f);
+  EXPECT_EQ(complaint([](auto) {}, {.limits = limits, .enough_before = limits}), "");
+}
+
+TEST_F(CheckIntersectorTest, OneBitOfPIsThrownWithTheRay) {
+  const std::string what = complaint(
+      [](std::span<NearestHit> hits) {
+        float& y = hits[7].point.y;
+        y = std::bit_cast<float>(std::bit_cast<std::uint32_t>(y) ^ 1);
+      },
+      {});
+  EXPECT_NE(what.find("ray 3E800000 3E800000 3E800000, "), std::string::npos) << what;
+  EXPECT_NE(what.find("limit 7F800000: triangle "), std::string::npos) << what;
+  EXPECT_NE(what.find("; reference: triangle "), std::string::npos) << what;
+}
+
+TEST_F(CheckIntersectorTest, AnotherTriangleOrDistanceOrNoHitIsThrown) {
+  EXPECT_NE(complaint([](auto hits) { hits[3].slot ^= 1; }, {}), "");
+  EXPECT_NE(complaint([](auto hits) { hits[3].slot = NearestHit::kNone; }, {}), "");
+  EXPECT_NE(complaint([](auto hits) { hits[3].t = {2.0, 2.0}; }, {}), "");
+}
+
+// Any hit will do, but not one that is beyond.
+TEST_F(CheckIntersectorTest, OfRaysThatMayEndAnywhereTheAnswerIsWhetherThereIsAHit) {
+  const std::vector<float> enough(rays_.size(), 100.0f), little(rays_.size(), 0.01f);
+  const auto other = [](auto hits) { hits[3].slot ^= 1; };
+  EXPECT_EQ(complaint(other, {.enough_before = enough}), "");
+  EXPECT_NE(complaint(other, {.enough_before = little}), "");
+  EXPECT_NE(complaint([](auto hits) { hits[3] = {}; }, {.enough_before = enough}), "");
+}
+
+// An unscaled direction lost hits in cones once: every intersector refuses it.
+TEST_F(CheckIntersectorTest, UnscaledDirectionsAreRefused) {
+  CpuIntersector cpu(bvh_);
+  const auto unit = test::reference_intersector(bvh_);
+  std::vector<NearestHit> hits(rays_.size());
+  for (const float scale : {0x1p20f, 2.0f, 0.5f, 0x1p-20f}) {
+    std::vector<Ray> rays = rays_;
+    rays[41].direction *= scale;
+    for (const bool common : {false, true}) {
+      EXPECT_THROW(cpu.intersect(rays, {.common_origin = common}, hits), std::invalid_argument);
+      EXPECT_THROW(unit->intersect(rays, {.common_origin = common}, hits), std::invalid_argument);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,112 @@
+// Rays find of instances what they find of the same triangles written out.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+#include <memory>
+
+#include "host/intersect/cpu/all_hits.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_intersector.h"
+#include "host/scene/test/instanced_scene.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+
+class InstancesTest : public testing::Test {
+ protected:
+  Random random_;
+  Scene scene_ = test::instanced_scene(random_, 30), flat_ = test::written_out(scene_);
+  Bvh bvh_{scene_}, flat_bvh_{flat_};
+
+  static std::unique_ptr<Intersector> unit_intersector(const Bvh& bvh) {
+    return std::make_unique<UnitIntersector>(
+        bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
+  }
+
+  /// Many of them through vertices, from `origin` or from origins of their own.
+  std::vector<Ray> rays(int count, const glm::vec3* origin) {
+    std::vector<Ray> rays;
+    while (static_cast<int>(rays.size()) < count) {
+      const glm::vec3 from = origin != nullptr ? *origin : random_.point(3.5f);
+      const glm::dvec3 aim(
+          random_.below(2) == 0
+              ? flat_.positions[random_.below(static_cast<int>(flat_.positions.size()))]
+              : random_.point(3.5f));
+      if (aim != glm::dvec3(from)) rays.push_back({from, scaled_direction(aim - glm::dvec3(from))});
+    }
+    return rays;
+  }
+
+  void expect_same(Intersector& intersector, Intersector& flat_intersector,
+                   const std::vector<Ray>& rays, const RayQuery& search) {
+    std::vector<NearestHit> hits(rays.size()), expected(rays.size());
+    intersector.intersect(rays, search, hits);
+    flat_intersector.intersect(rays, search, expected);
+    std::size_t instances = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const NearestHit &hit = hits[i], &other = expected[i];
+      ASSERT_EQ(hit.slot == NearestHit::kNone, other.slot == NearestHit::kNone) << i;
+      if (hit.slot == NearestHit::kNone) continue;
+      ASSERT_EQ(bvh_.triangle_of(hit.slot), flat_bvh_.triangle_of(other.slot)) << i;
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.point[k]),
+                  std::bit_cast<std::uint32_t>(other.point[k]));
+      }
+      ASSERT_EQ(hit.point_error, other.point_error);
+      ASSERT_TRUE(hit.t.low <= other.t.high && other.t.low <= hit.t.high);
+      instances += bvh_.is_placed(hit.slot) ? 1 : 0;
+    }
+    EXPECT_GT(instances, rays.size() / 8);
+  }
+
+  void expect_same(Intersector& intersector, Intersector& flat_intersector) {
+    for (const bool culling : {true, false}) {
+      const int count = culling ? 4000 : 300;
+      expect_same(intersector, flat_intersector, rays(count, nullptr), {.culling = culling});
+      const glm::vec3 eye = random_.point(3.5f);
+      expect_same(intersector, flat_intersector, rays(count, &eye),
+                  {.common_origin = true, .culling = culling});
+      std::vector<float> limits;
+      for (int i = 0; i < count; ++i) limits.push_back(random_.uniform(1.0f, 8.0f));
+      expect_same(intersector, flat_intersector, rays(count, nullptr),
+                  {.limits = limits, .culling = culling});
+    }
+  }
+};
+
+TEST_F(InstancesTest, RaysTestedInPlace) {
+  for (const Vectors vectors : machine_vectors()) {
+    const UsingVectors using_vectors(vectors);
+    CpuIntersector intersector(bvh_), flat(flat_bvh_);
+    expect_same(intersector, flat);
+  }
+}
+
+TEST_F(InstancesTest, RaysTestedByTheUnit) {
+  const auto intersector = unit_intersector(bvh_), flat = unit_intersector(flat_bvh_);
+  expect_same(*intersector, *flat);
+}
+
+TEST_F(InstancesTest, AllHits) {
+  std::vector<NearestHit> hits, expected;
+  RayWork work;
+  std::size_t found = 0;
+  for (const Ray& ray : rays(1000, nullptr)) {
+    constexpr float kNoLimit = std::numeric_limits<float>::infinity();
+    all_hits(bvh_, ray, kNoLimit, hits, work);
+    all_hits(flat_bvh_, ray, kNoLimit, expected, work);
+    ASSERT_EQ(hits.size(), expected.size());
+    for (std::size_t i = 0; i < hits.size(); ++i, ++found) {
+      ASSERT_EQ(bvh_.triangle_of(hits[i].slot), flat_bvh_.triangle_of(expected[i].slot));
+    }
+  }
+  EXPECT_GT(found, 3000u);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,102 @@
+// Bursts of hit tests and their nearest hits: the pipelined unit, as software sees it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "host/intersect/unit/hit_tester.h"
+
+namespace raygate {
+
+/// The nearest sure hit of a burst, as far as float32 can tell: near ties are reported beside it.
+struct BurstHit {
+  std::uint32_t bundle = 0, lane = 0;  ///< whose burst: index into the batch, lane of the bundle
+  std::uint32_t record = 0;            ///< which of the bundle's records
+  float t = 0.0f;                      ///< d / (I . N), positive and normal
+  std::uint32_t t_error = 0;  ///< at most 2^(6 + t_error) floats lie between t and the truth
+  glm::vec3 point{0.0f};      ///< P = d I / (I . N)
+
+  friend bool operator==(const BurstHit& a, const BurstHit& b);  ///< of all bits
+};
+
+/// A test that float32 leaves open.
+struct TestReport {
+  enum class Kind : std::uint8_t {
+    kDoubt = 1,    ///< neither surely hit nor surely missed, or its t cannot be had
+    kNearTie = 2,  ///< a sure hit that may be nearer than the one that was kept
+  };
+  std::uint32_t bundle = 0, lane = 0, record = 0;
+  Kind kind = Kind::kDoubt;
+
+  friend bool operator==(const TestReport&, const TestReport&) = default;
+};
+
+/// What a batch of bursts gave. Both in the order of the batch, bundle by bundle and in it lane by
+/// lane; the reports of a burst in the order in which they arose.
+struct BurstResults {
+  std::vector<BurstHit> hits;
+  std::vector<TestReport> reports;
+
+  void clear() {
+    hits.clear();
+    reports.clear();
+  }
+};
+
+/// What a unit has done since it was made. Clocks are 0 where nothing is simulated; idle clocks and
+/// stalls are counted for each lane of the hardware, so that they add up to lanes * clocks - tests.
+struct BurstCounters {
+  std::uint64_t tests = 0;          ///< misses + hits + doubts
+  std::uint64_t misses = 0;         ///< surely missed
+  std::uint64_t hits = 0;           ///< surely hit, near ties included
+  std::uint64_t doubts = 0;         ///< neither
+  std::uint64_t near_ties = 0;      ///< sure hits reported beside the one that was kept
+  std::uint64_t distances = 0;      ///< divisions for t
+  std::uint64_t coordinates = 0;    ///< divisions for the coordinates of P
+  std::uint64_t clocks = 0;         ///< simulated clock cycles
+  std::uint64_t idle_clocks = 0;    ///< no test was there
+  std::uint64_t output_stalls = 0;  ///< a result was not taken
+};
+
+/// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest
+/// even after each operation. Every implementation gives the same bits, for every bit pattern:
+///
+///     U_k = (E_kx Ix + E_ky Iy) + E_kz Iz,  V likewise with N,  t = d / V,  P_k = (d I_k) / V
+///
+///     U_k is sure where b_k < |U_k| < infinity (a NaN or negative b_k leaves nothing sure)
+///     miss   d is 0, or a sure U_k has the other sign than d
+///     hit    else, if all U_k are sure, V is normal and of d's sign, with an exponent at most 12
+///            below the largest of N's, and t is a positive normal number
+///     doubt  else
+///
+/// The error of t is 2^(6 + e), e being how far V's exponent is below the largest of N's, or 0
+/// (hw/hit_test/hit_test_pkg.sv has the proof). Of a burst's hits one is kept: the first; then
+/// each one whose t is smaller takes its place. Where the two are no farther apart, in floats,
+/// than the sum of their errors, the one that isn't kept is reported as a near tie.
+class BurstUnit {
+ public:
+  virtual ~BurstUnit() = default;
+
+  /// Adds what `batch` gives to `results`. Not between a start and its finish.
+  virtual void run(std::span<const RayBundle> batch, BurstResults& results) = 0;
+
+  /// The same in two steps, so that a unit need not run empty while its user thinks: at most two
+  /// batches may be started and not finished. Each finish is that of the oldest one, which must
+  /// have lived until then. Where nothing is gained by it, all is done in finish.
+  virtual void start(std::span<const RayBundle> batch) { started_.push(batch); }
+  virtual void finish(BurstResults& results) { run(started_.pop(), results); }
+
+  /// As HitTester::enough_tests.
+  [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
+
+  /// Not between a start and its finish.
+  [[nodiscard]] virtual BurstCounters counters() const = 0;
+
+ protected:
+  StartedBatches started_;
+};
+
+}  // namespace raygate

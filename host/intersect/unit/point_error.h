@@ -1,0 +1,58 @@
+// How far off the unit's P may be.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+
+#include "host/base/lanes.h"
+#include "host/intersect/unit/polygon_record.h"
+
+// Why P is no farther off
+//
+// Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. hit_test_pkg.sv
+// has it that V is at most r = 48.5 u 2^g of itself off, and t, with 2 u of d and u of its
+// division, at most (48.5 * 2^g + 3.2) u / (1 - r). A coordinate of P has one rounding more, of d
+// I_k: (48.5 * 2^g + 4.3) u / (1 - r) of t I_k < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which is
+// so up to g = 12. A product d I_k that underflows is 2^-150 off, which is less than 2^-48 of d
+// where d is at least 2^-102; nothing overflows where d, t < 2^104.
+
+namespace raygate {
+
+/// The grazing that the unit reports with a hit (BurstHit::t_error), from the largest exponent
+/// field of N's words and V's bits; V is finite. `Bits`: std::int32_t, or a vector of them.
+template <class Bits>
+RAYGATE_INLINE void grazing_of(const Bits& largest, const Bits& v, Bits& grazing) {
+  grazing = largest - (v >> 23 & 0xFF);
+  grazing = grazing > 0 ? grazing : Bits{};
+}
+
+/// The same, of one plane.
+template <class Bits>
+RAYGATE_INLINE void grazing_of(const PolygonRecord& plane, const Bits& v, Bits& grazing) {
+  const auto field = [](float x) { return std::bit_cast<std::int32_t>(x) >> 23 & 0xFF; };
+  const glm::vec3& n = plane.normal;
+  grazing_of(Bits{} + std::max({field(n.x), field(n.y), field(n.z)}), v, grazing);
+}
+
+/// The bits of NearestHit::point_error: 2^(grazing - 18), or +infinity where the unit says nothing
+/// about V, or calls it too small; from the bits of the plane's d and of V.
+template <class Bits>
+RAYGATE_INLINE void point_error_of(const Bits& d, const Bits& v, const Bits& grazing, Bits& error) {
+  constexpr std::int32_t kBias = 127, kMaxGrazing = 12, kRange = 102;
+  const Bits d_field = d >> 23 & 0xFF, v_field = v >> 23 & 0xFF, apart = d_field - v_field;
+  const Bits in_range = (d_field >= kBias - kRange) & (d_field <= kBias + kRange) & (v_field > 0) &
+                        (v_field < 0xFF) & ((v ^ d) >= 0) & (grazing <= kMaxGrazing) &
+                        (apart <= kRange) & (apart >= -kRange);
+  error = in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
+}
+
+/// The same, of one plane.
+template <class Bits>
+RAYGATE_INLINE void point_error_of(const PolygonRecord& plane, const Bits& v, const Bits& grazing,
+                                   Bits& error) {
+  point_error_of(Bits{} + std::bit_cast<std::int32_t>(plane.d), v, grazing, error);
+}
+
+}  // namespace raygate

@@ -1,0 +1,74 @@
+// The polygon records of one common origin, each made when a ray first comes near its polygon.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "host/bvh/bvh.h"
+#include "host/intersect/unit/polygon_record.h"
+
+namespace raygate {
+
+/// Room for a record per slot of the tree, filled leaf by leaf. Threads may ask at once: the first
+/// one makes a record, the others wait for it. 65 bytes a slot; pages nobody touches
+/// cost nothing.
+class RecordCache {
+ public:
+  RecordCache(const Bvh& bvh, const glm::vec3& origin);
+
+  [[nodiscard]] const glm::vec3& origin() const { return origin_; }
+
+  /// The records of the slots first .. first + count, at least one. Adds to `made` the number of
+  /// those that had to be made.
+  [[nodiscard]] const PolygonRecord* leaf(std::uint32_t first, std::uint32_t count,
+                                          std::uint64_t& made) {
+    for (std::uint32_t slot = first; slot < first + count; ++slot) {
+      if (states_[slot].load(std::memory_order_acquire) != State::kMade) {
+        made += make(first, count);
+        break;
+      }
+    }
+    return records_.get() + first;
+  }
+
+ private:
+  enum class State : std::uint8_t { kNone, kBusy, kMade };
+
+  struct Free {
+    void operator()(void* memory) const;
+  };
+
+  std::uint64_t make(std::uint32_t first, std::uint32_t count);
+  bool claim(std::uint32_t slot);
+
+  const Bvh& bvh_;
+  glm::vec3 origin_;
+  std::unique_ptr<PolygonRecord[], Free> records_;
+  std::unique_ptr<std::atomic<State>[]> states_;  // of the slots
+};
+
+/// The caches of all common origins of a scene, each made when it is first asked for. For any
+/// number of threads.
+class RecordCaches {
+ public:
+  /// `on_first_touch`: whether records are made when a ray comes near their polygon, or all of an
+  /// origin at once. The tree must outlive this.
+  explicit RecordCaches(const Bvh& bvh, bool on_first_touch = true)
+      : bvh_(bvh), on_first_touch_(on_first_touch) {}
+
+  /// Adds to `made` the number of records that had to be made.
+  [[nodiscard]] RecordCache& at(const glm::vec3& origin, std::uint64_t& made);
+
+ private:
+  const Bvh& bvh_;
+  bool on_first_touch_;
+  std::mutex mutex_;
+  std::map<std::array<std::uint32_t, 3>, RecordCache> caches_;  // by the origin's bits
+};
+
+}  // namespace raygate

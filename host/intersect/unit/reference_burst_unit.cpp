@@ -1,0 +1,27 @@
+#include "host/intersect/unit/reference_burst_unit.h"
+
+#include "host/intersect/unit/point_error.h"
+
+namespace raygate {
+
+template class BasicReferenceBurstUnit<Binary32>;
+
+HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction) {
+  return ReferenceBurstUnit().distance(record, direction);
+}
+
+UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction) {
+  return {ReferenceBurstUnit().point(record, direction), point_error(record, direction)};
+}
+
+float point_error(const PolygonRecord& record, const glm::vec3& direction,
+                  std::optional<std::uint32_t> grazing) {
+  const auto v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));
+  std::int32_t g = 0, error = 0;
+  grazing_of(record, v, g);
+  if (grazing) g = static_cast<std::int32_t>(*grazing);
+  point_error_of(record, v, g, error);
+  return std::bit_cast<float>(error);
+}
+
+}  // namespace raygate

@@ -1,0 +1,192 @@
+// The pipelined unit's reference model: the unit in C++, whatever its arithmetic.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "host/exact/binary32.h"
+#include "host/intersect/unit/burst_unit.h"
+
+namespace raygate {
+
+/// What the unit says of a single test.
+enum class UnitVerdict : std::uint8_t { kMiss, kHit, kDoubt };
+
+/// The distance of a hit, and how many numbers of the format it may be off: 2^(6 + error).
+struct HitDistance {
+  float t = 0.0f;
+  std::uint32_t error = 0;
+};
+
+/// BurstUnit's contract in the format and rounding of `Math` (Binary32, or bench/variants'
+/// Arithmetic): every float of the records, rays and results is a number of that format, "floats"
+/// between two distances are its numbers, and the limit of grazing is hit_test_pkg::max_grazing's
+/// for it. The same operations in the same order as hit_test_pipeline with these parameters, so
+/// that the bits are equal.
+template <typename Math>
+class BasicReferenceBurstUnit : public BurstUnit {
+ public:
+  explicit BasicReferenceBurstUnit(const Math& math = {}) : math_(math) {}
+
+  void run(std::span<const RayBundle> batch, BurstResults& results) override {
+    for (std::uint32_t i = 0; i < batch.size(); ++i) {
+      for (LaneMask lanes = batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
+        run_burst(batch[i], i, static_cast<std::uint32_t>(std::countr_zero(lanes)), results);
+      }
+    }
+  }
+
+  [[nodiscard]] BurstCounters counters() const override { return counters_; }
+
+  /// The verdict on one test, as in `run`.
+  [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction) const {
+    const float v = math_.dot(record.normal, direction);
+    const UnitVerdict decided = decide(record, direction, v);
+    if (decided != UnitVerdict::kHit) return decided;
+    return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  }
+
+  /// What the edges alone say: a hit is one if it is ahead, which those of d's sign are. Where d is
+  /// a NaN, nobody knows its sign: edges of opposite signs are a miss, all else is in doubt.
+  [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
+                                          const glm::vec3& direction) const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    if (record.d == 0.0f) return UnitVerdict::kMiss;
+    const bool side = std::signbit(record.d);
+    bool all_sure = !std::isnan(record.d), any_agrees = all_sure, any_differs = false;
+    for (int k = 0; k < 3; ++k) {
+      const float u = math_.dot(record.edges[k], direction);
+      const float bound = record.bounds[k];
+      const bool sure = !std::signbit(bound) && std::abs(u) > bound && std::abs(u) < kInfinity;
+      any_agrees |= sure && std::signbit(u) == side;
+      any_differs |= sure && std::signbit(u) != side;
+      if (any_agrees && any_differs) return UnitVerdict::kMiss;
+      all_sure = all_sure && sure;
+    }
+    return all_sure ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  }
+
+  /// BurstUnit's t and its error, for a record that the ray surely hits.
+  [[nodiscard]] HitDistance distance(const PolygonRecord& record,
+                                     const glm::vec3& direction) const {
+    return distance(record, math_.dot(record.normal, direction));
+  }
+
+  /// BurstUnit's P, equation 10; any NaN is 0x7FC00000.
+  [[nodiscard]] glm::vec3 point(const PolygonRecord& record, const glm::vec3& direction) const {
+    // The paper's accumulator starts from +0, which matters where V is a zero.
+    const float v = math_.add(0.0f, math_.dot(record.normal, direction));
+    glm::vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = math_.divide(math_.multiply(record.d, direction[k]), v);
+    return p;
+  }
+
+ private:
+  static constexpr int kTErrorUnit = 6;  // hit_test_pkg::TErrorUnit
+
+  /// How far V's exponent is below the largest of N's.
+  [[nodiscard]] int grazing(const glm::vec3& n, float v) const {
+    return std::max(
+               {math_.exponent_field(n.x), math_.exponent_field(n.y), math_.exponent_field(n.z)}) -
+           math_.exponent_field(v);
+  }
+
+  /// hit_test_pkg::max_grazing.
+  [[nodiscard]] int max_grazing() const { return std::max(math_.fraction_bits() - 11, 0); }
+
+  [[nodiscard]] HitDistance distance(const PolygonRecord& record, float v) const {
+    return {math_.divide(record.d, v),
+            static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
+  }
+
+  /// Before the division: whether the edges decide, and whether V may divide.
+  [[nodiscard]] UnitVerdict decide(const PolygonRecord& record, const glm::vec3& direction,
+                                   float v) const {
+    const UnitVerdict inside = edges_verdict(record, direction);
+    if (inside != UnitVerdict::kHit) return inside;
+    const bool divisible = math_.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
+                           grazing(record.normal, v) <= max_grazing();
+    return divisible ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  }
+
+  /// Whether two distances (positive) are as close as their errors add up to.
+  [[nodiscard]] bool near_tie(const HitDistance& a, const BurstHit& b) const {
+    const std::int64_t margin = (std::int64_t{1} << (kTErrorUnit + a.error)) +
+                                (std::int64_t{1} << (kTErrorUnit + b.t_error));
+    return std::abs(static_cast<std::int64_t>(math_.to_word(a.t)) -
+                    static_cast<std::int64_t>(math_.to_word(b.t))) <= margin;
+  }
+
+  void run_burst(const RayBundle& bundle, std::uint32_t index, std::uint32_t lane,
+                 BurstResults& results) {
+    const glm::vec3 direction = bundle.lane_direction(static_cast<int>(lane));
+    BurstHit best{index, lane, 0, 0.0f, 0, glm::vec3{0.0f}};
+    bool found = false;
+    const auto report = [&](std::uint32_t record, TestReport::Kind kind) {
+      results.reports.push_back({index, lane, record, kind});
+    };
+    for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
+      const PolygonRecord& record = bundle.records[i];
+      const float v = math_.dot(record.normal, direction);
+      UnitVerdict verdict = decide(record, direction, v);
+      HitDistance hit;
+      if (verdict == UnitVerdict::kHit) {
+        ++counters_.distances;
+        hit = distance(record, v);
+        if (!math_.is_normal(hit.t)) verdict = UnitVerdict::kDoubt;
+      }
+      ++counters_.tests;
+      counters_.misses += verdict == UnitVerdict::kMiss;
+      counters_.hits += verdict == UnitVerdict::kHit;
+      counters_.doubts += verdict == UnitVerdict::kDoubt;
+      if (verdict == UnitVerdict::kDoubt) report(i, TestReport::Kind::kDoubt);
+      if (verdict != UnitVerdict::kHit) continue;
+      const bool nearer = hit.t < best.t;
+      if (found && near_tie(hit, best)) {
+        ++counters_.near_ties;
+        report(nearer ? best.record : i, TestReport::Kind::kNearTie);
+      }
+      if (!found || nearer) {
+        best.record = i;
+        best.t = hit.t;
+        best.t_error = hit.error;
+        found = true;
+      }
+    }
+    if (!found) return;
+    best.point = point(bundle.records[best.record], direction);
+    counters_.coordinates += 3;
+    results.hits.push_back(best);
+  }
+
+  Math math_;
+  BurstCounters counters_;
+};
+
+/// In the machine's own float arithmetic.
+extern template class BasicReferenceBurstUnit<Binary32>;
+using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
+
+/// As BasicReferenceBurstUnit::distance, in binary32.
+[[nodiscard]] HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction);
+
+/// P, and how far off it may be: see NearestHit.
+struct UnitPoint {
+  glm::vec3 point;
+  float error;
+};
+
+/// As BasicReferenceBurstUnit::point, in binary32.
+[[nodiscard]] UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction);
+
+/// The error of a P that the unit gave. `grazing`: what it says of that, or nothing where it does
+/// not say.
+[[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
+                                std::optional<std::uint32_t> grazing = std::nullopt);
+
+}  // namespace raygate

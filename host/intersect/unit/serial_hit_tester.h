@@ -1,0 +1,49 @@
+// Hit tests by a unit that knows planes only: the paper's hardware and the software around it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/plane_unit.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+
+namespace raygate {
+
+/// The unit finds where a ray meets a polygon's plane; whether that is inside the polygon, and
+/// which hit is nearest, is found here, in software, as in the paper.
+class SerialHitTester : public HitTester {
+ public:
+  /// Which pairs go through the unit.
+  enum class Order {
+    kEdgesFirst,   ///< those that the edge planes do not rule out: a miss costs no clocks
+    kPlanesFirst,  ///< every one, as in the paper
+  };
+
+  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit, Order order = Order::kEdgesFirst);
+
+  void test(std::span<const RayBundle> batch, HitResults& results) override;
+  [[nodiscard]] HitCounters counters() const override;
+
+ private:
+  /// A pair on its way through the unit.
+  struct Pair {
+    std::uint32_t bundle, lane, record;
+    UnitVerdict verdict;
+  };
+
+  void collect(std::uint32_t index, const RayBundle& bundle);
+  void report_burst(std::span<const RayBundle> batch, std::size_t first, std::size_t last,
+                    HitResults& results);
+
+  std::unique_ptr<PlaneUnit> unit_;
+  Order order_;
+  HitCounters counters_;
+  // Room to work in, kept from batch to batch.
+  std::vector<Pair> pairs_;  // bundle by bundle, lane by lane, in the order of the records
+  std::vector<PlaneTest> plane_tests_;
+  std::vector<glm::vec3> points_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,229 @@
+// What a tester calls sure is so, and what it leaves out is no nearest hit.
+#include "host/intersect/unit/hit_tester.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "host/exact/test/meshes.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/reference_plane_unit.h"
+#include "host/intersect/unit/serial_hit_tester.h"
+#include "host/scene/camera.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+
+/// A batch of bundles, each of eight rays from one origin against a run of triangles around it.
+struct Batch {
+  std::vector<glm::vec3> origins;
+  std::vector<std::vector<Corners>> triangles;
+  std::vector<std::vector<PolygonRecord>> records;
+  std::vector<RayBundle> bundles;
+
+  Batch(Random& random, int count) {
+    for (int i = 0; i < count; ++i) add(random, static_cast<std::uint32_t>(100 * i));
+    for (int i = 0; i < count; ++i) bundles[i].records = records[i].data();
+  }
+
+  [[nodiscard]] Ray ray(std::uint32_t bundle, std::uint32_t lane) const {
+    return {origins[bundle], bundles[bundle].lane_direction(static_cast<int>(lane))};
+  }
+
+ private:
+  void add(Random& random, std::uint32_t tag) {
+    const glm::vec3 origin = random.point();
+    std::vector<Corners> run;
+    for (int i = random.below(6); i >= 0; --i) {
+      run.push_back({random.point(2.0f), random.point(2.0f), random.point(2.0f)});
+      if (random.below(3) == 0) run.push_back({run[0][1], run[0][0], run[0][2]});  // the same again
+      if (random.below(3) == 0) {  // a near tie in depth
+        Corners close = run[0];
+        for (auto& v : close) v *= 1.0f + random.uniform(-1e-7f, 1e-7f);
+        run.push_back(close);
+      }
+    }
+    RayBundle bundle;
+    bundle.record_count = static_cast<std::uint32_t>(run.size());
+    bundle.first_tag = tag;
+    bundle.lanes = 0xFF & ~(1u << random.below(8));
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Corners& t = run[random.below(static_cast<int>(run.size()))];
+      const float edge = random.below(3) == 0 ? 0.0f : random.uniform(0, 0.5f);
+      const glm::vec3 aim = glm::mix(glm::mix(t[0], t[1], random.uniform(0, 1)), t[2], edge);
+      const glm::vec3 direction = scaled_direction(glm::dvec3(aim) - glm::dvec3(origin));
+      for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = direction[k];
+    }
+    std::vector<PolygonRecord> made;
+    for (const Corners& t : run) made.push_back(make_record(origin, t));
+    origins.push_back(origin);
+    triangles.push_back(std::move(run));
+    records.push_back(std::move(made));
+    bundles.push_back(bundle);
+  }
+};
+
+constexpr float kFlat = 0x1p-12f;  // an error of P
+
+using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
+
+/// Checks the promises of `tester`, which is new, against exact arithmetic.
+void expect_the_truth(HitTester& tester) {
+  Random random;
+  const Batch batch(random, 20000);
+  HitResults results;
+  tester.test(batch.bundles, results);
+
+  std::set<Key> doubtful, sure;
+  for (const Doubt& doubt : results.doubts) doubtful.insert({doubt.bundle, doubt.lane, doubt.tag});
+  for (const SureHit& hit : results.hits) {
+    sure.insert({hit.bundle, hit.lane, hit.tag});
+    const Corners& t = batch.triangles[hit.bundle][hit.tag - 100 * hit.bundle];
+    const Ray ray = batch.ray(hit.bundle, hit.lane);
+    ASSERT_TRUE(hits_triangle(ray, t));
+    const Interval exact = hit_distance(ray, t);
+    ASSERT_LE(hit.t.low, exact.low);
+    ASSERT_GE(hit.t.high, exact.high);
+  }
+  EXPECT_GT(doubtful.size(), 100u);
+  EXPECT_GT(sure.size(), 10000u);
+
+  // The nearest hit of every burst is among the reports.
+  for (std::uint32_t b = 0; b < batch.bundles.size(); ++b) {
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      if ((batch.bundles[b].lanes >> lane & 1) == 0) continue;
+      const Ray ray = batch.ray(b, lane);
+      const auto& run = batch.triangles[b];
+      int nearest = -1;
+      for (int i = 0; i < static_cast<int>(run.size()); ++i) {
+        if (!hits_triangle(ray, run[i])) continue;
+        if (nearest < 0 || compare_hits(ray, run[i], run[nearest]) < 0) nearest = i;
+      }
+      if (nearest < 0) continue;
+      const Key key = {b, lane, 100 * b + static_cast<std::uint32_t>(nearest)};
+      ASSERT_TRUE(sure.contains(key) || doubtful.contains(key)) << "bundle " << b;
+    }
+  }
+  const HitCounters counters = tester.counters();
+  EXPECT_EQ(counters.tests, counters.misses + counters.hits + counters.edge_doubts);
+  EXPECT_EQ(counters.edge_doubts, results.doubts.size());
+  EXPECT_GT(counters.depth_doubts, 0u);
+}
+
+TEST(SerialHitTester, ReportsHoldTheTruth) {
+  SerialHitTester tester(std::make_unique<ReferencePlaneUnit>());
+  expect_the_truth(tester);
+  const HitCounters counters = tester.counters();
+  EXPECT_EQ(counters.plane_tests, counters.hits + counters.edge_doubts);
+}
+
+TEST(PipelineHitTester, ReportsHoldTheTruth) {
+  PipelineHitTester tester(std::make_unique<ReferenceBurstUnit>());
+  expect_the_truth(tester);
+}
+
+// Two ways to the same P: the unit's for the nearest hit, the tester's for what is only reported.
+TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
+  Random random;
+  const Batch batch(random, 2000);
+  SerialHitTester serial(std::make_unique<ReferencePlaneUnit>());
+  PipelineHitTester pipeline(std::make_unique<ReferenceBurstUnit>());
+  HitResults a, b;
+  serial.test(batch.bundles, a);
+  pipeline.test(batch.bundles, b);
+  std::map<Key, glm::vec3> points;
+  for (const SureHit& hit : a.hits) points[{hit.bundle, hit.lane, hit.tag}] = hit.point;
+  for (const Doubt& doubt : a.doubts) points[{doubt.bundle, doubt.lane, doubt.tag}] = doubt.point;
+  std::size_t compared = 0;
+  const auto expect_same = [&](const auto& result) {
+    const auto point = points.find({result.bundle, result.lane, result.tag});
+    if (point == points.end()) return;
+    EXPECT_EQ(std::memcmp(&point->second, &result.point, sizeof(glm::vec3)), 0);
+    ++compared;
+  };
+  for (const SureHit& hit : b.hits) expect_same(hit);
+  for (const Doubt& doubt : b.doubts) expect_same(doubt);
+  EXPECT_GT(compared, 1000u);
+}
+
+// P is no farther off than its error says, from straight on to as flat as the unit goes.
+TEST(PipelineHitTester, PointsAreWithinTheirErrors) {
+  Random random;
+  int flat = 0, none = 0;
+  double worst = 0.0;
+  for (int i = 0; i < 200'000; ++i) {
+    const float scale = std::ldexp(1.0f, random.below(41) - 20);
+    Corners t = {random.point(scale), random.point(scale), random.point(scale)};
+    const glm::vec3 origin = random.point(2.0f * scale);
+    if (random.below(2) == 0) {  // nearly in the plane of the origin
+      const float share = std::ldexp(1.0f, -random.below(16));
+      t[2] = glm::mix(glm::mix(t[0], t[1], 0.4f) + 0.5f * (t[0] - origin), t[2], share);
+    }
+    const glm::dvec3 aim = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
+    const Ray ray = {origin, scaled_direction(aim - glm::dvec3(origin))};
+    if (!hits_triangle(ray, t)) continue;
+    const auto [point, error] = plane_point(make_record(origin, t), ray.direction);
+    if (std::isinf(error)) {
+      ++none;
+      continue;
+    }
+    const Interval exact = hit_distance(ray, t);
+    for (int k = 0; k < 3; ++k) {
+      const double p = 0.5 * (exact.low + exact.high) * ray.direction[k];
+      const double off = std::abs(point[k] - p) / std::abs(p);
+      ASSERT_LE(off, error) << i;
+      worst = std::max(worst, off / error);
+    }
+    flat += error > kFlat;
+  }
+  EXPECT_GT(flat, 10'000);
+  EXPECT_GT(none, 100);
+  EXPECT_GT(worst, 0.02) << "the bound is a bound, not a guess";
+}
+
+// The paper's order asks the unit about every pair and reports the same, bit for bit.
+TEST(SerialHitTester, BothOrdersReportTheSame) {
+  Random random;
+  const Batch batch(random, 2000);
+  SerialHitTester first(std::make_unique<ReferencePlaneUnit>());
+  SerialHitTester paper(std::make_unique<ReferencePlaneUnit>(),
+                        SerialHitTester::Order::kPlanesFirst);
+  HitResults a, b;
+  first.test(batch.bundles, a);
+  paper.test(batch.bundles, b);
+  ASSERT_GT(a.hits.size(), 0u);
+  ASSERT_EQ(a.hits.size(), b.hits.size());
+  ASSERT_EQ(a.doubts.size(), b.doubts.size());
+  for (std::size_t i = 0; i < a.hits.size(); ++i) {
+    EXPECT_EQ(a.hits[i].tag, b.hits[i].tag);
+    EXPECT_EQ(std::memcmp(&a.hits[i].point, &b.hits[i].point, sizeof(glm::vec3)), 0);
+  }
+  EXPECT_EQ(paper.counters().plane_tests, paper.counters().tests);
+}
+
+TEST(SerialHitTester, ThePlaneOfTheOriginIsAMissAndAnEmptyRunNothing) {
+  const PolygonRecord record =
+      make_record(glm::vec3(0), {glm::vec3(-1, 0, 1), glm::vec3(1, 0, 1), glm::vec3(0, 0, 3)});
+  RayBundle bundle{};
+  bundle.direction[2][0] = 1.0f;
+  bundle.lanes = 1;
+  bundle.records = &record;
+  bundle.record_count = 1;
+  RayBundle empty = bundle;
+  empty.record_count = 0;
+  const RayBundle batch[] = {bundle, empty};
+  SerialHitTester tester(std::make_unique<ReferencePlaneUnit>());
+  HitResults results;
+  tester.test(batch, results);
+  EXPECT_TRUE(results.hits.empty() && results.doubts.empty());
+  EXPECT_EQ(tester.counters().misses, 1u);
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,198 @@
+// Rays of any origins find what trying every triangle in exact arithmetic finds.
+#include "host/intersect/unit/unit_intersector.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "host/exact/test/meshes.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+
+std::uint32_t exact_nearest(const Bvh& bvh, const Ray& ray, float limit,
+                            std::uint32_t ignored = NearestHit::kNone) {
+  std::uint32_t best = NearestHit::kNone;
+  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+    const Corners& t = bvh.corners_of(slot);
+    if (slot == ignored || !hits_triangle(ray, t)) continue;
+    if (std::isfinite(limit) && compare_hit_to_limit(ray, t, limit) >= 0) continue;
+    const int order = best == NearestHit::kNone ? -1 : compare_hits(ray, t, bvh.corners_of(best));
+    if (order < 0 || (order == 0 && bvh.triangle_of(slot) < bvh.triangle_of(best))) best = slot;
+  }
+  return best;
+}
+
+std::vector<Corners> sphere_in_box() {
+  std::vector<Corners> mesh = test::sphere(2);
+  const auto walls = test::box(glm::vec3(-3), glm::vec3(3));
+  mesh.insert(mesh.end(), walls.begin(), walls.end());
+  return mesh;
+}
+
+/// Some from one origin, some from origins of their own; some aimed at vertices.
+std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int count) {
+  std::vector<Ray> rays;
+  const glm::vec3 shared = random.point(2.5f);
+  while (static_cast<int>(rays.size()) < count) {
+    const glm::vec3 origin = random.below(3) == 0 ? shared : random.point(2.5f);
+    const glm::dvec3 aim =
+        random.below(2) == 0
+            ? glm::dvec3(mesh[random.below(static_cast<int>(mesh.size()))][random.below(3)])
+            : glm::dvec3(random.point(3.0f));
+    if (aim != glm::dvec3(origin))
+      rays.push_back({origin, scaled_direction(aim - glm::dvec3(origin))});
+  }
+  return rays;
+}
+
+class UnitIntersectorTest : public testing::Test {
+ protected:
+  std::vector<Corners> mesh_ = sphere_in_box();
+  Bvh bvh_{test::scene_of(mesh_)};
+  UnitIntersector intersector_{
+      bvh_, std::make_shared<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>())};
+  Random random_;
+
+  std::vector<NearestHit> find(const std::vector<Ray>& rays, const RayQuery& search = {}) {
+    std::vector<NearestHit> hits(rays.size());
+    intersector_.intersect(rays, search, hits);
+    return hits;
+  }
+};
+
+TEST_F(UnitIntersectorTest, OwnOriginsFindTheExactNearest) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 3000);
+  std::vector<float> limits;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    limits.push_back(i % 2 == 0 ? std::numeric_limits<float>::infinity()
+                                : random_.uniform(0.01f, 3.0f));
+  }
+  const auto hits_found = find(rays, {.limits = limits});
+  int hits = 0, misses = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t expected = exact_nearest(bvh_, rays[i], limits[i]);
+    ASSERT_EQ(hits_found[i].slot, expected) << i;
+    ++(expected == NearestHit::kNone ? misses : hits);
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(misses, 100);
+  EXPECT_GT(intersector_.counters().exact_inside, 0u);
+  EXPECT_GT(intersector_.counters().own_records, 0u);
+}
+
+TEST_F(UnitIntersectorTest, CachedRecordsChangeNothing) {
+  std::vector<Ray> rays = some_rays(mesh_, random_, 2000);
+  for (Ray& ray : rays) ray.origin = rays[0].origin;
+  const auto cached = find(rays, {.common_origin = true});
+  EXPECT_EQ(intersector_.counters().own_records, 0u);
+  EXPECT_GT(intersector_.counters().common_records, 0u);
+  EXPECT_LE(intersector_.counters().common_records, mesh_.size());
+  const auto own = find(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(own[i].slot, cached[i].slot);
+    ASSERT_EQ(own[i].point, cached[i].point);
+  }
+  EXPECT_GT(intersector_.counters().own_records, mesh_.size())
+      << "made once for each packet and leaf";
+}
+
+TEST_F(UnitIntersectorTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 300);
+  std::vector<RayWork> work(rays.size());
+  const auto culled = find(rays, {.work = work});
+  std::uint64_t tests = 0;
+  for (const RayWork& ray : work) {
+    EXPECT_LT(ray.tests, mesh_.size() / 2);
+    tests += ray.tests;
+  }
+  EXPECT_EQ(tests, intersector_.counters().hit.tests);
+  const auto all = find(rays, {.culling = false, .work = work});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(all[i].slot, culled[i].slot);
+    ASSERT_EQ(work[i].tests, mesh_.size());
+  }
+}
+
+// Rays that may end at any hit before some t end there whenever there is one; the others find their
+// nearest.
+TEST_F(UnitIntersectorTest, RaysEndAtAnyHitThatWillDo) {
+  std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
+  std::vector<float> enough;
+  for (Ray& ray : rays) {
+    ray.origin *= 10.0f;  // outside, so that there are several hits
+    ray.direction = scaled_direction(glm::dvec3(random_.point(2.0f) - ray.origin));
+    enough.push_back(random_.below(4) == 0 ? INFINITY : random_.uniform(2.0f, 20.0f));
+  }
+  const auto hits = find(rays, {.enough_before = enough});
+  int ended = 0, farther = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t exact = exact_nearest(bvh_, rays[i], INFINITY);
+    const std::uint32_t found = hits[i].slot;
+    ASSERT_EQ(exact == NearestHit::kNone, found == NearestHit::kNone);
+    if (found == NearestHit::kNone) continue;
+    const bool is_before = raygate::is_before(bvh_, rays[i], hits[i], enough[i]);
+    ASSERT_EQ(is_before, exact_nearest(bvh_, rays[i], enough[i]) != NearestHit::kNone);
+    ASSERT_TRUE(is_before || found == exact);
+    ++(is_before ? ended : farther);
+  }
+  EXPECT_GT(ended, 100);
+  EXPECT_GT(farther, 100);
+  EXPECT_EQ(intersector_.counters().ended_early, static_cast<std::uint64_t>(ended));
+}
+
+// Also where an ignored hit hides a farther one of its leaf from the reports.
+TEST_F(UnitIntersectorTest, IgnoredSlotsDoNotCount) {
+  std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
+  for (Ray& ray : rays) {
+    ray.origin *= 10.0f;  // outside: the sphere's two sides, and the box's
+    ray.direction = scaled_direction(glm::dvec3(random_.point(1.5f) - ray.origin));
+  }
+  std::vector<std::uint32_t> ignored;
+  for (const NearestHit& hit : find(rays)) ignored.push_back(hit.slot);
+  const auto others = find(rays, {.ignored = ignored});
+  int hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t found = others[i].slot;
+    ASSERT_EQ(found, exact_nearest(bvh_, rays[i], INFINITY, ignored[i]));
+    hits += found != NearestHit::kNone;
+  }
+  EXPECT_GT(hits, 500);
+}
+
+// Three sheets in one leaf, behind each other: a burst reports the nearest alone.
+TEST(UnitIntersector, IgnoredHitsHideNothing) {
+  std::vector<Corners> sheets;
+  for (const float z : {1.0f, 1.01f, 1.02f}) {
+    sheets.push_back({glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)});
+  }
+  const Bvh bvh(test::scene_of(sheets));
+  UnitIntersector intersector(
+      bvh, std::make_shared<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
+  const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
+  std::vector<NearestHit> hits(1);
+  intersector.intersect(rays, {}, hits);
+  const std::uint32_t first = hits[0].slot;
+  ASSERT_EQ(bvh.triangle_of(first), 0u);
+  intersector.intersect(rays, {.ignored = std::span(&first, 1)}, hits);
+  ASSERT_NE(hits[0].slot, NearestHit::kNone);
+  EXPECT_EQ(bvh.triangle_of(hits[0].slot), 1u);
+}
+
+TEST_F(UnitIntersectorTest, DirectionsThatLeadNowhereHitNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0)},
+                                 {glm::vec3(0), glm::vec3(nan, 1, 0)},
+                                 {glm::vec3(0), glm::vec3(0, 0, 1)}};
+  const auto hits = find(rays);
+  EXPECT_EQ(hits[0].slot, NearestHit::kNone);
+  EXPECT_EQ(hits[1].slot, NearestHit::kNone);
+  EXPECT_NE(hits[2].slot, NearestHit::kNone);
+}
+
+}  // namespace
+}  // namespace raygate

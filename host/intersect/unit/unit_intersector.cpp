@@ -1,0 +1,274 @@
+#include "host/intersect/unit/unit_intersector.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <utility>
+
+#include "host/base/stopwatch.h"
+#include "host/intersect/unit/record_batch.h"
+
+namespace raygate {
+
+UnitIntersector::UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
+                                 std::shared_ptr<RecordCaches> caches)
+    : bvh_(bvh),
+      tester_(std::move(tester)),
+      caches_(caches ? std::move(caches) : std::make_shared<RecordCaches>(bvh)) {}
+
+std::size_t UnitIntersector::preferred_batch() const {
+  constexpr std::size_t kRaysPerTest = 256;  // so that batches are long against what fills the unit
+  return std::max(kBatch, kRaysPerTest * tester_->enough_tests());
+}
+
+IntersectCounters UnitIntersector::counters() const {
+  IntersectCounters counters = counters_;
+  counters.hit = tester_->counters();
+  return counters;
+}
+
+void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& search,
+                                std::span<NearestHit> hits) {
+  assert(hits.size() == rays.size());
+  Stopwatch watch;
+  rays_ = rays;
+  search_ = search;
+  hits_ = hits;
+  for (NearestHit& hit : hits) hit.slot = NearestHit::kNone;  // the rest has no meaning
+  std::ranges::fill(search.work, RayWork{});
+  common_ = nullptr;
+  if (search.common_origin && !rays.empty()) {
+    common_ = &caches_->at(rays[0].origin, counters_.common_records);
+  }
+  make_packets();
+  for (bool busy = true; busy;) {
+    busy = false;
+    for (Half& half : halves_) {
+      if (half.started) finish(half);
+      watch.lap();
+      collect(half);
+      counters_.traverse += watch.lap();
+      if (half.batch.empty()) continue;
+      if (common_ == nullptr || bvh_.has_instances()) make_own_records(half);
+      counters_.record += watch.lap();
+      tester_->start(half.batch);
+      half.started = busy = true;
+    }
+  }
+}
+
+/// Takes the answers to a half's batch.
+void UnitIntersector::finish(Half& half) {
+  Stopwatch watch;
+  results_.clear();
+  tester_->finish(results_);
+  half.started = false;
+  merge(half);
+  if (!search_.work.empty()) count_work(half);
+  counters_.hit_tests += watch.lap();
+}
+
+/// Packets are filled octant by octant, each in the order of the rays; the second half of them is
+/// the second half.
+void UnitIntersector::make_packets() {
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  packets_.clear();
+  std::array<std::uint32_t, 8> open;  // the packet of each octant that has room
+  std::array<int, 8> filled{};
+  open.fill(kNone);
+  for (std::uint32_t number = 0; number < rays_.size(); ++number) {
+    const Ray& ray = rays_[number];
+    if (!is_usable(ray.direction)) continue;
+    if (!is_scaled(ray.direction)) refuse_unscaled(ray);
+    const int octant = octant_of(ray.direction);
+    if (open[octant] == kNone) {
+      open[octant] = static_cast<std::uint32_t>(packets_.size());
+      filled[octant] = 0;
+      packets_.emplace_back(bvh_, octant);
+      packets_.back().rays.fill(number);
+    }
+    Packet& packet = packets_[open[octant]];
+    const int lane = filled[octant]++;
+    packet.rays[lane] = number;
+    packet.traversal.set_ray(lane, ray.origin, ray.direction);
+    packet.lanes |= 1u << lane;
+    if (!search_.limits.empty()) packet.traversal.set_cutoff(lane, search_.limits[number]);
+    if (filled[octant] == kLanes) open[octant] = kNone;
+  }
+  for (Half& half : halves_) half.active.clear();
+  for (std::uint32_t index = 0; index < packets_.size(); ++index) {
+    (index < packets_.size() / 2 ? halves_[0] : halves_[1]).active.push_back(index);
+  }
+}
+
+LeafVisits UnitIntersector::next_leaf(Packet& packet) {
+  if (search_.culling) return packet.traversal.next_leaf();
+  const auto [placed, end] = bvh_.placed_slots();
+  if (packet.next_slot == bvh_.slot_count()) packet.next_slot = placed;
+  const std::uint32_t first = packet.next_slot;
+  if (first == end) return {};
+  const std::uint32_t most = bvh_.is_placed(first) ? end : bvh_.slot_count();
+  const std::uint32_t count = std::min(Bvh::kMaxLeafSize, most - first);
+  packet.next_slot += count;
+  return {{LeafVisit{first, count, packet.lanes}}, 1};
+}
+
+/// Fills the batch: every packet goes to its next leaf or, while there are too few tests, to the
+/// one after that.
+void UnitIntersector::collect(Half& half) {
+  half.batch.clear();
+  half.owner.clear();
+  for (std::size_t tests = 0; !half.active.empty();) {
+    tests += visit_leaves(half);
+    if (tests >= tester_->enough_tests()) break;
+  }
+}
+
+namespace {
+
+RayBundle make_bundle(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
+                      const LeafVisit& visit, LaneMask lanes) {
+  RayBundle bundle;
+  for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+    const glm::vec3& direction = rays[numbers[lane]].direction;
+    for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = direction[k];
+  }
+  bundle.record_count = visit.count;
+  bundle.first_tag = visit.first;
+  bundle.lanes = lanes;
+  return bundle;
+}
+
+/// A bundle for each origin among the visiting rays.
+void add_own_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
+                     const LeafVisit& visit, std::vector<RayBundle>& batch) {
+  for (LaneMask left = visit.lanes; left != 0;) {
+    const glm::vec3& origin = rays[numbers[std::countr_zero(left)]].origin;
+    LaneMask lanes = 0;
+    for (LaneMask others = left; others != 0; others &= others - 1) {
+      const int lane = std::countr_zero(others);
+      if (rays[numbers[lane]].origin == origin) lanes |= 1u << lane;
+    }
+    batch.push_back(make_bundle(rays, numbers, visit, lanes));
+    left &= ~lanes;
+  }
+}
+
+}  // namespace
+
+/// Sends every packet to its next leaf and writes the tests found there into the batch; their
+/// number. Packets that are through leave the active ones.
+std::size_t UnitIntersector::visit_leaves(Half& half) {
+  std::size_t kept = 0, tests = 0;
+  for (const std::uint32_t index : half.active) {
+    Packet& packet = packets_[index];
+    const LeafVisits leaf = next_leaf(packet);
+    if (leaf.count == 0) continue;
+    half.active[kept++] = index;
+    for (const LeafVisit& visit : leaf) {
+      tests += visit.count * static_cast<std::size_t>(std::popcount(visit.lanes));
+      if (common_ != nullptr && !bvh_.is_placed(visit.first)) {
+        assert(rays_[packet.rays[0]].origin == common_->origin());
+        half.batch.push_back(make_bundle(rays_, packet.rays, visit, visit.lanes));
+        half.batch.back().records =
+            common_->leaf(visit.first, visit.count, counters_.common_records);
+      } else {
+        add_own_bundles(rays_, packet.rays, visit, half.batch);
+      }
+    }
+    half.owner.resize(half.batch.size(), index);
+  }
+  half.active.resize(kept);
+  return tests;
+}
+
+/// All at once, when it is known how many: bundles point at their records. Those of instances are
+/// made here, too, even of a common origin: a cache would have a place for each.
+void UnitIntersector::make_own_records(Half& half) {
+  std::size_t count = 0;
+  for (const RayBundle& bundle : half.batch) {
+    if (bundle.records == nullptr) count += bundle.record_count;
+  }
+  if (half.records.size() < count) half.records.resize(count);
+  PolygonRecord* next = half.records.data();
+  for (std::size_t i = 0; i < half.batch.size(); ++i) {
+    RayBundle& bundle = half.batch[i];
+    if (bundle.records != nullptr) continue;
+    const Ray& ray = rays_[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
+    std::array<Corners, Bvh::kMaxLeafSize> corners;
+    for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
+      corners[k] = bvh_.corners_of(bundle.first_tag + k);
+    }
+    make_records(ray.origin, std::span(corners).first(bundle.record_count),
+                 std::span(next, bundle.record_count));
+    bundle.records = next;
+    next += bundle.record_count;
+  }
+  counters_.own_records += count;
+}
+
+bool UnitIntersector::take(std::uint32_t number, const SureHit& hit) {
+  return take_if_nearer(bvh_, rays_[number], search_.limit(number),
+                        {hit.tag, hit.point, hit.point_error, hit.t}, hits_[number], counters_);
+}
+
+bool UnitIntersector::take(std::uint32_t number, const Doubt& doubt) {
+  return settle_doubt(bvh_, rays_[number], search_.limit(number),
+                      {doubt.tag, doubt.point, doubt.point_error, {}}, hits_[number], counters_);
+}
+
+template <class Report>
+void UnitIntersector::offer(const Half& half, const Report& report) {
+  Packet& packet = packets_[half.owner[report.bundle]];
+  const std::uint32_t number = packet.rays[report.lane];
+  const LaneMask lane = 1u << report.lane;
+  if ((packet.ended & lane) != 0 || !take(number, report)) return;
+  const bool ends = !search_.enough_before.empty() &&
+                    is_before(bvh_, rays_[number], hits_[number], search_.enough_before[number]);
+  counters_.ended_early += ends;
+  if (ends) packet.ended |= lane;
+  packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
+}
+
+/// A burst reports no hit that is surely farther than another one: where that one is ignored, exact
+/// arithmetic tries them all.
+void UnitIntersector::offer_hidden(const Half& half, const SureHit& ignored) {
+  const RayBundle& bundle = half.batch[ignored.bundle];
+  const std::uint32_t number = packets_[half.owner[ignored.bundle]].rays[ignored.lane];
+  if (ignored.t.low >= search_.limit(number)) return;
+  for (std::uint32_t tag = bundle.first_tag; tag < bundle.first_tag + bundle.record_count; ++tag) {
+    if (tag == ignored.tag) continue;
+    offer(half, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
+  }
+}
+
+void UnitIntersector::merge(const Half& half) {
+  const auto is_ignored = [&](const auto& report) {
+    return !search_.ignored.empty() &&
+           search_.ignored[packets_[half.owner[report.bundle]].rays[report.lane]] == report.tag;
+  };
+  for (const SureHit& hit : results_.hits) {
+    if (is_ignored(hit)) {
+      offer_hidden(half, hit);
+    } else {
+      offer(half, hit);
+    }
+  }
+  for (const Doubt& doubt : results_.doubts) {
+    if (!is_ignored(doubt)) offer(half, doubt);
+  }
+}
+
+void UnitIntersector::count_work(const Half& half) {
+  for (std::size_t i = 0; i < half.batch.size(); ++i) {
+    for (LaneMask lanes = half.batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t ray = packets_[half.owner[i]].rays[std::countr_zero(lanes)];
+      search_.work[ray].tests += half.batch[i].record_count;
+    }
+  }
+  for (const Doubt& doubt : results_.doubts) {
+    ++search_.work[packets_[half.owner[doubt.bundle]].rays[doubt.lane]].doubts;
+  }
+}
+
+}  // namespace raygate

@@ -1,0 +1,91 @@
+// Hits found by a hit-test unit: many rays in flight, and while some wait for their tests, others
+// walk the tree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "host/bvh/packet_traversal.h"
+#include "host/intersect/intersector.h"
+#include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/record_cache.h"
+
+namespace raygate {
+
+/// In each round every packet of eight rays goes on to its next leaf; the leaves' tests together
+/// are one batch for the tester; its answers shorten the rays. The packets are two halves: while
+/// the tester works on the one, the other goes on. The unit sees few large batches, the host's
+/// memory a few packets.
+///
+/// Polygon records of a common origin come from a cache. Otherwise they are made for the leaf that
+/// a ray comes to, once for those rays of a packet that have one origin.
+class UnitIntersector : public Intersector {
+ public:
+  /// `caches`: those that intersectors share; without them this one has its own. The tree must
+  /// outlive this.
+  UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
+                  std::shared_ptr<RecordCaches> caches = nullptr);
+
+  void intersect(std::span<const Ray> rays, const RayQuery& search,
+                 std::span<NearestHit> hits) override;
+
+  /// More where several lanes share a batch.
+  [[nodiscard]] std::size_t preferred_batch() const override;
+
+  [[nodiscard]] IntersectCounters counters() const override;
+
+ private:
+  /// Up to eight rays of one octant.
+  struct Packet {
+    Packet(const Bvh& bvh, int octant) : traversal(bvh, octant) {}
+
+    PacketTraversal traversal;
+    std::array<std::uint32_t, kLanes> rays;  // numbers; lanes without a ray repeat lane 0
+    LaneMask lanes = 0;
+    LaneMask ended = 0;           // early
+    std::uint32_t next_slot = 0;  // without culling
+  };
+
+  /// Half of the packets, and their batch.
+  struct Half {
+    std::vector<std::uint32_t> active;  // packets still on their way
+    std::vector<RayBundle> batch;
+    std::vector<std::uint32_t> owner;    // the packet of each bundle
+    std::vector<PolygonRecord> records;  // of rays of their own origins, in the batch's order
+    bool started = false;                // the batch is with the tester
+  };
+
+  void make_packets();
+  LeafVisits next_leaf(Packet& packet);
+  void collect(Half& half);
+  std::size_t visit_leaves(Half& half);
+  void make_own_records(Half& half);
+  template <class Report>
+  void offer(const Half& half, const Report& report);
+  void offer_hidden(const Half& half, const SureHit& ignored);
+  bool take(std::uint32_t number, const SureHit& hit);
+  bool take(std::uint32_t number, const Doubt& doubt);
+  void finish(Half& half);
+  void merge(const Half& half);
+  void count_work(const Half& half);
+
+  const Bvh& bvh_;
+  std::shared_ptr<HitTester> tester_;
+  std::shared_ptr<RecordCaches> caches_;
+  IntersectCounters counters_;  // all but the tester's
+  // Of the search that goes on.
+  std::span<const Ray> rays_;
+  RayQuery search_;
+  std::span<NearestHit> hits_;
+  RecordCache* common_ = nullptr;
+  // Room to work in, kept from search to search.
+  std::vector<Packet> packets_;
+  std::array<Half, 2> halves_;
+  HitResults results_;
+};
+
+}  // namespace raygate

@@ -1,0 +1,247 @@
+// The engines and the variants of arithmetic, each through the Intersector that the renderer would
+// use.
+#include <deque>
+
+#include "host/bvh/bvh.h"
+#include "host/intersect/core/core_intersector.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/reference_plane_unit.h"
+#include "host/intersect/unit/serial_hit_tester.h"
+#include "host/intersect/unit/unit_intersector.h"
+#include "host/lab/stress/subjects.h"
+#include "host/lab/variants/variant_hit_tester.h"
+#include "sim/rtl_burst_unit.h"
+#include "sim/rtl_core.h"
+#include "sim/rtl_plane_unit.h"
+
+namespace raygate::lab {
+namespace {
+
+using IntersectorOf = std::function<std::unique_ptr<Intersector>(const Bvh&)>;
+
+/// How a subject is asked, and what is known of it besides its hits.
+struct Way {
+  bool one_origin =
+      false;              ///< shot by shot, as rays of a common origin; else several shots at once
+  bool exact = true;      ///< its intervals hold t
+  bool delivers = false;  ///< what the host makes of its hits is judged too
+  const Variant* unit = nullptr;  ///< whose t is judged; null: no unit's
+};
+
+/// A search tells a ray's nearest hit and no more. So each triangle is alone in a tree of its own,
+/// where that is the decision about it, and all of them are in one, for the nearest of them.
+class IntersectorSubject : public Subject {
+ public:
+  IntersectorSubject(IntersectorOf make, const Way& way) : make_(std::move(make)), way_(way) {}
+
+  void run(std::span<const Shot> shots, Answers& answers) override {
+    answers.tests.clear();
+    answers.nearest.clear();
+    while (!shots.empty()) {
+      std::size_t together = 1;
+      while (!way_.one_origin && together < shots.size() && shots[together].mesh == shots[0].mesh) {
+        ++together;
+      }
+      ask(shots.first(together), answers);
+      shots = shots.subspan(together);
+    }
+  }
+
+ private:
+  struct Tree {
+    Tree(const Mesh& mesh, const IntersectorOf& make)
+        : bvh(scene_of(mesh)), intersector(make(bvh)) {}
+
+    Bvh bvh;
+    std::unique_ptr<Intersector> intersector;
+  };
+
+  /// Adds the answers for shots at one mesh.
+  void ask(std::span<const Shot> shots, Answers& answers) {
+    plant(shots[0].mesh);
+    rays_.clear();
+    for (const Shot& shot : shots) {
+      for (const glm::vec3& direction : shot.directions) rays_.push_back({shot.origin, direction});
+    }
+    torn_.assign(rays_.size(), false);
+    const auto& triangles = shots[0].mesh->triangles;
+    const std::size_t first_test = answers.tests.size(), first_ray = answers.nearest.size();
+    search(trees_.front());
+    for (const NearestHit& hit : hits_) {
+      answers.nearest.push_back(hit.slot == NearestHit::kNone
+                                    ? std::nullopt
+                                    : std::optional(trees_.front().bvh.triangle_of(hit.slot)));
+    }
+    answers.tests.resize(first_test + rays_.size() * triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      if (triangles.size() > 1) search(trees_[1 + i]);
+      for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
+        answers.tests[first_test + ray * triangles.size() + i] = answer(ray, triangles[i]);
+      }
+    }
+    // One of the two must be wrong: no triangle has that number.
+    for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
+      if (torn_[ray]) answers.nearest[first_ray + ray] = triangles.size();
+    }
+  }
+
+  /// The trees of a mesh: one of all its triangles and, where they are several, one of each.
+  void plant(const std::shared_ptr<const Mesh>& mesh) {
+    if (mesh == mesh_) return;
+    mesh_ = mesh;
+    trees_.clear();
+    trees_.emplace_back(*mesh, make_);
+    if (mesh->triangles.size() == 1) return;
+    for (const Corners& triangle : mesh->triangles) trees_.emplace_back(Mesh{{triangle}}, make_);
+  }
+
+  /// Finds the hits of all rays. Those of one origin are searched again as a full cone, each in
+  /// several groups and lanes, and alone where there was a doubt: what a ray finds must not depend
+  /// on its company.
+  void search(Tree& tree) {
+    hits_.assign(rays_.size(), {});
+    work_.assign(rays_.size(), {});
+    tree.intersector->intersect(rays_, {.common_origin = way_.one_origin, .work = work_}, hits_);
+    if (!way_.one_origin) return;
+    const auto again = [&](std::span<const Ray> rays, const auto& number) {
+      again_.assign(rays.size(), {});
+      tree.intersector->intersect(rays, {.common_origin = true}, again_);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (again_[i].slot != hits_[number(i)].slot) torn_[number(i)] = true;
+      }
+    };
+    for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
+      if (work_[ray].doubts == 0) continue;
+      again(std::span(rays_).subspan(ray, 1), [&](std::size_t) { return ray; });
+    }
+    const auto nth = [&](std::size_t i) { return (i + i / kLanes) % rays_.size(); };
+    company_.clear();
+    for (std::size_t i = 0; i < kCone; ++i) company_.push_back(rays_[nth(i)]);
+    again(company_, nth);
+  }
+
+  /// About ray `number` and the triangle that was searched for last.
+  [[nodiscard]] Answer answer(std::size_t number, const Corners& triangle) const {
+    const Ray& ray = rays_[number];
+    const NearestHit& hit = hits_[number];
+    Answer answer;
+    answer.doubt = work_[number].doubts != 0;
+    answer.hit = hit.slot != NearestHit::kNone;
+    if (!answer.hit) return answer;
+    answer.point = hit.point;
+    if (way_.exact) {
+      answer.bounds = hit.t;
+      answer.point_error = hit.point_error;
+    }
+    if (way_.unit != nullptr) {
+      answer.t = variant_t(*way_.unit, make_record(ray.origin, triangle), ray.direction);
+    }
+    if (way_.delivers) answer.delivered = precise_hit(ray, triangle);
+    return answer;
+  }
+
+  static constexpr std::size_t kCone = 64;  // rays of a full one
+
+  IntersectorOf make_;
+  Way way_;
+  std::shared_ptr<const Mesh> mesh_;  // whose trees these are
+  std::deque<Tree> trees_;
+  // Room to work in: rays, what was found of them, and whether in other company it was another.
+  std::vector<Ray> rays_, company_;
+  std::vector<NearestHit> hits_, again_;
+  std::vector<RayWork> work_;
+  std::vector<bool> torn_;
+};
+
+SubjectKind cpu(const char* name, const char* what, bool one_origin) {
+  return {.name = name, .what = what, .exact = true, .binary32 = true, .share = 0.5, .make = [=] {
+            const auto make = [](const Bvh& bvh) { return std::make_unique<CpuIntersector>(bvh); };
+            return std::make_unique<IntersectorSubject>(
+                make, Way{.one_origin = one_origin, .delivers = true});
+          }};
+}
+
+/// A unit behind the tester that `make_tester` makes, one for all trees.
+template <class MakeTester>
+std::unique_ptr<Subject> unit_subject(const MakeTester& make_tester, const Way& way) {
+  return std::make_unique<IntersectorSubject>(
+      [tester = std::shared_ptr<HitTester>(make_tester())](const Bvh& bvh) {
+        return std::make_unique<UnitIntersector>(bvh, tester);
+      },
+      way);
+}
+
+template <class Tester, class Unit, class... Lanes>
+SubjectKind unit(const char* name, const char* what, double share, Lanes... lanes) {
+  return {.name = name, .what = what, .exact = true, .binary32 = true, .share = share, .make = [=] {
+            return unit_subject(
+                [=] { return std::make_unique<Tester>(std::make_unique<Unit>(lanes...)); },
+                Way{.delivers = true, .unit = &variant_named("binary32")});
+          }};
+}
+
+/// The ray core that `make_core` makes, one for all trees.
+SubjectKind core(const char* name, const char* what, double share,
+                 std::unique_ptr<CoreUnit> (*make_core)()) {
+  return {.name = name, .what = what, .exact = true, .binary32 = true, .share = share, .make = [=] {
+            const auto make = [core = std::shared_ptr<CoreUnit>(make_core())](const Bvh& bvh) {
+              return std::make_unique<CoreIntersector>(
+                  bvh, std::make_shared<const MemoryImage>(bvh), core);
+            };
+            return std::make_unique<IntersectorSubject>(make, Way{.delivers = true});
+          }};
+}
+
+/// "pipelined unit, 16 digits, doubts ignored".
+std::string description(const Variant& variant) {
+  const Arithmetic& math = variant.math;
+  std::string text = variant.unit == Variant::Unit::kPipeline ? "pipelined unit" : "paper's unit";
+  text += ", " + std::to_string(math.digits) + " digits";
+  if (math.exponent_bits != 8) text += ", " + std::to_string(math.exponent_bits) + " exponent bits";
+  if (math.rounding == Rounding::kTowardZero) text += ", rounding toward zero";
+  if (math.flush) text += ", subnormals are zeros";
+  if (math.fused) text += ", dot products rounded once";
+  if (math.quotient_digits != 0) {
+    text += ", quotients cut off after " + std::to_string(math.quotient_digits) + " bits";
+  }
+  return text + (variant.doubts ? ", doubts resolved" : ", doubts ignored");
+}
+
+}  // namespace
+
+std::vector<SubjectKind> engine_subjects() {
+  return {cpu("cpu rays", "the cpu engine, ray by ray", false),
+          cpu("cpu cones", "the cpu engine, rays of one origin in cones", true),
+          unit<PipelineHitTester, ReferenceBurstUnit>("model",
+                                                      "the pipelined unit's reference model", 0.2),
+          unit<PipelineHitTester, RtlBurstUnit>("rtl", "the pipelined unit, simulated", 0.02, 1),
+          unit<SerialHitTester, ReferencePlaneUnit>("model serial",
+                                                    "the paper's unit's reference model", 0.1),
+          unit<SerialHitTester, RtlPlaneUnit>("rtl serial", "the paper's unit, simulated", 0.02),
+          core("model core", "the ray core's reference model", 0.2,
+               []() -> std::unique_ptr<CoreUnit> { return std::make_unique<ReferenceCore>(); }),
+          core("rtl core", "the ray core, simulated", 0.02,
+               [] { return make_rtl_core(Arith::kBehavioural); })};
+}
+
+std::vector<SubjectKind> variant_subjects() {
+  std::vector<SubjectKind> kinds;
+  for (const Variant& variant : all_variants_of_arithmetic()) {
+    if (variant.math == Arithmetic{} && variant.doubts) continue;  // an engine
+    kinds.push_back({.name = variant.name,
+                     .what = description(variant),
+                     .exact = variant.doubts,
+                     .share = 0.05,
+                     .make = [&variant] {
+                       return unit_subject([&variant] { return make_variant_tester(variant); },
+                                           Way{.exact = variant.doubts, .unit = &variant});
+                     }});
+  }
+  return kinds;
+}
+
+}  // namespace raygate::lab
