@@ -35,7 +35,7 @@ void add(RenderStats& stats, const RenderStats& of_worker) {
   stats.shadow_rays += of_worker.shadow_rays;
   stats.point_doubts += of_worker.point_doubts;
   stats.skipped += of_worker.skipped;
-  stats.intersect += of_worker.find;
+  stats.intersect += of_worker.intersect;
   stats.shade_seconds += of_worker.shade_seconds;
   stats.processor_seconds += of_worker.processor_seconds;
 }
