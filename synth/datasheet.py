@@ -1,16 +1,12 @@
-"""Fills what hw/README.md holds between its marks, from the sources and from what was measured.
+"""Fills what the pages of hw/ hold between their marks, from the sources and from what was measured.
 
 `python3 -m synth.datasheet` writes the text and draws the diagrams; with `--check` it changes nothing, and
-its exit status is 1 where a declaration, a table of modules, a quotation or a timing diagram is out of
-date, or where the example does not pass Verilator. A mark is `<!-- KIND ARGUMENTS -->`, its text ends at
-`<!-- end -->`:
+its exit status is 1 where a table of modules or a timing diagram is out of date, or where the example of
+hw/fp does not pass Verilator. A mark is `<!-- KIND -->`, its text ends at `<!-- end -->`:
 
-  modules CORE               a table of the modules of a core
-  declaration MODULE         its header and its declaration, word for word
-  section FILE | TITLE       what stands in FILE under the comment `// ---- TITLE`
-  lines FILE | EXPRESSION    the lines of FILE that match
-  figures                    area and time of some designs, measured where they have changed
-  fpga                       the units that `make fpga` has placed; where none are, the old text stays
+  modules   the modules of the page's folder: what each is, its latency, and where `make synth` measures it area
+            and time, measured again where they have changed
+  fpga      the units that `make fpga` has placed; where none are, the old text stays
 """
 
 import dataclasses
@@ -22,18 +18,18 @@ import sys
 
 from synth import catalogue, cores, fpga, measure, store, tables, tools, waveform
 
-README = cores.HW / "README.md"
 DIAGRAMS = cores.HW / "diagrams"
-MARK = re.compile(r"<!-- (\w+)((?: [^\n]*?)?) -->\n(.*?)<!-- end -->", re.S)
+MARK = re.compile(r"<!-- (?!end)(\w+) -->\n(.*?)<!-- end -->", re.S)
+COLUMNS = ["module", "what it is", "latency", "mm2", "ns", "MHz"]
+# Design of the catalogue -> the flow that is shown.
+SHOWN = {"adder-graded": "fast", "booth-graded-ripple-groups": "fast", "fp-multiplier": "fast",
+         "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
+         "hit_test_pipeline": "parts"}
 
 
-def source(module: str) -> pathlib.Path:
-    """The file of a module or package; raises ValueError where there is none."""
-    for core in cores.names():
-        file = cores.HW / core / f"{module}.sv"
-        if file.exists():
-            return file
-    raise ValueError(f"{README}: no module {module} in hw/")
+def pages() -> list[pathlib.Path]:
+    """The pages of hw/: one for the whole and one a folder."""
+    return [cores.HW / "README.md", *(cores.HW / core / "README.md" for core in cores.names())]
 
 
 def header(text: str) -> str:
@@ -48,86 +44,55 @@ def sentences(text: str) -> list[str]:
     return [part.strip() for part in re.split(r"(?<=[^\s.])\.(?=\s|$)|\n", text) if part.strip()]
 
 
-def modules(core: str) -> str:
-    """What each module of a core is, and what its header says of its latency."""
+def modules(core: str, figures: dict[str, list[str]]) -> str:
+    """A line a module of a core: what it is and what its header says of its latency; `figures`: of the last columns."""
     rows = []
     for file in cores.files(core):
         if file.parent.name != core or file.stem.endswith("_pkg"):
             continue
         said = sentences(header(file.read_text()))
-        latency = next((part for word in ("latency", "^combinational", "throughput") for part in said[1:]
-                        if re.search(rf"{word}\b", part, re.I)), "")
-        rows.append([f"[{file.stem}]({core}/{file.name})", *(re.sub(r"([|*])", r"\\\1", text)
-                                                           for text in (said[0], latency))])
-    return "\n".join(f"| {' | '.join(row)} |" for row in [
-        ["module", "what it is", "latency"], ["---"] * 3, *rows]) + "\n"
+        latency = next((part for part in said[1:] if re.match(r"(Combinational|Latency|As many clocks)\b", part)), "")
+        rows.append([f"[{file.stem}]({file.name})", *(re.sub(r"([|*])", r"\\\1", text) for text in (
+            said[0], latency.removeprefix("Latency: "))), *figures.get(file.stem, ["", "", ""])])
+    used = [place for place, _ in enumerate(COLUMNS) if any(row[place] for row in rows)]
+    rows = [[row[place] for place in used] for row in [COLUMNS, *rows]]
+    return "\n".join(f"| {' | '.join(row)} |" for row in [rows[0], ["---"] * len(used), *rows[1:]]) + "\n"
 
 
-def declaration(module: str) -> str:
-    """The header and the declaration, as code."""
-    text = source(module).read_text()
-    found = re.match(rf".*?^module {module}\b.*?^\);$", text, re.M | re.S)
-    if not found:
-        raise ValueError(f"{source(module)}: expected the declaration of {module}")
-    return (f"<details><summary><code>{module}</code></summary>\n\n```systemverilog\n{found[0]}\n```\n\n"
-            "</details>\n")
+def published(old: str) -> dict[str, list[str]]:
+    """The figures in a table that `modules` wrote."""
+    rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in old.splitlines()]
+    if not rows or COLUMNS[3] not in rows[0]:
+        return {}
+    return {re.match(r"\[(\w+)\]", row[0])[1]: [dict(zip(rows[0], row, strict=True)).get(name, "") for name in COLUMNS[3:]]
+            for row in rows[2:]}
 
 
-def quoted(argument: str, pattern: str) -> str:
-    """What matches in a file, as code; `argument` is FILE | WHAT, WHAT takes the place of %s."""
-    file, what = (part.strip() for part in argument.split("|"))
-    found = re.findall(pattern % what, (tools.ROOT / file).read_text(), re.M | re.S)
-    if not found:
-        raise ValueError(f"{README}: {file} holds no {what}")
-    language = {".sv": "systemverilog", ".h": "cpp", ".cpp": "cpp"}[pathlib.Path(file).suffix]
-    lines = "\n".join(found).strip("\n").splitlines()
-    margin = min(len(line) - len(line.lstrip()) for line in lines if line)
-    return f"```{language}\n" + "\n".join(line[margin:] for line in lines) + "\n```\n"
-
-
-# Design of the catalogue -> the flow that is shown.
-SHOWN = {"adder-graded": "fast", "booth-graded-ripple-groups": "fast", "fp-multiplier": "fast",
-         "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
-         "hit_test_pipeline": "parts"}
-
-
-def figures() -> str:
-    """Area and slowest path of some designs; what was measured before is not measured again."""
+def measured_figures() -> dict[str, list[str]]:
+    """Area, slowest path and clock rate of some modules; what was measured before is not measured again."""
     library = catalogue.LIBRARIES[0]
     rows = [dataclasses.replace(row, flows={library.name: (SHOWN[row.design.name],)})
             for row in catalogue.report_rows() if row.design.name in SHOWN]
+    top = {row.design.name: row.design.top for row in rows}
     records, failures = measure.measure(rows, measure.Targets((library.name,)))
     if failures:
         raise tools.ToolFailed("\n".join(failures))
-    return f"{library.title}, {' and '.join(versions())}.\n\n" + tables.markdown(
-        ["design", "flow", "area, mm2", "slowest path, ns", "MHz"],
-        [[record["design"], record["flow"], f"{record['area'] / 1e6:.3f}", f"{record['delay_ns']:.2f}",
-          f"{1000 / record['delay_ns']:.1f}" if "from" in record else ""] for record in records])
+    return {top[record["design"]]: [f"{record['area'] / 1e6:.3f}", f"{record['delay_ns']:.2f}",
+                                    f"{1000 / record['delay_ns']:.1f}" if "from" in record else ""]
+            for record in records}
 
 
-def versions() -> list[str]:
-    """The tools behind the figures."""
-    return [f"Yosys {tools.version('yosys')}", f"OpenSTA {tools.version('sta')}"]
-
-
-KINDS = {"modules": modules, "declaration": declaration,
-         "section": lambda argument: quoted(argument, r"^ *// ---- %s\n(?: *//\n|\n)*(.*?)(?=^ *// ----|^endpackage)"),
-         "lines": lambda argument: quoted(argument, r"^[^\n]*%s[^\n]*$")}
-MEASURED = {"figures": figures, "fpga": fpga.table}
-
-
-def filled(text: str, measured: bool = True) -> str:
-    """The text with what its marks stand for; raises ValueError for what isn't there."""
+def filled(page: pathlib.Path, text: str, figures: dict[str, list[str]] | None = None, fpgas: str = "") -> str:
+    """The text of a page with what its marks stand for; what was not measured stays. Raises ValueError for another mark."""
     def fill(mark: re.Match) -> str:
-        kind, argument, old = (part.strip(" ") for part in mark.groups())
-        if kind in MEASURED:
-            new = measured and MEASURED[kind]() or old
-        elif kind in KINDS:
-            new = KINDS[kind](argument)
+        kind, old = mark.groups()
+        if kind == "modules":
+            new = modules(page.parent.name, published(old) if figures is None else figures)
+        elif kind == "fpga":
+            new = fpgas or old
         else:
-            raise ValueError(f"{README}: found the mark {kind}, expected one of {', '.join(KINDS)}")
-        head = f"<!-- {kind} {argument}".rstrip() + " -->"
-        return f"{head}\n{new}<!-- end -->"
+            raise ValueError(f"{page}: found the mark {kind}, expected modules or fpga")
+        return f"<!-- {kind} -->\n{new}<!-- end -->"
 
     return MARK.sub(fill, text)
 
@@ -151,7 +116,9 @@ def write() -> None:
     """Fills the text and draws the diagrams."""
     from synth import diagram  # by graphviz
 
-    README.write_text(filled(README.read_text()))
+    figures, fpgas = measured_figures(), fpga.table()
+    for page in pages():
+        page.write_text(filled(page, page.read_text(), figures, fpgas))
     program = tools.ROOT / "build" / "sim" / "worked_example"
     trace = program.with_suffix(".vcd")
     subprocess.run([program, "--trace", trace], check=True, stdout=subprocess.DEVNULL)
@@ -167,14 +134,15 @@ def write() -> None:
 
 def check() -> list[str]:
     """What is out of date."""
-    text = README.read_text()
-    wanted = filled(text, measured=False)
-    lines = list(difflib.unified_diff(text.splitlines(), wanted.splitlines(), "hw/README.md", "the sources",
-                                      n=0, lineterm=""))
+    lines = []
+    for page in pages():
+        text = page.read_text()
+        lines += difflib.unified_diff(text.splitlines(), filled(page, text).splitlines(),
+                                      str(page.relative_to(tools.ROOT)), "the sources", n=0, lineterm="")
     for file in DIAGRAMS.glob("*.json"):
         if file.with_suffix(".svg").read_text() != waveform.render(file):
             lines.append(f"{file.with_suffix('.svg')}: is not what WaveDrom makes of {file.name}")
-    lint(text)
+    lint((cores.HW / "fp" / "README.md").read_text())
     return lines
 
 

@@ -1,6 +1,6 @@
-// One partial product of a radix-4 Booth multiplier, without its sign:
+// Partial product of a radix-4 Booth multiplier, without its sign. Combinational.
 // digit * a_i = row_o + negative_i - negative_i * 2**(Width+1), for a negative multiple is given as
-// its complement and neither the missing 1 nor its sign extension is here. Combinational.
+// its complement and neither the missing 1 nor its sign extension is here.
 module booth_row #(
   parameter int unsigned Width = 24
 ) (

@@ -1,5 +1,4 @@
-// The sums of every group of a carry-select adder for both possible carries into the group, by
-// carry look-ahead.
+// Sums of each group of a carry-select adder for both carries into it, by carry look-ahead.
 //
 // All groups are worked on at once, as words: a prefix scan of (generate, propagate) pairs that
 // doubles its reach with every step and never looks past the start of a group. A group's carries

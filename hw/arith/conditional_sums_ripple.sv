@@ -1,8 +1,8 @@
-// The sums of every group of a carry-select adder for both possible carries into the group, by two
-// ripple-carry adders a group. The lowest group knows its carry and needs one adder alone.
-//
-// GroupWidths: see arith_pkg. Bit k of carry_0_o and carry_1_o is the carry out of group k.
+// Sums of each group of a carry-select adder for both carries into it, by two ripple-carry adders a group.
 // Combinational; as many full-adder delays as the widest group has bits.
+//
+// The lowest group knows its carry and needs one adder alone. GroupWidths: see arith_pkg. Bit k of carry_0_o and
+// carry_1_o is the carry out of group k.
 module conditional_sums_ripple #(
   parameter int unsigned Width = 48,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = arith_pkg::graded_groups(Width),

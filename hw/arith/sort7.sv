@@ -1,5 +1,5 @@
-// Sorts seven unsigned words, the smallest lowest, with a register half way: sorted_o after a clock edge are the
-// words_i before it. 16 comparators in six steps.
+// Sorts seven unsigned words, the smallest lowest: 16 comparators in six steps.
+// Latency: 1 clock, a register half way.
 //
 // Source: Batcher's network for eight, less one input.
 module sort7 #(

@@ -9,8 +9,8 @@
 // along and comes out with its quotient.
 //
 // PipeRegs: registers behind the first digit (bit 0), each row (1 to Rows), the remainder (Rows + 1) and the
-// quotient (Rows + 2). As many clocks of latency as cuts, a division a clock. Registers load only what is
-// valid: valid_o is valid_i, as much later, and while it is low the outputs of a cut divider mean nothing.
+// quotient (Rows + 2). As many clocks of latency as registers, a division a clock. Registers load only what is
+// valid: valid_o is valid_i, as much later, and while it is low the outputs of a pipelined divider mean nothing.
 // Nothing is reset, so that valid_o means nothing at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection
 // constants and why they hold in srt_pkg.

@@ -1,5 +1,5 @@
-// A word, Depth clocks later; clocks without enable_i don't count. No reset: what comes out first is
-// undefined. Depth = 0 is a wire.
+// Delay line: a word, Depth clocks later.
+// Latency: Depth clocks with enable_i; 0 is a wire. No reset: what comes out first is undefined.
 module delay_line #(
   parameter int unsigned Width = 32,
   parameter int unsigned Depth = 1

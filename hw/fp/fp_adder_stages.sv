@@ -6,7 +6,8 @@
 //         the leading bit: exact, so only a leading-zero count and a left shift
 //
 // PipeRegs: bit 0, 1, 2 puts registers between ordering and adding, between adding and rounding, behind
-// the result. As many clocks of latency as cuts, one operation a clock. No cut: combinational. The rounding mode is used in several stages and should stay the same.
+// the result. As many clocks of latency as registers, one operation a clock; none:
+// combinational. The rounding mode is used in several stages and should stay the same.
 //
 // Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when
 // rounding down, unless both addends are zeros of one sign. Infinity minus infinity is invalid. A

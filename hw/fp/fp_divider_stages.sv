@@ -9,8 +9,8 @@
 //
 // PipeRegs: registers behind normalising (bit 0), each stage of the significands' division (bits 1 to
 // Rows + 3, see srt_divider_stages; Rows: two bits of the quotient each, 12 in binary32) and the result
-// (bit Rows + 4). As many clocks of latency as cuts, a division a clock. No cut: combinational. Registers
-// load only what came with valid_i; in other clocks the outputs of a cut divider mean nothing. The
+// (bit Rows + 4). As many clocks of latency as registers, a division a clock; none: combinational. Registers
+// load only what came with valid_i; in other clocks the outputs of a pipelined divider mean nothing. The
 // rounding mode is the last stage's.
 //
 // A finite number by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.

@@ -7,7 +7,7 @@
 //
 // Arith, Adder: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
 // PipeRegs: registers behind the product (bit 0) and behind the result (bit 1). As many clocks of latency
-// as cuts, one operation a clock. No cut: combinational. The rounding mode is the second stage's.
+// as registers, one operation a clock; none: combinational. The rounding mode is the second stage's.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
 // operands' signs, also that of zeros and infinities. Zero times infinity is invalid.

@@ -1,6 +1,5 @@
 // Adds three words: (x + y) + z, rounded after each addition.
-//
-// Throughput one a clock, latency 2 * hit_test_pkg::AdderLatency. Takes every bit pattern; no flags.
+// Latency: 2 * hit_test_pkg::AdderLatency, throughput one a clock. Takes every bit pattern; no flags.
 module fp_add3 #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,10 +1,8 @@
-// Where a ray meets a plane: P_k = (d I_k) / V (equation 10), all three coordinates at once, from the
-// products d I_k.
+// Point where a ray meets a plane: P_k = (d I_k) / V (equation 10), three coordinates at once, from the products d I_k.
+// Latency: divide_latency (see hit_test_pkg), throughput one point a clock. valid_o is valid_i, as much later; reset.
 //
 // Three dividers: no fewer do for streams in which nearly every other test is a nearest hit, which is
 // what is left when a tree of boxes has ruled out most polygons.
-//
-// Throughput one point a clock, latency divide_latency (see hit_test_pkg). valid_o is valid_i, as much later; it is reset.
 module point_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,7 +1,8 @@
-// Multiplies several words by one: product[n] = word[n] * factor.
+// Multiplies a vector by a scalar: product[n] = word[n] * factor.
+// Latency: hit_test_pkg::MultiplierLatency, throughput one factor a clock.
 //
-// The factor is what the multipliers recode, alike in all of them: tools keep one recoder.
-// Throughput one factor a clock, latency hit_test_pkg::MultiplierLatency. Takes every bit pattern; no flags.
+// The factor is what the multipliers recode, alike in all of them: tools keep one recoder. Takes every bit pattern;
+// no flags.
 module vec_scale #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

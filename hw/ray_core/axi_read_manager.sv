@@ -1,10 +1,10 @@
-// The core's memory port as an AXI4 read master: a burst for each 64-byte line.
+// AXI4 read manager: the core's memory port, a burst for each 64-byte line.
 //
 // A line's burst has as many beats as DataWidth makes of 64 bytes, and begins at a multiple of 64: no burst
-// crosses 4 KiB. Each burst that is on its way has an ID of its own, which stands for the line's tag: so bursts
-// may be answered in any order, and their beats come mixed. base_i is the address of line 0.
+// crosses 4 KiB. Each burst in flight has an AXI ID of its own, which stands for the line's id: so bursts may be
+// answered in any order, and their beats come mixed. base_i is the address of line 0.
 //
-// At most 2**IdWidth lines are on their way; more wait. A line is offered in the clock of its last beat.
+// At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock of its last beat.
 // bus_error_o: a beat has come with an error; its line goes on as it came.
 //
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.

@@ -1,4 +1,5 @@
-// A node and a ray in each clock, never held up: what box_unit says of them, and of which ray, BoxLatency clocks later.
+// Box pipeline: box_unit with a valid and the ray's context beside it.
+// Latency: ray_core_pkg::BoxLatency clocks. Takes a node and a ray in each clock; never stalls.
 module box_pipeline #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Arith = arith_pkg::Structural,

@@ -1,4 +1,5 @@
-// Which children of a node a ray enters, near first: a node line and a ray in each clock.
+// Box test: which children of a node a ray enters, near first; a node line and a ray in each clock.
+// Latency: ray_core_pkg::BoxLatency clocks.
 //
 //   take        node, ray                                                   registers
 //   subtract    D_k = origin_k - O_k                                        3 adders
@@ -10,7 +11,7 @@
 //   enter       largest near plane, smallest far plane                      42 adders, 49 comparators
 //   sort        near first; the group                                       see child_sort, sort7
 //
-// No valid: what belongs to a node is the user's to carry along for BoxLatency clocks. Throughput one a clock.
+// No valid: what belongs to a node is the user's to carry along.
 //
 // In:  node_i       a node line, see ray_core_pkg
 //      origin_i     O, binary32; word x lowest, here and below

@@ -1,6 +1,5 @@
-// The group of a node: its children in order, near first, those that the ray does not enter left out.
-//
-// keys_i are slab_test's. Two registers: half way through the sort, and behind the group.
+// Sort of a node's children: the group of those that the ray enters, near first.
+// Latency: 2 clocks, a register half way through the sort and one behind the group. keys_i are slab_test's.
 module child_sort #(
   parameter int unsigned Arith = arith_pkg::Structural,
   localparam int unsigned Children = ray_core_pkg::Children,

@@ -1,13 +1,13 @@
-// What tests say of each ray: its nearest sure hit, its old_t_max, its doubts, and how many tests are on their way.
+// Closest hit of each ray: its nearest sure hit and t_max, its doubts, and how many of its tests are in flight.
 //
-// Of a ray's sure hits the one whose upper bound is the smallest is kept; that bound is the ray's old_t_max. What is
-// surely farther is forgotten. What is neither, of a hit that is ousted too, leaves as a doubt, as do tests
-// without a verdict. Distances are words of positive floats, ordered as integers; a hit's may be off by
-// 2**t_error of them (set_up_pkg). At first the old_t_max is the user's, so that a hit that may be beyond it is a
-// doubt. A ray that wants any hit has ended with its first sure one.
+// Of a ray's sure hits the one whose upper bound of t is the smallest is kept; that bound is the ray's t_max. A hit
+// that is surely farther is forgotten. One that is neither nearer nor farther for sure leaves as a doubt, as does
+// the hit that it replaces and a test without a verdict. Distances are positive floats, ordered as integers; a
+// hit's may be off by 2**t_error units (set_up_pkg). At first t_max is the user's, so that a hit that may be
+// beyond it is a doubt. A ray that wants any hit ends with its first sure one.
 //
-// A result is taken in each clock; a ray's tests are over when test_i has been high as often for it as
-// result_i. P comes later, in the order of the results that were hits, PointDelay clocks at most.
+// A result is taken in each clock; a ray's tests are over when result_i has been high as often for it as test_i. P
+// comes later, in the order of the results that were hits, PointDelay clocks at most.
 module closest_hit #(
   parameter int unsigned Rays = 64,
   parameter int unsigned InFlight = 64,  // tests that are on their way when tests_allowed_o falls

@@ -1,10 +1,10 @@
-// The cross product of two vectors, a x b, and how large its terms are:
+// Cross product of two vectors, a x b, and the size of its terms.
+// Latency: MultiplierLatency + AdderLatency (see hit_test_pkg), throughput one a clock.
+//
 //   product_k = a_i b_j - a_j b_i         each operation rounded, for (i, j, k) = (1, 2, 0) and so on
 //   terms_k   = |a_i b_j| + |a_j b_i|     likewise: never less than |product_k|
-// What cancels in a component shows in how much larger its terms are.
-//
-// Vectors are three binary32 words, x lowest. Throughput one a clock, latency MultiplierLatency + AdderLatency
-// (see hit_test_pkg). Takes every bit pattern; no flags.
+// What cancels in a component shows in how much larger its terms are. Vectors are three binary32 words, x lowest.
+// Takes every bit pattern; no flags.
 module cross_product #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded

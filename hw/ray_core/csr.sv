@@ -1,11 +1,11 @@
-// The registers of a ray core on AXI4-Lite: what to draw, from which memory, and what has been counted.
+// Control and status registers of the ray core, on AXI4-Lite: what to draw, from which memory, counters, flags.
 //
 // Words of 32 bits; reading elsewhere gives 0, writing elsewhere does nothing. Bytes that wstrb leaves out
 // stay. Binary32 vectors are three words, x first.
 //
 //   0x000  identity   ro   0x52470001
 //   0x004  command    wo   bit 0: make the rays of the rectangle; 1: memory has changed; 2: counters to zero
-//   0x008  status     ro   bit 0: the camera has rays to make; 1: rays are in the core, or lines
+//   0x008  status     ro   bit 0: the generator has rays to make; 1: rays are in the core, or lines
 //                          on their way to it
 //   0x00c  enable     rw   of interrupts, as in `flags`
 //   0x010  flags      w1c  bit 0: a doubt has left; 1: the last ray of a rectangle has ended; 2: memory
@@ -14,7 +14,7 @@
 //   0x014  base       rw   two words: address of line 0, low word first; a multiple of 64
 //   0x020  corner     rw   the rectangle's first pixel: x in bits 15:0, y in 31:16
 //   0x024  size       rw   its width and height, likewise
-//   0x030  eye        rw   where the camera's rays begin; 0x040 first, 0x050 right, 0x060 down: see ray_generator
+//   0x030  eye        rw   where generated rays begin; 0x040 first, 0x050 right, 0x060 down: see ray_generator
 //   0x100  counters   ro   two words each, low word first: clocks with status bit 1 high, then those of
 //                          ray_core_pkg::event_e in their order. Of 48 bits, modulo 2**48
 //

@@ -1,22 +1,21 @@
-// Lines of one kind, nodes or triangles, that were read not long ago.
+// Non-blocking cache of memory lines of one kind, nodes or triangles: eight ways, read only.
 //
-// Lines places, in sets of eight: the lowest bits of a line's number say which set it is kept in. A request that
-// hits gives its line in the next clock. One that misses is given a place of its set, and its line is asked for;
-// it enlists for that line, as do all others that want it before it has come: it is read once. Where every place of
-// a set waits for another line, a request waits, too. Of the lines of a set one that was not the last to be used
-// is given up: its ways take victim, from the one after that.
+// The lowest bits of a line's number are its set. A hit gives its line in the next clock. A miss takes a way of its
+// set and asks memory for the line; every request for that line, until it has come, waits as a target of the one
+// miss. Where all ways of a set wait for other lines, the request waits. The victim of a set is the next way after
+// the one that was used last.
 //
-// A request with demand_i low is for a line that may soon be wanted: nobody enlists. It may be withdrawn before
-// it is taken; where its set has no place for it, it is taken and forgotten.
+// A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken; where its
+// set has no way for it, it is taken and forgotten.
 //
-// A line from memory goes to all that are enlisted for it, one a clock, the latest first: then fill_done_o, and
-// the line may go. It is offered until then. Lines leave in any order, one a clock, each with the ray that
-// asked; those from memory first, while what hit waits in a queue and requests are looked up as before.
+// A line from memory goes to all targets, one a clock, the latest first; then fill_done_o, and the line, offered
+// until then, may go. Lines leave in any order, one a clock, each with the ray that asked; those from memory
+// first, while hits wait in a queue and requests are looked up as before.
 //
-// Memory is read only; invalidate_i, while no line is on its way, empties the cache.
+// invalidate_i, while no line is outstanding, empties the cache.
 module line_cache #(
   parameter int unsigned Lines    = 256,  // a power of two, at least 16
-  parameter int unsigned Targets  = 64,   // that may be enlisted; a power of two
+  parameter int unsigned Targets  = 64,   // requests that may wait for lines; a power of two
   parameter int unsigned RayWidth = 6,
   parameter int unsigned Width    = ray_core_pkg::LineWidth,  // of what is kept of a line
   localparam int unsigned EntryWidth = $clog2(Lines),
@@ -26,23 +25,23 @@ module line_cache #(
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    invalidate_i,
-  // what is asked for
+  // requests
   input  logic                    valid_i,
   output logic                    ready_o,
   input  logic                    demand_i,
   input  logic [RayWidth-1:0]     ray_i,
   input  logic [AddressWidth-1:0] line_number_i,
-  // what is not here
+  // misses
   output logic                    miss_valid_o,
   input  logic                    miss_ready_i,
   output logic [EntryWidth-1:0]   miss_entry_o,
   output logic [AddressWidth-1:0] miss_number_o,
-  // what comes from memory
+  // lines from memory
   input  logic                    fill_i,
   output logic                    fill_done_o,
   input  logic [EntryWidth-1:0]   fill_entry_i,
   input  logic [Width-1:0]        fill_line_i,
-  // lines
+  // answers
   output logic                    valid_o,
   input  logic                    ready_i,  // else nothing leaves, and fill_i must be low
   output logic [RayWidth-1:0]     ray_o,
@@ -55,7 +54,7 @@ module line_cache #(
   localparam int unsigned SetWidth = EntryWidth - WayWidth;
   localparam int unsigned TagWidth = AddressWidth - SetWidth;
 
-  logic [Width-1:0] words[Lines];  // by place, {set, way}
+  logic [Width-1:0] words[Lines];  // by entry, {set, way}
   logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way
   logic [Ways*TagWidth-1:0] tags[Sets];  // the other bits of its number
   logic [WayWidth-1:0] victim[Sets];  // the way after the one that was used last
@@ -108,13 +107,13 @@ module line_cache #(
     if (allocate) tags[set] <= new_tags;
   end
 
-  // ---- Enlist
+  // ---- Targets: lists of requests that wait, one for each entry
 
   logic [Targets-1:0] free_q;
-  logic [Targets-1:0] follows_q;  // somebody enlisted before, for the same line
+  logic [Targets-1:0] follows_q;  // another target of the same line came before
   logic [TargetWidth-1:0] target, current, current_q;
-  logic [TargetWidth-1:0] nexts[Targets];  // who that was
-  logic [TargetWidth:0] heads[Lines];  // {somebody is enlisted, who enlisted last}
+  logic [TargetWidth-1:0] nexts[Targets];  // which that was
+  logic [TargetWidth:0] heads[Lines];  // {there is one, the latest}
   logic [TargetWidth:0] head, fill_head;
   logic [RayWidth-1:0] rays[Targets];
   logic some_free, add_target, arrive, draining_q, somebody, more;
@@ -151,7 +150,7 @@ module line_cache #(
     if (add_target || allocate) heads[entry] <= {demand_i, target};
   end
 
-  // ---- A line comes, and goes to all that are enlisted
+  // ---- A line comes, and goes to all its targets
 
   assign arrive      = fill_i & ~draining_q;
   assign fill_head   = heads[fill_entry_i];
@@ -190,7 +189,7 @@ module line_cache #(
     if (arrive) words[fill_entry_i] <= fill_line_i;
   end
 
-  // ---- What hit waits for a clock in which no line comes from memory
+  // ---- Hits wait for a clock in which no line comes from memory
 
   logic queued, leaves;
   logic [RayWidth-1:0] queued_ray;

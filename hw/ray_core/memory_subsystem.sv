@@ -1,11 +1,11 @@
-// The one memory port: nodes and triangles that rays ask for, each kind through a cache of its own.
+// Memory port of the ray core: a cache of nodes, a cache of triangles, and the requests that they send to memory.
 //
-// What the caches lack goes out in turn, with a tag, {is a triangle's, place in its cache}; its line may come
-// back at any time and in any order. Each clock gives a node and a triangle where both caches have one.
+// A request to memory has an id, {is a triangle's, cache entry}; its line may come back at any time and in any
+// order. Both caches give a line in the same clock where both have one.
 //
-// A node that is not asked for, but may be soon (prefetch_i), is read into its cache in clocks in which no ray asks for
-// one; where too many of them wait, it is forgotten. Its line may come when the last ray has long ended: memory must
-// not change, nor the caches be emptied, while outstanding_o.
+// A prefetched node (prefetch_i) is looked up in clocks without a request for a node; where too many of them wait,
+// it is forgotten. Its line may come when the last ray has long ended: memory must not change, nor the caches
+// be emptied, while outstanding_o.
 module memory_subsystem #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
@@ -26,7 +26,7 @@ module memory_subsystem #(
   input  logic                    node_i,
   input  logic [RayWidth-1:0]     node_ray_i,
   input  logic [AddressWidth-1:0] node_line_i,
-  // a node that may be asked for soon
+  // a node that may be asked for soon: a prefetch
   input  logic                    prefetch_i,
   input  logic [AddressWidth-1:0] prefetch_line_i,
   // triangles asked for
@@ -56,7 +56,7 @@ module memory_subsystem #(
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
   localparam int unsigned MissWidth = EntryWidth + AddressWidth;
 
-  // ---- What is asked for
+  // ---- Requests
 
   logic node_valid, node_ready, triangle_valid, triangle_ready, unused_space;
   logic [RequestWidth-1:0] node, triangle;
@@ -187,7 +187,7 @@ module memory_subsystem #(
   assign node_miss     = {EntryWidth'(node_entry), node_number};
   assign triangle_miss = {EntryWidth'(triangle_entry), triangle_number};
 
-  // ---- What they lack, in turn
+  // ---- Misses, in turn
 
   localparam int unsigned CountWidth = $clog2(NodeLines + TriangleLines + 1);
 

@@ -1,4 +1,4 @@
-// The way to a plane of a node's grid: offset_o = floor(q s / 256), for q of eight bits. Combinational.
+// Offset of a plane in a node's grid: offset_o = floor(q s / 256), for q of eight bits. Combinational.
 //
 // Structural is a carry-save tree of s shifted, a row for each bit of q, and an adder; Behavioural is `*`.
 module plane_offset #(

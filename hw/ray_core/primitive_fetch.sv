@@ -1,7 +1,7 @@
-// Leaves that rays enter: asks for their triangles, one a clock, near ones first.
+// Fetch of primitives: asks for the triangles of the leaves that a ray enters, one a clock, near leaves first.
 //
-// A group of leaves at a time, in the order in which they came. Where a leaf is beyond its ray's t_max by
-// then, it and the rest of the group are dropped: they are no nearer. A ray has one group here at most.
+// Groups of leaves are served one at a time, in the order in which they came; a ray has at most one. Where a leaf
+// is beyond its ray's t_max by then, it and the leaves behind it are dropped: they are no nearer.
 module primitive_fetch #(
   parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays),

@@ -1,7 +1,7 @@
-// Rays come in: the reciprocals of their directions, then a context of the table for each.
+// Entry of rays: computes the reciprocals of a ray's direction and gives the ray a context.
 //
-// A ray waits in a queue until its reciprocals have come, a division's latency later, and until a context is
-// free: the lowest free one is start_ctx_o. So no context is held by a division. Throughput a ray a clock.
+// A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
+// lowest free one is start_ctx_o. So no context is held by a division. Throughput a ray a clock.
 module ray_alloc #(
   parameter int unsigned Rays  = 64,  // contexts; a power of two
   parameter int unsigned Width = 32,  // of what else there is of a ray

@@ -1,7 +1,7 @@
-// The table of rays: what is known of each from its beginning, by its context.
+// Contexts of the rays in flight: origin, direction, reciprocals, tag and flags of each.
 //
-// A ray is given its context and its reciprocals by ray_alloc; it is in the table from the clock after
-// start_fire_i until its context is another's. What is read of a context is there in the same clock.
+// A ray is in its context from the clock after start_fire_i until the context is another's. What is read of a
+// context is there in the same clock.
 module ray_context #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Arith = arith_pkg::Structural,

@@ -1,6 +1,6 @@
-// The ray core: rays in, nearest sure hits and doubts out; it walks the tree of boxes in memory by itself.
+// Ray core: rays in, nearest sure hits and doubts out; it traverses a tree of boxes in memory by itself.
 //
-//   ray_context        rays by their contexts: ray_alloc gives each its context, and 1 / I_k
+//   ray_context        the rays in flight; ray_alloc gives each its context, and 1 / I_k
 //   traversal          the stacks, and which ray goes to its next node
 //   memory_subsystem   nodes and triangles, from caches or memory
 //   box_pipeline       box_unit: which children of a node a ray enters
@@ -10,18 +10,18 @@
 //   closest_hit        each ray's nearest hit and t_max, and the doubts
 //   ray_retire         which rays have ended; results
 //
-// Rays and results: valid/ready. A ray's walk begins at the inner node of line ray_start_i (the root's, as a
+// Rays and results: valid/ready. A ray begins at the inner node of line ray_start_i (the root's, as a
 // rule). Its direction is scaled: the largest component is in [1, 2). Hits at t >= ray_t_max_i, in exact
 // arithmetic, and on triangle ray_skip_id_i do not count. With ray_any_hit_i it ends at its first sure hit,
 // with ray_no_cull_i it enters all boxes. Words about rays come mixed, and rays end in any order; by tag:
 //   ResultDoubt  a triangle that may be hit, and be the nearest: exact arithmetic must say
-//   ResultOverflow  subtrees that the stack had no room for: bit i of result_nodes_o is the inner node at line
-//                result_line_o + i. The ray must be sent there, too
+//   ResultOverflow  subtrees for which the stack had no room: bit i of result_nodes_o is the inner node at
+//                line result_line_o + i. The ray must be sent there, too
 //   ResultEnd    the ray's last word: whether it has a sure hit, of which triangle, at which t (off by fewer
 //                than 2**result_t_error_o numbers), P as the pipeline has it, and how many tests there were
 //
-// Memory: reads of lines by number, valid/ready, each with a tag. Lines come back with it, in any order,
-// valid/ready. Some are asked for because they may be needed soon: outstanding_o may be high when the last ray has
+// Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order,
+// valid/ready. Some are prefetched: outstanding_o may be high when the last ray has
 // ended. Memory may change, and invalidate_i be high then, while no ray is here and outstanding_o is low.
 //
 // Throughput: a node and a triangle a clock, out of the caches; a line a clock of what they lack.
@@ -85,7 +85,7 @@ module ray_core #(
   localparam int unsigned Children = ray_core_pkg::Children;
   localparam int unsigned PlaneErrorWidth = set_up_pkg::PlaneErrorWidth;
 
-  // ---- The table
+  // ---- Contexts
 
   logic start_valid, start_fire, ending, node_no_cull;
   logic [RayWidth-1:0]
@@ -142,7 +142,7 @@ module ray_core #(
     .result_tag_o(result_tag)
   );
 
-  // ---- Walk
+  // ---- Traversal
 
   logic box_valid, traversal_ended, leaf_ended, leaf_counter_full, node, prefetch;
   logic overflow_valid, overflow_fire;

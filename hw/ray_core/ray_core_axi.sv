@@ -1,12 +1,12 @@
-// The ray core with its camera, on AXI: registers by AXI4-Lite, the scene by AXI4, rays and results as they are.
+// Ray core on AXI: registers by AXI4-Lite, the scene by AXI4, rays and results as valid/ready.
 //
-//   csr              what to draw, counters, flags
-//   ray_generator    the rays of a rectangle; the tag of each is its pixel, {y, x}
+//   csr               what to draw, counters, flags
+//   ray_generator     the rays of a rectangle; the tag of each is its pixel, {y, x}
 //   ray_core
 //   axi_read_manager  its memory port
 //
-// Rays of the user's (ray_*) come while the camera makes none. A camera's ray has no t_max, ignores nothing, and
-// begins at the root. The rest as in those modules.
+// Rays of the user's (ray_*) come while the generator makes none. A generated ray has no t_max, skips no triangle,
+// and begins at the root. The rest as in those modules.
 module ray_core_axi #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,

@@ -1,4 +1,4 @@
-// The rays of a rectangle of pixels, row by row: the paper's equation 1 in hardware.
+// Generator of camera rays: the rays of a rectangle of pixels, row by row; the paper's equation 1.
 //
 // The direction through pixel (x, y) is (first + y down) + x right, binary32, each operation rounded to nearest:
 // first goes through the pixel (0, 0), right and down lead from a pixel to the next. It is then scaled by a
@@ -7,7 +7,7 @@
 // mistake. Host: host/intersect/core/pixel_grid.h, bit for bit.
 //
 // start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. Throughput a ray a
-// clock. valid_o, ready_i: as everywhere.
+// clock.
 module ray_generator #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded

@@ -1,8 +1,8 @@
-// Rays go out: notices that a ray has ended, and queues what the core says of rays.
+// Exit of rays: detects that a ray has ended, and queues results.
 //
-// A ray has ended when it has nothing to walk, to ask for or to test. Its context is free at once: what is known of
-// its nearest hit waits in a queue for P, which comes PointDelay clocks later at most, before another ray
-// in the context could have one. A ray's doubts and overflows leave before its end.
+// A ray has ended when it has no node, no leaf and no test left. Its context is free at once: its nearest hit waits
+// in a queue for P, which comes PointDelay clocks later at most, before another ray in the context could have
+// one. A ray's doubts and overflows leave before its end.
 //
 // A ray ends a clock at most, a result leaves a clock.
 module ray_retire #(

@@ -1,11 +1,10 @@
-// How far a ray may go in a node: 2**E; and what 1 / I_k stands at where its planes are too far apart.
-//
-// Combinational; steps 1 and 3 of box_unit's header say why. An exponent is binary32's, with its bias.
+// Scale of a ray in a node: how far it may go there, 2**E, and a cap of 1 / I_k where planes are too far apart.
+// Combinational. Steps 1 and 3 of box_unit's header say why. An exponent is binary32's, with its bias.
 //
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits an axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest
 //      cells_i      the grid's exponents e_k, eight bits an axis
-//      t_max_i      the t_max's exponent
+//      t_max_i      t_max's exponent
 // Out: exponent_o   E, at least -100
 //      inverse_o    1 / I_k, or 2**(E + 2 - e_k), with its sign, where s_k is above 2**(E + 2)
 //      caps_o       the exponent of that power of two, 11 signed bits an axis

@@ -1,11 +1,9 @@
-// The paper's pre-processing in hardware: the polygon record of a triangle, seen from a ray's origin,
-// computed in binary32.
+// Triangle set-up: the polygon record of a triangle, seen from a ray's origin, in binary32; the paper's pre-processing.
+// Latency: set_up_pkg::Latency, throughput one triangle a clock. Takes every bit pattern.
 //
 //   subtract  A, B, C: vertices - O; the edges B-A, C-B, A-C      18 adders
 //   cross     N = (A-C) x (B-A); A x (B-A), B x (C-B), C x (A-C)  24 multipliers, 24 adders, see cross_product
 //   sum       d = N . A; the edges' terms, for their bounds        3 multipliers, 8 adders, see fp_add3
-//
-// Throughput one triangle a clock, latency set_up_pkg::Latency. Takes every bit pattern.
 //
 // The record is hit_test_pkg's, with two differences from one that a host makes in double:
 //   * bounds are those of words computed here, below, about twice as large;

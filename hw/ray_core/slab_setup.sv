@@ -1,5 +1,5 @@
-// One axis of a node, seen from the ray: where its grid's first planes are met and how far apart planes are, in
-// units of 2**(E - 22). Combinational; steps 2 to 4 of box_unit's header say why.
+// Slab set-up: the first planes of a node's grid along one axis as the ray meets them, and the distance between planes.
+// Combinational. All in units of 2**(E - 22); steps 2 to 4 of box_unit's header say why.
 //
 // In:  product_i    a = D / I, binary32; any
 //      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap, with binary32's bias

@@ -1,10 +1,10 @@
-// One child of a node: where the ray enters its box, at the latest where it leaves. Two registers: behind the offsets
-// to the planes, and behind the key. From slab_setup' planes and steps of three axes, x lowest.
+// Slab test: whether and where the ray enters the box of one child, from the planes of its three axes, x lowest.
+// Latency: 2 clocks, a register behind the planes' offsets and one behind the key.
 //
 // In:  box_i        low x, y, z, high x, y, z: a byte each; kind_i: ray_core_pkg's
 //      back_i       along which axes the ray goes towards smaller q
 //      t_max_i      in units; no box is entered beyond it
-// Out: key_o        {left out, enter}: enter in units, up to 2**22; 0 where no_cull_i
+// Out: key_o        {culled, enter}: enter in units, up to 2**22; 0 where no_cull_i
 module slab_test #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,

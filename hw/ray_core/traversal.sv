@@ -1,13 +1,12 @@
-// Where rays stand in the tree: a short stack for each, and which one goes to its next node.
+// Traversal of the tree: a short stack of nodes for each ray, and the choice of the ray that goes to its next node.
 //
-// A stack holds groups of children that a ray enters, the nearest last; of a group those that wait. Each
-// clock one ray is picked that neither waits for a node nor has leaves that nobody has asked for. Of its
-// groups those whose nearest child is beyond the t_max are dropped, all at once; the nearest child of the
-// topmost that is left is asked for. Rays that have no tests on their way come first: what they ask for is
-// needed as far as anybody knows.
+// A stack holds groups of children that a ray enters, the nearest group last; of a group those not yet visited. Each
+// clock one ray is picked that neither waits for a node nor has leaves pending. Groups whose nearest child is
+// beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for. Rays without
+// tests in flight come first: what they ask for is needed as far as anybody knows.
 //
-// Where a stack has no room for a group, the group leaves as an overflow: the host sends the ray there. Overflows are
-// few; while one waits, no node is asked for, so Rays words are room enough.
+// Where a stack has no room for a group, the group leaves as an overflow: the host sends the ray there. Overflows
+// are few; while one waits, no node is asked for, so Rays words are room enough.
 //
 //   pick    a ray
 //   choose  its group; or, where it has none, a ray that starts (start_*) asks for its first node

@@ -1,8 +1,7 @@
-// A triangle and a ray in each clock: set_up_unit's record of it, then hit_test_pipeline's verdict.
+// Triangle pipeline: set_up_unit's record of a triangle, then hit_test_pipeline's verdict on it; one a clock.
 //
-// What comes in is never held up; a word of the results, word_*_o and hit_*_o, is there in each clock that says so.
-// The ray is given by its context: its origin when the triangle comes, its direction when direction_ctx_o asks
-// for it, in the same clock.
+// Nothing that comes in is stalled; an output is there for the clock that says so. The ray is given by its context:
+// its origin when the triangle comes, its direction when direction_ctx_o asks for it, in the same clock.
 //
 // Every test is a burst of its own. closed_o: one is over, of ctx_o and triangle_o: a doubt_o, a sure hit
 // (found_o), or a miss. A hit's P is there later, point_valid_o, in the order of the hits: up to

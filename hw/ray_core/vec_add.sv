@@ -1,6 +1,5 @@
-// Adds vectors word by word, sum[n] = a[n] + b[n], or subtracts them, a[n] - b[n]; binary32, rounded to nearest.
-//
-// Throughput one a clock, latency hit_test_pkg::AdderLatency. Takes every bit pattern; no flags.
+// Adds or subtracts vectors word by word, sum[n] = a[n] +- b[n]; binary32, rounded to nearest.
+// Latency: hit_test_pkg::AdderLatency, throughput one a clock. Takes every bit pattern; no flags.
 module vec_add #(
   parameter int unsigned Words    = 3,
   parameter bit          Subtract = 1'b0,

@@ -1,6 +1,5 @@
 // Multiplies vectors word by word, product[n] = a[n] b[n]; binary32, rounded to nearest.
-//
-// Throughput one a clock, latency hit_test_pkg::MultiplierLatency. Takes every bit pattern; no flags.
+// Latency: hit_test_pkg::MultiplierLatency, throughput one a clock. Takes every bit pattern; no flags.
 module vec_mul #(
   parameter int unsigned Words = 3,
   parameter int unsigned Arith = arith_pkg::Structural,

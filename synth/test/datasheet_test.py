@@ -1,4 +1,4 @@
-"""What hw/README.md is filled with."""
+"""What the pages of hw/ are filled with."""
 
 import unittest
 
@@ -6,7 +6,7 @@ from synth import cores, datasheet
 
 
 class Datasheet(unittest.TestCase):
-    """Pieces of headers, and marks."""
+    """Pieces of headers, tables, and marks."""
 
     HEADER = """// What it is, I . N being
 // a product. Combinational;
@@ -21,29 +21,37 @@ module m;
         self.assertEqual(datasheet.sentences(datasheet.header(self.HEADER)),
                          ["What it is, I . N being a product", "Combinational; one level", "Latency 2 clocks"])
 
-    def test_declaration(self):
-        """The header and the ports, word for word."""
-        text = datasheet.declaration("hit_test_unit")
-        self.assertIn("// The paper's hit-test unit:", text)
-        self.assertIn("  output logic             valid_o\n);\n```", text)
+    def test_modules(self):
+        """A line a module, with its figures; columns that nobody fills are left out."""
+        text = datasheet.modules("arith", {"adder": ["0.064", "2.27", ""]})
+        self.assertIn("| [full_adder](full_adder.sv) | Full adder: one bit of sum and carry | Combinational |  |  |", text)
+        self.assertIn("| Combinational | 0.064 | 2.27 |", text)
+        self.assertNotIn("MHz", text)
+        self.assertEqual(datasheet.published(text)["adder"], ["0.064", "2.27", ""])
+        self.assertEqual(datasheet.published(datasheet.modules("common", {})), {})
 
     def test_marks(self):
         """Old text gives way to the new; what was not measured stays; an unknown mark is refused."""
-        old = "<!-- declaration full_adder -->\nold\n<!-- end -->\n<!-- figures -->\nold figures\n<!-- end -->"
-        new = datasheet.filled(old, measured=False)
-        self.assertIn("module full_adder", new)
+        page = cores.HW / "common" / "README.md"
+        new = datasheet.filled(page, "<!-- modules -->\nold\n<!-- end -->\n<!-- fpga -->\nold table\n<!-- end -->")
+        self.assertIn("[fifo](fifo.sv)", new)
         self.assertNotIn("-->\nold\n", new)
-        self.assertIn("old figures\n<!-- end -->", new)
-        self.assertEqual(datasheet.filled(new, measured=False), new)
-        for wrong in ("nonsense", "declaration nothing", "lines hw/fp/fp_pkg.sv | nothing at all"):
-            with self.assertRaises(ValueError):
-                datasheet.filled(f"<!-- {wrong} -->\n<!-- end -->")
+        self.assertIn("old table\n<!-- end -->", new)
+        self.assertEqual(datasheet.filled(page, new), new)
+        with self.assertRaises(ValueError):
+            datasheet.filled(page, "<!-- nonsense -->\n<!-- end -->")
 
-    def test_every_module_is_listed(self):
-        """The README has a table for each core."""
-        text = datasheet.README.read_text()
+    def test_every_folder_has_a_page(self):
+        """Each core's page has a table of its modules, and the page of all names it."""
+        text = (cores.HW / "README.md").read_text()
         for core in cores.names():
-            self.assertIn(f"<!-- modules {core} -->", text)
+            self.assertIn("<!-- modules -->", (cores.HW / core / "README.md").read_text())
+            self.assertIn(f"({core}/README.md)", text)
+
+    def test_pages_fit_a_screen_or_two(self):
+        """A page says what is here, how it fits and how to change it, not what the sources say."""
+        for page in datasheet.pages():
+            self.assertLess(len(page.read_text().splitlines()), 100, page)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
     raygate.results.bench()["pictures"]       # of `make bench`, by table
     raygate.results.synth()                   # of `make synth`: area, delay of each design and flow
-    raygate.results.published("synth/README.md")["The 48-bit adders"]   # any table of a page
+    raygate.results.published("synth/results/README.md")["The 48-bit adders"]   # any table of a page
 
 pandas is needed: pip install 'raygate[results]'. Paths are relative to the repository's root.
 """

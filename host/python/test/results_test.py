@@ -43,7 +43,7 @@ class Frames(unittest.TestCase):
             raygate.results.synth("none.json")
 
     def test_pages(self):
-        adders = raygate.results.published(ROOT / "synth/README.md")["The 48-bit adders"]
+        adders = raygate.results.published(ROOT / "synth/results/README.md")["The 48-bit adders"]
         self.assertEqual(adders["adder"][0], "ripple")
         self.assertRegex(adders["fast"][0], r"^\d+ / \d+\.\d+$")
         self.file.write_text("# A\n\n| x | | |\n|---|---|---|\n| 1,024 | a | b |\n| 2 | c | d |\n")
