@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes a ring of square columns under a low lamp as OBJ and MTL: long shadows, no curved surface.
+"""Writes a ring of square columns under a low light as OBJ and MTL: long shadows, no curved surface.
 """
 import argparse
 import math

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes a courtyard at night under strings of small lanterns as OBJ and MTL: a thousand lamps."""
+"""Writes a courtyard at night under strings of small lanterns as OBJ and MTL: a thousand lights."""
 import argparse
 import math
 import pathlib

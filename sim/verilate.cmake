@@ -3,7 +3,7 @@
 #   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [OPEN])
 #     A static library `fp_adder_f16`: module TOP of hw/ (or of the calling folder, where a test joins
 #     several modules under one top) with these parameters, as class Vfp_adder_f16 in
-#     "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a waveform (sim/wave.h)
+#     "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a waveform (sim/ray_batch.h)
 #     and the signals that visible.vlt lists be read. Name a model after its module and what its
 #     parameters stand for; models that several programs use are built once.
 #

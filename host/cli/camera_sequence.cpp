@@ -6,7 +6,7 @@
 #include "host/cli/camera_options.h"
 #include "host/cli/format.h"
 #include "host/exact/exact.h"
-#include "host/light/studio.h"
+#include "host/light/default_lights.h"
 #include "host/scene/camera_path.h"
 
 namespace raygate {
@@ -41,21 +41,21 @@ CameraSequence::CameraSequence(const Options& options, Scene& scene)
              : options.view.angles ? std::nullopt
                                    : scene.camera),
       view_(given_ && !options.ground.value_or(false) ? View{} : chosen_view(options, scene)) {
-  bool has_lamps = false;
+  bool has_preview_lights = false;
   const std::vector<PointLight> lights = scene.lights;
   const glm::vec3 background = scene.background;
   for (int number = 1; number <= std::max(1, options.output.frames); ++number) {
     Frame& frame =
         frames_.emplace_back(Camera::look_at(setting(scene, number), aspect_of(options)));
     if (given_) {
-      light_if_dark(scene, frame.camera);
+      add_default_lights(scene, frame.camera);
     } else {
-      has_lamps = light_first_look(scene, frame.camera);
+      has_preview_lights = add_preview_lights(scene, frame.camera);
     }
     frame.lights = std::exchange(scene.lights, lights);
     frame.background = std::exchange(scene.background, background);
   }
-  const bool is_first_look = has_lamps && view_.elevation > 0.0 && !is_interior(scene);
+  const bool is_first_look = has_preview_lights && view_.elevation > 0.0 && !is_interior(scene);
   has_ground_ = options.ground.value_or(is_first_look);
   if (!given_) text_ = view_text(scene);
 }

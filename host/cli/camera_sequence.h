@@ -14,8 +14,9 @@
 
 namespace raygate {
 
-/// The cameras of all frames, or of the one picture; lamps for a scene that has none, which go with
-/// the camera, so that no frame shows the scene's shadowed side; and whether there is a ground.
+/// The cameras of all frames, or of the one picture; lights for a scene that has none, which go
+/// with the camera, so that no frame shows the scene's shadowed side; and whether there is a
+/// ground.
 class CameraSequence {
  public:
   /// Of a scene as the file has it, which is left as it is. `options` must outlive this. Throws

@@ -74,7 +74,7 @@ Light
                              blackman-harris (default)
   --depth, --max-depth N     reflections and refractions in a row (4; path: 64)
   --threshold X              whitted: ignore rays that weigh less (0.00390625)
-  --ambient X                whitted: ambient light (from background or lamps)
+  --ambient X                whitted: ambient light (from background or lights)
   --environment FILE         light from all around: EXR, HDR; latitude-longitude
   --environment-rotation DEG counter-clockwise, seen from above (0)
   --environment-strength X   times what the file has (1)

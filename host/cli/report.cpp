@@ -107,7 +107,7 @@ std::vector<Skipped> skipped(const Report& report) {
       {counts.culled_tests, "tests of polygons in boxes that the ray does not enter", 0.0,
        static_cast<double>(counts.culled_tests) * test_seconds},
       {counts.records, "records of polygons that no ray of that origin came near", 0.0, 0.0},
-      of_rays(counts.lights_behind, "shadow rays to lamps that contribute nothing"),
+      of_rays(counts.lights_behind, "shadow rays to lights that contribute nothing"),
       of_rays(counts.weightless, "reflected and refracted rays without weight"),
       of_rays(counts.dim, "reflected and refracted rays below --threshold"),
       of_rays(counts.empty_tile_rays, "camera rays where there is nothing"),

@@ -23,7 +23,7 @@
 #include "host/cli/resume.h"
 #include "host/cli/version.h"
 #include "host/film/environment_file.h"
-#include "host/light/clearance.h"
+#include "host/light/neighbor_clearance.h"
 #include "host/ranks/job_queue.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
@@ -101,7 +101,7 @@ ExrMetadata make_metadata(const Options& options, const Scene& scene, const Came
 
 /// Renders with a progress bar. Throws Interrupted when a signal comes.
 Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                 const Clearances& clearances, const CoreImage& image, const Camera& camera,
+                 const NeighborClearances& clearances, const CoreImage& image, const Camera& camera,
                  const ExrMetadata& metadata, const Film* begun, Ranks& ranks, RenderStats& stats) {
   const SampleRange all{0, options.light.samples};
   const auto threads = static_cast<int>(options.threads);
@@ -168,7 +168,7 @@ Film render_film(const Options& options, const OutputOptions& outputs, const Sce
 /// Renders one picture and writes it with `report` completed; false if it is a frame whose files
 /// are there.
 bool render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                    const Clearances& clearances, const CoreImage& image,
+                    const NeighborClearances& clearances, const CoreImage& image,
                     const CameraSequence& cameras, const Camera& camera, Clock::time_point start,
                     Ranks& ranks, Report& report) {
   const ExrMetadata metadata = make_metadata(options, scene, cameras, camera);
@@ -202,7 +202,7 @@ bool render_picture(const Options& options, const OutputOptions& outputs, const 
 }
 
 /// One picture after the other, each by the rank that is free; a line for each.
-void render_animation(const Options& options, Scene& scene, const Clearances& clearances,
+void render_animation(const Options& options, Scene& scene, const NeighborClearances& clearances,
                       const CoreImage& image, const CameraSequence& cameras, Ranks& ranks,
                       Report& report, std::FILE* console) {
   const int frames = options.output.frames;
@@ -267,7 +267,7 @@ void run(const Options& options, Ranks& ranks) {
   if (ranks.index() == 0) print_warnings(scene);
   require_inputs_kept(options, scene);
 
-  // Cameras and lamps are found before there is a ground, which is not to be framed.
+  // Cameras and lights are found before there is a ground, which is not to be framed.
   const CameraSequence cameras(options, scene);
   if (cameras.has_ground()) add_ground(scene, cameras.up());
   report.view = cameras.text();
@@ -276,7 +276,7 @@ void run(const Options& options, Ranks& ranks) {
   const Clock::time_point tree_start = Clock::now();
   const Bvh bvh(scene, static_cast<int>(options.threads));
   report.tree_seconds = seconds_since(tree_start);
-  const Clearances clearances(bvh);
+  const NeighborClearances clearances(bvh);
   const CoreImage image = make_memory_image(options, options.core_files, bvh);
   if (const auto& pixel = options.core_files.pixel) {
     const Ray ray = cameras.light(1, scene).ray((pixel->x + 0.5) / options.width,

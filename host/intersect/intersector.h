@@ -29,7 +29,7 @@ struct RayWork {
 /// What is wanted of a search, given once. Spans have one element a ray, or are empty; they are
 /// used during the search only.
 struct RayQuery {
-  /// All rays begin in one point, from which other searches begin, too (the camera, a lamp): what
+  /// All rays begin in one point, from which other searches begin, too (the camera, a light): what
   /// is made for it is worth keeping. Changes nothing of what is found.
   bool common_origin = false;
   /// Positive: only hits with t < limits[i], in exact arithmetic, count; +infinity for no limit.

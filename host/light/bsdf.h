@@ -3,10 +3,10 @@
 
 #include "host/base/elementary.h"
 #include "host/base/lane_math.h"
-#include "host/light/around.h"
-#include "host/light/facet_lobes.h"
-#include "host/light/finish.h"
 #include "host/light/fresnel.h"
+#include "host/light/material_parameters.h"
+#include "host/light/metallic_roughness.h"
+#include "host/light/orthonormal_basis.h"
 #include "host/light/sampler.h"
 #include "host/light/surface.h"
 
@@ -17,7 +17,7 @@ namespace raygate {
 /// `illum` says which there are; d is the opacity, 1 opaque. Where the lobes of an opaque surface
 /// add up to more than 1 they are scaled down, so that no energy comes from nowhere.
 ///
-/// | illum | diffuse | glossy | mirror | through |
+/// | illum | diffuse | glossy | mirror | transmission |
 /// |---|---|---|---|---|
 /// | 0 | none: Kd is shown as it is, unlit | | | 1 - d, straight |
 /// | 1 | d Kd | | | 1 - d, straight |
@@ -37,11 +37,11 @@ namespace raygate {
 /// light, which has no size: there it has a highlight with exponent Ns instead, unless that is 1
 /// (what it is where the file does not say) or less.
 ///
-/// A metallic-roughness material has the lobes of FacetLobes instead: `diffuse` is what is under
-/// the facets, `glossy` what rough facets reflect (up to what they hide from each other) and
-/// `mirror` what smooth ones do; glass is `mirror` and `through`. Where glass is rough, these two
-/// are its shares straight on: what a facet does, it says itself, and light from lamps comes by it
-/// by chance alone.
+/// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is what
+/// is under the facets, `glossy` what rough facets reflect (up to what they hide from each other)
+/// and `mirror` what smooth ones do; glass is `mirror` and `transmission`. Where glass is rough,
+/// these two are its shares straight on: what a facet does, it says itself, and light from light
+/// sources comes by it by chance alone.
 ///
 /// T is float or FloatLanes: hits of one kind, each with a material of its own.
 template <class T>
@@ -49,19 +49,19 @@ class Bsdf {
  public:
   Bsdf() = default;
   RAYGATE_INLINE Bsdf(const Surface<T>& surface, HitKind kind,
-                      const Finish* const (&finishes)[LanesOf<T>::kCount]);
+                      const MaterialParameters* const (&materials)[LanesOf<T>::kCount]);
 
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& diffuse() const { return diffuse_; }
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& glossy() const { return glossy_; }
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& mirror() const { return mirror_; }
-  [[nodiscard]] RAYGATE_INLINE const Triple<T>& through() const { return through_; }
+  [[nodiscard]] RAYGATE_INLINE const Triple<T>& transmission() const { return transmission_; }
   [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& mirror_is_traced() const {
     return mirror_is_traced_;
   }
   [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& is_refracting() const { return is_refracting_; }
   /// The index of refraction beyond the border over that before it.
   [[nodiscard]] RAYGATE_INLINE const T& eta() const { return eta_; }
-  /// Radiance that the surface sends along the view by itself, as a lamp does (Ke).
+  /// Radiance that the surface sends along the view by itself, as a light does (Ke).
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& emission() const { return emission_; }
   /// Radiance that is only there to be seen: illum 0.
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& unlit() const { return unlit_; }
@@ -72,44 +72,44 @@ class Bsdf {
 
   /// Diffuse and glossy reflection, per steradian and without the cosine, from unit direction
   /// `light`; 0 from behind.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> scattered(const Triple<T>& light) const {
-    if ((kind_ & kFacets) != 0) {
-      return above(light, facets_.scattered(light, (kind_ & kGlossy) != 0, false));
+  [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
+    if ((kind_ & kMetallicRoughness) != 0) {
+      return above(light, facets_.eval(light, (kind_ & kGlossy) != 0, false));
     }
-    return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * lobe(light)
+    return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * phong_lobe(light)
                                                : diffuse_ * per_pi());
   }
   /// The same with the mirror as a highlight, for point lights.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> scattered_from_point(const Triple<T>& light) const {
-    if ((kind_ & (kGlossy | kMirrors)) == 0) return scattered(light);
-    if ((kind_ & kFacets) != 0) {
-      return above(light, facets_.scattered(light, (kind_ & kGlossy) != 0, has_rough_glass()));
+  [[nodiscard]] RAYGATE_INLINE Triple<T> eval_for_point_light(const Triple<T>& light) const {
+    if ((kind_ & (kGlossy | kMirrors)) == 0) return eval(light);
+    if ((kind_ & kMetallicRoughness) != 0) {
+      return above(light, facets_.eval(light, (kind_ & kGlossy) != 0, has_rough_glass()));
     }
     const Triple<T> shown = choose(exponent_ > 1.0f, mirror_, zero<T>());
-    return above(light, diffuse_ * per_pi() + (glossy_ + shown) * lobe(light));
+    return above(light, diffuse_ * per_pi() + (glossy_ + shown) * phong_lobe(light));
   }
 
   /// A direction for diffuse or glossy reflection, chosen for a point of the unit square, nearly
   /// in proportion to what it brings. May point behind the surface: it brings nothing then.
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
-  /// The density of sample() per steradian.
-  [[nodiscard]] RAYGATE_INLINE T density(const Triple<T>& light) const {
+  /// The pdf of sample() per steradian.
+  [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
     const T diffuse = at_least(dot(normal_, light), 0.0f) * kPerPi;
     if ((kind_ & kGlossy) == 0) return diffuse;
     const T share = glossy_share();
-    if ((kind_ & kFacets) != 0) {
-      return (1.0f - share) * diffuse + share * facets_.density(light);
+    if ((kind_ & kMetallicRoughness) != 0) {
+      return (1.0f - share) * diffuse + share * facets_.pdf(light);
     }
     return (1.0f - share) * diffuse +
-           share * (lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
+           share * (phong_lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
   }
 
   /// Whether what a facet mirrors and lets through is for that facet to say.
   [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
-    return (~kind_ & (kFacets | kGlossy | kMirrors)) == 0;
+    return (~kind_ & (kMetallicRoughness | kGlossy | kMirrors)) == 0;
   }
   /// Of metallic-roughness materials.
-  [[nodiscard]] RAYGATE_INLINE const FacetLobes<T>& facets() const { return facets_; }
+  [[nodiscard]] RAYGATE_INLINE const MetallicRoughnessLobes<T>& facets() const { return facets_; }
 
  private:
   static constexpr float kPerPi = 0.318309886183790671537767526745f;
@@ -128,8 +128,8 @@ class Bsdf {
   /// (Lafortune and Willems 1994). The cosine comes from the distance of the two directions, and
   /// its power is taken in double: next to 1, where lobes of a large exponent are, float cosines
   /// are too far apart.
-  [[nodiscard]] RAYGATE_INLINE T lobe(const Triple<T>& light) const {
-    const Triple<T> apart = mirrored(view_, normal_) - light;
+  [[nodiscard]] RAYGATE_INLINE T phong_lobe(const Triple<T>& light) const {
+    const Triple<T> apart = reflect(view_, normal_) - light;
     const T squared = dot(apart, apart);
     const auto cosine = 1.0 - 0.5 * wide(at_most(squared, 1.99999f));
     const T height = (exponent_ + 2.0f) * (0.5f * kPerPi);
@@ -141,14 +141,14 @@ class Bsdf {
   HitKind kind_;
   Triple<T> view_, normal_;
   T eta_, exponent_;
-  Triple<T> diffuse_, glossy_, mirror_, through_, emission_, unlit_;
+  Triple<T> diffuse_, glossy_, mirror_, transmission_, emission_, unlit_;
   MaskOf<T> mirror_is_traced_, is_refracting_;
-  FacetLobes<T> facets_;  // of kFacets alone
+  MetallicRoughnessLobes<T> facets_;  // of kMetallicRoughness alone
 };
 
 template <class T>
 RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
-                             const Finish* const (&finishes)[LanesOf<T>::kCount])
+                             const MaterialParameters* const (&materials)[LanesOf<T>::kCount])
     : kind_(kind),
       view_(surface.view),
       normal_(surface.normal),
@@ -156,15 +156,15 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
       exponent_(T{}),
       glossy_(zero<T>()),
       mirror_(zero<T>()),
-      through_(zero<T>()),
+      transmission_(zero<T>()),
       emission_(zero<T>()),
       unlit_(zero<T>()) {
   constexpr int kCount = LanesOf<T>::kCount;
   enum : std::uint8_t { kDiffuse, kOpacity = 3, kPlain = 4 };
   Gathered<T, kPlain> plain;
   for (int k = 0; k < kCount; ++k) {
-    plain.put(kDiffuse, k, finishes[k]->diffuse);
-    plain.values[kOpacity][k] = finishes[k]->opacity;
+    plain.put(kDiffuse, k, materials[k]->diffuse);
+    plain.values[kOpacity][k] = materials[k]->opacity;
   }
   const Triple<T>& colour = surface.colour;
   const Triple<T> limited = {at_most(at_least(colour.x, 0.0f), 1.0f),
@@ -175,34 +175,34 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
   mirror_is_traced_ = one > 0.0f;
   is_refracting_ = one < 0.0f;
   if ((kind & kEmits) != 0) {
-    Gathered<T, 6> lamps;
+    Gathered<T, 6> emitters;
     for (int k = 0; k < kCount; ++k) {
-      lamps.put(0, k, finishes[k]->emission);
-      lamps.put(3, k, finishes[k]->unlit);
+      emitters.put(0, k, materials[k]->emission);
+      emitters.put(3, k, materials[k]->unlit);
     }
-    emission_ = lamps.triple(0);
-    unlit_ = colour * lamps.triple(3);
+    emission_ = emitters.triple(0);
+    unlit_ = colour * emitters.triple(3);
   }
-  if ((kind & kFacets) != 0) {
-    facets_ = FacetLobes<T>(surface, (kind & kGlossy) != 0, finishes);
+  if ((kind & kMetallicRoughness) != 0) {
+    facets_ = MetallicRoughnessLobes<T>(surface, (kind & kGlossy) != 0, materials);
     set_facets();
     return;
   }
   if ((kind & (kGlossy | kMirrors)) != 0) {
     Gathered<T, 4> shiny;
     for (int k = 0; k < kCount; ++k) {
-      shiny.put(0, k, finishes[k]->glossy);
-      shiny.values[3][k] = finishes[k]->exponent;
+      shiny.put(0, k, materials[k]->glossy);
+      shiny.values[3][k] = materials[k]->exponent;
     }
     glossy_ = shiny.triple(0);
     exponent_ = shiny.one(3);
   }
   auto is_glass = is_refracting_;
-  if ((kind & (kMirrors | kLetsThrough)) != 0) {
+  if ((kind & (kMirrors | kTransmits)) != 0) {
     enum : std::uint8_t {
       kMirror,
       kGrazing = 3,
-      kThrough = 6,
+      kTransmission = 6,
       kIndex = 9,
       kGlass,
       kRefracts,
@@ -212,15 +212,15 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     };
     Gathered<T, kClear> clear;
     for (int k = 0; k < kCount; ++k) {
-      const Finish& finish = *finishes[k];
-      clear.put(kMirror, k, finish.mirror);
-      clear.put(kGrazing, k, finish.grazing);
-      clear.put(kThrough, k, finish.through);
-      clear.values[kIndex][k] = finish.index;
-      clear.values[kGlass][k] = finish.is_glass ? 1.0f : 0.0f;
-      clear.values[kRefracts][k] = finish.refracts ? 1.0f : 0.0f;
-      clear.values[kFresnel][k] = finish.is_fresnel ? 1.0f : 0.0f;
-      clear.values[kTraced][k] = finish.mirror_is_traced ? 1.0f : 0.0f;
+      const MaterialParameters& material = *materials[k];
+      clear.put(kMirror, k, material.mirror);
+      clear.put(kGrazing, k, material.grazing);
+      clear.put(kTransmission, k, material.transmittance);
+      clear.values[kIndex][k] = material.index;
+      clear.values[kGlass][k] = material.is_glass ? 1.0f : 0.0f;
+      clear.values[kRefracts][k] = material.refracts ? 1.0f : 0.0f;
+      clear.values[kFresnel][k] = material.is_fresnel ? 1.0f : 0.0f;
+      clear.values[kTraced][k] = material.mirror_is_traced ? 1.0f : 0.0f;
     }
     is_glass = clear.one(kGlass) > 0.0f;
     is_refracting_ = clear.one(kRefracts) > 0.0f;
@@ -228,7 +228,7 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     const T index = clear.one(kIndex);
     eta_ = choose(is_refracting_, choose(surface.outside, index, 1.0f / index), one);
     const T cosine = at_most(at_least(dot(normal_, view_), 0.0f), 1.0f);
-    mirror_ = clear.triple(kMirror) + clear.triple(kGrazing) * schlick_share(cosine);
+    mirror_ = clear.triple(kMirror) + clear.triple(kGrazing) * schlick_weight(cosine);
     const T reflectance = fresnel_reflectance(cosine, eta_);
     const auto is_fresnel = is_refracting_ & ((clear.one(kFresnel) > 0.0f) | (reflectance >= 1.0f));
     mirror_ = choose(is_fresnel, Triple<T>{reflectance, reflectance, reflectance}, mirror_);
@@ -236,7 +236,7 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     const Triple<T> rest =
         choose(is_glass, Triple<T>{one, one, one} - mirror_, Triple<T>{one, one, one});
     diffuse_ = diffuse_ * rest;
-    through_ = clear.triple(kThrough) * rest;
+    transmission_ = clear.triple(kTransmission) * rest;
   }
   if ((kind & (kGlossy | kMirrors)) != 0) {
     const T sum = largest(diffuse_ + glossy_ + mirror_);
@@ -249,15 +249,15 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
 
 template <class T>
 RAYGATE_INLINE void Bsdf<T>::set_facets() {
-  diffuse_ = facets_.under;
-  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.reflected;
-  through_ = {facets_.clear, facets_.clear, facets_.clear};
-  if ((~kind_ & (kMirrors | kLetsThrough)) != 0) return;
+  diffuse_ = facets_.diffuse;
+  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.specular;
+  transmission_ = {facets_.clear, facets_.clear, facets_.clear};
+  if ((~kind_ & (kMirrors | kTransmits)) != 0) return;
   eta_ = facets_.eta;
   is_refracting_ = facets_.is_glass;
   const T mirrored = facets_.glass * fresnel_reflectance(facets_.view_cosine, eta_);
   mirror_ = mirror_ + Triple<T>{mirrored, mirrored, mirrored};
-  through_ = choose(is_refracting_, facets_.tint * (facets_.glass - mirrored), through_);
+  transmission_ = choose(is_refracting_, facets_.tint * (facets_.glass - mirrored), transmission_);
 }
 
 template <class T>
@@ -265,7 +265,7 @@ RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u) const {
   const auto turn = sine_cosine(wide(u.y));
   const T turned_x = narrow(turn.cosine), turned_y = narrow(turn.sine);
   if ((kind_ & kGlossy) == 0) {
-    return around(normal_, root(1.0f - u.x), root(u.x), turned_x, turned_y);
+    return spherical_direction(normal_, root(1.0f - u.x), root(u.x), turned_x, turned_y);
   }
   const T share = glossy_share(), left = 1.0f - share;
   const auto is_glossy = u.x < share;
@@ -273,17 +273,17 @@ RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u) const {
   const T glossy_rest = 1.0f - u.x / choose(share > 0.0f, share, spread<T>(1.0f));
   const T diffuse_rest = (u.x - share) / choose(left > 0.0f, left, spread<T>(1.0f));
   const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
-  if ((kind_ & kFacets) != 0) {
+  if ((kind_ & kMetallicRoughness) != 0) {
     // The same point of the square for both: each lane has use for one of them.
     const Triple<T> facet = facets_.ggx.sample(view_, {rest, u.y});
-    return choose(is_glossy, mirrored(view_, facet),
-                  around(normal_, root(1.0f - rest), root(rest), turned_x, turned_y));
+    return choose(is_glossy, reflect(view_, facet),
+                  spherical_direction(normal_, root(1.0f - rest), root(rest), turned_x, turned_y));
   }
   const auto cosine = power(wide(at_least(rest, 0x1p-24f)), 1.0 / (wide(exponent_) + 1.0));
   const T sine = narrow(root(1.0 - cosine * cosine));
-  const Triple<T> axis = choose(is_glossy, mirrored(view_, normal_), normal_);
-  return around(axis, choose(is_glossy, narrow(cosine), root(1.0f - rest)),
-                choose(is_glossy, sine, root(rest)), turned_x, turned_y);
+  const Triple<T> axis = choose(is_glossy, reflect(view_, normal_), normal_);
+  return spherical_direction(axis, choose(is_glossy, narrow(cosine), root(1.0f - rest)),
+                             choose(is_glossy, sine, root(rest)), turned_x, turned_y);
 }
 
 }  // namespace raygate

@@ -13,15 +13,15 @@ double brightness(const glm::vec3& radiance) {
 
 /// Chances in the same proportions as `weights`, each with those before it; even ones where all are
 /// 0.
-void put_ends(const std::vector<double>& weights, float* ends) {
+void put_cdf(const std::vector<double>& weights, float* cdf) {
   double sum = 0.0;
   for (const double weight : weights) sum += weight;
   double so_far = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     so_far += sum > 0.0 ? weights[i] / sum : 1.0 / static_cast<double>(weights.size());
-    ends[i] = static_cast<float>(std::min(so_far, 1.0));
+    cdf[i] = static_cast<float>(std::min(so_far, 1.0));
   }
-  ends[weights.size() - 1] = 1.0f;
+  cdf[weights.size() - 1] = 1.0f;
 }
 
 }  // namespace
@@ -41,15 +41,15 @@ Environment::Environment(const EnvironmentMap& map, bool is_sampled)
   }
   cosines_.push_back(-1.0f);
   if (is_sampled) {
-    row_ends_.resize(rows);
-    column_ends_.resize(std::size_t{rows} * width_);
+    row_cdf_.resize(rows);
+    column_cdf_.resize(std::size_t{rows} * width_);
   }
   std::vector<double> of_rows(rows), of_cells(width_);
   glm::dvec3 sum(0.0);
   for (std::uint32_t row = 0; row < rows; ++row) {
     const double solid_angle =
         2.0 * std::numbers::pi / width_ * (double{cosines_[row]} - double{cosines_[row + 1]});
-    density_of_chance_.push_back(static_cast<float>(1.0 / solid_angle));
+    per_solid_angle_.push_back(static_cast<float>(1.0 / solid_angle));
     for (std::uint32_t column = 0; column < width_; ++column) {
       glm::dvec3 corners(0.0);
       double bright = 0.0;
@@ -63,9 +63,9 @@ Environment::Environment(const EnvironmentMap& map, bool is_sampled)
       of_cells[column] = bright;
       of_rows[row] += bright * solid_angle;
     }
-    if (is_sampled) put_ends(of_cells, &column_ends_[std::size_t{row} * width_]);
+    if (is_sampled) put_cdf(of_cells, &column_cdf_[std::size_t{row} * width_]);
   }
-  if (is_sampled) put_ends(of_rows, row_ends_.data());
+  if (is_sampled) put_cdf(of_rows, row_cdf_.data());
   mean_ = sum * (double{map.strength} / (4.0 * std::numbers::pi));
 }
 

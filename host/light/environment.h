@@ -18,12 +18,12 @@ namespace raygate {
 ///
 /// It is sampled cell by cell. A cell lies between the middles of four texels (at the upper and the
 /// lower edge, of two), where the map is bilinear; it is as likely as the mean brightness of its
-/// corners times its solid angle, and all directions of a cell are equally likely. So the density
+/// corners times its solid angle, and all directions of a cell are equally likely. So the pdf
 /// is nowhere 0 where something shines, and nowhere less than a quarter of what would be ideal in
 /// its cell. ("Physically Based Rendering", Pharr, Jakob and Humphreys, does so with whole texels.)
 class Environment {
  public:
-  /// Without `is_sampled` there is neither density() nor sample().
+  /// Without `is_sampled` there is neither pdf() nor sample().
   explicit Environment(const EnvironmentMap& map, bool is_sampled = true);
 
   /// Radiance: scene-linear RGB.
@@ -31,7 +31,7 @@ class Environment {
   [[nodiscard]] RAYGATE_INLINE Triple<T> radiance(const Triple<T>& direction) const;
   /// How likely sample() gives a direction, per steradian.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE T density(const Triple<T>& direction) const;
+  [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& direction) const;
   /// A direction for a point of the unit square.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
@@ -63,10 +63,10 @@ class Environment {
   std::uint32_t width_, height_;  // of the map: there are as many columns of cells, a row more
   glm::vec3 up_, ahead_, right_;
   glm::dvec3 mean_{0.0};
-  std::vector<float> row_ends_;     // chance of the rows so far, each included
-  std::vector<float> column_ends_;  // the same of the cells of each row
-  std::vector<float> cosines_;      // of the rows' edges, from straight up; one more than rows
-  std::vector<float> density_of_chance_;  // by row: 1 / the solid angle of a cell
+  std::vector<float> row_cdf_;          // chance of the rows so far, each included
+  std::vector<float> column_cdf_;       // the same of the cells of each row
+  std::vector<float> cosines_;          // of the rows' edges, from straight up; one more than rows
+  std::vector<float> per_solid_angle_;  // by row: 1 / the solid angle of a cell
 };
 
 template <class T>
@@ -115,17 +115,17 @@ RAYGATE_INLINE Triple<T> Environment::radiance(const Triple<T>& direction) const
 }
 
 template <class T>
-RAYGATE_INLINE T Environment::density(const Triple<T>& direction) const {
+RAYGATE_INLINE T Environment::pdf(const Triple<T>& direction) const {
   const Place<T> at = place(direction);
-  Gathered<T, 1> densities;
+  Gathered<T, 1> pdfs;
   for (int k = 0; k < LanesOf<T>::kCount; ++k) {
     const std::uint32_t row = at.rows[k], column = at.columns[k];
-    const float* const ends = &column_ends_[std::size_t{row} * width_];
-    const float in_row = ends[column] - (column == 0 ? 0.0f : ends[column - 1]);
-    const float of_row = row_ends_[row] - (row == 0 ? 0.0f : row_ends_[row - 1]);
-    densities.values[0][k] = of_row * in_row * density_of_chance_[row];
+    const float* const cdf = &column_cdf_[std::size_t{row} * width_];
+    const float in_row = cdf[column] - (column == 0 ? 0.0f : cdf[column - 1]);
+    const float of_row = row_cdf_[row] - (row == 0 ? 0.0f : row_cdf_[row - 1]);
+    pdfs.values[0][k] = of_row * in_row * per_solid_angle_[row];
   }
-  return densities.one(0);
+  return pdfs.one(0);
 }
 
 template <class T>
@@ -136,18 +136,18 @@ RAYGATE_INLINE Triple<T> Environment::sample(const SquarePoint<T>& u) const {
   lanes_to(ys, u.y);
   enum : std::uint8_t { kUpper, kLower, kInRow, kColumn, kInColumn, kFields };
   Gathered<T, kFields> in;
-  // Where a number lies between the ends of what it chooses says where in that.
-  const auto find = [](const float* ends, std::uint32_t count, float wanted, float& rest) {
+  // Where a number lies within what it chooses says where in that.
+  const auto find = [](const float* cdf, std::uint32_t count, float wanted, float& rest) {
     const auto found =
-        static_cast<std::uint32_t>(std::upper_bound(ends, ends + count - 1, wanted) - ends);
-    const float begin = found == 0 ? 0.0f : ends[found - 1], size = ends[found] - begin;
+        static_cast<std::uint32_t>(std::upper_bound(cdf, cdf + count - 1, wanted) - cdf);
+    const float begin = found == 0 ? 0.0f : cdf[found - 1], size = cdf[found] - begin;
     rest = size > 0.0f ? std::min((wanted - begin) / size, 1.0f) : 0.5f;
     return found;
   };
   for (int k = 0; k < kCount; ++k) {
-    const std::uint32_t row = find(row_ends_.data(), height_ + 1, ys[k], in.values[kInRow][k]);
+    const std::uint32_t row = find(row_cdf_.data(), height_ + 1, ys[k], in.values[kInRow][k]);
     const std::uint32_t column =
-        find(&column_ends_[std::size_t{row} * width_], width_, xs[k], in.values[kInColumn][k]);
+        find(&column_cdf_[std::size_t{row} * width_], width_, xs[k], in.values[kInColumn][k]);
     in.values[kUpper][k] = cosines_[row];
     in.values[kLower][k] = cosines_[row + 1];
     in.values[kColumn][k] = static_cast<float>(column);

@@ -27,14 +27,14 @@ RAYGATE_INLINE T fresnel_reflectance(const T& cosine, const T& eta) {
 /// Schlick's stand-in for it (1994) goes from the reflectance at normal incidence up to 1 at
 /// grazing; this is how far.
 template <class T>
-RAYGATE_INLINE T schlick_share(const T& cosine) {
+RAYGATE_INLINE T schlick_weight(const T& cosine) {
   const T x = 1.0f - at_most(cosine, 1.0f), squared = x * x;
   return squared * squared * x;
 }
 
 /// The unit vector `view` mirrored: -view off a plane with the unit normal `normal`.
 template <class T>
-RAYGATE_INLINE Triple<T> mirrored(const Triple<T>& view, const Triple<T>& normal) {
+RAYGATE_INLINE Triple<T> reflect(const Triple<T>& view, const Triple<T>& normal) {
   return normal * (2.0f * dot(view, normal)) - view;
 }
 

@@ -8,7 +8,7 @@
 
 #include "host/base/elementary.h"
 #include "host/base/lane_math.h"
-#include "host/light/around.h"
+#include "host/light/orthonormal_basis.h"
 #include "host/light/sampler.h"
 
 namespace raygate {
@@ -28,8 +28,8 @@ struct Ggx {
 
   /// Two directions and the facets that mirror one into the other.
   struct Pair {
-    T height;       ///< D: facets of that normal, per steradian and per area of the surface
-    T half_cosine;  ///< between either direction and that normal
+    T d;         ///< D: facets of that normal, per steradian and per area of the surface
+    T cos_half;  ///< between either direction and that normal
   };
   [[nodiscard]] RAYGATE_INLINE Pair pair(const Triple<T>& a, const Triple<T>& b) const {
     constexpr float kPerPi = 0.318309886183790671537767526745f;
@@ -53,16 +53,16 @@ struct Ggx {
 
   /// How likely sample() and a mirror at its facet give the other direction of a pair, per
   /// steradian.
-  [[nodiscard]] RAYGATE_INLINE T mirror_density(const T& view, const T& height) const {
-    return height * 0.5f / (view + stretched(view));
+  [[nodiscard]] RAYGATE_INLINE T reflection_pdf(const T& view, const T& d) const {
+    return d * 0.5f / (view + stretched(view));
   }
 
   /// The share of what a facet that was sampled for `view` mirrors that gets away: G2 / G1.
-  [[nodiscard]] RAYGATE_INLINE T mirrored_share(const T& view, const T& light) const {
+  [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const T& view, const T& light) const {
     return light * (view + stretched(view)) / (light * stretched(view) + view * stretched(light));
   }
   /// The same of what it lets through, whose masking is independent of the view's: G1.
-  [[nodiscard]] RAYGATE_INLINE T through_share(const T& light) const {
+  [[nodiscard]] RAYGATE_INLINE T g1(const T& light) const {
     return 2.0f * light / (light + stretched(light));
   }
 

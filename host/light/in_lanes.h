@@ -14,8 +14,8 @@ namespace raygate {
 /// Calls shade(hits) for the hits at `at` in the block, as many at a time as there are lanes. The
 /// baseline has one lane: it is the reference of the others, which have the same bits.
 template <class Shade>
-void in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
-              std::span<const std::uint32_t> at, const Shade& shade) {
+void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
+                    std::span<const std::uint32_t> at, const Shade& shade) {
   in_vectors([&](auto code) RAYGATE_BODY {
     using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
     constexpr std::size_t kCount = LanesOf<T>::kCount;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/light/escapes.h"
+#include "host/light/infinite_light.h"
 #include "host/light/path.h"
 #include "host/light/primary.h"
 #include "host/light/whitted.h"
@@ -11,15 +11,15 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kMostHits = 2048;          // of a block: its lists stay in the cache
-constexpr std::size_t kFacesAhead = 12;          // to fetch
-constexpr std::size_t kMostQuestions = 1 << 16;  // of a block: 3 MB
+constexpr std::size_t kMostHits = 2048;             // of a block: its lists stay in the cache
+constexpr std::size_t kFacesAhead = 12;             // to fetch
+constexpr std::size_t kMostLightSamples = 1 << 16;  // of a block: 3 MB
 
 }  // namespace
 
-Integrator::Integrator(const Scene& scene, const Clearances& clearances, const Lights& lights,
-                       const Skips& skips, const IntegratorOptions& options,
-                       std::size_t questions_each, std::size_t ways_each)
+Integrator::Integrator(const Scene& scene, const NeighborClearances& clearances,
+                       const Lights& lights, const Skips& skips, const IntegratorOptions& options,
+                       std::size_t light_samples_per_hit, std::size_t scattered_per_hit)
     : shading_{.scene = scene,
                .bvh = clearances.bvh(),
                .lights = lights,
@@ -28,51 +28,51 @@ Integrator::Integrator(const Scene& scene, const Clearances& clearances, const L
                .threshold = static_cast<float>(options.threshold),
                .single_sample = options.single_sample,
                .skips_weightless = skips.weightless,
-               .techniques = options.techniques},
-      departure_(clearances),
+               .path = options.path},
+      spawner_(clearances),
       skips_(skips),
       point_error_(options.point_error),
-      block_size_(std::clamp<std::size_t>(kMostQuestions / std::max<std::size_t>(1, questions_each),
-                                          1, kMostHits)),
-      finishes_(finishes_of(scene)) {
+      block_size_(std::clamp<std::size_t>(
+          kMostLightSamples / std::max<std::size_t>(1, light_samples_per_hit), 1, kMostHits)),
+      materials_(material_parameters(scene)) {
   block_.places.resize(block_size_);
-  block_.finishes.resize(block_size_);
+  block_.materials.resize(block_size_);
   block_.radiance.resize(block_size_);
-  block_.questions_each = questions_each;
-  block_.ways_each = ways_each;
+  block_.light_samples_per_hit = light_samples_per_hit;
+  block_.scattered_per_hit = scattered_per_hit;
   kinds_.resize(block_size_);
 }
 
-void Integrator::shade(const Wave& wave, std::span<const NearestHit> hits, std::size_t begin,
-                       std::size_t end, WaveOutput& output) {
+void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, std::size_t begin,
+                       std::size_t end, ShadingOutput& output) {
   const std::size_t count = end - begin;
-  block_.wave = &wave;
+  block_.batch = &batch;
   block_.begin = begin;
-  block_.first_surfaces = wave.depth == 0 ? output.first_surface.data() : nullptr;
-  block_.questions.resize(count * block_.questions_each);
-  block_.ways.resize(count * block_.ways_each);
-  for (LightQuestion& question : block_.questions) question.state = LightQuestion::kNotAsked;
-  for (WayOn& way : block_.ways) way.is_wanted = false;
+  block_.first_surfaces = batch.depth == 0 ? output.first_surface.data() : nullptr;
+  block_.light_samples.resize(count * block_.light_samples_per_hit);
+  block_.scattered.resize(count * block_.scattered_per_hit);
+  for (LightSample& light_sample : block_.light_samples) light_sample.state = LightSample::kNone;
+  for (ScatteredRay& scattered : block_.scattered) scattered.is_wanted = false;
   sort(hits, count, output);
   for (HitKind kind = 0; kind < kHitKinds; ++kind) {
     const std::span<const std::uint32_t> at(order_.data() + first_[kind],
                                             first_[kind + 1] - first_[kind]);
     if (!at.empty()) shade_kind(block_, kind, at);
   }
-  departures_.clear();
+  spawn_queries_.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    if (kinds_[i] != kHitKinds) choose_departures(i);
+    if (kinds_[i] != kHitKinds) list_spawn_queries(i);
   }
-  origins_.resize(departures_.size());
-  departure_.find(departures_, origins_);
-  const DepartureOrigin* origins = origins_.data();
+  origins_.resize(spawn_queries_.size());
+  spawner_.find(spawn_queries_, origins_);
+  const SpawnOrigin* origins = origins_.data();
   for (std::size_t i = 0; i < count; ++i) {
     if (kinds_[i] != kHitKinds) hand_on(i, origins, output);
   }
 }
 
 /// Lists the hits of the block, kind by kind. What hits nothing is done with.
-void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveOutput& output) {
+void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, ShadingOutput& output) {
   const Scene& scene = shading_.scene;
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
@@ -92,24 +92,25 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
     }
     if (hit.slot == NearestHit::kNone) {
       if (is_dark) continue;
-      const Burden& burden = block_.burden(i);
-      output.radiance[burden.sample] += burden.weight * behind;
+      const PathState& state = block_.state(i);
+      output.radiance[state.sample] += state.throughput * behind;
       continue;
     }
     const bool is_doubtful = is_point_doubt(hit, point_error_);
     point_doubts_ += is_doubtful ? 1 : 0;
     const FaceRef stored = shading_.bvh.face_of(hit.slot);
     const Triangle& face = face_at(scene, stored);
-    block_.places[i] = {&block_.wave->rays[block_.begin + i], hit.slot, &face,
+    block_.places[i] = {&block_.batch->rays[block_.begin + i], hit.slot, &face,
                         is_doubtful ? nullptr : &hit.point, instance_at(scene, stored)};
-    const Finish& finish = finishes_[face.material];
-    const bool is_there = !finish.has_mask || !is_masked_out(scene, shading_.bvh, block_.places[i]);
-    block_.finishes[i] = is_there ? &finish : &nothing_;
-    kinds_[i] = block_.finishes[i]->kind | weights_needed(block_.places[i]);
+    const MaterialParameters& material = materials_[face.material];
+    const bool is_there =
+        !material.has_mask || !is_masked_out(scene, shading_.bvh, block_.places[i]);
+    block_.materials[i] = is_there ? &material : &transparent_;
+    kinds_[i] = block_.materials[i]->kind | weights_needed(block_.places[i]);
     ++first_[kinds_[i] + 1];
   }
   if (!escaped_.empty()) {
-    add_environment(shading_, block_, escaped_, shading_.asks_environment, output);
+    add_infinite_light(shading_, block_, escaped_, shading_.samples_environment, output);
   }
   for (HitKind kind = 0; kind < kHitKinds; ++kind) first_[kind + 1] += first_[kind];
   order_.resize(first_[kHitKinds]);
@@ -123,92 +124,94 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, WaveO
 }
 
 /// Forgets what is not worth asking, and notes on which sides of the hit at place i rays begin.
-void Integrator::choose_departures(std::size_t i) {
-  const HitPlace& place = block_.places[i];
+void Integrator::list_spawn_queries(std::size_t i) {
+  const SurfaceHit& place = block_.places[i];
   bool is_before = false, is_after = false;
-  for (std::size_t number = 0; number < block_.questions_each; ++number) {
-    LightQuestion& question = block_.question(i, number);
-    if (question.state == LightQuestion::kBehind && skips_.light_behind) {
+  for (std::size_t number = 0; number < block_.light_samples_per_hit; ++number) {
+    LightSample& light_sample = block_.light_sample(i, number);
+    if (light_sample.state == LightSample::kDark && skips_.light_behind) {
       ++skipped_.lights_behind;
-      question.state = LightQuestion::kNotAsked;
+      light_sample.state = LightSample::kNone;
     }
-    is_before = is_before || question.state != LightQuestion::kNotAsked;
+    is_before = is_before || light_sample.state != LightSample::kNone;
   }
-  for (std::size_t number = 0; number < block_.ways_each; ++number) {
-    WayOn& way = block_.way(i, number);
-    if (!way.is_wanted) continue;
-    if (way.burden.weight == glm::vec3(0.0f) && skips_.weightless) {
+  for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {
+    ScatteredRay& scattered = block_.scattered_ray(i, number);
+    if (!scattered.is_wanted) continue;
+    if (scattered.state.throughput == glm::vec3(0.0f) && skips_.weightless) {
       ++skipped_.weightless;
-      way.is_wanted = false;
+      scattered.is_wanted = false;
       continue;
     }
-    way.is_wanted = leaves(place, way);
-    (way.side == Departure::kBefore ? is_before : is_after) |= way.is_wanted;
+    scattered.is_wanted = leaves(place, scattered);
+    (scattered.side == SpawnSide::kIncident ? is_before : is_after) |= scattered.is_wanted;
   }
-  if (is_before || is_after) departure_.prefetch(place.slot);
-  if (is_before) departures_.push_back({place.ray, place.slot, Departure::kBefore});
-  if (is_after) departures_.push_back({place.ray, place.slot, Departure::kAfter});
+  if (is_before || is_after) spawner_.prefetch(place.slot);
+  if (is_before) spawn_queries_.push_back({place.ray, place.slot, SpawnSide::kIncident});
+  if (is_after) spawn_queries_.push_back({place.ray, place.slot, SpawnSide::kTransmitted});
 }
 
-/// Whether a way leads away from its triangle, if need be along the flat normal's direction.
-bool Integrator::leaves(const HitPlace& place, WayOn& way) const {
+/// Whether a scattered ray leads away from its triangle, if need be along the flat normal's
+/// direction.
+bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const {
   const auto leaves = [&](const glm::vec3& direction) {
-    return departure_.leaves(*place.ray, place.slot, way.side, direction);
+    return spawner_.leaves(*place.ray, place.slot, scattered.side, direction);
   };
-  if (way.surely_leaves || leaves(way.direction)) return true;
-  way.direction = way.flat;
-  return way.has_flat && leaves(way.flat);
+  if (scattered.surely_leaves || leaves(scattered.direction)) return true;
+  scattered.direction = scattered.flat;
+  return scattered.has_flat && leaves(scattered.flat);
 }
 
 /// What the hit at place i gives, now that it is known where rays go on from: `origins` of its
 /// departures and those of the hits after it. A hit without one on a side sends nothing there.
-void Integrator::hand_on(std::size_t i, const DepartureOrigin*& origins, WaveOutput& output) {
-  const Burden& burden = block_.burden(i);
-  const HitPlace& place = block_.places[i];
-  output.radiance[burden.sample] += block_.radiance[i];
-  const DepartureOrigin* points[2] = {nullptr, nullptr};
-  const auto departure = [&](Departure side) -> const DepartureOrigin& {
-    return *points[side == Departure::kBefore ? 0 : 1];
+void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
+  const PathState& state = block_.state(i);
+  const SurfaceHit& place = block_.places[i];
+  output.radiance[state.sample] += block_.radiance[i];
+  const SpawnOrigin* points[2] = {nullptr, nullptr};
+  const auto departure = [&](SpawnSide side) -> const SpawnOrigin& {
+    return *points[side == SpawnSide::kIncident ? 0 : 1];
   };
-  const auto* const end = departures_.data() + departures_.size();
-  for (const auto* asked = departures_.data() + (origins - origins_.data());
+  const auto* const end = spawn_queries_.data() + spawn_queries_.size();
+  for (const auto* asked = spawn_queries_.data() + (origins - origins_.data());
        asked != end && asked->ray == place.ray; ++asked) {
-    points[asked->way == Departure::kBefore ? 0 : 1] = origins++;
+    points[asked->side == SpawnSide::kIncident ? 0 : 1] = origins++;
   }
-  for (std::size_t number = 0; number < block_.questions_each; ++number) {
-    const LightQuestion& question = block_.question(i, number);
-    if (question.state == LightQuestion::kNotAsked) continue;
-    const auto& origin = departure(Departure::kBefore);
+  for (std::size_t number = 0; number < block_.light_samples_per_hit; ++number) {
+    const LightSample& light_sample = block_.light_sample(i, number);
+    if (light_sample.state == LightSample::kNone) continue;
+    const auto& origin = departure(SpawnSide::kIncident);
     if (!origin) continue;
     ShadowRay& shadow = output.shadows.emplace_back();
-    shadow.sample = burden.sample;
-    shadow.light = question.light;
+    shadow.sample = state.sample;
+    shadow.radiance = light_sample.radiance;
     shadow.surface = *origin;
     shadow.surface_slot = place.slot;
-    if (shading_.lights.lamp(question.lamp).kind == Lights::Kind::kPoint) {
-      shadow.point_light = question.lamp;
+    if (shading_.lights.light(light_sample.light_index).kind == Lights::Kind::kPoint) {
+      shadow.point_light = light_sample.light_index;
     } else {
-      shadow.lamp = question.place;
-      shadow.lamp_slot = question.slot;
+      shadow.target = light_sample.point;
+      shadow.target_slot = light_sample.slot;
     }
   }
-  for (std::size_t number = 0; number < block_.ways_each; ++number) {
-    const WayOn& way = block_.way(i, number);
-    if (!way.is_wanted) continue;
-    const auto& origin = departure(way.side);
+  for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {
+    const ScatteredRay& scattered = block_.scattered_ray(i, number);
+    if (!scattered.is_wanted) continue;
+    const auto& origin = departure(scattered.side);
     if (!origin) continue;
     Ray& ray = output.next.rays.emplace_back();
     ray.origin = *origin;
-    ray.direction = way.direction;
-    Burden& next = output.next.burdens.emplace_back(way.burden);
-    next.sample = burden.sample;
-    next.index = burden.index;
+    ray.direction = scattered.direction;
+    PathState& next = output.next.states.emplace_back(scattered.state);
+    next.sample = state.sample;
+    next.index = state.index;
   }
 }
 
 std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Scene& scene,
-                                            const Clearances& clearances, const Lights& lights,
-                                            const Skips& skips, const IntegratorOptions& options) {
+                                            const NeighborClearances& clearances,
+                                            const Lights& lights, const Skips& skips,
+                                            const IntegratorOptions& options) {
   switch (kind) {
     case IntegratorKind::kPrimary:
       return std::make_unique<Primary>(scene, clearances, lights, skips, options);

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "host/intersect/nearest_hit.h"
-#include "host/light/departure.h"
-#include "host/light/finish.h"
 #include "host/light/hits.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/lights.h"
+#include "host/light/material_parameters.h"
+#include "host/light/path_options.h"
 #include "host/light/point_error.h"
+#include "host/light/ray_batch.h"
 #include "host/light/skips.h"
-#include "host/light/techniques.h"
-#include "host/light/wave.h"
+#include "host/light/spawn_ray.h"
 
 namespace raygate {
 
@@ -25,22 +25,22 @@ struct IntegratorOptions {
   double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced
   glm::dvec3 ambient{0.0};          ///< Whitted: radiance from all sides that reaches everything
   bool single_sample = false;       ///< one sample a pixel: no chance where there is a middle
-  Techniques techniques{};          ///< path
+  PathOptions path{};               ///< path
   float point_error = kPointError;  ///< the host finds P where the unit's is off by more of itself
 };
 
-/// Shades the hits of waves. Not for use by two threads at once.
+/// Shades the hits of batches. Not for use by two threads at once.
 ///
 /// Hits of one kind are shaded together, as many at a time as the machine has lanes; where each
 /// goes, and in which order lights and rays are added to their lists, follows from the order of the
-/// wave alone. So what a sample gets depends on nothing but its own rays.
+/// batch alone. So what a sample gets depends on nothing but its own rays.
 class Integrator {
  public:
-  /// `each`: of a hit, so many questions for light and ways on, at most. The references must
+  /// `each`: of a hit, so many light samples and scattered rays, at most. The references must
   /// outlive this.
-  Integrator(const Scene& scene, const Clearances& clearances, const Lights& lights,
-             const Skips& skips, const IntegratorOptions& options, std::size_t questions_each,
-             std::size_t ways_each);
+  Integrator(const Scene& scene, const NeighborClearances& clearances, const Lights& lights,
+             const Skips& skips, const IntegratorOptions& options,
+             std::size_t light_samples_per_hit, std::size_t scattered_per_hit);
   virtual ~Integrator() = default;
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -48,9 +48,9 @@ class Integrator {
   /// So many rays are shaded at a time, at most.
   [[nodiscard]] std::size_t block_size() const { return block_size_; }
 
-  /// Adds what the hits begin .. end of the wave give, at most block_size() of them.
-  void shade(const Wave& wave, std::span<const NearestHit> hits, std::size_t begin, std::size_t end,
-             WaveOutput& output);
+  /// Adds what the hits begin .. end of the batch give, at most block_size() of them.
+  void shade(const RayBatch& batch, std::span<const NearestHit> hits, std::size_t begin,
+             std::size_t end, ShadingOutput& output);
 
   /// Radiance along rays that hit nothing.
   [[nodiscard]] virtual glm::vec3 background() const { return shading_.lights.background(); }
@@ -73,21 +73,21 @@ class Integrator {
   SkipCounters skipped_;
 
  private:
-  void sort(std::span<const NearestHit> hits, std::size_t count, WaveOutput& output);
-  void choose_departures(std::size_t i);
-  [[nodiscard]] bool leaves(const HitPlace& place, WayOn& way) const;
-  void hand_on(std::size_t i, const DepartureOrigin*& origins, WaveOutput& output);
+  void sort(std::span<const NearestHit> hits, std::size_t count, ShadingOutput& output);
+  void list_spawn_queries(std::size_t i);
+  [[nodiscard]] bool leaves(const SurfaceHit& place, ScatteredRay& scattered) const;
+  void hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output);
 
-  DeparturePoint departure_;
+  RaySpawner spawner_;
   Skips skips_;
   float point_error_;
   std::uint64_t point_doubts_ = 0;
   std::size_t block_size_;
-  std::vector<Finish> finishes_;  // of the materials
-  const Finish nothing_ = Finish::nothing();
+  std::vector<MaterialParameters> materials_;  // of the materials
+  const MaterialParameters transparent_ = MaterialParameters::transparent();
   HitBlock block_;
-  std::vector<DepartureQuestion> departures_;  // of the block's hits, in their order
-  std::vector<DepartureOrigin> origins_;
+  std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in their order
+  std::vector<SpawnOrigin> origins_;
   std::vector<HitKind> kinds_;          // by place in the block; kHitKinds: nothing is hit
   std::vector<std::uint32_t> order_;    // places, kind by kind
   std::vector<std::uint32_t> first_;    // of each kind in it
@@ -95,7 +95,7 @@ class Integrator {
 };
 
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Scene& scene,
-                                                          const Clearances& clearances,
+                                                          const NeighborClearances& clearances,
                                                           const Lights& lights, const Skips& skips,
                                                           const IntegratorOptions& options);
 

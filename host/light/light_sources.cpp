@@ -4,21 +4,21 @@
 #include <numbers>
 
 #include "host/exact/exact.h"
-#include "host/light/closed_sides.h"
 #include "host/light/light_values.h"
 #include "host/light/lights.h"
+#include "host/light/outer_sides.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
 namespace {
 
-/// What the back of a closed lamp is worth, where nothing else is within the box around it: next to
-/// nothing, but not nothing.
+/// What the back of a closed light is worth, where nothing else is within the box around it: next
+/// to nothing, but not nothing.
 constexpr double kBackOfClosed = 1.0 / 16.0;
 
 /// Lengths in units.
-LightSource as_source(const PointLight& light, double unit) {
-  LightSource source;
+LightBounds light_bounds(const PointLight& light, double unit) {
+  LightBounds source;
   source.middle = glm::dvec3(light.position) / unit;
   source.power = mean(light.intensity) / unit / unit;
   if (light.spot) {
@@ -34,8 +34,8 @@ double diagonal_of(const Scene& scene) {
 }
 
 /// A source that is as likely wherever it is asked for: as bright as it is on the average there.
-LightSource placeless(const LightSource& source, double scene_radius) {
-  LightSource everywhere;
+LightBounds placeless(const LightBounds& source, double scene_radius) {
+  LightBounds everywhere;
   everywhere.is_far = true;
   everywhere.radius = 1.0;
   everywhere.power = source.power;
@@ -49,16 +49,16 @@ LightSource placeless(const LightSource& source, double scene_radius) {
 }  // namespace
 
 /// Lengths in units.
-LightSource Lights::as_source(const Patch& patch, const AreaLight& light, double unit,
-                              ClosedSide side) {
+LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, double unit,
+                                 OuterSide side) {
   const glm::dvec3 corner(patch.corner), u(patch.u), v(patch.v);
-  LightSource source;
+  LightBounds source;
   source.axis = glm::dvec3(patch.normal);
   source.spread = 1.0;
   source.reach = 0.0;
   source.back = 1.0;
-  if (side != ClosedSide::kBoth) source.back = kBackOfClosed;
-  if (side == ClosedSide::kInwards) source.axis = -source.axis;
+  if (side != OuterSide::kBoth) source.back = kBackOfClosed;
+  if (side == OuterSide::kAgainstNormal) source.axis = -source.axis;
   source.middle = (corner + (u + v) * (patch.is_triangle ? 1.0 / 3.0 : 0.5)) / unit;
   for (const glm::dvec3& other : {corner, corner + u, corner + v, corner + u + v}) {
     if (patch.is_triangle && other == corner + u + v) continue;
@@ -69,40 +69,40 @@ LightSource Lights::as_source(const Patch& patch, const AreaLight& light, double
 }
 
 /// Of area lights each patch, of others the whole.
-void Lights::add_sources(LightChoice choice, double unit) {
-  std::vector<LightSource> sources;
-  std::uint32_t lamp = 0;
-  const auto add = [&](const LightSource& source, std::uint32_t patch = kNoIndex,
+void Lights::add_sources(LightSampling choice, double unit) {
+  std::vector<LightBounds> sources;
+  std::uint32_t number = 0;
+  const auto add = [&](const LightBounds& source, std::uint32_t patch = kNoIndex,
                        double area = 0.0) {
     sources.push_back(source);
-    sources_.push_back({lamp, patch, area > 0.0 ? finite_float(unit * unit / area) : 0.0f});
+    sources_.push_back({number, patch, area > 0.0 ? finite_float(unit * unit / area) : 0.0f});
   };
   for (const PointLight& light : scene_.lights) {
-    add(raygate::as_source(light, unit));
-    ++lamp;
+    add(raygate::light_bounds(light, unit));
+    ++number;
   }
   std::vector<std::uint32_t> slots;
   for (const AreaLight& light : areas_)
     slots.insert(slots.end(), light.slots.begin(), light.slots.end());
-  const std::vector<ClosedSide> sides = closed_sides(bvh_, slots);
+  const std::vector<OuterSide> sides = outer_sides(bvh_, slots);
   if (!areas_.empty()) source_of_slot_.assign(bvh_.slot_count(), kNoIndex);
-  std::vector<ClosedSide> side_of_slot(source_of_slot_.size());
+  std::vector<OuterSide> side_of_slot(source_of_slot_.size());
   for (std::size_t i = 0; i < slots.size(); ++i) side_of_slot[slots[i]] = sides[i];
   for (const AreaLight& light : areas_) {
-    const std::uint32_t first = lamps_[lamp].first_patch;
-    for (std::uint32_t i = first; i < first + lamps_[lamp].patches; ++i) {
+    const std::uint32_t first = lights_[number].first_patch;
+    for (std::uint32_t i = first; i < first + lights_[number].patches; ++i) {
       const Patch& patch = patches_[i];
       source_of_slot_[patch.slot] = source_of_slot_[patch.slot_beyond] =
           static_cast<std::uint32_t>(sources.size());
-      add(as_source(patch, light, unit, side_of_slot[patch.slot]), i, patch.area);
+      add(light_bounds(patch, light, unit, side_of_slot[patch.slot]), i, patch.area);
     }
-    ++lamp;
+    ++number;
   }
   for (const DirectionalLight& light : scene_.directional_lights) {
     add({.middle = -glm::dvec3(light.direction),
          .is_far = true,
          .power = mean(glm::dvec3(light.irradiance))});
-    ++lamp;
+    ++number;
   }
   if (environment_) {
     add({.radius = 1.0,
@@ -110,9 +110,9 @@ void Lights::add_sources(LightChoice choice, double unit) {
          .power = std::numbers::pi * mean(environment_->mean_radiance())});
   }
   any_power_ = std::ranges::any_of(sources, [](const auto& source) { return source.power > 0.0; });
-  if (choice == LightChoice::kPower) {
+  if (choice == LightSampling::kPower) {
     const double radius = is_empty(scene_) ? 1.0 : 0.5 * diagonal_of(scene_) / unit;
-    for (LightSource& source : sources) source = placeless(source, radius);
+    for (LightBounds& source : sources) source = placeless(source, radius);
   }
   tree_ = LightTree(sources);
 }

@@ -9,7 +9,7 @@ namespace raygate {
 namespace {
 
 /// Axes of sources that shine to both sides are added up on one side.
-glm::dvec3 on_one_side(const LightSource& source) {
+glm::dvec3 on_one_side(const LightBounds& source) {
   if (source.back < 1.0) return source.axis;
   const glm::dvec3 size = glm::abs(source.axis);
   const int k = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -23,7 +23,7 @@ struct Sum {
   glm::dvec3 axes{0.0};
   double power = 0.0;
 
-  void add(const LightSource& source) {
+  void add(const LightBounds& source) {
     low = glm::min(low, source.middle - source.radius);
     high = glm::max(high, source.middle + source.radius);
     // Of a source to all sides nothing: there is no way round that it faces.
@@ -51,8 +51,8 @@ using Group = std::span<std::uint32_t>;  // numbers of sources
 
 class LightTree::Builder {
  public:
-  Builder(std::span<const LightSource> sources, LightTree& tree) : sources_(sources), tree_(tree) {
-    for (const LightSource& source : sources) {
+  Builder(std::span<const LightBounds> sources, LightTree& tree) : sources_(sources), tree_(tree) {
+    for (const LightBounds& source : sources) {
       most_power_ = std::max(most_power_, source.power);
     }
   }
@@ -159,8 +159,8 @@ class LightTree::Builder {
   }
 
   /// One source that stands for all of a group.
-  [[nodiscard]] LightSource cluster(Group group) const {
-    LightSource all = sources_[group[0]];
+  [[nodiscard]] LightBounds cluster(Group group) const {
+    LightBounds all = sources_[group[0]];
     if (group.size() == 1) return all;
     const Sum sum = sum_of(group);
     all.power = sum.power;
@@ -172,7 +172,7 @@ class LightTree::Builder {
     all.middle = 0.5 * (sum.low + sum.high);
     all.radius = 0.0;
     for (const std::uint32_t number : group) {
-      const LightSource& one = sources_[number];
+      const LightBounds& one = sources_[number];
       all.radius = std::max(all.radius, glm::distance(all.middle, one.middle) + one.radius);
       all.back = std::max(all.back, one.back);
       all.reach = std::min(all.reach, one.reach);
@@ -182,7 +182,7 @@ class LightTree::Builder {
     // The widest angle from the axis at which anything is sent in full; -1 if to all sides.
     all.spread = length > 0.0 ? 1.0 : -1.0;
     for (const std::uint32_t number : group) {
-      const LightSource& one = sources_[number];
+      const LightBounds& one = sources_[number];
       double cosine = glm::dot(all.axis, one.axis);
       if (one.back >= 1.0) cosine = std::abs(cosine);
       cosine = std::clamp(cosine, -1.0, 1.0);
@@ -195,7 +195,7 @@ class LightTree::Builder {
     return all;
   }
 
-  void set(Node& node, std::uint32_t place, const LightSource& source) const {
+  void set(Node& node, std::uint32_t place, const LightBounds& source) const {
     // Floats have room for it: and what brings anything, however little, has some weight.
     constexpr double kLeastPower = 0x1p-60;
     const double relative = source.power / most_power_;
@@ -218,12 +218,12 @@ class LightTree::Builder {
     node.back[place] = static_cast<float>(source.back);
   }
 
-  std::span<const LightSource> sources_;
+  std::span<const LightBounds> sources_;
   LightTree& tree_;
   double most_power_ = 0.0;
 };
 
-LightTree::LightTree(std::span<const LightSource> sources) {
+LightTree::LightTree(std::span<const LightBounds> sources) {
   place_of_.assign(sources.size(), kNoIndex);
   std::vector<std::uint32_t> numbers;
   for (std::uint32_t i = 0; i < sources.size(); ++i) {

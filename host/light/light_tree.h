@@ -1,4 +1,4 @@
-// Which of many lamps to ask for their light: a tree of them.
+// Light tree: chooses one of many lights in proportion to what it may bring to a point.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace raygate {
 
-/// What a lamp, or a flat part of one, may send where.
-struct LightSource {
+/// What a light, or a flat part of one, may send where.
+struct LightBounds {
   glm::dvec3 middle{0.0};  ///< of a ball around it
   double radius = 0.0;
   /// It shines within the angle of `spread` around the axis in full, and less and less, as a
@@ -27,7 +27,7 @@ struct LightSource {
 };
 
 /// How sources are chosen.
-enum class LightChoice : std::uint8_t {
+enum class LightSampling : std::uint8_t {
   kNone,   ///< not at all: those who ask do ask all lights, or none
   kTree,   ///< by what each may bring where it is asked for
   kPower,  ///< by their power alone: what the tree is measured against
@@ -45,26 +45,26 @@ enum class LightChoice : std::uint8_t {
 class LightTree {
  public:
   LightTree() = default;
-  explicit LightTree(std::span<const LightSource> sources);
+  explicit LightTree(std::span<const LightBounds> sources);
 
-  struct Choice {
+  struct Sample {
     std::uint32_t source = kNoIndex;  ///< kNoIndex: none, no light would come
-    float chance = 0.0f;              ///< of having been chosen
+    float pmf = 0.0f;                 ///< of having been chosen
   };
   /// For u in [0, 1), where any source has power. T is float or FloatLanes: so many children are
   /// weighed at a time.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE Choice pick(const glm::vec3& point, const glm::vec3& normal,
-                                           double u) const;
-  /// How likely pick() is to give a source.
+  [[nodiscard]] RAYGATE_INLINE Sample sample(const glm::vec3& point, const glm::vec3& normal,
+                                             double u) const;
+  /// How likely sample() is to give a source.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE float chance(std::uint32_t source, const glm::vec3& point,
-                                            const glm::vec3& normal) const;
+  [[nodiscard]] RAYGATE_INLINE float pmf(std::uint32_t source, const glm::vec3& point,
+                                         const glm::vec3& normal) const;
 
  private:
   /// Up to eight sources and clusters of sources, field by field. A place without one has power 0.
   struct alignas(32) Node {
-    float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};  // as in LightSource
+    float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};  // as in LightBounds
     float nearness[kLanes] = {};                           // 0: far
     float squared_radius[kLanes] = {};
     float axis_x[kLanes] = {}, axis_y[kLanes] = {}, axis_z[kLanes] = {};
@@ -80,16 +80,16 @@ class LightTree {
 
   /// What each child may bring, up to a common factor.
   template <class T>
-  RAYGATE_INLINE static void weigh(const Node& node, const glm::vec3& point,
-                                   const glm::vec3& normal, float (&weights)[kLanes]);
+  RAYGATE_INLINE static void importance(const Node& node, const glm::vec3& point,
+                                        const glm::vec3& normal, float (&weights)[kLanes]);
 
   std::vector<Node> nodes_;              // the root first
   std::vector<std::uint32_t> place_of_;  // of a source: its node's number times kLanes and place
 };
 
 template <class T>
-RAYGATE_INLINE void LightTree::weigh(const Node& node, const glm::vec3& point,
-                                     const glm::vec3& normal, float (&weights)[kLanes]) {
+RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& point,
+                                          const glm::vec3& normal, float (&weights)[kLanes]) {
   // Cosines are off by this much at most, so that nothing is left out that just shows.
   constexpr float kMargin = 0x1p-10f;
   constexpr float kLeastSquare = 0x1p-40f;
@@ -137,13 +137,13 @@ RAYGATE_INLINE void LightTree::weigh(const Node& node, const glm::vec3& point,
 }
 
 template <class T>
-RAYGATE_INLINE LightTree::Choice LightTree::pick(const glm::vec3& point, const glm::vec3& normal,
-                                                 double u) const {
-  float chance = 1.0f;
+RAYGATE_INLINE LightTree::Sample LightTree::sample(const glm::vec3& point, const glm::vec3& normal,
+                                                   double u) const {
+  float pmf = 1.0f;
   for (std::uint32_t at = 0;;) {
     const Node& node = nodes_[at];
     alignas(4 * kLanes) float weights[kLanes];
-    weigh<T>(node, point, normal, weights);
+    importance<T>(node, point, normal, weights);
     float total = 0.0f;
     for (const float weight : weights) total += weight;
     if (!(total > 0.0f)) return {};
@@ -160,30 +160,30 @@ RAYGATE_INLINE LightTree::Choice LightTree::pick(const glm::vec3& point, const g
     constexpr double kBelowOne = 1.0 - 0x1p-53;
     const double rest = (wanted - begin) / double{weights[found]};
     u = rest < kBelowOne ? rest : kBelowOne;
-    chance *= weights[found] / total;
+    pmf *= weights[found] / total;
     at = node.child[found];
-    if ((at & kIsSource) != 0) return {at & ~kIsSource, chance};
+    if ((at & kIsSource) != 0) return {at & ~kIsSource, pmf};
   }
 }
 
 template <class T>
-RAYGATE_INLINE float LightTree::chance(std::uint32_t source, const glm::vec3& point,
-                                       const glm::vec3& normal) const {
+RAYGATE_INLINE float LightTree::pmf(std::uint32_t source, const glm::vec3& point,
+                                    const glm::vec3& normal) const {
   if (place_of_[source] == kNoIndex) return 0.0f;
-  float chance = 1.0f;
+  float pmf = 1.0f;
   std::uint32_t at = place_of_[source] / kLanes, place = place_of_[source] % kLanes;
   while (at != kNoIndex) {
     const Node& node = nodes_[at];
     alignas(4 * kLanes) float weights[kLanes];
-    weigh<T>(node, point, normal, weights);
+    importance<T>(node, point, normal, weights);
     float total = 0.0f;
     for (const float weight : weights) total += weight;
     if (!(weights[place] > 0.0f)) return 0.0f;
-    chance *= weights[place] / total;
+    pmf *= weights[place] / total;
     at = node.parent;
     place = node.place;
   }
-  return chance;
+  return pmf;
 }
 
 }  // namespace raygate

@@ -16,7 +16,7 @@
 namespace raygate {
 namespace {
 
-/// In the order of the scene's triangles: lamps, and what is sampled of them, do not depend on how
+/// In the order of the scene's triangles: lights, and what is sampled of them, do not depend on how
 /// the tree is built.
 std::vector<std::uint32_t> emitting_slots(const Scene& scene, const Bvh& bvh) {
   std::vector<std::uint32_t> slots;
@@ -44,7 +44,7 @@ void find_middle(const Bvh& bvh, AreaLight& light) {
     is_flat = is_flat && std::abs(glm::dot(own, normal)) > 1.0 - 1e-9;
   }
   light.is_flat = is_flat;
-  // A little towards the first face: as a rule, the very middle of a lamp of two triangles is on
+  // A little towards the first face: as a rule, the very middle of a light of two triangles is on
   // the edge between them, and exact arithmetic would have to say which one each ray meets.
   const Corners& first = bvh.corners_of(light.slots[0]);
   const glm::dvec3 inside =
@@ -53,12 +53,12 @@ void find_middle(const Bvh& bvh, AreaLight& light) {
   light.middle_normal = normal;
 }
 
-/// The reflected part of what one side of the lamps sends out, F r / (1 - r), over pi times all
+/// The reflected part of what one side of the lights sends out, F r / (1 - r), over pi times all
 /// area; r is the mean reflectance.
-glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lamps) {
+glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
   glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
-  for (const AreaLight& lamp : lamps) flux += std::numbers::pi * lamp.area() * lamp.radiance;
+  for (const AreaLight& light : lights) flux += std::numbers::pi * light.area() * light.radiance;
   if (flux == glm::dvec3(0.0)) return flux;
   for_each_face(scene, [&](const Corners& corners, const Triangle& face) {
     const double own = 0.5 * glm::length(triangle_normal(corners));
@@ -107,40 +107,41 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
 
 }  // namespace
 
-Lights::Lights(const Scene& scene, const Bvh& bvh, LightChoice choice) : scene_(scene), bvh_(bvh) {
+Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice)
+    : scene_(scene), bvh_(bvh) {
   const double unit = unit_of(scene);
   per_unit_ = static_cast<float>(1.0 / unit);
   for (const PointLight& light : scene.lights) {
-    Lamp& lamp = lamps_.emplace_back();
-    lamp.light = finite_floats(light.intensity / unit / unit);
-    lamp.position = light.position;
-    lamp.is_spot = light.spot.has_value();
-    if (lamp.is_spot) lamp.spot = SpotRamp(*light.spot);
+    Light& record = lights_.emplace_back();
+    record.emission = finite_floats(light.intensity / unit / unit);
+    record.position = light.position;
+    record.is_spot = light.spot.has_value();
+    if (record.is_spot) record.spot = SpotFalloff(*light.spot);
   }
   find_areas();
   for (AreaLight& light : areas_) {
     find_middle(bvh, light);
-    Lamp& lamp = lamps_.emplace_back();
-    lamp.kind = Kind::kArea;
-    lamp.light = finite_floats(light.radiance);
+    Light& record = lights_.emplace_back();
+    record.kind = Kind::kArea;
+    record.emission = finite_floats(light.radiance);
     if (!scene.environment) {
       const double ratio = mean(glm::dvec3(scene.background)) / mean(light.radiance);
-      lamp.sky = static_cast<float>(std::min(ratio, 0.5));
+      record.sky = static_cast<float>(std::min(ratio, 0.5));
     }
-    lamp.area = finite_float(light.area() / unit / unit);
-    add_patches(light, lamp);
+    record.area = finite_float(light.area() / unit / unit);
+    add_patches(light, record);
   }
   for (const DirectionalLight& light : scene.directional_lights) {
-    Lamp& lamp = lamps_.emplace_back();
-    lamp.kind = Kind::kDirection;
-    lamp.light = light.irradiance;
-    lamp.position = glm::vec3(-light.direction);
+    Light& record = lights_.emplace_back();
+    record.kind = Kind::kDirection;
+    record.emission = light.irradiance;
+    record.position = glm::vec3(-light.direction);
   }
   if (scene.environment) {
-    environment_.emplace(*scene.environment, choice != LightChoice::kNone);
-    lamps_.emplace_back().kind = Kind::kEnvironment;
+    environment_.emplace(*scene.environment, choice != LightSampling::kNone);
+    lights_.emplace_back().kind = Kind::kEnvironment;
   }
-  if (choice != LightChoice::kNone) add_sources(choice, unit);
+  if (choice != LightSampling::kNone) add_sources(choice, unit);
 }
 
 glm::dvec3 Lights::ambient() const {
@@ -148,7 +149,7 @@ glm::dvec3 Lights::ambient() const {
                                          : guessed_ambient(scene_, areas_);
 }
 
-/// The faces that emit, lamp by lamp.
+/// The faces that emit, light by light.
 void Lights::find_areas() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t slot : emitting_slots(scene_, bvh_)) {
@@ -173,8 +174,8 @@ void Lights::find_areas() {
 
 /// Two triangles in a row that share an edge and are opposite corners' halves of a parallelogram
 /// are one patch: points of the square are spread over it without a bend.
-void Lights::add_patches(const AreaLight& light, Lamp& lamp) {
-  lamp.first_patch = static_cast<std::uint32_t>(patches_.size());
+void Lights::add_patches(const AreaLight& light, Light& record) {
+  record.first_patch = static_cast<std::uint32_t>(patches_.size());
   double before = 0.0;
   for (std::size_t i = 0; i < light.slots.size(); ++i) {
     const Corners t = bvh_.corners_of(light.slots[i]);
@@ -201,7 +202,7 @@ void Lights::add_patches(const AreaLight& light, Lamp& lamp) {
     before = light.area_up_to[i];
     patches_.push_back(patch);
     patch_ends_.push_back(patch.end);
-    ++lamp.patches;
+    ++record.patches;
   }
 }
 

@@ -10,16 +10,16 @@
 
 #include "host/base/lane_math.h"
 #include "host/bvh/bvh.h"
-#include "host/light/closed_sides.h"
 #include "host/light/environment.h"
 #include "host/light/light_tree.h"
+#include "host/light/outer_sides.h"
 #include "host/light/sampler.h"
 #include "host/light/spot.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
 
-/// The emitting faces of one object and material: one lamp, which shines to both sides of each
+/// The emitting faces of one object and material: one light, which shines to both sides of each
 /// face.
 struct AreaLight {
   std::vector<std::uint32_t> slots;
@@ -32,7 +32,7 @@ struct AreaLight {
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };
 
-/// Points of lamps, one a lane.
+/// Points of lights, one a lane.
 template <class T>
 struct LightPoint {
   /// Of a light that is infinitely far away a unit vector towards it, and no normal.
@@ -46,7 +46,7 @@ class Lights {
  public:
   /// The references must outlive this. Without a `choice` there are no sources, and none of what
   /// they are chosen by.
-  Lights(const Scene& scene, const Bvh& bvh, LightChoice choice = LightChoice::kTree);
+  Lights(const Scene& scene, const Bvh& bvh, LightSampling choice = LightSampling::kTree);
 
   [[nodiscard]] std::span<const PointLight> points() const { return scene_.lights; }
   [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
@@ -62,12 +62,12 @@ class Lights {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : scene_.background;
   }
   /// Radiance from all sides that may stand for light that goes from surface to surface: the
-  /// background's or, where that is black, what the lamps' flux would come to after many
+  /// background's or, where that is black, what the lights' flux would come to after many
   /// reflections if it were spread evenly over all surfaces ("A progressive refinement approach to
   /// fast radiosity image generation", Cohen, Chen, Wallace and Greenberg 1988, has such a term).
   [[nodiscard]] glm::dvec3 ambient() const;
   /// Points first, then areas, then directions, then the environment.
-  [[nodiscard]] std::size_t count() const { return lamps_.size(); }
+  [[nodiscard]] std::size_t count() const { return lights_.size(); }
 
   /// The inverse of a power of two about as long as the scene.
   [[nodiscard]] float per_unit() const { return per_unit_; }
@@ -75,24 +75,24 @@ class Lights {
   enum class Kind : std::uint8_t { kPoint, kArea, kDirection, kEnvironment };
 
   /// What shading reads of a light, by its index as in count().
-  struct Lamp {
+  struct Light {
     Kind kind = Kind::kPoint;
     bool is_spot = false;
     /// Of a point light its intensity, in square units; of an area light radiance; of light from
     /// one direction irradiance; of the environment nothing.
-    glm::vec3 light{0.0f};
+    glm::vec3 emission{0.0f};
     glm::vec3 position{0.0f};  ///< of a point light; or the direction towards the light
-    SpotRamp spot;
+    SpotFalloff spot;
     float area = 0.0f;  ///< in square units
     float sky = 0.0f;   ///< of an area light: the background's radiance over its own, at most 1/2
     std::uint32_t first_patch = 0, patches = 0;
   };
-  [[nodiscard]] const Lamp& lamp(std::size_t index) const { return lamps_[index]; }
+  [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }
 
   /// Points of area lights, uniform in area, for points of the unit square.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(
-      const std::uint32_t (&lamps)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
+      const std::uint32_t (&indices)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
   /// The same of one patch each.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
@@ -106,9 +106,9 @@ class Lights {
 
   // For those who ask one light at a time:
 
-  /// What is chosen: a lamp, or of an area light a patch: a triangle, or two of them.
+  /// What is chosen: a light, or of an area light a patch: a triangle, or two of them.
   struct Source {
-    std::uint32_t lamp = 0;          ///< as in count()
+    std::uint32_t light = 0;         ///< as in count()
     std::uint32_t patch = kNoIndex;  ///< of an area light
     float per_area = 0.0f;           ///< of a patch: 1 / its area in square units
   };
@@ -127,40 +127,41 @@ class Lights {
   /// One source for a point of a surface and its unit normal: see LightTree. Only where
   /// any_power().
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE LightTree::Choice pick(const glm::vec3& point,
-                                                      const glm::vec3& normal, double u) const {
+  [[nodiscard]] RAYGATE_INLINE LightTree::Sample sample_source(const glm::vec3& point,
+                                                               const glm::vec3& normal,
+                                                               double u) const {
     if (sources_.size() == 1) return {0, 1.0f};
-    return tree_.pick<T>(point * per_unit_, normal, u);
+    return tree_.sample<T>(point * per_unit_, normal, u);
   }
-  /// How likely pick() is to give a source.
+  /// How likely sample_source() is to give a source.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE float chance(std::uint32_t source, const glm::vec3& point,
-                                            const glm::vec3& normal) const {
+  [[nodiscard]] RAYGATE_INLINE float pmf(std::uint32_t source, const glm::vec3& point,
+                                         const glm::vec3& normal) const {
     if (sources_.size() == 1) return 1.0f;
-    return tree_.chance<T>(source, point * per_unit_, normal);
+    return tree_.pmf<T>(source, point * per_unit_, normal);
   }
 
  private:
-  /// A part of a lamp: a triangle, or two that make a parallelogram.
+  /// A part of a light: a triangle, or two that make a parallelogram.
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
     std::uint32_t slot = 0, slot_beyond = 0;  ///< with more of u than of v, and the other way round
-    float begin = 0.0f, end = 0.0f;           ///< its part of the lamp's area, in [0, 1]
+    float begin = 0.0f, end = 0.0f;           ///< its part of the light's area, in [0, 1]
     double area = 0.0;
     bool is_triangle = true;
   };
 
   void find_areas();
-  void add_patches(const AreaLight& light, Lamp& lamp);
-  void add_sources(LightChoice choice, double unit);
-  [[nodiscard]] static LightSource as_source(const Patch& patch, const AreaLight& light,
-                                             double unit, ClosedSide side);
+  void add_patches(const AreaLight& light, Light& record);
+  void add_sources(LightSampling choice, double unit);
+  [[nodiscard]] static LightBounds light_bounds(const Patch& patch, const AreaLight& light,
+                                                double unit, OuterSide side);
 
   const Scene& scene_;
   const Bvh& bvh_;
   std::optional<Environment> environment_;
   std::vector<AreaLight> areas_;
-  std::vector<Lamp> lamps_;
+  std::vector<Light> lights_;
   std::vector<Patch> patches_;
   std::vector<float> patch_ends_;              // of the patches, for searching
   std::vector<Source> sources_;                // as in count(), patch by patch
@@ -171,7 +172,7 @@ class Lights {
 };
 
 template <class T>
-RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&lamps)[LanesOf<T>::kCount],
+RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&indices)[LanesOf<T>::kCount],
                                             const SquarePoint<T>& u) const {
   constexpr int kCount = LanesOf<T>::kCount;
   Gathered<T, 2> in;
@@ -179,9 +180,9 @@ RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&lamps)[LanesOf
   float wanted[kCount];
   lanes_to(wanted, u.x);
   for (int k = 0; k < kCount; ++k) {
-    const Lamp& lamp = lamps_[lamps[k]];
-    const auto first = patch_ends_.begin() + lamp.first_patch;
-    const auto found = std::upper_bound(first, first + lamp.patches - 1, wanted[k]);
+    const Light& light = lights_[indices[k]];
+    const auto first = patch_ends_.begin() + light.first_patch;
+    const auto found = std::upper_bound(first, first + light.patches - 1, wanted[k]);
     patches[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
     in.values[0][k] = patches_[patches[k]].begin;
     in.values[1][k] = patches_[patches[k]].end;

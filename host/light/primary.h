@@ -9,7 +9,7 @@ namespace raygate {
 /// emits.
 class Primary final : public Integrator {
  public:
-  Primary(const Scene& scene, const Clearances& clearances, const Lights& lights,
+  Primary(const Scene& scene, const NeighborClearances& clearances, const Lights& lights,
           const Skips& skips, const IntegratorOptions& options)
       : Integrator(scene, clearances, lights, skips, options, 0, 0) {
     shading_.sees_environment = false;

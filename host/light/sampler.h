@@ -1,4 +1,4 @@
-// Numbers that look random but cover their square evenly: scrambled Sobol points.
+// Numbers that look random but cover their square evenly: owen_scramble Sobol points.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace raygate {
 /// A thorough mix of a word: every bit of the result depends on every bit. One to one. The factors
 /// are Wellons' ("Prospecting for hash functions", 2018).
 template <class W>
-RAYGATE_INLINE W mixed(W x) {
+RAYGATE_INLINE W hash(W x) {
   x ^= x >> 16;
   x *= 0x7FEB352Du;
   x ^= x >> 15;
@@ -21,12 +21,12 @@ RAYGATE_INLINE W mixed(W x) {
 
 /// The same of two words.
 template <class W>
-RAYGATE_INLINE W mixed(const W& a, const W& b) {
-  return mixed<W>(mixed<W>(a + 0x9E3779B9u) ^ b);
+RAYGATE_INLINE W hash(const W& a, const W& b) {
+  return hash<W>(hash<W>(a + 0x9E3779B9u) ^ b);
 }
 template <class W>
-RAYGATE_INLINE W mixed(const W& a, std::uint32_t b) requires(!std::is_same_v<W, std::uint32_t>) {
-  return mixed<W>(mixed<W>(a + 0x9E3779B9u) ^ b);
+RAYGATE_INLINE W hash(const W& a, std::uint32_t b) requires(!std::is_same_v<W, std::uint32_t>) {
+  return hash<W>(hash<W>(a + 0x9E3779B9u) ^ b);
 }
 
 template <class W>
@@ -41,7 +41,7 @@ RAYGATE_INLINE W reversed_bits(W x) {
 /// Owen's nested uniform scrambling of a word whose bits are in reverse: whether a bit is flipped
 /// depends on the bits that count for more, here the lower ones.
 template <class W>
-RAYGATE_INLINE W scrambled(W x, const W& key) {
+RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   x += key;
   x ^= x * 0x6C50B47Cu;  // even factors: a bit is changed by lower ones, never by itself
   x *= key | 1u;
@@ -74,11 +74,11 @@ struct SquarePoint {
 /// streams are independent of each other ("Practical Hash-based Owen Scrambling", Burley 2020, with
 /// the permutation of Laine and Karras 2011).
 template <class T>
-RAYGATE_INLINE SquarePoint<T> square_point(const WordOf<T>& index, const WordOf<T>& key) {
+RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {
   using Word = WordOf<T>;
-  const Word shuffled = reversed_bits<Word>(scrambled<Word>(reversed_bits<Word>(index), key));
-  const Word x = scrambled<Word>(shuffled, mixed<Word>(key + 1u));
-  const Word y = scrambled<Word>(second_sobol<Word>(shuffled), mixed<Word>(key + 2u));
+  const Word shuffled = reversed_bits<Word>(owen_scramble<Word>(reversed_bits<Word>(index), key));
+  const Word x = owen_scramble<Word>(shuffled, hash<Word>(key + 1u));
+  const Word y = owen_scramble<Word>(second_sobol<Word>(shuffled), hash<Word>(key + 2u));
   return {unit_interval(reversed_bits<Word>(x)), unit_interval(reversed_bits<Word>(y))};
 }
 
@@ -87,15 +87,15 @@ class Sampler {
  public:
   /// `seed` of the whole picture; `pixel` names a pixel of the whole frame.
   Sampler(std::uint64_t seed, std::uint32_t pixel_x, std::uint32_t pixel_y)
-      : key_(mixed(mixed(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
-                   mixed(pixel_x, pixel_y))) {}
+      : key_(hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
+                  hash(pixel_x, pixel_y))) {}
 
   /// What streams are derived from.
   [[nodiscard]] std::uint32_t key() const { return key_; }
 
   /// Point `index` of the stream `dimension`, in [0, 1)^2.
   [[nodiscard]] SquarePoint<float> operator()(std::uint32_t index, std::uint32_t dimension) const {
-    return square_point<float>(index, mixed(key_, dimension));
+    return sobol_point<float>(index, hash(key_, dimension));
   }
 
  private:

@@ -20,14 +20,14 @@ constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 /// The share of light that goes through a hit surface straight on, as far as shadows are concerned:
 /// refracting surfaces let none through, or, where `bent` says so, as much as if they did not bend
 /// it (caustics are then where the shadow is).
-glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const HitPlace& place,
-                               const Finish& finish, bool bent) {
-  if (finish.refracts && !bent) return glm::vec3(0.0f);
-  const HitKind kind = finish.kind | weights_needed(place);
-  const HitPlace places[] = {place};
-  const Finish* const finishes[] = {&finish};
+glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
+                               const MaterialParameters& material, bool bent) {
+  if (material.refracts && !bent) return glm::vec3(0.0f);
+  const HitKind kind = material.kind | weights_needed(place);
+  const SurfaceHit places[] = {place};
+  const MaterialParameters* const materials[] = {&material};
   const Triple<float> through =
-      Bsdf<float>(surface_at<float>(scene, bvh, kind, places), kind, finishes).through();
+      Bsdf<float>(surface_at<float>(scene, bvh, kind, places), kind, materials).transmission();
   return {through.x, through.y, through.z};
 }
 
@@ -50,18 +50,19 @@ struct Aim {
 
 }  // namespace
 
-ShadowRays::ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights,
-                       Intersector& intersector, const Skips& skips, bool through_refraction)
+ShadowRays::ShadowRays(const Scene& scene, const NeighborClearances& clearances,
+                       const Lights& lights, Intersector& intersector, const Skips& skips,
+                       bool through_refraction)
     : scene_(scene),
-      finishes_(finishes_of(scene)),
+      materials_(material_parameters(scene)),
       bvh_(clearances.bvh()),
       lights_(lights),
       intersector_(intersector),
-      departure_(clearances),
+      spawner_(clearances),
       culling_(skips.culling),
       through_refraction_(through_refraction),
-      any_clear_(std::ranges::any_of(finishes_, [](const Finish& finish) {
-        return finish.has_mask || (finish.kind & kLetsThrough) != 0;
+      any_clear_(std::ranges::any_of(materials_, [](const MaterialParameters& material) {
+        return material.has_mask || (material.kind & kTransmits) != 0;
       })) {
   // The first occluder may be a clear one: then the nearest one must be known.
   first_occluder_ = skips.first_occluder && !any_clear_;
@@ -89,11 +90,11 @@ void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
   Segment& segment = next_.emplace_back();
   segment.index = index;
   segment.from = ray.surface;
-  segment.to = is_area ? ray.lamp : lights_.points()[ray.point_light].position;
-  segment.ignored = is_area ? ray.lamp_slot : NearestHit::kNone;
-  segment.share = !is_area                             ? kWholeWay
-                  : ray.lamp_slot == NearestHit::kNone ? kNoEnd
-                                                       : kBeforeAreaLight;
+  segment.to = is_area ? ray.target : lights_.points()[ray.point_light].position;
+  segment.ignored = is_area ? ray.target_slot : NearestHit::kNone;
+  segment.share = !is_area                               ? kWholeWay
+                  : ray.target_slot == NearestHit::kNone ? kNoEnd
+                                                         : kBeforeAreaLight;
 }
 
 void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light) {
@@ -109,9 +110,9 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
     const NearestHit& hit = hits_[i];
     if (hit.slot == NearestHit::kNone) continue;
     ShadowRay& ray = rays[segments_[i].index];
-    const bool is_sure = is_before(bvh_, wave_[i], hit, enough_[i]);
+    const bool is_sure = is_before(bvh_, batch_[i], hit, enough_[i]);
     if (is_sure && (!any_clear_ || transmittance(i) == glm::vec3(0.0f))) {
-      ray.light = glm::vec3(0.0f);
+      ray.radiance = glm::vec3(0.0f);
     } else {
       next_from_surface(ray, segments_[i].index);
     }
@@ -121,23 +122,23 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
 void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   segments_.swap(next_);
   next_.clear();
-  departures_.clear();
+  spawn_queries_.clear();
   trace(false, kWholeWay);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const NearestHit& hit = hits_[i];
     if (hit.slot == NearestHit::kNone) continue;
     ShadowRay& ray = rays[segments_[i].index];
-    ray.light *= any_clear_ ? transmittance(i) : glm::vec3(0.0f);
-    if (ray.light == glm::vec3(0.0f)) continue;
-    departures_.push_back({&wave_[i], hit.slot, Departure::kAfter});
+    ray.radiance *= any_clear_ ? transmittance(i) : glm::vec3(0.0f);
+    if (ray.radiance == glm::vec3(0.0f)) continue;
+    spawn_queries_.push_back({&batch_[i], hit.slot, SpawnSide::kTransmitted});
     next_.push_back(segments_[i]);
   }
-  origins_.resize(departures_.size());
-  departure_.find(departures_, origins_);
+  origins_.resize(spawn_queries_.size());
+  spawner_.find(spawn_queries_, origins_);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < next_.size(); ++i) {
     if (!origins_[i]) {
-      rays[next_[i].index].light = glm::vec3(0.0f);
+      rays[next_[i].index].radiance = glm::vec3(0.0f);
       continue;
     }
     next_[kept] = next_[i];
@@ -149,32 +150,32 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
 /// Of all segments. Searches may end at hits before the share `enough` of the way.
 void ShadowRays::trace(bool from_light, float enough) {
   const std::size_t count = segments_.size();
-  wave_.resize(count);
+  batch_.resize(count);
   limits_.resize(count);
   enough_.resize(count);
   ignored_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Segment& segment = segments_[i];
-    wave_[i].origin = segment.from;
+    batch_[i].origin = segment.from;
     ignored_[i] = segment.ignored;
     if (segment.share == kNoEnd) {
-      wave_[i].direction = scaled_direction(glm::dvec3(segment.to));
+      batch_[i].direction = scaled_direction(glm::dvec3(segment.to));
       limits_[i] = enough_[i] = kNoEnd;
       continue;
     }
     const Aim aim(segment.from, segment.to);
-    wave_[i].direction = aim.direction;
+    batch_[i].direction = aim.direction;
     limits_[i] = aim.whole_way * segment.share;
     enough_[i] = aim.whole_way * std::min(enough, segment.share);
   }
   RayQuery search{
       .common_origin = from_light, .limits = limits_, .ignored = ignored_, .culling = culling_};
   if (first_occluder_) search.enough_before = enough_;
-  work_.resize(traced_ != nullptr ? wave_.size() : 0);
+  work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
-  hits_.resize(wave_.size());
-  intersector_.intersect(wave_, search, hits_);
-  rays_ += wave_.size();
+  hits_.resize(batch_.size());
+  intersector_.intersect(batch_, search, hits_);
+  rays_ += batch_.size();
   for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }
 
@@ -182,11 +183,11 @@ glm::vec3 ShadowRays::transmittance(std::size_t number) const {
   const std::uint32_t slot = hits_[number].slot;
   const FaceRef stored = bvh_.face_of(slot);
   const Triangle& face = face_at(scene_, stored);
-  const Finish& finish = finishes_[face.material];
-  const HitPlace place = {&wave_[number], slot, &face, nullptr, instance_at(scene_, stored)};
-  if (finish.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
-  if ((finish.kind & kLetsThrough) == 0) return glm::vec3(0.0f);
-  return shadow_transmittance(scene_, bvh_, place, finish, through_refraction_);
+  const MaterialParameters& material = materials_[face.material];
+  const SurfaceHit place = {&batch_[number], slot, &face, nullptr, instance_at(scene_, stored)};
+  if (material.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
+  if ((material.kind & kTransmits) == 0) return glm::vec3(0.0f);
+  return shadow_transmittance(scene_, bvh_, place, material, through_refraction_);
 }
 
 }  // namespace raygate

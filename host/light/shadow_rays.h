@@ -1,4 +1,4 @@
-// How much light comes from a lamp to a surface.
+// How much light comes from a light to a surface.
 #pragma once
 
 #include <cstdint>
@@ -8,53 +8,53 @@
 #include <vector>
 
 #include "host/intersect/intersector.h"
-#include "host/light/departure.h"
-#include "host/light/finish.h"
 #include "host/light/lights.h"
+#include "host/light/material_parameters.h"
 #include "host/light/skips.h"
+#include "host/light/spawn_ray.h"
 
 namespace raygate {
 
-/// A question: what of `light` arrives?
+/// A question: what of `radiance` arrives?
 struct ShadowRay {
   static constexpr std::uint32_t kNoPoint = NearestHit::kNone;
 
   std::uint32_t sample = 0;  ///< whose light it is: for the caller
-  glm::vec3 light{0.0f};     ///< what arrives if nothing is between; what does arrive
-  glm::vec3 surface{0.0f};   ///< a DeparturePoint of the surface
+  glm::vec3 radiance{0.0f};  ///< what arrives if nothing is between; what does arrive
+  glm::vec3 surface{0.0f};   ///< a RaySpawner of the surface
   std::uint32_t surface_slot = 0;
-  std::uint32_t point_light = kNoPoint;  ///< index; or else the lamp is an area's or far away:
-  glm::vec3 lamp{0.0f};                  ///< its point, or the direction towards it
-  std::uint32_t lamp_slot = 0;           ///< and what that is on; kNone: it is infinitely far away
+  std::uint32_t point_light = kNoPoint;  ///< index; or else the light is an area's or far away:
+  glm::vec3 target{0.0f};                ///< its point, or the direction towards it
+  std::uint32_t target_slot = 0;         ///< and what that is on; kNone: it is infinitely far away
 };
 
-/// Traces shadow rays in waves.
+/// Traces shadow rays in batches.
 ///
 /// Rays of a point light begin at the light, where they share its records, and end at the surface.
 /// Rounding their direction moves that end by about a float; so a hit in the last 2^-10 of the way
 /// does not count by itself: such a ray is traced again, from the surface. Hits of the surface's
-/// own triangle do not count, for the departure point is on the lamp's side of it. Where there are
+/// own triangle do not count, for the departure point is on the light's side of it. Where there are
 /// so many point lights that hardly any has several rays, all begin at the surface. Rays of area
-/// lights begin at the surface and end 2^-16 of the way before the lamp, whose own triangle does
+/// lights begin at the surface and end 2^-16 of the way before the light, whose own triangle does
 /// not count. Rays to lights that are infinitely far away begin at the surface and have no end.
 /// Surfaces that let light through straight weaken it.
 class ShadowRays {
  public:
   /// `through_refraction`: glass that bends light casts the shadow of one that does not.
-  ShadowRays(const Scene& scene, const Clearances& clearances, const Lights& lights,
+  ShadowRays(const Scene& scene, const NeighborClearances& clearances, const Lights& lights,
              Intersector& intersector, const Skips& skips, bool through_refraction);
 
   /// Called for each ray that was traced with what its search took, by its shadow ray's index.
   using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
 
-  /// Multiplies each ray's `light` by what is not held up on its way: all, nothing, or what clear
-  /// surfaces leave. `traced` may be empty.
+  /// Multiplies each ray's `radiance` by what is not held up on its way: all, nothing, or what
+  /// clear surfaces leave. `traced` may be empty.
   void resolve(std::span<ShadowRay> rays, const TracedFunction& traced = {});
 
   [[nodiscard]] std::uint64_t rays() const { return rays_; }  ///< traced so far
 
  private:
-  /// A ray of the next wave.
+  /// A ray of the next batch.
   struct Segment {
     std::uint32_t index;  // of the shadow ray that it is a part of
     glm::vec3 from, to;
@@ -66,22 +66,22 @@ class ShadowRays {
   void trace_from_surface(std::span<ShadowRay> rays);
   void trace(bool from_light, float enough);
   void next_from_surface(const ShadowRay& ray, std::uint32_t index);
-  /// What is left after the surface that ray `number` of the wave has hit.
+  /// What is left after the surface that ray `number` of the batch has hit.
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 
   const Scene& scene_;
-  std::vector<Finish> finishes_;  // of the materials
+  std::vector<MaterialParameters> materials_;  // of the materials
   const Bvh& bvh_;
   const Lights& lights_;
   Intersector& intersector_;
-  DeparturePoint departure_;
-  std::vector<DepartureQuestion> departures_;  // beyond clear surfaces, and their answers
-  std::vector<DepartureOrigin> origins_;
+  RaySpawner spawner_;
+  std::vector<SpawnQuery> spawn_queries_;  // beyond clear surfaces, and their answers
+  std::vector<SpawnOrigin> origins_;
   bool first_occluder_, culling_, through_refraction_, any_clear_;
   std::uint64_t rays_ = 0;
   // Room to work in.
   std::vector<Segment> segments_, next_;
-  std::vector<Ray> wave_;
+  std::vector<Ray> batch_;
   std::vector<NearestHit> hits_;
   std::vector<RayWork> work_;
   std::vector<float> limits_, enough_;

@@ -8,12 +8,12 @@
 namespace raygate {
 
 /// A SpotCone as shading reads it: KHR_lights_punctual's ramp of the cosine from the axis.
-struct SpotRamp {
+struct SpotFalloff {
   glm::vec3 axis{0.0f};
   float scale = 0.0f, offset = 1.0f;  ///< of a light to all sides: 1 everywhere
 
-  SpotRamp() = default;
-  explicit SpotRamp(const SpotCone& cone) : axis(cone.axis) {
+  SpotFalloff() = default;
+  explicit SpotFalloff(const SpotCone& cone) : axis(cone.axis) {
     constexpr double kLeastRamp = 1e-6;
     const double inner = sine_cosine(cone.inner / 360.0).cosine;
     const double outer = sine_cosine(cone.outer / 360.0).cosine;
@@ -26,7 +26,7 @@ struct SpotRamp {
 /// The share of the intensity at an angle from the axis with this cosine: 1 within the cone's inner
 /// angle, 0 beyond its outer one.
 template <class T>
-RAYGATE_INLINE T spot_share(const T& cosine, const T& scale, const T& offset) {
+RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
   const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
   return ramp * ramp;
 }

@@ -7,14 +7,14 @@
 #include "host/base/lane_math.h"
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
-#include "host/light/finish.h"
+#include "host/light/material_parameters.h"
 #include "host/scene/instance_transform.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
 
 /// A hit, as the intersector gives it.
-struct HitPlace {
+struct SurfaceHit {
   const Ray* ray = nullptr;
   std::uint32_t slot = 0;
   const Triangle* face = nullptr;    ///< of the slot
@@ -30,11 +30,11 @@ struct HitPlace {
 };
 
 /// Whether the weights of the vertices at the hit matter.
-[[nodiscard]] inline HitKind weights_needed(const HitPlace& place) {
+[[nodiscard]] inline HitKind weights_needed(const SurfaceHit& place) {
   const auto& normals = place.face->normals;
   const bool has_normals =
       normals[0] != kNoIndex && normals[1] != kNoIndex && normals[2] != kNoIndex;
-  return place.point == nullptr || has_normals ? kHasWeights : 0;
+  return place.point == nullptr || has_normals ? kInterpolates : 0;
 }
 
 /// What shading needs to know of hits, one a lane. T is float or FloatLanes. In float, but for what
@@ -54,15 +54,15 @@ struct Surface {
   /// vertices run counter-clockwise.
   MaskOf<T> outside;
 
-  /// Which directions lead away from the triangle, to the ray's side of it or, `through`, to the
-  /// other: exactly, where it is sure.
+  /// Which directions lead away from the triangle, to the ray's side of it or, `transmitted`, to
+  /// the other: exactly, where it is sure.
   struct Leaving {
     MaskOf<T> leaves, is_sure;
   };
   [[nodiscard]] RAYGATE_INLINE Leaving leaving(const Triple<T>& direction,
-                                               const MaskOf<T>& through) const {
+                                               const MaskOf<T>& transmitted) const {
     const Slope slope(*this, direction);
-    return {((slope.value < 0.0f) == (side < 0.0f)) == through, slope.is_sure};
+    return {((slope.value < 0.0f) == (side < 0.0f)) == transmitted, slope.is_sure};
   }
 
   /// I . N of directions and the triangle's own normal. Double has room to spare: where the value
@@ -102,7 +102,7 @@ struct Surface {
                                     const glm::vec3& normal);
 
 /// Whether the mask of the face's material says that there is nothing where the ray hits it.
-[[nodiscard]] bool is_masked_out(const Scene& scene, const Bvh& bvh, const HitPlace& place);
+[[nodiscard]] bool is_masked_out(const Scene& scene, const Bvh& bvh, const SurfaceHit& place);
 
 /// The weights of the vertices, up to a common factor: I . (B x C), I . (C x A), I . (A x B), all
 /// of one sign but for rounding.
@@ -122,7 +122,7 @@ RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<
 /// The surfaces at hits of one kind.
 template <class T>
 RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind kind,
-                                     const HitPlace (&places)[LanesOf<T>::kCount]) {
+                                     const SurfaceHit (&places)[LanesOf<T>::kCount]) {
   using Wide = WideOf<T>;
   constexpr int kCount = LanesOf<T>::kCount;
   enum : std::uint8_t {
@@ -135,7 +135,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   };
   Gathered<T, kFields> in;
   for (int k = 0; k < kCount; ++k) {
-    const HitPlace& place = places[k];
+    const SurfaceHit& place = places[k];
     const Corners corners = bvh.corners_of(place.slot);
     in.put(kOrigin, k, place.ray->origin);
     in.put(kDirection, k, place.ray->direction);
@@ -148,7 +148,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   surface.point = in.triple(kOrigin) + in.triple(kPoint);
   surface.view = -normalized(direction);
   surface.colour = in.triple(kColour);
-  if ((kind & kFacets) != 0) surface.roughness = surface.metallic = spread<T>(1.0f);
+  if ((kind & kMetallicRoughness) != 0) surface.roughness = surface.metallic = spread<T>(1.0f);
 
   const Triple<Wide> corners[3] = {wide(in.triple(kCorners)), wide(in.triple(kCorners + 3)),
                                    wide(in.triple(kCorners + 6))};
@@ -177,7 +177,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
 
   surface.normal = surface.flat_normal;
   auto along = surface.normal.x == surface.normal.x;
-  if ((kind & kHasWeights) != 0) {
+  if ((kind & kInterpolates) != 0) {
     const Triple<Wide> unscaled =
         unscaled_weights(wide(in.triple(kOrigin)), wide(direction), corners);
     const Wide inverse = 1.0 / (unscaled.x + unscaled.y + unscaled.z);
@@ -208,7 +208,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
           textured(scene, face, {weight.values[0][k], weight.values[1][k], weight.values[2][k]}));
     }
     surface.colour = more.triple(kTextured);
-    if ((kind & kFacets) != 0) {
+    if ((kind & kMetallicRoughness) != 0) {
       Gathered<T, 2> factor;
       for (int k = 0; k < kCount; ++k) {
         const glm::vec2 textured =

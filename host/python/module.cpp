@@ -27,8 +27,8 @@
 #include "host/intersect/unit/record_cache.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
-#include "host/light/clearance.h"
-#include "host/light/studio.h"
+#include "host/light/default_lights.h"
+#include "host/light/neighbor_clearance.h"
 #include "host/python/float_reference.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
@@ -227,13 +227,13 @@ class PythonScene {
                                       {"blackman-harris", ReconstructionFilter::kBlackmanHarris}});
     options.max_depth = depth.value_or(options.integrator == IntegratorKind::kPath ? 64 : 4);
     const Camera camera = camera_of(eye, target, up, fov, static_cast<double>(width) / height);
-    // A lamp for a dark scene depends on the camera: it is there for this picture alone.
+    // A light for a dark scene depends on the camera: it is there for this picture alone.
     const auto lights = scene_.lights;
     const glm::vec3 background = scene_.background;
     if (eye || given_camera()) {
-      light_if_dark(scene_, camera);
+      add_default_lights(scene_, camera);
     } else {
-      light_first_look(scene_, camera);
+      add_preview_lights(scene_, camera);
     }
     const auto film = std::make_shared<Film>();
     {
@@ -260,7 +260,7 @@ class PythonScene {
   /// The tree, when the scene is there.
   void build(std::optional<int> threads) {
     bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
-    clearances_ = std::make_unique<Clearances>(*bvh_);
+    clearances_ = std::make_unique<NeighborClearances>(*bvh_);
   }
 
   [[nodiscard]] IntersectorFactory intersectors(const std::string& engine) const {
@@ -301,7 +301,7 @@ class PythonScene {
   std::optional<SceneFile> file_;
   Scene scene_;
   std::unique_ptr<Bvh> bvh_;
-  std::unique_ptr<Clearances> clearances_;
+  std::unique_ptr<NeighborClearances> clearances_;
 };
 
 }  // namespace

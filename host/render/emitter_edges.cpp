@@ -13,8 +13,8 @@ std::size_t find_emitter_edges(const RenderJob& job, Intersector& intersector, c
                                std::span<RayWork> work) {
   // Corners of pixels, up to so many beyond the tile's own.
   const int beyond = static_cast<int>(std::ceil(filter_radius(job.options.filter) - 0.5));
-  const auto may_see = [&](const AreaLight& lamp) {
-    return may_see_box(lamp.low, lamp.high, job.camera, film, tile, beyond + 1.0);
+  const auto may_see = [&](const AreaLight& light) {
+    return may_see_box(light.low, light.high, job.camera, film, tile, beyond + 1.0);
   };
   if (std::ranges::none_of(job.lights.areas(), may_see)) {
     for (int y = tile.y0; y < tile.y1; ++y) {

@@ -1,8 +1,8 @@
 // What all threads of a render read.
 #pragma once
 
-#include "host/light/clearance.h"
 #include "host/light/lights.h"
+#include "host/light/neighbor_clearance.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 
@@ -14,10 +14,10 @@ struct RenderJob {
   const Camera& camera;
   const RenderOptions& options;
   const Lights& lights;
-  const Clearances& clearances;
+  const NeighborClearances& clearances;
   glm::dvec3 ambient;  ///< as IntegratorOptions has it
 
-  /// What a triangle, or kNone, sends out as a lamp.
+  /// What a triangle, or kNone, sends out as a light.
   [[nodiscard]] glm::vec3 emission_of(std::uint32_t slot) const {
     if (slot == NearestHit::kNone) return glm::vec3(0.0f);
     return scene.materials[face_at(scene, bvh.face_of(slot)).material].emission;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/base/stopwatch.h"
-#include "host/light/clearance.h"
 #include "host/light/lights.h"
+#include "host/light/neighbor_clearance.h"
 #include "host/ranks/ranks.h"
 #include "host/render/coordinator.h"
 #include "host/render/emitter_edges.h"
@@ -40,7 +40,7 @@ void add(RenderStats& stats, const RenderStats& of_worker) {
   stats.processor_seconds += of_worker.processor_seconds;
 }
 
-Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
+Film render(const Scene& scene, const NeighborClearances& clearances, const Camera& camera,
             const RenderOptions& options, const IntersectorFactory& make_intersector,
             RenderStats& stats, const ProgressFunction& progress) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
@@ -62,8 +62,8 @@ Film render(const Scene& scene, const Clearances& clearances, const Camera& came
     add_sums(film, options.error > 0.0);
   }
   const bool is_path = options.integrator == IntegratorKind::kPath;
-  const Lights lights(scene, bvh, is_path ? options.techniques.lights : LightChoice::kNone);
-  // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lamps
+  const Lights lights(scene, bvh, is_path ? options.path.lights : LightSampling::kNone);
+  // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lights
   // have no edges.
   std::vector<EmitterEdge> emitter_edges;
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {

@@ -9,11 +9,11 @@
 #include "host/film/film.h"
 #include "host/film/reconstruction_filter.h"
 #include "host/intersect/intersector.h"
-#include "host/light/clearance.h"
 #include "host/light/integrator_kind.h"
+#include "host/light/neighbor_clearance.h"
+#include "host/light/path_options.h"
 #include "host/light/point_error.h"
 #include "host/light/skips.h"
-#include "host/light/techniques.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -51,7 +51,7 @@ struct RenderOptions {
   int max_depth = 4;                ///< reflections and refractions in a row, at least 0
   double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced
   std::optional<double> ambient{};  ///< Whitted: radiance; none: see Lights::ambient
-  Techniques techniques{};          ///< path
+  PathOptions path{};               ///< path
   Skips skips{};                    ///< the film does not depend on them
   /// The unit's P is used where it is off by no more of the distance than that, in all else the
   /// host's: 0 for the host's alone; the largest float for the unit's wherever it has one.
@@ -101,17 +101,18 @@ using ProgressFunction = std::function<bool(double)>;
 /// The clearances are for renders of the same tree to share, one after the other or at once.
 /// The film is the same, bit for bit, for every intersector, number of threads and skip, and a
 /// window's is that part of the whole one's. An exception of a intersector ends the render and is
-/// thrown on. Scenes without any light are black, but for kPrimary: see light_if_dark.
-[[nodiscard]] Film render(const Scene& scene, const Clearances& clearances, const Camera& camera,
-                          const RenderOptions& options, const IntersectorFactory& make_intersector,
-                          RenderStats& stats, const ProgressFunction& progress = {});
+/// thrown on. Scenes without any light are black, but for kPrimary: see add_default_lights.
+[[nodiscard]] Film render(const Scene& scene, const NeighborClearances& clearances,
+                          const Camera& camera, const RenderOptions& options,
+                          const IntersectorFactory& make_intersector, RenderStats& stats,
+                          const ProgressFunction& progress = {});
 
 /// The same for a tree that is rendered once.
 [[nodiscard]] inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
                                  const RenderOptions& options,
                                  const IntersectorFactory& make_intersector, RenderStats& stats,
                                  const ProgressFunction& progress = {}) {
-  return render(scene, Clearances(bvh), camera, options, make_intersector, stats, progress);
+  return render(scene, NeighborClearances(bvh), camera, options, make_intersector, stats, progress);
 }
 
 }  // namespace raygate

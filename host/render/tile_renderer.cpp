@@ -14,7 +14,7 @@
 namespace raygate {
 namespace {
 
-constexpr int kEdgeSamples = 8;                   // at a lamp's edge, for each sample
+constexpr int kEdgeSamples = 8;                   // at a light's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
 std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
@@ -25,7 +25,7 @@ std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
        .threshold = options.threshold,
        .ambient = job.ambient,
        .single_sample = options.samples == 1,
-       .techniques = options.techniques,
+       .path = options.path,
        .point_error = options.point_error});
 }
 
@@ -43,17 +43,17 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
 void TileRenderer::make_camera_rays() {
-  wave_.clear();
-  wave_.depth = 0;
+  batch_.clear();
+  batch_.depth = 0;
   for (const PixelSamples& pixel : pixels_) {
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int i = pixel.first; i < pixel.end; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
-      Burden& burden = wave_.burdens.emplace_back();
-      burden.sample = static_cast<std::uint32_t>(wave_.rays.size());
-      burden.stream = sampler.key();
-      burden.index = index;
-      wave_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
+      PathState& state = batch_.states.emplace_back();
+      state.sample = static_cast<std::uint32_t>(batch_.rays.size());
+      state.stream = sampler.key();
+      state.index = index;
+      batch_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
     }
   }
 }
@@ -85,7 +85,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   make_camera_rays();
   stats_.camera_rays += samples_;
   stats_.shade_seconds += watch.lap();
-  while (!wave_.rays.empty()) {
+  while (!batch_.rays.empty()) {
     if (!keep_going()) return false;
     trace_wave();
   }
@@ -93,8 +93,8 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   return true;
 }
 
-/// Where a lamp's edge runs through a pixel, looks more often what camera rays see of lamps: the
-/// mean of that takes the place of what the samples have first_hit. A lamp's own light is all that
+/// Where a light's edge runs through a pixel, looks more often what camera rays see of lights: the
+/// mean of that takes the place of what the samples have first_hit. A light's own light is all that
 /// is exchanged, whatever else the samples brought; and that is so whatever emission_of() says.
 void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
   if (emitter_edges_.empty()) return;
@@ -103,23 +103,23 @@ void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
   if (emitter_edges_[pixels_[0].index] == EmitterEdge::kUnknown) {
     rays = find_emitter_edges(job_, intersector_, film_, tile, emitter_edges_, edge_work_);
   }
-  wave_.clear();
+  batch_.clear();
   for (const PixelSamples& pixel : pixels_) {
     if (emitter_edges_[pixel.index] == EmitterEdge::kNo) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int look = pixel.first * kEdgeSamples; look < pixel.end * kEdgeSamples; ++look) {
-      wave_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler,
-                                      static_cast<std::uint32_t>(look), kEmitterEdgeStream));
+      batch_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler,
+                                       static_cast<std::uint32_t>(look), kEmitterEdgeStream));
     }
   }
-  rays += wave_.rays.size();
+  rays += batch_.rays.size();
   stats_.rays += rays;
   stats_.camera_rays += rays;
-  if (wave_.rays.empty()) return;
-  hits_.resize(wave_.rays.size());
-  work_.resize(is_counting_ ? wave_.rays.size() : 0);
+  if (batch_.rays.empty()) return;
+  hits_.resize(batch_.rays.size());
+  work_.resize(is_counting_ ? batch_.rays.size() : 0);
   stats_.shade_seconds += watch.lap();
-  intersector_.intersect(wave_.rays,
+  intersector_.intersect(batch_.rays,
                          {.common_origin = job_.camera.has_common_origin(),
                           .culling = job_.options.skips.culling,
                           .work = work_},
@@ -145,35 +145,35 @@ void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
   stats_.shade_seconds += watch.lap();
 }
 
-/// The rays of one depth, and the shadow rays from where they end: these in several waves where
-/// there are many lamps. Light from lamps is added up apart from other light, so that the order of
-/// a sample's sums does not depend on the waves.
+/// The rays of one depth, and the shadow rays from where they end: these in several batches where
+/// there are many lights. Light from lights is added up apart from other light, so that the order
+/// of a sample's sums does not depend on the batches.
 void TileRenderer::trace_wave() {
   Stopwatch watch;
-  const std::vector<Ray>& rays = wave_.rays;
+  const std::vector<Ray>& rays = batch_.rays;
   stats_.rays += rays.size();
   hits_.resize(rays.size());
   work_.resize(is_counting_ ? rays.size() : 0);
   intersector_.intersect(rays,
-                         {.common_origin = wave_.depth == 0 && job_.camera.has_common_origin(),
+                         {.common_origin = batch_.depth == 0 && job_.camera.has_common_origin(),
                           .culling = job_.options.skips.culling,
                           .work = work_},
                          hits_);
   watch.lap();
   output_.next.clear();
-  output_.next.depth = wave_.depth + 1;
-  for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], wave_.burdens[i].sample);
-  if (wave_.depth == 0) record_first_hits();
+  output_.next.depth = batch_.depth + 1;
+  for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], batch_.states[i].sample);
+  if (batch_.depth == 0) record_first_hits();
   for (std::size_t i = 0; i < rays.size();) {
     const std::size_t end = std::min(rays.size(), i + integrator_->block_size());
-    integrator_->shade(wave_, hits_, i, end, output_);
+    integrator_->shade(batch_, hits_, i, end, output_);
     i = end;
     if (output_.shadows.size() < kManyShadowRays && i < rays.size()) continue;
     stats_.shade_seconds += watch.lap();
     trace_shadows();
     watch.lap();
   }
-  std::swap(wave_, output_.next);
+  std::swap(batch_, output_.next);
   stats_.shade_seconds += watch.lap();
 }
 
@@ -183,7 +183,7 @@ void TileRenderer::trace_shadows() {
   };
   shadow_rays_.resolve(output_.shadows,
                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
-  for (const ShadowRay& shadow : output_.shadows) direct_light_[shadow.sample] += shadow.light;
+  for (const ShadowRay& shadow : output_.shadows) direct_light_[shadow.sample] += shadow.radiance;
   output_.shadows.clear();
 }
 
@@ -192,10 +192,10 @@ void TileRenderer::record_first_hits() {
   for (std::size_t i = 0; i < hits_.size(); ++i) {
     const NearestHit& hit = hits_[i];
     first_hits_[i].slot = hit.slot;
-    if (hit.slot == NearestHit::kNone || wave_.burdens[i].index != 0) continue;
-    first_hits_[i].origin = wave_.rays[i].origin;
+    if (hit.slot == NearestHit::kNone || batch_.states[i].index != 0) continue;
+    first_hits_[i].origin = batch_.rays[i].origin;
     first_hits_[i].point = is_point_doubt(hit, job_.options.point_error)
-                               ? precise_hit(wave_.rays[i], job_.bvh.corners_of(hit.slot)).point
+                               ? precise_hit(batch_.rays[i], job_.bvh.corners_of(hit.slot)).point
                                : hit.point;
   }
 }

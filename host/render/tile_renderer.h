@@ -1,4 +1,4 @@
-// One thread's share of a render: the samples of a tile, wave by wave.
+// One thread's share of a render: the samples of a tile, batch by batch.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
 #include "host/light/integrator.h"
+#include "host/light/ray_batch.h"
 #include "host/light/shadow_rays.h"
-#include "host/light/wave.h"
 #include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
 #include "host/render/tile_samples.h"
 
 namespace raygate {
 
-/// Renders tiles into a film. All rays of one depth are one wave, and all shadow rays of a depth
+/// Renders tiles into a film. All rays of one depth are one batch, and all shadow rays of a depth
 /// another: intersectors like many at once. What a pixel gets does not depend on
 /// the tile: each sample's light is added up by itself, depth by depth.
 class TileRenderer {
@@ -29,8 +29,8 @@ class TileRenderer {
   TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
                std::span<EmitterEdge> emitter_edges);
 
-  /// Traces the samples that samples_to_trace() names. `keep_going` is asked between waves; when it
-  /// says no, what was traced is not worth writing, and false is returned.
+  /// Traces the samples that samples_to_trace() names. `keep_going` is asked between batches; when
+  /// it says no, what was traced is not worth writing, and false is returned.
   [[nodiscard]] bool trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going);
 
   /// Adds the samples that were traced last to the film.
@@ -73,16 +73,16 @@ class TileRenderer {
   std::size_t samples_ = 0;           // of all of them
   std::vector<FirstHit> first_hits_;  // by sample
   bool is_counting_;
-  WaveOutput output_;
+  ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by sample: what shadow rays have brought
   std::vector<std::array<ExactAccumulator, 3>>
       edge_emission_;  // by pixel: see supersample_emitter_edges()
   PixelRect tile_;
   std::vector<RayWork>
       edge_work_;  // by pixel of the tile: of what supersample_emitter_edges() traced
-  Wave wave_;
-  std::vector<NearestHit> hits_;  // of the wave
-  std::vector<RayWork> work_;     // of the wave, if it is counted
+  RayBatch batch_;
+  std::vector<NearestHit> hits_;  // of the batch
+  std::vector<RayWork> work_;     // of the batch, if it is counted
 };
 
 }  // namespace raygate

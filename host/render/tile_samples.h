@@ -16,7 +16,7 @@ struct PixelSamples {
 };
 
 /// Those that pixels of `tile` lack for having all up to number `end`; with RenderOptions::error,
-/// none of pixels that need no more, and some beyond `end` where few pixels do, for a wave to have
+/// none of pixels that need no more, and some beyond `end` where few pixels do, for a batch to have
 /// many rays. Square by square of 8 x 8 pixels, and in them block by block of 4 x 2: intersectors'
 /// packets are such blocks, the cones around eight of them such squares.
 [[nodiscard]] std::vector<PixelSamples> samples_to_trace(const RenderOptions& options,

@@ -172,9 +172,9 @@ void flatten_emitters(Scene& scene) {
   const auto others =
       std::stable_partition(scene.instances.begin(), scene.instances.end(),
                             [&](const Instance& instance) { return emits[instance.mesh]; });
-  const std::vector<Instance> lamps(scene.instances.begin(), others);
+  const std::vector<Instance> emitters(scene.instances.begin(), others);
   scene.instances.erase(scene.instances.begin(), others);
-  write(scene, lamps);
+  write(scene, emitters);
   for (std::size_t i = 0; i < emits.size(); ++i) {
     if (emits[i]) scene.meshes[i] = {};
   }

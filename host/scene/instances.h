@@ -35,9 +35,9 @@ enum class InstanceMode {
 };
 inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 
-/// Writes out what is not to be kept, and in any case what emits: lamps are lists of triangles.
-/// What is numbered how does not depend on `use`. False, and nothing is done, where there are about
-/// 2^31 triangles or more.
+/// Writes out what is not to be kept, and in any case what emits: area lights are lists of
+/// triangles. What is numbered how does not depend on `use`. False, and nothing is done, where
+/// there are about 2^31 triangles or more.
 [[nodiscard]] bool resolve_instances(Scene& scene, InstanceMode use);
 
 /// A box of coordinates in double.

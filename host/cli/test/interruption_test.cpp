@@ -68,7 +68,7 @@ TEST_F(Render, InterruptionIsAnsweredAmongCoincidentTriangles) {
   EXPECT_LT(seconds_to_answer(folder_.path(), {"a.obj", "--engine", "cpu"}), kSoon);
 }
 
-TEST_F(Render, InterruptionIsAnsweredAmongLamps) {
+TEST_F(Render, InterruptionIsAnsweredAmongLights) {
   std::string obj = "mtllib a.mtl\nusemtl lamp\n";
   constexpr int kSide = 447;  // squared: 200,000
   for (int i = 0; i < kSide * kSide; ++i) {

@@ -126,7 +126,7 @@ TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
   EXPECT_TRUE(folder_.read("a.exr") == folder_.read("b.exr"));
 }
 
-TEST_F(Render, LampsGoRoundWithTheCamera) {
+TEST_F(Render, LightsGoRoundWithTheCamera) {
   folder_.write("ball.obj",
                 "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
                 "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");

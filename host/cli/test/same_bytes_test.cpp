@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(all_scenes()), []
 });
 
 /// A room with instances of a teapot, one of them mirrored, two in one place and two that cut each
-/// other, of a glass ball and of a lamp.
+/// other, of a glass ball and of a light.
 class InstancedScene : public Render {
  protected:
   InstancedScene() {

@@ -76,8 +76,8 @@ def bsdf(material: Material) -> dict:
     return {"type": "twosided", "inside": inside}
 
 
-def lamp_sides(corners: numpy.ndarray, normal: numpy.ndarray, everything: numpy.ndarray) -> list[bool]:
-    """The sides of a flat lamp on which there is anything to be lit: True is the one that its normal points to."""
+def light_sides(corners: numpy.ndarray, normal: numpy.ndarray, everything: numpy.ndarray) -> list[bool]:
+    """The sides of a flat light on which there is anything to be lit: True is the one that its normal points to."""
     heights = (everything - corners[0]) @ normal
     flat = 1e-5 * float(numpy.ptp(everything, axis=0).max())
     return [side for side, lit in ((True, heights.max() > flat), (False, heights.min() < -flat)) if lit]
@@ -91,15 +91,15 @@ def is_closed(mesh: Mesh) -> bool:
     return len(set(edges)) == len(edges) and {edge[::-1] for edge in edges} == set(edges)
 
 
-def lamp_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
-    """Mitsuba's lamps shine to the front, raygate's to both sides: the lamp as it must face, twice if it lights
+def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
+    """Mitsuba's lights shine to the front, raygate's to both sides: the light as it must face, twice if it lights
     both sides, the two then apart by a hundred-thousandth of the scene. Closed ones are seen from outside."""
     if is_closed(mesh):
         return [mesh]
     a, b, c = mesh.positions[mesh.faces[0]]
     normal = numpy.cross(b - a, c - a)
     normal /= numpy.linalg.norm(normal)
-    sides = lamp_sides(mesh.positions[mesh.faces[0]], normal, everything)
+    sides = light_sides(mesh.positions[mesh.faces[0]], normal, everything)
     apart = 1e-5 * float(numpy.ptp(everything, axis=0).max()) if len(sides) == 2 else 0.0
     return [Mesh(mesh.material, mesh.positions + (apart if front else -apart) * normal, None, mesh.texcoords,
                  mesh.faces if front else mesh.faces[:, ::-1]) for front in sides]
@@ -120,12 +120,12 @@ def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
     meshes = list(scene.meshes)
     for number, light in enumerate(scene.area_lights):
         corner, (along, across) = numpy.array(light["corner"], float), numpy.array(light["edges"], float)
-        lamp = Material(f"light {number}", diffuse=(0.0, 0.0, 0.0), emission=colour(light["radiance"]))
-        meshes.append(Mesh(lamp, numpy.array([corner, corner + along, corner + along + across, corner + across]),
+        light = Material(f"light {number}", diffuse=(0.0, 0.0, 0.0), emission=colour(light["radiance"]))
+        meshes.append(Mesh(light, numpy.array([corner, corner + along, corner + along + across, corner + across]),
                            None, None, numpy.array([[0, 1, 2], [0, 2, 3]])))
     for mesh in meshes:
         shines = max(mesh.material.emission) > 0.0
-        for part in lamp_meshes(mesh, everything) if shines else [mesh]:
+        for part in light_meshes(mesh, everything) if shines else [mesh]:
             name = f"mesh_{sum(key.startswith('mesh_') for key in found)}"
             write_ply(part, folder / f"{name}.ply")
             found[name] = {"type": "ply", "filename": f"{name}.ply", "face_normals": part.normals is None,

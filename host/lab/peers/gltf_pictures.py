@@ -1,4 +1,4 @@
-"""glTF models as raygate and Mitsuba render them, side by side, under the same lamp and sky."""
+"""glTF models as raygate and Mitsuba render them, side by side, under the same light and sky."""
 
 import json
 import math
@@ -27,7 +27,7 @@ FOV = 30.0
 
 
 def scene_of(meshes: dict) -> tuple[dict, dict]:
-    """Camera and lamp around the meshes: as a scene file has them."""
+    """Camera and light around the meshes: as a scene file has them."""
     boxes = [mitsuba.load_dict(mesh).bbox() for mesh in meshes.values()]
     low = numpy.min([numpy.array(box.min) for box in boxes], axis=0)
     high = numpy.max([numpy.array(box.max) for box in boxes], axis=0)
@@ -37,12 +37,12 @@ def scene_of(meshes: dict) -> tuple[dict, dict]:
     corner = middle + numpy.array([-0.75, 1.0, -0.25]) * size
     camera = {"eye": eye.tolist(), "target": middle.tolist(), "up": [0, 1, 0], "fov": FOV}
     # Its front, by the right-hand rule of the edges, looks down: Mitsuba's shines there alone.
-    lamp = {"corner": corner.tolist(), "edges": [[size, 0, 0], [0, 0, size]], "radiance": 3.0}
-    return camera, lamp
+    light = {"corner": corner.tolist(), "edges": [[size, 0, 0], [0, 0, size]], "radiance": 3.0}
+    return camera, light
 
 
-def by_mitsuba(meshes: dict, camera: dict, lamp: dict, samples: int) -> numpy.ndarray:
-    corner, (along, across) = numpy.array(lamp["corner"]), numpy.array(lamp["edges"])
+def by_mitsuba(meshes: dict, camera: dict, light: dict, samples: int) -> numpy.ndarray:
+    corner, (along, across) = numpy.array(light["corner"]), numpy.array(light["edges"])
     # The rectangle from (-1, -1) to (1, 1) looks along +z.
     matrix = numpy.eye(4)
     matrix[:3, 0], matrix[:3, 1] = along / 2, across / 2
@@ -54,7 +54,7 @@ def by_mitsuba(meshes: dict, camera: dict, lamp: dict, samples: int) -> numpy.nd
         "sky": {"type": "constant", "radiance": {"type": "rgb", "value": [SKY] * 3}},
         "lamp": {"type": "rectangle", "to_world": transform(matrix), "bsdf": {
             "type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}},
-            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": lamp["radiance"]}}},
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": light["radiance"]}}},
         "camera": {"type": "perspective", "fov_axis": "y", "fov": FOV,
                    "to_world": transform().look_at(camera["eye"], camera["target"], camera["up"]),
                    "film": {"type": "hdrfilm", "width": WIDTH, "height": HEIGHT, "rfilter": {"type": "box"},
@@ -62,10 +62,10 @@ def by_mitsuba(meshes: dict, camera: dict, lamp: dict, samples: int) -> numpy.nd
     return numpy.array(mitsuba.render(scene, spp=samples))
 
 
-def by_raygate(program: pathlib.Path, model: pathlib.Path, camera: dict, lamp: dict, samples: int,
+def by_raygate(program: pathlib.Path, model: pathlib.Path, camera: dict, light: dict, samples: int,
                folder: pathlib.Path) -> numpy.ndarray:
     scene = folder / "scene.json"
-    scene.write_text(json.dumps({"obj": str(model), "camera": camera, "area_lights": [lamp],
+    scene.write_text(json.dumps({"obj": str(model), "camera": camera, "area_lights": [light],
                                  "background": [SKY] * 3}))
     picture = folder / "picture.exr"
     subprocess.run([program, scene, "--engine", "cpu", "--quiet", "--integrator", "path", "--filter", "box", "--spp",
@@ -86,9 +86,9 @@ def measure(program: pathlib.Path, samples: int) -> list[dict]:
         folder = pathlib.Path(name)
         for model in [write_balls(folder / "balls.glb"), *(ASSIMP / file for file in PACKAGED if (ASSIMP / file).is_file())]:
             meshes = mitsuba_meshes(model, folder)
-            camera, lamp = scene_of(meshes)
-            ours = by_raygate(program, model.resolve(), camera, lamp, samples, folder)
-            theirs = by_mitsuba(meshes, camera, lamp, samples)
+            camera, light = scene_of(meshes)
+            ours = by_raygate(program, model.resolve(), camera, light, samples, folder)
+            theirs = by_mitsuba(meshes, camera, light, samples)
             strip = numpy.concatenate([shown(ours), shown(theirs), numpy.clip(0.5 + ours - theirs, 0, 1)], axis=1)
             picture = pathlib.Path("build/peers") / f"{model.stem}.png"
             (ROOT / picture).parent.mkdir(parents=True, exist_ok=True)

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/bvh/bvh.h"
-#include "host/light/studio.h"
+#include "host/light/default_lights.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/obj_loader.h"
 
@@ -18,7 +18,7 @@ struct LitScene {
 
   explicit LitScene(const std::filesystem::path& file)
       : name(file.stem().string()), scene(load_obj(file)), bvh(scene) {
-    light_if_dark(scene, Camera::frame(scene, 4.0 / 3.0));
+    add_default_lights(scene, Camera::frame(scene, 4.0 / 3.0));
   }
 
   /// The whole scene in view.

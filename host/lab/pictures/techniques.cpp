@@ -1,7 +1,5 @@
 // What each technique of the path tracer gains: the same pictures with each one changed by itself,
 // time against error. One thread, CPU engine; compare rows of one run.
-#include "host/light/techniques.h"
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "host/lab/commands.h"
 #include "host/lab/results.h"
 #include "host/lab/timing.h"
+#include "host/light/path_options.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
@@ -23,17 +22,17 @@ namespace {
 
 struct Named {
   const char* name;
-  Techniques techniques;
+  PathOptions path;
   bool is_timed = true;  ///< false: it is made so as to be compared, not so as to be quick
 };
 const Named kTechniques[] = {
     {"as it is", {}},
-    {"lamps by power alone", {.lights = LightChoice::kPower}, false},
-    {"lamps not as the sky", {.evens_out = false}},
-    {"roulette below 1/2", {.sure_weight = 0.5f}},
-    {"roulette below 1/16", {.sure_weight = 0.0625f}},
-    {"roulette below 1/64", {.sure_weight = 0.015625f}},
-    {"no roulette", {.sure_weight = 0.0f}},
+    {"lights by power alone", {.lights = LightSampling::kPower}, false},
+    {"lights not as the sky", {.limits_mis_weight = false}},
+    {"roulette below 1/2", {.roulette_threshold = 0.5f}},
+    {"roulette below 1/16", {.roulette_threshold = 0.0625f}},
+    {"roulette below 1/64", {.roulette_threshold = 0.015625f}},
+    {"no roulette", {.roulette_threshold = 0.0f}},
 };
 
 /// What is measured, besides the scene.
@@ -42,7 +41,7 @@ struct Plan {
   int side = 128, samples = 32, reference = 1024, repeats = 3;
 };
 
-/// A scene, its camera and its lamps, as ./render has them.
+/// A scene, its camera and its lights, as ./render has them.
 class Set {
  public:
   Set(const std::string& file, const Plan& plan) : plan_(plan), options_(options_of(file, plan)) {
@@ -51,12 +50,12 @@ class Set {
     cameras_ = std::make_unique<CameraSequence>(options_, scene_);
     camera_ = cameras_->light(1, scene_);
     bvh_ = std::make_unique<Bvh>(scene_);
-    clearances_ = std::make_unique<Clearances>(*bvh_);
+    clearances_ = std::make_unique<NeighborClearances>(*bvh_);
   }
 
   [[nodiscard]] std::string name() const { return options_.scene.stem().string(); }
 
-  [[nodiscard]] Film film(const Techniques& techniques, int samples, int seed,
+  [[nodiscard]] Film film(const PathOptions& techniques, int samples, int seed,
                           RenderStats& stats) const {
     const RenderOptions options{.width = plan_.side,
                                 .height = plan_.side,
@@ -66,7 +65,7 @@ class Set {
                                 .seed = static_cast<std::uint64_t>(seed),
                                 .integrator = IntegratorKind::kPath,
                                 .max_depth = options_.light.max_depth(),
-                                .techniques = techniques};
+                                .path = techniques};
     return render(scene_, *clearances_, *camera_, options,
                   make_intersector_factory(options_, *bvh_, options_.light.skips), stats);
   }
@@ -85,7 +84,7 @@ class Set {
   std::unique_ptr<CameraSequence> cameras_;
   std::optional<Camera> camera_;
   std::unique_ptr<Bvh> bvh_;
-  std::unique_ptr<Clearances> clearances_;
+  std::unique_ptr<NeighborClearances> clearances_;
 };
 
 /// Over pixels and colours, scene-linear.
@@ -108,7 +107,7 @@ void measure(const Set& set, const Plan& plan, Results& results, TextTable& tabl
   std::uint64_t rays[kCount] = {};
   for (int repeat = 0; repeat < plan.repeats; ++repeat) {
     for (std::size_t i = 0; i < kCount; ++i) {
-      const Film film = set.film(kTechniques[i].techniques, plan.samples, repeat, stats);
+      const Film film = set.film(kTechniques[i].path, plan.samples, repeat, stats);
       seconds[i].push_back(stats.processor_seconds);
       errors[i] += mean_squared_error(film, reference) / plan.repeats;
       rays[i] = stats.rays;
@@ -145,7 +144,8 @@ void add_techniques(CLI::App& lab, Common& common) {
   app->callback([plan, &common] {
     std::printf(
         "%dx%d, path, %d samples per pixel, one thread, engine cpu, against %d samples of another\n"
-        "seed. time x MSE is over that of the scene's first row: below 1 is better. Lamps by power "
+        "seed. time x MSE is over that of the scene's first row: below 1 is better. Lights by "
+        "power "
         "alone\n"
         "are chosen by the same walk through the tree, slower than a list: no time is given.\n",
         plan->side, plan->side, plan->samples, plan->reference);

@@ -49,12 +49,12 @@ void Bounces::start_anew(Random& random) {
 void Bounces::bounce(Random& random) {
   const Ray ray = {origin_, directions_[random.below(kRays)]};
   const auto slot = first_hit(*bvh_, ray);
-  const Clearances clearances(*bvh_);
-  DeparturePoint departure(clearances);
-  const auto point = slot ? departure.find(ray, *slot, Departure::kBefore) : std::nullopt;
+  const NeighborClearances clearances(*bvh_);
+  RaySpawner spawner(clearances);
+  const auto point = slot ? spawner.find(ray, *slot, SpawnSide::kIncident) : std::nullopt;
   if (!point) return start_anew(random);
   mirrored_ = mirrored(ray.direction, bvh_->corners_of(*slot));
-  if (!departure.leaves(ray, *slot, Departure::kBefore, mirrored_)) mirrored_ = glm::vec3(0.0f);
+  if (!spawner.leaves(ray, *slot, SpawnSide::kIncident, mirrored_)) mirrored_ = glm::vec3(0.0f);
   origin_ = *point;
 }
 

@@ -7,7 +7,7 @@
 #include "host/bvh/bvh.h"
 #include "host/lab/stress/random.h"
 #include "host/lab/stress/shot.h"
-#include "host/light/departure.h"
+#include "host/light/spawn_ray.h"
 
 namespace raygate::lab {
 

@@ -43,7 +43,7 @@ def adaptive_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def techniques_steps(given: argparse.Namespace) -> list[Step]:
-    """Techniques of the path tracer, one changed at a time."""
+    """PathOptions of the path tracer, one changed at a time."""
     size = ("--side", 32, "--spp", 4, "--reference", 64, "--repeats", 1) if given.quick else ()
     return [Step("techniques", scene, ("techniques", scene_file(scene).relative_to(ROOT), *size))
             for scene in scenes_of(given, ("cornell",))]

@@ -19,10 +19,10 @@ PHASES = ("load", "tree", "render", "write", "total")
 HITS = ("nearest", "any", "all")
 
 # Where each part begins, as callgrind names the functions. What is neither of the others is shading: making rays,
-# materials, lamps, sampling, the film.
+# materials, lights, sampling, the film.
 WHOLE = r"raygate::TileRenderer::trace\("
 PARTS_OF_A_PICTURE = {"hit_tests": r"raygate::CpuIntersector::find\(", "doubts": r"raygate::settle_doubt\(",
-         "departures": r"raygate::DeparturePoint::"}
+         "departures": r"raygate::RaySpawner::"}
 
 
 def calls(profile: str) -> collections.Counter:

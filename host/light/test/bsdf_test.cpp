@@ -78,7 +78,7 @@ Material material(int model, float diffuse, float specular, float opacity) {
   return m;
 }
 
-// Sampled by its own density, a lobe's mean is what it reflects; and densities integrate to what
+// Sampled by its own pdf, a lobe's mean is what it reflects; and pdfs integrate to what
 // lies above the surface.
 TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
   for (const float specular : {0.0f, 0.3f}) {
@@ -87,21 +87,21 @@ TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
       const Sampler sampler(1, 2, 3);
       // The mean of f cos / p over samples against a plain integral of f cos over the hemisphere.
       constexpr int kCount = 1 << 16;
-      double sampled = 0.0, integral = 0.0, density = 0.0, above = 0.0;
+      double sampled = 0.0, integral = 0.0, pdf = 0.0, above = 0.0;
       for (int i = 0; i < kCount; ++i) {
         const Triple<float> way = bsdf.sample(sampler(i, 0));
         EXPECT_NEAR(dot(way, way), 1.0f, 2e-6f);
         above += way.z > 0.0f;
-        if (way.z > 0.0f) sampled += bsdf.scattered(way).x * way.z / bsdf.density(way);
+        if (way.z > 0.0f) sampled += bsdf.eval(way).x * way.z / bsdf.pdf(way);
         const SquarePoint<float> u = sampler(i, 1);
         const double sine = std::sqrt(1.0 - double(u.x) * u.x);
         const Triple<float> uniform = {float(sine * std::cos(2 * kPi * u.y)),
                                        float(sine * std::sin(2 * kPi * u.y)), u.x};
-        integral += bsdf.scattered(uniform).x * uniform.z * 2 * kPi;
-        density += bsdf.density(uniform) * 2 * kPi;
+        integral += bsdf.eval(uniform).x * uniform.z * 2 * kPi;
+        pdf += bsdf.pdf(uniform) * 2 * kPi;
       }
       EXPECT_NEAR(sampled / kCount, integral / kCount, 2e-3);
-      EXPECT_NEAR(density / kCount, above / kCount, 5e-3);
+      EXPECT_NEAR(pdf / kCount, above / kCount, 5e-3);
       EXPECT_TRUE(specular > 0.0f || std::abs(sampled / kCount - 0.5) < 1e-6);
     }
   }
@@ -117,7 +117,7 @@ TEST(Bsdf, NarrowLobesKeepTheirShape) {
       const double away = 0.6 + angle;
       const Triple<float> light = triple({-std::sin(away), 0.0, std::cos(away)});
       const double expected = (exponent + 2) / (2 * kPi) * std::pow(std::cos(angle), exponent);
-      EXPECT_NEAR(bsdf.scattered(light).x, expected, 2e-2 * expected + 1e-30) << angle;
+      EXPECT_NEAR(bsdf.eval(light).x, expected, 2e-2 * expected + 1e-30) << angle;
     }
     for (int i = 0; i < 1000; ++i) {
       const Triple<float> light = bsdf.sample(Sampler(4, 5, 6)(i, 0));
@@ -134,9 +134,10 @@ TEST(Bsdf, NoMaterialMakesEnergy) {
       for (const float opacity : {0.0f, 0.5f, 1.0f}) {
         for (const double angle : {0.0, 0.8, 1.5}) {
           const Bsdf<float> bsdf = seen(material(model, colour, colour, opacity), angle);
-          const Triple<float> sum = bsdf.diffuse() + bsdf.glossy() + bsdf.mirror() + bsdf.through();
+          const Triple<float> sum =
+              bsdf.diffuse() + bsdf.glossy() + bsdf.mirror() + bsdf.transmission();
           EXPECT_LE(largest(sum), 1.0f + 1e-6f) << model << " " << colour;
-          EXPECT_GE(std::min({bsdf.through().x, bsdf.diffuse().x, bsdf.mirror().x}), 0.0f);
+          EXPECT_GE(std::min({bsdf.transmission().x, bsdf.diffuse().x, bsdf.mirror().x}), 0.0f);
         }
       }
     }
@@ -153,17 +154,17 @@ TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
   EXPECT_NEAR(of(1, 1).diffuse().x, 0.4, 1e-7);
   EXPECT_EQ(of(1, 1).glossy().x, 0.0f);
   EXPECT_NEAR(of(1, 0.25f).diffuse().x, 0.1, 1e-7);
-  EXPECT_NEAR(of(1, 0.25f).through().z, 0.75, 1e-7) << "straight, and not tinted";
+  EXPECT_NEAR(of(1, 0.25f).transmission().z, 0.75, 1e-7) << "straight, and not tinted";
   EXPECT_NEAR(of(2, 1).glossy().x, 0.2, 1e-7);
   EXPECT_NEAR(of(3, 1).mirror().x, 0.2, 1e-7);
-  EXPECT_NEAR(of(4, 0.5f).through().x, 0.5 * 0.9 * 0.8, 1e-7);
+  EXPECT_NEAR(of(4, 0.5f).transmission().x, 0.5 * 0.9 * 0.8, 1e-7);
   EXPECT_FALSE(of(4, 0.5f).is_refracting());
   EXPECT_NEAR(of(5, 1).mirror().x, 0.2 + 0.8 * std::pow(1 - std::cos(0.6), 5), 1e-7);
   EXPECT_TRUE(of(6, 0).is_refracting());
-  EXPECT_NEAR(of(6, 0).through().x, 0.9 * 0.8, 1e-7);
+  EXPECT_NEAR(of(6, 0).transmission().x, 0.9 * 0.8, 1e-7);
   EXPECT_NEAR(of(7, 0).mirror().x, fresnel, 1e-6);
-  EXPECT_NEAR(of(7, 0).through().x, (1 - fresnel) * 0.9, 1e-6);
-  EXPECT_EQ(of(7, 1).through().x, of(7, 0).through().x)
+  EXPECT_NEAR(of(7, 0).transmission().x, (1 - fresnel) * 0.9, 1e-6);
+  EXPECT_EQ(of(7, 1).transmission().x, of(7, 0).transmission().x)
       << "d 1 of a glass is left there by exporters";
   EXPECT_FALSE(of(8, 1).mirror_is_traced());
   EXPECT_FALSE(of(9, 1).mirror_is_traced());

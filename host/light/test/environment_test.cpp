@@ -1,4 +1,4 @@
-// An environment's density, samples and radiance against quadratures, and pictures lit by it.
+// An environment's pdf, samples and radiance against quadratures, and pictures lit by it.
 #include "host/light/environment.h"
 
 #include <gtest/gtest.h>
@@ -72,18 +72,18 @@ TEST(Environment, DensityIsOneInAllAndNowhereFarFromTheBrightness) {
     map.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     map.texels.back() = glm::vec3(3.0f);
     const Environment environment(map);
-    double density = 0.0;
+    double pdf = 0.0;
     glm::dvec3 radiance(0.0);
     for_all_directions([&](const glm::dvec3& way, double size) {
       const Triple<float> light = environment.radiance(triple(way));
-      const float here = environment.density(triple(way));
-      density += here * size;
+      const float here = environment.pdf(triple(way));
+      pdf += here * size;
       radiance += size * glm::dvec3(light.x, light.y, light.z);
       if (largest(light) > 0.0f) {
         ASSERT_GT(here, 0.0f);
       }
     });
-    EXPECT_NEAR(density, 1.0, 2e-3) << width;
+    EXPECT_NEAR(pdf, 1.0, 2e-3) << width;
     const glm::dvec3 mean = environment.mean_radiance() * (4 * kPi);
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(radiance[k], mean[k], (width < 16 ? 0.05 : 0.02) * mean[k]) << width;
@@ -107,11 +107,11 @@ TEST(Environment, SamplesHaveTheDensityThatIsClaimed) {
     sampled += tested({way.x, way.y, way.z}) / double(kCount);
     const Triple<float> light = environment.radiance(way);
     const double mean = (double{light.x} + light.y + light.z) / 3.0;
-    const double share = mean / environment.density(way);
+    const double share = mean / environment.pdf(way);
     ideal = std::max(ideal, share);
   }
   for_all_directions([&](const glm::dvec3& way, double size) {
-    integral += tested(way) * (size * environment.density(triple(way)));
+    integral += tested(way) * (size * environment.pdf(triple(way)));
   });
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(sampled[k], integral[k], 5e-3);
   const glm::dvec3 mean = environment.mean_radiance();

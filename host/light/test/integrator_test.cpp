@@ -138,7 +138,7 @@ TEST(ManyLights, WindowsArePartsOfTheWhole) {
   }
 }
 
-// With many lamps shadow rays begin at the surface, with few at the lamp: it is the same shadow.
+// With many lights shadow rays begin at the surface, with few at the light: it is the same shadow.
 TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
   Scene few = everything();
   Scene many = few;
@@ -148,7 +148,7 @@ TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
   const Film a = film_of(few, camera, options), b = film_of(many, camera, options);
   int different = 0;
   for (std::size_t i = 0; i < a.color.size(); ++i) different += a.color[i] != b.color[i];
-  EXPECT_LT(different, 10) << "of 9,216: rays from the lamp end a float away";
+  EXPECT_LT(different, 10) << "of 9,216: rays from the light end a float away";
 }
 
 constexpr bool Skips::*kSkips[] = {&Skips::culling,    &Skips::records,     &Skips::light_behind,
@@ -195,7 +195,7 @@ TEST_P(EveryIntegrator, SeedsChangeTheNoiseAlone) {
   EXPECT_NEAR(sum_a, sum_b, 0.05 * sum_a);
 }
 
-// Whatever a file may say, and lamps in the oddest places: no infinity, nothing that is no number.
+// Whatever a file may say, and lights in the oddest places: no infinity, nothing that is no number.
 TEST_P(EveryIntegrator, EveryPixelIsFinite) {
   for (const float extreme : {0.0f, 1e-30f, 0.001f, 1e30f}) {
     for (int model = 0; model <= 10; ++model) {
@@ -268,7 +268,7 @@ TEST(Threshold, SavesRaysThatHardlyCount) {
   EXPECT_GT(some.skipped.dim, 100u);
   EXPECT_LT(some.rays, all.rays);
   for (std::size_t i = 0; i < film.color.size(); ++i) {
-    // At most 2^4 rays of a pixel are cut off, each showing at most the lamp's radiance of 6.
+    // At most 2^4 rays of a pixel are cut off, each showing at most the light's radiance of 6.
     ASSERT_LE(std::abs(film.color[i].r - exact.color[i].r), 0.05f * 16 * 6);
     ASSERT_LE(film.color[i].r, exact.color[i].r + 1e-6f);
   }

@@ -9,9 +9,9 @@
 #include "host/base/elementary.h"
 #include "host/base/lane_math.h"
 #include "host/base/vectors.h"
-#include "host/light/around.h"
 #include "host/light/fresnel.h"
 #include "host/light/ggx.h"
+#include "host/light/orthonormal_basis.h"
 #include "host/light/sampler.h"
 
 namespace raygate {
@@ -109,7 +109,7 @@ TEST(Lanes, ArithmeticIsTheScalars) {
 
 TEST(Lanes, DirectionsAreTheScalars) {
   compare([](auto& in, auto& out) RAYGATE_BODY {
-    put(around(normalized(triple(in)), in[3], in[4], in[5], in[3]), out);
+    put(spherical_direction(normalized(triple(in)), in[3], in[4], in[5], in[3]), out);
   });
   compare([](auto& in, auto& out) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(in[0])>;
@@ -120,8 +120,8 @@ TEST(Lanes, DirectionsAreTheScalars) {
   });
   compare([](auto& in, auto& out) RAYGATE_BODY {
     out[0] = fresnel_reflectance(in[0], in[1]);
-    out[1] = schlick_share(in[2]);
-    put(mirrored(triple(in), triple(in + 3)), out + 1);
+    out[1] = schlick_weight(in[2]);
+    put(reflect(triple(in), triple(in + 3)), out + 1);
   });
 }
 
@@ -134,7 +134,7 @@ TEST(Lanes, FacetsAreTheScalars) {
     const auto u = at_most(at_least(in[2], 0.0f), 1.0f);
     put(ggx.sample(view, {u, u}), out);
     const auto pair = ggx.pair(view, light);
-    out[3] = pair.height * ggx.visibility(view.z, light.z) + pair.half_cosine;
+    out[3] = pair.d * ggx.visibility(view.z, light.z) + pair.cos_half;
   });
 }
 
@@ -157,7 +157,7 @@ TEST(Lanes, RandomNumbersAreTheScalars) {
     WordOf<T> index, key;
     std::memcpy(&index, &in[0], sizeof index);
     std::memcpy(&key, &in[1], sizeof key);
-    const auto point = square_point<T>(index, mixed(key, 5u));
+    const auto point = sobol_point<T>(index, hash(key, 5u));
     out[0] = point.x;
     out[1] = point.y;
   });

@@ -36,7 +36,7 @@ inline Material glass(float index) {
   return material;
 }
 
-inline Material lamp(const glm::vec3& emission) {
+inline Material emitter(const glm::vec3& emission) {
   Material material = matte(glm::vec3(0.0f));
   material.emission = emission;
   return material;
@@ -113,14 +113,14 @@ inline bool same(const Film& a, const Film& b) {
          same_bytes(a.normal, b.normal) && same_bytes(a.primitive, b.primitive);
 }
 
-/// A room with everything in it: a lamp, a point light, mirror, glass, a window that is half clear,
-/// a glossy sphere; the sky through a door.
+/// A room with everything in it: a light, a point light, mirror, glass, a window that is half
+/// clear, a glossy sphere; the sky through a door.
 inline Scene everything() {
   Scene scene;
   add(scene, rectangle({-2, -2, -2}, {4, 0, 0}, {0, 0, 4}), matte({0.7f, 0.6f, 0.5f}));
   add(scene, rectangle({-2, -2, -2}, {0, 4, 0}, {4, 0, 0}), matte({0.3f, 0.5f, 0.7f}));
   add(scene, rectangle({-1.9f, -1.5f, -1}, {0.1f, 3, 0}, {0, 0, 2}), mirror(0.9f));
-  add(scene, rectangle({-0.5f, 1.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}), lamp({6, 5, 4}));
+  add(scene, rectangle({-0.5f, 1.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter({6, 5, 4}));
   add(scene, sphere(2, 0.7f, {-0.8f, -1.2f, 0.3f}), glass(1.5f));
   Material glossy = matte({0.5f, 0.1f, 0.1f});
   glossy.specular = glm::vec3(0.4f);

@@ -13,14 +13,14 @@
 namespace raygate {
 namespace {
 
-using test::add, test::lamp, test::rectangle;
+using test::add, test::emitter, test::rectangle;
 
 constexpr std::uint32_t kSeed = 20;
 
-/// Lamps of all kinds, strewn about: points, spots, triangles and parallelograms, from afar.
-class ManyLamps : public testing::TestWithParam<int> {
+/// Lights of all kinds, strewn about: points, spots, triangles and parallelograms, from afar.
+class ManyLights : public testing::TestWithParam<int> {
  protected:
-  ManyLamps() {
+  ManyLights() {
     for (int i = 0; i < GetParam(); ++i) {
       const glm::vec3 at = place();
       const float size = 0.01f + 0.2f * one();
@@ -34,10 +34,10 @@ class ManyLamps : public testing::TestWithParam<int> {
         add(scene_,
             i % 4 == 2 ? rectangle(at, size * way(), size * way())
                        : std::vector<Corners>{{at, at + size * way(), at + size * way()}},
-            lamp(glm::vec3(0.1f + 9.0f * one())));
+            emitter(glm::vec3(0.1f + 9.0f * one())));
       }
     }
-    if (scene_.triangles.empty()) add(scene_, rectangle(way(), way(), way()), lamp({1, 1, 1}));
+    if (scene_.triangles.empty()) add(scene_, rectangle(way(), way(), way()), emitter({1, 1, 1}));
     scene_.directional_lights.push_back({glm::dvec3(way()), glm::vec3(0.1f)});
     scene_.directional_lights.push_back({glm::dvec3(way()), glm::vec3(0.5f)});
   }
@@ -54,13 +54,13 @@ class ManyLamps : public testing::TestWithParam<int> {
   /// Whether a source brings anything to a surface there, if nothing is between.
   bool brings(const Lights& lights, const Lights::Source& source, const glm::vec3& point,
               const glm::vec3& normal) {
-    const Lights::Lamp& lamp = lights.lamp(source.lamp);
-    if (lamp.kind == Lights::Kind::kDirection) return glm::dot(lamp.position, normal) > 0.0f;
-    if (lamp.kind == Lights::Kind::kPoint) {
-      const glm::vec3 to = lamp.position - point;
-      const float cosine = -glm::dot(glm::normalize(to), lamp.spot.axis);
+    const Lights::Light& light = lights.light(source.light);
+    if (light.kind == Lights::Kind::kDirection) return glm::dot(light.position, normal) > 0.0f;
+    if (light.kind == Lights::Kind::kPoint) {
+      const glm::vec3 to = light.position - point;
+      const float cosine = -glm::dot(glm::normalize(to), light.spot.axis);
       return glm::dot(to, normal) > 0.0f &&
-             (!lamp.is_spot || spot_share(cosine, lamp.spot.scale, lamp.spot.offset) > 0.0f);
+             (!light.is_spot || spot_falloff(cosine, light.spot.scale, light.spot.offset) > 0.0f);
     }
     for (int i = 0; i < 8; ++i) {
       const std::uint32_t patches[] = {source.patch};
@@ -74,26 +74,26 @@ class ManyLamps : public testing::TestWithParam<int> {
   Scene scene_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Numbers, ManyLamps, testing::Values(0, 5, 40, 1000));
+INSTANTIATE_TEST_SUITE_P(Numbers, ManyLights, testing::Values(0, 5, 40, 1000));
 
 std::uint32_t count_of(const Lights& lights) { return lights.environment_source() + 1; }
 
-// Who asks all lights has the same lamps, and nothing to choose from.
-TEST_P(ManyLamps, AreListedWithoutAChoice) {
+// Who asks all lights has the same ones, and nothing to choose from.
+TEST_P(ManyLights, AreListedWithoutAChoice) {
   const Bvh bvh(scene_);
-  const Lights chosen(scene_, bvh), all(scene_, bvh, LightChoice::kNone);
+  const Lights chosen(scene_, bvh), all(scene_, bvh, LightSampling::kNone);
   EXPECT_EQ(count_of(all), 0u);
   EXPECT_FALSE(all.any_power());
   ASSERT_EQ(all.count(), chosen.count());
   for (std::size_t i = 0; i < all.count(); ++i) {
-    EXPECT_EQ(all.lamp(i).light, chosen.lamp(i).light);
-    EXPECT_EQ(all.lamp(i).patches, chosen.lamp(i).patches);
+    EXPECT_EQ(all.light(i).emission, chosen.light(i).emission);
+    EXPECT_EQ(all.light(i).patches, chosen.light(i).patches);
   }
   EXPECT_EQ(all.ambient(), chosen.ambient());
 }
 
-// At places all over, among the lamps too.
-TEST_P(ManyLamps, ChancesAreOneInAllAndNoLampThatBringsLightHasNone) {
+// At places all over, among the lights too.
+TEST_P(ManyLights, ChancesAreOneInAllAndNoLightThatBringsLightHasNone) {
   const Bvh bvh(scene_);
   const Lights lights(scene_, bvh);
   int bringing = 0;
@@ -102,11 +102,11 @@ TEST_P(ManyLamps, ChancesAreOneInAllAndNoLampThatBringsLightHasNone) {
     const glm::vec3 point = place(), normal = way();
     double sum = 0.0;
     for (std::uint32_t source = 0; source < count_of(lights); ++source) {
-      const float chance = lights.chance<float>(source, point, normal);
-      sum += double{chance};
+      const float pmf = lights.pmf<float>(source, point, normal);
+      sum += double{pmf};
       if (brings(lights, lights.source(source), point, normal)) {
         ++bringing;
-        EXPECT_GT(chance, 0.0f) << "seed " << kSeed << ", source " << source;
+        EXPECT_GT(pmf, 0.0f) << "seed " << kSeed << ", source " << source;
       }
     }
     EXPECT_LT(sum, 1.0 + 1e-5);
@@ -117,8 +117,8 @@ TEST_P(ManyLamps, ChancesAreOneInAllAndNoLampThatBringsLightHasNone) {
   EXPECT_GT(all / 100, 0.7);
 }
 
-// What chance() says is how often pick() gives it: for evenly spread u, off by the spread.
-TEST_P(ManyLamps, ArePickedAsOftenAsTheirChance) {
+// What pmf() says is how often sample_source() gives it: for evenly spread u, off by the spread.
+TEST_P(ManyLights, ArePickedAsOftenAsTheirChance) {
   const Bvh bvh(scene_);
   const Lights lights(scene_, bvh);
   constexpr int kPicks = 40000;
@@ -127,38 +127,37 @@ TEST_P(ManyLamps, ArePickedAsOftenAsTheirChance) {
     std::vector<int> picked(count_of(lights));
     int none = 0;
     for (int k = 0; k < kPicks; ++k) {
-      const auto choice = lights.pick<float>(point, normal, (k + 0.5) / kPicks);
+      const auto choice = lights.sample_source<float>(point, normal, (k + 0.5) / kPicks);
       if (choice.source == kNoIndex) {
         ++none;
         continue;
       }
       ++picked[choice.source];
-      ASSERT_NEAR(choice.chance, lights.chance<float>(choice.source, point, normal),
-                  1e-5f * choice.chance);
+      ASSERT_NEAR(choice.pmf, lights.pmf<float>(choice.source, point, normal), 1e-5f * choice.pmf);
     }
     EXPECT_LT(none, kPicks);
     for (std::uint32_t source = 0; source < count_of(lights); ++source) {
-      ASSERT_NEAR(picked[source], kPicks * lights.chance<float>(source, point, normal), 1.01);
+      ASSERT_NEAR(picked[source], kPicks * lights.pmf<float>(source, point, normal), 1.01);
     }
   }
 }
 
 // The same bits, one child at a time and eight.
-TEST_P(ManyLamps, LanesChangeNoBit) {
+TEST_P(ManyLights, LanesChangeNoBit) {
   const Bvh bvh(scene_);
   const Lights lights(scene_, bvh);
   int cases = 0;
   for (int i = 0; i < 2000; ++i) {
     const glm::vec3 point = place(), normal = way();
     const double u = double{one()} * 0.999;
-    const auto one_by_one = lights.pick<float>(point, normal, u);
+    const auto one_by_one = lights.sample_source<float>(point, normal, u);
     for (const Vectors vectors : machine_vectors()) {
       const UsingVectors in_use(vectors);
       in_vectors([&](auto code) RAYGATE_BODY {
         using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
-        const auto choice = lights.pick<T>(point, normal, u);
+        const auto choice = lights.sample_source<T>(point, normal, u);
         EXPECT_EQ(choice.source, one_by_one.source);
-        EXPECT_EQ(choice.chance, one_by_one.chance);
+        EXPECT_EQ(choice.pmf, one_by_one.pmf);
         ++cases;
         return 0;
       });
@@ -168,7 +167,7 @@ TEST_P(ManyLamps, LanesChangeNoBit) {
 }
 
 TEST(LightTree, PrefersWhatIsNearAndFacesTheSurface) {
-  std::vector<LightSource> sources(64);
+  std::vector<LightBounds> sources(64);
   for (std::size_t i = 0; i < sources.size(); ++i) {
     sources[i].middle = glm::dvec3(static_cast<double>(i), 1.0, 0.0);
     sources[i].power = 1.0;
@@ -177,9 +176,9 @@ TEST(LightTree, PrefersWhatIsNearAndFacesTheSurface) {
   const glm::vec3 up(0, 1, 0);
   for (const float x : {3.0f, 20.0f, 50.0f}) {
     const auto here = static_cast<std::uint32_t>(x);
-    EXPECT_GT(tree.chance<float>(here, {x, 0, 0}, up), 0.25f) << "of 64";
-    EXPECT_LT(tree.chance<float>(here > 32 ? 0 : 63, {x, 0, 0}, up), 0.003f);
-    EXPECT_EQ(tree.pick<float>({x, 0, 0}, -up, 0.5).source, kNoIndex) << "all are behind";
+    EXPECT_GT(tree.pmf<float>(here, {x, 0, 0}, up), 0.25f) << "of 64";
+    EXPECT_LT(tree.pmf<float>(here > 32 ? 0 : 63, {x, 0, 0}, up), 0.003f);
+    EXPECT_EQ(tree.sample<float>({x, 0, 0}, -up, 0.5).source, kNoIndex) << "all are behind";
   }
 }
 
@@ -189,10 +188,10 @@ TEST(LightTree, PowerAloneIsTheSameEverywhere) {
   scene.lights.push_back({{-7, 1, 0}, glm::dvec3(3.0)});
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), test::matte(glm::vec3(0.5f)));
   const Bvh bvh(scene);
-  const Lights lights(scene, bvh, LightChoice::kPower);
+  const Lights lights(scene, bvh, LightSampling::kPower);
   for (const glm::vec3& point : {glm::vec3(0.0f), glm::vec3(-7, 0, 0), glm::vec3(1, 1.9f, 0)}) {
-    EXPECT_FLOAT_EQ(lights.chance<float>(0, point, {0, -1, 0}), 0.25f);
-    EXPECT_FLOAT_EQ(lights.chance<float>(1, point, {0, 1, 0}), 0.75f);
+    EXPECT_FLOAT_EQ(lights.pmf<float>(0, point, {0, -1, 0}), 0.25f);
+    EXPECT_FLOAT_EQ(lights.pmf<float>(1, point, {0, 1, 0}), 0.75f);
   }
 }
 

@@ -15,11 +15,11 @@ inline Bsdf<float> seen(const Material& material, double angle) {
   const Bvh bvh(scene);
   const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
   const Ray ray = {eye, scaled_direction(glm::dvec3(-eye))};
-  const HitPlace places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
-  const Finish finish(material);
-  const Finish* const finishes[] = {&finish};
-  const HitKind kind = finish.kind | weights_needed(places[0]);
-  return {surface_at<float>(scene, bvh, kind, places), kind, finishes};
+  const SurfaceHit places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
+  const MaterialParameters parameters(material);
+  const MaterialParameters* const materials[] = {&parameters};
+  const HitKind kind = parameters.kind | weights_needed(places[0]);
+  return {surface_at<float>(scene, bvh, kind, places), kind, materials};
 }
 
 }  // namespace raygate::test

@@ -15,13 +15,13 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-/// A sphere, an open box with an inner wall, two point lights, a lamp, light from one direction.
+/// A sphere, an open box with an inner wall, two point lights, a light, light from one direction.
 Scene obstacles() {
   Scene scene;
   add(scene, sphere(2), matte(glm::vec3(0.5f)));
   add(scene, box(glm::vec3(-3), glm::vec3(3)), matte(glm::vec3(0.5f)));
   add(scene, rectangle({-3, -3, 1.2f}, {2, 0, 0}, {0, 6, 0}), matte(glm::vec3(0.5f)));
-  add(scene, rectangle({-0.5f, 2.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}), lamp(glm::vec3(1.0f)));
+  add(scene, rectangle({-0.5f, 2.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(glm::vec3(1.0f)));
   scene.lights.push_back({{2, 2.5f, 2}, glm::vec3(1.0f)});
   scene.lights.push_back({{-2.7f, -1, 2.8f}, glm::vec3(1.0f)});
   scene.directional_lights.push_back({glm::normalize(glm::dvec3(0.3, 0.2, -1)), glm::vec3(1.0f)});
@@ -30,9 +30,9 @@ Scene obstacles() {
 
 class ShadowRaysTest : public testing::Test {
  protected:
-  /// Points on surfaces that are hit from `eye`, each with all lamps in front of it.
+  /// Points on surfaces that are hit from `eye`, each with all lights in front of it.
   void add_questions(const glm::vec3& eye, int count) {
-    DeparturePoint departure(clearances_);
+    RaySpawner spawner(clearances_);
     std::vector<Ray> rays;
     for (int i = 0; i < count; ++i) {
       rays.push_back({eye, scaled_direction(glm::dvec3(random_.point()) - 1e-9)});
@@ -42,10 +42,10 @@ class ShadowRaysTest : public testing::Test {
     for (int i = 0; i < count; ++i) {
       const std::uint32_t slot = hits[i].slot;
       if (slot == NearestHit::kNone) continue;
-      const auto origin = departure.find(rays[i], slot, Departure::kBefore);
+      const auto origin = spawner.find(rays[i], slot, SpawnSide::kIncident);
       if (!origin) continue;
       ShadowRay ray;
-      ray.light = glm::vec3(1.0f);
+      ray.radiance = glm::vec3(1.0f);
       ray.surface = *origin;
       ray.surface_slot = slot;
       const int side = plane_side(eye, bvh_.corners_of(slot));
@@ -56,31 +56,33 @@ class ShadowRaysTest : public testing::Test {
         ask(scene_.lights[ray.point_light].position);
       }
       ray.point_light = ShadowRay::kNoPoint;
-      const std::uint32_t lamps[] = {2};
+      const std::uint32_t area_light[] = {2};
       const LightPoint<float> point = lights_.sample<float>(
-          lamps, {float(random_.uniform(0, 1)), float(random_.uniform(0, 1))});
-      ray.lamp = {point.position.x, point.position.y, point.position.z};
-      ray.lamp_slot = point.slot;
-      ask(ray.lamp);
-      ray.lamp = glm::vec3(-scene_.directional_lights[0].direction);
-      ray.lamp_slot = NearestHit::kNone;
-      if (direction_side(ray.lamp, bvh_.corners_of(slot)) == -side) questions_.push_back(ray);
+          area_light, {float(random_.uniform(0, 1)), float(random_.uniform(0, 1))});
+      ray.target = {point.position.x, point.position.y, point.position.z};
+      ray.target_slot = point.slot;
+      ask(ray.target);
+      ray.target = glm::vec3(-scene_.directional_lights[0].direction);
+      ray.target_slot = NearestHit::kNone;
+      if (direction_side(ray.target, bvh_.corners_of(slot)) == -side) questions_.push_back(ray);
     }
   }
 
-  /// Whether a triangle is between the departure point and the lamp, in exact arithmetic.
+  /// Whether a triangle is between the departure point and the light, in exact arithmetic.
   bool is_blocked(const ShadowRay& question) const {
     const bool is_point = question.point_light != ShadowRay::kNoPoint;
-    if (!is_point && question.lamp_slot == NearestHit::kNone) return is_blocked_from_afar(question);
-    const glm::vec3 lamp = is_point ? scene_.lights[question.point_light].position : question.lamp;
-    const glm::dvec3 way = glm::dvec3(lamp) - glm::dvec3(question.surface);
+    if (!is_point && question.target_slot == NearestHit::kNone)
+      return is_blocked_from_afar(question);
+    const glm::vec3 target =
+        is_point ? scene_.lights[question.point_light].position : question.target;
+    const glm::dvec3 way = glm::dvec3(target) - glm::dvec3(question.surface);
     const Ray ray = {question.surface, scaled_direction(way)};
     const glm::dvec3 scaled(ray.direction);
     const double share = is_point ? 1.0 : 1.0 - 0x1p-16;
     const auto limit =
         static_cast<float>(share * std::sqrt(glm::dot(way, way) / glm::dot(scaled, scaled)));
     for (std::uint32_t slot = 0; slot < bvh_.slot_count(); ++slot) {
-      if (!is_point && slot == question.lamp_slot) continue;
+      if (!is_point && slot == question.target_slot) continue;
       const Corners& t = bvh_.corners_of(slot);
       if (hits_triangle(ray, t) && compare_hit_to_limit(ray, t, limit) < 0) return true;
     }
@@ -88,7 +90,7 @@ class ShadowRaysTest : public testing::Test {
   }
 
   bool is_blocked_from_afar(const ShadowRay& question) const {
-    const Ray ray = {question.surface, scaled_direction(glm::dvec3(question.lamp))};
+    const Ray ray = {question.surface, scaled_direction(glm::dvec3(question.target))};
     for (std::uint32_t slot = 0; slot < bvh_.slot_count(); ++slot) {
       if (hits_triangle(ray, bvh_.corners_of(slot))) return true;
     }
@@ -97,7 +99,7 @@ class ShadowRaysTest : public testing::Test {
 
   Scene scene_ = obstacles();
   Bvh bvh_{scene_};
-  Clearances clearances_{bvh_};
+  NeighborClearances clearances_{bvh_};
   Lights lights_{scene_, bvh_};
   std::unique_ptr<Intersector> intersector_ = pipeline_intersector(bvh_);
   Random random_;
@@ -114,7 +116,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   for (const ShadowRay& answer : questions_) {
     const bool blocked = is_blocked(answer);
     ++(blocked ? dark : lit);
-    different += blocked != (answer.light == glm::vec3(0.0f));
+    different += blocked != (answer.radiance == glm::vec3(0.0f));
   }
   EXPECT_GT(dark, 1000);
   EXPECT_GT(lit, 1000);
@@ -128,7 +130,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   skips.first_occluder = false;
   ShadowRays(scene_, clearances_, lights_, *intersector_, skips, true).resolve(nearest);
   for (std::size_t i = 0; i < nearest.size(); ++i) {
-    ASSERT_EQ(nearest[i].light, questions_[i].light) << i;
+    ASSERT_EQ(nearest[i].radiance, questions_[i].radiance) << i;
   }
 }
 

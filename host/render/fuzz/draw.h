@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/light/studio.h"
+#include "host/light/default_lights.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/instances.h"
@@ -21,7 +21,7 @@ inline void draw(Scene scene) {
   const glm::dvec3 up = scene.up.value_or(glm::dvec3(0.0, 1.0, 0.0));
   const Camera camera =
       Camera::look_at(frame_scene(scene, 1.0, Camera::kDefaultFov, default_view(scene, up)), 1.0);
-  light_if_dark(scene, camera);
+  add_default_lights(scene, camera);
   const Bvh bvh(scene);
   RenderOptions options;
   options.width = options.height = 4;

@@ -43,7 +43,7 @@ IntersectorFactory cpu(const Bvh& bvh) {
 void with_seeds(const Scene& scene, const Camera& camera, RenderOptions options,
                 const std::function<void(const Film&)>& each) {
   const Bvh bvh(scene);
-  const Clearances clearances(bvh);
+  const NeighborClearances clearances(bvh);
   for (int seed = 0; seed < seeds(); ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
     RenderStats stats;
@@ -117,11 +117,11 @@ TEST(ErrorEstimate, HoldsInAFurnace) {
 // Where few dimensions of evenly spread samples matter, the error falls faster than its estimate.
 TEST(ErrorEstimate, IsCarefulWhereSamplesAreEvenlySpread) {
   constexpr double kPi = std::numbers::pi;
-  Scene lamps;
+  Scene lights;
   double sum = 0.0;
   for (int i = 0; i < 12; ++i) {
     const double side = 0.3 * i, height = 1.0 + 0.2 * i, intensity = 1.0 + i * i;
-    lamps.lights.push_back({{side, height, 0}, glm::dvec3(intensity)});
+    lights.lights.push_back({{side, height, 0}, glm::dvec3(intensity)});
     const double squared = side * side + height * height;
     sum += intensity * height / (squared * std::sqrt(squared)) / kPi;
   }
@@ -129,13 +129,13 @@ TEST(ErrorEstimate, IsCarefulWhereSamplesAreEvenlySpread) {
   Scene panel;
   const double a = 1.5, b = 0.8, height = 1.2, x = a / height, y = b / height;
   add(panel, rectangle({0, float(height), 0}, {float(a), 0, 0}, {0, 0, float(b)}),
-      lamp(glm::vec3(3.0f)));
+      emitter(glm::vec3(3.0f)));
   const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
   const double form = (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
   for (const int samples : {16, 64, 256}) {
     expect_coverage("twelve point lights", samples, 100.0,
-                    coverage_of(floor_under(lamps), kAtFloor, samples, sum));
-    expect_coverage("rectangular lamp", samples, 100.0,
+                    coverage_of(floor_under(lights), kAtFloor, samples, sum));
+    expect_coverage("rectangular light", samples, 100.0,
                     coverage_of(floor_under(panel), kAtFloor, samples, 3.0 * form));
   }
 }

@@ -1,4 +1,4 @@
-// What lamps and lights give a surface, by closed forms.
+// What lights give a surface, by closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -66,14 +66,14 @@ TEST(DirectLight, LightsOfAllKindsAddUp) {
   scene.lights.push_back({{1, 2, 0}, glm::dvec3(5.0)});
   scene.lights.push_back({{0, 2, 1}, glm::dvec3(9.0), SpotCone{{0, -1, 0}, 10.0, 80.0}});
   scene.directional_lights.push_back({{0.6, -0.8, 0}, glm::vec3(2.0f)});
-  add(scene, rectangle({-1, 1.5f, -1}, {0, 0, 1}, {0.5f, 0, 0}), lamp(glm::vec3(3.0f)));
+  add(scene, rectangle({-1, 1.5f, -1}, {0, 0, 1}, {0.5f, 0, 0}), emitter(glm::vec3(3.0f)));
   const double sum = floor_radiance(scene, kWhitted, 1024);
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), sum, 0.005 * sum);
 }
 
-// Many lamps, near and far, from which either way of choosing picks one: the mean is the sum over
-// all, as Whitted asks them. With a gloss, scattered rays find lamps just as often.
-TEST(DirectLight, ManyLampsAddUpHoweverTheyAreChosen) {
+// Many lights, near and far, from which either way of choosing picks one: the mean is the sum over
+// all, as Whitted asks them. With a gloss, scattered rays find lights just as often.
+TEST(DirectLight, ManyLightsAddUpHoweverTheyAreChosen) {
   for (const float gloss : {0.0f, 0.6f}) {
     Scene scene;
     for (int i = 0; i < 60; ++i) {
@@ -83,7 +83,7 @@ TEST(DirectLight, ManyLampsAddUpHoweverTheyAreChosen) {
         scene.lights.push_back({at, glm::dvec3(0.2)});
       } else {
         add(scene, rectangle(at, {size, 0.01f * float(i % 3), 0}, {0, 0.02f * float(i % 4), size}),
-            lamp(glm::vec3(1.0f + float(i % 3))));
+            emitter(glm::vec3(1.0f + float(i % 3))));
       }
     }
     Material floor = matte(glm::vec3(1.0f - gloss));
@@ -92,25 +92,25 @@ TEST(DirectLight, ManyLampsAddUpHoweverTheyAreChosen) {
     floor.illumination_model = 2;
     add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), floor);
     const Camera camera = camera_at({0.2, 1e-3, 0}, {0.2, 0, 0}, 1e-3);
-    const auto seen = [&](IntegratorKind integrator, LightChoice lights, int samples) {
+    const auto seen = [&](IntegratorKind integrator, LightSampling lights, int samples) {
       RenderOptions options = light(integrator, 1, 1, samples);
       options.max_depth = 0;
       options.ambient = 0.0;
-      options.techniques.lights = lights;
+      options.path.lights = lights;
       return double{film_of(scene, camera, options).color[0].r};
     };
-    const double sum = seen(kWhitted, LightChoice::kTree, 4096);
-    EXPECT_NEAR(seen(kPath, LightChoice::kTree, 1 << 15), sum, 0.005 * sum) << gloss;
-    EXPECT_NEAR(seen(kPath, LightChoice::kPower, 1 << 17), sum, 0.02 * sum) << gloss;
+    const double sum = seen(kWhitted, LightSampling::kTree, 4096);
+    EXPECT_NEAR(seen(kPath, LightSampling::kTree, 1 << 15), sum, 0.005 * sum) << gloss;
+    EXPECT_NEAR(seen(kPath, LightSampling::kPower, 1 << 17), sum, 0.02 * sum) << gloss;
   }
 }
 
-// A lamp before a sky that is darker, as bright, brighter: what chance finds of it counts for as
+// A light before a sky that is darker, as bright, brighter: what chance finds of it counts for as
 // much as the sky, and the mean stays.
-TEST(DirectLight, ALampBeforeASkyAddsUp) {
+TEST(DirectLight, ALightBeforeASkyAddsUp) {
   for (const float radiance : {0.2f, 1.0f, 6.0f}) {
     Scene scene;
-    add(scene, rectangle({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}), lamp(glm::vec3(radiance)));
+    add(scene, rectangle({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(glm::vec3(radiance)));
     add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
     scene.background = glm::vec3(1.0f);
     const Camera camera = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
@@ -119,19 +119,19 @@ TEST(DirectLight, ALampBeforeASkyAddsUp) {
     // The form factor of a square of side 1 at distance 1, of four quarters.
     const double x = 0.5, r = std::sqrt(1 + x * x), form = 4 * x / r * std::atan(x / r) / kPi;
     const double expected = radiance * form + (1.0 - form);
-    for (const bool evens_out : {false, true}) {
-      options.techniques.evens_out = evens_out;
+    for (const bool limits_mis_weight : {false, true}) {
+      options.path.limits_mis_weight = limits_mis_weight;
       EXPECT_NEAR(film_of(scene, camera, options).color[0].r, expected, 4e-3 * expected);
     }
   }
 }
 
 // A parallel rectangle with one corner straight above (Siegel and Howell's catalogue, B-4).
-TEST(DirectLight, RectangularLampHasItsFormFactor) {
+TEST(DirectLight, RectangularLightHasItsFormFactor) {
   const double a = 1.5, b = 0.8, height = 1.2;
   Scene scene;
   add(scene, rectangle({0, float(height), 0}, {float(a), 0, 0}, {0, 0, float(b)}),
-      lamp(glm::vec3(3.0f)));
+      emitter(glm::vec3(3.0f)));
   const double x = a / height, y = b / height;
   const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
   const double form = (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
@@ -139,14 +139,14 @@ TEST(DirectLight, RectangularLampHasItsFormFactor) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 3.0 * form, 3e-3 * form);
 }
 
-// Of a rough floor under a lamp, seen at an angle: the integral over the lamp. Whether lamps are
-// asked for or met by chance, wide lobes or narrow ones.
-TEST(DirectLight, FacetsReflectALamp) {
+// Of a rough floor under a light_at, seen at an angle: the integral over the light. Whether lights
+// are asked for or met by chance, wide lobes or narrow ones.
+TEST(DirectLight, FacetsReflectALight) {
   for (const float roughness : {0.25f, 0.6f, 1.0f}) {
     Material material = facets(0.5f, roughness, 0.0f);
     material.diffuse = glm::vec3(0.8f);
     Scene scene;
-    add(scene, rectangle({-1, 2, -2}, {2, 0, 0}, {0, 0, 1.5f}), lamp(glm::vec3(3.0f)));
+    add(scene, rectangle({-1, 2, -2}, {2, 0, 0}, {0, 0, 1.5f}), emitter(glm::vec3(3.0f)));
     add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
     const Camera camera = camera_at({0, 1, 1.5}, {0, 0, 0}, 1e-3);
     RenderOptions options = light(kPath, 1, 1, 4096);
@@ -154,13 +154,13 @@ TEST(DirectLight, FacetsReflectALamp) {
     const Bvh bvh(scene);
     const glm::vec3 eye(camera.eye());
     const Ray ray = {eye, camera.direction(0.5, 0.5)};
-    const Finish finish(material);
-    const Finish* const finishes[] = {&finish};
+    const MaterialParameters parameters(material);
+    const MaterialParameters* const materials[] = {&parameters};
     std::uint32_t floor = 0;
     while (!hits_triangle(ray, bvh.corners_of(floor))) ++floor;
-    const HitPlace places[] = {{&ray, floor, &scene.triangles[bvh.triangle_of(floor)], nullptr}};
-    const HitKind kind = finish.kind | weights_needed(places[0]);
-    const Bsdf<float> bsdf(surface_at<float>(scene, bvh, kind, places), kind, finishes);
+    const SurfaceHit places[] = {{&ray, floor, &scene.triangles[bvh.triangle_of(floor)], nullptr}};
+    const HitKind kind = parameters.kind | weights_needed(places[0]);
+    const Bsdf<float> bsdf(surface_at<float>(scene, bvh, kind, places), kind, materials);
     double integral = 0.0;
     constexpr int kSteps = 400;
     for (int i = 0; i < kSteps; ++i) {
@@ -168,7 +168,7 @@ TEST(DirectLight, FacetsReflectALamp) {
         const glm::dvec3 at(-1 + 2 * (i + 0.5) / kSteps, 2.0, -2 + 1.5 * (k + 0.5) / kSteps);
         const double squared = glm::dot(at, at), cosine = 2.0 / std::sqrt(squared);
         const glm::vec3 way(glm::normalize(at));
-        integral += 3.0 * bsdf.scattered({way.x, way.y, way.z}).x * cosine * cosine / squared *
+        integral += 3.0 * bsdf.eval({way.x, way.y, way.z}).x * cosine * cosine / squared *
                     (3.0 / kSteps / kSteps);
       }
     }
@@ -181,7 +181,7 @@ TEST(DirectLight, FacetsReflectALamp) {
 }
 
 // A disc parallel to the floor, straight above: sin^2 of the angle under which its rim is seen.
-TEST(DirectLight, DiscLampHasItsFormFactor) {
+TEST(DirectLight, DiscLightHasItsFormFactor) {
   std::vector<Corners> disc;
   constexpr int kParts = 512;
   const auto rim = [](int i) {
@@ -190,7 +190,7 @@ TEST(DirectLight, DiscLampHasItsFormFactor) {
   };
   for (int i = 0; i < kParts; ++i) disc.push_back({glm::vec3(0, 1.1f, 0), rim(i), rim(i + 1)});
   Scene scene;
-  add(scene, disc, lamp(glm::vec3(2.0f)));
+  add(scene, disc, emitter(glm::vec3(2.0f)));
   const double form = 0.49 / (0.49 + 1.21);
   EXPECT_NEAR(floor_radiance(scene, kWhitted, 4096), 2.0 * form, 1e-3 * form);
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 2.0 * form, 4e-3 * form);
@@ -202,7 +202,7 @@ TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
   Scene scene;
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
   add(scene, rectangle({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}), matte(glm::vec3(1.0f)));
-  const glm::dvec3 lamp(0.7, 3, -0.2), way(-0.3, -1.0, 0.2);
+  const glm::dvec3 light_at(0.7, 3, -0.2), way(-0.3, -1.0, 0.2);
   const Camera camera = camera_at({0, 0.9, 2.5}, {0.2, 0, 0}, 60.0);
   for (const auto& [integrator, is_far] :
        {std::pair(kWhitted, false), {kPath, false}, {kWhitted, true}, {kPath, true}}) {
@@ -211,7 +211,7 @@ TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
     if (is_far) {
       scene.directional_lights.push_back({glm::normalize(way), glm::vec3(1.0f)});
     } else {
-      scene.lights.push_back({glm::vec3(lamp), glm::vec3(10.0f)});
+      scene.lights.push_back({glm::vec3(light_at), glm::vec3(10.0f)});
     }
     RenderOptions options = light(integrator, 96, 96, 1);
     options.max_depth = 0;
@@ -225,7 +225,7 @@ TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
         const glm::dvec3 eye(camera.eye()), point = eye - eye.y / view.y * view;
         const glm::dvec3 crossing =
             is_far ? point + way / way.y
-                   : lamp + (lamp.y - 1.0) / (lamp.y - point.y) * (point - lamp);
+                   : light_at + (light_at.y - 1.0) / (light_at.y - point.y) * (point - light_at);
         const double inside = std::max(std::abs(crossing.x), std::abs(crossing.z)) - 0.5;
         if (std::abs(inside) < 1e-6) continue;
         ASSERT_EQ(film.color[pixel].r == 0.0f, inside < 0.0) << x << ", " << y;
@@ -249,8 +249,8 @@ TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
   const glm::dvec3 whitted = mean_colour(film_of(scene, camera, options));
   options.integrator = kPath;
   const glm::dvec3 path = mean_colour(film_of(scene, camera, options));
-  // The path's last rays see lamps in the mirror and through the window, where Whitted stops: those
-  // are few here.
+  // The path's last rays see lights in the mirror and through the window, where Whitted stops:
+  // those are few here.
   EXPECT_NEAR(path.r, whitted.r, 0.02 * whitted.r);
   EXPECT_NEAR(path.g, whitted.g, 0.02 * whitted.g);
 }

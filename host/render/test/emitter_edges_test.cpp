@@ -1,4 +1,4 @@
-// Lamps that the camera sees begin and end where they do, to a fraction of what a sample is.
+// Lights that the camera sees begin and end where they do, to a fraction of what a sample is.
 #include "host/render/emitter_edges.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr int kSide = 8;
 constexpr float kRadiance = 10.0f;
 
-/// A lamp that covers these pixels of 8 x 8, from left to right and from the upper edge down.
+/// A light that covers these pixels of 8 x 8, from left to right and from the upper edge down.
 struct Panel {
   Scene scene;
   Camera camera;
@@ -35,7 +35,7 @@ struct Panel {
     const glm::vec3 corner = place(left, upper);
     test::add(scene,
               test::rectangle(corner, place(right, upper) - corner, place(left, lower) - corner),
-              test::lamp(glm::vec3(kRadiance)));
+              test::emitter(glm::vec3(kRadiance)));
   }
 };
 
@@ -50,7 +50,7 @@ RenderOptions options(int samples, ReconstructionFilter filter = ReconstructionF
 
 std::vector<EmitterEdge> marks(const Panel& panel, ReconstructionFilter filter, std::size_t& rays) {
   const Bvh bvh(panel.scene);
-  const Clearances clearances(bvh);
+  const NeighborClearances clearances(bvh);
   const Lights lights(panel.scene, bvh);
   const RenderOptions asked = options(4, filter);
   CpuIntersector intersector(bvh);
@@ -87,7 +87,7 @@ TEST(EmitterEdges, AreAsFarAsTheFilterReaches) {
     EXPECT_EQ(found[std::size_t(x)], x >= 1 && x <= 3 ? EmitterEdge::kYes : EmitterEdge::kNo) << x;
 }
 
-TEST(EmitterEdges, AreNotLookedForWhereNoLampCanBe) {
+TEST(EmitterEdges, AreNotLookedForWhereNoLightCanBe) {
   std::size_t rays = 0;
   marks(Panel(20.0f, 2.0f, 22.0f, 3.0f), ReconstructionFilter::kBox, rays);
   EXPECT_EQ(rays, 0u);

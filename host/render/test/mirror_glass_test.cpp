@@ -122,7 +122,7 @@ TEST(MirrorGlass, TotalReflectionShowsTheGround) {
   }
 }
 
-// Light from a lamp through one or two panes that let half of it through.
+// Light from a light through one or two panes that let half of it through.
 TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
   float unweakened = 0.0f;
   for (int panes = 0; panes <= 2; ++panes) {
@@ -134,7 +134,7 @@ TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
     }
     Scene by_point = scene, by_area = scene;
     by_point.lights.push_back({{0, 2, 0}, {1, 1, 1}});
-    add(by_area, rectangle({-0.1f, 2, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}), lamp(glm::vec3(9)));
+    add(by_area, rectangle({-0.1f, 2, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}), emitter(glm::vec3(9)));
     const double share = std::pow(0.5, panes), point = 1.0 / 4.0 / kPi;
     EXPECT_NEAR(floor_radiance(by_point, kWhitted, 1), share * point, 1e-6);
     EXPECT_NEAR(floor_radiance(by_point, kPath, 1), share * point, 1e-6);

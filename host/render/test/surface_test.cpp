@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "host/light/studio.h"
+#include "host/light/default_lights.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -131,7 +131,7 @@ TEST(Surface, SizeDoesNotMatter) {
                   glm::vec3(0, 0, 4) * scale),
         mirror(0.5f));
     const Camera camera = camera_at(glm::dvec3(0.5, 0.7, 4) * double(scale), glm::dvec3(0), 40.0);
-    light_if_dark(scene, camera);
+    add_default_lights(scene, camera);
     return film_of(scene, camera, light(integrator, 24, 24, 2));
   };
   for (const IntegratorKind integrator : {kWhitted, kPath}) {

@@ -137,9 +137,9 @@ class Peers(unittest.TestCase):
         everything = numpy.concatenate([corners, corners + 9, corners - 9])
         material = scene.Material("lamp", emission=(1.0, 1.0, 1.0))
         whole = scene.Mesh(material, corners, None, None, faces)
-        self.assertEqual(convert.lamp_meshes(whole, everything), [whole])
+        self.assertEqual(convert.light_meshes(whole, everything), [whole])
         sheet = scene.Mesh(material, corners, None, None, faces[:3])
-        self.assertEqual(len(convert.lamp_meshes(sheet, everything)), 2)
+        self.assertEqual(len(convert.light_meshes(sheet, everything)), 2)
 
     def test_errors_are_in_steps_of_a_display(self):
         black = numpy.zeros((2, 2, 3))

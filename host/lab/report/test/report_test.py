@@ -48,12 +48,12 @@ class Document(unittest.TestCase):
 
 PROFILE = """\
 fn=(1) render
-cfn=(2) raygate::DeparturePoint::find(...)
+cfn=(2) raygate::RaySpawner::find(...)
 calls=3 0
 10 100
 fn=(2)
 5 60
-cfn=(3) raygate::DeparturePoint::search(...)
+cfn=(3) raygate::RaySpawner::search(...)
 calls=1 0
 7 40
 fn=(4) other

@@ -216,9 +216,9 @@ TEST_F(LoadGltf, Materials) {
   const Material unlit = material(R"({"extensions": {"KHR_materials_unlit": {}}})");
   EXPECT_EQ(unlit.illumination_model, 0);
   EXPECT_FALSE(unlit.metallic_roughness);
-  const Material lamp = material(
+  const Material emitter = material(
       R"({"emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}})");
-  EXPECT_EQ(lamp.emission, glm::vec3(4, 2, 0));
+  EXPECT_EQ(emitter.emission, glm::vec3(4, 2, 0));
   const Material glass = material(
       R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.3}}})");
   EXPECT_EQ(glass.metallic_roughness->transmission, 1.0f);

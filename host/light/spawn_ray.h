@@ -10,25 +10,25 @@
 #include "host/base/vectors.h"
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
-#include "host/light/clearance.h"
+#include "host/light/neighbor_clearance.h"
 
 namespace raygate {
 
 /// Which side of the surface a ray goes on from.
-enum class Departure {
-  kBefore,  ///< the side the ray came from: reflection, shadow rays
-  kAfter,   ///< the other side: refraction
+enum class SpawnSide {
+  kIncident,     ///< the side the ray came from: reflection, shadow rays
+  kTransmitted,  ///< the other side: refraction
 };
 
 /// A ray that is to go on, its direction scaled, whose nearest hit is the triangle in `slot`.
-struct DepartureQuestion {
+struct SpawnQuery {
   const Ray* ray = nullptr;
   std::uint32_t slot = 0;
-  Departure way = Departure::kBefore;
+  SpawnSide side = SpawnSide::kIncident;
 };
 
 /// Where it goes on from, if there is such a point.
-struct DepartureOrigin {
+struct SpawnOrigin {
   glm::vec3 point{0.0f};
   std::uint32_t exists = 0;  ///< or anything else
 
@@ -41,7 +41,8 @@ struct DepartureOrigin {
 /// Let X be the point, exact and hardly ever a float, in which a ray first hits a triangle. The
 /// origin O' is a float point near X that lies strictly on the same side of the triangle's plane,
 /// and of the plane of every other triangle that comes near on that side, as the points of the ray
-/// just before X (for kBefore) or just after it (for kAfter), decided in exact arithmetic. So
+/// just before X (for kIncident) or just after it (for kTransmitted), decided in exact arithmetic.
+/// So
 ///   * no triangle lies between the ray at X and O': none is skipped, in the sharpest corner;
 ///   * a ray from O' that goes away from the triangle's plane (leaves() says so exactly) never
 ///     hits that triangle again.
@@ -54,48 +55,48 @@ struct DepartureOrigin {
 /// a power of two, of X as double has it, on each axis: departure.cpp has the proof. From the exact
 /// X it is farther by that error, which only far from the origin shows (1.528 u). In corners too
 /// narrow for that O' backs away from X, by powers of two, along the normal or the ray, or to the
-/// ray's origin itself, so that in a convex room there always is an O' for kBefore. In other
+/// ray's origin itself, so that in a convex room there always is an O' for kIncident. In other
 /// corners, narrower than floats can express, there may be none: the ray had better end there.
-class DeparturePoint {
+class RaySpawner {
  public:
   /// The clearances must outlive this.
-  explicit DeparturePoint(const Clearances& clearances)
+  explicit RaySpawner(const NeighborClearances& clearances)
       : clearances_(clearances), bvh_(clearances.bvh()) {}
 
   /// O' for `ray`, whose nearest hit is the triangle in `slot`. The triangles in whose plane the
   /// ray runs have no say.
-  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t slot, Departure way);
+  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t slot, SpawnSide side);
 
   /// Says that a slot will soon be asked about.
   RAYGATE_INLINE void prefetch(std::uint32_t slot) const { clearances_.prefetch(slot); }
 
-  /// origins[i] becomes O' for questions[i]: what find() gives, several at a time and so much
+  /// origins[i] becomes O' for queries[i]: what find() gives, several at a time and so much
   /// sooner.
-  void find(std::span<const DepartureQuestion> questions, std::span<DepartureOrigin> origins);
+  void find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins);
 
   /// Whether `direction` goes away from the triangle that `ray` hit, to the side where O' is.
   /// Shading normals and rounding may give directions that do not.
-  [[nodiscard]] bool leaves(const Ray& ray, std::uint32_t slot, Departure way,
+  [[nodiscard]] bool leaves(const Ray& ray, std::uint32_t slot, SpawnSide side,
                             const glm::vec3& direction) const;
 
  private:
   template <Vectors kCode, int kWidth>
-  RAYGATE_INLINE void find_some(const DepartureQuestion* questions, DepartureOrigin* origins);
+  RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
 
-  /// Of a question in this lane.
-  [[nodiscard]] RAYGATE_INLINE const Clearance& clearance_of(std::uint32_t slot, int lane) {
+  /// Of a query in this lane.
+  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t slot, int lane) {
     if (bvh_.is_placed(slot)) [[unlikely]]
       return find_clearance(slot, static_cast<std::size_t>(lane));
     return clearances_.of(slot);
   }
-  [[nodiscard]] const Clearance& find_clearance(std::uint32_t slot, std::size_t lane);
+  [[nodiscard]] const NeighborClearance& find_clearance(std::uint32_t slot, std::size_t lane);
 
   /// As find(), looking at what is near.
-  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, Departure way);
+  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, SpawnSide side);
 
-  const Clearances& clearances_;
+  const NeighborClearances& clearances_;
   const Bvh& bvh_;
-  std::vector<Clearances::Found> found_;  // of instances' triangles, by lane
+  std::vector<NeighborClearances::Found> found_;  // of instances' triangles, by lane
 };
 
 }  // namespace raygate

@@ -12,11 +12,11 @@ namespace raygate {
 
 /// What a ray of light carries. Fifty-two bytes in a row: hits are shaded in another order than
 /// rays are traced in, and one cache line is fetched for a ray, not ten.
-struct Burden {
-  glm::vec3 weight{1.0f};  ///< what light that comes along the ray counts for
+struct PathState {
+  glm::vec3 throughput{1.0f};  ///< what light that comes along the ray counts for
   /// Where a surface scattered it: how likely that was to give this direction, per steradian;
   /// 0 where there was no choice (camera, mirror, glass).
-  float density = 0.0f;
+  float pdf = 0.0f;
   glm::vec3 scattered_at{0.0f};  ///< and where
   glm::vec3 normal{0.0f};        ///< of the surface there
   std::uint32_t sample = 0;      ///< of those that are traced together: whose radiance it adds to
@@ -25,14 +25,14 @@ struct Burden {
 };
 
 /// Rays with the same number of surfaces behind them.
-struct Wave {
+struct RayBatch {
   int depth = 0;  ///< so many; 0: from the camera
   std::vector<Ray> rays;
-  std::vector<Burden> burdens;  ///< of the rays
+  std::vector<PathState> states;  ///< of the rays
 
   void clear() {
     rays.clear();
-    burdens.clear();
+    states.clear();
   }
 };
 
@@ -41,12 +41,12 @@ struct FirstSurface {
   glm::vec3 normal{0.0f}, albedo{0.0f};
 };
 
-/// What the surfaces of a wave give.
-struct WaveOutput {
+/// What the surfaces of a batch give.
+struct ShadingOutput {
   std::vector<glm::vec3> radiance;          ///< by sample
   std::vector<FirstSurface> first_surface;  ///< by sample
   std::vector<ShadowRay> shadows;           ///< light still to arrive
-  Wave next;                                ///< the rays that go on
+  RayBatch next;                            ///< the rays that go on
 };
 
 }  // namespace raygate

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "host/base/lanes.h"
-#include "host/light/clearance.h"
+#include "host/light/neighbor_clearance.h"
 #include "host/light/widen.h"
 
 // Which side
@@ -16,18 +16,18 @@
 // by more than u / 2, candidate 0 is beyond the plane by
 //   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
 //
-// How exact X is: a component of Clearance::normal is off by less than 1, so D = (A - O) . N is off
-// by less than |A - O|_max, and I . N by less than 2, as no component of I is larger (roundings of
-// the dot products are in kNormalError).
+// How exact X is: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) .
+// N is off by less than |A - O|_max, and I . N by less than 2, as no component of I is larger
+// (roundings of the dot products are in kNormalError).
 //
 // Why nothing is near
 //
 // Of the exact X let w be the least of the three weights of the vertices, and c the triangle's
-// clearance: all other triangles are at least c w - margin away, or farther than departure_reach,
-// or of the triangle's crowd (see Clearances), or in the triangle's plane. What could make
-// candidate 0 no good is within 8 u of the exact X, and within 5 u of the candidate on each axis:
-// the box around it and X as double has it, and 2 u more on every side. 16 u are within
-// departure_reach.
+// clearance: all other triangles are at least c w - margin away, or farther than spawn_reach,
+// or one of the triangle's overlaps (see NeighborClearances), or in the triangle's plane. What
+// could make candidate 0 no good is within 8 u of the exact X, and within 5 u of the candidate on
+// each axis: the box around it and X as double has it, and 2 u more on every side. 16 u are within
+// spawn_reach.
 //
 // c times a weight is computed from the candidate p, in float, as G . (p - A). G is c times the
 // weight's gradient: a vector in the triangle's plane, no longer than 1/8, as c is at most an
@@ -36,7 +36,7 @@
 // makes it less than 2^-23 s wrong; the third weight, c less the two others, less than 2^-21 (s +
 // c). So nothing is near where
 //   c w > 16 u + 2^-20 (s + c) + margin
-// (of the 16 u, 8 are enough) and nothing of the crowd is within 16 u of the candidate.
+// (of the 16 u, 8 are enough) and nothing of the overlaps is within 16 u of the candidate.
 
 namespace raygate {
 
@@ -45,16 +45,16 @@ using LongLanes = std::int64_t __attribute__((vector_size(8 * kLanes), aligned(8
 
 /// Vectors of so many numbers, and what comparing them gives.
 template <int kWidth>
-struct PlainNumbers;
+struct SpawnNumbers;
 template <>
-struct PlainNumbers<kQuad> {
+struct SpawnNumbers<kQuad> {
   using Single = FloatQuad;
   using Real = DoubleQuad;
   using SingleMask = IntQuad;
   using RealMask = LongQuad;
 };
 template <>
-struct PlainNumbers<kLanes> {
+struct SpawnNumbers<kLanes> {
   using Single = FloatLanes;
   using Real = DoubleLanes;
   using SingleMask = IntLanes;
@@ -63,16 +63,16 @@ struct PlainNumbers<kLanes> {
 
 /// Hits to depart from, so many at a time.
 template <int kWidth>
-struct PlainHits {
-  using Single = typename PlainNumbers<kWidth>::Single;
-  using Real = typename PlainNumbers<kWidth>::Real;
+struct SpawnHits {
+  using Single = typename SpawnNumbers<kWidth>::Single;
+  using Real = typename SpawnNumbers<kWidth>::Real;
 
   Real normal[3];
-  Single length, corner[3], gradient[2][3];  ///< as Clearance has them
+  Single length, corner[3], gradient[2][3];  ///< as NeighborClearance has them
   Single origin[3], direction[3];            ///< of the rays
 };
 
-namespace plain {
+namespace spawn {
 
 /// The numbers at byte `offset` of each of four objects: row k has their k-th.
 template <class Row, class Object>
@@ -84,11 +84,12 @@ RAYGATE_INLINE void columns(const Object* const* objects, std::size_t offset, Ro
   raygate::transpose(rows);
 }
 
-RAYGATE_INLINE void load(const Clearance* const* triangles, const Ray* const* rays,
-                         PlainHits<kQuad>& hits) {
-  static_assert(offsetof(Clearance, normal) == 0 && offsetof(Clearance, length) == 24 &&
-                offsetof(Clearance, corner) == 28 && offsetof(Clearance, gradient) == 40 &&
-                sizeof(Clearance) == 64 && sizeof(Ray) == 24);
+RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* const* rays,
+                         SpawnHits<kQuad>& hits) {
+  static_assert(
+      offsetof(NeighborClearance, normal) == 0 && offsetof(NeighborClearance, length) == 24 &&
+      offsetof(NeighborClearance, corner) == 28 && offsetof(NeighborClearance, gradient) == 40 &&
+      sizeof(NeighborClearance) == 64 && sizeof(Ray) == 24);
   DoubleQuad reals[kQuad];
   columns(triangles, 0, reals);
   for (int k = 0; k < 3; ++k) hits.normal[k] = reals[k];
@@ -137,9 +138,9 @@ RAYGATE_INLINE void join(const DoubleQuad& a, const DoubleQuad& b, DoubleLanes& 
   both = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-RAYGATE_INLINE void load(const Clearance* const* triangles, const Ray* const* rays,
-                         PlainHits<kLanes>& hits) {
-  PlainHits<kQuad> a, b;
+RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* const* rays,
+                         SpawnHits<kLanes>& hits) {
+  SpawnHits<kQuad> a, b;
   load(triangles, rays, a);
   load(triangles + kQuad, rays + kQuad, b);
   join(a.length, b.length, hits.length);
@@ -201,28 +202,28 @@ RAYGATE_INLINE void dot(const T (&u)[3], const T (&v)[3], T& result) {
   result = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-}  // namespace plain
+}  // namespace spawn
 
 /// Makes `point` candidate 0 of each hit, on the side that the ray came from where `way` is -1, on
 /// the other one where it is 1. It is where the ray goes on from if `is_clear` becomes -1, and no
-/// triangle of the crowd is within `reach` of it.
+/// triangle of the overlaps is within `reach` of it.
 template <Vectors kCode, int kWidth>
-RAYGATE_INLINE void depart_plainly(const PlainHits<kWidth>& hits,
-                                   const typename PlainNumbers<kWidth>::Single& way, float margin,
-                                   typename PlainNumbers<kWidth>::Single (&point)[3],
-                                   typename PlainNumbers<kWidth>::Single& reach,
-                                   typename PlainNumbers<kWidth>::SingleMask& is_clear) {
-  using Single = typename PlainNumbers<kWidth>::Single;
-  using Real = typename PlainNumbers<kWidth>::Real;
+RAYGATE_INLINE void spawn_lanes(const SpawnHits<kWidth>& hits,
+                                const typename SpawnNumbers<kWidth>::Single& way, float margin,
+                                typename SpawnNumbers<kWidth>::Single (&point)[3],
+                                typename SpawnNumbers<kWidth>::Single& reach,
+                                typename SpawnNumbers<kWidth>::SingleMask& is_clear) {
+  using Single = typename SpawnNumbers<kWidth>::Single;
+  using Real = typename SpawnNumbers<kWidth>::Real;
   // X = O + t I, and u.
   Real corner[3], origin[3], direction[3], from_origin[3];
-  plain::convert<kCode>(hits.corner, corner);
-  plain::convert<kCode>(hits.origin, origin);
-  plain::convert<kCode>(hits.direction, direction);
-  plain::subtract(corner, origin, from_origin);
+  spawn::convert<kCode>(hits.corner, corner);
+  spawn::convert<kCode>(hits.origin, origin);
+  spawn::convert<kCode>(hits.direction, direction);
+  spawn::subtract(corner, origin, from_origin);
   Real plane, slope, above, below;
-  plain::dot(from_origin, hits.normal, plane);
-  plain::dot(direction, hits.normal, slope);
+  spawn::dot(from_origin, hits.normal, plane);
+  spawn::dot(direction, hits.normal, slope);
   magnitude(plane, above);
   magnitude(slope, below);
   const Real inverse = 1.0 / below;
@@ -230,46 +231,46 @@ RAYGATE_INLINE void depart_plainly(const PlainHits<kWidth>& hits,
   Real x[3], step;
   for (int k = 0; k < 3; ++k) x[k] = origin[k] + t * direction[k];
   Single rounded[3], x_size, u;
-  plain::convert<kCode>(x, rounded);
-  plain::largest(rounded, x_size);
-  plain::step_of(x_size, u);
-  plain::convert<kCode>(u, step);
+  spawn::convert<kCode>(x, rounded);
+  spawn::largest(rounded, x_size);
+  spawn::step_of(x_size, u);
+  spawn::convert<kCode>(u, step);
 
   // How far off X may be, with |I|_max < 2.
   Single origin_range;
   Real origin_size, from_size;
-  plain::largest(hits.origin, origin_range);
-  plain::convert<kCode>(origin_range, origin_size);
-  plain::largest(from_origin, from_size);
+  spawn::largest(hits.origin, origin_range);
+  spawn::convert<kCode>(origin_range, origin_size);
+  spawn::largest(from_origin, from_size);
   const Real along_ray = t + t;
   const Real error = 0x1p-50 * (origin_size + along_ray) + 2.01 * inverse * (from_size + along_ray);
-  const typename PlainNumbers<kWidth>::RealMask is_sure =
+  const typename SpawnNumbers<kWidth>::RealMask is_sure =
       (below >= 0x1p35) & (16.0 * error <= step);
 
   // Candidate 0: the normal shows where plane_side is -1.
   Real turn, longest;
-  plain::convert<kCode>(way, turn);
-  plain::largest(hits.normal, longest);
+  spawn::convert<kCode>(way, turn);
+  spawn::largest(hits.normal, longest);
   const Real scale = (plane > 0.0 ? turn : -turn) / longest;
   for (int k = 0; k < 3; ++k)
-    plain::convert<kCode>(x[k] + step * (hits.normal[k] * scale), point[k]);
+    spawn::convert<kCode>(x[k] + step * (hits.normal[k] * scale), point[k]);
 
   // c times its least weight.
   Single length, p[3], second, third, sizes[3], point_size, point_step;
   magnitude(hits.length, length);
-  plain::subtract(point, hits.corner, p);
-  plain::dot(p, hits.gradient[0], second);
-  plain::dot(p, hits.gradient[1], third);
+  spawn::subtract(point, hits.corner, p);
+  spawn::dot(p, hits.gradient[0], second);
+  spawn::dot(p, hits.gradient[1], third);
   const Single first = length - second - third;
   Single least = first < second ? first : second;
   least = least < third ? least : third;
-  plain::magnitudes(p, sizes);
+  spawn::magnitudes(p, sizes);
   const Single error_of_least = 0x1p-20f * (sizes[0] + sizes[1] + sizes[2] + length) + margin;
-  plain::largest(point, point_size);
-  plain::step_of(point_size, point_step);
+  spawn::largest(point, point_size);
+  spawn::step_of(point_size, point_step);
   reach = 16.0f * u;
   is_clear = (point_step <= u) & (least > reach + error_of_least) &
-             __builtin_convertvector(is_sure, typename PlainNumbers<kWidth>::SingleMask);
+             __builtin_convertvector(is_sure, typename SpawnNumbers<kWidth>::SingleMask);
 }
 
 }  // namespace raygate

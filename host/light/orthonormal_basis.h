@@ -22,8 +22,8 @@ struct Frame {
 /// The unit vector that makes an angle with the unit vector `axis`, turned around it as the unit
 /// vector (`turned_x`, `turned_y`) says.
 template <class T>
-RAYGATE_INLINE Triple<T> around(const Triple<T>& axis, const T& cosine, const T& sine,
-                                const T& turned_x, const T& turned_y) {
+RAYGATE_INLINE Triple<T> spherical_direction(const Triple<T>& axis, const T& cosine, const T& sine,
+                                             const T& turned_x, const T& turned_y) {
   const Frame<T> frame(axis);
   return axis * cosine + frame.u * (sine * turned_x) + frame.v * (sine * turned_y);
 }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "host/base/lane_math.h"
-#include "host/light/finish.h"
 #include "host/light/fresnel.h"
 #include "host/light/ggx.h"
+#include "host/light/material_parameters.h"
 #include "host/light/sampler.h"
 #include "host/light/surface.h"
 
@@ -17,25 +17,25 @@ namespace raygate {
 ///   f90 = 1 - (1 - m) t.
 /// * Under them is (1 - m)(1 - t) c (1 - r0)(1 - h(view))(1 - h(light)) / (1 - h's mean), diffuse:
 ///   what glTF 2.0 leaves to implementations. h is a little more than what rough facets reflect for
-///   s (Hidden, below), so that both never add up to more than arrives; and both are the same there
-///   and back.
+///   s (CoatAlbedo, below), so that both never add up to more than arrives; and both are the same
+///   there and back.
 /// * The share (1 - m) t is glass with such facets: Fresnel's formula, and c times what goes
 ///   through.
 ///
 /// All is multiplied with the opacity. T is float or FloatLanes.
 template <class T>
-struct FacetLobes {
+struct MetallicRoughnessLobes {
   /// An upper bound of what facets of a whole surface reflect where one reflects Schlick's share s:
   /// s / (1 + k s) and a little in the middle, fitted to the integral over the facets; its error is
   /// below 1e-4 where it is too small, and 0.06 where it is too large. The mean is over a cosine.
-  struct Hidden {
+  struct CoatAlbedo {
     T k, middle;
 
-    Hidden() = default;
-    RAYGATE_INLINE explicit Hidden(const T& alpha)
+    CoatAlbedo() = default;
+    RAYGATE_INLINE explicit CoatAlbedo(const T& alpha)
         : k(18.0f * alpha * alpha / (alpha + 0.07f)), middle(at_most(0.5f * alpha, 0.055f)) {}
     [[nodiscard]] RAYGATE_INLINE T at(const T& cosine) const {
-      const T share = schlick_share(cosine), both = (1.0f - cosine) * cosine;
+      const T share = schlick_weight(cosine), both = (1.0f - cosine) * cosine;
       return share / (1.0f + k * share) + middle * both * both;
     }
     [[nodiscard]] RAYGATE_INLINE T mean() const {
@@ -45,20 +45,21 @@ struct FacetLobes {
 
   Triple<T> view;
   Ggx<T> ggx;
-  Hidden hidden;
-  T view_cosine;        ///< off 0: it is divided by
-  Triple<T> straight;   ///< f0
-  T grazing;            ///< f90
-  Triple<T> reflected;  ///< what facets reflect of the view, but for what they hide
-  Triple<T> under;      ///< what is diffuse of it
-  T glass, eta;         ///< the share of glass; its index beyond the border over that before
+  CoatAlbedo coat_albedo;
+  T view_cosine;       ///< off 0: it is divided by
+  Triple<T> f0;        ///< f0
+  T f90;               ///< f90
+  Triple<T> specular;  ///< what facets reflect of the view, but for what they hide
+  Triple<T> diffuse;   ///< what is diffuse of it
+  T glass, eta;        ///< the share of glass; its index beyond the border over that before
   MaskOf<T> is_glass;
   Triple<T> tint;  ///< c
   T clear;         ///< what the opacity leaves
 
-  FacetLobes() = default;
-  RAYGATE_INLINE FacetLobes(const Surface<T>& surface, bool is_rough,
-                            const Finish* const (&finishes)[LanesOf<T>::kCount]) {
+  MetallicRoughnessLobes() = default;
+  RAYGATE_INLINE MetallicRoughnessLobes(
+      const Surface<T>& surface, bool is_rough,
+      const MaterialParameters* const (&materials)[LanesOf<T>::kCount]) {
     enum : std::uint8_t {
       kMetallic,
       kRoughness,
@@ -70,13 +71,13 @@ struct FacetLobes {
     };
     Gathered<T, kAll> in;
     for (int k = 0; k < LanesOf<T>::kCount; ++k) {
-      const Finish& finish = *finishes[k];
-      in.values[kMetallic][k] = finish.metallic;
-      in.values[kRoughness][k] = finish.roughness;
-      in.values[kTransmission][k] = finish.transmission;
-      in.values[kReflectance][k] = finish.reflectance;
-      in.values[kIndex][k] = finish.index;
-      in.values[kOpacity][k] = finish.opacity;
+      const MaterialParameters& material = *materials[k];
+      in.values[kMetallic][k] = material.metallic;
+      in.values[kRoughness][k] = material.roughness;
+      in.values[kTransmission][k] = material.transmission;
+      in.values[kReflectance][k] = material.reflectance;
+      in.values[kIndex][k] = material.index;
+      in.values[kOpacity][k] = material.opacity;
     }
     const T one = spread<T>(1.0f), opacity = in.one(kOpacity);
     clear = one - opacity;
@@ -90,12 +91,12 @@ struct FacetLobes {
     glass = (one - metallic) * in.one(kTransmission);
     const T plastic = at_least((one - metallic) - glass, 0.0f);
     const T reflectance = in.one(kReflectance), coat = plastic * reflectance;
-    straight = (tint * metallic + grey(coat)) * opacity;
-    grazing = (one - glass) * opacity;
-    hidden = Hidden(is_rough ? alpha : T{});
-    const T share = hidden.at(view_cosine);
-    reflected = mirrored_by_facet(share);
-    under = tint * (plastic * (one - reflectance) * (one - share) * opacity);
+    f0 = (tint * metallic + grey(coat)) * opacity;
+    f90 = (one - glass) * opacity;
+    coat_albedo = CoatAlbedo(is_rough ? alpha : T{});
+    const T share = coat_albedo.at(view_cosine);
+    specular = schlick(share);
+    diffuse = tint * (plastic * (one - reflectance) * (one - share) * opacity);
     const T index = in.one(kIndex);
     is_glass = glass > 0.0f;
     eta = choose(is_glass, choose(surface.outside, index, one / index), one);
@@ -103,50 +104,50 @@ struct FacetLobes {
 
   /// Per steradian and without the cosine, for a direction before the surface; `is_rough`: with
   /// what facets reflect; `with_glass`: also those of glass.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> scattered(const Triple<T>& light, bool is_rough,
-                                                   bool with_glass) const {
+  [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light, bool is_rough,
+                                              bool with_glass) const {
     constexpr float kPerPi = 0.318309886183790671537767526745f;
     const T cosine = at_least(dot(ggx.normal, light), 0.0f);
-    const Triple<T> diffuse =
-        under * (kPerPi * (1.0f - hidden.at(at_most(cosine, 1.0f))) / (1.0f - hidden.mean()));
-    if (!is_rough) return diffuse;
+    const Triple<T> lambert = diffuse * (kPerPi * (1.0f - coat_albedo.at(at_most(cosine, 1.0f))) /
+                                         (1.0f - coat_albedo.mean()));
+    if (!is_rough) return lambert;
     const auto pair = ggx.pair(view, light);
-    Triple<T> reflected_there = mirrored_by_facet(schlick_share(pair.half_cosine));
+    Triple<T> reflected_there = schlick(schlick_weight(pair.cos_half));
     if (with_glass) {
-      const T inner = at_most(pair.half_cosine, 1.0f);
+      const T inner = at_most(pair.cos_half, 1.0f);
       reflected_there = reflected_there + grey(glass * fresnel_reflectance(inner, eta));
     }
-    return diffuse + reflected_there * (pair.height * ggx.visibility(view_cosine, cosine));
+    return lambert + reflected_there * (pair.d * ggx.visibility(view_cosine, cosine));
   }
 
-  /// How likely mirrored(view, ggx.sample(view, ..)) is, per steradian.
-  [[nodiscard]] RAYGATE_INLINE T density(const Triple<T>& light) const {
-    return ggx.mirror_density(view_cosine, ggx.pair(view, light).height);
+  /// How likely reflect(view, ggx.sample(view, ..)) is, per steradian.
+  [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
+    return ggx.reflection_pdf(view_cosine, ggx.pair(view, light).d);
   }
 
   /// One facet of glass, chosen among those that the view sees, and what Fresnel's formula gives
   /// it.
-  struct GlassFacet {
+  struct SampledFacet {
     Triple<T> normal;
     T reflectance;
   };
-  [[nodiscard]] RAYGATE_INLINE GlassFacet glass_facet(const SquarePoint<T>& u) const {
+  [[nodiscard]] RAYGATE_INLINE SampledFacet sample_glass_facet(const SquarePoint<T>& u) const {
     const Triple<T> facet = ggx.sample(view, u);
     const T cosine = at_most(at_least(dot(facet, view), 0.0f), 1.0f);
     return {facet, fresnel_reflectance(cosine, eta)};
   }
   /// What gets away of what a sampled facet mirrors, or lets through, in this direction.
-  [[nodiscard]] RAYGATE_INLINE T mirrored_share(const Triple<T>& way) const {
+  [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
-    return choose(cosine > 0.0f, ggx.mirrored_share(view_cosine, cosine), T{});
+    return choose(cosine > 0.0f, ggx.g2_over_g1(view_cosine, cosine), T{});
   }
-  [[nodiscard]] RAYGATE_INLINE T through_share(const Triple<T>& way) const {
+  [[nodiscard]] RAYGATE_INLINE T g1(const Triple<T>& way) const {
     const T cosine = -dot(ggx.normal, way);
-    return choose(cosine > 0.0f, ggx.through_share(cosine), T{});
+    return choose(cosine > 0.0f, ggx.g1(cosine), T{});
   }
   /// What a facet reflects at which Schlick's share is this.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> mirrored_by_facet(const T& share) const {
-    return straight + (grey(grazing) - straight) * share;
+  [[nodiscard]] RAYGATE_INLINE Triple<T> schlick(const T& share) const {
+    return f0 + (grey(f90) - f0) * share;
   }
 
  private:

@@ -1,5 +1,5 @@
 // Facets against quadratures, and against the formulas of the paper.
-#include "host/light/facet_lobes.h"
+#include "host/light/metallic_roughness.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(Ggx, FacetsAddUpToTheSurface) {
       const double t = (i + 0.5) / kSteps, tangent = alpha * t / (1 - t);
       const double angle = std::atan(tangent), slope = alpha / ((1 - t) * (1 - t));
       const Triple<float> normal = at_angles(angle, 1.0);
-      const double height = ggx.pair(normal, normal).height;
+      const double height = ggx.pair(normal, normal).d;
       sum += height * std::cos(angle) * std::sin(angle) * 2 * kPi * slope /
              (1 + tangent * tangent) / kSteps;
     }
@@ -49,7 +49,7 @@ TEST(Ggx, FacetsAddUpToTheSurface) {
   }
 }
 
-// The mean over samples against an integral with the density that is claimed.
+// The mean over samples against an integral with the pdf that is claimed.
 TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
   for (const float alpha : {0.2f, 0.5f, 1.0f}) {
     for (const double angle : {0.0, 0.7, 1.4}) {
@@ -65,10 +65,10 @@ TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
           sums[1] += weight * way.z * way.z;
           sums[2] += weight * (way.x - 0.3) * way.y;
         };
-        add(sampled, mirrored(view, ggx.sample(view, sampler(i, 0))), 1.0);
+        add(sampled, reflect(view, ggx.sample(view, sampler(i, 0))), 1.0);
         const SquarePoint<float> u = sampler(i, 1);
         const Triple<float> way = at_angles(std::acos(u.x), 2 * kPi * u.y);
-        add(integral, way, 2 * kPi * ggx.mirror_density(view.z, ggx.pair(view, way).height));
+        add(integral, way, 2 * kPi * ggx.reflection_pdf(view.z, ggx.pair(view, way).d));
       }
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(sampled[k] / kCount, integral[k] / kCount, 6e-3) << alpha << " " << angle;
@@ -77,7 +77,7 @@ TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
   }
 }
 
-TEST(FacetLobes, AreTheSameThereAndBack) {
+TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
   const Sampler sampler(4, 5, 6);
   for (const float roughness : {0.1f, 0.4f, 1.0f}) {
     for (const float metallic : {0.0f, 0.3f, 1.0f}) {
@@ -87,8 +87,7 @@ TEST(FacetLobes, AreTheSameThereAndBack) {
         // Both have their view in the plane of x and z.
         const Bsdf<float> there = seen(facets(metallic, roughness), a);
         const Bsdf<float> back = seen(facets(metallic, roughness), b);
-        const Triple<float> f = there.scattered(at_angles(b, 2.0)),
-                            g = back.scattered(at_angles(a, -2.0));
+        const Triple<float> f = there.eval(at_angles(b, 2.0)), g = back.eval(at_angles(a, -2.0));
         ASSERT_NEAR(f.x, g.x, 1e-4f * f.x + 1e-6f) << roughness << " " << metallic;
         ASSERT_NEAR(f.z, g.z, 1e-4f * f.z + 1e-6f);
       }
@@ -98,7 +97,7 @@ TEST(FacetLobes, AreTheSameThereAndBack) {
 
 // The white furnace: of light from all sides no more comes back than was there. What facets hide
 // from each other is missing.
-TEST(FacetLobes, MakeNoEnergy) {
+TEST(MetallicRoughnessLobes, MakeNoEnergy) {
   for (const float roughness : {0.04f, 0.2f, 0.4f, 0.6f, 0.8f, 1.0f}) {
     double most_lost = 0.0;
     for (const float index : {1.1f, 1.5f, 2.5f}) {
@@ -108,24 +107,24 @@ TEST(FacetLobes, MakeNoEnergy) {
           white.diffuse = glm::vec3(1.0f);
           white.refraction_index = index;
           const Bsdf<float> bsdf = seen(white, angle);
-          const FacetLobes<float>& lobes = bsdf.facets();
+          const MetallicRoughnessLobes<float>& lobes = bsdf.facets();
           constexpr int kCount = 1 << 12;
           double reflected = 0.0, all = 0.0;
           for (int i = 0; i < kCount; ++i) {
             const Triple<float> facet = lobes.ggx.sample(lobes.view, Sampler(7, 8, 9)(i, 0));
-            const Triple<float> way = mirrored(lobes.view, facet);
-            const float share = schlick_share(dot(lobes.view, facet));
-            reflected += lobes.mirrored_by_facet(share).x * lobes.mirrored_share(way);
+            const Triple<float> way = reflect(lobes.view, facet);
+            const float share = schlick_weight(dot(lobes.view, facet));
+            reflected += lobes.schlick(share).x * lobes.g2_over_g1(way);
             const Triple<float> light = bsdf.sample(Sampler(7, 8, 9)(i, 1));
             if (light.z <= 0.0f) continue;
-            all += bsdf.scattered(light).x * light.z / bsdf.density(light);
+            all += bsdf.eval(light).x * light.z / bsdf.pdf(light);
           }
           reflected /= kCount;
           all /= kCount;
           // Also what is left for under the facets rests on this.
-          EXPECT_LE(reflected, lobes.reflected.x + 4e-4)
+          EXPECT_LE(reflected, lobes.specular.x + 4e-4)
               << roughness << " " << index << " " << angle;
-          EXPECT_NEAR(all, reflected + lobes.under.x, 1e-2);
+          EXPECT_NEAR(all, reflected + lobes.diffuse.x, 1e-2);
           EXPECT_LE(all, 1.003) << roughness << " " << index << " " << metallic << " " << angle;
           most_lost = std::max(most_lost, 1.0 - all);
         }
@@ -137,7 +136,7 @@ TEST(FacetLobes, MakeNoEnergy) {
 }
 
 // Smooth ones reflect all that they do in one direction, and nothing is missing.
-TEST(FacetLobes, SmoothOnesLoseNothing) {
+TEST(MetallicRoughnessLobes, SmoothOnesLoseNothing) {
   for (const float metallic : {0.0f, 0.5f, 1.0f}) {
     Material white = facets(metallic, 0.0f);
     white.diffuse = glm::vec3(1.0f);
@@ -148,13 +147,13 @@ TEST(FacetLobes, SmoothOnesLoseNothing) {
       double diffuse = 0.0;
       for (int i = 0; i < 4096; ++i) {
         const Triple<float> light = bsdf.sample(Sampler(1, 1, 1)(i, 0));
-        diffuse += bsdf.scattered(light).x * light.z / bsdf.density(light) / 4096;
+        diffuse += bsdf.eval(light).x * light.z / bsdf.pdf(light) / 4096;
       }
       EXPECT_NEAR(diffuse, bsdf.diffuse().x, 1e-3);
     }
     white.metallic_roughness->transmission = 0.7f;
     const Bsdf<float> clear = seen(white, 0.8);
-    EXPECT_NEAR(largest(clear.mirror() + clear.through() + clear.diffuse()), 1.0, 1e-6);
+    EXPECT_NEAR(largest(clear.mirror() + clear.transmission() + clear.diffuse()), 1.0, 1e-6);
   }
 }
 
@@ -177,25 +176,24 @@ double walter(const glm::dvec3& in, const glm::dvec3& out, double alpha, double 
          (below * below);
 }
 
-TEST(FacetLobes, RoughGlassIsThatOfWalterAndOthers) {
+TEST(MetallicRoughnessLobes, RoughGlassIsThatOfWalterAndOthers) {
   for (const float index : {1.5f, 1.3f}) {
     for (const double angle : {0.1, 0.9}) {
       Material glass = facets(0.0f, 0.6f, 1.0f);
       glass.diffuse = glm::vec3(1.0f);
       glass.refraction_index = index;
-      const FacetLobes<float> lobes = seen(glass, angle).facets();
+      const MetallicRoughnessLobes<float> lobes = seen(glass, angle).facets();
       constexpr int kCount = 1 << 16, kSteps = 600;
       glm::dvec3 sampled(0.0), integral(0.0);
       const auto tested = [](const glm::dvec3& way) {
         return glm::dvec3(1.0, way.z * way.z, (way.x + 0.2) * (way.x + 0.2));
       };
       for (int i = 0; i < kCount; ++i) {
-        const auto facet = lobes.glass_facet(Sampler(1, 2, 4)(i, 0));
+        const auto facet = lobes.sample_glass_facet(Sampler(1, 2, 4)(i, 0));
         const Refraction<float> bent(lobes.view, facet.normal, lobes.eta);
         if (!bent.exists) continue;
         const glm::dvec3 way(bent.direction.x, bent.direction.y, bent.direction.z);
-        sampled +=
-            tested(way) * double((1 - facet.reflectance) * lobes.through_share(bent.direction));
+        sampled += tested(way) * double((1 - facet.reflectance) * lobes.g1(bent.direction));
       }
       const glm::dvec3 in(lobes.view.x, lobes.view.y, lobes.view.z);
       for (int i = 0; i < kSteps; ++i) {
@@ -215,22 +213,22 @@ TEST(FacetLobes, RoughGlassIsThatOfWalterAndOthers) {
 }
 
 // From either side. What is lost meets a second facet.
-TEST(FacetLobes, RoughGlassLosesWhatMeetsASecondFacet) {
+TEST(MetallicRoughnessLobes, RoughGlassLosesWhatMeetsASecondFacet) {
   for (const float roughness : {0.04f, 0.2f, 0.4f, 0.7f, 1.0f}) {
     double most_lost = 0.0;
     for (const bool outside : {true, false}) {
       for (double angle = 0.0; angle < 1.5; angle += 0.1) {
         Material glass = facets(0.0f, roughness, 1.0f);
         glass.diffuse = glm::vec3(1.0f);
-        FacetLobes<float> lobes = seen(glass, angle).facets();
+        MetallicRoughnessLobes<float> lobes = seen(glass, angle).facets();
         if (!outside) lobes.eta = 1.0f / lobes.eta;
         double all = 0.0;
         constexpr int kCount = 1 << 12;
         for (int i = 0; i < kCount; ++i) {
-          const auto facet = lobes.glass_facet(Sampler(1, 2, 4)(i, 0));
+          const auto facet = lobes.sample_glass_facet(Sampler(1, 2, 4)(i, 0));
           const Refraction<float> bent(lobes.view, facet.normal, lobes.eta);
-          all += facet.reflectance * lobes.mirrored_share(mirrored(lobes.view, facet.normal));
-          if (bent.exists) all += (1 - facet.reflectance) * lobes.through_share(bent.direction);
+          all += facet.reflectance * lobes.g2_over_g1(reflect(lobes.view, facet.normal));
+          if (bent.exists) all += (1 - facet.reflectance) * lobes.g1(bent.direction);
         }
         all /= kCount;
         EXPECT_LE(all, 1.0 + 1e-5) << roughness << " " << angle;

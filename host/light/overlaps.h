@@ -13,7 +13,7 @@
 namespace raygate {
 
 /// Triangles that come close to one triangle inside its borders: what stands on it, or cuts it.
-class Crowd {
+class Overlaps {
  public:
   void add(std::uint32_t slot, const Corners& triangle);
   [[nodiscard]] std::size_t size() const { return slots_.size(); }

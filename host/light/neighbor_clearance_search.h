@@ -1,4 +1,4 @@
-// How near other triangles come to one: its clearance, and its crowd.
+// How near other triangles come to one: its clearance, and its overlaps.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "host/light/clearance.h"
+#include "host/light/neighbor_clearance.h"
 #include "host/light/widen.h"
 
 // Why c is a bound
@@ -53,11 +53,11 @@ struct LeafCorners {
 };
 
 /// A triangle, the planes that its neighbours are likely to be behind, and what is known of them.
-class ClearanceSearch {
+class NeighborClearanceSearch {
  public:
   /// `slack`: how far a computed coordinate along a unit vector may be off.
-  ClearanceSearch(const Corners& corners, double slack)
-      : corners_(corners), from_(corners[0]), reach_(departure_reach(corners)), slack_(slack) {
+  NeighborClearanceSearch(const Corners& corners, double slack)
+      : corners_(corners), from_(corners[0]), reach_(spawn_reach(corners)), slack_(slack) {
     const auto grown = static_cast<float>(1.125 * reach_);  // more than roundings take away
     for (int k = 0; k < 3; ++k) {
       vertex_[k] = glm::dvec3(corners[k]) - from_;
@@ -174,19 +174,19 @@ class ClearanceSearch {
     if (apart >= length_ || (lies_beyond(other, corners_, 1) && lies_beyond(other, corners_, -1))) {
       return;
     }
-    if (apart < kShareOfCrowd * most_ && crowd_.size() < kMostCrowd) {
-      crowd_.add(slot, other);
+    if (apart < kShareOfOverlaps * most_ && overlaps_.size() < kMaxOverlaps) {
+      overlaps_.add(slot, other);
     } else {
       length_ = apart;
     }
   }
 
   /// All that has been found out.
-  [[nodiscard]] Clearance found() const {
-    Clearance result;
+  [[nodiscard]] NeighborClearance found() const {
+    NeighborClearance result;
     if (!has_hope()) return result;
     const float length = float_below(length_ * (1.0 - 0x1p-20));  // for unit vectors' roundings
-    result.length = crowd_.size() != 0 ? -length : length;
+    result.length = overlaps_.size() != 0 ? -length : length;
     int exponent;
     std::frexp(kNormalError * (normal_sizes_[0] + normal_sizes_[1] + normal_sizes_[2]), &exponent);
     const double scale = std::ldexp(1.0, -exponent);
@@ -198,12 +198,12 @@ class ClearanceSearch {
     }
     return result;
   }
-  [[nodiscard]] Crowd& crowd() { return crowd_; }
+  [[nodiscard]] Overlaps& overlaps() { return overlaps_; }
 
  private:
-  static constexpr std::size_t kMostCrowd = 128;
-  static constexpr double kShareOfHeight = 0.125;  // that c may be
-  static constexpr double kShareOfCrowd = 0x1p-4;  // of that: what is nearer belongs to the crowd
+  static constexpr std::size_t kMaxOverlaps = 128;
+  static constexpr double kShareOfHeight = 0.125;         // that c may be
+  static constexpr double kShareOfOverlaps = 0x1p-4;      // of that: what is nearer is an overlap
   static constexpr double kNormalError = 10.0 * 0x1p-53;  // of a normal's and a point's dot product
 
   /// Of the largest magnitude.
@@ -273,7 +273,7 @@ class ClearanceSearch {
   double inverse_height_[3];
   double normal_[3], normal_sizes_[3];
   double most_, length_;  // c, at most and as it is found so far
-  Crowd crowd_;
+  Overlaps overlaps_;
 };
 
 }  // namespace raygate

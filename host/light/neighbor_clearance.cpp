@@ -1,11 +1,11 @@
-#include "host/light/clearance.h"
+#include "host/light/neighbor_clearance.h"
 
 #include <algorithm>
 #include <bit>
 #include <utility>
 
 #include "host/bvh/box_query.h"
-#include "host/light/clearance_search.h"
+#include "host/light/neighbor_clearance_search.h"
 
 namespace raygate {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 /// Takes the triangles of a leaf into account, but for the one in `slot`, whose search it is.
 template <Vectors kCode>
 RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t slot,
-                            ClearanceSearch& search) {
+                            NeighborClearanceSearch& search) {
   LaneMask rest = (LaneMask{1} << leaf.count) - 1;
   Bvh::LeafRoom room;
   const float* const corners = bvh.corners_of(leaf, room);
@@ -47,22 +47,22 @@ bool lies_beyond(const Corners& other, const Corners& hit, int side) {
 }
 
 // A float's step is at most 2^-23 of it, or 2^-149.
-double departure_reach(const Corners& corners) {
+double spawn_reach(const Corners& corners) {
   const float size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
   return std::max(0x1p-18 * size, 0x1p-144);
 }
 
 // A coordinate along a unit vector, of a difference of two points, is off by less than 2^-49 times
 // their largest coordinate.
-Clearances::Clearances(const Bvh& bvh)
+NeighborClearances::NeighborClearances(const Bvh& bvh)
     : bvh_(bvh),
       margin_(0x1p-45f * largest_coordinate(bvh)),
       slack_(0x1p-47 * largest_coordinate(bvh)),
       known_(std::make_unique<Known[]>(bvh.slot_count())) {}
 
-Clearances::Found Clearances::look(std::uint32_t slot) const {
+NeighborClearances::Found NeighborClearances::look(std::uint32_t slot) const {
   const Corners corners = bvh_.corners_of(slot);
-  ClearanceSearch search(corners, slack_);
+  NeighborClearanceSearch search(corners, slack_);
   if (search.has_hope()) {
     in_vectors([&](auto code) RAYGATE_BODY {
       // Leaves are looked at a while after they are found: by then they are in the cache.
@@ -82,16 +82,17 @@ Clearances::Found Clearances::look(std::uint32_t slot) const {
       look();
     });
   }
-  return {search.found(), std::move(search.crowd())};
+  return {search.found(), std::move(search.overlaps())};
 }
 
-const Clearance& Clearances::find(std::uint32_t slot) const {
+const NeighborClearance& NeighborClearances::find(std::uint32_t slot) const {
   Found looked = look(slot);
   Known& known = known_[slot];
   const std::lock_guard lock(mutex_);
-  const Clearance& found = clearances_.emplace_back(looked.clearance);
+  const NeighborClearance& found = clearances_.emplace_back(looked.clearance);
   if (found.length < 0.0f) {
-    known.crowd.store(&crowds_.emplace_back(std::move(looked.crowd)), std::memory_order_relaxed);
+    known.overlaps.store(&overlaps_.emplace_back(std::move(looked.overlaps)),
+                         std::memory_order_relaxed);
   }
   known.clearance.store(&found, std::memory_order_release);
   return found;

@@ -12,20 +12,20 @@
 #include "host/base/vectors.h"
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
-#include "host/light/crowd.h"
+#include "host/light/overlaps.h"
 
 namespace raygate {
 
 /// What rays need to know that go on from a triangle ABC: one cache line.
 ///
 /// All other triangles are at least c w - margin() away from each point of this one, w being the
-/// least of that point's three barycentric weights, or farther than departure_reach(), or of its
-/// crowd, or in its plane. Most triangles meet others at their edges and corners alone: they have
-/// no crowd, and c is some part of their least height.
-struct alignas(64) Clearance {
+/// least of that point's three barycentric weights, or farther than spawn_reach(), or one of its
+/// overlaps, or in its plane. Most triangles meet others at their edges and corners alone: they
+/// have no overlaps, and c is some part of their least height.
+struct alignas(64) NeighborClearance {
   double normal[3] = {};  ///< (B-A) x (C-A) times a power of two: off by less than 1
-  /// c, at most an eighth of the least height; 0: nothing is known. Negative where there is a
-  /// crowd.
+  /// c, at most an eighth of the least height; 0: nothing is known. Negative where there are
+  /// overlaps.
   float length = 0.0f;
   float corner[3] = {};       ///< A
   float gradient[2][3] = {};  ///< of c times the weights of B and of C, in the triangle's plane
@@ -33,35 +33,36 @@ struct alignas(64) Clearance {
 
 /// How far away from a triangle with these vertices things may matter to rays that begin on it: 16
 /// float steps of its largest coordinate, or more.
-[[nodiscard]] double departure_reach(const Corners& corners);
+[[nodiscard]] double spawn_reach(const Corners& corners);
 
 /// Whether no point of `other` is strictly on the given side (as plane_side) of the plane of `hit`.
 /// A straight way from that plane to that side does not meet it then: neighbours along a ridge do
 /// not matter, however flat the ridge.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
-/// The clearances and the crowds of all triangles of a tree. Those of instances are not kept.
+/// The clearances and the overlaps of all triangles of a tree. Those of instances are not kept.
 ///
 /// Threads may ask at the same time: whoever asks first finds out, and all find the same.
-class Clearances {
+class NeighborClearances {
  public:
   /// The tree must outlive this.
-  explicit Clearances(const Bvh& bvh);
+  explicit NeighborClearances(const Bvh& bvh);
 
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
   [[nodiscard]] float margin() const { return margin_; }
 
   /// A clearance that is not kept.
   struct Found {
-    Clearance clearance;
-    Crowd crowd;
+    NeighborClearance clearance;
+    Overlaps overlaps;
   };
   /// Finds it out: of any triangle, an instance's too, of which there may be too many to keep.
   [[nodiscard]] Found look(std::uint32_t slot) const;
 
   /// Of a slot that is no instance's.
-  [[nodiscard]] RAYGATE_INLINE const Clearance& of(std::uint32_t slot) const {
-    const Clearance* const clearance = known_[slot].clearance.load(std::memory_order_acquire);
+  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& of(std::uint32_t slot) const {
+    const NeighborClearance* const clearance =
+        known_[slot].clearance.load(std::memory_order_acquire);
     return clearance != nullptr ? *clearance : find(slot);
   }
   /// Says that a triangle's will soon be asked for; later, once more.
@@ -73,27 +74,27 @@ class Clearances {
     __builtin_prefetch(known_[slot].clearance.load(std::memory_order_relaxed));
   }
   /// Of a triangle whose clearance has been asked for, and says that there is one.
-  [[nodiscard]] const Crowd& crowd_of(std::uint32_t slot) const {
-    return *known_[slot].crowd.load(std::memory_order_relaxed);
+  [[nodiscard]] const Overlaps& overlaps_of(std::uint32_t slot) const {
+    return *known_[slot].overlaps.load(std::memory_order_relaxed);
   }
 
  private:
   /// Of a slot.
   struct Known {
-    std::atomic<const Clearance*> clearance{nullptr};  // nobody has asked yet
-    std::atomic<const Crowd*> crowd{nullptr};
+    std::atomic<const NeighborClearance*> clearance{nullptr};  // nobody has asked yet
+    std::atomic<const Overlaps*> overlaps{nullptr};
   };
 
   /// Finds out, and keeps it.
-  [[nodiscard]] const Clearance& find(std::uint32_t slot) const;
+  [[nodiscard]] const NeighborClearance& find(std::uint32_t slot) const;
 
   const Bvh& bvh_;
   float margin_;
   double slack_;  // how far a computed coordinate along a unit vector may be off
   std::unique_ptr<Known[]> known_;
   mutable std::mutex mutex_;
-  mutable std::deque<Clearance> clearances_;
-  mutable std::deque<Crowd> crowds_;
+  mutable std::deque<NeighborClearance> clearances_;
+  mutable std::deque<Overlaps> overlaps_;
 };
 
 }  // namespace raygate

@@ -1,11 +1,11 @@
-#include "host/light/crowd.h"
+#include "host/light/overlaps.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace raygate {
 
-void Crowd::add(std::uint32_t slot, const Corners& triangle) {
+void Overlaps::add(std::uint32_t slot, const Corners& triangle) {
   const auto lane = static_cast<int>(slots_.size() % kLanes);
   slots_.push_back(slot);
   if (lane == 0) {

@@ -1,4 +1,4 @@
-#include "host/light/studio.h"
+#include "host/light/default_lights.h"
 
 #include <algorithm>
 #include <numbers>
@@ -11,10 +11,10 @@
 namespace raygate {
 namespace {
 
-/// Lamps stand still while the camera is looked through: they are found from it.
-class Studio {
+/// Lights stand still while the camera is looked through: they are found from it.
+class DefaultLights {
  public:
-  Studio(const Scene& scene, const Camera& camera) : camera_(camera) {
+  DefaultLights(const Scene& scene, const Camera& camera) : camera_(camera) {
     const auto [low, high] = position_bounds(scene);
     const glm::dvec3 eye(camera.eye());
     middle_ = 0.5 * (low + high);
@@ -27,15 +27,15 @@ class Studio {
 
   /// From the upper left of the camera, or from the camera.
   [[nodiscard]] PointLight key() const {
-    // In the middle of the scene a white wall that faces the lamp has radiance 0.8 from it.
-    if (is_inside_) return lamp(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
+    // In the middle of the scene a white wall that faces the light has radiance 0.8 from it.
+    if (is_inside_) return light(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
     const glm::dvec3 at = place(-0.8, 1.2);
-    return lamp(at, glm::length(at - middle_), 0.8);
+    return light(at, glm::length(at - middle_), 0.8);
   }
   /// From the right of the camera.
   [[nodiscard]] PointLight fill() const {
     const glm::dvec3 at = place(1.4, 0.3);
-    return lamp(at, glm::length(at - middle_), 0.25);
+    return light(at, glm::length(at - middle_), 0.25);
   }
 
  private:
@@ -43,7 +43,7 @@ class Studio {
     return middle_ +
            size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
   }
-  [[nodiscard]] static PointLight lamp(const glm::dvec3& at, double distance, double radiance) {
+  [[nodiscard]] static PointLight light(const glm::dvec3& at, double distance, double radiance) {
     return {glm::vec3(at), glm::dvec3(radiance * std::numbers::pi * distance * distance)};
   }
 
@@ -54,7 +54,7 @@ class Studio {
 };
 
 /// Neither lights nor faces that emit.
-bool has_no_lamp(const Scene& scene) {
+bool has_no_light(const Scene& scene) {
   return scene.lights.empty() && scene.directional_lights.empty() && !scene.environment &&
          std::ranges::none_of(scene.triangles, [&](const Triangle& face) {
            return emits(scene.materials[face.material]);
@@ -79,23 +79,23 @@ constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 
 }  // namespace
 
-void light_if_dark(Scene& scene, const Camera& camera) {
-  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || !has_no_lamp(scene)) return;
-  scene.lights.push_back(Studio(scene, camera).key());
+void add_default_lights(Scene& scene, const Camera& camera) {
+  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || !has_no_light(scene)) return;
+  scene.lights.push_back(DefaultLights(scene, camera).key());
   scene.background = kDimSky;
 }
 
-bool light_first_look(Scene& scene, const Camera& camera) {
+bool add_preview_lights(Scene& scene, const Camera& camera) {
   if (is_empty(scene) || !scene.lights.empty() || !scene.directional_lights.empty() ||
       scene.environment) {
     return false;
   }
-  const Studio studio(scene, camera);
-  // Labels and the like that glow are no lamps: not a hundredth of what the key lamp does.
+  const DefaultLights lights(scene, camera);
+  // Labels and the like that glow are no lights: not a hundredth of what the key light does.
   constexpr double kGlow = 0.01;
-  if (emitted(scene) > kGlow * studio.size() * studio.size()) return false;
-  scene.lights.push_back(studio.key());
-  if (!studio.is_inside()) scene.lights.push_back(studio.fill());
+  if (emitted(scene) > kGlow * lights.size() * lights.size()) return false;
+  scene.lights.push_back(lights.key());
+  if (!lights.is_inside()) scene.lights.push_back(lights.fill());
   if (scene.background == glm::vec3(0.0f)) scene.background = kDimSky;
   return true;
 }

@@ -1,5 +1,5 @@
 // Rays bounced about in closed meshes: they stay inside, in the sharpest corners.
-#include "host/light/departure.h"
+#include "host/light/spawn_ray.h"
 
 #include <gtest/gtest.h>
 
@@ -66,8 +66,8 @@ double steps_between(const glm::vec3& point, const Ray& ray, const Corners& t) {
 /// and every origin be inside.
 Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random& random, int rays) {
   const Bvh bvh(test::scene_of(mesh));
-  const Clearances clearances(bvh);
-  DeparturePoint departure(clearances);
+  const NeighborClearances clearances(bvh);
+  RaySpawner spawner(clearances);
   EXPECT_TRUE(inside(bvh, start));
   Bounces result;
   for (; result.rays < rays; ++result.rays) {
@@ -84,7 +84,7 @@ Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random&
         return result;
       }
       const Corners& t = bvh.corners_of(*slot);
-      const auto origin = departure.find(ray, *slot, Departure::kBefore);
+      const auto origin = spawner.find(ray, *slot, SpawnSide::kIncident);
       if (!origin) {
         ++result.ended;
         break;
@@ -92,7 +92,7 @@ Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random&
       result.farthest = std::max(result.farthest, steps_between(*origin, ray, t));
       EXPECT_TRUE(inside(bvh, *origin));
       const glm::vec3 direction = mirrored(ray.direction, t);
-      if (!departure.leaves(ray, *slot, Departure::kBefore, direction)) break;
+      if (!spawner.leaves(ray, *slot, SpawnSide::kIncident, direction)) break;
       ray = {*origin, direction};
       EXPECT_FALSE(hits_triangle(ray, t));
       ++result.bounces;
@@ -101,7 +101,7 @@ Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random&
   return result;
 }
 
-TEST(Departure, NoBounceLeavesAClosedMesh) {
+TEST(RaySpawner, NoBounceLeavesAClosedMesh) {
   Random random;
   const auto expect = [&](const std::vector<Corners>& mesh, const glm::vec3& start) {
     const Bounces result = bounce(mesh, start, random, 100);
@@ -117,7 +117,7 @@ TEST(Departure, NoBounceLeavesAClosedMesh) {
 }
 
 // Into the edge where two planes meet at 1 to 1e-6 rad: the rule backs away, or ends the ray.
-TEST(Departure, NoBounceLeavesASharpCorner) {
+TEST(RaySpawner, NoBounceLeavesASharpCorner) {
   Random random;
   for (const float angle : {1.0f, 0.1f, 1e-2f, 1e-4f, 1e-6f}) {
     for (const float at : {0.0f, 3.0f}) {
@@ -136,12 +136,12 @@ TEST(Departure, NoBounceLeavesASharpCorner) {
 
 // Onto the edges of a ball from outside, so flat that one neighbour's plane is no float away from
 // the other: no ray ends there, and both points are on their sides of the surface.
-TEST(Departure, NoRayEndsOnARidge) {
+TEST(RaySpawner, NoRayEndsOnARidge) {
   Random random;
   const std::vector<Corners> mesh = test::sphere(4);
   const Bvh bvh(test::scene_of(mesh));
-  const Clearances clearances(bvh);
-  DeparturePoint departure(clearances);
+  const NeighborClearances clearances(bvh);
+  RaySpawner spawner(clearances);
   int hits = 0;
   for (int i = 0; i < 600; ++i) {
     const glm::vec3 eye = 3.0f * glm::normalize(random.point() + 1e-3f);
@@ -153,8 +153,8 @@ TEST(Departure, NoRayEndsOnARidge) {
     const auto slot = nearest(bvh, ray);
     if (!slot) continue;
     ++hits;
-    const auto before = departure.find(ray, *slot, Departure::kBefore);
-    const auto after = departure.find(ray, *slot, Departure::kAfter);
+    const auto before = spawner.find(ray, *slot, SpawnSide::kIncident);
+    const auto after = spawner.find(ray, *slot, SpawnSide::kTransmitted);
     ASSERT_TRUE(before && after) << i;
     ASSERT_FALSE(inside(bvh, *before)) << i;
     ASSERT_TRUE(inside(bvh, *after)) << i;
@@ -163,16 +163,16 @@ TEST(Departure, NoRayEndsOnARidge) {
 }
 
 // Between two balls, one of which touches a floor: asked one by one or all at once.
-TEST(Departure, ManyAtOnceAreTheSame) {
+TEST(RaySpawner, ManyAtOnceAreTheSame) {
   Random random;
   std::vector<Corners> mesh = test::sphere(3);
   for (const Corners& t : test::sphere(2, 0.5f, glm::vec3(1.2f, 0.0f, 0.0f))) mesh.push_back(t);
   for (const Corners& t : test::box(glm::vec3(-3, -2, -3), glm::vec3(3, -1, 3))) mesh.push_back(t);
   const Bvh bvh(test::scene_of(mesh));
-  const Clearances clearances(bvh);
-  DeparturePoint departure(clearances);
+  const NeighborClearances clearances(bvh);
+  RaySpawner spawner(clearances);
   std::vector<Ray> rays;
-  std::vector<DepartureQuestion> questions;
+  std::vector<SpawnQuery> questions;
   for (int i = 0; i < 2003; ++i) {
     const glm::vec3 eye = 4.0f * glm::normalize(random.point() + 1e-3f);
     rays.push_back({eye, scaled_direction(glm::dvec3(random.point(1.5f) - eye))});
@@ -181,18 +181,18 @@ TEST(Departure, ManyAtOnceAreTheSame) {
     const auto slot = nearest(bvh, ray);
     if (!slot) continue;
     questions.push_back(
-        {&ray, *slot, questions.size() % 3 == 0 ? Departure::kAfter : Departure::kBefore});
+        {&ray, *slot, questions.size() % 3 == 0 ? SpawnSide::kTransmitted : SpawnSide::kIncident});
   }
   ASSERT_GT(questions.size(), 1000u);
   std::vector<std::optional<glm::vec3>> expected;
-  for (const DepartureQuestion& q : questions) {
+  for (const SpawnQuery& q : questions) {
     const UsingVectors using_vectors(Vectors::kBaseline);
-    expected.push_back(departure.find(*q.ray, q.slot, q.way));
+    expected.push_back(spawner.find(*q.ray, q.slot, q.side));
   }
   for (const Vectors vectors : machine_vectors()) {
     const UsingVectors using_vectors(vectors);
-    std::vector<DepartureOrigin> origins(questions.size());
-    departure.find(questions, origins);
+    std::vector<SpawnOrigin> origins(questions.size());
+    spawner.find(questions, origins);
     for (std::size_t i = 0; i < questions.size(); ++i) {
       ASSERT_EQ(bool(origins[i]), expected[i].has_value()) << name_of(vectors) << " " << i;
       if (!expected[i]) continue;
@@ -202,7 +202,7 @@ TEST(Departure, ManyAtOnceAreTheSame) {
 }
 
 // Away from other triangles the distance is what departure.h says, whatever the angle.
-TEST(Departure, StaysWithinTheBoundOnBothSides) {
+TEST(RaySpawner, StaysWithinTheBoundOnBothSides) {
   Random random;
   double farthest = 0.0;
   int hits = 0;
@@ -218,18 +218,18 @@ TEST(Departure, StaysWithinTheBoundOnBothSides) {
     if (!hits_triangle(ray, t)) continue;
     ++hits;
     const Bvh bvh(test::scene_of({t}));
-    const Clearances clearances(bvh);
-    DeparturePoint departure(clearances);
-    for (const Departure way : {Departure::kBefore, Departure::kAfter}) {
-      const auto point = departure.find(ray, 0, way);
+    const NeighborClearances clearances(bvh);
+    RaySpawner spawner(clearances);
+    for (const SpawnSide way : {SpawnSide::kIncident, SpawnSide::kTransmitted}) {
+      const auto point = spawner.find(ray, 0, way);
       ASSERT_TRUE(point);
       const int side = plane_side(origin, t);
-      ASSERT_EQ(plane_side(*point, t), way == Departure::kBefore ? side : -side);
+      ASSERT_EQ(plane_side(*point, t), way == SpawnSide::kIncident ? side : -side);
       farthest = std::max(farthest, steps_between(*point, ray, t));
       // The rest of the ray, from beyond: it never hits again.
-      ASSERT_TRUE(departure.leaves(ray, 0, Departure::kAfter, ray.direction));
-      ASSERT_FALSE(departure.leaves(ray, 0, Departure::kBefore, ray.direction));
-      ASSERT_EQ(hits_triangle({*point, ray.direction}, t) && way == Departure::kAfter, false);
+      ASSERT_TRUE(spawner.leaves(ray, 0, SpawnSide::kTransmitted, ray.direction));
+      ASSERT_FALSE(spawner.leaves(ray, 0, SpawnSide::kIncident, ray.direction));
+      ASSERT_EQ(hits_triangle({*point, ray.direction}, t) && way == SpawnSide::kTransmitted, false);
     }
   }
   EXPECT_GT(hits, 10000);

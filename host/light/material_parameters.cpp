@@ -1,4 +1,4 @@
-#include "host/light/finish.h"
+#include "host/light/material_parameters.h"
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ bool is_any(const glm::vec3& colour) { return colour != glm::vec3(0.0f); }
 }  // namespace
 
 /// Glass is clear: it has no opacity besides.
-void Finish::set(const Material& material, const MetallicRoughness& shares) {
+void MaterialParameters::set(const Material& material, const MetallicRoughness& shares) {
   metallic = std::clamp(shares.metallic, 0.0f, 1.0f);
   transmission = std::clamp(shares.transmission, 0.0f, 1.0f);
   if (index == 1.0f) index = 1.5f;
@@ -30,17 +30,17 @@ void Finish::set(const Material& material, const MetallicRoughness& shares) {
   is_glass = is_fresnel = false;
   mirror_is_traced = true;
   opacity = refracts ? 1.0f : std::clamp(material.opacity, 0.0f, 1.0f);
-  through = glm::vec3(1.0f - opacity);
+  transmittance = glm::vec3(1.0f - opacity);
   // A texture may leave any roughness: it is never smooth, only nearly.
   roughness = std::clamp(shares.roughness, 0.0f, 1.0f);
   const bool is_rough = has_map || roughness * roughness >= Ggx<float>::kLeast;
-  kind |= kFacets | (is_rough ? kGlossy : kMirrors);
+  kind |= kMetallicRoughness | (is_rough ? kGlossy : kMirrors);
   if (refracts) kind |= kMirrors;
-  if (refracts || opacity < 1.0f) kind |= kLetsThrough;
-  if (has_map) kind |= kHasWeights;
+  if (refracts || opacity < 1.0f) kind |= kTransmits;
+  if (has_map) kind |= kInterpolates;
 }
 
-Finish::Finish(const Material& material) {
+MaterialParameters::MaterialParameters(const Material& material) {
   const int model = material.illumination_model;
   is_glass = model == 4 || model == 6 || model == 7 || model == 9;
   refracts = model == 6 || model == 7;
@@ -52,8 +52,8 @@ Finish::Finish(const Material& material) {
   index = std::clamp(material.refraction_index, kLeastIndex, kMostIndex);
   emission = material.emission;
   if (is_any(emission)) kind |= kEmits;
-  if (material.diffuse_texture != kNoIndex) kind |= kHasWeights;
-  if (material.normal_map.texture != kNoIndex) kind |= kHasWeights | kIsBumpy;
+  if (material.diffuse_texture != kNoIndex) kind |= kInterpolates;
+  if (material.normal_map.texture != kNoIndex) kind |= kInterpolates | kIsBumpy;
   has_mask = material.opacity_map.texture != kNoIndex;
   if (material.metallic_roughness) {
     set(material, *material.metallic_roughness);
@@ -65,15 +65,15 @@ Finish::Finish(const Material& material) {
   if (model == 3 || model == 5 || model == 8) mirror = opacity * ks;
   if (model == 5) grazing = opacity * (1.0f - ks);
   if (model == 4 || model == 6 || model == 9) mirror = ks;
-  through = (1.0f - opacity) * (is_glass ? limited(material.transmittance) : glm::vec3(1.0f));
+  transmittance = (1.0f - opacity) * (is_glass ? limited(material.transmittance) : glm::vec3(1.0f));
   if (is_any(unlit)) kind |= kEmits;
   if (is_any(glossy)) kind |= kGlossy;
   if (is_any(mirror) || is_any(grazing) || refracts) kind |= kMirrors;
-  if (is_any(through)) kind |= kLetsThrough;
-  if (model == 10) kind |= kCatchesShadows;
+  if (is_any(transmittance)) kind |= kTransmits;
+  if (model == 10) kind |= kShadowCatcher;
 }
 
-std::vector<Finish> finishes_of(const Scene& scene) {
+std::vector<MaterialParameters> material_parameters(const Scene& scene) {
   return {scene.materials.begin(), scene.materials.end()};
 }
 

@@ -1,4 +1,4 @@
-#include "host/light/closed_sides.h"
+#include "host/light/outer_sides.h"
 
 #include <gtest/gtest.h>
 
@@ -13,16 +13,16 @@ namespace {
 using test::rectangle, test::scene_of, test::sphere;
 
 /// Of all triangles, in their order, but for the last `others`.
-std::vector<ClosedSide> sides_of(const std::vector<Corners>& triangles, std::size_t others = 0) {
+std::vector<OuterSide> sides_of(const std::vector<Corners>& triangles, std::size_t others = 0) {
   const Scene scene = scene_of(triangles);
   const Bvh bvh(scene);
   std::vector<std::uint32_t> slots(triangles.size());
   for (std::uint32_t slot = 0; slot < slots.size(); ++slot) slots[bvh.triangle_of(slot)] = slot;
   slots.resize(slots.size() - others);
-  return closed_sides(bvh, slots);
+  return outer_sides(bvh, slots);
 }
 
-TEST(ClosedSides, OfEachSphereAreOutside) {
+TEST(OuterSides, OfEachSphereAreOutside) {
   std::vector<Corners> all = sphere(1, 1.0f, {0, 0, 0});
   const std::size_t count = all.size();
   for (Corners triangle : sphere(1, 1.0f, {5, 0, 0})) {
@@ -32,18 +32,18 @@ TEST(ClosedSides, OfEachSphereAreOutside) {
   const auto sides = sides_of(all);
   ASSERT_EQ(sides.size(), 2 * count);
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    ASSERT_EQ(sides[i], i < count ? ClosedSide::kOutwards : ClosedSide::kInwards);
+    ASSERT_EQ(sides[i], i < count ? OuterSide::kAlongNormal : OuterSide::kAgainstNormal);
   }
 }
 
-TEST(ClosedSides, AreBothOfWhatIsOpen) {
+TEST(OuterSides, AreBothOfWhatIsOpen) {
   std::vector<Corners> hole = sphere(1, 1.0f, {0, 0, 0}), torn = hole, full = hole;
   hole.pop_back();
   std::swap(torn[3][0], torn[3][1]);  // one triangle the other way round
   full.push_back({glm::vec3(0.0f), {0.1f, 0, 0}, {0, 0.1f, 0}});
   for (const auto& sides : {sides_of(rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), sides_of(hole),
                             sides_of(torn), sides_of(full, 1)}) {
-    for (const ClosedSide side : sides) ASSERT_EQ(side, ClosedSide::kBoth);
+    for (const OuterSide side : sides) ASSERT_EQ(side, OuterSide::kBoth);
   }
 }
 

@@ -1,5 +1,5 @@
-// Clearances against distances found by brute force.
-#include "host/light/clearance.h"
+// NeighborClearances against distances found by brute force.
+#include "host/light/neighbor_clearance.h"
 
 #include <gtest/gtest.h>
 
@@ -35,19 +35,19 @@ double distance(const glm::dvec3& x, const Corners& t) {
   return above ? std::abs(glm::dot(normal, x - v[0])) : least;
 }
 
-bool is_near(const Crowd& crowd, const glm::vec3& point, float reach) {
-  return crowd.any_near(point, reach, [](std::uint32_t) { return true; });
+bool is_near(const Overlaps& overlaps, const glm::vec3& point, float reach) {
+  return overlaps.any_near(point, reach, [](std::uint32_t) { return true; });
 }
 
-/// A distance from x in which the crowd is not; 0 where there is none.
-double reach_beyond(const Crowd& crowd, const glm::dvec3& x) {
+/// A distance from x in which the overlaps is not; 0 where there is none.
+double reach_beyond(const Overlaps& overlaps, const glm::dvec3& x) {
   float reach = 1.0f;
-  while (reach > 0.0f && is_near(crowd, glm::vec3(x), reach)) reach *= 0.5f;
+  while (reach > 0.0f && is_near(overlaps, glm::vec3(x), reach)) reach *= 0.5f;
   return reach;
 }
 
 /// Whether what is said of a triangle's vertices and plane holds.
-void check_shape(const Clearance& clearance, const Corners& t) {
+void check_shape(const NeighborClearance& clearance, const Corners& t) {
   const glm::dvec3 normal(clearance.normal[0], clearance.normal[1], clearance.normal[2]);
   const glm::dvec3 exact = triangle_normal(t);
   const double scale = largest(normal) / largest(exact);
@@ -67,17 +67,17 @@ void check_shape(const Clearance& clearance, const Corners& t) {
 }
 
 struct Seen {
-  int points = 0, free = 0;  // those of triangles without a crowd
+  int points = 0, free = 0;  // those of triangles without a overlaps
 };
 
 /// Points of each triangle, most of them near its border.
 Seen check(const std::vector<Corners>& mesh, Random& random) {
   const Bvh bvh(test::scene_of(mesh));
-  const Clearances clearances(bvh);
+  const NeighborClearances clearances(bvh);
   Seen seen;
   for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
     const Corners& t = bvh.corners_of(slot);
-    const Clearance& clearance = clearances.of(slot);
+    const NeighborClearance& clearance = clearances.of(slot);
     const double clear = std::abs(clearance.length);
     if (clear > 0.0) check_shape(clearance, t);
     for (int i = 0; i < 2; ++i) {
@@ -87,9 +87,9 @@ Seen check(const std::vector<Corners>& mesh, Random& random) {
       for (int k = 0; k < 3; ++k) w[k] = std::exp(random.uniform(-12, 0));
       w /= w.x + w.y + w.z;
       const glm::dvec3 x = w.x * glm::dvec3(t[0]) + w.y * glm::dvec3(t[1]) + w.z * glm::dvec3(t[2]);
-      double least = std::min(clear * std::min({w.x, w.y, w.z}), departure_reach(t));
+      double least = std::min(clear * std::min({w.x, w.y, w.z}), spawn_reach(t));
       if (clearance.length < 0.0f) {
-        least = std::min(least, reach_beyond(clearances.crowd_of(slot), x));
+        least = std::min(least, reach_beyond(clearances.overlaps_of(slot), x));
       }
       for (std::uint32_t other = 0; other < bvh.slot_count(); ++other) {
         const Corners& o = bvh.corners_of(other);
@@ -101,7 +101,7 @@ Seen check(const std::vector<Corners>& mesh, Random& random) {
   return seen;
 }
 
-TEST(Clearance, IsKnownAllOverAClosedMesh) {
+TEST(NeighborClearance, IsKnownAllOverAClosedMesh) {
   Random random;
   for (const float at : {0.0f, 100.0f}) {
     const Seen seen = check(test::sphere(2, 1.0f, glm::vec3(at)), random);
@@ -111,7 +111,7 @@ TEST(Clearance, IsKnownAllOverAClosedMesh) {
   EXPECT_EQ(seen.free, seen.points);
 }
 
-TEST(Clearance, HoldsBetweenTrianglesOfAllKinds) {
+TEST(NeighborClearance, HoldsBetweenTrianglesOfAllKinds) {
   Random random;
   int free = 0, points = 0;
   for (int i = 0; i < 300; ++i) {
@@ -135,28 +135,28 @@ TEST(Clearance, HoldsBetweenTrianglesOfAllKinds) {
 }
 
 // A table's leg stands on the floor.
-TEST(Clearance, WhatStandsOnATriangleIsItsCrowd) {
+TEST(NeighborClearance, WhatStandsOnATriangleIsItsOverlap) {
   const std::vector<Corners> mesh = {
       {glm::vec3(-1, -1, 0), glm::vec3(1, -1, 0), glm::vec3(0, 1, 0)},
       {glm::vec3(0, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0.1f, 0, 1)}};
   const Bvh bvh(test::scene_of(mesh));
-  const Clearances clearances(bvh);
+  const NeighborClearances clearances(bvh);
   const std::uint32_t floor = bvh.triangle_of(0) == 0 ? 0 : 1;
   EXPECT_LT(clearances.of(floor).length, 0.0f);
-  const Crowd& crowd = clearances.crowd_of(floor);
-  EXPECT_EQ(crowd.size(), 1u);
-  EXPECT_TRUE(is_near(crowd, glm::vec3(-0.01f, 0, 0), 0.01f));
-  EXPECT_FALSE(is_near(crowd, glm::vec3(-0.01f, 0, 0), 0.0099f));
+  const Overlaps& overlaps = clearances.overlaps_of(floor);
+  EXPECT_EQ(overlaps.size(), 1u);
+  EXPECT_TRUE(is_near(overlaps, glm::vec3(-0.01f, 0, 0), 0.01f));
+  EXPECT_FALSE(is_near(overlaps, glm::vec3(-0.01f, 0, 0), 0.0099f));
 }
 
-// What hovers over a triangle is no crowd, unless it is very near.
-TEST(Clearance, WhatIsBeyondReachDoesNotMatter) {
+// What hovers over a triangle is no overlaps, unless it is very near.
+TEST(NeighborClearance, WhatIsBeyondReachDoesNotMatter) {
   for (const bool is_near : {false, true}) {
     const float height = is_near ? 0x1p-19f : 0x1p-17f;
     const Bvh bvh(
         test::scene_of({{glm::vec3(-1, -1, 0), glm::vec3(1, -1, 0), glm::vec3(0, 1, 0)},
                         {glm::vec3(0, 0, height), glm::vec3(0, 0, 1), glm::vec3(0.1f, 0, 1)}}));
-    const Clearances clearances(bvh);
+    const NeighborClearances clearances(bvh);
     const float length = clearances.of(bvh.triangle_of(0) == 0 ? 0 : 1).length;
     EXPECT_EQ(length < 0.0f, is_near);
     EXPECT_NEAR(std::abs(length), 0.125f * 4.0f / std::sqrt(5.0f), 1e-4f);

@@ -1,4 +1,4 @@
-#include "host/light/departure.h"
+#include "host/light/spawn_ray.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,16 +7,16 @@
 #include <limits>
 
 #include "host/bvh/box_query.h"
-#include "host/light/plain_departure.h"
+#include "host/light/spawn_ray_lanes.h"
 
 // How far O' is from X
 //
-// Candidate k is the float nearest to X + 2^k u m, m being the triangle's normal towards the side
+// Candidate k is the float nearest to X + 2^k u m, m being the triangle's normal towards the sign
 // wanted, scaled to a largest component of 1 (and then one along the ray). Rounding to float moves
 // each coordinate by u / 2 at most, as long as no coordinate is rounded at a step larger than u:
 // so by (u / 2) |n|_1 along the unit normal n, while the offset moves it by 2^k u / |n|_max. For
 // unit vectors |n|_1 |n|_max <= (1 + sqrt(3)) / 2 < 1.37, so already k = 0, with u against
-// 0.69 u, lies on the right side; what is left, 0.3 u, is far more than the error of X in double.
+// 0.69 u, lies on the right sign; what is left, 0.3 u, is far more than the error of X in double.
 // Where X + u m crosses into the next binade its step doubles, and k = 1 does it.
 
 namespace raygate {
@@ -70,122 +70,121 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
   return false;
 }
 
-/// The side of `other` on which the ray is just before or just after it hits `hit`; 0 where it
+/// The sign of `other` on which the ray is just before or just after it hits `hit`; 0 where it
 /// runs in the plane.
-int wanted_side(const Ray& ray, const Corners& hit, const Corners& other, Departure way) {
+int side_of_ray(const Ray& ray, const Corners& hit, const Corners& other, SpawnSide side) {
   const int at_hit = plane_side_at_hit(ray, hit, other);
   if (at_hit != 0) return at_hit;
   const int before = plane_side(ray.origin, other);
-  return way == Departure::kBefore ? before : -before;
+  return side == SpawnSide::kIncident ? before : -before;
 }
 
 }  // namespace
 
-std::optional<glm::vec3> DeparturePoint::find(const Ray& ray, std::uint32_t slot, Departure way) {
-  const DepartureQuestion question{&ray, slot, way};
-  DepartureOrigin origin;
-  find({&question, 1}, {&origin, 1});
+std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t slot, SpawnSide side) {
+  const SpawnQuery query{&ray, slot, side};
+  SpawnOrigin origin;
+  find({&query, 1}, {&origin, 1});
   return origin ? std::optional(*origin) : std::nullopt;
 }
 
 template <Vectors kCode, int kWidth>
-RAYGATE_INLINE void DeparturePoint::find_some(const DepartureQuestion* questions,
-                                              DepartureOrigin* origins) {
-  const Clearance* triangles[kWidth];
+RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin* origins) {
+  const NeighborClearance* triangles[kWidth];
   const Ray* rays[kWidth];
-  typename PlainNumbers<kWidth>::SingleMask ways;
+  typename SpawnNumbers<kWidth>::SingleMask ways;
 #pragma GCC unroll 8
   for (int i = 0; i < kWidth; ++i) {
-    triangles[i] = &clearance_of(questions[i].slot, i);
-    rays[i] = questions[i].ray;
-    ways[i] = questions[i].way == Departure::kBefore ? -1 : 1;
+    triangles[i] = &clearance_of(queries[i].slot, i);
+    rays[i] = queries[i].ray;
+    ways[i] = queries[i].side == SpawnSide::kIncident ? -1 : 1;
   }
-  PlainHits<kWidth> hits;
-  plain::load(triangles, rays, hits);
-  typename PlainNumbers<kWidth>::Single point[3], reach;
-  typename PlainNumbers<kWidth>::SingleMask is_clear;
-  depart_plainly<kCode>(hits, __builtin_convertvector(ways, typename PlainNumbers<kWidth>::Single),
-                        clearances_.margin(), point, reach, is_clear);
+  SpawnHits<kWidth> hits;
+  spawn::load(triangles, rays, hits);
+  typename SpawnNumbers<kWidth>::Single point[3], reach;
+  typename SpawnNumbers<kWidth>::SingleMask is_clear;
+  spawn_lanes<kCode>(hits, __builtin_convertvector(ways, typename SpawnNumbers<kWidth>::Single),
+                     clearances_.margin(), point, reach, is_clear);
   FloatQuad rows[kWidth];
-  plain::store(point, is_clear, rows);
-  static_assert(sizeof(DepartureOrigin) == sizeof(FloatQuad));
+  spawn::store(point, is_clear, rows);
+  static_assert(sizeof(SpawnOrigin) == sizeof(FloatQuad));
   std::memcpy(static_cast<void*>(origins), rows, sizeof rows);
 
   const LaneMask good = sign_mask(is_clear);
-  const LaneMask crowded = sign_mask(reinterpret_cast<decltype(ways)>(hits.length));
+  const LaneMask has_overlaps = sign_mask(reinterpret_cast<decltype(ways)>(hits.length));
   constexpr LaneMask kAll = (LaneMask{1} << kWidth) - 1;
-  LaneMask rest = (~good & kAll) | crowded;
+  LaneMask rest = (~good & kAll) | has_overlaps;
   if (rest == 0) return;
   float reaches[kWidth];
   std::memcpy(reaches, &reach, sizeof reaches);
   for (; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
-    const DepartureQuestion& question = questions[i];
+    const SpawnQuery& query = queries[i];
     if ((good >> i & 1) != 0) {
       const glm::vec3 plain = *origins[i];
       const auto is_there = [&](std::uint32_t slot) {
         return !surely_apart(plain - reaches[i], plain + reaches[i], bvh_.corners_of(slot));
       };
-      const Crowd& crowd = bvh_.is_placed(question.slot) ? found_[static_cast<std::size_t>(i)].crowd
-                                                         : clearances_.crowd_of(question.slot);
-      if (!crowd.any_near<kCode>(plain, reaches[i], is_there)) continue;
+      const Overlaps& overlaps = bvh_.is_placed(query.slot)
+                                     ? found_[static_cast<std::size_t>(i)].overlaps
+                                     : clearances_.overlaps_of(query.slot);
+      if (!overlaps.any_near<kCode>(plain, reaches[i], is_there)) continue;
     }
-    const auto origin = search(*question.ray, question.slot, question.way);
-    origins[i] = origin ? DepartureOrigin{*origin, 1} : DepartureOrigin{};
+    const auto origin = search(*query.ray, query.slot, query.side);
+    origins[i] = origin ? SpawnOrigin{*origin, 1} : SpawnOrigin{};
   }
 }
 
-void DeparturePoint::find(std::span<const DepartureQuestion> questions,
-                          std::span<DepartureOrigin> origins) {
+void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins) {
   in_vectors([&](auto code) RAYGATE_BODY {
     constexpr int kWidth = code() == Vectors::kAvx512 ? kLanes : kQuad;
     constexpr std::size_t kAhead = std::size_t{2} * kWidth;  // to fetch
     std::size_t first = 0;
-    for (; first + kWidth <= questions.size(); first += kWidth) {
-      if (first + kAhead + kWidth <= questions.size()) {
-        const DepartureQuestion* const soon = &questions[first + kAhead];
+    for (; first + kWidth <= queries.size(); first += kWidth) {
+      if (first + kAhead + kWidth <= queries.size()) {
+        const SpawnQuery* const soon = &queries[first + kAhead];
         for (int i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].slot);
       }
-      find_some<code(), kWidth>(&questions[first], &origins[first]);
+      find_some<code(), kWidth>(&queries[first], &origins[first]);
     }
-    if (first == questions.size()) return;
+    if (first == queries.size()) return;
     // The last ones, and one of them in the lanes that are left.
-    DepartureQuestion last[kWidth];
-    DepartureOrigin last_origins[kWidth];
+    SpawnQuery last[kWidth];
+    SpawnOrigin last_origins[kWidth];
     for (std::size_t i = 0; i < kWidth; ++i) {
-      last[i] = questions[std::min(first + i, questions.size() - 1)];
+      last[i] = queries[std::min(first + i, queries.size() - 1)];
     }
     find_some<code(), kWidth>(last, last_origins);
-    std::copy_n(last_origins, questions.size() - first, &origins[first]);
+    std::copy_n(last_origins, queries.size() - first, &origins[first]);
   });
 }
 
-const Clearance& DeparturePoint::find_clearance(std::uint32_t slot, std::size_t lane) {
+const NeighborClearance& RaySpawner::find_clearance(std::uint32_t slot, std::size_t lane) {
   if (found_.size() <= lane) found_.resize(kLanes);
   return (found_[lane] = clearances_.look(slot)).clearance;
 }
 
-std::optional<glm::vec3> DeparturePoint::search(const Ray& ray, std::uint32_t slot, Departure way) {
+std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t slot, SpawnSide side) {
   const Corners& hit = bvh_.corners_of(slot);
   const Interval t = hit_distance(ray, hit);
   const HitPoint x(ray, t);
   const int before = plane_side(ray.origin, hit);
-  const int side = way == Departure::kBefore ? before : -before;
+  const int sign = side == SpawnSide::kIncident ? before : -before;
   const glm::dvec3 normal = triangle_normal(hit);
   // plane_side is positive behind the normal.
   const glm::dvec3 offsets[2] = {
-      normal * (-side / largest(normal)),
-      glm::dvec3(ray.direction) * (way == Departure::kBefore ? -1.0 : 1.0)};
+      normal * (-sign / largest(normal)),
+      glm::dvec3(ray.direction) * (side == SpawnSide::kIncident ? -1.0 : 1.0)};
   const auto good = [&](const glm::vec3& candidate) {
-    if (plane_side(candidate, hit) != side) return false;
+    if (plane_side(candidate, hit) != sign) return false;
     // The box of X and the candidate, and some room for the error of X and for rounding.
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
     return !any_slot_near(bvh_, low, high, [&](std::uint32_t other_slot, const Corners& other) {
       if (other_slot == slot || surely_apart(low, high, other)) return false;
-      if (lies_beyond(other, hit, side)) return false;
-      const int wanted = wanted_side(ray, hit, other, way);
+      if (lies_beyond(other, hit, sign)) return false;
+      const int wanted = side_of_ray(ray, hit, other, side);
       return wanted != 0 && plane_side(candidate, other) != wanted;
     });
   };
@@ -196,16 +195,16 @@ std::optional<glm::vec3> DeparturePoint::search(const Ray& ray, std::uint32_t sl
     }
   }
   // Close to a corner from which the ray has hardly come away, its own origin may be all there is.
-  if (way == Departure::kBefore && good(ray.origin)) return ray.origin;
+  if (side == SpawnSide::kIncident && good(ray.origin)) return ray.origin;
   return std::nullopt;
 }
 
-bool DeparturePoint::leaves(const Ray& ray, std::uint32_t slot, Departure way,
-                            const glm::vec3& direction) const {
+bool RaySpawner::leaves(const Ray& ray, std::uint32_t slot, SpawnSide side,
+                        const glm::vec3& direction) const {
   const Corners& hit = bvh_.corners_of(slot);
   const int towards = plane_side(ray.origin, hit);
-  const int side = direction_side(direction, hit);
-  return way == Departure::kBefore ? side == -towards : side == towards;
+  const int sign = direction_side(direction, hit);
+  return side == SpawnSide::kIncident ? sign == -towards : sign == towards;
 }
 
 }  // namespace raygate

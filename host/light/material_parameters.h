@@ -12,24 +12,24 @@ namespace raygate {
 /// What there is to do at a hit: a set of these. Hits are shaded together with hits of the same
 /// set.
 using HitKind = std::uint32_t;
-inline constexpr HitKind kHasWeights = 1;    ///< something is interpolated between the vertices
-inline constexpr HitKind kEmits = 2;         ///< a lamp, or a colour that is only there to be seen
-inline constexpr HitKind kGlossy = 4;        ///< a highlight
-inline constexpr HitKind kMirrors = 8;       ///< a mirror
-inline constexpr HitKind kLetsThrough = 16;  ///< light passes
-inline constexpr HitKind kCatchesShadows = 32;  ///< of the background's colour but for shadows
-inline constexpr HitKind kFacets = 64;          ///< metallic-roughness; rough where it is glossy
-inline constexpr HitKind kIsBumpy = 128;        ///< a normal map
-inline constexpr HitKind kHitKinds = 256;       ///< sets are less than that
+inline constexpr HitKind kInterpolates = 1;  ///< something is interpolated between the vertices
+inline constexpr HitKind kEmits = 2;    ///< an emitter, or a colour that is only there to be seen
+inline constexpr HitKind kGlossy = 4;   ///< a highlight
+inline constexpr HitKind kMirrors = 8;  ///< a mirror
+inline constexpr HitKind kTransmits = 16;          ///< light passes
+inline constexpr HitKind kShadowCatcher = 32;      ///< of the background's colour but for shadows
+inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; rough where it is glossy
+inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
+inline constexpr HitKind kHitKinds = 256;          ///< sets are less than that
 
 /// The shares of a material before an angle is known: Bsdf has the table.
-struct Finish {
+struct MaterialParameters {
   glm::vec3 diffuse{0.0f};  ///< of the texture's colour, limited to 1
   glm::vec3 unlit{0.0f};    ///< of the same
   glm::vec3 glossy{0.0f};
-  glm::vec3 mirror{0.0f};   ///< straight on, and
-  glm::vec3 grazing{0.0f};  ///< so much more at grazing angles
-  glm::vec3 through{0.0f};  ///< of what the mirror leaves
+  glm::vec3 mirror{0.0f};         ///< straight on, and
+  glm::vec3 grazing{0.0f};        ///< so much more at grazing angles
+  glm::vec3 transmittance{0.0f};  ///< of what the mirror leaves
   glm::vec3 emission{0.0f};
   float opacity = 1.0f;  ///< d, or 0 where d does not count
   float exponent = 0.0f;
@@ -43,16 +43,17 @@ struct Finish {
   float reflectance = 0.04f;  ///< of what is not metallic, straight on
   HitKind kind = 0;           ///< without what depends on the triangle
 
-  bool has_mask = false;  ///< is_masked_out may say that it is not there: hits have nothing() then
+  bool has_mask =
+      false;  ///< is_masked_out may say that it is not there: hits have transparent() then
 
-  explicit Finish(const Material& material);
+  explicit MaterialParameters(const Material& material);
 
   /// Light goes straight on, all of it.
-  [[nodiscard]] static Finish nothing() {
+  [[nodiscard]] static MaterialParameters transparent() {
     Material clear;
     clear.illumination_model = 1;
     clear.opacity = 0.0f;
-    return Finish(clear);
+    return MaterialParameters(clear);
   }
 
  private:
@@ -60,6 +61,6 @@ struct Finish {
 };
 
 /// Of all materials of a scene, in its order.
-[[nodiscard]] std::vector<Finish> finishes_of(const Scene& scene);
+[[nodiscard]] std::vector<MaterialParameters> material_parameters(const Scene& scene);
 
 }  // namespace raygate

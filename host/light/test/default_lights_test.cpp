@@ -1,4 +1,4 @@
-#include "host/light/studio.h"
+#include "host/light/default_lights.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace raygate {
 namespace {
 
-using test::add, test::lamp, test::matte, test::rectangle;
+using test::add, test::emitter, test::matte, test::rectangle;
 
 constexpr glm::vec3 kBlue(0.1f, 0.2f, 0.4f);
 
@@ -22,9 +22,9 @@ Camera camera_from(const glm::dvec3& eye) {
   return Camera::look_at(eye, glm::dvec3(0.0), {0, 1, 0}, 35.0, 1.0);
 }
 
-TEST(LightIfDark, AddsOneLampAboveTheCameraAndASky) {
+TEST(AddDefaultLights, AddsOneLightAboveTheCameraAndASky) {
   Scene scene = square(matte(glm::vec3(0.5f)));
-  light_if_dark(scene, camera_from({0, 0, 5}));
+  add_default_lights(scene, camera_from({0, 0, 5}));
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_LT(scene.lights[0].position.x, 0.0f);
   EXPECT_GT(scene.lights[0].position.y, 0.0f);
@@ -32,44 +32,44 @@ TEST(LightIfDark, AddsOneLampAboveTheCameraAndASky) {
   EXPECT_NE(scene.background, glm::vec3(0.0f));
 }
 
-TEST(LightIfDark, LeavesWhatIsNotDarkAlone) {
-  Scene lit = square(lamp(glm::vec3(1.0f)));
-  light_if_dark(lit, camera_from({0, 0, 5}));
-  light_first_look(lit, camera_from({0, 0, 5}));
+TEST(AddDefaultLights, LeavesWhatIsNotDarkAlone) {
+  Scene lit = square(emitter(glm::vec3(1.0f)));
+  add_default_lights(lit, camera_from({0, 0, 5}));
+  add_preview_lights(lit, camera_from({0, 0, 5}));
   EXPECT_TRUE(lit.lights.empty());
   EXPECT_EQ(lit.background, glm::vec3(0.0f));
   Scene outdoors = square(matte(glm::vec3(0.5f)));
   outdoors.background = kBlue;
-  light_if_dark(outdoors, camera_from({0, 0, 5}));
+  add_default_lights(outdoors, camera_from({0, 0, 5}));
   EXPECT_TRUE(outdoors.lights.empty());
 }
 
-TEST(LightFirstLook, AddsTwoLampsAndKeepsTheBackground) {
+TEST(AddPreviewLights, AddsTwoLightsAndKeepsTheBackground) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   scene.background = kBlue;
-  light_first_look(scene, camera_from({0, 0, -5}));
+  add_preview_lights(scene, camera_from({0, 0, -5}));
   ASSERT_EQ(scene.lights.size(), 2u);
   EXPECT_EQ(scene.background, kBlue);
-  // Seen from behind, left is +x; the lamps are on the camera's side.
+  // Seen from behind, left is +x; the lights are on the camera's side.
   EXPECT_GT(scene.lights[0].position.x, 0.0f);
   EXPECT_LT(scene.lights[1].position.x, 0.0f);
   for (const PointLight& light : scene.lights) EXPECT_LT(light.position.z, 0.0f);
   EXPECT_GT(scene.lights[0].intensity.x, scene.lights[1].intensity.x);
 }
 
-TEST(LightFirstLook, TakesALabelThatGlowsForNoLamp) {
+TEST(AddPreviewLights, TakesALabelThatGlowsForNoLight) {
   Scene scene = square(matte(glm::vec3(0.5f)));
-  add(scene, rectangle({0, 0, 0.1f}, {0.1f, 0, 0}, {0, 0.1f, 0}), lamp(glm::vec3(1.0f)));
-  light_if_dark(scene, camera_from({0, 0, 5}));
+  add(scene, rectangle({0, 0, 0.1f}, {0.1f, 0, 0}, {0, 0.1f, 0}), emitter(glm::vec3(1.0f)));
+  add_default_lights(scene, camera_from({0, 0, 5}));
   EXPECT_TRUE(scene.lights.empty()) << "who gives a camera gives the light";
-  light_first_look(scene, camera_from({0, 0, 5}));
+  add_preview_lights(scene, camera_from({0, 0, 5}));
   EXPECT_EQ(scene.lights.size(), 2u);
 }
 
-TEST(LightFirstLook, StandsAtACameraWithinTheScene) {
+TEST(AddPreviewLights, StandsAtACameraWithinTheScene) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   add(scene, rectangle({-1, -1, 4}, {2, 0, 0}, {0, 2, 0}), matte(glm::vec3(0.5f)));
-  light_first_look(scene, camera_from({0, 0, 2}));
+  add_preview_lights(scene, camera_from({0, 0, 2}));
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].position, glm::vec3(0, 0, 2));
 }

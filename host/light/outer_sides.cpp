@@ -1,4 +1,4 @@
-#include "host/light/closed_sides.h"
+#include "host/light/outer_sides.h"
 
 #include <array>
 #include <cstddef>
@@ -40,7 +40,7 @@ struct Part {
 
 }  // namespace
 
-std::vector<ClosedSide> closed_sides(const Bvh& bvh, std::span<const std::uint32_t> slots) {
+std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> slots) {
   std::map<std::array<float, 3>, std::uint32_t> places;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
   for (std::uint32_t i = 0; i < slots.size(); ++i) {
@@ -86,11 +86,11 @@ std::vector<ClosedSide> closed_sides(const Bvh& bvh, std::span<const std::uint32
                      return known == part_of_slot.end() || known->second != number;
                    });
   }
-  std::vector<ClosedSide> sides(slots.size());
+  std::vector<OuterSide> sides(slots.size());
   for (std::uint32_t i = 0; i < slots.size(); ++i) {
     const Part& part = found[parts.of(i)];
     if (part.is_open) continue;
-    sides[i] = part.volume > 0.0 ? ClosedSide::kOutwards : ClosedSide::kInwards;
+    sides[i] = part.volume > 0.0 ? OuterSide::kAlongNormal : OuterSide::kAgainstNormal;
   }
   return sides;
 }
