@@ -47,8 +47,6 @@ else
 	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
 endif
 
-# The program keeps its second model of the ray core until cmake -DRAYGATE_WAVES=OFF build.
-wave: configure += -DRAYGATE_WAVES=ON
 wave: ## use: the waveform of one pixel's ray through the ray core: make wave PIXEL=64,64 [SCENE= ARGS=]
 	$(call build,build,render)
 	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd

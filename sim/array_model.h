@@ -1,4 +1,5 @@
-// Drives a Verilated hit_test_array, whatever its number of lanes: bursts in, results out.
+// Drives Verilated hit_test_arrays in step, as one array of all their lanes: bursts in, results
+// out.
 #pragma once
 
 #include <algorithm>
@@ -102,21 +103,30 @@ enum Count {
   kOutputStalls
 };
 
-/// The array `Top` (a class that Verilator made), with so many lanes. Hardware that is broken is
-/// told by std::runtime_error: nothing goes in and nothing ends for kPatience clocks, or a result
-/// that nobody waits for.
-template <class Top, int kHardwareLanes, class Numbers = Binary32Numbers>
+/// An array of `lanes` lanes, in models of the class `Top` that Verilator made of hit_test_array
+/// with kModelLanes lanes each. Lanes share nothing but the sums of their counters, so that models
+/// side by side have the results, clocks and counters of one model of all lanes. Hardware that is
+/// broken is told by std::runtime_error: nothing goes in and nothing ends for kPatience clocks, or
+/// a result that nobody waits for.
+template <class Top, int kModelLanes = 1, class Numbers = Binary32Numbers>
 class ArrayModel : public BurstModel {
  public:
-  explicit ArrayModel(const BurstStalls& stalls, const Numbers& numbers = {})
-      : numbers_(numbers),
+  /// `lanes`: a multiple of kModelLanes, at most 32; others are a bug of the caller.
+  explicit ArrayModel(int lanes, const BurstStalls& stalls = {}, const Numbers& numbers = {})
+      : models_(static_cast<std::size_t>(lanes / kModelLanes)),
+        numbers_(numbers),
+        inputs_(static_cast<std::size_t>(lanes)),
         stalls_(stalls),
         random_(stalls.seed),
         throttled_(stalls.no_test > 0 || stalls.not_taken > 0) {
-    model_->valid_i = 0;
-    model_->ready_i = 0;
-    model_->count_select_i = 0;
-    model_.reset();
+    assert(lanes > 0 && lanes % kModelLanes == 0 && lanes <= 32);
+    for (Work& work : works_) work.shares.resize(inputs_.size());
+    for (Model<Top>& model : models_) {
+      model->valid_i = 0;
+      model->ready_i = 0;
+      model->count_select_i = 0;
+      model.reset();
+    }
   }
 
   void start(std::span<const RayBundle> batch) override {
@@ -131,7 +141,7 @@ class ArrayModel : public BurstModel {
     assert(in_flight_ > 0);
     const Work& work = work_at(0);
     while (!drained(work)) step();
-    model_->valid_i = 0;
+    for (Model<Top>& model : models_) model->valid_i = 0;
     merge(work, results);
     oldest_ = (oldest_ + 1) % kMostBatches;
     --in_flight_;
@@ -139,14 +149,14 @@ class ArrayModel : public BurstModel {
 
   BurstCounters counters() override {
     assert(in_flight_ == 0);
-    for (int i = 0; i < 3; ++i) model_.clock();  // the counters are three clocks late
+    for (int i = 0; i < 3; ++i) clock();  // the counters are three clocks late
     return {read(kTests),      read(kMisses),      read(kHits),       read(kDoubts),
-            read(kNearTies),   read(kDistances),   3 * read(kPoints), model_.clocks(),
+            read(kNearTies),   read(kDistances),   3 * read(kPoints), models_.front().clocks(),
             read(kIdleClocks), read(kOutputStalls)};
   }
 
  private:
-  static constexpr unsigned kAllLanes = (1u << kHardwareLanes) - 1;
+  static constexpr unsigned kAllOfModel = (1u << kModelLanes) - 1;
   static constexpr unsigned kMostBatches = 2;
   static constexpr unsigned kPatience = 10'000;
 
@@ -154,8 +164,14 @@ class ArrayModel : public BurstModel {
   struct Work {
     std::span<const RayBundle> batch;
     BurstCursor cursor;
-    LaneShare shares[kHardwareLanes];
+    std::vector<LaneShare> shares;
   };
+
+  [[nodiscard]] int lanes() const { return static_cast<int>(inputs_.size()); }
+  Top& model_of(int n) { return *models_[static_cast<std::size_t>(n / kModelLanes)]; }
+  void clock() {
+    for (Model<Top>& model : models_) model.clock();
+  }
 
   /// The batches in flight in the order of their start.
   Work& work_at(unsigned age) { return works_[(oldest_ + age) % kMostBatches]; }
@@ -168,8 +184,8 @@ class ArrayModel : public BurstModel {
 
   /// A clock: every lane is offered a test, and its result is taken.
   void step() {
-    unsigned valid = 0, ready = kAllLanes;
-    for (int n = 0; n < kHardwareLanes; ++n) {
+    unsigned valid = 0, ready = ~0u;
+    for (int n = 0; n < lanes(); ++n) {
       if (!(offered_ >> n & 1)) {
         if (inputs_[n].record == nullptr) start_burst(n);
         if (inputs_[n].record != nullptr && !(throttled_ && chance(stalls_.no_test))) {
@@ -180,15 +196,19 @@ class ArrayModel : public BurstModel {
         valid |= 1u << n;
       }
       if (throttled_ && chance(stalls_.not_taken)) ready &= ~(1u << n);
-      if (ready & model_->valid_o & (1u << n)) take_result(n);
+      if ((ready >> n & 1) != 0 && bit(model_of(n).valid_o, n)) take_result(n);
     }
-    model_->valid_i = valid;
-    model_->ready_i = ready;
-    const unsigned taken = valid & model_->ready_o;
+    unsigned taken = 0;
+    for (int n = 0; n < lanes(); n += kModelLanes) {
+      Top& model = model_of(n);
+      model.valid_i = valid >> n & kAllOfModel;
+      model.ready_i = ready >> n & kAllOfModel;
+      taken |= static_cast<unsigned>(model.valid_i & model.ready_o) << n;
+    }
     quiet_ = taken != 0 ? 0 : quiet_ + 1;
     if (quiet_ > kPatience)
       broken("nothing in and nothing ended for " + std::to_string(kPatience) + " clocks");
-    model_.clock();
+    clock();
     offered_ = valid & ~taken;
     for (unsigned left = taken; left != 0; left &= left - 1) next_test(std::countr_zero(left));
   }
@@ -200,9 +220,13 @@ class ArrayModel : public BurstModel {
   bool chance(int of_256) { return static_cast<int>(random_() & 0xFF) < of_256; }
 
   std::uint64_t read(Count count) {
-    model_->count_select_i = count;
-    model_.eval();
-    return model_->counter_o;
+    std::uint64_t sum = 0;
+    for (Model<Top>& model : models_) {
+      model->count_select_i = count;
+      model.eval();
+      sum += model->counter_o;
+    }
+    return sum;
   }
 
   /// The next burst of the batches goes into lane n, if there is one.
@@ -215,7 +239,7 @@ class ArrayModel : public BurstModel {
       const RayBundle& bundle = work.batch[burst.bundle];
       inputs_[n] = {bundle.records, bundle.records + bundle.record_count, 0};
       const glm::vec3 direction = bundle.lane_direction(static_cast<int>(burst.lane));
-      numbers_.write(model_->direction_i, n, &direction.x, 3);
+      numbers_.write(model_of(n).direction_i, n % kModelLanes, &direction.x, 3);
       return;
     }
   }
@@ -223,10 +247,12 @@ class ArrayModel : public BurstModel {
   /// Puts the lane's next test into its slot.
   void offer_test(int n) {
     const LaneInput& lane = inputs_[n];
-    numbers_.write(model_->record_i, n, &lane.record->normal.x, 16);
-    std::memcpy(slot(model_->tag_i, n, sizeof lane.tag), &lane.tag, sizeof lane.tag);
-    set_bit(model_->first_i, n, lane.tag == 0);
-    set_bit(model_->last_i, n, lane.record + 1 == lane.end);
+    Top& model = model_of(n);
+    const int own = n % kModelLanes;
+    numbers_.write(model.record_i, own, &lane.record->normal.x, 16);
+    std::memcpy(slot(model.tag_i, own, sizeof lane.tag), &lane.tag, sizeof lane.tag);
+    set_bit(model.first_i, own, lane.tag == 0);
+    set_bit(model.last_i, own, lane.record + 1 == lane.end);
   }
 
   void next_test(int n) {
@@ -235,9 +261,14 @@ class ArrayModel : public BurstModel {
     if (++lane.record == lane.end) lane.record = nullptr;
   }
 
+  /// Lane n's bit of a port of its model.
   template <class Port>
-  static void set_bit(Port& port, int n, bool value) {
-    port = static_cast<Port>((port & ~(1u << n)) | static_cast<unsigned>(value) << n);
+  static bool bit(Port port, int n) {
+    return (port >> (n % kModelLanes) & 1) != 0;
+  }
+  template <class Port>
+  static void set_bit(Port& port, int own, bool value) {
+    port = static_cast<Port>((port & ~(1u << own)) | static_cast<unsigned>(value) << own);
   }
 
   /// The oldest batch of which lane n still has something to say, by `all` of LaneShare.
@@ -252,32 +283,34 @@ class ArrayModel : public BurstModel {
   /// What ends nothing (a report, or no news at all) is no sign of life: broken hardware may say it
   /// for ever.
   void take_result(int n) {
-    const unsigned kind = model_->report_o >> (2 * n) & 3;
-    const bool closed = model_->closed_o >> n & 1;
+    Top& model = model_of(n);
+    const int own = n % kModelLanes;
+    const unsigned kind = model.report_o >> (2 * own) & 3;
+    const bool closed = bit(model.closed_o, n);
     if (kind != 0 || closed) {
       LaneShare* const share = awaited(n, &LaneShare::all_closed);
       if (share == nullptr) broken("a result for no burst, lane " + std::to_string(n));
       const auto& [bundle, bundle_lane] = share->bursts[share->closed];
       if (kind != 0) {
         share->results.reports.push_back({bundle, bundle_lane,
-                                          read_slot<std::uint32_t>(model_->report_tag_o, n),
+                                          read_slot<std::uint32_t>(model.report_tag_o, own),
                                           static_cast<TestReport::Kind>(kind)});
       }
       if (closed) {
-        if (model_->found_o >> n & 1) {
+        if (bit(model.found_o, n)) {
           BurstHit& hit = share->results.hits.emplace_back();
-          hit = {bundle, bundle_lane, read_slot<std::uint32_t>(model_->tag_o, n)};
-          numbers_.read(model_->t_o, n, &hit.t, 1);
-          hit.t_error = static_cast<std::uint32_t>(model_->t_error_o >> (4 * n) & 15);
+          hit = {bundle, bundle_lane, read_slot<std::uint32_t>(model.tag_o, own)};
+          numbers_.read(model.t_o, own, &hit.t, 1);
+          hit.t_error = static_cast<std::uint32_t>(model.t_error_o >> (4 * own) & 15);
         }
         ++share->closed;
         quiet_ = 0;
       }
     }
-    if (model_->point_valid_o >> n & 1) {
+    if (bit(model.point_valid_o, n)) {
       LaneShare* const share = awaited(n, &LaneShare::all_pointed);
       if (share == nullptr) broken("a point for no hit, lane " + std::to_string(n));
-      numbers_.read(model_->point_o, n, &share->results.hits[share->pointed++].point.x, 3);
+      numbers_.read(model.point_o, own, &share->results.hits[share->pointed++].point.x, 3);
       quiet_ = 0;
     }
   }
@@ -292,17 +325,17 @@ class ArrayModel : public BurstModel {
       for (const LaneShare& share : work.shares) {
         to.insert(to.end(), (share.results.*part).begin(), (share.results.*part).end());
       }
-      if (kHardwareLanes > 1) std::stable_sort(to.begin() + old, to.end(), before);
+      if (lanes() > 1) std::stable_sort(to.begin() + old, to.end(), before);
     };
     append(results.hits, &BurstResults::hits);
     append(results.reports, &BurstResults::reports);
   }
 
-  Model<Top> model_;
+  std::vector<Model<Top>> models_;
   Numbers numbers_;
-  LaneInput inputs_[kHardwareLanes];
-  unsigned offered_ = 0;  // lanes whose slot holds a test that was not taken yet
-  unsigned quiet_ = 0;    // clocks since something was taken, on either side
+  std::vector<LaneInput> inputs_;  // a lane each
+  unsigned offered_ = 0;           // lanes whose slot holds a test that was not taken yet
+  unsigned quiet_ = 0;             // clocks since something was taken, on either side
   Work works_[kMostBatches];
   unsigned oldest_ = 0, in_flight_ = 0;
   BurstStalls stalls_;

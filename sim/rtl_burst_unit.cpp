@@ -3,23 +3,10 @@
 #include <cassert>
 #include <utility>
 
-#include "Vhit_test_array_behavioural_1.h"
-#include "Vhit_test_array_behavioural_1___024root.h"
-#include "Vhit_test_array_behavioural_2.h"
-#include "Vhit_test_array_behavioural_2___024root.h"
-#include "Vhit_test_array_behavioural_4.h"
-#include "Vhit_test_array_behavioural_4___024root.h"
-#include "Vhit_test_array_behavioural_8.h"
-#include "Vhit_test_array_behavioural_8___024root.h"
-#include "Vhit_test_array_structural_1.h"
-#include "Vhit_test_array_structural_1___024root.h"
-#include "Vhit_test_array_structural_2.h"
-#include "Vhit_test_array_structural_2___024root.h"
-#include "Vhit_test_array_structural_4.h"
-#include "Vhit_test_array_structural_4___024root.h"
-#include "Vhit_test_array_structural_8.h"
-#include "Vhit_test_array_structural_8___024root.h"
+#include "Vhit_test_array_structural.h"
+#include "Vhit_test_array_structural___024root.h"
 #include "sim/array_model.h"
+#include "sim/model_loader.h"
 
 namespace raygate {
 
@@ -29,39 +16,20 @@ namespace {
 // this took the fewest clocks on most scenes, for one lane and for eight.
 constexpr std::size_t kEnoughTestsALane = 64;
 
-std::unique_ptr<BurstModel> make_structural(int lanes, const BurstStalls& stalls) {
-  switch (lanes) {
-    case 1:
-      return std::make_unique<ArrayModel<Vhit_test_array_structural_1, 1>>(stalls);
-    case 2:
-      return std::make_unique<ArrayModel<Vhit_test_array_structural_2, 2>>(stalls);
-    case 4:
-      return std::make_unique<ArrayModel<Vhit_test_array_structural_4, 4>>(stalls);
-    default:
-      assert(lanes == 8);
-      return std::make_unique<ArrayModel<Vhit_test_array_structural_8, 8>>(stalls);
-  }
-}
+constexpr ModelFile kBehavioural{"hit_test_array_behavioural",
+                                 "the simulated hit-test unit of behavioural arithmetic", 15};
 
-std::unique_ptr<BurstModel> make_behavioural(int lanes, const BurstStalls& stalls) {
-  switch (lanes) {
-    case 1:
-      return std::make_unique<ArrayModel<Vhit_test_array_behavioural_1, 1>>(stalls);
-    case 2:
-      return std::make_unique<ArrayModel<Vhit_test_array_behavioural_2, 2>>(stalls);
-    case 4:
-      return std::make_unique<ArrayModel<Vhit_test_array_behavioural_4, 4>>(stalls);
-    default:
-      assert(lanes == 8);
-      return std::make_unique<ArrayModel<Vhit_test_array_behavioural_8, 8>>(stalls);
-  }
+std::unique_ptr<BurstModel> make_array(int lanes, Arith arith, const BurstStalls& stalls) {
+  if (arith == Arith::kStructural)
+    return std::make_unique<ArrayModel<Vhit_test_array_structural>>(lanes, stalls);
+  const auto make = load_model<BurstModel*(int, const BurstStalls&)>(kBehavioural);
+  return std::unique_ptr<BurstModel>(make(lanes, stalls));
 }
 
 }  // namespace
 
 RtlBurstUnit::RtlBurstUnit(int lanes, Arith arith, const BurstStalls& stalls)
-    : model_(arith == Arith::kStructural ? make_structural(lanes, stalls)
-                                         : make_behavioural(lanes, stalls)),
+    : model_(make_array(lanes, arith, stalls)),
       enough_tests_(kEnoughTestsALane * static_cast<std::size_t>(lanes)) {}
 
 RtlBurstUnit::RtlBurstUnit(std::unique_ptr<BurstModel> model)

@@ -14,13 +14,14 @@ struct BurstStalls {
   std::uint64_t seed = 0;
 };
 
-/// What RtlBurstUnit needs of a Verilated array, whatever its number of lanes.
+/// What RtlBurstUnit needs of an array.
 class BurstModel;
 
-/// hit_test_array, Verilated. Not for use by two threads at once: each thread makes its own.
+/// hit_test_array of any number of lanes to 32: one lane, Verilated, many times over. Not for use
+/// by two threads at once: each thread makes its own.
 class RtlBurstUnit : public BurstUnit {
  public:
-  /// `lanes`: 1, 2, 4 or 8, others are a bug of the caller.
+  /// Throws InputError where the model can't be built.
   explicit RtlBurstUnit(int lanes, Arith arith = Arith::kStructural,
                         const BurstStalls& stalls = {});
   explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< of another format

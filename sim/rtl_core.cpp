@@ -1,21 +1,35 @@
 #include "sim/rtl_core.h"
 
-#include <utility>
+#include <cassert>
 
-#include "Vray_core_behavioural.h"
-#include "Vray_core_behavioural___024root.h"
-#include "Vray_core_structural.h"
-#include "Vray_core_structural___024root.h"
-#include "sim/core_model.h"
+#include "sim/model_loader.h"
 
 namespace raygate {
+namespace {
+
+constexpr ModelFile kStructural{"ray_core_structural", "the simulated ray core", 90};
+constexpr ModelFile kBehavioural{"ray_core_behavioural",
+                                 "the simulated ray core of behavioural arithmetic", 40};
+constexpr ModelFile kWide{"ray_core_wide", "the simulated ray core of 256 rays", 40};
+constexpr ModelFile kOpen{"ray_core_open", "the simulated ray core that writes waveforms", 40};
+
+}  // namespace
 
 std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
                                         const CoreStalls& stalls, const CoreSet& set) {
-  if (arith == Arith::kStructural) {
-    return std::make_unique<CoreModel<Vray_core_structural>>(timing, stalls, set);
-  }
-  return std::make_unique<CoreModel<Vray_core_behavioural>>(timing, stalls, set);
+  const bool structural = arith == Arith::kStructural, wide = set.rays > kTableRays;
+  assert(set.rays <= kWideRays && !(structural && wide));
+  const auto make = load_model<CoreUnit*(const MemoryTiming&, const CoreStalls&, const CoreSet&)>(
+      structural ? kStructural
+      : wide     ? kWide
+                 : kBehavioural);
+  return std::unique_ptr<CoreUnit>(make(timing, stalls, set));
+}
+
+std::unique_ptr<CoreUnit> make_core_wave(const std::filesystem::path& file,
+                                         const MemoryTiming& timing) {
+  const auto make = load_model<CoreUnit*(const char*, const MemoryTiming&)>(kOpen);
+  return std::unique_ptr<CoreUnit>(make(file.c_str(), timing));
 }
 
 }  // namespace raygate

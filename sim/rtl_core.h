@@ -1,6 +1,7 @@
 // The ray core in simulation, behind the interface of host/intersect/core.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 
 #include "host/intersect/core/core_unit.h"
@@ -15,8 +16,8 @@ struct CoreStalls {
   std::uint64_t seed = 0;
 };
 
-/// Rays in the table of make_rtl_core's cores.
-inline constexpr int kTableRays = 64;
+/// Rays in the table of a core; of a core of behavioural arithmetic that is asked for more.
+inline constexpr int kTableRays = 64, kWideRays = 256;
 
 /// Cores behind one port to memory.
 struct CoreSet {
@@ -25,10 +26,16 @@ struct CoreSet {
 };
 
 /// ray_core, Verilated, and the memory behind it. Not for use by two threads at once: each thread
-/// makes its own.
+/// makes its own. Throws InputError where the model can't be built.
 [[nodiscard]] std::unique_ptr<CoreUnit> make_rtl_core(Arith arith = Arith::kStructural,
                                                       const MemoryTiming& timing = {},
                                                       const CoreStalls& stalls = {},
                                                       const CoreSet& set = {});
+
+/// A ray core, for one ray at a time, of behavioural arithmetic, whose words are structural
+/// arithmetic's, too. Every clock from now on is written to `file` (VCD), which is whole when the
+/// core is gone. Throws InputError where the file can't be written or the model can't be built.
+[[nodiscard]] std::unique_ptr<CoreUnit> make_core_wave(const std::filesystem::path& file,
+                                                       const MemoryTiming& timing);
 
 }  // namespace raygate

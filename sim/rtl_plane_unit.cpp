@@ -3,18 +3,21 @@
 #include <cassert>
 #include <utility>
 
-#include "Vhit_test_unit_behavioural.h"
-#include "Vhit_test_unit_structural.h"
+#include "sim/model_loader.h"
 #include "sim/plane_model.h"
 
 namespace raygate {
 
 namespace {
 
+constexpr ModelFile kStructural{"hit_test_unit_structural", "the simulated serial unit", 10};
+constexpr ModelFile kBehavioural{"hit_test_unit_behavioural",
+                                 "the simulated serial unit of behavioural arithmetic", 10};
+
 std::unique_ptr<PlaneModel> make_model(Arith arith) {
-  if (arith == Arith::kStructural)
-    return std::make_unique<PlaneModelOf<Vhit_test_unit_structural>>();
-  return std::make_unique<PlaneModelOf<Vhit_test_unit_behavioural>>();
+  const auto make =
+      load_model<PlaneModel*()>(arith == Arith::kStructural ? kStructural : kBehavioural);
+  return std::unique_ptr<PlaneModel>(make());
 }
 
 }  // namespace

@@ -11,6 +11,10 @@
 #     NETLIST <file>: TOP is in that file, as Yosys wrote it; what it instantiates and lacks is in hw/.
 #     AS <name>: its class is that of model <name>, V<name>, so that a program takes it in that one's place.
 #
+#   raygate_model_file(ray_core_structural ray_core.cpp TOP ray_core ...)
+#     The same, and a target ray_core_structural.so: a file of that name in build/sim/models, which programs
+#     load (model_loader.h), with the model and what ray_core.cpp of sim/models puts around it.
+#
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...] [RANDOM_RESETS <filter>])
 #     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest. RANDOM_RESETS: those
 #     cases (of GoogleTest's filter) once more, from each of three sets of random register contents.
@@ -35,6 +39,7 @@ target_link_libraries(verilated PUBLIC Threads::Threads)
 # (gcc's vectorising of neighbouring statements packs and unpacks more than it gains: sim/README.md.)
 set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-tree-slp-vectorize -fno-sanitize=all)
 target_compile_options(verilated PRIVATE ${RAYGATE_VERILATED_OPTIONS})
+set_target_properties(verilated PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
 
 # hw/*/*.core list the files, in the order to compile them.
 execute_process(COMMAND python3 -m synth.cores WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
@@ -116,6 +121,22 @@ function(raygate_model NAME)
   target_link_libraries(${NAME} PUBLIC verilated)
   target_compile_definitions(${NAME} PRIVATE VM_TRACE=$<BOOL:${MODEL_OPEN}>)
   target_compile_options(${NAME} PRIVATE ${options})
+endfunction()
+
+function(raygate_model_file NAME SOURCE)
+  raygate_model(${NAME} ${ARGN})
+  add_library(${NAME}.so MODULE EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/sim/models/${SOURCE})
+  set_target_properties(${NAME} PROPERTIES EXCLUDE_FROM_ALL ON)
+  # Hidden: functions that another library could replace would not be inlined.
+  set_target_properties(${NAME} ${NAME}.so PROPERTIES
+    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${NAME}.so PROPERTIES PREFIX "" OUTPUT_NAME ${NAME} SUFFIX .so
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/sim/models)
+  target_compile_definitions(${NAME}.so PRIVATE RAYGATE_MODEL=V${NAME} RAYGATE_MODEL_HEADER="V${NAME}.h"
+    RAYGATE_MODEL_ROOT="V${NAME}___024root.h" "RAYGATE_FACTORY=extern \"C\" [[gnu::visibility(\"default\")]]")
+  target_link_libraries(${NAME}.so PRIVATE ${NAME} glm::glm)
+  target_link_options(${NAME}.so PRIVATE -Wl,-z,defs)
+  set_property(GLOBAL APPEND PROPERTY RAYGATE_MODEL_FILES ${NAME}.so)
 endfunction()
 
 function(raygate_sim_test NAME)

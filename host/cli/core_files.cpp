@@ -8,7 +8,7 @@
 #include "host/cli/option_text.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/core/core_intersector.h"
-#include "sim/core_wave.h"
+#include "sim/rtl_core.h"
 
 namespace raygate {
 namespace {

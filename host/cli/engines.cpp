@@ -64,6 +64,15 @@ IntersectorFactory make_unit_factory(const EngineOptions& options, const Bvh& bv
 
 }  // namespace
 
+void prepare_engine(const EngineOptions& options) {
+  if (options.engine == Engine::kCpu || options.engine == Engine::kModel) return;
+  if (options.unit == "core") {
+    (void)make_rtl_core(options.arith);
+  } else {
+    (void)make_tester(options, {});
+  }
+}
+
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
                                             const Skips& skips,
                                             std::shared_ptr<const MemoryImage> image) {

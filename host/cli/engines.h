@@ -10,6 +10,10 @@
 
 namespace raygate {
 
+/// Builds the simulated model that `options` ask for, if it isn't built: before threads wait for
+/// it. Throws InputError where it can't be built.
+void prepare_engine(const EngineOptions& options);
+
 /// Makes intersectors of the engine, unit and number of lanes in `options`. Each one owns its
 /// simulated model; polygon records of common origins they share. Of `skips`, records and divisions
 /// count. The tree must outlive factory and intersectors. `image`: what cores read of that tree;

@@ -252,6 +252,7 @@ void run(const Options& options, Ranks& ranks) {
   report.ranks = ranks.count();
 
   require_scene(options);
+  if (!options.core_files.pixel) prepare_engine(options);
   const LoadOptions load_options{.strict = options.strict,
                                  .keep_instances = true,
                                  .smooth = options.smooth,

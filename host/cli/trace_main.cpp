@@ -171,6 +171,7 @@ int run(const TraceOptions& options) {
       scene_file ? load_scene(*scene_file, load_options) : load_scene(options.scene, load_options);
   resolve_instances(scene, options.engine.instances, options.scene);
   for (const std::string& warning : scene.warnings) print_warning(warning);
+  prepare_engine(options.engine);
   const auto threads = static_cast<int>(options.engine.threads);
   const Bvh bvh(scene, threads);
   if (!options.is_to_standard_output()) {

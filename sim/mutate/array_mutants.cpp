@@ -60,7 +60,7 @@ std::vector<Run> make_runs(std::uint64_t tests) {
 
 /// Batches follow each other closely: each starts before the one before is over.
 bool as_expected(const Run& run) {
-  ArrayModel<FaultyArray, 1> array(run.stalls);
+  ArrayModel<FaultyArray> array(1, run.stalls);
   const auto finish = [&](std::size_t i) {
     BurstResults got;
     array.finish(got);

@@ -57,19 +57,12 @@ TEST_F(CoreFiles, CoresBehindOneMemoryDrawTheSamePicture) {
   EXPECT_LT(clocks[1], clocks[0]);
 }
 
-/// With RAYGATE_WAVES, or a word about it without.
 TEST_F(CoreFiles, TheWaveOfAPixelsRay) {
   const Outcome outcome = run({"--trace-pixel", "8,8", "--trace", "pixel.vcd"});
-#ifdef RAYGATE_WAVES
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("the ray of pixel 8,8 hits triangle "), std::string::npos);
   EXPECT_EQ(folder_.list(), std::vector{"pixel.vcd"s});
   EXPECT_NE(folder_.read("pixel.vcd").find("ray_core"), std::string::npos);
-#else
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("RAYGATE_WAVES"), std::string::npos) << outcome.err;
-  EXPECT_TRUE(folder_.list().empty());
-#endif
 }
 
 }  // namespace

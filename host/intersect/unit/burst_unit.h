@@ -59,6 +59,8 @@ struct BurstCounters {
   std::uint64_t clocks = 0;         ///< simulated clock cycles
   std::uint64_t idle_clocks = 0;    ///< no test was there
   std::uint64_t output_stalls = 0;  ///< a result was not taken
+
+  friend bool operator==(const BurstCounters&, const BurstCounters&) = default;
 };
 
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest

@@ -20,7 +20,6 @@
 #include "host/lab/timing.h"
 #include "host/scene/io/obj_loader.h"
 #include "sim/rtl_core.h"
-#include "sim/wide_core.h"
 
 namespace raygate::lab {
 namespace {
@@ -108,7 +107,6 @@ class CoreBench {
 
   [[nodiscard]] std::unique_ptr<CoreUnit> make_core(const MemoryTiming& timing,
                                                     const CoreSet& cores) const {
-    if (cores.rays > kTableRays) return make_wide_core(timing, cores);
     return make_rtl_core(options_.structural ? Arith::kStructural : Arith::kBehavioural, timing, {},
                          cores);
   }

@@ -70,7 +70,7 @@ std::unique_ptr<BurstUnit> make_rtl_burst_unit(const Variant& variant) {
 #define RAYGATE_MODEL(top, ...)                                                                \
   if (matches(variant, __VA_ARGS__))                                                           \
     return std::make_unique<RtlBurstUnit>(std::make_unique<ArrayModel<top, 1, PackedNumbers>>( \
-        BurstStalls{}, PackedNumbers(variant.math)));
+        1, BurstStalls{}, PackedNumbers(variant.math)));
   RAYGATE_PIPELINE_MODELS
 #undef RAYGATE_MODEL
   return nullptr;

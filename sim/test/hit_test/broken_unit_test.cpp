@@ -20,7 +20,7 @@ TEST(BrokenUnitTest, IsNoticed) {
   const BurstBatch batch = RandomBursts(1).make(kTests);
   BurstResults expected, got;
   ReferenceBurstUnit().run(batch.bundles, expected);
-  ArrayModel<Vhit_test_array_broken, 1> broken(BurstStalls{});
+  ArrayModel<Vhit_test_array_broken> broken(1);
   broken.start(batch.bundles);
   broken.finish(got);
   EXPECT_THROW(require_same(batch.bundles, got, expected), std::exception);

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "Vhit_test_array_structural_1.h"
+#include "Vhit_test_array_structural.h"
 #include "sim/model.h"
 
 namespace raygate {
@@ -21,7 +21,7 @@ struct Latencies {
 };
 
 Latencies run(const float (&direction)[3], const float (&record)[16]) {
-  Model<Vhit_test_array_structural_1> model;
+  Model<Vhit_test_array_structural> model;
   model->valid_i = 0;
   model->ready_i = 1;
   model->count_select_i = 0;

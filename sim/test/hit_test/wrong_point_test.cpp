@@ -25,8 +25,7 @@ class WrongPointUnit : public BurstUnit {
   [[nodiscard]] BurstCounters counters() const override { return model_->counters(); }
 
  private:
-  std::unique_ptr<BurstModel> model_ =
-      std::make_unique<ArrayModel<Vhit_test_array_wrong_point, 1>>(BurstStalls{});
+  std::unique_ptr<BurstModel> model_ = std::make_unique<ArrayModel<Vhit_test_array_wrong_point>>(1);
 };
 
 template <class Unit, class... Arguments>

@@ -1,0 +1,21 @@
+// make_rtl_core for a program that links its models, one of which is a netlist with faults.
+#include <utility>
+
+#include "Vray_core_behavioural.h"
+#include "Vray_core_behavioural___024root.h"
+#include "Vray_core_structural.h"
+#include "Vray_core_structural___024root.h"
+#include "sim/core_model.h"
+#include "sim/rtl_core.h"
+
+namespace raygate {
+
+std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
+                                        const CoreStalls& stalls, const CoreSet& set) {
+  if (arith == Arith::kStructural) {
+    return std::make_unique<CoreModel<Vray_core_structural>>(timing, stalls, set);
+  }
+  return std::make_unique<CoreModel<Vray_core_behavioural>>(timing, stalls, set);
+}
+
+}  // namespace raygate
