@@ -41,11 +41,11 @@ class CorePort {
   void offer(const CoreRay& ray) {
     std::memcpy(&model_->ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
     std::memcpy(&model_->ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
-    model_->ray_t_max_i = std::bit_cast<std::uint32_t>(ray.limit);
-    model_->ray_skip_id_i = ray.ignored;
+    model_->ray_t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
+    model_->ray_skip_id_i = ray.skip_id;
     model_->ray_start_i = ray.start;
     model_->ray_any_hit_i = ray.any_hit;
-    model_->ray_no_cull_i = ray.every_box;
+    model_->ray_no_cull_i = ray.no_cull;
     model_->ray_tag_i = ray.tag;
     model_->ray_valid_i = 1;
     ++rays_;

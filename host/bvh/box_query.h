@@ -40,18 +40,18 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
   return false;
 }
 
-/// Calls visit(slot, corners) for all triangles whose axis-aligned boxes touch that box, until it
-/// says true; whether it did.
+/// Calls visit(primitive, corners) for all triangles whose axis-aligned boxes touch that box, until
+/// it says true; whether it did.
 template <class Visit>
-[[nodiscard]] bool any_slot_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
-                                 const Visit& visit) {
+[[nodiscard]] bool any_primitive_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                                      const Visit& visit) {
   return in_vectors([&](auto code) RAYGATE_BODY {
     const auto look = [&](const Bvh::Child& leaf) RAYGATE_BODY {
-      for (std::uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
-        const Corners t = bvh.corners_of(slot);
+      for (std::uint32_t primitive = leaf.first; primitive < leaf.first + leaf.count; ++primitive) {
+        const Corners t = bvh.corners_of(primitive);
         if (glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
             glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2]))) &&
-            visit(slot, t)) {
+            visit(primitive, t)) {
           return true;
         }
       }

@@ -21,9 +21,9 @@
 namespace raygate {
 namespace {
 
-using Ref = BinaryTree::Ref;
+using Ref = BinaryBvh::Ref;
 
-constexpr std::uint32_t kTaskSize = 4096;  // slots below a node that is one thread's work
+constexpr std::uint32_t kTaskSize = 4096;  // primitives below a node that is one thread's work
 constexpr float kNodeCost = 1.0f;
 /// Of a leaf of 1 to 4 triangles, which are tested at once.
 constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.95f, 1.0f, 1.05f, 1.1f};
@@ -41,18 +41,18 @@ struct Plan {
 /// Makes a binary tree wide.
 class BvhWriter {
  public:
-  BvhWriter(Bvh& bvh, const TreeContent& content, const BinaryTree& tree, int threads)
+  BvhWriter(Bvh& bvh, const TreeContent& content, const BinaryBvh& tree, int threads)
       : bvh_(bvh), content_(content), tree_(tree), threads_(threads), plans_(tree.size()) {}
 
   void write() {
     bvh_.nodes_.assign(1, {});
     clear(bvh_.nodes_[0]);
-    const std::size_t slots = content_.triangles.size();
-    bvh_.triangles_.resize(slots);
-    bvh_.places_.resize(slots);
-    bvh_.corners_.resize(9 * slots + Bvh::kMaxLeafSize);
+    const std::size_t primitives = content_.triangles.size();
+    bvh_.triangles_.resize(primitives);
+    bvh_.places_.resize(primitives);
+    bvh_.corners_.resize(9 * primitives + Bvh::kMaxLeafSize);
     if (tree_.size() == 0) return;
-    number_slots();
+    number_primitives();
     Box whole;
     tree_.get_box(tree_.root(), whole);
     unit_ = unit_of(whole);
@@ -65,14 +65,14 @@ class BvhWriter {
   }
 
  private:
-  /// Others, which have no slots, stand between the triangles.
-  void number_slots() {
+  /// Others, which have no primitives, stand between the triangles.
+  void number_primitives() {
     if (content_.others.empty()) return;
-    slots_.reserve(tree_.size());
-    std::uint32_t slots = 0;
+    first_primitives_.reserve(tree_.size());
+    std::uint32_t primitives = 0;
     for (const Primitive& primitive : tree_.primitives) {
-      slots_.push_back(slots);
-      slots += is_triangle(primitive);
+      first_primitives_.push_back(primitives);
+      primitives += is_triangle(primitive);
     }
   }
   [[nodiscard]] bool is_triangle(const Primitive& primitive) const {
@@ -199,19 +199,22 @@ class BvhWriter {
       node.child[i] = {content_.others[primitive.triangle - content_.triangles.size()].root, 0};
       return;
     }
-    node.child[i] = {slots_.empty() ? first : slots_[first], tree_.count(ref)};
-    write_slots(node.child[i], first);
+    node.child[i] = {first_primitives_.empty() ? first : first_primitives_[first],
+                     tree_.count(ref)};
+    write_primitives(node.child[i], first);
   }
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || plans_[ref].is_leaf; }
 
   /// Writes a leaf of the primitives from number `first` on.
-  void write_slots(const Bvh::Child& leaf, std::uint32_t first) {
+  void write_primitives(const Bvh::Child& leaf, std::uint32_t first) {
     float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      const std::uint32_t slot = leaf.first + i, triangle = tree_.primitives[first + i].triangle;
-      bvh_.triangles_[slot] = triangle;
-      bvh_.places_[slot] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(leaf.count)};
+      const std::uint32_t primitive = leaf.first + i,
+                          triangle = tree_.primitives[first + i].triangle;
+      bvh_.triangles_[primitive] = triangle;
+      bvh_.places_[primitive] = {static_cast<std::uint8_t>(i),
+                                 static_cast<std::uint8_t>(leaf.count)};
       for (std::uint32_t v = 0; v < 3; ++v) {
         const glm::vec3& corner = content_.positions[content_.triangles[triangle].vertices[v]];
         for (std::uint32_t k = 0; k < 3; ++k) {
@@ -265,7 +268,7 @@ class BvhWriter {
       Bvh::Node* to = &nodes[tasks[i].offset];
       for (Bvh::Node& node : tasks[i].nodes) {
         for (Bvh::Child& child : node.child) {
-          if (child.count == 0 && !bvh_.is_placed(child.first)) child.first += tasks[i].offset;
+          if (child.count == 0 && !bvh_.is_instanced(child.first)) child.first += tasks[i].offset;
         }
         *to++ = node;
       }
@@ -274,21 +277,22 @@ class BvhWriter {
 
   Bvh& bvh_;
   const TreeContent& content_;
-  const BinaryTree& tree_;
+  const BinaryBvh& tree_;
   int threads_;
   float unit_ = 0.0f;
   std::vector<Plan> plans_;
-  std::vector<std::uint32_t> slots_;  // of the primitives; empty: each has its own number
+  std::vector<std::uint32_t>
+      first_primitives_;  // of the primitives; empty: each has its own number
 };
 
 void Bvh::build(const TreeContent& content, int most_levels, int threads) {
-  const BinaryTree tree(content, most_levels, threads);
+  const BinaryBvh tree(content, most_levels, threads);
   BvhWriter(*this, content, tree, threads).write();
 }
 
 Bvh::Bvh(const Scene& scene, int threads) {
   TreeContent content{scene.positions, scene.triangles};
-  const int levels = scene.instances.empty() ? 0 : place_instances(scene, threads, content);
+  const int levels = scene.instances.empty() ? 0 : add_instances(scene, threads, content);
   build(content, kMaxDepth - levels, threads);
 }
 

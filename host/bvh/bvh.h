@@ -19,15 +19,15 @@ namespace raygate {
 
 struct TreeContent;
 
-/// A tree of axis-aligned boxes, eight to a node. A leaf holds a run of slots; slot s stands for
-/// triangle `triangle_of(s)` of the scene. The tree does not refer to the scene after it is built,
-/// and is the same, byte for byte, whatever the number of threads that build it. Memory: 320 bytes
-/// a node, a node for about five slots, and 41 bytes a slot.
+/// A tree of axis-aligned boxes, eight to a node. A leaf holds a run of primitives; primitive s
+/// stands for triangle `triangle_of(s)` of the scene. The tree does not refer to the scene after it
+/// is built, and is the same, byte for byte, whatever the number of threads that build it. Memory:
+/// 320 bytes a node, a node for about five primitives, and 41 bytes a primitive.
 ///
 /// Of a mesh that stands in several places there is one tree. What is below an instance looks like
-/// any other part of the tree, with nodes and slots of numbers that nothing is stored for: node()
-/// and corners_of() make them out of the mesh's when they are asked for: placed_tree.cpp says how.
-/// An instance takes some 200 bytes.
+/// any other part of the tree, with nodes and primitives of numbers that nothing is stored for:
+/// node() and corners_of() make them out of the mesh's when they are asked for: placed_tree.cpp
+/// says how. An instance takes some 200 bytes.
 class Bvh {
  public:
   static constexpr int kWidth = 8;
@@ -39,7 +39,7 @@ class Bvh {
 
   /// An inner node or a leaf.
   struct Child {
-    std::uint32_t first;  ///< inner: index of the node; leaf: the slots first .. first + count
+    std::uint32_t first;  ///< inner: index of the node; leaf: the primitives first .. first + count
     std::uint32_t count;  ///< 0: an inner node
   };
 
@@ -57,7 +57,7 @@ class Bvh {
     }
   };
 
-  /// The vertices of a slot's triangle, in the triangle's order.
+  /// The vertices of a primitive's triangle, in the triangle's order.
   using Corners = std::array<glm::vec3, 3>;
 
   /// Where the corners of a leaf's triangles are made, if they are not stored.
@@ -74,61 +74,62 @@ class Bvh {
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
   /// A node, which may be made in `room`.
   [[nodiscard]] RAYGATE_INLINE const Node& node(std::uint32_t index, Node& room) const {
-    if (is_placed(index)) [[unlikely]] {
-      place_node(index, room);
+    if (is_instanced(index)) [[unlikely]] {
+      make_instance_node(index, room);
       return room;
     }
     return nodes_[index];
   }
   [[nodiscard]] RAYGATE_INLINE Child child_of(std::uint32_t index, int i) const {
-    if (is_placed(index)) [[unlikely]]
-      return placed_child(index, i);
+    if (is_instanced(index)) [[unlikely]]
+      return instance_child(index, i);
     return nodes_[index].child[i];
   }
 
-  /// The slots below are those that are stored, of no instance.
-  [[nodiscard]] std::uint32_t slot_count() const {
+  /// The primitives below are those that are stored, of no instance.
+  [[nodiscard]] std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(triangles_.size());
   }
-  [[nodiscard]] bool has_instances() const { return !placed_.empty(); }
-  /// The slots of all instances: first .. second; after the stored ones.
-  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> placed_slots() const {
-    if (!has_instances()) return {slot_count(), slot_count()};
-    return {placed_slots_.begin(), placed_slots_.end()};
+  [[nodiscard]] bool has_instances() const { return !instances_.empty(); }
+  /// The primitives of all instances: first .. second; after the stored ones.
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> instance_primitives() const {
+    if (!has_instances()) return {primitive_count(), primitive_count()};
+    return {instance_primitives_.begin(), instance_primitives_.end()};
   }
-  /// Whether the number of a slot, or of a node, is one of an instance.
-  [[nodiscard]] RAYGATE_INLINE bool is_placed(std::uint32_t number) const {
-    return number >= first_placed_;
+  /// Whether the number of a primitive, or of a node, is one of an instance.
+  [[nodiscard]] RAYGATE_INLINE bool is_instanced(std::uint32_t number) const {
+    return number >= first_instanced_;
   }
   /// The leaves of the whole tree.
   [[nodiscard]] std::vector<Child> leaves() const;
   /// Of the whole tree, instances included.
   [[nodiscard]] std::uint64_t triangle_count() const {
-    return std::uint64_t{slot_count()} + (placed_slots_.end() - placed_slots_.begin());
+    return std::uint64_t{primitive_count()} +
+           (instance_primitives_.end() - instance_primitives_.begin());
   }
 
-  /// The number of a slot's triangle in the scene.
-  [[nodiscard]] std::uint32_t triangle_of(std::uint32_t slot) const {
-    return is_placed(slot) ? placed_triangle(slot) : triangles_[slot];
+  /// The number of a primitive's triangle in the scene.
+  [[nodiscard]] std::uint32_t triangle_of(std::uint32_t primitive) const {
+    return is_instanced(primitive) ? instance_triangle(primitive) : triangles_[primitive];
   }
   /// Where the scene stores it.
-  [[nodiscard]] RAYGATE_INLINE FaceRef face_of(std::uint32_t slot) const {
-    if (is_placed(slot)) [[unlikely]]
-      return placed_face(slot);
-    return {kNoIndex, triangles_[slot]};
+  [[nodiscard]] RAYGATE_INLINE FaceRef face_of(std::uint32_t primitive) const {
+    if (is_instanced(primitive)) [[unlikely]]
+      return instance_face(primitive);
+    return {kNoIndex, triangles_[primitive]};
   }
 
-  [[nodiscard]] Corners corners_of(std::uint32_t slot) const {
-    if (is_placed(slot)) [[unlikely]]
-      return placed_corners(slot);
-    return stored_corners(slot);
+  [[nodiscard]] Corners corners_of(std::uint32_t primitive) const {
+    if (is_instanced(primitive)) [[unlikely]]
+      return instance_corners(primitive);
+    return stored_corners(primitive);
   }
   /// The corners of a leaf's triangles, one coordinate of all of them after the other: coordinate k
   /// of corner v of triangle i is [(3 v + k) count + i]. What comes after the last one may be read,
   /// and means nothing, as far as for four triangles. They may be made in `room`.
   [[nodiscard]] RAYGATE_INLINE const float* corners_of(const Child& leaf, LeafRoom& room) const {
-    if (is_placed(leaf.first)) [[unlikely]] {
-      place_corners(leaf, room);
+    if (is_instanced(leaf.first)) [[unlikely]] {
+      make_instance_corners(leaf, room);
       return room.corners;
     }
     return stored_corners(leaf);
@@ -137,8 +138,8 @@ class Bvh {
   /// Says that a child will soon be visited. (Always inlined: GCC 12 takes a function that does
   /// nothing but prefetch for one without effect, and leaves its calls out.)
   RAYGATE_INLINE void prefetch(const Child& child) const {
-    if (is_placed(child.first)) [[unlikely]]
-      return prefetch_placed(child);
+    if (is_instanced(child.first)) [[unlikely]]
+      return prefetch_instance(child);
     prefetch_stored(child);
   }
 
@@ -150,21 +151,21 @@ class Bvh {
   /// Builds it, of at most so many levels.
   void build(const TreeContent& content, int most_levels, int threads);
   /// Takes the scene's instances in, adds them to the content, and says how many levels they have.
-  int place_instances(const Scene& scene, int threads, TreeContent& content);
+  int add_instances(const Scene& scene, int threads, TreeContent& content);
   /// How many nodes there are on the longest way down.
   [[nodiscard]] int levels(std::uint32_t index = 0) const;
 
-  void place_node(std::uint32_t index, Node& room) const;
-  [[nodiscard]] Child placed_child(std::uint32_t index, int i) const;
-  void place_corners(const Child& leaf, LeafRoom& room) const;
-  [[nodiscard]] Corners placed_corners(std::uint32_t slot) const;
-  [[nodiscard]] std::uint32_t placed_triangle(std::uint32_t slot) const;
-  [[nodiscard]] FaceRef placed_face(std::uint32_t slot) const;
-  void prefetch_placed(const Child& child) const;
+  void make_instance_node(std::uint32_t index, Node& room) const;
+  [[nodiscard]] Child instance_child(std::uint32_t index, int i) const;
+  void make_instance_corners(const Child& leaf, LeafRoom& room) const;
+  [[nodiscard]] Corners instance_corners(std::uint32_t primitive) const;
+  [[nodiscard]] std::uint32_t instance_triangle(std::uint32_t primitive) const;
+  [[nodiscard]] FaceRef instance_face(std::uint32_t primitive) const;
+  void prefetch_instance(const Child& child) const;
 
-  [[nodiscard]] Corners stored_corners(std::uint32_t slot) const {
-    const Place place = places_[slot];
-    const float* const from = &corners_[9 * std::size_t{slot - place.number} + place.number];
+  [[nodiscard]] Corners stored_corners(std::uint32_t primitive) const {
+    const Place place = places_[primitive];
+    const float* const from = &corners_[9 * std::size_t{primitive - place.number} + place.number];
     Corners corners;
     for (int v = 0; v < 3; ++v) {
       for (int k = 0; k < 3; ++k) corners[v][k] = from[std::size_t(3 * v + k) * place.count];
@@ -184,21 +185,21 @@ class Bvh {
     for (std::ptrdiff_t line = 0; line < 4; ++line) __builtin_prefetch(begin + 64 * line);
   }
 
-  /// Which of its leaf's triangles a slot is.
+  /// Which of its leaf's triangles a primitive is.
   struct Place {
     std::uint8_t number, count;
   };
 
   std::vector<Node> nodes_;
   std::vector<float> corners_;            // all geometry: leaf by leaf
-  std::vector<std::uint32_t> triangles_;  // of the slots, as the places
+  std::vector<std::uint32_t> triangles_;  // of the primitives, as the places
   std::vector<Place> places_;
 
-  // Nodes and slots from here on are of instances: `placed_nodes_` and `placed_slots_` say of
-  // which.
-  std::uint32_t first_placed_ = 0xFFFFFFFF;
-  Runs placed_nodes_, placed_slots_;
-  std::vector<PlacedTree> placed_;
+  // Nodes and primitives from here on are of instances: `instance_nodes_` and
+  // `instance_primitives_` say of which.
+  std::uint32_t first_instanced_ = 0xFFFFFFFF;
+  RangeMap instance_nodes_, instance_primitives_;
+  std::vector<InstanceBvh> instances_;
   std::vector<Bvh> meshes_;
 };
 

@@ -30,7 +30,7 @@
 
 namespace raygate {
 
-PlacedTree::PlacedTree(const Instance& instance, const glm::dvec3& size) : mesh(instance.mesh) {
+InstanceBvh::InstanceBvh(const Instance& instance, const glm::dvec3& size) : mesh(instance.mesh) {
   std::memcpy(rows, instance.rows, sizeof rows);
   for (int k = 0; k < 3; ++k) {
     double lost = 0.0, sum = std::abs(rows[k][3]);
@@ -47,12 +47,12 @@ PlacedTree::PlacedTree(const Instance& instance, const glm::dvec3& size) : mesh(
 
 namespace {
 
-Bvh::Child placed(const PlacedTree& at, const Bvh::Child& child) {
-  return {child.first + (child.count == 0 ? at.first_node : at.first_slot), child.count};
+Bvh::Child placed(const InstanceBvh& at, const Bvh::Child& child) {
+  return {child.first + (child.count == 0 ? at.first_node : at.first_primitive), child.count};
 }
 
 /// Makes a node of the instance out of one of its mesh.
-RAYGATE_INLINE void place(const PlacedTree& at, const Bvh::Node& from, Bvh::Node& to) {
+RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Node& to) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   FloatLanes bounds[2][3];
   for (int end = 0; end < 2; ++end) {
@@ -78,7 +78,7 @@ RAYGATE_INLINE void place(const PlacedTree& at, const Bvh::Node& from, Bvh::Node
 
 /// Makes the corners of a leaf's triangles: as `transform_point` (host/scene/instance_transform.h)
 /// does of each.
-RAYGATE_INLINE void place(const PlacedTree& at, const float* from, std::size_t count, float* to) {
+RAYGATE_INLINE void place(const InstanceBvh& at, const float* from, std::size_t count, float* to) {
   for (std::size_t v = 0; v < 3; ++v) {
     DoubleQuad corner[3];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -108,7 +108,7 @@ void box_around(const Bvh::Node& node, Box& box) {
 
 }  // namespace
 
-int Bvh::place_instances(const Scene& scene, int threads, TreeContent& content) {
+int Bvh::add_instances(const Scene& scene, int threads, TreeContent& content) {
   int most_levels = 0;
   std::vector<glm::dvec3> sizes;
   for (const Mesh& mesh : scene.meshes) {
@@ -125,33 +125,34 @@ int Bvh::place_instances(const Scene& scene, int threads, TreeContent& content) 
       sizes.back()[k] = std::max(std::abs(double{box[k]}), std::abs(double{box[k + 4]}));
     }
   }
-  // More than the tree's own nodes and slots will be.
-  first_placed_ = static_cast<std::uint32_t>(scene.triangles.size() + scene.instances.size()) + 1;
-  std::vector<std::uint32_t> node_counts, slot_counts;
+  // More than the tree's own nodes and primitives will be.
+  first_instanced_ =
+      static_cast<std::uint32_t>(scene.triangles.size() + scene.instances.size()) + 1;
+  std::vector<std::uint32_t> node_counts, primitive_counts;
   auto triangle = static_cast<std::uint32_t>(scene.triangles.size());
-  std::uint64_t slots = first_placed_;
+  std::uint64_t primitives = first_instanced_;
   for (const Instance& instance : scene.instances) {
     const Bvh& tree = meshes_[instance.mesh];
     node_counts.push_back(static_cast<std::uint32_t>(tree.nodes_.size()));
-    slot_counts.push_back(tree.slot_count());
-    slots += tree.slot_count();
+    primitive_counts.push_back(tree.primitive_count());
+    primitives += tree.primitive_count();
   }
-  if (slots >= std::uint64_t{1} << 31) throw std::length_error("2^31 triangles or more");
-  placed_nodes_ = Runs(first_placed_, node_counts);
-  placed_slots_ = Runs(first_placed_, slot_counts);
+  if (primitives >= std::uint64_t{1} << 31) throw std::length_error("2^31 triangles or more");
+  instance_nodes_ = RangeMap(first_instanced_, node_counts);
+  instance_primitives_ = RangeMap(first_instanced_, primitive_counts);
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    PlacedTree& at = placed_.emplace_back(scene.instances[i], sizes[scene.instances[i].mesh]);
-    at.first_node = placed_nodes_.begin(i);
-    at.first_slot = placed_slots_.begin(i);
+    InstanceBvh& at = instances_.emplace_back(scene.instances[i], sizes[scene.instances[i].mesh]);
+    at.first_node = instance_nodes_.begin(i);
+    at.first_primitive = instance_primitives_.begin(i);
     at.first_triangle = triangle;
-    triangle += slot_counts[i];
+    triangle += primitive_counts[i];
     Node root;
-    place_node(at.first_node, root);
+    make_instance_node(at.first_node, root);
     TreeContent::Other& other = content.others.emplace_back();
     box_around(root, other.box);
     other.root = at.first_node;
   }
-  if (static_cast<int>(std::bit_width(first_placed_)) > kMaxDepth - most_levels) {
+  if (static_cast<int>(std::bit_width(first_instanced_)) > kMaxDepth - most_levels) {
     throw std::length_error("meshes and instances too many for one tree");
   }
   return most_levels;
@@ -166,47 +167,47 @@ int Bvh::levels(std::uint32_t index) const {
   return most + 1;
 }
 
-void Bvh::place_node(std::uint32_t index, Node& room) const {
-  const PlacedTree& at = placed_[placed_nodes_.find(index)];
+void Bvh::make_instance_node(std::uint32_t index, Node& room) const {
+  const InstanceBvh& at = instances_[instance_nodes_.find(index)];
   const Node& from = meshes_[at.mesh].nodes_[index - at.first_node];
   in_vectors([&](auto) RAYGATE_BODY { place(at, from, room); });
 }
 
-Bvh::Child Bvh::placed_child(std::uint32_t index, int i) const {
-  const PlacedTree& at = placed_[placed_nodes_.find(index)];
+Bvh::Child Bvh::instance_child(std::uint32_t index, int i) const {
+  const InstanceBvh& at = instances_[instance_nodes_.find(index)];
   return placed(at, meshes_[at.mesh].nodes_[index - at.first_node].child[i]);
 }
 
-void Bvh::place_corners(const Child& leaf, LeafRoom& room) const {
-  const PlacedTree& at = placed_[placed_slots_.find(leaf.first)];
+void Bvh::make_instance_corners(const Child& leaf, LeafRoom& room) const {
+  const InstanceBvh& at = instances_[instance_primitives_.find(leaf.first)];
   const float* const from =
-      meshes_[at.mesh].stored_corners({leaf.first - at.first_slot, leaf.count});
+      meshes_[at.mesh].stored_corners({leaf.first - at.first_primitive, leaf.count});
   in_vectors([&](auto) RAYGATE_BODY { place(at, from, leaf.count, room.corners); });
 }
 
-Corners Bvh::placed_corners(std::uint32_t slot) const {
-  const PlacedTree& at = placed_[placed_slots_.find(slot)];
-  Corners corners = meshes_[at.mesh].stored_corners(slot - at.first_slot);
+Corners Bvh::instance_corners(std::uint32_t primitive) const {
+  const InstanceBvh& at = instances_[instance_primitives_.find(primitive)];
+  Corners corners = meshes_[at.mesh].stored_corners(primitive - at.first_primitive);
   for (glm::vec3& corner : corners) corner = raygate::transform_point(at.rows, corner);
   return corners;
 }
 
-std::uint32_t Bvh::placed_triangle(std::uint32_t slot) const {
-  const PlacedTree& at = placed_[placed_slots_.find(slot)];
-  return at.first_triangle + meshes_[at.mesh].triangles_[slot - at.first_slot];
+std::uint32_t Bvh::instance_triangle(std::uint32_t primitive) const {
+  const InstanceBvh& at = instances_[instance_primitives_.find(primitive)];
+  return at.first_triangle + meshes_[at.mesh].triangles_[primitive - at.first_primitive];
 }
 
-FaceRef Bvh::placed_face(std::uint32_t slot) const {
-  const std::uint32_t instance = placed_slots_.find(slot);
-  const PlacedTree& at = placed_[instance];
-  return {instance, meshes_[at.mesh].triangles_[slot - at.first_slot]};
+FaceRef Bvh::instance_face(std::uint32_t primitive) const {
+  const std::uint32_t instance = instance_primitives_.find(primitive);
+  const InstanceBvh& at = instances_[instance];
+  return {instance, meshes_[at.mesh].triangles_[primitive - at.first_primitive]};
 }
 
-void Bvh::prefetch_placed(const Child& child) const {
-  const PlacedTree& at =
-      placed_[child.count == 0 ? placed_nodes_.find(child.first) : placed_slots_.find(child.first)];
+void Bvh::prefetch_instance(const Child& child) const {
+  const InstanceBvh& at = instances_[child.count == 0 ? instance_nodes_.find(child.first)
+                                                      : instance_primitives_.find(child.first)];
   meshes_[at.mesh].prefetch_stored(
-      {child.first - (child.count == 0 ? at.first_node : at.first_slot), child.count});
+      {child.first - (child.count == 0 ? at.first_node : at.first_primitive), child.count});
 }
 
 std::vector<Bvh::Child> Bvh::leaves() const {
@@ -215,7 +216,7 @@ std::vector<Bvh::Child> Bvh::leaves() const {
     std::ranges::copy_if(node.child, std::back_inserter(leaves),
                          [](const Child& child) { return child.count != 0; });
   }
-  for (const PlacedTree& at : placed_) {
+  for (const InstanceBvh& at : instances_) {
     for (const Child& leaf : meshes_[at.mesh].leaves()) leaves.push_back(placed(at, leaf));
   }
   return leaves;

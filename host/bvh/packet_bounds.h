@@ -17,7 +17,7 @@
 // packet_traversal.cpp has it for one ray, whose entry into a box is the largest of 0 and
 // float32((near - O) * inverse_near) of each axis, and whose exit the smallest of its cutoff and
 // float32((far - O) * inverse_far). Both inverses have the sign of the direction's component, and
-// never grow when its magnitude does: rounding keeps order. So a beam that takes inverse_near for
+// never grow when its magnitude does: rounding keeps order. So a bounds that takes inverse_near for
 // a magnitude no smaller than any of its rays', and inverse_far for one no larger, enters
 //   * where near - O has the sign of I: no later than any of them;
 //   * else: at 0 or before, as they do;
@@ -45,14 +45,14 @@ inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 }
 
 /// Rays from one origin into one octant.
-struct Beam {
+struct PacketBounds {
   float origin[3];
   float inverse_near[3], inverse_far[3];
   int octant;  ///< see octant_of
 
-  Beam() = default;
+  PacketBounds() = default;
   /// Around one ray; its direction is scaled.
-  Beam(const glm::vec3& from, const glm::vec3& direction) : octant(octant_of(direction)) {
+  PacketBounds(const glm::vec3& from, const glm::vec3& direction) : octant(octant_of(direction)) {
     for (int k = 0; k < 3; ++k) {
       const bool small = std::abs(direction[k]) < kSmallestComponent;
       const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
@@ -64,19 +64,19 @@ struct Beam {
   }
 };
 
-/// Sets bit i of the result where the beam meets the box of child i before `cutoff` (see
+/// Sets bit i of the result where the bounds meets the box of child i before `cutoff` (see
 /// PacketTraversal::set_cutoff), and entry[i] to where it enters it.
 template <Vectors kCode = Vectors::kBaseline>
-RAYGATE_INLINE LaneMask meet_children(const Beam& beam, const Bvh::Node& node, float cutoff,
-                                      FloatLanes& entry) {
+RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh::Node& node,
+                                           float cutoff, FloatLanes& entry) {
   FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
   for (int k = 0; k < 3; ++k) {
-    const int negative = beam.octant >> k & 1;
+    const int negative = bounds.octant >> k & 1;
     FloatLanes near, far;
     load_lanes(node.bounds[negative][k], near);
     load_lanes(node.bounds[negative ^ 1][k], far);
-    const FloatLanes t_near = (near - beam.origin[k]) * beam.inverse_near[k];
-    const FloatLanes t_far = (far - beam.origin[k]) * beam.inverse_far[k];
+    const FloatLanes t_near = (near - bounds.origin[k]) * bounds.inverse_near[k];
+    const FloatLanes t_far = (far - bounds.origin[k]) * bounds.inverse_far[k];
     enter = t_near > enter ? t_near : enter;
     leave = t_far < leave ? t_far : leave;
   }
@@ -84,8 +84,8 @@ RAYGATE_INLINE LaneMask meet_children(const Beam& beam, const Bvh::Node& node, f
   return sign_mask<kCode>(enter <= leave);
 }
 
-/// Eight beams of one origin and octant; an absent one has a negative cutoff.
-struct Beams {
+/// Eight bounds8 of one origin and octant; an absent one has a negative cutoff.
+struct PacketBounds8 {
   FloatLanes inverse_near[3], inverse_far[3];
   FloatLanes cutoff;
 
@@ -101,27 +101,28 @@ struct Beams {
   }
 };
 
-/// One of the eight, in a form for meet_children.
-RAYGATE_INLINE Beam one_of(const Beams& beams, int which, const Beam& like) {
-  Beam beam = like;
+/// One of the eight, in a form for intersect_children.
+RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
+                                      const PacketBounds& like) {
+  PacketBounds bounds = like;
   for (int k = 0; k < 3; ++k) {
-    beam.inverse_near[k] = beams.inverse_near[k][which];
-    beam.inverse_far[k] = beams.inverse_far[k][which];
+    bounds.inverse_near[k] = bounds8.inverse_near[k][which];
+    bounds.inverse_far[k] = bounds8.inverse_far[k][which];
   }
-  return beam;
+  return bounds;
 }
 
-/// The beams that meet the box of a node's child.
+/// The bounds8 that intersect_boxes the box of a node's child.
 template <Vectors kCode = Vectors::kBaseline>
-RAYGATE_INLINE LaneMask meet_beams(const Beams& beams, const glm::vec3& origin, int octant,
-                                   const Bvh::Node& node, int child) {
-  FloatLanes enter = {}, leave = beams.cutoff;
+RAYGATE_INLINE LaneMask intersect_packets(const PacketBounds8& bounds8, const glm::vec3& origin,
+                                          int octant, const Bvh::Node& node, int child) {
+  FloatLanes enter = {}, leave = bounds8.cutoff;
   for (int k = 0; k < 3; ++k) {
     const int negative = octant >> k & 1;
     const float near = node.bounds[negative][k][child] - origin[k];
     const float far = node.bounds[negative ^ 1][k][child] - origin[k];
-    const FloatLanes t_near = near * beams.inverse_near[k];
-    const FloatLanes t_far = far * beams.inverse_far[k];
+    const FloatLanes t_near = near * bounds8.inverse_near[k];
+    const FloatLanes t_far = far * bounds8.inverse_far[k];
     enter = t_near > enter ? t_near : enter;
     leave = t_far < leave ? t_far : leave;
   }

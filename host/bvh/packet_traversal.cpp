@@ -9,10 +9,10 @@
 
 // Why no true hit is culled
 //
-// Let the ray meet a triangle at t* > 0, t* at most the exact cutoff, I its direction, and
-// u = 2^-24. On each axis t* I = x - O for a coordinate x inside the triangle's box, which the tree
-// stores at least one float, so at least 2^-149, wider: low' + 2^-149 <= x <= high' - 2^-149. By
-// symmetry let I > 0; near = low', far = high'.
+// Let the ray intersect_boxes a triangle at t* > 0, t* at most the exact cutoff, I its direction,
+// and u = 2^-24. On each axis t* I = x - O for a coordinate x inside the triangle's box, which the
+// tree stores at least one float, so at least 2^-149, wider: low' + 2^-149 <= x <= high' - 2^-149.
+// By symmetry let I > 0; near = low', far = high'.
 //
 // Entry: float32((near - O) * inverse_near). A difference of floats is off by a factor 1 + u and
 // never
@@ -62,11 +62,11 @@ PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
 void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction) {
   assert(octant_of(direction) == octant_);
   cutoff_[lane] = kFarthest;
-  const Beam beam(origin, direction);
+  const PacketBounds bounds(origin, direction);
   for (int k = 0; k < 3; ++k) {
     origin_[k][lane] = origin[k];
-    inverse_near_[k][lane] = beam.inverse_near[k];
-    inverse_far_[k][lane] = beam.inverse_far[k];
+    inverse_near_[k][lane] = bounds.inverse_near[k];
+    inverse_far_[k][lane] = bounds.inverse_far[k];
   }
 }
 
@@ -76,7 +76,7 @@ void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_be
 struct PacketVisitor {
   int octant;
   FloatLanes origin[3], inverse_near[3], inverse_far[3], cutoff;
-  LaneMask lanes[Bvh::kWidth];  ///< the rays that meet the children of the last node
+  LaneMask lanes[Bvh::kWidth];  ///< the rays that intersect_boxes the children of the last node
 
   RAYGATE_INLINE explicit PacketVisitor(const PacketTraversal& packet)
       : octant(packet.octant_), cutoff(packet.cutoff_) {
@@ -87,7 +87,8 @@ struct PacketVisitor {
     }
   }
 
-  /// The rays that meet a box, given as the planes that they come to first and last, and where.
+  /// The rays that intersect_boxes a box, given as the planes that they come to first and last, and
+  /// where.
   RAYGATE_INLINE LaneMask lanes_at(const float (&near)[3], const float (&far)[3],
                                    FloatLanes& enter) const {
     FloatLanes leave = cutoff;
@@ -101,12 +102,12 @@ struct PacketVisitor {
     return sign_mask(enter <= leave);
   }
 
-  RAYGATE_INLINE bool goes_on(float entry, LaneMask& rays) const {
+  RAYGATE_INLINE bool should_visit(float entry, LaneMask& rays) const {
     rays &= sign_mask(cutoff >= entry);
     return rays != 0;
   }
 
-  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, LaneMask, FloatLanes& entry) {
+  RAYGATE_INLINE LaneMask intersect_boxes(const Bvh::Node& node, LaneMask, FloatLanes& entry) {
     LaneMask met = 0;
     entry = FloatLanes{};
     for (int i = 0; i < Bvh::kWidth && node.bounds[0][0][i] <= node.bounds[1][0][i]; ++i) {
@@ -126,9 +127,9 @@ struct PacketVisitor {
     return met;
   }
 
-  RAYGATE_INLINE LaneMask rays_at(int i) const { return lanes[i]; }
+  RAYGATE_INLINE LaneMask rays_of_child(int i) const { return lanes[i]; }
 
-  /// The rays that meet the box of one triangle of a leaf.
+  /// The rays that intersect_boxes the box of one triangle of a leaf.
   RAYGATE_INLINE LaneMask lanes_at(const Bvh::Corners& corners) const {
     Box box;
     box_around(corners[0], corners[1], corners[2], box);
@@ -147,18 +148,18 @@ struct PacketVisitor {
 void advance(PacketTraversal& packet, LeafVisits& leaf) {
   in_vectors([&](auto) RAYGATE_BODY {
     PacketVisitor visitor(packet);
-    Waiting<LaneMask> waiting;
+    StackEntry<LaneMask> waiting;
     leaf.count = 0;
     while (leaf.count == 0 && next_leaf(*packet.bvh_, visitor, packet.stack_, waiting)) {
       const std::uint32_t end = waiting.child.first + waiting.child.count;
-      for (std::uint32_t slot = waiting.child.first; slot < end; ++slot) {
-        const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(slot));
+      for (std::uint32_t primitive = waiting.child.first; primitive < end; ++primitive) {
+        const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(primitive));
         if (lanes == 0) continue;
         LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
-        if (last != nullptr && last->lanes == lanes && last->first + last->count == slot) {
+        if (last != nullptr && last->lanes == lanes && last->first + last->count == primitive) {
           ++last->count;
         } else {
-          leaf.visits[leaf.count++] = {slot, 1, lanes};
+          leaf.visits[leaf.count++] = {primitive, 1, lanes};
         }
       }
     }

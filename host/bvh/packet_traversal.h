@@ -13,14 +13,15 @@
 
 namespace raygate {
 
-/// Some slots of a leaf that a packet came to, and which of its rays meet the boxes of each.
+/// Some primitives of a leaf that a packet came to, and which of its rays intersect_boxes the boxes
+/// of each.
 struct LeafVisit {
-  std::uint32_t first = 0;  ///< the slots first .. first + count
+  std::uint32_t first = 0;  ///< the primitives first .. first + count
   std::uint32_t count = 0;
   LaneMask lanes = 0;
 };
 
-/// A leaf's slots that any ray meets, as runs that the same rays meet.
+/// A leaf's primitives that any ray meets, as runs that the same rays intersect_boxes.
 struct LeafVisits {
   std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
   std::size_t count = 0;  ///< 0: all rays have seen everything
@@ -59,7 +60,7 @@ class PacketTraversal {
   FloatLanes cutoff_;
   const Bvh* bvh_;
   int octant_;
-  WalkStack<LaneMask> stack_{0xFF};
+  TraversalStack<LaneMask> stack_{0xFF};
 };
 
 }  // namespace raygate

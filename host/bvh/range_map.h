@@ -11,11 +11,11 @@ namespace raygate {
 
 /// Consecutive runs of numbers, none of them empty. Finding a number's run takes as long as it does
 /// to look into a table, where the runs are about equally long.
-class Runs {
+class RangeMap {
  public:
-  Runs() = default;
-  /// Runs of these lengths from `begin` on; their end is below 2^32.
-  Runs(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
+  RangeMap() = default;
+  /// RangeMap of these lengths from `begin` on; their end is below 2^32.
+  RangeMap(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
     begins_.reserve(lengths.size() + 1);
     for (const std::uint32_t length : lengths) begins_.push_back(begins_.back() + length);
     if (lengths.empty()) return;

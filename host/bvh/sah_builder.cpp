@@ -208,9 +208,9 @@ std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left
 namespace {
 
 /// Cuts runs up to the last one.
-class Divider {
+class SahBuilder {
  public:
-  Divider(BinaryTree& tree, int max_depth)
+  SahBuilder(BinaryBvh& tree, int max_depth)
       : tree_(tree),
         max_depth_(max_depth),
         room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {
@@ -229,9 +229,9 @@ class Divider {
       lock.unlock();
       Run sides[2];
       if (run.size() <= kTaskSize) {
-        divide_all(run);
+        split_all(run);
       } else {
-        divide(run, sides);
+        split(run, sides);
       }
       lock.lock();
       --busy_;
@@ -241,7 +241,7 @@ class Divider {
   }
 
  private:
-  void divide(const Run& run, Run (&sides)[2]) {
+  void split(const Run& run, Run (&sides)[2]) {
     if (run.size() == 1) {
       tree_.nodes[run.parent].child[run.side] = tree_.size() + run.begin;
       return;
@@ -251,7 +251,7 @@ class Divider {
     const std::uint32_t middle =
         run.begin + cut_run(primitives.subspan(run.begin, run.size()), &room_[run.begin],
                             max_depth_ - run.depth, box);
-    BinaryTree::Node& node = tree_.nodes[middle];
+    BinaryBvh::Node& node = tree_.nodes[middle];
     node.box = box;
     node.first = run.begin;
     node.count = run.size();
@@ -260,15 +260,15 @@ class Divider {
     sides[1] = {middle, run.end, run.depth + 1, middle, 1};
   }
 
-  void divide_all(const Run& run) {
+  void split_all(const Run& run) {
     Run sides[2];
-    divide(run, sides);
+    split(run, sides);
     if (run.size() == 1) return;
-    divide_all(sides[0]);
-    divide_all(sides[1]);
+    split_all(sides[0]);
+    split_all(sides[1]);
   }
 
-  BinaryTree& tree_;
+  BinaryBvh& tree_;
   int max_depth_;
   std::unique_ptr<Primitive[]> room_;
   std::mutex mutex_;
@@ -279,7 +279,7 @@ class Divider {
 
 }  // namespace
 
-BinaryTree::BinaryTree(const TreeContent& content, int max_depth, int threads)
+BinaryBvh::BinaryBvh(const TreeContent& content, int max_depth, int threads)
     : primitives(content.size()), nodes(content.size()) {
   if (primitives.empty()) return;
   const std::size_t tasks = (primitives.size() + kTaskSize - 1) / kTaskSize;
@@ -298,8 +298,8 @@ BinaryTree::BinaryTree(const TreeContent& content, int max_depth, int threads)
       primitives[i].triangle = static_cast<std::uint32_t>(i);
     }
   });
-  Divider divider(*this, max_depth);
-  on_threads(static_cast<int>(std::min<std::size_t>(threads, tasks)), [&] { divider.work(); });
+  SahBuilder builder(*this, max_depth);
+  on_threads(static_cast<int>(std::min<std::size_t>(threads, tasks)), [&] { builder.work(); });
 }
 
 }  // namespace raygate

@@ -45,7 +45,7 @@ struct Primitive {
 /// runs of `primitives`, which it has put in order; the node whose run is cut in two at m is
 /// nodes[m]. So each thread knows where its nodes go, and the tree does not depend on which thread
 /// made what.
-struct BinaryTree {
+struct BinaryBvh {
   /// A node's number; from `size()` on: that of a leaf's primitive, plus size().
   using Ref = std::uint32_t;
 
@@ -57,7 +57,7 @@ struct BinaryTree {
 
   /// All positions finite, of magnitude at most 2^126; fewer than 2^31 primitives. No leaf is
   /// deeper than `max_depth`, the root's depth being 0, if halves are not.
-  BinaryTree(const TreeContent& content, int max_depth, int threads);
+  BinaryBvh(const TreeContent& content, int max_depth, int threads);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }
   [[nodiscard]] bool is_leaf(Ref ref) const { return ref >= size(); }

@@ -12,9 +12,9 @@
 namespace raygate {
 
 /// What waits to be visited: where the first of the bundle enters its box, a little less at most,
-/// and which of the bundle may meet it.
+/// and which of the bundle may intersect_boxes it.
 template <class Rays>
-struct Waiting {
+struct StackEntry {
   Bvh::Child child;
   float entry;
   [[no_unique_address]] Rays rays;
@@ -22,36 +22,37 @@ struct Waiting {
 
 /// Of what waits, the nearest comes last, as far as one node knows.
 template <class Rays>
-struct WalkStack {
+struct TraversalStack {
   int depth;
-  Waiting<Rays> waiting[Bvh::kStackSize];
+  StackEntry<Rays> waiting[Bvh::kStackSize];
 
-  explicit WalkStack(const Rays& rays) : depth(1) { waiting[0] = {{0, 0}, 0.0f, rays}; }
+  explicit TraversalStack(const Rays& rays) : depth(1) { waiting[0] = {{0, 0}, 0.0f, rays}; }
 };
 
 /// A bundle that is one thing, which goes where it goes.
-struct Whole {};
+struct SingleRay {};
 
 /// Goes on to the next leaf; false when there is none. To be called again and again, whatever the
 /// visitor has learned in between. The visitor is asked
-///   * goes_on(entry, rays): whether a child still matters to any of `rays`; may narrow them;
-///   * meet(node, rays, entry): which children the rays meet, bit i for child i, and where they
+///   * should_visit(entry, rays): whether a child still matters to any of `rays`; may narrow them;
+///   * intersect_boxes(node, rays, entry): which children the rays intersect_boxes, bit i for child
+///   i, and where they
 ///     enter them, 0 or more;
-///   * rays_at(i): which of the rays meet child i, after that.
+///   * rays_of_child(i): which of the rays intersect_boxes child i, after that.
 template <class Visitor, class Rays>
-RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>& stack,
-                              Waiting<Rays>& leaf) {
+RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, TraversalStack<Rays>& stack,
+                              StackEntry<Rays>& leaf) {
   using Key = std::int32_t;  // a child's number in the place of the last bits of its entry
   constexpr Key kNumber = Bvh::kWidth - 1;
   constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
   while (stack.depth > 0) {
     leaf = stack.waiting[--stack.depth];
-    while (visitor.goes_on(leaf.entry, leaf.rays)) {
+    while (visitor.should_visit(leaf.entry, leaf.rays)) {
       if (leaf.child.count != 0) return true;
       Bvh::Node room;
       const Bvh::Node& node = tree.node(leaf.child.first, room);
       FloatLanes entry;
-      LaneMask met = visitor.meet(node, leaf.rays, entry);
+      LaneMask met = visitor.intersect_boxes(node, leaf.rays, entry);
       if (met == 0) break;
       IntLanes keys;
       bits_of(entry, keys);
@@ -61,13 +62,13 @@ RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, WalkStack<Rays>
         met &= met - 1;
         return key;
       };
-      const auto child_at = [&](Key key, Waiting<Rays> & child) __attribute__((always_inline)) {
+      const auto child_at = [&](Key key, StackEntry<Rays> & child) __attribute__((always_inline)) {
         const int i = key & kNumber;
-        child = {node.child[i], std::bit_cast<float>(key & ~kNumber), visitor.rays_at(i)};
+        child = {node.child[i], std::bit_cast<float>(key & ~kNumber), visitor.rays_of_child(i)};
         tree.prefetch(child.child);
       };
       const auto push = [&](Key key) __attribute__((always_inline)) {
-        Waiting<Rays>& child = stack.waiting[stack.depth++];
+        StackEntry<Rays>& child = stack.waiting[stack.depth++];
         child_at(key, child);
       };
       Key nearest = take();

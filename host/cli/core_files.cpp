@@ -103,9 +103,10 @@ std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& file
   file.name();
   std::string text = "the ray of pixel " + std::to_string(files.pixel->x) + "," +
                      std::to_string(files.pixel->y) + " hits ";
-  text += hit.slot == NearestHit::kNone ? "nothing"
-                                        : "triangle " + std::to_string(bvh.triangle_of(hit.slot)) +
-                                              " at t " + std::to_string(hit.t.low);
+  text += hit.primitive == NearestHit::kNone
+              ? "nothing"
+              : "triangle " + std::to_string(bvh.triangle_of(hit.primitive)) + " at t " +
+                    std::to_string(hit.t.low);
   return text + ": " + format_count(counters.clocks, "clock") + ", " +
          format_count(counters.nodes, "node") + ", " +
          format_count(counters.triangles, "triangle") + ", " +

@@ -162,7 +162,7 @@ int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
   return side.sure() ? side.sign() : exact_edge_side(ray, a, b);
 }
 
-int plane_side(const glm::vec3& origin, const Corners& t) {
+int orient3d(const glm::vec3& origin, const Corners& t) {
   const Estimate side = dot(difference(t[0], origin), estimated_normal(t));
   return side.sure() ? side.sign() : exact_plane(origin, t).sign();
 }
@@ -173,7 +173,7 @@ int plane_side(const glm::vec3& origin, const Corners& t) {
 // . N is the sum of the three.
 bool hits_triangle(const Ray& ray, const Corners& t) {
   if (!is_usable(ray.direction)) return false;
-  const int side = plane_side(ray.origin, t);
+  const int side = orient3d(ray.origin, t);
   return side != 0 && edge_side(ray, t[0], t[1]) == side && edge_side(ray, t[1], t[2]) == side &&
          edge_side(ray, t[2], t[0]) == side;
 }
@@ -186,7 +186,7 @@ int direction_side(const glm::vec3& direction, const Corners& t) {
 bool is_ahead(const Ray& ray, const Corners& t) {
   const auto& [n, d] = Fraction(ray, t);
   if (n.sure() && d.sure()) return n.sign() == d.sign();
-  return plane_side(ray.origin, t) * direction_side(ray.direction, t) > 0;
+  return orient3d(ray.origin, t) * direction_side(ray.direction, t) > 0;
 }
 
 // Where doubles cancel too much, D and I . N are exact but for their last rounding to double (off
@@ -212,7 +212,7 @@ PreciseHit precise_hit(const Ray& ray, const Corners& triangle) {
 
 // The signs of D and of I . N agree for a hit, as t > 0.
 int compare_hits(const Ray& ray, const Corners& first, const Corners& second) {
-  return plane_side(ray.origin, first) * plane_side(ray.origin, second) *
+  return orient3d(ray.origin, first) * orient3d(ray.origin, second) *
          order_of_planes(ray, first, second);
 }
 
@@ -222,12 +222,12 @@ int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit) {
   if (t.low > limit) return 1;
   const auto excess = exact_plane(ray.origin, triangle) -
                       exact_slope(ray.direction, triangle) * static_cast<double>(limit);
-  return plane_side(ray.origin, triangle) * excess.sign();
+  return orient3d(ray.origin, triangle) * excess.sign();
 }
 
 // At O + t I, t = D1 / (I . N1), the other plane's D2 has become D2 - t (I . N2).
 int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other) {
-  return plane_side(ray.origin, hit) * order_of_planes(ray, other, hit);
+  return orient3d(ray.origin, hit) * order_of_planes(ray, other, hit);
 }
 
 double plane_distance(const glm::vec3& origin, const Corners& t) {

@@ -69,7 +69,7 @@ struct PreciseHit {
 
 /// The sign of the determinant of A, B, C: on which side of the triangle's plane the origin is; 0
 /// for an origin in the plane and for a triangle without area.
-[[nodiscard]] int plane_side(const glm::vec3& origin, const Corners& triangle);
+[[nodiscard]] int orient3d(const glm::vec3& origin, const Corners& triangle);
 
 /// Whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree about
 /// the edge they share because they ask one question about one tilted ray: exactly one triangle
@@ -92,10 +92,10 @@ struct PreciseHit {
 /// The sign of t - limit, exactly. The triangle must be hit, `limit` positive and finite.
 [[nodiscard]] int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit);
 
-/// As plane_side of `other`, exactly, for the very point in which the ray hits `hit`.
+/// As orient3d of `other`, exactly, for the very point in which the ray hits `hit`.
 [[nodiscard]] int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other);
 
-/// The sign of I . N, exactly: a direction with the sign of plane_side(origin, triangle) goes
+/// The sign of I . N, exactly: a direction with the sign of orient3d(origin, triangle) goes
 /// towards the plane, one with the other sign away from it.
 [[nodiscard]] int direction_side(const glm::vec3& direction, const Corners& triangle);
 

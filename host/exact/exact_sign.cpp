@@ -16,7 +16,7 @@ int sign_of(double x) { return (x > 0.0) - (x < 0.0); }
 
 }  // namespace
 
-int turn(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
+int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
   const glm::dvec2 from_c_to_a = glm::dvec2(a) - glm::dvec2(c);
   const glm::dvec2 from_c_to_b = glm::dvec2(b) - glm::dvec2(c);
   const double left = from_c_to_a.x * from_c_to_b.y;
@@ -68,7 +68,7 @@ bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   for (int axis = 0; axis < 3; ++axis) {
     const int i = (axis + 1) % 3;
     const int j = (axis + 2) % 3;
-    if (turn(flat(a, i, j), flat(b, i, j), flat(c, i, j)) != 0) return false;
+    if (orient2d(flat(a, i, j), flat(b, i, j), flat(c, i, j)) != 0) return false;
   }
   return true;
 }

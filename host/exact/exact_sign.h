@@ -6,9 +6,9 @@
 
 namespace raygate {
 
-/// 1 if a, b, c turn counter-clockwise, -1 if clockwise, 0 if they are exactly on one line.
+/// 1 if a, b, c orient2d counter-clockwise, -1 if clockwise, 0 if they are exactly on one line.
 /// For all finite floats.
-[[nodiscard]] int turn(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c);
+[[nodiscard]] int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c);
 
 /// 1 if the closed polygon's signed area is positive (counter-clockwise), -1 if it is negative, 0
 /// if it is exactly zero. For all finite floats. `area` becomes the rounded area.

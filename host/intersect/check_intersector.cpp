@@ -19,10 +19,10 @@ bool same_bits(const glm::vec3& a, const glm::vec3& b) {
 std::string hex(const glm::vec3& v) { return hex_words({&v.x, 3}); }
 
 std::string describe(const Bvh& bvh, const NearestHit& hit) {
-  if (hit.slot == NearestHit::kNone) return "no hit";
+  if (hit.primitive == NearestHit::kNone) return "no hit";
   char t[64];
   std::snprintf(t, sizeof t, ", t in [%.17g, %.17g]", hit.t.low, hit.t.high);
-  return "triangle " + std::to_string(bvh.triangle_of(hit.slot)) + ", P" + hex(hit.point) +
+  return "triangle " + std::to_string(bvh.triangle_of(hit.primitive)) + ", P" + hex(hit.point) +
          " within " + hex_words({&hit.point_error, 1}) + t;
 }
 
@@ -32,16 +32,16 @@ CheckIntersector::CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> 
                                    std::unique_ptr<Intersector> reference)
     : bvh_(bvh), intersector_(std::move(intersector)), reference_(std::move(reference)) {}
 
-void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& search,
+void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
                                  std::span<NearestHit> hits) {
-  intersector_->intersect(rays, search, hits);
-  RayQuery same = search;
+  intersector_->intersect(rays, query, hits);
+  RayQuery same = query;
   same.work = {};
   expected_.resize(rays.size());
   reference_->intersect(rays, same, expected_);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (agree(rays[i], search, i, hits[i], expected_[i])) continue;
-    const float limit = search.limit(i);
+    if (agree(rays[i], query, i, hits[i], expected_[i])) continue;
+    const float limit = query.t_max_of(i);
     throw IntersectorMismatch("the intersectors differ: ray" + hex(rays[i].origin) + "," +
                               hex(rays[i].direction) + ", limit" + hex_words({&limit, 1}) + ": " +
                               describe(bvh_, hits[i]) +
@@ -49,15 +49,16 @@ void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& sear
   }
 }
 
-bool CheckIntersector::agree(const Ray& ray, const RayQuery& search, std::size_t number,
+bool CheckIntersector::agree(const Ray& ray, const RayQuery& query, std::size_t number,
                              const NearestHit& a, const NearestHit& b) const {
-  if (a.slot == NearestHit::kNone || b.slot == NearestHit::kNone) return a.slot == b.slot;
-  if (!search.enough_before.empty() && a.slot != b.slot) {
-    const float enough = search.enough_before[number];
+  if (a.primitive == NearestHit::kNone || b.primitive == NearestHit::kNone)
+    return a.primitive == b.primitive;
+  if (!query.any_hit_before.empty() && a.primitive != b.primitive) {
+    const float enough = query.any_hit_before[number];
     return is_before(bvh_, ray, a, enough) && is_before(bvh_, ray, b, enough);
   }
-  const bool with_point = search.ignored.empty() && search.enough_before.empty();
-  return a.slot == b.slot && a.t.low <= b.t.high && b.t.low <= a.t.high &&
+  const bool with_point = query.skip_ids.empty() && query.any_hit_before.empty();
+  return a.primitive == b.primitive && a.t.low <= b.t.high && b.t.low <= a.t.high &&
          (!with_point || (same_bits(a.point, b.point) && a.point_error == b.point_error));
 }
 

@@ -25,7 +25,7 @@ class CheckIntersector : public Intersector {
   CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
                    std::unique_ptr<Intersector> reference);
 
-  void intersect(std::span<const Ray> rays, const RayQuery& search,
+  void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
   [[nodiscard]] std::size_t preferred_batch() const override {
     return intersector_->preferred_batch();
@@ -33,7 +33,7 @@ class CheckIntersector : public Intersector {
   [[nodiscard]] IntersectCounters counters() const override { return intersector_->counters(); }
 
  private:
-  [[nodiscard]] bool agree(const Ray& ray, const RayQuery& search, std::size_t number,
+  [[nodiscard]] bool agree(const Ray& ray, const RayQuery& query, std::size_t number,
                            const NearestHit& a, const NearestHit& b) const;
 
   const Bvh& bvh_;

@@ -30,7 +30,7 @@ struct IntersectCounters {
   std::uint64_t exact_inside = 0;    ///< doubts about edges that exact arithmetic settled: not
                                      ///< those surely too far away
   std::uint64_t exact_depth = 0;     ///< pairs of hits, or a hit and a limit, that it put in order
-  std::uint64_t ended_early = 0;     ///< searches that RayQuery::enough_before ended
+  std::uint64_t ended_early = 0;     ///< searches that RayQuery::any_hit_before ended
   std::uint64_t own_records = 0;     ///< polygon records made for a single packet of rays
   std::uint64_t common_records = 0;  ///< polygon records made for origins that searches share
   // Seconds.

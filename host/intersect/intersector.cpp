@@ -5,7 +5,7 @@
 
 namespace raygate {
 
-void refuse_unscaled(const Ray& ray) {
+void throw_unscaled(const Ray& ray) {
   const glm::vec3& d = ray.direction;
   char text[160];
   std::snprintf(text, sizeof text,

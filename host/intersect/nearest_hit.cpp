@@ -15,13 +15,13 @@ bool tells(const Interval& t, float limit) { return t.high < limit || t.low >= l
 bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float limit) {
   if (limit == std::numeric_limits<float>::infinity()) return true;
   if (tells(hit.t, limit)) return hit.t.high < limit;
-  return compare_hit_to_limit(ray, bvh.corners_of(hit.slot), limit) < 0;
+  return compare_hit_to_limit(ray, bvh.corners_of(hit.primitive), limit) < 0;
 }
 
 bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a, const NearestHit& b) {
   if (!overlap(a.t, b.t)) return a.t.high < b.t.low;
-  const int order = compare_hits(ray, bvh.corners_of(a.slot), bvh.corners_of(b.slot));
-  return order < 0 || (order == 0 && bvh.triangle_of(a.slot) <= bvh.triangle_of(b.slot));
+  const int order = compare_hits(ray, bvh.corners_of(a.primitive), bvh.corners_of(b.primitive));
+  return order < 0 || (order == 0 && bvh.triangle_of(a.primitive) <= bvh.triangle_of(b.primitive));
 }
 
 bool take_if_nearer(const Bvh& bvh, const Ray& ray, float limit, const NearestHit& hit,
@@ -29,7 +29,7 @@ bool take_if_nearer(const Bvh& bvh, const Ray& ray, float limit, const NearestHi
   const bool has_limit = limit != std::numeric_limits<float>::infinity();
   counters.exact_depth += has_limit && !tells(hit.t, limit);
   if (!is_before(bvh, ray, hit, limit)) return false;
-  if (best.slot == NearestHit::kNone) {
+  if (best.primitive == NearestHit::kNone) {
     best = hit;
     return true;
   }
@@ -41,11 +41,11 @@ bool take_if_nearer(const Bvh& bvh, const Ray& ray, float limit, const NearestHi
   return true;
 }
 
-bool settle_doubt(const Bvh& bvh, const Ray& ray, float limit, NearestHit doubt, NearestHit& best,
-                  IntersectCounters& counters) {
-  const Corners& corners = bvh.corners_of(doubt.slot);
+bool resolve_doubt(const Bvh& bvh, const Ray& ray, float limit, NearestHit doubt, NearestHit& best,
+                   IntersectCounters& counters) {
+  const Corners& corners = bvh.corners_of(doubt.primitive);
   doubt.t = hit_distance(ray, corners);
-  if (doubt.t.low >= limit || (best.slot != NearestHit::kNone && doubt.t.low > best.t.high)) {
+  if (doubt.t.low >= limit || (best.primitive != NearestHit::kNone && doubt.t.low > best.t.high)) {
     return false;
   }
   ++counters.exact_inside;

@@ -11,12 +11,12 @@
 
 namespace raygate {
 
-/// A hit of a ray; without one, `slot` alone has a meaning.
+/// A hit of a ray; without one, `primitive` alone has a meaning.
 struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  std::uint32_t slot = kNone;  ///< of the tree; kNone: nothing hit
-  glm::vec3 point{0.0f};       ///< P = d I / (I . N) in the unit's bits, seen from the ray's origin
+  std::uint32_t primitive = kNone;  ///< of the tree; kNone: nothing hit
+  glm::vec3 point{0.0f};  ///< P = d I / (I . N) in the unit's bits, seen from the ray's origin
   /// Each coordinate of P is off by at most so much of itself; +infinity where the unit has no P to
   /// speak of. The same bits whatever found the hit.
   float point_error = std::numeric_limits<float>::infinity();
@@ -43,7 +43,7 @@ bool take_if_nearer(const Bvh& bvh, const Ray& ray, float limit, const NearestHi
 
 /// The same for a triangle of which float32 says neither that it is hit nor that it is missed:
 /// its `t` need not be known. Asks for the distance first, as that takes doubles alone as a rule.
-bool settle_doubt(const Bvh& bvh, const Ray& ray, float limit, NearestHit doubt, NearestHit& best,
-                  IntersectCounters& counters);
+bool resolve_doubt(const Bvh& bvh, const Ray& ray, float limit, NearestHit doubt, NearestHit& best,
+                   IntersectCounters& counters);
 
 }  // namespace raygate

@@ -31,7 +31,7 @@ struct LightSample {
   glm::vec3 radiance{0.0f};  ///< what arrives if nothing is between
   std::uint32_t light_index = 0;
   glm::vec3 point{0.0f};  ///< of an area light
-  std::uint32_t slot = 0;
+  std::uint32_t primitive = 0;
 };
 
 /// A ray that may go on.
@@ -211,8 +211,8 @@ RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number, const Ma
   const Gathered<T, 1> asked = Hits<T>::spread_out(is_asked);
   const Gathered<T, 3> lights = Hits<T>::spread_out(light);
   const Gathered<T, 3> places = Hits<T>::spread_out(point.position);
-  std::uint32_t slots[LanesOf<T>::kCount];
-  lanes_to(slots, point.slot);
+  std::uint32_t primitives[LanesOf<T>::kCount];
+  lanes_to(primitives, point.primitive);
   for (int k = 0; k < hits.count; ++k) {
     if (asked.values[0][k] == 0.0f) continue;
     LightSample& light_sample = hits.block.light_sample(hits.place[k], number);
@@ -221,7 +221,7 @@ RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number, const Ma
     light_sample.state = is_dark ? LightSample::kDark : LightSample::kToTrace;
     light_sample.light_index = indices[k];
     light_sample.point = Hits<T>::triple_of(places, k);
-    light_sample.slot = slots[k];
+    light_sample.primitive = primitives[k];
   }
 }
 

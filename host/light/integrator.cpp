@@ -81,16 +81,16 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   first_.assign(kHitKinds + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const NearestHit& hit = hits[block_.begin + i];
-    const std::uint32_t soon = hits[block_.begin + std::min(i + kFacesAhead, count - 1)].slot;
+    const std::uint32_t soon = hits[block_.begin + std::min(i + kFacesAhead, count - 1)].primitive;
     if (soon != NearestHit::kNone) {
       __builtin_prefetch(&face_at(scene, shading_.bvh.face_of(soon)).material);
     }
     kinds_[i] = kHitKinds;
-    if (hit.slot == NearestHit::kNone && sees_surroundings) {
+    if (hit.primitive == NearestHit::kNone && sees_surroundings) {
       escaped_.push_back(static_cast<std::uint32_t>(i));
       continue;
     }
-    if (hit.slot == NearestHit::kNone) {
+    if (hit.primitive == NearestHit::kNone) {
       if (is_dark) continue;
       const PathState& state = block_.state(i);
       output.radiance[state.sample] += state.throughput * behind;
@@ -98,9 +98,9 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     }
     const bool is_doubtful = is_point_doubt(hit, point_error_);
     point_doubts_ += is_doubtful ? 1 : 0;
-    const FaceRef stored = shading_.bvh.face_of(hit.slot);
+    const FaceRef stored = shading_.bvh.face_of(hit.primitive);
     const Triangle& face = face_at(scene, stored);
-    block_.places[i] = {&block_.batch->rays[block_.begin + i], hit.slot, &face,
+    block_.places[i] = {&block_.batch->rays[block_.begin + i], hit.primitive, &face,
                         is_doubtful ? nullptr : &hit.point, instance_at(scene, stored)};
     const MaterialParameters& material = materials_[face.material];
     const bool is_there =
@@ -146,16 +146,16 @@ void Integrator::list_spawn_queries(std::size_t i) {
     scattered.is_wanted = leaves(place, scattered);
     (scattered.side == SpawnSide::kIncident ? is_before : is_after) |= scattered.is_wanted;
   }
-  if (is_before || is_after) spawner_.prefetch(place.slot);
-  if (is_before) spawn_queries_.push_back({place.ray, place.slot, SpawnSide::kIncident});
-  if (is_after) spawn_queries_.push_back({place.ray, place.slot, SpawnSide::kTransmitted});
+  if (is_before || is_after) spawner_.prefetch(place.primitive);
+  if (is_before) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kIncident});
+  if (is_after) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kTransmitted});
 }
 
 /// Whether a scattered ray leads away from its triangle, if need be along the flat normal's
 /// direction.
 bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const {
   const auto leaves = [&](const glm::vec3& direction) {
-    return spawner_.leaves(*place.ray, place.slot, scattered.side, direction);
+    return spawner_.leaves(*place.ray, place.primitive, scattered.side, direction);
   };
   if (scattered.surely_leaves || leaves(scattered.direction)) return true;
   scattered.direction = scattered.flat;
@@ -186,12 +186,12 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
     shadow.sample = state.sample;
     shadow.radiance = light_sample.radiance;
     shadow.surface = *origin;
-    shadow.surface_slot = place.slot;
+    shadow.surface_slot = place.primitive;
     if (shading_.lights.light(light_sample.light_index).kind == Lights::Kind::kPoint) {
       shadow.point_light = light_sample.light_index;
     } else {
       shadow.target = light_sample.point;
-      shadow.target_slot = light_sample.slot;
+      shadow.target_slot = light_sample.primitive;
     }
   }
   for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {

@@ -81,20 +81,20 @@ void Lights::add_sources(LightSampling choice, double unit) {
     add(raygate::light_bounds(light, unit));
     ++number;
   }
-  std::vector<std::uint32_t> slots;
+  std::vector<std::uint32_t> primitives;
   for (const AreaLight& light : areas_)
-    slots.insert(slots.end(), light.slots.begin(), light.slots.end());
-  const std::vector<OuterSide> sides = outer_sides(bvh_, slots);
-  if (!areas_.empty()) source_of_slot_.assign(bvh_.slot_count(), kNoIndex);
+    primitives.insert(primitives.end(), light.primitives.begin(), light.primitives.end());
+  const std::vector<OuterSide> sides = outer_sides(bvh_, primitives);
+  if (!areas_.empty()) source_of_slot_.assign(bvh_.primitive_count(), kNoIndex);
   std::vector<OuterSide> side_of_slot(source_of_slot_.size());
-  for (std::size_t i = 0; i < slots.size(); ++i) side_of_slot[slots[i]] = sides[i];
+  for (std::size_t i = 0; i < primitives.size(); ++i) side_of_slot[primitives[i]] = sides[i];
   for (const AreaLight& light : areas_) {
     const std::uint32_t first = lights_[number].first_patch;
     for (std::uint32_t i = first; i < first + lights_[number].patches; ++i) {
       const Patch& patch = patches_[i];
-      source_of_slot_[patch.slot] = source_of_slot_[patch.slot_beyond] =
+      source_of_slot_[patch.primitive] = source_of_slot_[patch.slot_beyond] =
           static_cast<std::uint32_t>(sources.size());
-      add(light_bounds(patch, light, unit, side_of_slot[patch.slot]), i, patch.area);
+      add(light_bounds(patch, light, unit, side_of_slot[patch.primitive]), i, patch.area);
     }
     ++number;
   }

@@ -19,24 +19,25 @@ namespace {
 /// In the order of the scene's triangles: lights, and what is sampled of them, do not depend on how
 /// the tree is built.
 std::vector<std::uint32_t> emitting_slots(const Scene& scene, const Bvh& bvh) {
-  std::vector<std::uint32_t> slots;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    if (emits(scene.materials[scene.triangles[bvh.triangle_of(slot)].material])) {
-      slots.push_back(slot);
+  std::vector<std::uint32_t> primitives;
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    if (emits(scene.materials[scene.triangles[bvh.triangle_of(primitive)].material])) {
+      primitives.push_back(primitive);
     }
   }
-  std::ranges::sort(slots, {}, [&](std::uint32_t slot) { return bvh.triangle_of(slot); });
-  return slots;
+  std::ranges::sort(primitives, {},
+                    [&](std::uint32_t primitive) { return bvh.triangle_of(primitive); });
+  return primitives;
 }
 
 /// All faces in one plane, with one side in common: their middle is then among them or near.
 void find_middle(const Bvh& bvh, AreaLight& light) {
-  const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(light.slots[0])));
+  const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(light.primitives[0])));
   glm::dvec3 sum(0.0);
   double before = 0.0;
   bool is_flat = true;
-  for (std::size_t i = 0; i < light.slots.size(); ++i) {
-    const Corners& t = bvh.corners_of(light.slots[i]);
+  for (std::size_t i = 0; i < light.primitives.size(); ++i) {
+    const Corners& t = bvh.corners_of(light.primitives[i]);
     const glm::dvec3 middle = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
     sum += (light.area_up_to[i] - before) * middle;
     before = light.area_up_to[i];
@@ -46,7 +47,7 @@ void find_middle(const Bvh& bvh, AreaLight& light) {
   light.is_flat = is_flat;
   // A little towards the first face: as a rule, the very middle of a light of two triangles is on
   // the edge between them, and exact arithmetic would have to say which one each ray meets.
-  const Corners& first = bvh.corners_of(light.slots[0]);
+  const Corners& first = bvh.corners_of(light.primitives[0]);
   const glm::dvec3 inside =
       (glm::dvec3(first[0]) + glm::dvec3(first[1]) + glm::dvec3(first[2])) / 3.0;
   light.middle = glm::mix(sum / light.area(), inside, 0x1p-10);
@@ -152,23 +153,23 @@ glm::dvec3 Lights::ambient() const {
 /// The faces that emit, light by light.
 void Lights::find_areas() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
-  for (const std::uint32_t slot : emitting_slots(scene_, bvh_)) {
-    const Triangle& face = scene_.triangles[bvh_.triangle_of(slot)];
+  for (const std::uint32_t primitive : emitting_slots(scene_, bvh_)) {
+    const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
       areas_.emplace_back();
       areas_.back().radiance = glm::dvec3(scene_.materials[face.material].emission);
     }
     AreaLight& light = areas_[at->second];
-    const Corners corners = bvh_.corners_of(slot);
+    const Corners corners = bvh_.corners_of(primitive);
     if (is_new) light.low = light.high = corners[0];
     for (const glm::vec3& corner : corners) {
       light.low = glm::min(light.low, corner);
       light.high = glm::max(light.high, corner);
     }
     const double area = 0.5 * glm::length(triangle_normal(corners));
-    light.area_up_to.push_back((light.slots.empty() ? 0.0 : light.area()) + area);
-    light.slots.push_back(slot);
+    light.area_up_to.push_back((light.primitives.empty() ? 0.0 : light.area()) + area);
+    light.primitives.push_back(primitive);
   }
 }
 
@@ -177,24 +178,24 @@ void Lights::find_areas() {
 void Lights::add_patches(const AreaLight& light, Light& record) {
   record.first_patch = static_cast<std::uint32_t>(patches_.size());
   double before = 0.0;
-  for (std::size_t i = 0; i < light.slots.size(); ++i) {
-    const Corners t = bvh_.corners_of(light.slots[i]);
+  for (std::size_t i = 0; i < light.primitives.size(); ++i) {
+    const Corners t = bvh_.corners_of(light.primitives[i]);
     Patch patch;
-    patch.slot = patch.slot_beyond = light.slots[i];
+    patch.primitive = patch.slot_beyond = light.primitives[i];
     patch.begin = static_cast<float>(before / light.area());
     patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
     patch.corner = t[0];
     patch.u = t[1] - t[0];
     patch.v = t[2] - t[0];
-    if (i + 1 < light.slots.size()) {
-      const auto sides = parallelogram(t, bvh_.corners_of(light.slots[i + 1]));
+    if (i + 1 < light.primitives.size()) {
+      const auto sides = parallelogram(t, bvh_.corners_of(light.primitives[i + 1]));
       if (sides) {
         ++i;
         patch.is_triangle = false;
         patch.corner = sides->corner;
         patch.u = sides->u;
         patch.v = sides->v;
-        patch.slot_beyond = light.slots[i];
+        patch.slot_beyond = light.primitives[i];
       }
     }
     patch.end = static_cast<float>(light.area_up_to[i] / light.area());

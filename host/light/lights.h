@@ -22,8 +22,8 @@ namespace raygate {
 /// The emitting faces of one object and material: one light, which shines to both sides of each
 /// face.
 struct AreaLight {
-  std::vector<std::uint32_t> slots;
-  std::vector<double> area_up_to;   ///< of the slots so far, each included
+  std::vector<std::uint32_t> primitives;
+  std::vector<double> area_up_to;   ///< of the primitives so far, each included
   glm::vec3 low{0.0f}, high{0.0f};  ///< of the box around it
   glm::dvec3 radiance{0.0};
   bool is_flat = false;
@@ -37,7 +37,7 @@ template <class T>
 struct LightPoint {
   /// Of a light that is infinitely far away a unit vector towards it, and no normal.
   Triple<T> position, normal;  ///< the normal to one of both sides
-  WordOf<T> slot;              ///< NearestHit::kNone: infinitely far away
+  WordOf<T> primitive;         ///< NearestHit::kNone: infinitely far away
 };
 
 /// All lights of a scene, ready for use. Lengths in what is asked of a surface (areas, distances)
@@ -97,11 +97,11 @@ class Lights {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
       const std::uint32_t (&patches)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
-  /// The middle of a flat light, or very near, as a sample. Its slot is one of the light's.
+  /// The middle of a flat light, or very near, as a sample. Its primitive is one of the light's.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
     return {spread<T>(glm::vec3(light.middle)), spread<T>(glm::vec3(light.middle_normal)),
-            spread<WordOf<T>>(light.slots[0])};
+            spread<WordOf<T>>(light.primitives[0])};
   }
 
   // For those who ask one light at a time:
@@ -113,9 +113,9 @@ class Lights {
     float per_area = 0.0f;           ///< of a patch: 1 / its area in square units
   };
   [[nodiscard]] const Source& source(std::size_t index) const { return sources_[index]; }
-  /// Which one a slot belongs to; kNoIndex for none.
-  [[nodiscard]] std::uint32_t source_of(std::uint32_t slot) const {
-    return slot < source_of_slot_.size() ? source_of_slot_[slot] : kNoIndex;
+  /// Which one a primitive belongs to; kNoIndex for none.
+  [[nodiscard]] std::uint32_t source_of(std::uint32_t primitive) const {
+    return primitive < source_of_slot_.size() ? source_of_slot_[primitive] : kNoIndex;
   }
   /// There is at most one; the last.
   [[nodiscard]] std::uint32_t environment_source() const {
@@ -145,8 +145,9 @@ class Lights {
   /// A part of a light: a triangle, or two that make a parallelogram.
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
-    std::uint32_t slot = 0, slot_beyond = 0;  ///< with more of u than of v, and the other way round
-    float begin = 0.0f, end = 0.0f;           ///< its part of the light's area, in [0, 1]
+    std::uint32_t primitive = 0,
+                  slot_beyond = 0;   ///< with more of u than of v, and the other way round
+    float begin = 0.0f, end = 0.0f;  ///< its part of the light's area, in [0, 1]
     double area = 0.0;
     bool is_triangle = true;
   };
@@ -196,7 +197,7 @@ RAYGATE_INLINE LightPoint<T> Lights::sample_patches(
     const std::uint32_t (&patches)[LanesOf<T>::kCount], const SquarePoint<T>& u) const {
   enum : std::uint8_t { kCorner, kU = 3, kV = 6, kNormal = 9, kTriangle = 12, kFields };
   Gathered<T, kFields> in;
-  Gathered<T, 2, std::uint32_t> slots;
+  Gathered<T, 2, std::uint32_t> primitives;
   for (int k = 0; k < LanesOf<T>::kCount; ++k) {
     const Patch& patch = patches_[patches[k]];
     in.put(kCorner, k, patch.corner);
@@ -204,8 +205,8 @@ RAYGATE_INLINE LightPoint<T> Lights::sample_patches(
     in.put(kV, k, patch.v);
     in.put(kNormal, k, patch.normal);
     in.values[kTriangle][k] = patch.is_triangle ? 1.0f : 0.0f;
-    slots.values[0][k] = patch.slot;
-    slots.values[1][k] = patch.slot_beyond;
+    primitives.values[0][k] = patch.primitive;
+    primitives.values[1][k] = patch.slot_beyond;
   }
   // The square onto the triangle: sqrt keeps areas.
   const auto is_triangle = in.one(kTriangle) > 0.0f;
@@ -214,7 +215,7 @@ RAYGATE_INLINE LightPoint<T> Lights::sample_patches(
   const T along_v = choose(is_triangle, far * u.y, u.y);
   return {in.triple(kCorner) + in.triple(kU) * along_u + in.triple(kV) * along_v,
           in.triple(kNormal),
-          choose(is_triangle | (along_u > along_v), slots.one(0), slots.one(1))};
+          choose(is_triangle | (along_u > along_v), primitives.one(0), primitives.one(1))};
 }
 
 }  // namespace raygate

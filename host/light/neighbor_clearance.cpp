@@ -10,15 +10,15 @@
 namespace raygate {
 namespace {
 
-/// Takes the triangles of a leaf into account, but for the one in `slot`, whose search it is.
+/// Takes the triangles of a leaf into account, but for the one in `primitive`, whose search it is.
 template <Vectors kCode>
-RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t slot,
+RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t primitive,
                             NeighborClearanceSearch& search) {
   LaneMask rest = (LaneMask{1} << leaf.count) - 1;
   Bvh::LeafRoom room;
   const float* const corners = bvh.corners_of(leaf, room);
   rest &= ~search.behind_an_edge<kCode>(corners, leaf.count);
-  if (slot - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (slot - leaf.first));
+  if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
   if (rest == 0) return;
   const LeafCorners others(VectorCode<kCode>{}, corners, leaf.count, search.from());
   rest &= search.near(others);
@@ -43,7 +43,7 @@ float largest_coordinate(const Bvh& bvh) {
 
 bool lies_beyond(const Corners& other, const Corners& hit, int side) {
   return std::ranges::all_of(
-      other, [&](const glm::vec3& vertex) { return plane_side(vertex, hit) != side; });
+      other, [&](const glm::vec3& vertex) { return orient3d(vertex, hit) != side; });
 }
 
 // A float's step is at most 2^-23 of it, or 2^-149.
@@ -58,10 +58,10 @@ NeighborClearances::NeighborClearances(const Bvh& bvh)
     : bvh_(bvh),
       margin_(0x1p-45f * largest_coordinate(bvh)),
       slack_(0x1p-47 * largest_coordinate(bvh)),
-      known_(std::make_unique<Known[]>(bvh.slot_count())) {}
+      known_(std::make_unique<Known[]>(bvh.primitive_count())) {}
 
-NeighborClearances::Found NeighborClearances::look(std::uint32_t slot) const {
-  const Corners corners = bvh_.corners_of(slot);
+NeighborClearances::Found NeighborClearances::look(std::uint32_t primitive) const {
+  const Corners corners = bvh_.corners_of(primitive);
   NeighborClearanceSearch search(corners, slack_);
   if (search.has_hope()) {
     in_vectors([&](auto code) RAYGATE_BODY {
@@ -70,7 +70,8 @@ NeighborClearances::Found NeighborClearances::look(std::uint32_t slot) const {
       Bvh::Child waiting[kMostWaiting];
       std::size_t count = 0;
       const auto look = [&]() RAYGATE_BODY {
-        for (std::size_t i = 0; i < count; ++i) take_in<code()>(bvh_, waiting[i], slot, search);
+        for (std::size_t i = 0; i < count; ++i)
+          take_in<code()>(bvh_, waiting[i], primitive, search);
         count = 0;
       };
       const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {
@@ -85,9 +86,9 @@ NeighborClearances::Found NeighborClearances::look(std::uint32_t slot) const {
   return {search.found(), std::move(search.overlaps())};
 }
 
-const NeighborClearance& NeighborClearances::find(std::uint32_t slot) const {
-  Found looked = look(slot);
-  Known& known = known_[slot];
+const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const {
+  Found looked = look(primitive);
+  Known& known = known_[primitive];
   const std::lock_guard lock(mutex_);
   const NeighborClearance& found = clearances_.emplace_back(looked.clearance);
   if (found.length < 0.0f) {

@@ -35,7 +35,7 @@ struct alignas(64) NeighborClearance {
 /// float steps of its largest coordinate, or more.
 [[nodiscard]] double spawn_reach(const Corners& corners);
 
-/// Whether no point of `other` is strictly on the given side (as plane_side) of the plane of `hit`.
+/// Whether no point of `other` is strictly on the given side (as orient3d) of the plane of `hit`.
 /// A straight way from that plane to that side does not meet it then: neighbours along a ridge do
 /// not matter, however flat the ridge.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
@@ -57,36 +57,36 @@ class NeighborClearances {
     Overlaps overlaps;
   };
   /// Finds it out: of any triangle, an instance's too, of which there may be too many to keep.
-  [[nodiscard]] Found look(std::uint32_t slot) const;
+  [[nodiscard]] Found look(std::uint32_t primitive) const;
 
-  /// Of a slot that is no instance's.
-  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& of(std::uint32_t slot) const {
+  /// Of a primitive that is no instance's.
+  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& of(std::uint32_t primitive) const {
     const NeighborClearance* const clearance =
-        known_[slot].clearance.load(std::memory_order_acquire);
-    return clearance != nullptr ? *clearance : find(slot);
+        known_[primitive].clearance.load(std::memory_order_acquire);
+    return clearance != nullptr ? *clearance : find(primitive);
   }
   /// Says that a triangle's will soon be asked for; later, once more.
-  RAYGATE_INLINE void prefetch(std::uint32_t slot) const {
-    if (!bvh_.is_placed(slot)) __builtin_prefetch(&known_[slot]);
+  RAYGATE_INLINE void prefetch(std::uint32_t primitive) const {
+    if (!bvh_.is_instanced(primitive)) __builtin_prefetch(&known_[primitive]);
   }
-  RAYGATE_INLINE void prefetch_again(std::uint32_t slot) const {
-    if (bvh_.is_placed(slot)) return;
-    __builtin_prefetch(known_[slot].clearance.load(std::memory_order_relaxed));
+  RAYGATE_INLINE void prefetch_again(std::uint32_t primitive) const {
+    if (bvh_.is_instanced(primitive)) return;
+    __builtin_prefetch(known_[primitive].clearance.load(std::memory_order_relaxed));
   }
   /// Of a triangle whose clearance has been asked for, and says that there is one.
-  [[nodiscard]] const Overlaps& overlaps_of(std::uint32_t slot) const {
-    return *known_[slot].overlaps.load(std::memory_order_relaxed);
+  [[nodiscard]] const Overlaps& overlaps_of(std::uint32_t primitive) const {
+    return *known_[primitive].overlaps.load(std::memory_order_relaxed);
   }
 
  private:
-  /// Of a slot.
+  /// Of a primitive.
   struct Known {
     std::atomic<const NeighborClearance*> clearance{nullptr};  // nobody has asked yet
     std::atomic<const Overlaps*> overlaps{nullptr};
   };
 
   /// Finds out, and keeps it.
-  [[nodiscard]] const NeighborClearance& find(std::uint32_t slot) const;
+  [[nodiscard]] const NeighborClearance& find(std::uint32_t primitive) const;
 
   const Bvh& bvh_;
   float margin_;

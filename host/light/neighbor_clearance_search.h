@@ -169,13 +169,13 @@ class NeighborClearanceSearch {
   }
 
   /// Takes another triangle into account that may not be behind an edge.
-  void consider(std::uint32_t slot, const Corners& other) {
+  void consider(std::uint32_t primitive, const Corners& other) {
     const double apart = clearance(other);
     if (apart >= length_ || (lies_beyond(other, corners_, 1) && lies_beyond(other, corners_, -1))) {
       return;
     }
     if (apart < kShareOfOverlaps * most_ && overlaps_.size() < kMaxOverlaps) {
-      overlaps_.add(slot, other);
+      overlaps_.add(primitive, other);
     } else {
       length_ = apart;
     }

@@ -40,12 +40,12 @@ struct Part {
 
 }  // namespace
 
-std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> slots) {
+std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> primitives) {
   std::map<std::array<float, 3>, std::uint32_t> places;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
-  for (std::uint32_t i = 0; i < slots.size(); ++i) {
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     std::array<std::uint32_t, 3> numbers{};
-    const Corners corners = bvh.corners_of(slots[i]);
+    const Corners corners = bvh.corners_of(primitives[i]);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto next = static_cast<std::uint32_t>(places.size());
       numbers[k] =
@@ -53,7 +53,7 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
     }
     for (std::size_t k = 0; k < 3; ++k) edges[{numbers[k], numbers[(k + 1) % 3]}].push_back(i);
   }
-  Parts parts(slots.size());
+  Parts parts(primitives.size());
   for (const auto& [edge, along] : edges) {
     for (const std::uint32_t i : along) parts.join(i, along[0]);
     const auto back = edges.find({edge.second, edge.first});
@@ -61,9 +61,9 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
   }
   std::unordered_map<std::uint32_t, std::uint32_t> part_of_slot;
   std::map<std::uint32_t, Part> found;
-  for (std::uint32_t i = 0; i < slots.size(); ++i) {
-    const Corners t = bvh.corners_of(slots[i]);
-    const glm::dvec3 middle(bvh.corners_of(slots[parts.of(i)])[0]);
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+    const Corners t = bvh.corners_of(primitives[i]);
+    const glm::dvec3 middle(bvh.corners_of(primitives[parts.of(i)])[0]);
     const auto [at, is_new] = found.try_emplace(parts.of(i));
     Part& part = at->second;
     if (is_new) part.low = part.high = t[0];
@@ -71,7 +71,7 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
     part.high = glm::max(part.high, glm::max(t[0], glm::max(t[1], t[2])));
     part.volume += glm::dot(glm::dvec3(t[0]) - middle,
                             glm::cross(glm::dvec3(t[1]) - middle, glm::dvec3(t[2]) - middle));
-    part_of_slot[slots[i]] = parts.of(i);
+    part_of_slot[primitives[i]] = parts.of(i);
   }
   for (const auto& [edge, along] : edges) {
     const auto back = edges.find({edge.second, edge.first});
@@ -80,14 +80,15 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
   for (auto& entry : found) {
     const std::uint32_t number = entry.first;
     Part& part = entry.second;
-    part.is_open = part.is_open || part.volume == 0.0 ||
-                   any_slot_near(bvh, part.low, part.high, [&](std::uint32_t slot, const Corners&) {
-                     const auto known = part_of_slot.find(slot);
-                     return known == part_of_slot.end() || known->second != number;
-                   });
+    part.is_open =
+        part.is_open || part.volume == 0.0 ||
+        any_primitive_near(bvh, part.low, part.high, [&](std::uint32_t primitive, const Corners&) {
+          const auto known = part_of_slot.find(primitive);
+          return known == part_of_slot.end() || known->second != number;
+        });
   }
-  std::vector<OuterSide> sides(slots.size());
-  for (std::uint32_t i = 0; i < slots.size(); ++i) {
+  std::vector<OuterSide> sides(primitives.size());
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const Part& part = found[parts.of(i)];
     if (part.is_open) continue;
     sides[i] = part.volume > 0.0 ? OuterSide::kAlongNormal : OuterSide::kAgainstNormal;

@@ -16,10 +16,10 @@ enum class OuterSide : std::uint8_t {
   kAgainstNormal,  ///< the other
 };
 
-/// For each of some slots. A closed surface is a set of these triangles that hang together by their
-/// edges, each edge of just two of them, which run along it in opposite directions. Where anything
-/// else of the scene is within the box around it, it counts as open.
+/// For each of some primitives. A closed surface is a set of these triangles that hang together by
+/// their edges, each edge of just two of them, which run along it in opposite directions. Where
+/// anything else of the scene is within the box around it, it counts as open.
 [[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
-                                                 std::span<const std::uint32_t> slots);
+                                                 std::span<const std::uint32_t> primitives);
 
 }  // namespace raygate

@@ -5,9 +5,9 @@
 
 namespace raygate {
 
-void Overlaps::add(std::uint32_t slot, const Corners& triangle) {
+void Overlaps::add(std::uint32_t primitive, const Corners& triangle) {
   const auto lane = static_cast<int>(slots_.size() % kLanes);
-  slots_.push_back(slot);
+  slots_.push_back(primitive);
   if (lane == 0) {
     Boxes& empty = boxes_.emplace_back();
     for (int k = 0; k < 3; ++k) {

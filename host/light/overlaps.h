@@ -15,16 +15,16 @@ namespace raygate {
 /// Triangles that come close to one triangle inside its borders: what stands on it, or cuts it.
 class Overlaps {
  public:
-  void add(std::uint32_t slot, const Corners& triangle);
+  void add(std::uint32_t primitive, const Corners& triangle);
   [[nodiscard]] std::size_t size() const { return slots_.size(); }
 
-  /// Calls visit(slot) for the triangles whose boxes are within `reach` of the point on each axis,
-  /// until it says true; whether it did.
+  /// Calls visit(primitive) for the triangles whose boxes are within `reach` of the point on each
+  /// axis, until it says true; whether it did.
   template <Vectors kCode = Vectors::kBaseline, class Visit>
   [[nodiscard]] RAYGATE_INLINE bool any_near(const glm::vec3& point, float reach,
                                              const Visit& visit) const {
     const glm::vec3 from = point - reach, to = point + reach;
-    const std::uint32_t* slots = slots_.data();
+    const std::uint32_t* primitives = slots_.data();
     for (const Boxes& boxes : boxes_) {
       IntLanes touches = IntLanes{} - 1;
       for (int k = 0; k < 3; ++k) {
@@ -34,9 +34,9 @@ class Overlaps {
         touches &= (low <= to[k]) & (high >= from[k]);
       }
       for (LaneMask near = sign_mask<kCode>(touches); near != 0; near &= near - 1) {
-        if (visit(slots[std::countr_zero(near)])) return true;
+        if (visit(primitives[std::countr_zero(near)])) return true;
       }
-      slots += kLanes;
+      primitives += kLanes;
     }
     return false;
   }

@@ -43,7 +43,7 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
   const Lights& lights = shading.lights;
   Gathered<T, 2> places;
   for (int k = 0; k < Hits<T>::kCount; ++k) {
-    const std::uint32_t source = lights.source_of(hits.block.places[hits.place[k]].slot);
+    const std::uint32_t source = lights.source_of(hits.block.places[hits.place[k]].primitive);
     const PathState& state = hits.block.state(hits.place[k]);
     const bool was_asked = source != kNoIndex && state.pdf > 0.0f;
     places.values[0][k] = was_asked ? lights.pmf<T>(source, state.scattered_at, state.normal) *
@@ -152,7 +152,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits)
         environment.radiance(towards), asked);
     const auto is_environment = is_a(Lights::Kind::kEnvironment), scatters = hits.bsdf.scatters();
     add_light_sample<T>(hits, 0, is_environment & scatters & (asked > kMinPdf), light, indices,
-                        {towards, zero<T>(), place.slot});
+                        {towards, zero<T>(), place.primitive});
   }
   if (!any_area) return;
   for (int k = 0; k < kCount; ++k) {

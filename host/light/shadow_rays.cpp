@@ -108,7 +108,7 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
   trace(true, kSureOfLight);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const NearestHit& hit = hits_[i];
-    if (hit.slot == NearestHit::kNone) continue;
+    if (hit.primitive == NearestHit::kNone) continue;
     ShadowRay& ray = rays[segments_[i].index];
     const bool is_sure = is_before(bvh_, batch_[i], hit, enough_[i]);
     if (is_sure && (!any_clear_ || transmittance(i) == glm::vec3(0.0f))) {
@@ -126,11 +126,11 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   trace(false, kWholeWay);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const NearestHit& hit = hits_[i];
-    if (hit.slot == NearestHit::kNone) continue;
+    if (hit.primitive == NearestHit::kNone) continue;
     ShadowRay& ray = rays[segments_[i].index];
     ray.radiance *= any_clear_ ? transmittance(i) : glm::vec3(0.0f);
     if (ray.radiance == glm::vec3(0.0f)) continue;
-    spawn_queries_.push_back({&batch_[i], hit.slot, SpawnSide::kTransmitted});
+    spawn_queries_.push_back({&batch_[i], hit.primitive, SpawnSide::kTransmitted});
     next_.push_back(segments_[i]);
   }
   origins_.resize(spawn_queries_.size());
@@ -169,8 +169,8 @@ void ShadowRays::trace(bool from_light, float enough) {
     enough_[i] = aim.whole_way * std::min(enough, segment.share);
   }
   RayQuery search{
-      .common_origin = from_light, .limits = limits_, .ignored = ignored_, .culling = culling_};
-  if (first_occluder_) search.enough_before = enough_;
+      .common_origin = from_light, .t_max = limits_, .skip_ids = ignored_, .culling = culling_};
+  if (first_occluder_) search.any_hit_before = enough_;
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
   hits_.resize(batch_.size());
@@ -180,11 +180,12 @@ void ShadowRays::trace(bool from_light, float enough) {
 }
 
 glm::vec3 ShadowRays::transmittance(std::size_t number) const {
-  const std::uint32_t slot = hits_[number].slot;
-  const FaceRef stored = bvh_.face_of(slot);
+  const std::uint32_t primitive = hits_[number].primitive;
+  const FaceRef stored = bvh_.face_of(primitive);
   const Triangle& face = face_at(scene_, stored);
   const MaterialParameters& material = materials_[face.material];
-  const SurfaceHit place = {&batch_[number], slot, &face, nullptr, instance_at(scene_, stored)};
+  const SurfaceHit place = {&batch_[number], primitive, &face, nullptr,
+                            instance_at(scene_, stored)};
   if (material.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
   if ((material.kind & kTransmits) == 0) return glm::vec3(0.0f);
   return shadow_transmittance(scene_, bvh_, place, material, through_refraction_);

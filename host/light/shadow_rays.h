@@ -58,7 +58,7 @@ class ShadowRays {
   struct Segment {
     std::uint32_t index;  // of the shadow ray that it is a part of
     glm::vec3 from, to;
-    std::uint32_t ignored;  // slot
+    std::uint32_t ignored;  // primitive
     float share;            // of the way in which hits count; infinite: `to` is a direction
   };
 

@@ -75,14 +75,14 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
 int side_of_ray(const Ray& ray, const Corners& hit, const Corners& other, SpawnSide side) {
   const int at_hit = plane_side_at_hit(ray, hit, other);
   if (at_hit != 0) return at_hit;
-  const int before = plane_side(ray.origin, other);
+  const int before = orient3d(ray.origin, other);
   return side == SpawnSide::kIncident ? before : -before;
 }
 
 }  // namespace
 
-std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t slot, SpawnSide side) {
-  const SpawnQuery query{&ray, slot, side};
+std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
+  const SpawnQuery query{&ray, primitive, side};
   SpawnOrigin origin;
   find({&query, 1}, {&origin, 1});
   return origin ? std::optional(*origin) : std::nullopt;
@@ -95,7 +95,7 @@ RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin
   typename SpawnNumbers<kWidth>::SingleMask ways;
 #pragma GCC unroll 8
   for (int i = 0; i < kWidth; ++i) {
-    triangles[i] = &clearance_of(queries[i].slot, i);
+    triangles[i] = &clearance_of(queries[i].primitive, i);
     rays[i] = queries[i].ray;
     ways[i] = queries[i].side == SpawnSide::kIncident ? -1 : 1;
   }
@@ -122,15 +122,15 @@ RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin
     const SpawnQuery& query = queries[i];
     if ((good >> i & 1) != 0) {
       const glm::vec3 plain = *origins[i];
-      const auto is_there = [&](std::uint32_t slot) {
-        return !surely_apart(plain - reaches[i], plain + reaches[i], bvh_.corners_of(slot));
+      const auto is_there = [&](std::uint32_t primitive) {
+        return !surely_apart(plain - reaches[i], plain + reaches[i], bvh_.corners_of(primitive));
       };
-      const Overlaps& overlaps = bvh_.is_placed(query.slot)
+      const Overlaps& overlaps = bvh_.is_instanced(query.primitive)
                                      ? found_[static_cast<std::size_t>(i)].overlaps
-                                     : clearances_.overlaps_of(query.slot);
+                                     : clearances_.overlaps_of(query.primitive);
       if (!overlaps.any_near<kCode>(plain, reaches[i], is_there)) continue;
     }
-    const auto origin = search(*query.ray, query.slot, query.side);
+    const auto origin = search(*query.ray, query.primitive, query.side);
     origins[i] = origin ? SpawnOrigin{*origin, 1} : SpawnOrigin{};
   }
 }
@@ -143,7 +143,7 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
     for (; first + kWidth <= queries.size(); first += kWidth) {
       if (first + kAhead + kWidth <= queries.size()) {
         const SpawnQuery* const soon = &queries[first + kAhead];
-        for (int i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].slot);
+        for (int i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].primitive);
       }
       find_some<code(), kWidth>(&queries[first], &origins[first]);
     }
@@ -159,34 +159,37 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
   });
 }
 
-const NeighborClearance& RaySpawner::find_clearance(std::uint32_t slot, std::size_t lane) {
+const NeighborClearance& RaySpawner::find_clearance(std::uint32_t primitive, std::size_t lane) {
   if (found_.size() <= lane) found_.resize(kLanes);
-  return (found_[lane] = clearances_.look(slot)).clearance;
+  return (found_[lane] = clearances_.look(primitive)).clearance;
 }
 
-std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t slot, SpawnSide side) {
-  const Corners& hit = bvh_.corners_of(slot);
+std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,
+                                            SpawnSide side) {
+  const Corners& hit = bvh_.corners_of(primitive);
   const Interval t = hit_distance(ray, hit);
   const HitPoint x(ray, t);
-  const int before = plane_side(ray.origin, hit);
+  const int before = orient3d(ray.origin, hit);
   const int sign = side == SpawnSide::kIncident ? before : -before;
   const glm::dvec3 normal = triangle_normal(hit);
-  // plane_side is positive behind the normal.
+  // orient3d is positive behind the normal.
   const glm::dvec3 offsets[2] = {
       normal * (-sign / largest(normal)),
       glm::dvec3(ray.direction) * (side == SpawnSide::kIncident ? -1.0 : 1.0)};
   const auto good = [&](const glm::vec3& candidate) {
-    if (plane_side(candidate, hit) != sign) return false;
+    if (orient3d(candidate, hit) != sign) return false;
     // The box of X and the candidate, and some room for the error of X and for rounding.
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
-    return !any_slot_near(bvh_, low, high, [&](std::uint32_t other_slot, const Corners& other) {
-      if (other_slot == slot || surely_apart(low, high, other)) return false;
-      if (lies_beyond(other, hit, sign)) return false;
-      const int wanted = side_of_ray(ray, hit, other, side);
-      return wanted != 0 && plane_side(candidate, other) != wanted;
-    });
+    return !any_primitive_near(bvh_, low, high,
+                               [&](std::uint32_t other_slot, const Corners& other) {
+                                 if (other_slot == primitive || surely_apart(low, high, other))
+                                   return false;
+                                 if (lies_beyond(other, hit, sign)) return false;
+                                 const int wanted = side_of_ray(ray, hit, other, side);
+                                 return wanted != 0 && orient3d(candidate, other) != wanted;
+                               });
   };
   for (int k = 0; k <= kLastStep; ++k) {
     for (const glm::dvec3& offset : offsets) {
@@ -199,10 +202,10 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t slot, 
   return std::nullopt;
 }
 
-bool RaySpawner::leaves(const Ray& ray, std::uint32_t slot, SpawnSide side,
+bool RaySpawner::leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,
                         const glm::vec3& direction) const {
-  const Corners& hit = bvh_.corners_of(slot);
-  const int towards = plane_side(ray.origin, hit);
+  const Corners& hit = bvh_.corners_of(primitive);
+  const int towards = orient3d(ray.origin, hit);
   const int sign = direction_side(direction, hit);
   return side == SpawnSide::kIncident ? sign == -towards : sign == towards;
 }

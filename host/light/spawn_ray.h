@@ -20,10 +20,10 @@ enum class SpawnSide {
   kTransmitted,  ///< the other side: refraction
 };
 
-/// A ray that is to go on, its direction scaled, whose nearest hit is the triangle in `slot`.
+/// A ray that is to go on, its direction scaled, whose nearest hit is the triangle in `primitive`.
 struct SpawnQuery {
   const Ray* ray = nullptr;
-  std::uint32_t slot = 0;
+  std::uint32_t primitive = 0;
   SpawnSide side = SpawnSide::kIncident;
 };
 
@@ -63,12 +63,13 @@ class RaySpawner {
   explicit RaySpawner(const NeighborClearances& clearances)
       : clearances_(clearances), bvh_(clearances.bvh()) {}
 
-  /// O' for `ray`, whose nearest hit is the triangle in `slot`. The triangles in whose plane the
-  /// ray runs have no say.
-  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t slot, SpawnSide side);
+  /// O' for `ray`, whose nearest hit is the triangle in `primitive`. The triangles in whose plane
+  /// the ray runs have no say.
+  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive,
+                                              SpawnSide side);
 
-  /// Says that a slot will soon be asked about.
-  RAYGATE_INLINE void prefetch(std::uint32_t slot) const { clearances_.prefetch(slot); }
+  /// Says that a primitive will soon be asked about.
+  RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
 
   /// origins[i] becomes O' for queries[i]: what find() gives, several at a time and so much
   /// sooner.
@@ -76,7 +77,7 @@ class RaySpawner {
 
   /// Whether `direction` goes away from the triangle that `ray` hit, to the side where O' is.
   /// Shading normals and rounding may give directions that do not.
-  [[nodiscard]] bool leaves(const Ray& ray, std::uint32_t slot, SpawnSide side,
+  [[nodiscard]] bool leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,
                             const glm::vec3& direction) const;
 
  private:
@@ -84,15 +85,17 @@ class RaySpawner {
   RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
 
   /// Of a query in this lane.
-  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t slot, int lane) {
-    if (bvh_.is_placed(slot)) [[unlikely]]
-      return find_clearance(slot, static_cast<std::size_t>(lane));
-    return clearances_.of(slot);
+  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t primitive,
+                                                                     int lane) {
+    if (bvh_.is_instanced(primitive)) [[unlikely]]
+      return find_clearance(primitive, static_cast<std::size_t>(lane));
+    return clearances_.of(primitive);
   }
-  [[nodiscard]] const NeighborClearance& find_clearance(std::uint32_t slot, std::size_t lane);
+  [[nodiscard]] const NeighborClearance& find_clearance(std::uint32_t primitive, std::size_t lane);
 
   /// As find(), looking at what is near.
-  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t slot, SpawnSide side);
+  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive,
+                                                SpawnSide side);
 
   const NeighborClearances& clearances_;
   const Bvh& bvh_;

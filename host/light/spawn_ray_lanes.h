@@ -247,7 +247,7 @@ RAYGATE_INLINE void spawn_lanes(const SpawnHits<kWidth>& hits,
   const typename SpawnNumbers<kWidth>::RealMask is_sure =
       (below >= 0x1p35) & (16.0 * error <= step);
 
-  // Candidate 0: the normal shows where plane_side is -1.
+  // Candidate 0: the normal shows where orient3d is -1.
   Real turn, longest;
   spawn::convert<kCode>(way, turn);
   spawn::largest(hits.normal, longest);

@@ -21,7 +21,7 @@ glm::vec3 bent_normal(const Scene& scene, const Triangle& face, const Corners& c
 }
 
 bool is_masked_out(const Scene& scene, const Bvh& bvh, const SurfaceHit& place) {
-  const Corners corners = bvh.corners_of(place.slot);
+  const Corners corners = bvh.corners_of(place.primitive);
   const auto wide = [](const glm::vec3& v) { return Triple<double>{v.x, v.y, v.z}; };
   const Triple<double> at =
       unscaled_weights<double>(wide(place.ray->origin), wide(place.ray->direction),

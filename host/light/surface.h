@@ -16,8 +16,8 @@ namespace raygate {
 /// A hit, as the intersector gives it.
 struct SurfaceHit {
   const Ray* ray = nullptr;
-  std::uint32_t slot = 0;
-  const Triangle* face = nullptr;    ///< of the slot
+  std::uint32_t primitive = 0;
+  const Triangle* face = nullptr;    ///< of the primitive
   const glm::vec3* point = nullptr;  ///< P as the hit-test unit has it, seen from the ray's origin;
                                      ///< none: it is for the host to find
   const Instance* instance = nullptr;  ///< whose triangle it is; none: it is the scene's own
@@ -136,7 +136,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   Gathered<T, kFields> in;
   for (int k = 0; k < kCount; ++k) {
     const SurfaceHit& place = places[k];
-    const Corners corners = bvh.corners_of(place.slot);
+    const Corners corners = bvh.corners_of(place.primitive);
     in.put(kOrigin, k, place.ray->origin);
     in.put(kDirection, k, place.ray->direction);
     in.put(kPoint, k, place.point != nullptr ? *place.point : glm::vec3(0.0f));
@@ -170,7 +170,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   for (int k = 0; k < kCount; ++k) {
     if (side.values[1][k] != 0.0f) continue;
     side.values[0][k] = static_cast<float>(
-        direction_side(places[k].ray->direction, bvh.corners_of(places[k].slot)));
+        direction_side(places[k].ray->direction, bvh.corners_of(places[k].primitive)));
   }
   surface.side = side.one(0);
   const auto towards = surface.side < 0.0f;  // against the triangle's own normal
@@ -239,7 +239,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
       for (int k = 0; k < kCount; ++k) {
         normals.put(
             0, k,
-            bent_normal(scene, *places[k].face, bvh.corners_of(places[k].slot),
+            bent_normal(scene, *places[k].face, bvh.corners_of(places[k].primitive),
                         {weight.values[0][k], weight.values[1][k], weight.values[2][k]},
                         {normals.values[0][k], normals.values[1][k], normals.values[2][k]}));
       }

@@ -74,16 +74,17 @@ struct Tracer::Tree {
       : bvh(scene_of(checked(triangles)), threads) {}
 
   [[nodiscard]] Hit answer(const RayBlock& block, std::size_t i, const NearestHit& hit) const {
-    if (hit.slot == NearestHit::kNone) return {};
-    const HitPlace place = place_of_hit(block.rays[i], bvh.corners_of(hit.slot));
-    return {bvh.triangle_of(hit.slot), std::ldexp(place.t, block.exponents[i]), place.u, place.v};
+    if (hit.primitive == NearestHit::kNone) return {};
+    const HitPlace place = place_of_hit(block.rays[i], bvh.corners_of(hit.primitive));
+    return {bvh.triangle_of(hit.primitive), std::ldexp(place.t, block.exponents[i]), place.u,
+            place.v};
   }
 
   [[nodiscard]] std::vector<NearestHit> find(const RayBlock& block, bool any) const {
     std::vector<NearestHit> hits(block.rays.size());
-    RayQuery search{.limits = block.limits};
-    if (any) search.enough_before = block.limits;
-    CpuIntersector(bvh).intersect(block.rays, search, hits);
+    RayQuery query{.t_max = block.limits};
+    if (any) query.any_hit_before = block.limits;
+    CpuIntersector(bvh).intersect(block.rays, query, hits);
     return hits;
   }
 
@@ -107,7 +108,7 @@ void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) cons
   require_room(rays.size(), is_hit.size());
   const std::vector<NearestHit> found = tree_->find(block_of(rays), true);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    is_hit[i] = found[i].slot == NearestHit::kNone ? 0 : 1;
+    is_hit[i] = found[i].primitive == NearestHit::kNone ? 0 : 1;
   }
 }
 

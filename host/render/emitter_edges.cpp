@@ -46,7 +46,7 @@ std::size_t find_emitter_edges(const RenderJob& job, Intersector& intersector, c
     work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += of_rays[i];
   }
   const auto emission_at = [&](int x, int y) {
-    return job.emission_of(hits[std::size_t(y) * std::size_t(columns) + std::size_t(x)].slot);
+    return job.emission_of(hits[std::size_t(y) * std::size_t(columns) + std::size_t(x)].primitive);
   };
   for (int y = 0; y < tile.height(); ++y) {
     for (int x = 0; x < tile.width(); ++x) {

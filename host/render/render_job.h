@@ -18,9 +18,9 @@ struct RenderJob {
   glm::dvec3 ambient;  ///< as IntegratorOptions has it
 
   /// What a triangle, or kNone, sends out as a light.
-  [[nodiscard]] glm::vec3 emission_of(std::uint32_t slot) const {
-    if (slot == NearestHit::kNone) return glm::vec3(0.0f);
-    return scene.materials[face_at(scene, bvh.face_of(slot)).material].emission;
+  [[nodiscard]] glm::vec3 emission_of(std::uint32_t primitive) const {
+    if (primitive == NearestHit::kNone) return glm::vec3(0.0f);
+    return scene.materials[face_at(scene, bvh.face_of(primitive)).material].emission;
   }
 };
 

@@ -87,7 +87,7 @@ Film render(const Scene& scene, const NeighborClearances& clearances, const Came
             emitter_edges, stats);
   if (stats.intersect.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
-    const std::uint64_t every_record = bvh.slot_count() * origins * std::uint64_t(ranks);
+    const std::uint64_t every_record = bvh.primitive_count() * origins * std::uint64_t(ranks);
     stats.skipped.records = every_record - stats.intersect.common_records;
   }
   const std::uint64_t every_test = stats.rays * bvh.triangle_count();

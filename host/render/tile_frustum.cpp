@@ -43,9 +43,10 @@ class TileFrustum {
 struct FrustumVisitor {
   const TileFrustum& frustum;
 
-  [[nodiscard]] static bool goes_on(float, Whole) { return true; }
-  [[nodiscard]] static Whole rays_at(int) { return {}; }
-  [[nodiscard]] LaneMask meet(const Bvh::Node& node, Whole, FloatLanes& entry) const {
+  [[nodiscard]] static bool should_visit(float, SingleRay) { return true; }
+  [[nodiscard]] static SingleRay rays_of_child(int) { return {}; }
+  [[nodiscard]] LaneMask intersect_boxes(const Bvh::Node& node, SingleRay,
+                                         FloatLanes& entry) const {
     entry = FloatLanes{};
     LaneMask met = 0;
     for (int i = 0; i < Bvh::kWidth; ++i) {
@@ -63,8 +64,8 @@ bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, co
   if (!camera.is_pinhole()) return true;
   const TileFrustum frustum(camera, film, tile, margin);
   FrustumVisitor visitor{frustum};
-  WalkStack<Whole> stack({});
-  Waiting<Whole> leaf;
+  TraversalStack<SingleRay> stack({});
+  StackEntry<SingleRay> leaf;
   return next_leaf(bvh, visitor, stack, leaf);
 }
 

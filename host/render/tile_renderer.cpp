@@ -132,15 +132,15 @@ void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
     const std::size_t first = sample;
     sample += static_cast<std::size_t>(pixel.end - pixel.first);
     if (emitter_edges_[pixel.index] == EmitterEdge::kNo) continue;
-    const auto add = [&](std::uint32_t slot, double share) {
-      const glm::vec3 emission = job_.emission_of(slot);
+    const auto add = [&](std::uint32_t primitive, double share) {
+      const glm::vec3 emission = job_.emission_of(primitive);
       for (int k = 0; k < 3; ++k) edge_emission_[p][k].add(share * double{emission[k]});
     };
     for (std::size_t i = first * kEdgeSamples; i < sample * kEdgeSamples; ++i, ++ray) {
-      add(hits_[ray].slot, 1.0 / kEdgeSamples);
+      add(hits_[ray].primitive, 1.0 / kEdgeSamples);
       if (is_counting_) edge_work_[place_in_tile(pixel)] += work_[ray];
     }
-    for (std::size_t i = first; i < sample; ++i) add(first_hits_[i].slot, -1.0);
+    for (std::size_t i = first; i < sample; ++i) add(first_hits_[i].primitive, -1.0);
   }
   stats_.shade_seconds += watch.lap();
 }
@@ -191,12 +191,13 @@ void TileRenderer::trace_shadows() {
 void TileRenderer::record_first_hits() {
   for (std::size_t i = 0; i < hits_.size(); ++i) {
     const NearestHit& hit = hits_[i];
-    first_hits_[i].slot = hit.slot;
-    if (hit.slot == NearestHit::kNone || batch_.states[i].index != 0) continue;
+    first_hits_[i].primitive = hit.primitive;
+    if (hit.primitive == NearestHit::kNone || batch_.states[i].index != 0) continue;
     first_hits_[i].origin = batch_.rays[i].origin;
-    first_hits_[i].point = is_point_doubt(hit, job_.options.point_error)
-                               ? precise_hit(batch_.rays[i], job_.bvh.corners_of(hit.slot)).point
-                               : hit.point;
+    first_hits_[i].point =
+        is_point_doubt(hit, job_.options.point_error)
+            ? precise_hit(batch_.rays[i], job_.bvh.corners_of(hit.primitive)).point
+            : hit.point;
   }
 }
 
@@ -224,7 +225,7 @@ void TileRenderer::write() {
         color[k].add(light[k]);
         albedo[k].add(output_.first_surface[i].albedo[k]);
       }
-      color[3].add(first_hit.slot == NearestHit::kNone ? 0.0 : 1.0);
+      color[3].add(first_hit.primitive == NearestHit::kNone ? 0.0 : 1.0);
       if (!film_.tests.empty()) film_.tests[at] += first_hit.work.tests;
       if (!film_.doubts.empty()) film_.doubts[at] += first_hit.work.doubts;
     }
@@ -257,8 +258,8 @@ void TileRenderer::update_errors() {
 /// Those that are the first sample's.
 void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
   const FirstHit& first_hit = first_hits_[sample];
-  if (first_hit.slot == NearestHit::kNone) return;
-  const std::uint32_t triangle = job_.bvh.triangle_of(first_hit.slot);
+  if (first_hit.primitive == NearestHit::kNone) return;
+  const std::uint32_t triangle = job_.bvh.triangle_of(first_hit.primitive);
   const glm::dvec3 origin(first_hit.origin), point(first_hit.point);
   const glm::dvec3 from_eye = origin - glm::dvec3(job_.camera.eye()) + point;
   film_.depth[pixel] = static_cast<float>(job_.camera.depth(from_eye));
@@ -268,7 +269,7 @@ void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
     film_.position[pixel] = glm::vec3(job_.scene.origin + origin + point);
   }
   if (!film_.object.empty())
-    film_.object[pixel] = object_at(job_.scene, job_.bvh.face_of(first_hit.slot));
+    film_.object[pixel] = object_at(job_.scene, job_.bvh.face_of(first_hit.primitive));
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

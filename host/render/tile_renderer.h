@@ -41,7 +41,7 @@ class TileRenderer {
  private:
   /// What a camera ray saw.
   struct FirstHit {
-    std::uint32_t slot = NearestHit::kNone;
+    std::uint32_t primitive = NearestHit::kNone;
     glm::vec3 origin{0.0f};  // of the ray
     glm::vec3 point{0.0f};   // relative to it
     RayWork work;            // of all rays of the sample

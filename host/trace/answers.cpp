@@ -117,16 +117,16 @@ template <class Row>
 void Answers::write(const RayBlock& block, const RayHit& found, Row& row) const {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const NearestHit& hit = found.hit;
-  const bool is_hit = hit.slot != NearestHit::kNone;
+  const bool is_hit = hit.primitive != NearestHit::kNone;
   const Ray& ray = block.rays[found.ray];
   Corners corners{};
   std::int64_t number = -1;
   FaceRef stored;
   HitPlace place{std::numeric_limits<double>::infinity(), kNan, kNan};  // t of the scaled ray
   if (is_hit) {
-    corners = bvh_.corners_of(hit.slot);
-    number = bvh_.triangle_of(hit.slot);
-    stored = bvh_.face_of(hit.slot);
+    corners = bvh_.corners_of(hit.primitive);
+    number = bvh_.triangle_of(hit.primitive);
+    stored = bvh_.face_of(hit.primitive);
     place = place_of_hit(ray, corners);
   }
   const auto vector = [&](const glm::dvec3& v) {

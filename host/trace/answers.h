@@ -41,7 +41,7 @@ inline constexpr std::string_view kAnswerNames[] = {
 /// One hit of a ray of a block.
 struct RayHit {
   std::uint32_t ray = 0;  ///< index into the block
-  NearestHit hit;         ///< slot kNone: the ray hits nothing
+  NearestHit hit;         ///< primitive kNone: the ray hits nothing
   std::uint32_t doubts = 0;
 };
 

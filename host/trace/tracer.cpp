@@ -26,9 +26,9 @@ void find_one(Desk& desk, Hits asked) {
   const std::size_t count = desk.block.rays.size();
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
-  RayQuery search{.limits = desk.block.limits, .work = desk.work};
-  if (asked == Hits::kAny) search.enough_before = desk.block.limits;
-  desk.intersector->intersect(desk.block.rays, search, desk.nearest);
+  RayQuery query{.t_max = desk.block.limits, .work = desk.work};
+  if (asked == Hits::kAny) query.any_hit_before = desk.block.limits;
+  desk.intersector->intersect(desk.block.rays, query, desk.nearest);
   for (std::uint32_t i = 0; i < count; ++i) {
     desk.found.push_back({i, desk.nearest[i], desk.work[i].doubts});
   }
@@ -73,8 +73,10 @@ TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const Answer
       counts.rays += desk.block.rays.size();
       counts.rows += desk.found.size();
       counts.rounded += desk.block.rounded;
-      counts.hits += static_cast<std::uint64_t>(std::ranges::count_if(
-          desk.found, [](const RayHit& found) { return found.hit.slot != NearestHit::kNone; }));
+      counts.hits +=
+          static_cast<std::uint64_t>(std::ranges::count_if(desk.found, [](const RayHit& found) {
+            return found.hit.primitive != NearestHit::kNone;
+          }));
     }
   }
   return counts;

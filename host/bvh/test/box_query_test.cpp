@@ -11,17 +11,18 @@ namespace raygate {
 namespace {
 
 std::vector<std::uint32_t> slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high) {
-  std::vector<std::uint32_t> slots;
-  EXPECT_FALSE(any_slot_near(bvh, low, high, [&](std::uint32_t slot, const Corners& corners) {
-    EXPECT_EQ(corners, bvh.corners_of(slot));
-    slots.push_back(slot);
-    return false;
-  }));
-  if (slots.empty()) return slots;
-  std::size_t left = slots.size() / 2;
+  std::vector<std::uint32_t> primitives;
+  EXPECT_FALSE(
+      any_primitive_near(bvh, low, high, [&](std::uint32_t primitive, const Corners& corners) {
+        EXPECT_EQ(corners, bvh.corners_of(primitive));
+        primitives.push_back(primitive);
+        return false;
+      }));
+  if (primitives.empty()) return primitives;
+  std::size_t left = primitives.size() / 2;
   const auto end = [&](std::uint32_t, const Corners&) { return left-- == 0; };
-  EXPECT_TRUE(any_slot_near(bvh, low, high, end)) << "it can be ended";
-  return slots;
+  EXPECT_TRUE(any_primitive_near(bvh, low, high, end)) << "it can be ended";
+  return primitives;
 }
 
 TEST(BoxQuery, FindsWhatTouchesAndNothingElse) {
@@ -35,14 +36,14 @@ TEST(BoxQuery, FindsWhatTouchesAndNothingElse) {
     found = slots_near(bvh, low, high);
     std::ranges::sort(found);
     std::vector<std::uint32_t> expected;
-    for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-      const Bvh::Corners& t = bvh.corners_of(slot);
+    for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+      const Bvh::Corners& t = bvh.corners_of(primitive);
       bool touches = true;
       for (int k = 0; k < 3; ++k) {
         const auto [least, most] = std::minmax({t[0][k], t[1][k], t[2][k]});
         touches = touches && least <= high[k] && low[k] <= most;
       }
-      if (touches) expected.push_back(slot);
+      if (touches) expected.push_back(primitive);
     }
     ASSERT_EQ(found, expected);
     total += found.size();

@@ -19,12 +19,12 @@ using test::Random;
 
 void expect_sound(const std::vector<Corners>& triangles) {
   const Bvh bvh(test::scene_of(triangles), 2);
-  ASSERT_EQ(bvh.slot_count(), triangles.size());
+  ASSERT_EQ(bvh.primitive_count(), triangles.size());
   const test::TreeWalk walk(bvh);
   std::vector<bool> seen(triangles.size());
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    seen[bvh.triangle_of(slot)] = true;
-    EXPECT_EQ(bvh.corners_of(slot), triangles[bvh.triangle_of(slot)]);
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    seen[bvh.triangle_of(primitive)] = true;
+    EXPECT_EQ(bvh.corners_of(primitive), triangles[bvh.triangle_of(primitive)]);
   }
   EXPECT_TRUE(std::ranges::all_of(seen, [](bool b) { return b; }));
 }
@@ -78,7 +78,7 @@ TEST(Bvh, HoldsTrianglesThatNoSplitTellsApart) {
   }
 }
 
-int depth_below(const BinaryTree& tree, BinaryTree::Ref ref) {
+int depth_below(const BinaryBvh& tree, BinaryBvh::Ref ref) {
   if (tree.is_leaf(ref)) return 0;
   const auto [left, right] = tree.nodes[ref].child;
   return 1 + std::max(depth_below(tree, left), depth_below(tree, right));
@@ -95,16 +95,17 @@ TEST(Bvh, DepthIsBounded) {
   }
   expect_sound(shrinking);
   const Scene scene = test::scene_of(shrinking);
-  const BinaryTree tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, 1);
+  const BinaryBvh tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, 1);
   const int depth = depth_below(tree, tree.root());
   EXPECT_LE(depth, Bvh::kMaxDepth);
   EXPECT_GT(depth, Bvh::kMaxDepth - 4);  // it would be deeper
 }
 
 bool same_bytes(const Bvh& a, const Bvh& b) {
-  if (a.nodes().size() != b.nodes().size() || a.slot_count() != b.slot_count()) return false;
-  for (std::uint32_t slot = 0; slot < a.slot_count(); ++slot) {
-    if (a.triangle_of(slot) != b.triangle_of(slot)) return false;
+  if (a.nodes().size() != b.nodes().size() || a.primitive_count() != b.primitive_count())
+    return false;
+  for (std::uint32_t primitive = 0; primitive < a.primitive_count(); ++primitive) {
+    if (a.triangle_of(primitive) != b.triangle_of(primitive)) return false;
   }
   return std::memcmp(a.nodes().data(), b.nodes().data(), a.nodes().size_bytes()) == 0;
 }

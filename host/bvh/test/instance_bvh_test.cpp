@@ -16,10 +16,10 @@ namespace {
 
 using test::Random;
 
-TEST(Runs, FindWhatEachNumberIsIn) {
+TEST(RangeMap, FindWhatEachNumberIsIn) {
   for (const std::vector<std::uint32_t>& lengths :
        {std::vector<std::uint32_t>{1}, {5, 5, 5}, {1, 1, 1000, 1, 1, 1, 3}, {100000, 1, 2}}) {
-    const Runs runs(17, lengths);
+    const RangeMap runs(17, lengths);
     std::uint32_t number = 17;
     for (std::uint32_t run = 0; run < lengths.size(); ++run) {
       EXPECT_EQ(runs.begin(run), number);
@@ -39,20 +39,21 @@ void expect_sound(const Scene& scene) {
     const test::TreeWalk walk(bvh);
     std::size_t in_leaves = 0;
     for (const Bvh::Child& leaf : bvh.leaves()) {
-      for (std::uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot, ++in_leaves) {
-        const auto& vertices = flat.triangles[bvh.triangle_of(slot)].vertices;
-        const Corners corners = bvh.corners_of(slot);
+      for (std::uint32_t primitive = leaf.first; primitive < leaf.first + leaf.count;
+           ++primitive, ++in_leaves) {
+        const auto& vertices = flat.triangles[bvh.triangle_of(primitive)].vertices;
+        const Corners corners = bvh.corners_of(primitive);
         for (std::size_t v = 0; v < 3; ++v) ASSERT_EQ(corners[v], flat.positions[vertices[v]]);
-        const FaceRef face = bvh.face_of(slot);
-        EXPECT_EQ(bvh.is_placed(slot), face.instance != kNoIndex);
-        EXPECT_EQ(object_at(scene, face), flat.triangles[bvh.triangle_of(slot)].object);
+        const FaceRef face = bvh.face_of(primitive);
+        EXPECT_EQ(bvh.is_instanced(primitive), face.instance != kNoIndex);
+        EXPECT_EQ(object_at(scene, face), flat.triangles[bvh.triangle_of(primitive)].object);
       }
     }
     EXPECT_EQ(in_leaves, flat.triangles.size());
   }
 }
 
-TEST(PlacedTree, HoldsEveryTriangleOnce) {
+TEST(InstanceBvh, HoldsEveryTriangleOnce) {
   Random random;
   Scene scene = test::instanced_scene(random, 40);
   expect_sound(scene);
@@ -62,7 +63,7 @@ TEST(PlacedTree, HoldsEveryTriangleOnce) {
   expect_sound(scene);
 }
 
-TEST(PlacedTree, HoldsTrianglesOfAnySize) {
+TEST(InstanceBvh, HoldsTrianglesOfAnySize) {
   Random random;
   for (const float size : {0x1p-120f, 0x1p-40f, 1.0f, 0x1p60f}) {
     for (const double scale : {0x1p-160, 0x1p-30, 1.0, 0x1p40}) {
@@ -84,7 +85,7 @@ TEST(PlacedTree, HoldsTrianglesOfAnySize) {
 }
 
 // A mesh's tree alone would be as deep as any may be; and so would the one above.
-TEST(PlacedTree, DepthIsBounded) {
+TEST(InstanceBvh, DepthIsBounded) {
   std::vector<Corners> shrinking;
   for (int i = 0; i < 200; ++i) {
     const float s = std::ldexp(1.0f, 100 - i);

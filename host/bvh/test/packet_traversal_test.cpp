@@ -54,7 +54,7 @@ int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool sho
       if ((lanes >> i & 1) == 0) continue;
       std::size_t expected = 0;
       std::uint32_t nearest = 0;
-      for (std::uint32_t s = 0; s < bvh.slot_count(); ++s) {
+      for (std::uint32_t s = 0; s < bvh.primitive_count(); ++s) {
         if (!hits_triangle(rays[i], bvh.corners_of(s))) continue;
         const bool first = expected++ == 0;
         if (first || compare_hits(rays[i], bvh.corners_of(s), bvh.corners_of(nearest)) < 0) {

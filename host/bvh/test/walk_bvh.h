@@ -35,9 +35,9 @@ struct TreeWalk {
     Bvh::LeafRoom room;
     const float* const from = bvh.corners_of(leaf, room);
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      const std::uint32_t slot = leaf.first + i;
-      ++visits[bvh.triangle_of(slot)];
-      const Corners corners = bvh.corners_of(slot);
+      const std::uint32_t primitive = leaf.first + i;
+      ++visits[bvh.triangle_of(primitive)];
+      const Corners corners = bvh.corners_of(primitive);
       for (std::uint32_t v = 0; v < 3; ++v) {
         ASSERT_TRUE(glm::all(glm::lessThan(low, corners[v])));
         ASSERT_TRUE(glm::all(glm::lessThan(corners[v], high)));

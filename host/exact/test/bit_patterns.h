@@ -31,7 +31,7 @@ inline std::string disagreement(const Patterns& words) {
   const Corners t = {vector(6, true), vector(9, true), vector(12, true)};
   const Ray finite = {ray.origin, is_usable(ray.direction) ? ray.direction : glm::vec3(1, 0, 0)};
   const RationalOracle oracle(finite, t);
-  if (plane_side(ray.origin, t) != sgn(oracle.plane())) return "plane_side";
+  if (orient3d(ray.origin, t) != sgn(oracle.plane())) return "orient3d";
   for (int k = 0; k < 3; ++k) {
     if (edge_side(finite, t[k], t[(k + 1) % 3]) != oracle.side(k)) return "edge_side";
   }

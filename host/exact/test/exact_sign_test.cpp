@@ -33,7 +33,7 @@ TEST(Turn, AgreesWithIntegersNearALine) {
     const __int128 determinant = static_cast<__int128>(c[2] - c[0]) * (c[5] - c[1]) -
                                  static_cast<__int128>(c[3] - c[1]) * (c[4] - c[0]);
     zeros += determinant == 0;
-    ASSERT_EQ(turn(p[0], p[1], p[2]), sign_of(determinant)) << "round " << round;
+    ASSERT_EQ(orient2d(p[0], p[1], p[2]), sign_of(determinant)) << "round " << round;
   }
   EXPECT_GT(zeros, 100) << "the cases are to be hard";
 }
@@ -41,11 +41,11 @@ TEST(Turn, AgreesWithIntegersNearALine) {
 TEST(Turn, FromTheSmallestToTheLargestFloats) {
   const float tiny = 0x1p-149f;
   const float huge = 0x1.fffffep127f;
-  EXPECT_EQ(turn({0, 0}, {tiny, 0}, {0, tiny}), 1);
-  EXPECT_EQ(turn({0, 0}, {0, tiny}, {tiny, 0}), -1);
-  EXPECT_EQ(turn({-huge, -huge}, {huge, huge}, {0, tiny}), 1);
-  EXPECT_EQ(turn({-huge, -huge}, {huge, huge}, {tiny, 0}), -1);
-  EXPECT_EQ(turn({-huge, -huge}, {huge, huge}, {tiny, tiny}), 0);
+  EXPECT_EQ(orient2d({0, 0}, {tiny, 0}, {0, tiny}), 1);
+  EXPECT_EQ(orient2d({0, 0}, {0, tiny}, {tiny, 0}), -1);
+  EXPECT_EQ(orient2d({-huge, -huge}, {huge, huge}, {0, tiny}), 1);
+  EXPECT_EQ(orient2d({-huge, -huge}, {huge, huge}, {tiny, 0}), -1);
+  EXPECT_EQ(orient2d({-huge, -huge}, {huge, huge}, {tiny, tiny}), 0);
 }
 
 TEST(AreaSign, IsExactWhereRoundingIsNot) {

@@ -74,7 +74,7 @@ TEST(Exact, AgreesWithRationals) {
   for (int i = 0; i < 30000; ++i) {
     const auto [ray, t] = hard_case(random);
     const Oracle oracle(ray, t);
-    ASSERT_EQ(plane_side(ray.origin, t), sgn(oracle.plane())) << "case " << i;
+    ASSERT_EQ(orient3d(ray.origin, t), sgn(oracle.plane())) << "case " << i;
     for (int k = 0; k < 3; ++k) {
       ASSERT_EQ(edge_side(ray, t[k], t[(k + 1) % 3]), oracle.side(k)) << "case " << i;
       ties += dot(oracle.direction, cross(oracle.v[k], oracle.v[(k + 1) % 3])) == 0 ? 1 : 0;

@@ -10,12 +10,12 @@
 namespace raygate {
 namespace {
 
-CoreRay core_ray(const Ray& ray, const RayQuery& search, std::uint32_t number) {
-  CoreRay core{.ray = ray, .limit = search.limit(number), .tag = number};
-  if (!search.ignored.empty()) core.ignored = search.ignored[number];
+CoreRay core_ray(const Ray& ray, const RayQuery& query, std::uint32_t number) {
+  CoreRay core{.ray = ray, .t_max = query.t_max_of(number), .tag = number};
+  if (!query.skip_ids.empty()) core.skip_id = query.skip_ids[number];
   // A hit before the limit is before what is enough.
-  core.any_hit = !search.enough_before.empty() && search.enough_before[number] >= core.limit;
-  core.every_box = !search.culling;
+  core.any_hit = !query.any_hit_before.empty() && query.any_hit_before[number] >= core.t_max;
+  core.no_cull = !query.culling;
   return core;
 }
 
@@ -35,17 +35,17 @@ IntersectCounters CoreIntersector::counters() const {
   return counters;
 }
 
-void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& search,
+void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
                                 std::span<NearestHit> hits) {
   assert(hits.size() == rays.size());
   Stopwatch watch;
-  for (NearestHit& hit : hits) hit.slot = NearestHit::kNone;  // the rest has no meaning
-  std::ranges::fill(search.work, RayWork{});
+  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest has no meaning
+  std::ranges::fill(query.work, RayWork{});
   sent_.clear();
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (!is_usable(rays[i].direction)) continue;
-    if (!is_scaled(rays[i].direction)) refuse_unscaled(rays[i]);
-    sent_.push_back(core_ray(rays[i], search, i));
+    if (!is_scaled(rays[i].direction)) throw_unscaled(rays[i]);
+    sent_.push_back(core_ray(rays[i], query, i));
   }
   while (!sent_.empty()) {
     results_.clear();
@@ -53,26 +53,26 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& searc
     sent_.clear();
     for (const CoreResult& result : results_) {
       const Ray& ray = rays[result.tag];
-      if (!search.work.empty()) {
-        search.work[result.tag].tests += result.kind == CoreResult::Kind::kEnd ? result.tests : 0;
-        search.work[result.tag].doubts += result.kind == CoreResult::Kind::kDoubt;
+      if (!query.work.empty()) {
+        query.work[result.tag].tests += result.kind == CoreResult::Kind::kEnd ? result.tests : 0;
+        query.work[result.tag].doubts += result.kind == CoreResult::Kind::kDoubt;
       }
       if (result.kind != CoreResult::Kind::kRest) {
-        settle(ray, search, result, hits[result.tag]);
+        resolve(ray, query, result, hits[result.tag]);
         continue;
       }
       for (std::uint64_t left = result.nodes; left != 0; left &= left - 1) {
-        CoreRay& again = sent_.emplace_back(core_ray(ray, search, result.tag));
+        CoreRay& again = sent_.emplace_back(core_ray(ray, query, result.tag));
         again.start = result.line + static_cast<std::uint32_t>(std::countr_zero(left));
       }
     }
   }
   counters_.traverse += watch.lap();
-  if (search.enough_before.empty()) {
+  if (query.any_hit_before.empty()) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (hits[i].slot == NearestHit::kNone) continue;
-      const UnitPoint unit =
-          plane_point(make_plane(rays[i].origin, bvh_.corners_of(hits[i].slot)), rays[i].direction);
+      if (hits[i].primitive == NearestHit::kNone) continue;
+      const UnitPoint unit = plane_point(
+          make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive)), rays[i].direction);
       hits[i].point = unit.point;
       hits[i].point_error = unit.error;
       ++counters_.hit.plane_tests;
@@ -82,14 +82,14 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& searc
 }
 
 /// Takes a hit, or what may be one.
-void CoreIntersector::settle(const Ray& ray, const RayQuery& search, const CoreResult& result,
-                             NearestHit& best) {
-  NearestHit hit{.slot = result.triangle};
-  const float limit = search.limit(result.tag);
+void CoreIntersector::resolve(const Ray& ray, const RayQuery& query, const CoreResult& result,
+                              NearestHit& best) {
+  NearestHit hit{.primitive = result.triangle};
+  const float limit = query.t_max_of(result.tag);
   if (result.kind == CoreResult::Kind::kDoubt) {
-    settle_doubt(bvh_, ray, limit, hit, best, counters_);
+    resolve_doubt(bvh_, ray, limit, hit, best, counters_);
   } else if (result.found) {
-    hit.t = hit_distance(ray, bvh_.corners_of(hit.slot));
+    hit.t = hit_distance(ray, bvh_.corners_of(hit.primitive));
     take_if_nearer(bvh_, ray, limit, hit, best, counters_);
   }
 }

@@ -22,12 +22,12 @@ class CoreIntersector : public Intersector {
                   std::shared_ptr<CoreUnit> core)
       : bvh_(bvh), image_(std::move(image)), core_(std::move(core)) {}
 
-  void intersect(std::span<const Ray> rays, const RayQuery& search,
+  void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
   [[nodiscard]] IntersectCounters counters() const override;
 
  private:
-  void settle(const Ray& ray, const RayQuery& search, const CoreResult& result, NearestHit& best);
+  void resolve(const Ray& ray, const RayQuery& query, const CoreResult& result, NearestHit& best);
 
   const Bvh& bvh_;
   std::shared_ptr<const MemoryImage> image_;

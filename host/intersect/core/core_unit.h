@@ -18,12 +18,12 @@ struct CoreRay {
 
   Ray ray;  ///< the direction scaled (see is_scaled)
   /// Positive, +infinity for none: hits at t >= limit do not count. The exact t.
-  float limit = std::numeric_limits<float>::infinity();
-  std::uint32_t ignored = kNoTriangle;       ///< a triangle that does not count
+  float t_max = std::numeric_limits<float>::infinity();
+  std::uint32_t skip_id = kNoTriangle;       ///< a triangle that does not count
   std::uint32_t start = MemoryImage::kRoot;  ///< the line of the inner node where its walk begins
   std::uint32_t tag = 0;                     ///< comes back with all that concerns the ray
   bool any_hit = false;                      ///< the first sure hit that is found will do
-  bool every_box = false;                    ///< it enters all boxes
+  bool no_cull = false;                      ///< it enters all boxes
 };
 
 /// A word of the core about a ray. Words of several rays come mixed; a ray's end is its last one.

@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-using Ref = BinaryTree::Ref;
+using Ref = BinaryBvh::Ref;
 
 /// The exact bounds of triangles.
 struct Bounds {
@@ -30,15 +30,15 @@ struct Bounds {
   }
 };
 
-/// The tree's triangles as a scene, triangle i being slot i.
+/// The tree's triangles as a scene, triangle i being primitive i.
 Scene scene_of(const Bvh& bvh) {
   Scene scene;
-  scene.positions.reserve(3 * std::size_t{bvh.slot_count()});
-  scene.triangles.resize(bvh.slot_count());
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
+  scene.positions.reserve(3 * std::size_t{bvh.primitive_count()});
+  scene.triangles.resize(bvh.primitive_count());
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
     for (std::uint32_t v = 0; v < 3; ++v) {
-      scene.triangles[slot].vertices[v] = static_cast<std::uint32_t>(scene.positions.size());
-      scene.positions.push_back(bvh.corners_of(slot)[v]);
+      scene.triangles[primitive].vertices[v] = static_cast<std::uint32_t>(scene.positions.size());
+      scene.positions.push_back(bvh.corners_of(primitive)[v]);
     }
   }
   return scene;
@@ -59,7 +59,7 @@ double below(double a, double b) { return -above(b, a); }
 /// Makes a binary tree seven wide.
 class ImageWriter {
  public:
-  ImageWriter(MemoryImage& image, const Bvh& bvh, const BinaryTree& tree)
+  ImageWriter(MemoryImage& image, const Bvh& bvh, const BinaryBvh& tree)
       : image_(image), bvh_(bvh), tree_(tree), bounds_(tree.size()), leaf_(tree.size()) {}
 
   void write() {
@@ -85,13 +85,13 @@ class ImageWriter {
   [[nodiscard]] Bounds bounds(Ref ref) const {
     if (!tree_.is_leaf(ref)) return bounds_[ref];
     Bounds bounds;
-    for (const glm::vec3& corner : bvh_.corners_of(slot(tree_.first(ref)))) {
+    for (const glm::vec3& corner : bvh_.corners_of(primitive_at(tree_.first(ref)))) {
       bounds.add({corner, corner});
     }
     return bounds;
   }
-  [[nodiscard]] std::uint32_t slot(std::uint32_t primitive) const {
-    return tree_.primitives[primitive].triangle;
+  [[nodiscard]] std::uint32_t primitive_at(std::uint32_t number) const {
+    return tree_.primitives[number].triangle;
   }
 
   /// Bounds, and which nodes are leaves; the sum of the triangles' areas.
@@ -169,7 +169,7 @@ class ImageWriter {
         write_node(next, refs[i], depth + 1);
       } else {
         for (std::uint32_t k = 0; k < node.child[i].kind; ++k) {
-          const std::uint32_t name = slot(tree_.first(refs[i]) + k);
+          const std::uint32_t name = primitive_at(tree_.first(refs[i]) + k);
           image_.lines_[next + k] = TriangleLine(bvh_.corners_of(name), name).line();
         }
       }
@@ -179,7 +179,7 @@ class ImageWriter {
 
   MemoryImage& image_;
   const Bvh& bvh_;
-  const BinaryTree& tree_;
+  const BinaryBvh& tree_;
   std::vector<Bounds> bounds_;  // of inner nodes
   std::vector<char> leaf_;
 };
@@ -187,7 +187,7 @@ class ImageWriter {
 MemoryImage::MemoryImage(const Bvh& bvh, int threads) {
   if (bvh.has_instances()) throw std::invalid_argument("instances, expected them written out");
   const Scene scene = scene_of(bvh);
-  const BinaryTree tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, threads);
+  const BinaryBvh tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, threads);
   ImageWriter(*this, bvh, tree).write();
 }
 

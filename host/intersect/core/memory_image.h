@@ -10,8 +10,8 @@
 
 namespace raygate {
 
-/// The lines of a scene, the root's at kRoot. Triangles have the names of their slots in the Bvh.
-/// The same whatever the number of threads that make it.
+/// The lines of a scene, the root's at kRoot. Triangles have the names of their primitives in the
+/// Bvh. The same whatever the number of threads that make it.
 class MemoryImage {
  public:
   static constexpr std::uint32_t kRoot = 0;

@@ -37,7 +37,7 @@ struct Axis {
 BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
   // How far the ray may go before it has left the node: 2^E.
   float distance[3];
-  int exponent = field(ray.limit) == 0xFF ? 511 : field(ray.limit) + 1;
+  int exponent = field(ray.t_max) == 0xFF ? 511 : field(ray.t_max) + 1;
   for (int k = 0; k < 3; ++k) {
     distance[k] = node.origin[k] - ray.origin[k];
     const int inverse = field(ray.inverse[k]);
@@ -71,8 +71,8 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
   }
 
   // The limit, rounded up.
-  const int amount = exponent + 1 - field(ray.limit);
-  const std::int64_t limit = amount <= 1 ? kWhole : shift_right(significand(ray.limit), amount) + 1;
+  const int amount = exponent + 1 - field(ray.t_max);
+  const std::int64_t limit = amount <= 1 ? kWhole : shift_right(significand(ray.t_max), amount) + 1;
 
   std::array<std::int64_t, NodeLine::kChildren> keys;  // {left out, enter, number}
   std::array<std::uint32_t, NodeLine::kChildren> offset;
@@ -92,7 +92,7 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
       enter = std::max(enter, at(axis.near, axis.back ? child.high[k] : child.low[k]));
       leave = std::min(leave, at(axis.far, axis.back ? child.low[k] : child.high[k]));
     }
-    if (ray.every_box) enter = leave = 0;
+    if (ray.no_cull) enter = leave = 0;
     const bool met = child.kind != NodeLine::kAbsent && enter <= leave;
     size += met ? 1 : 0;
     keys[i] = (std::int64_t{!met} << 26) | (met ? enter << 3 : 0) | static_cast<std::int64_t>(i);

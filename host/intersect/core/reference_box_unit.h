@@ -13,8 +13,8 @@ namespace raygate {
 struct BoxRay {
   glm::vec3 origin{0.0f};
   glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite where I_k is 0
-  float limit = 0.0f;       ///< positive, or +infinity: hits beyond it are not wanted
-  bool every_box = false;   ///< all children are entered, whatever their boxes
+  float t_max = 0.0f;       ///< positive, or +infinity: hits beyond it are not wanted
+  bool no_cull = false;     ///< all children are entered, whatever their boxes
 };
 
 /// Children that a ray enters, the nearest first: hw/ray_core/ray_core_pkg.sv, "group".

@@ -9,7 +9,7 @@ namespace raygate {
 namespace {
 
 /// Inner nodes of a group that wait.
-struct Waiting {
+struct StackEntry {
   BoxGroup group;
   int next = 0;  // entry
 };
@@ -24,7 +24,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, std::span<const Cor
 void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
                           std::vector<CoreResult>& results) {
   const ReferenceBurstUnit unit;
-  NearestSureHit nearest(ray.limit);
+  NearestSureHit nearest(ray.t_max);
   glm::vec3 point{0.0f};
   std::uint32_t tests = 0;
   bool ended = false;
@@ -34,7 +34,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
   const auto test = [&](const TriangleLine& triangle) {
     ++tests;
     if (listener_) listener_(ray.ray.origin, triangle.index);
-    if (triangle.index == ray.ignored) return;
+    if (triangle.index == ray.skip_id) return;
     const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
     const UnitVerdict verdict = unit.verdict(set.record, ray.ray.direction);
     counters_.misses += verdict == UnitVerdict::kMiss;
@@ -56,14 +56,14 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     ended = ray.any_hit && nearest.found;
   };
 
-  std::vector<Waiting> stack;
+  std::vector<StackEntry> stack;
   std::uint32_t line = ray.start;
   for (;;) {
     ++counters_.nodes;
-    const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.every_box};
+    const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.no_cull};
     const BoxGroup group = enter_boxes(NodeLine(lines[line]), box_ray);
     // Leaves first, then what is inside: as the core does.
-    Waiting inside{group};
+    StackEntry inside{group};
     inside.group.size = 0;
     for (int n = 0; n < group.size; ++n) {
       const BoxGroup::Entry& entry = group.entry[static_cast<std::size_t>(n)];
@@ -88,14 +88,14 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
         ++counters_.rests;
       }
     }
-    const auto is_done = [&](const Waiting& top) {
+    const auto is_done = [&](const StackEntry& top) {
       return ended || top.next == top.group.size ||
              is_beyond(top.group, top.group.entry[static_cast<std::size_t>(top.next)],
                        nearest.limit());
     };
     while (!stack.empty() && is_done(stack.back())) stack.pop_back();
     if (stack.empty()) break;
-    Waiting& top = stack.back();
+    StackEntry& top = stack.back();
     line = top.group.base + top.group.entry[static_cast<std::size_t>(top.next++)].offset;
     // A group that has given its last node makes room.
     if (top.next == top.group.size) stack.pop_back();

@@ -12,17 +12,18 @@ namespace {
 
 /// What the tree asks (see next_leaf).
 struct LineVisitor {
-  Beam beam;
+  PacketBounds bounds;
   float cutoff;
 
-  RAYGATE_INLINE bool goes_on(float entry, Whole) const { return entry <= cutoff; }
-  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, Whole, FloatLanes& entry) const {
-    return meet_children(beam, node, cutoff, entry);
+  RAYGATE_INLINE bool should_visit(float entry, SingleRay) const { return entry <= cutoff; }
+  RAYGATE_INLINE LaneMask intersect_boxes(const Bvh::Node& node, SingleRay,
+                                          FloatLanes& entry) const {
+    return intersect_children(bounds, node, cutoff, entry);
   }
-  RAYGATE_INLINE static Whole rays_at(int) { return {}; }
+  RAYGATE_INLINE static SingleRay rays_of_child(int) { return {}; }
 };
 
-/// The slots of a leaf's triangles that the ray hits at some t > 0.
+/// The primitives of a leaf's triangles that the ray hits at some t > 0.
 RAYGATE_INLINE void test_leaf(const Bvh& bvh, const Ray& ray, const ShearedRay& sheared,
                               const Bvh::Child& leaf, std::vector<NearestHit>& hits,
                               RayWork& work) {
@@ -33,12 +34,12 @@ RAYGATE_INLINE void test_leaf(const Bvh& bvh, const Ray& ray, const ShearedRay& 
   work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
   for (LaneMask open = verdict.hit | verdict.level | verdict.doubt; open != 0; open &= open - 1) {
     const int i = std::countr_zero(open);
-    const std::uint32_t slot = leaf.first + static_cast<std::uint32_t>(i);
-    const Corners corners = bvh.corners_of(slot);
+    const std::uint32_t primitive = leaf.first + static_cast<std::uint32_t>(i);
+    const Corners corners = bvh.corners_of(primitive);
     const bool is_hit = (verdict.doubt >> i & 1) != 0   ? hits_triangle(ray, corners)
                         : (verdict.level >> i & 1) != 0 ? is_ahead(ray, corners)
                                                         : true;
-    if (is_hit) hits.push_back({.slot = slot, .t = hit_distance(ray, corners)});
+    if (is_hit) hits.push_back({.primitive = primitive, .t = hit_distance(ray, corners)});
   }
 }
 
@@ -48,19 +49,19 @@ void all_hits(const Bvh& bvh, const Ray& ray, float limit, std::vector<NearestHi
               RayWork& work) {
   hits.clear();
   if (!is_usable(ray.direction)) return;
-  if (!is_scaled(ray.direction)) refuse_unscaled(ray);
+  if (!is_scaled(ray.direction)) throw_unscaled(ray);
   in_vectors([&](auto) RAYGATE_BODY {
     const ShearedRay sheared(ray);
-    const LineVisitor visitor{Beam(ray.origin, ray.direction), cutoff_beyond(limit)};
-    WalkStack<Whole> stack({});
-    Waiting<Whole> leaf;
+    const LineVisitor visitor{PacketBounds(ray.origin, ray.direction), cutoff_beyond(limit)};
+    TraversalStack<SingleRay> stack({});
+    StackEntry<SingleRay> leaf;
     while (next_leaf(bvh, visitor, stack, leaf)) {
       test_leaf(bvh, ray, sheared, leaf.child, hits, work);
     }
   });
   std::erase_if(hits, [&](const NearestHit& hit) { return !is_before(bvh, ray, hit, limit); });
   std::ranges::sort(hits, [&](const NearestHit& a, const NearestHit& b) {
-    return a.slot != b.slot && is_nearer(bvh, ray, a, b);
+    return a.primitive != b.primitive && is_nearer(bvh, ray, a, b);
   });
 }
 

@@ -13,7 +13,7 @@ constexpr int kGroups = RayBlock::kGroups;
 
 /// The axis along which the active rays go farthest, by the one that goes least; -1 where that is
 /// less than 1/4 on every axis.
-RAYGATE_INLINE int pace_axis(const RayBlock& block, const LaneMask* active) {
+RAYGATE_INLINE int t_scale_axis(const RayBlock& block, const LaneMask* active) {
   FloatLanes least[3] = {FloatLanes{} + 4.0f, FloatLanes{} + 4.0f, FloatLanes{} + 4.0f};
   for (int g = 0; g < kGroups; ++g) {
     if (active[g] == 0) continue;
@@ -126,13 +126,13 @@ std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block) {
 
 void make_cones(const RayBlock& block, const glm::vec3& origin, int octant, Cones& cones) {
   in_vectors([&](auto) RAYGATE_BODY {
-    // Each rounding of what follows is off by a factor 1 + 2^-24 at most. Components over a pace
-    // are below 8, so that two roundings have them off by less than kPaceError.
-    constexpr float kPaceError = 0x1p-20f;
+    // Each rounding of what follows is off by a factor 1 + 2^-24 at most. Components over a t_scale
+    // are below 8, so that two roundings have them off by less than kScaleError.
+    constexpr float kScaleError = 0x1p-20f;
     constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
     cones.groups = 0;
     FloatLanes off[3][kGroups];
-    const int axis = pace_axis(block, cones.active);
+    const int axis = t_scale_axis(block, cones.active);
     for (int g = 0; g < kGroups; ++g) {
       const LaneMask active = cones.active[g];
       if (active == 0) {
@@ -146,14 +146,14 @@ void make_cones(const RayBlock& block, const glm::vec3& origin, int octant, Cone
       const int low = std::countr_zero(active), high = 31 - std::countl_zero(active);
       IntLanes taken;
       lanes_of(active, taken);
-      FloatLanes pace = FloatLanes{} + 1.0f;
+      FloatLanes t_scale = FloatLanes{} + 1.0f;
       if (axis >= 0) {
         FloatLanes size;
         magnitude(block.direction[axis][g], size);
-        pace = taken ? size : pace;
+        t_scale = taken ? size : t_scale;
       }
-      cones.pace[g] = pace;
-      const FloatLanes inverse = 1.0f / pace;
+      cones.t_scale[g] = t_scale;
+      const FloatLanes inverse = 1.0f / t_scale;
       for (int k = 0; k < 3; ++k) {
         const FloatLanes d = block.direction[k][g] * inverse;
         const float middle = 0.5f * (d[low] + d[high]);
@@ -169,17 +169,17 @@ void make_cones(const RayBlock& block, const glm::vec3& origin, int octant, Cone
     for (int k = 0; k < 3; ++k) {
       FloatLanes size;
       largest_of_each(off[k], size);
-      cones.radius[k] = present ? kUp * size + kPaceError : FloatLanes{};
+      cones.radius[k] = present ? kUp * size + kScaleError : FloatLanes{};
       magnitude(cones.center[k], size);
       const FloatLanes largest = (size + cones.radius[k]) * kUp;
       FloatLanes smallest = (size - cones.radius[k]) * kDown;
       smallest = smallest > 0.0f ? smallest : FloatLanes{};
-      cones.beams.set(k, octant, smallest, largest);
+      cones.bounds8.set(k, octant, smallest, largest);
       // The inverse of the largest is the smallest, and the other way round.
       const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
       const FloatLanes never = FloatLanes{} - std::numeric_limits<float>::infinity();
-      const FloatLanes near = present ? -sign * cones.beams.inverse_near[k] : never;
-      const FloatLanes far = present ? sign * cones.beams.inverse_far[k] : never;
+      const FloatLanes near = present ? -sign * cones.bounds8.inverse_near[k] : never;
+      const FloatLanes far = present ? sign * cones.bounds8.inverse_far[k] : never;
       cones.whole.origin[k] = origin[k];
       cones.whole.inverse_near[k] = -sign * largest_of(near);
       cones.whole.inverse_far[k] = sign * largest_of(far);

@@ -32,16 +32,16 @@ struct RayBlock {
 [[nodiscard]] std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block);
 
 /// Cones around rays of one octant, whatever the lengths of their directions. Lane g of a member
-/// stands for group g; absent groups have a radius of 0. A ray I stands here as I / pace, where its
-/// pace is one component's magnitude, the same one's for all, or 1 for all; its t becomes pace t.
-/// On each axis |I_k / pace - center[k][g]| <= radius[k][g].
+/// stands for group g; absent groups have a radius of 0. A ray I stands here as I / t_scale, where
+/// its t_scale is one component's magnitude, the same one's for all, or 1 for all; its t becomes
+/// t_scale t. On each axis |I_k / t_scale - center[k][g]| <= radius[k][g].
 struct Cones {
-  LaneMask active[RayBlock::kGroups];  ///< the rays of each group
-  LaneMask groups;                     ///< the groups with any
-  FloatLanes pace[RayBlock::kGroups];  ///< of each ray; an absent one's is 1
+  LaneMask active[RayBlock::kGroups];     ///< the rays of each group
+  LaneMask groups;                        ///< the groups with any
+  FloatLanes t_scale[RayBlock::kGroups];  ///< of each ray; an absent one's is 1
   FloatLanes center[3], radius[3];
-  Beams beams;  ///< cutoffs are left to the caller
-  Beam whole;   ///< around all groups
+  PacketBounds8 bounds8;  ///< cutoffs are left to the caller
+  PacketBounds whole;     ///< around all groups
 };
 
 /// Cones around the block's rays in `cones.active`, which are of this octant. `cones.groups` is

@@ -11,8 +11,8 @@
 // Why a group is never wrongly spared a triangle
 //
 // Let F be an edge's words, E the exact edge, b its bound, L and u as in quad_record.h, C the
-// group's middle and R its radius, I one of its rays over its pace; components are below 8. As it
-// has there for components below 2, float32(C . F) is off C . E by less than 8 (4 + 3.001) u L +
+// group's middle and R its radius, I one of its rays over its t_scale; components are below 8. As
+// it has there for components below 2, float32(C . F) is off C . E by less than 8 (4 + 3.001) u L +
 // 2^-143 < 3.9 b, and b >= kQuadBound u L. And |I . E - C . E| <= R |E|_1 <= R L (1 + 4 u). So
 // where float32(C . F) < -b (4.1 + R / (kQuadBound u)), I . E < 0 for all the group's rays: the
 // edge has them all on its wrong side, and all miss. `slack`, the factor of b, is rounded up by

@@ -9,17 +9,18 @@
 
 namespace raygate {
 
-/// Beams around each ray of a group, as tight as can be.
+/// PacketBounds8 around each ray of a group, as tight as can be.
 RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
-  Beams& beams = walk.ray_beams[group];
+  PacketBounds8& bounds8 = walk.ray_bounds8[group];
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
-  const FloatLanes inverse = 1.0f / walk.cones.pace[group];
+  const FloatLanes inverse = 1.0f / walk.cones.t_scale[group];
   for (int k = 0; k < 3; ++k) {
     FloatLanes size;
     magnitude(walk.block->direction[k][group] * inverse, size);
-    beams.set(k, walk.cones.whole.octant, size * kDown, size * kUp);
+    bounds8.set(k, walk.cones.whole.octant, size * kDown, size * kUp);
   }
-  cutoffs_beyond(walk.high[group], walk.cones.pace[group], walk.cones.active[group], beams.cutoff);
+  cutoffs_beyond(walk.high[group], walk.cones.t_scale[group], walk.cones.active[group],
+                 bounds8.cutoff);
   walk.split |= 1u << group;
 }
 
@@ -28,20 +29,21 @@ template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
   const Cones& cones = walk.cones;
-  if (several(groups)) return meet_children<kCode>(cones.whole, node, walk.cutoff, entry);
+  if (several(groups)) return intersect_children<kCode>(cones.whole, node, walk.cutoff, entry);
   const int only = std::countr_zero(groups);
   if (several(rays) || (walk.split >> only & 1) == 0) {
-    const Beam beam = one_of(cones.beams, only, cones.whole);
-    return meet_children<kCode>(beam, node, cones.beams.cutoff[only], entry);
+    const PacketBounds bounds = bounds_of(cones.bounds8, only, cones.whole);
+    return intersect_children<kCode>(bounds, node, cones.bounds8.cutoff[only], entry);
   }
   const int lane = std::countr_zero(rays_of(rays, only));
-  const Beams& beams = walk.ray_beams[only];
-  return meet_children<kCode>(one_of(beams, lane, cones.whole), node, beams.cutoff[lane], entry);
+  const PacketBounds8& bounds8 = walk.ray_bounds8[only];
+  return intersect_children<kCode>(bounds_of(bounds8, lane, cones.whole), node,
+                                   bounds8.cutoff[lane], entry);
 }
 
 /// Puts a child of the node whose children are above `bottom` onto the stack, in its place.
 RAYGATE_INLINE void push(ConeTraversal& walk, const Bvh& tree, int bottom,
-                         const ConeTraversal::Waiting& next) {
+                         const ConeTraversal::StackEntry& next) {
   tree.prefetch(next.child);
   int place = walk.depth++;
   for (; place > bottom && walk.stack[place - 1].entry < next.entry; --place) {
@@ -65,11 +67,11 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const Bvh& tree, const 
   for (; rays != 0; rays &= rays - 1) {
     const int number = std::countr_zero(rays), g = number / kLanes, lane = number % kLanes;
     if ((walk.split >> g & 1) == 0) split_group(walk, g);
-    const Beams& beams = walk.ray_beams[g];
+    const PacketBounds8& bounds8 = walk.ray_bounds8[g];
     FloatLanes its_entry;
     IntLanes meets;
-    met[count] = meet_children<kCode>(one_of(beams, lane, walk.cones.whole), node,
-                                      beams.cutoff[lane], its_entry);
+    met[count] = intersect_children<kCode>(bounds_of(bounds8, lane, walk.cones.whole), node,
+                                           bounds8.cutoff[lane], its_entry);
     lanes_of(met[count], meets);
     entry = (meets & (its_entry < entry)) ? its_entry : entry;
     any |= met[count];
@@ -84,7 +86,7 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const Bvh& tree, const 
   }
 }
 
-/// Puts what the rays meet of a node onto the stack. Where a beam meets several children,
+/// Puts what the rays meet of a node onto the stack. Where a bounds meets several children,
 /// those within it are asked one by one: first the groups, then their rays.
 ///
 /// Cones have a walk of their own beside next_leaf (host/bvh/traversal.h), which the others share:
@@ -101,7 +103,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const Bvh& tree, std::uint
     return;
   }
   const Cones& cones = walk.cones;
-  const Beam& whole = cones.whole;
+  const PacketBounds& whole = cones.whole;
   const glm::vec3 origin(whole.origin[0], whole.origin[1], whole.origin[2]);
   FloatLanes entry;
   LaneMask met = meet_any<kCode>(walk, node, rays, groups, entry);
@@ -112,7 +114,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const Bvh& tree, std::uint
     const int i = std::countr_zero(left);
     in[i] = groups;
     if (ask || (several(groups) && node.child[i].count != 0)) {
-      in[i] &= meet_beams<kCode>(cones.beams, origin, whole.octant, node, i);
+      in[i] &= intersect_packets<kCode>(cones.bounds8, origin, whole.octant, node, i);
     }
     counts += ones_of(in[i]);
   }
@@ -128,11 +130,11 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const Bvh& tree, std::uint
   const int bottom = walk.depth;
   for (; met != 0; met &= met - 1) {
     const int i = std::countr_zero(met);
-    ConeTraversal::Waiting next = {node.child[i], entry[i], rays & 0xFF * ones_of(in[i])};
+    ConeTraversal::StackEntry next = {node.child[i], entry[i], rays & 0xFF * ones_of(in[i])};
     for (LaneMask left = divided & in[i]; left != 0; left &= left - 1) {
       const int g = std::countr_zero(left);
       const std::uint64_t missed =
-          0xFF & ~meet_beams<kCode>(walk.ray_beams[g], origin, whole.octant, node, i);
+          0xFF & ~intersect_packets<kCode>(walk.ray_bounds8[g], origin, whole.octant, node, i);
       next.rays &= ~(missed << (8 * g));
     }
     if (next.rays == 0) continue;

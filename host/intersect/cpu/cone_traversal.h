@@ -36,7 +36,7 @@ struct ConeTraversal {
   static constexpr int kGroups = RayBlock::kGroups;
 
   /// What of the tree waits to be visited: the nearest last, as far as one node knows.
-  struct Waiting {
+  struct StackEntry {
     Bvh::Child child;
     float entry;
     std::uint64_t rays;  ///< those that may meet it
@@ -45,20 +45,20 @@ struct ConeTraversal {
   const RayBlock* block;
   std::uint32_t first;  ///< the number of the block's first ray
   Cones cones;
-  Beams ray_beams[kGroups];              ///< around each ray, where a group has been split
+  PacketBounds8 ray_bounds8[kGroups];    ///< around each ray, where a group has been split
   LaneMask split;                        ///< the groups that have been
   IntLanes low[kGroups], high[kGroups];  ///< of each ray: bounds of the nearest hit's t
-  IntLanes slot[kGroups];                ///< of the nearest hit; -1: none
-  IntLanes ignored[kGroups];             ///< a slot; -1: none
+  IntLanes primitive[kGroups];           ///< of the nearest hit; -1: none
+  IntLanes skip_id[kGroups];             ///< a primitive; -1: none
   IntLanes enough[kGroups];              ///< a hit that is surely before is enough
   FloatLanes slack;  ///< lane g: how many times an edge's bound all of group g may be off it
-  // If that is asked for: what each ray's search took, and which rays there are.
+  // If that is asked for: what each ray's query took, and which rays there are.
   RayWork work[kGroups][kLanes];
   LaneMask started[kGroups];
   std::uint64_t going;  ///< the rays that still look for something
   float cutoff;         ///< boxes beyond matter to none
   int depth;            ///< of the stack
-  Waiting stack[Bvh::kStackSize];
+  StackEntry stack[Bvh::kStackSize];
 
   [[nodiscard]] std::uint32_t number(int group, int lane) const {
     return first + static_cast<std::uint32_t>(group * kLanes + lane);
@@ -69,22 +69,22 @@ struct ConeTraversal {
   }
 };
 
-/// Where boxes end to matter for rays of these paces that end at `high` (see cutoff_beyond).
-RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, const FloatLanes& pace, LaneMask active,
+/// Where boxes end to matter for rays of these t_scales that end at `high` (see cutoff_beyond).
+RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, const FloatLanes& t_scale, LaneMask active,
                                    FloatLanes& cutoffs) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
   IntLanes going;
   lanes_of(active, going);
-  cutoffs = going ? reinterpret_cast<FloatLanes>(high) * pace * kGrow : FloatLanes{} - 1.0f;
+  cutoffs = going ? reinterpret_cast<FloatLanes>(high) * t_scale * kGrow : FloatLanes{} - 1.0f;
 }
 
 /// Looks no farther than `high` and `cones.active` say, for the rays of a group.
 RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   Cones& cones = walk.cones;
   FloatLanes cutoffs;
-  cutoffs_beyond(walk.high[group], cones.pace[group], cones.active[group], cutoffs);
-  cones.beams.cutoff[group] = largest_of(cutoffs);
-  if ((walk.split >> group & 1) != 0) walk.ray_beams[group].cutoff = cutoffs;
+  cutoffs_beyond(walk.high[group], cones.t_scale[group], cones.active[group], cutoffs);
+  cones.bounds8.cutoff[group] = largest_of(cutoffs);
+  if ((walk.split >> group & 1) != 0) walk.ray_bounds8[group].cutoff = cutoffs;
   walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
 }
 

@@ -9,16 +9,16 @@
 
 namespace raygate {
 
-void CpuIntersector::intersect(std::span<const Ray> rays, const RayQuery& search,
+void CpuIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
                                std::span<NearestHit> hits) {
   assert(hits.size() == rays.size());
   Stopwatch watch;
-  for (NearestHit& hit : hits) hit.slot = NearestHit::kNone;  // the rest has no meaning
-  std::ranges::fill(search.work, RayWork{});
-  if (search.common_origin && search.culling && !rays.empty()) {
-    PacketIntersector(bvh_, counters_).trace(rays, search, hits);
+  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest has no meaning
+  std::ranges::fill(query.work, RayWork{});
+  if (query.common_origin && query.culling && !rays.empty()) {
+    PacketIntersector(bvh_, counters_).trace(rays, query, hits);
   } else {
-    SingleRayIntersector(bvh_, counters_).trace(rays, search, hits);
+    SingleRayIntersector(bvh_, counters_).trace(rays, query, hits);
   }
   counters_.hit_tests += watch.lap();
 }

@@ -13,7 +13,7 @@ class CpuIntersector : public Intersector {
   /// The tree must outlive this.
   explicit CpuIntersector(const Bvh& bvh) : bvh_(bvh) {}
 
-  void intersect(std::span<const Ray> rays, const RayQuery& search,
+  void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
   [[nodiscard]] IntersectCounters counters() const override { return counters_; }
 

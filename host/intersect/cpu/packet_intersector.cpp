@@ -39,17 +39,17 @@ void count_work(RayWork (&work)[kLanes], LaneMask tested, LaneMask doubts) {
 }  // namespace
 
 /// Everything of a walk but its cones and where it begins.
-void set_out(const PacketIntersector& search, ConeTraversal& walk) {
+void begin(const PacketIntersector& intersector, ConeTraversal& walk) {
   in_vectors([&](auto) RAYGATE_BODY {
-    const std::span limits = search.search_.limits, enough = search.search_.enough_before;
-    const std::span ignored = search.search_.ignored;
+    const std::span limits = intersector.query_.t_max, enough = intersector.query_.any_hit_before;
+    const std::span skip_id = intersector.query_.skip_ids;
     slack_of(walk.cones.radius, walk.slack);
     walk.split = 0;
     walk.going = 0;
-    walk.cones.beams.cutoff = FloatLanes{} - 1.0f;
+    walk.cones.bounds8.cutoff = FloatLanes{} - 1.0f;
     for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
       const int g = std::countr_zero(left);
-      walk.slot[g] = IntLanes{} - 1;
+      walk.primitive[g] = IntLanes{} - 1;
       IntLanes end = IntLanes{} + kFarthest;
       const std::uint32_t first = walk.number(g, 0);
       if (!limits.empty()) {
@@ -58,12 +58,12 @@ void set_out(const PacketIntersector& search, ConeTraversal& walk) {
       }
       walk.low[g] = walk.high[g] = end;
       if (!enough.empty()) load_group(enough, first, walk.enough[g]);
-      if (!ignored.empty()) load_group(ignored, first, walk.ignored[g]);
+      if (!skip_id.empty()) load_group(skip_id, first, walk.skip_id[g]);
       walk.going |= std::uint64_t{walk.cones.active[g]} << (8 * g);
       shorten(walk, g);
     }
-    walk.cutoff = largest_of(walk.cones.beams.cutoff);
-    if (!search.search_.work.empty()) {
+    walk.cutoff = largest_of(walk.cones.bounds8.cutoff);
+    if (!intersector.query_.work.empty()) {
       std::memset(walk.work, 0, sizeof walk.work);
       std::memcpy(walk.started, walk.cones.active, sizeof walk.started);
     }
@@ -78,11 +78,11 @@ template <Vectors kCode>
 RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const QuadRecord& record,
                                                    const Bvh::Child& leaf, LaneMask there,
                                                    std::uint64_t rays, LaneMask& changed) {
-  const bool ignoring = !search_.ignored.empty(), counting = !search_.work.empty();
+  const bool skipping = !query_.skip_ids.empty(), counting = !query_.work.empty();
   HitCounters& counters = counters_.hit;
   for (; there != 0; there &= there - 1) {
     const int i = std::countr_zero(there);
-    const auto slot = static_cast<std::int32_t>(leaf.first) + i;
+    const auto primitive = static_cast<std::int32_t>(leaf.first) + i;
     LaneMask left = groups_near<kCode>(walk, record, i, groups_of(rays));
     for (; left != 0; left &= left - 1) {
       const int g = std::countr_zero(left);
@@ -95,7 +95,7 @@ RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const Qu
       counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
       counters.edge_doubts +=
           static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
-      if (ignoring) verdict.open &= ~sign_mask<kCode>(walk.ignored[g] == slot);
+      if (skipping) verdict.open &= ~sign_mask<kCode>(walk.skip_id[g] == primitive);
       const LaneMask sure = verdict.open & verdict.hit;
       const LaneMask nearer = sure & sign_mask<kCode>(verdict.high < walk.low[g]);
       if (nearer != 0) {
@@ -103,7 +103,7 @@ RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const Qu
         lanes_of(nearer, take);
         walk.low[g] = take ? verdict.low : walk.low[g];
         walk.high[g] = take ? verdict.high : walk.high[g];
-        walk.slot[g] = take ? IntLanes{} + slot : walk.slot[g];
+        walk.primitive[g] = take ? IntLanes{} + primitive : walk.primitive[g];
         changed |= 1u << g;
       }
       LaneMask open =
@@ -111,7 +111,7 @@ RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const Qu
       for (; open != 0; open &= open - 1) {
         const int lane = std::countr_zero(open);
         const Interval t = {float_of(verdict.low[lane]), float_of(verdict.high[lane])};
-        if (settle(walk, g, lane, slot, (sure >> lane & 1) != 0 ? &t : nullptr)) {
+        if (resolve(walk, g, lane, primitive, (sure >> lane & 1) != 0 ? &t : nullptr)) {
           changed |= 1u << g;
         }
       }
@@ -123,7 +123,7 @@ RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const Qu
 RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const QuadRecord& record,
                                                  const Bvh::Child& leaf, LaneMask there,
                                                  std::uint64_t rays, LaneMask& changed) {
-  const bool ignoring = !search_.ignored.empty(), counting = !search_.work.empty();
+  const bool skipping = !query_.skip_ids.empty(), counting = !query_.work.empty();
   HitCounters& counters = counters_.hit;
   counters.tests += static_cast<std::uint64_t>(std::popcount(rays) * std::popcount(there));
   for (; rays != 0; rays &= rays - 1) {
@@ -140,16 +140,16 @@ RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const Quad
     counters.edge_doubts += static_cast<std::uint64_t>(std::popcount(verdict.open & ~verdict.hit));
     for (LaneMask open = verdict.open; open != 0; open &= open - 1) {
       const int i = std::countr_zero(open);
-      const auto slot = static_cast<std::int32_t>(leaf.first) + i;
-      if (ignoring && walk.ignored[g][lane] == slot) continue;
+      const auto primitive = static_cast<std::int32_t>(leaf.first) + i;
+      if (skipping && walk.skip_id[g][lane] == primitive) continue;
       const bool sure = (verdict.hit >> i & 1) != 0;
       const Interval t = {verdict.low[i], verdict.high[i]};
       if (sure && t.low > float_of(walk.high[g][lane])) continue;
       if (sure && t.high < float_of(walk.low[g][lane])) {
         walk.low[g][lane] = bits_of(verdict.low[i]);
         walk.high[g][lane] = bits_of(verdict.high[i]);
-        walk.slot[g][lane] = slot;
-      } else if (!settle(walk, g, lane, slot, sure ? &t : nullptr)) {
+        walk.primitive[g][lane] = primitive;
+      } else if (!resolve(walk, g, lane, primitive, sure ? &t : nullptr)) {
         continue;
       }
       changed |= 1u << g;
@@ -158,17 +158,17 @@ RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const Quad
 }
 
 /// Walks the tree, near before far, and tests what is there.
-void walk_tree(PacketIntersector& search, ConeTraversal& walk) {
+void walk_tree(PacketIntersector& intersector, ConeTraversal& walk) {
   in_vectors([&](auto code) RAYGATE_BODY {
-    const Bvh& tree = search.bvh_;
-    const bool ending = !search.search_.enough_before.empty();
+    const Bvh& tree = intersector.bvh_;
+    const bool ending = !intersector.query_.any_hit_before.empty();
     Cones& cones = walk.cones;
     while (walk.depth > 0 && walk.going != 0) {
-      const ConeTraversal::Waiting item = walk.stack[--walk.depth];
+      const ConeTraversal::StackEntry item = walk.stack[--walk.depth];
       if (item.entry > walk.cutoff) continue;
       const std::uint64_t rays =
           item.rays & walk.going &
-          0xFF * ones_of(sign_mask<code()>(cones.beams.cutoff >= item.entry));
+          0xFF * ones_of(sign_mask<code()>(cones.bounds8.cutoff >= item.entry));
       if (rays == 0) continue;
       const LaneMask groups = groups_of(rays);
       if (item.child.count == 0) {
@@ -180,33 +180,33 @@ void walk_tree(PacketIntersector& search, ConeTraversal& walk) {
       make_quad_record(cones.whole.origin, tree.corners_of(item.child, room), item.child.count,
                        record);
       LaneMask there = (1u << item.child.count) - 1;
-      if (record.unsure != 0) search.settle_sides(item.child, record, there);
+      if (record.unsure != 0) intersector.resolve_sides(item.child, record, there);
       LaneMask changed = 0;
       if (is_sparse(rays, groups, item.child.count)) {
-        search.test_rays(walk, record, item.child, there, rays, changed);
+        intersector.test_rays(walk, record, item.child, there, rays, changed);
       } else {
-        search.template test_groups<code()>(walk, record, item.child, there, rays, changed);
+        intersector.template test_groups<code()>(walk, record, item.child, there, rays, changed);
       }
       if (changed == 0) continue;
       for (; changed != 0; changed &= changed - 1) {
         const int g = std::countr_zero(changed);
         if (ending) {
-          const LaneMask ended = cones.active[g] & ~sign_mask<code()>(walk.slot[g]) &
+          const LaneMask ended = cones.active[g] & ~sign_mask<code()>(walk.primitive[g]) &
                                  sign_mask<code()>(walk.high[g] < walk.enough[g]);
           cones.active[g] &= ~ended;
-          search.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
+          intersector.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
         }
         shorten(walk, g);
       }
-      walk.cutoff = largest_of(cones.beams.cutoff);
+      walk.cutoff = largest_of(cones.bounds8.cutoff);
     }
   });
 }
 
-void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& search,
+void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
                               std::span<NearestHit> hits) {
   rays_ = rays;
-  search_ = search;
+  query_ = query;
   hits_ = hits;
   origin_ = rays[0].origin;
   assert(std::ranges::all_of(rays, [&](const Ray& ray) { return ray.origin == origin_; }));
@@ -218,7 +218,7 @@ void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& search,
   for (std::size_t first = 0; first < rays.size(); first += RayBlock::kRays) {
     const std::size_t count = std::min<std::size_t>(RayBlock::kRays, rays.size() - first);
     const std::uint64_t unscaled = load_block(rays.subspan(first, count), block);
-    if (unscaled != 0) refuse_unscaled(rays[first + std::countr_zero(unscaled)]);
+    if (unscaled != 0) throw_unscaled(rays[first + std::countr_zero(unscaled)]);
     walk.first = static_cast<std::uint32_t>(first);
     for (std::uint32_t octants = block.octants; octants != 0; octants &= octants - 1) {
       const int octant = std::countr_zero(octants);
@@ -227,7 +227,7 @@ void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& search,
       }
       make_cones(block, origin_, octant, walk.cones);
       if (walk.cones.groups == 0) continue;
-      set_out(*this, walk);
+      begin(*this, walk);
       walk_tree(*this, walk);
       finish(*this, walk);
     }
@@ -238,12 +238,11 @@ void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& search,
 
 /// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it
 /// is are hit by no ray: they leave those that are there.
-void PacketIntersector::settle_sides(const Bvh::Child& leaf, QuadRecord& record,
-                                     LaneMask& there) const {
+void PacketIntersector::resolve_sides(const Bvh::Child& leaf, QuadRecord& record,
+                                      LaneMask& there) const {
   for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
     const int i = std::countr_zero(unsure);
-    const int side =
-        plane_side(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
+    const int side = orient3d(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
     if (side == 0) {
       there &= ~(1u << i);
     } else {
@@ -252,27 +251,27 @@ void PacketIntersector::settle_sides(const Bvh::Child& leaf, QuadRecord& record,
   }
 }
 
-/// The last word on what float32 leaves open about a ray and a slot. `sure`: bounds of its t, or
-/// nullptr where it is not even sure that it is hit. True where it is the nearest hit now.
-bool PacketIntersector::settle(ConeTraversal& walk, int group, int lane, std::int32_t slot,
-                               const Interval* sure) {
+/// The last word on what float32 leaves open about a ray and a primitive. `sure`: bounds of its t,
+/// or nullptr where it is not even sure that it is hit. True where it is the nearest hit now.
+bool PacketIntersector::resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive,
+                                const Interval* sure) {
   const std::uint32_t number = walk.number(group, lane);
   const Ray& ray = rays_[number];
-  NearestHit best, hit = {.slot = static_cast<std::uint32_t>(slot)};
-  if (walk.slot[group][lane] >= 0) {
-    best.slot = static_cast<std::uint32_t>(walk.slot[group][lane]);
+  NearestHit best, hit = {.primitive = static_cast<std::uint32_t>(primitive)};
+  if (walk.primitive[group][lane] >= 0) {
+    best.primitive = static_cast<std::uint32_t>(walk.primitive[group][lane]);
     best.t = walk.t(group, lane);
     counters_.hit.depth_doubts += sure != nullptr;
   }
-  const float limit = search_.limit(number);
+  const float limit = query_.t_max_of(number);
   if (sure != nullptr) hit.t = *sure;
   if (!(sure != nullptr ? take_if_nearer(bvh_, ray, limit, hit, best, counters_)
-                        : settle_doubt(bvh_, ray, limit, hit, best, counters_))) {
+                        : resolve_doubt(bvh_, ray, limit, hit, best, counters_))) {
     return false;
   }
   walk.low[group][lane] = bits_of(float_below(best.t.low));
   walk.high[group][lane] = bits_of(float_above(best.t.high));
-  walk.slot[group][lane] = slot;
+  walk.primitive[group][lane] = primitive;
   return true;
 }
 

@@ -21,26 +21,27 @@ class PacketIntersector {
 
   /// As Intersector::find, but always culling. All rays begin at the first one's origin; `hits` are
   /// empty.
-  void trace(std::span<const Ray> rays, const RayQuery& search, std::span<NearestHit> hits);
+  void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
  private:
   /// A triangle that is the nearest hit of some rays.
   struct Seen {
-    std::uint32_t slot;
+    std::uint32_t primitive;
     std::uint64_t rays;
   };
 
-  friend void set_out(const PacketIntersector& search, ConeTraversal& walk);
-  friend void walk_tree(PacketIntersector& search, ConeTraversal& walk);
-  friend void finish(PacketIntersector& search, const ConeTraversal& walk);
+  friend void begin(const PacketIntersector& intersector, ConeTraversal& walk);
+  friend void walk_tree(PacketIntersector& intersector, ConeTraversal& walk);
+  friend void finish(PacketIntersector& intersector, const ConeTraversal& walk);
 
   template <Vectors kCode>
   void test_groups(ConeTraversal& walk, const QuadRecord& record, const Bvh::Child& leaf,
                    LaneMask there, std::uint64_t rays, LaneMask& changed);
   void test_rays(ConeTraversal& walk, const QuadRecord& record, const Bvh::Child& leaf,
                  LaneMask there, std::uint64_t rays, LaneMask& changed);
-  void settle_sides(const Bvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
-  bool settle(ConeTraversal& walk, int group, int lane, std::int32_t slot, const Interval* sure);
+  void resolve_sides(const Bvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
+  bool resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive,
+               const Interval* sure);
   void put(const ConeTraversal& walk, const Seen& seen);
   void put_work(const ConeTraversal& walk);
   void put_with_points(const ConeTraversal& walk, std::span<const Seen> seen);
@@ -49,7 +50,7 @@ class PacketIntersector {
   IntersectCounters& counters_;
   glm::vec3 origin_{0.0f};
   std::span<const Ray> rays_;
-  RayQuery search_;
+  RayQuery query_;
   std::span<NearestHit> hits_;
 };
 

@@ -19,7 +19,7 @@
 
 // Why no true hit is culled
 //
-// Distances are measured along the ray's longest axis: they are t times the pace p, which is the
+// Distances are measured along the ray's longest axis: they are t times the t_scale p, which is the
 // magnitude of the direction's largest component and in [1, 2). What packet_traversal.cpp says of t
 // and 1 / I holds of p t and p / I: t I = x - O is (p t) (I / p), p / I is one quotient, rounded
 // once; p / |I| >= 1 > 1/2, where the underflow of a product is paid for; |I| < 2^-100 has 2^100 <=
@@ -30,18 +30,18 @@ namespace raygate {
 
 /// One ray on its way.
 struct RayTraversal {
-  // Against boxes, by axis: see Beam. A node has the planes to which the ray comes first, and last,
-  // so many bytes from its beginning.
+  // Against boxes, by axis: see PacketBounds. A node has the planes to which the ray comes first,
+  // and last, so many bytes from its beginning.
   float origin[3], inverse_near[3], inverse_far[3];
   std::uint32_t near_at[3], far_at[3];
   ShearedRay sheared;  ///< against triangles
 
-  std::uint32_t number;   ///< of the ray
-  float cutoff;           ///< cutoff_beyond the nearest hit
-  float low, high;        ///< bounds of the nearest hit's depth; without one, the limit's
-  float enough;           ///< a hit whose depth is surely less is enough
-  std::uint32_t slot;     ///< of the nearest hit
-  std::uint32_t ignored;  ///< a slot
+  std::uint32_t number;     ///< of the ray
+  float cutoff;             ///< cutoff_beyond the nearest hit
+  float low, high;          ///< bounds of the nearest hit's depth; without one, the limit's
+  float enough;             ///< a hit whose depth is surely less is enough
+  std::uint32_t primitive;  ///< of the nearest hit
+  std::uint32_t skip_id;    ///< a primitive
   RayWork work;
 
   Bvh::Child at;  ///< what is visited next
@@ -58,17 +58,17 @@ struct RayTraversal {
     nodes[kBottom] = 0;
   }
 
-  [[nodiscard]] double pace() const { return std::abs(sheared.way); }
+  [[nodiscard]] double t_scale() const { return std::abs(sheared.way); }
   /// The nearest hit, or the limit, is at a t, or at a depth, within these bounds.
   RAYGATE_INLINE void end_at(const Interval& t) {
-    end_at(float_below(t.low * pace()), float_above(t.high * pace()));
+    end_at(float_below(t.low * t_scale()), float_above(t.high * t_scale()));
   }
   RAYGATE_INLINE void end_at(float lowest, float highest) {
     low = lowest;
     high = highest;
     cutoff = cutoff_beyond(highest);
   }
-  [[nodiscard]] Interval t() const { return {low / pace(), high / pace()}; }
+  [[nodiscard]] Interval t() const { return {low / t_scale(), high / t_scale()}; }
   /// Nothing that waits matters any more.
   void end() { depth = kBottom + 1; }
   [[nodiscard]] bool has_ended() const { return depth == kBottom; }
@@ -76,8 +76,8 @@ struct RayTraversal {
 
 /// Sends rays from the root on their ways, to no limit; bit i of the result where ray i is scaled,
 /// without which its walk means nothing.
-RAYGATE_INLINE LaneMask set_out(const Ray* const (&rays)[kQuad],
-                                RayTraversal* const (&walks)[kQuad]) {
+RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
+                              RayTraversal* const (&walks)[kQuad]) {
   static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
   constexpr std::int32_t kRow = sizeof(Bvh::Node::bounds[0][0]);
   static_assert(offsetof(Bvh::Node, bounds) == 0);
@@ -126,7 +126,7 @@ RAYGATE_INLINE LaneMask set_out(const Ray* const (&rays)[kQuad],
   for (RayTraversal* const walk : walks) {
     walk->low = walk->high = std::numeric_limits<float>::infinity();
     walk->cutoff = std::numeric_limits<float>::max();
-    walk->slot = walk->ignored = NearestHit::kNone;
+    walk->primitive = walk->skip_id = NearestHit::kNone;
     walk->enough = -1.0f;
     walk->work = {};
     walk->at = {0, 0};

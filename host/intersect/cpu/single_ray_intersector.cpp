@@ -26,19 +26,19 @@ RAYGATE_INLINE bool SingleRayIntersector::judge(RayTraversal& walk, const Bvh::C
   walk.work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
   for (; open != 0; open &= open - 1) {
     const int i = std::countr_zero(open);
-    const std::uint32_t slot = leaf.first + static_cast<std::uint32_t>(i);
+    const std::uint32_t primitive = leaf.first + static_cast<std::uint32_t>(i);
     const float low = verdict.low[i], high = verdict.high[i];
-    if (low > walk.high || slot == walk.ignored) continue;
+    if (low > walk.high || primitive == walk.skip_id) continue;
     if ((verdict.level >> i & 1) != 0) {
-      if (!is_ahead(rays_[walk.number], bvh_.corners_of(slot))) continue;
+      if (!is_ahead(rays_[walk.number], bvh_.corners_of(primitive))) continue;
       ++counters.hits;
     }
     if ((verdict.doubt >> i & 1) != 0) {
-      if (!settle(walk, slot, false)) continue;
+      if (!resolve(walk, primitive, false)) continue;
     } else if (high < walk.low) {
-      walk.slot = slot;
+      walk.primitive = primitive;
       walk.end_at(std::max(low, 0.0f), high);
-    } else if (!settle(walk, slot, true)) {
+    } else if (!resolve(walk, primitive, true)) {
       continue;
     }
     if (walk.high < walk.enough) {
@@ -51,62 +51,62 @@ RAYGATE_INLINE bool SingleRayIntersector::judge(RayTraversal& walk, const Bvh::C
 
 /// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,
 /// does hit. True where that is the nearest hit now.
-bool SingleRayIntersector::settle(RayTraversal& walk, std::uint32_t slot, bool sure) {
+bool SingleRayIntersector::resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
   const Ray& ray = rays_[walk.number];
   NearestHit best;
-  if (walk.slot != NearestHit::kNone) {
-    best.slot = walk.slot;
+  if (walk.primitive != NearestHit::kNone) {
+    best.primitive = walk.primitive;
     best.t = walk.t();
     counters_.hit.depth_doubts += sure;
   }
-  NearestHit hit = {.slot = slot};
-  const float limit = search_.limit(walk.number);
-  if (sure) hit.t = hit_distance(ray, bvh_.corners_of(slot));
+  NearestHit hit = {.primitive = primitive};
+  const float limit = query_.t_max_of(walk.number);
+  if (sure) hit.t = hit_distance(ray, bvh_.corners_of(primitive));
   if (!(sure ? take_if_nearer(bvh_, ray, limit, hit, best, counters_)
-             : settle_doubt(bvh_, ray, limit, hit, best, counters_))) {
+             : resolve_doubt(bvh_, ray, limit, hit, best, counters_))) {
     return false;
   }
-  walk.slot = slot;
+  walk.primitive = primitive;
   walk.end_at(best.t);
   return true;
 }
 
 /// Sends the next rays on their ways, with these walks; bit i of the result where walk i is on one.
-RAYGATE_INLINE LaneMask SingleRayIntersector::set_out(RayTraversal* const (&walks)[kQuad]) {
+RAYGATE_INLINE LaneMask SingleRayIntersector::begin(RayTraversal* const (&walks)[kQuad]) {
   const auto first = static_cast<std::uint32_t>(next_);
   const std::size_t count = std::min<std::size_t>(kQuad, rays_.size() - next_);
   const Ray* rays[kQuad];
   for (std::size_t i = 0; i < kQuad; ++i) rays[i] = &rays_[next_ + std::min(i, count - 1)];
   next_ += count;
-  const LaneMask all = (1u << count) - 1, scaled = raygate::set_out(rays, walks) & all;
+  const LaneMask all = (1u << count) - 1, scaled = raygate::begin(rays, walks) & all;
   for (LaneMask left = all & ~scaled; left != 0; left &= left - 1) {
     const Ray& ray = *rays[std::countr_zero(left)];
-    if (is_usable(ray.direction)) refuse_unscaled(ray);
+    if (is_usable(ray.direction)) throw_unscaled(ray);
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     RayTraversal& walk = *walks[i];
     const std::uint32_t number = walk.number = first + i;
-    if (!search_.limits.empty()) {
-      walk.end_at(Interval{search_.limits[number], search_.limits[number]});
+    if (!query_.t_max.empty()) {
+      walk.end_at(Interval{query_.t_max[number], query_.t_max[number]});
     }
-    if (!search_.ignored.empty()) walk.ignored = search_.ignored[number];
-    if (!search_.enough_before.empty()) {
-      walk.enough = float_below(search_.enough_before[number] * walk.pace());
+    if (!query_.skip_ids.empty()) walk.skip_id = query_.skip_ids[number];
+    if (!query_.any_hit_before.empty()) {
+      walk.enough = float_below(query_.any_hit_before[number] * walk.t_scale());
     }
   }
   return scaled;
 }
 
 /// A ray's way is at its end.
-RAYGATE_INLINE void SingleRayIntersector::arrive(const RayTraversal& walk) {
+RAYGATE_INLINE void SingleRayIntersector::finish(const RayTraversal& walk) {
   HitCounters& counters = counters_.hit;
   counters.tests += walk.work.tests;
   counters.edge_doubts += walk.work.doubts;
-  if (!search_.work.empty()) search_.work[walk.number] = walk.work;
-  hits_[walk.number].slot = walk.slot;
-  hits_[walk.number].t = walk.slot != NearestHit::kNone ? walk.t() : Interval{};
+  if (!query_.work.empty()) query_.work[walk.number] = walk.work;
+  hits_[walk.number].primitive = walk.primitive;
+  hits_[walk.number].t = walk.primitive != NearestHit::kNone ? walk.t() : Interval{};
   pointless_[pointless_count_] = walk.number;
-  pointless_count_ += walk.slot != NearestHit::kNone ? 1 : 0;
+  pointless_count_ += walk.primitive != NearestHit::kNone ? 1 : 0;
 }
 
 /// Each ray tests everything.
@@ -114,7 +114,7 @@ void SingleRayIntersector::visit_all() {
   const std::vector<Bvh::Child> leaves = bvh_.leaves();
   const auto walks = std::make_unique<RayTraversal[]>(kQuad);
   while (next_ < rays_.size()) {
-    LaneMask open = set_out({&walks[0], &walks[1], &walks[2], &walks[3]});
+    LaneMask open = begin({&walks[0], &walks[1], &walks[2], &walks[3]});
     for (; open != 0; open &= open - 1) {
       RayTraversal& walk = walks[std::countr_zero(open)];
       for (const Bvh::Child& leaf : leaves) {
@@ -125,7 +125,7 @@ void SingleRayIntersector::visit_all() {
         walk.work.tests += leaf.count;
         if (near != 0 && !judge(walk, leaf, sides, near)) break;
       }
-      arrive(walk);
+      finish(walk);
     }
     add_points(kPlanes);
   }
@@ -148,7 +148,7 @@ void SingleRayIntersector::walk_all() {
         idle_count -= kQuad;
         RayTraversal* four[kQuad];
         std::copy_n(idle + idle_count, kQuad, four);
-        const LaneMask started = set_out(four);
+        const LaneMask started = begin(four);
         for (int i = 0; i < kQuad; ++i) {
           const std::size_t on_its_way = started >> i & 1;
           inside[inside_count] = idle[idle_count] = four[i];
@@ -184,21 +184,21 @@ void SingleRayIntersector::walk_all() {
         leaf_count += in_leaf & ~ended;
         idle_count += ended;
       }
-      for (std::size_t i = were_idle; i < idle_count; ++i) arrive(*idle[i]);
+      for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
       add_points(kPlanes);
     }
   });
 }
 
-void SingleRayIntersector::trace(std::span<const Ray> rays, const RayQuery& search,
+void SingleRayIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
                                  std::span<NearestHit> hits) {
   rays_ = rays;
-  search_ = search;
+  query_ = query;
   hits_ = hits;
   next_ = 0;
   HitCounters& counters = counters_.hit;
   const HitCounters before = counters;
-  if (search.culling) {
+  if (query.culling) {
     walk_all();
   } else {
     visit_all();
@@ -208,9 +208,9 @@ void SingleRayIntersector::trace(std::span<const Ray> rays, const RayQuery& sear
                      (counters.edge_doubts - before.edge_doubts);
 }
 
-/// P, which the search did without: four at a time, until fewer than `enough` rays wait for theirs.
+/// P, which the query did without: four at a time, until fewer than `enough` rays wait for theirs.
 void SingleRayIntersector::add_points(int enough) {
-  if (!search_.enough_before.empty()) pointless_count_ = 0;
+  if (!query_.any_hit_before.empty()) pointless_count_ = 0;
   while (pointless_count_ >= enough) {
     const int count = std::min(pointless_count_, kPlanes);
     pointless_count_ -= count;
@@ -228,7 +228,7 @@ void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
     const std::uint32_t number = numbers[std::min(i, numbers.size() - 1)];
     const Ray& ray = rays_[number];
     hits[i] = &hits_[number];
-    views.set(i, ray.origin, bvh_.corners_of(hits[i]->slot));
+    views.set(i, ray.origin, bvh_.corners_of(hits[i]->primitive));
     load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, d[i]);
   }
   Planes planes;

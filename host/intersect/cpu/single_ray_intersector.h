@@ -22,15 +22,15 @@ class SingleRayIntersector {
       : bvh_(bvh), counters_(counters) {}
 
   /// As Intersector::find. `hits` are empty.
-  void trace(std::span<const Ray> rays, const RayQuery& search, std::span<NearestHit> hits);
+  void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
  private:
-  LaneMask set_out(RayTraversal* const (&walks)[kQuad]);
-  void arrive(const RayTraversal& walk);
+  LaneMask begin(RayTraversal* const (&walks)[kQuad]);
+  void finish(const RayTraversal& walk);
   void walk_all();
   void visit_all();
   bool judge(RayTraversal& walk, const Bvh::Child& leaf, const QuadSides& sides, LaneMask open);
-  bool settle(RayTraversal& walk, std::uint32_t slot, bool sure);
+  bool resolve(RayTraversal& walk, std::uint32_t primitive, bool sure);
   void add_points(int enough);
   void add_points(std::span<const std::uint32_t> numbers);
 
@@ -39,7 +39,7 @@ class SingleRayIntersector {
   const Bvh& bvh_;
   IntersectCounters& counters_;
   std::span<const Ray> rays_;
-  RayQuery search_;
+  RayQuery query_;
   std::span<NearestHit> hits_;
   std::size_t next_ = 0;                                    // ray to set out
   std::array<std::uint32_t, kAtOnce + kPlanes> pointless_;  // rays whose P is still to be found

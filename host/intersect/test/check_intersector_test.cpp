@@ -19,9 +19,9 @@ class FaultyIntersector : public CpuIntersector {
   using Fault = std::function<void(std::span<NearestHit>)>;
   FaultyIntersector(const Bvh& bvh, Fault fault) : CpuIntersector(bvh), fault_(std::move(fault)) {}
 
-  void intersect(std::span<const Ray> rays, const RayQuery& search,
+  void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override {
-    CpuIntersector::intersect(rays, search, hits);
+    CpuIntersector::intersect(rays, query, hits);
     fault_(hits);
   }
 
@@ -39,12 +39,12 @@ class CheckIntersectorTest : public testing::Test {
   }
 
   /// What is thrown; nothing where the intersectors agree.
-  std::string complaint(const FaultyIntersector::Fault& fault, const RayQuery& search) {
+  std::string complaint(const FaultyIntersector::Fault& fault, const RayQuery& query) {
     CheckIntersector check(bvh_, std::make_unique<FaultyIntersector>(bvh_, fault),
                            test::reference_intersector(bvh_));
     std::vector<NearestHit> hits(rays_.size());
     try {
-      check.intersect(rays_, search, hits);
+      check.intersect(rays_, query, hits);
     } catch (const IntersectorMismatch& mismatch) {
       return mismatch.what();
     }
@@ -60,7 +60,7 @@ TEST_F(CheckIntersectorTest, IntersectorsThatAgreePass) {
     EXPECT_EQ(complaint([](auto) {}, {.common_origin = common}), "");
   }
   const std::vector<float> limits(rays_.size(), 0.9f);
-  EXPECT_EQ(complaint([](auto) {}, {.limits = limits, .enough_before = limits}), "");
+  EXPECT_EQ(complaint([](auto) {}, {.t_max = limits, .any_hit_before = limits}), "");
 }
 
 TEST_F(CheckIntersectorTest, OneBitOfPIsThrownWithTheRay) {
@@ -76,18 +76,18 @@ TEST_F(CheckIntersectorTest, OneBitOfPIsThrownWithTheRay) {
 }
 
 TEST_F(CheckIntersectorTest, AnotherTriangleOrDistanceOrNoHitIsThrown) {
-  EXPECT_NE(complaint([](auto hits) { hits[3].slot ^= 1; }, {}), "");
-  EXPECT_NE(complaint([](auto hits) { hits[3].slot = NearestHit::kNone; }, {}), "");
+  EXPECT_NE(complaint([](auto hits) { hits[3].primitive ^= 1; }, {}), "");
+  EXPECT_NE(complaint([](auto hits) { hits[3].primitive = NearestHit::kNone; }, {}), "");
   EXPECT_NE(complaint([](auto hits) { hits[3].t = {2.0, 2.0}; }, {}), "");
 }
 
 // Any hit will do, but not one that is beyond.
 TEST_F(CheckIntersectorTest, OfRaysThatMayEndAnywhereTheAnswerIsWhetherThereIsAHit) {
   const std::vector<float> enough(rays_.size(), 100.0f), little(rays_.size(), 0.01f);
-  const auto other = [](auto hits) { hits[3].slot ^= 1; };
-  EXPECT_EQ(complaint(other, {.enough_before = enough}), "");
-  EXPECT_NE(complaint(other, {.enough_before = little}), "");
-  EXPECT_NE(complaint([](auto hits) { hits[3] = {}; }, {.enough_before = enough}), "");
+  const auto other = [](auto hits) { hits[3].primitive ^= 1; };
+  EXPECT_EQ(complaint(other, {.any_hit_before = enough}), "");
+  EXPECT_NE(complaint(other, {.any_hit_before = little}), "");
+  EXPECT_NE(complaint([](auto hits) { hits[3] = {}; }, {.any_hit_before = enough}), "");
 }
 
 // An unscaled direction lost hits in cones once: every intersector refuses it.

@@ -43,23 +43,23 @@ class InstancesTest : public testing::Test {
   }
 
   void expect_same(Intersector& intersector, Intersector& flat_intersector,
-                   const std::vector<Ray>& rays, const RayQuery& search) {
+                   const std::vector<Ray>& rays, const RayQuery& query) {
     std::vector<NearestHit> hits(rays.size()), expected(rays.size());
-    intersector.intersect(rays, search, hits);
-    flat_intersector.intersect(rays, search, expected);
+    intersector.intersect(rays, query, hits);
+    flat_intersector.intersect(rays, query, expected);
     std::size_t instances = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const NearestHit &hit = hits[i], &other = expected[i];
-      ASSERT_EQ(hit.slot == NearestHit::kNone, other.slot == NearestHit::kNone) << i;
-      if (hit.slot == NearestHit::kNone) continue;
-      ASSERT_EQ(bvh_.triangle_of(hit.slot), flat_bvh_.triangle_of(other.slot)) << i;
+      ASSERT_EQ(hit.primitive == NearestHit::kNone, other.primitive == NearestHit::kNone) << i;
+      if (hit.primitive == NearestHit::kNone) continue;
+      ASSERT_EQ(bvh_.triangle_of(hit.primitive), flat_bvh_.triangle_of(other.primitive)) << i;
       for (int k = 0; k < 3; ++k) {
         ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.point[k]),
                   std::bit_cast<std::uint32_t>(other.point[k]));
       }
       ASSERT_EQ(hit.point_error, other.point_error);
       ASSERT_TRUE(hit.t.low <= other.t.high && other.t.low <= hit.t.high);
-      instances += bvh_.is_placed(hit.slot) ? 1 : 0;
+      instances += bvh_.is_instanced(hit.primitive) ? 1 : 0;
     }
     EXPECT_GT(instances, rays.size() / 8);
   }
@@ -74,7 +74,7 @@ class InstancesTest : public testing::Test {
       std::vector<float> limits;
       for (int i = 0; i < count; ++i) limits.push_back(random_.uniform(1.0f, 8.0f));
       expect_same(intersector, flat_intersector, rays(count, nullptr),
-                  {.limits = limits, .culling = culling});
+                  {.t_max = limits, .culling = culling});
     }
   }
 };
@@ -102,7 +102,7 @@ TEST_F(InstancesTest, AllHits) {
     all_hits(flat_bvh_, ray, kNoLimit, expected, work);
     ASSERT_EQ(hits.size(), expected.size());
     for (std::size_t i = 0; i < hits.size(); ++i, ++found) {
-      ASSERT_EQ(bvh_.triangle_of(hits[i].slot), flat_bvh_.triangle_of(expected[i].slot));
+      ASSERT_EQ(bvh_.triangle_of(hits[i].primitive), flat_bvh_.triangle_of(expected[i].primitive));
     }
   }
   EXPECT_GT(found, 3000u);

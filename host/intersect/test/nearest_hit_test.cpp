@@ -17,7 +17,7 @@ Corners at_depth(float z) {
 }
 
 /// An interval that says nothing.
-NearestHit hit_of(std::uint32_t slot) { return {.slot = slot, .t = {0.0, 10.0}}; }
+NearestHit hit_of(std::uint32_t primitive) { return {.primitive = primitive, .t = {0.0, 10.0}}; }
 
 // Five planes: two at the same depth, two an ulp apart, one farther; each order of their reports,
 // as hits with intervals that say nothing and as doubts.
@@ -26,21 +26,21 @@ TEST(NearestHit, EveryOrderOfReportsGivesTheSame) {
   const std::vector<Corners> mesh = {at_depth(beyond), at_depth(2), at_depth(near), at_depth(near),
                                      at_depth(beyond)};
   const Bvh bvh(test::scene_of(mesh));
-  std::vector<std::uint32_t> slots = {0, 1, 2, 3, 4};
+  std::vector<std::uint32_t> primitives = {0, 1, 2, 3, 4};
   IntersectCounters counters;
   do {
     for (int kind = 0; kind < 2; ++kind) {
       NearestHit best;
-      for (const std::uint32_t slot : slots) {
+      for (const std::uint32_t primitive : primitives) {
         if (kind == 0) {
-          take_if_nearer(bvh, kRay, INFINITY, hit_of(slot), best, counters);
+          take_if_nearer(bvh, kRay, INFINITY, hit_of(primitive), best, counters);
         } else {
-          settle_doubt(bvh, kRay, INFINITY, {.slot = slot}, best, counters);
+          resolve_doubt(bvh, kRay, INFINITY, {.primitive = primitive}, best, counters);
         }
       }
-      ASSERT_EQ(bvh.triangle_of(best.slot), 2u);
+      ASSERT_EQ(bvh.triangle_of(best.primitive), 2u);
     }
-  } while (std::ranges::next_permutation(slots).found);
+  } while (std::ranges::next_permutation(primitives).found);
   // No doubt that is surely farther than a hit is settled: of 120 orders, the two nearest always
   // are, those an ulp behind in the third in which they come before both, the last one where it is
   // first.
@@ -54,11 +54,12 @@ TEST(NearestHit, NothingAtOrBeyondTheLimitCounts) {
   const float limit = 0.7f, before = std::nextafter(limit, 0.0f);
   const Bvh bvh(test::scene_of({at_depth(before), at_depth(limit)}));
   IntersectCounters counters;
-  for (std::uint32_t slot = 0; slot < 2; ++slot) {
-    const bool expected = bvh.corners_of(slot)[0].z < limit;
+  for (std::uint32_t primitive = 0; primitive < 2; ++primitive) {
+    const bool expected = bvh.corners_of(primitive)[0].z < limit;
     NearestHit none, nothing;
-    EXPECT_EQ(take_if_nearer(bvh, kRay, limit, hit_of(slot), none, counters), expected);
-    EXPECT_EQ(settle_doubt(bvh, kRay, limit, {.slot = slot}, nothing, counters), expected);
+    EXPECT_EQ(take_if_nearer(bvh, kRay, limit, hit_of(primitive), none, counters), expected);
+    EXPECT_EQ(resolve_doubt(bvh, kRay, limit, {.primitive = primitive}, nothing, counters),
+              expected);
   }
 }
 
@@ -66,8 +67,8 @@ TEST(NearestHit, ADoubtThatIsAMissLeavesNothing) {
   const Bvh bvh(test::scene_of({at_depth(-1)}));
   IntersectCounters counters;
   NearestHit best;
-  EXPECT_FALSE(settle_doubt(bvh, kRay, INFINITY, {.slot = 0}, best, counters));
-  EXPECT_EQ(best.slot, NearestHit::kNone);
+  EXPECT_FALSE(resolve_doubt(bvh, kRay, INFINITY, {.primitive = 0}, best, counters));
+  EXPECT_EQ(best.primitive, NearestHit::kNone);
 }
 
 }  // namespace

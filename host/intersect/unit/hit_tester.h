@@ -37,7 +37,7 @@ struct SureHit {
   Interval t{};              ///< high = +infinity where float32 says nothing
 };
 
-/// A polygon that float32 can neither call hit nor missed: for exact arithmetic to settle.
+/// A polygon that float32 can neither call hit nor missed: for exact arithmetic to resolve.
 struct Doubt {
   std::uint32_t bundle = 0;
   std::uint32_t lane = 0;

@@ -14,8 +14,8 @@
 
 namespace raygate {
 
-/// Room for a record per slot of the tree, filled leaf by leaf. Threads may ask at once: the first
-/// one makes a record, the others wait for it. 65 bytes a slot; pages nobody touches
+/// Room for a record per primitive of the tree, filled leaf by leaf. Threads may ask at once: the
+/// first one makes a record, the others wait for it. 65 bytes a primitive; pages nobody touches
 /// cost nothing.
 class RecordCache {
  public:
@@ -23,12 +23,12 @@ class RecordCache {
 
   [[nodiscard]] const glm::vec3& origin() const { return origin_; }
 
-  /// The records of the slots first .. first + count, at least one. Adds to `made` the number of
-  /// those that had to be made.
+  /// The records of the primitives first .. first + count, at least one. Adds to `made` the number
+  /// of those that had to be made.
   [[nodiscard]] const PolygonRecord* leaf(std::uint32_t first, std::uint32_t count,
                                           std::uint64_t& made) {
-    for (std::uint32_t slot = first; slot < first + count; ++slot) {
-      if (states_[slot].load(std::memory_order_acquire) != State::kMade) {
+    for (std::uint32_t primitive = first; primitive < first + count; ++primitive) {
+      if (states_[primitive].load(std::memory_order_acquire) != State::kMade) {
         made += make(first, count);
         break;
       }
@@ -44,12 +44,12 @@ class RecordCache {
   };
 
   std::uint64_t make(std::uint32_t first, std::uint32_t count);
-  bool claim(std::uint32_t slot);
+  bool claim(std::uint32_t primitive);
 
   const Bvh& bvh_;
   glm::vec3 origin_;
   std::unique_ptr<PolygonRecord[], Free> records_;
-  std::unique_ptr<std::atomic<State>[]> states_;  // of the slots
+  std::unique_ptr<std::atomic<State>[]> states_;  // of the primitives
 };
 
 /// The caches of all common origins of a scene, each made when it is first asked for. For any

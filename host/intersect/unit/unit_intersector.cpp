@@ -27,17 +27,17 @@ IntersectCounters UnitIntersector::counters() const {
   return counters;
 }
 
-void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& search,
+void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
                                 std::span<NearestHit> hits) {
   assert(hits.size() == rays.size());
   Stopwatch watch;
   rays_ = rays;
-  search_ = search;
+  query_ = query;
   hits_ = hits;
-  for (NearestHit& hit : hits) hit.slot = NearestHit::kNone;  // the rest has no meaning
-  std::ranges::fill(search.work, RayWork{});
+  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest has no meaning
+  std::ranges::fill(query.work, RayWork{});
   common_ = nullptr;
-  if (search.common_origin && !rays.empty()) {
+  if (query.common_origin && !rays.empty()) {
     common_ = &caches_->at(rays[0].origin, counters_.common_records);
   }
   make_packets();
@@ -64,7 +64,7 @@ void UnitIntersector::finish(Half& half) {
   tester_->finish(results_);
   half.started = false;
   merge(half);
-  if (!search_.work.empty()) count_work(half);
+  if (!query_.work.empty()) count_work(half);
   counters_.hit_tests += watch.lap();
 }
 
@@ -79,7 +79,7 @@ void UnitIntersector::make_packets() {
   for (std::uint32_t number = 0; number < rays_.size(); ++number) {
     const Ray& ray = rays_[number];
     if (!is_usable(ray.direction)) continue;
-    if (!is_scaled(ray.direction)) refuse_unscaled(ray);
+    if (!is_scaled(ray.direction)) throw_unscaled(ray);
     const int octant = octant_of(ray.direction);
     if (open[octant] == kNone) {
       open[octant] = static_cast<std::uint32_t>(packets_.size());
@@ -92,7 +92,7 @@ void UnitIntersector::make_packets() {
     packet.rays[lane] = number;
     packet.traversal.set_ray(lane, ray.origin, ray.direction);
     packet.lanes |= 1u << lane;
-    if (!search_.limits.empty()) packet.traversal.set_cutoff(lane, search_.limits[number]);
+    if (!query_.t_max.empty()) packet.traversal.set_cutoff(lane, query_.t_max[number]);
     if (filled[octant] == kLanes) open[octant] = kNone;
   }
   for (Half& half : halves_) half.active.clear();
@@ -102,14 +102,14 @@ void UnitIntersector::make_packets() {
 }
 
 LeafVisits UnitIntersector::next_leaf(Packet& packet) {
-  if (search_.culling) return packet.traversal.next_leaf();
-  const auto [placed, end] = bvh_.placed_slots();
-  if (packet.next_slot == bvh_.slot_count()) packet.next_slot = placed;
-  const std::uint32_t first = packet.next_slot;
+  if (query_.culling) return packet.traversal.next_leaf();
+  const auto [placed, end] = bvh_.instance_primitives();
+  if (packet.next_primitive == bvh_.primitive_count()) packet.next_primitive = placed;
+  const std::uint32_t first = packet.next_primitive;
   if (first == end) return {};
-  const std::uint32_t most = bvh_.is_placed(first) ? end : bvh_.slot_count();
+  const std::uint32_t most = bvh_.is_instanced(first) ? end : bvh_.primitive_count();
   const std::uint32_t count = std::min(Bvh::kMaxLeafSize, most - first);
-  packet.next_slot += count;
+  packet.next_primitive += count;
   return {{LeafVisit{first, count, packet.lanes}}, 1};
 }
 
@@ -167,7 +167,7 @@ std::size_t UnitIntersector::visit_leaves(Half& half) {
     half.active[kept++] = index;
     for (const LeafVisit& visit : leaf) {
       tests += visit.count * static_cast<std::size_t>(std::popcount(visit.lanes));
-      if (common_ != nullptr && !bvh_.is_placed(visit.first)) {
+      if (common_ != nullptr && !bvh_.is_instanced(visit.first)) {
         assert(rays_[packet.rays[0]].origin == common_->origin());
         half.batch.push_back(make_bundle(rays_, packet.rays, visit, visit.lanes));
         half.batch.back().records =
@@ -208,13 +208,13 @@ void UnitIntersector::make_own_records(Half& half) {
 }
 
 bool UnitIntersector::take(std::uint32_t number, const SureHit& hit) {
-  return take_if_nearer(bvh_, rays_[number], search_.limit(number),
+  return take_if_nearer(bvh_, rays_[number], query_.t_max_of(number),
                         {hit.tag, hit.point, hit.point_error, hit.t}, hits_[number], counters_);
 }
 
 bool UnitIntersector::take(std::uint32_t number, const Doubt& doubt) {
-  return settle_doubt(bvh_, rays_[number], search_.limit(number),
-                      {doubt.tag, doubt.point, doubt.point_error, {}}, hits_[number], counters_);
+  return resolve_doubt(bvh_, rays_[number], query_.t_max_of(number),
+                       {doubt.tag, doubt.point, doubt.point_error, {}}, hits_[number], counters_);
 }
 
 template <class Report>
@@ -223,8 +223,8 @@ void UnitIntersector::offer(const Half& half, const Report& report) {
   const std::uint32_t number = packet.rays[report.lane];
   const LaneMask lane = 1u << report.lane;
   if ((packet.ended & lane) != 0 || !take(number, report)) return;
-  const bool ends = !search_.enough_before.empty() &&
-                    is_before(bvh_, rays_[number], hits_[number], search_.enough_before[number]);
+  const bool ends = !query_.any_hit_before.empty() &&
+                    is_before(bvh_, rays_[number], hits_[number], query_.any_hit_before[number]);
   counters_.ended_early += ends;
   if (ends) packet.ended |= lane;
   packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
@@ -235,7 +235,7 @@ void UnitIntersector::offer(const Half& half, const Report& report) {
 void UnitIntersector::offer_hidden(const Half& half, const SureHit& ignored) {
   const RayBundle& bundle = half.batch[ignored.bundle];
   const std::uint32_t number = packets_[half.owner[ignored.bundle]].rays[ignored.lane];
-  if (ignored.t.low >= search_.limit(number)) return;
+  if (ignored.t.low >= query_.t_max_of(number)) return;
   for (std::uint32_t tag = bundle.first_tag; tag < bundle.first_tag + bundle.record_count; ++tag) {
     if (tag == ignored.tag) continue;
     offer(half, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
@@ -244,8 +244,8 @@ void UnitIntersector::offer_hidden(const Half& half, const SureHit& ignored) {
 
 void UnitIntersector::merge(const Half& half) {
   const auto is_ignored = [&](const auto& report) {
-    return !search_.ignored.empty() &&
-           search_.ignored[packets_[half.owner[report.bundle]].rays[report.lane]] == report.tag;
+    return !query_.skip_ids.empty() &&
+           query_.skip_ids[packets_[half.owner[report.bundle]].rays[report.lane]] == report.tag;
   };
   for (const SureHit& hit : results_.hits) {
     if (is_ignored(hit)) {
@@ -263,11 +263,11 @@ void UnitIntersector::count_work(const Half& half) {
   for (std::size_t i = 0; i < half.batch.size(); ++i) {
     for (LaneMask lanes = half.batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
       const std::uint32_t ray = packets_[half.owner[i]].rays[std::countr_zero(lanes)];
-      search_.work[ray].tests += half.batch[i].record_count;
+      query_.work[ray].tests += half.batch[i].record_count;
     }
   }
   for (const Doubt& doubt : results_.doubts) {
-    ++search_.work[packets_[half.owner[doubt.bundle]].rays[doubt.lane]].doubts;
+    ++query_.work[packets_[half.owner[doubt.bundle]].rays[doubt.lane]].doubts;
   }
 }
 

@@ -30,7 +30,7 @@ class UnitIntersector : public Intersector {
   UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
                   std::shared_ptr<RecordCaches> caches = nullptr);
 
-  void intersect(std::span<const Ray> rays, const RayQuery& search,
+  void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
 
   /// More where several lanes share a batch.
@@ -46,8 +46,8 @@ class UnitIntersector : public Intersector {
     PacketTraversal traversal;
     std::array<std::uint32_t, kLanes> rays;  // numbers; lanes without a ray repeat lane 0
     LaneMask lanes = 0;
-    LaneMask ended = 0;           // early
-    std::uint32_t next_slot = 0;  // without culling
+    LaneMask ended = 0;                // early
+    std::uint32_t next_primitive = 0;  // without culling
   };
 
   /// Half of the packets, and their batch.
@@ -77,12 +77,12 @@ class UnitIntersector : public Intersector {
   std::shared_ptr<HitTester> tester_;
   std::shared_ptr<RecordCaches> caches_;
   IntersectCounters counters_;  // all but the tester's
-  // Of the search that goes on.
+  // Of the query that goes on.
   std::span<const Ray> rays_;
-  RayQuery search_;
+  RayQuery query_;
   std::span<NearestHit> hits_;
   RecordCache* common_ = nullptr;
-  // Room to work in, kept from search to search.
+  // Room to work in, kept from query to query.
   std::vector<Packet> packets_;
   std::array<Half, 2> halves_;
   HitResults results_;

@@ -90,9 +90,9 @@ class CoreBench {
           for (RecordCache& cache : caches) cache.use(origin, triangle);
         }));
     std::vector<NearestHit> hits(set.rays.size());
-    RayQuery search{.limits = set.limits};
-    if (set.any_hit) search.enough_before = set.limits;
-    intersector.intersect(set.rays, search, hits);
+    RayQuery query{.t_max = set.limits};
+    if (set.any_hit) query.any_hit_before = set.limits;
+    intersector.intersect(set.rays, query, hits);
     Row row = {{"table", "records"},
                {"scene", name_},
                {"rays", set.name},
@@ -117,10 +117,10 @@ class CoreBench {
     CheckIntersector intersector(bvh, std::make_unique<CoreIntersector>(bvh, image, core),
                                  std::make_unique<CpuIntersector>(bvh));
     std::vector<NearestHit> hits(set.rays.size());
-    RayQuery search{.limits = set.limits};
-    if (set.any_hit) search.enough_before = set.limits;
+    RayQuery query{.t_max = set.limits};
+    if (set.any_hit) query.any_hit_before = set.limits;
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-    intersector.intersect(set.rays, search, hits);
+    intersector.intersect(set.rays, query, hits);
     const double seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     const CoreCounters counters = core->counters();
     const auto rays = static_cast<double>(set.rays.size());

@@ -53,7 +53,7 @@ class AuditTester : public HitTester {
   }
 
   void count(UnitVerdict said, const PolygonRecord& record, const glm::vec3& direction,
-             std::uint32_t slot) {
+             std::uint32_t primitive) {
     ++audit_.tests;
     bool hit = said == UnitVerdict::kHit;
     if (said == UnitVerdict::kDoubt) {
@@ -64,7 +64,7 @@ class AuditTester : public HitTester {
       const float t = unit_.distance(record, host_.read(direction)).t;
       hit = t > 0.0f && !std::isinf(t);
     }
-    const bool truth = hits_triangle({origin_, direction}, bvh_.corners_of(slot));
+    const bool truth = hits_triangle({origin_, direction}, bvh_.corners_of(primitive));
     audit_.wrong_hits += hit && !truth;
     audit_.wrong_misses += !hit && truth;
   }
@@ -137,11 +137,11 @@ DecisionAudit audit_decisions(const Bvh& bvh, const Camera& camera, int width, i
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const NearestHit &got = seen[i], &truth = exact[i];
     ++audit.rays;
-    if (got.slot != truth.slot) ++audit.wrong_rays;
-    if (got.slot != truth.slot || truth.slot == NearestHit::kNone) continue;
-    const Interval t = hit_distance(rays[i], bvh.corners_of(got.slot));
+    if (got.primitive != truth.primitive) ++audit.wrong_rays;
+    if (got.primitive != truth.primitive || truth.primitive == NearestHit::kNone) continue;
+    const Interval t = hit_distance(rays[i], bvh.corners_of(got.primitive));
     const double exact_t = 0.5 * (t.low + t.high);
-    const PolygonRecord record = make_record(eye, bvh.corners_of(got.slot));
+    const PolygonRecord record = make_record(eye, bvh.corners_of(got.primitive));
     t_errors.push_back(ulps(variant_t(variant, record, rays[i].direction), exact_t));
     double worst = 0.0;
     for (int k = 0; k < 3; ++k) {

@@ -21,15 +21,15 @@ class RaygatePeer : public Peer {
 
   void run(Found& found) override {
     CpuIntersector intersector(bvh_);
-    RayQuery search;
-    search.common_origin = set_->common_origin;
+    RayQuery query;
+    query.common_origin = set_->common_origin;
     const std::span<const Ray> rays(set_->rays);
     std::vector<NearestHit> hits(intersector.preferred_batch());
     for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
       const std::size_t count = std::min(hits.size(), rays.size() - first);
-      if (!set_->limits.empty()) search.limits = std::span(set_->limits).subspan(first, count);
-      if (set_->any_hit) search.enough_before = search.limits;
-      intersector.intersect(rays.subspan(first, count), search, std::span(hits).first(count));
+      if (!set_->limits.empty()) query.t_max = std::span(set_->limits).subspan(first, count);
+      if (set_->any_hit) query.any_hit_before = query.t_max;
+      intersector.intersect(rays.subspan(first, count), query, std::span(hits).first(count));
       for (std::size_t i = 0; i < count; ++i) {
         found.triangle[first + i] = triangle_of(hits[i]);
         found.t[first + i] = static_cast<float>(hits[i].t.low);
@@ -40,9 +40,9 @@ class RaygatePeer : public Peer {
  private:
   [[nodiscard]] std::uint32_t triangle_of(const NearestHit& hit) const {
     // Without a branch, which would be a guess at what the ray hits.
-    const std::uint32_t found = hit.slot != NearestHit::kNone ? 1 : 0;
+    const std::uint32_t found = hit.primitive != NearestHit::kNone ? 1 : 0;
     static_assert(Found::kNone == ~std::uint32_t{0});
-    const std::uint32_t triangle = bvh_.triangle_of(hit.slot & (0 - found));
+    const std::uint32_t triangle = bvh_.triangle_of(hit.primitive & (0 - found));
     return (set_->any_hit ? Found::kSome : triangle) | (found - 1);
   }
 

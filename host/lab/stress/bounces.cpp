@@ -16,13 +16,13 @@ glm::vec3 mirrored(const glm::vec3& direction, const Corners& t) {
   return scaled_direction(d - 2.0 * glm::dot(d, n) * n);
 }
 
-/// The slot that the ray hits first.
+/// The primitive that the ray hits first.
 std::optional<std::uint32_t> first_hit(const Bvh& bvh, const Ray& ray) {
   std::optional<std::uint32_t> best;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    const Corners& t = bvh.corners_of(slot);
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    const Corners& t = bvh.corners_of(primitive);
     if (!hits_triangle(ray, t)) continue;
-    if (!best || compare_hits(ray, t, bvh.corners_of(*best)) < 0) best = slot;
+    if (!best || compare_hits(ray, t, bvh.corners_of(*best)) < 0) best = primitive;
   }
   return best;
 }
@@ -48,13 +48,14 @@ void Bounces::start_anew(Random& random) {
 /// Follows one ray of the last shot to its hit and on; starts anew where it ends.
 void Bounces::bounce(Random& random) {
   const Ray ray = {origin_, directions_[random.below(kRays)]};
-  const auto slot = first_hit(*bvh_, ray);
+  const auto primitive = first_hit(*bvh_, ray);
   const NeighborClearances clearances(*bvh_);
   RaySpawner spawner(clearances);
-  const auto point = slot ? spawner.find(ray, *slot, SpawnSide::kIncident) : std::nullopt;
+  const auto point = primitive ? spawner.find(ray, *primitive, SpawnSide::kIncident) : std::nullopt;
   if (!point) return start_anew(random);
-  mirrored_ = mirrored(ray.direction, bvh_->corners_of(*slot));
-  if (!spawner.leaves(ray, *slot, SpawnSide::kIncident, mirrored_)) mirrored_ = glm::vec3(0.0f);
+  mirrored_ = mirrored(ray.direction, bvh_->corners_of(*primitive));
+  if (!spawner.leaves(ray, *primitive, SpawnSide::kIncident, mirrored_))
+    mirrored_ = glm::vec3(0.0f);
   origin_ = *point;
 }
 

@@ -72,9 +72,9 @@ class IntersectorSubject : public Subject {
     const std::size_t first_test = answers.tests.size(), first_ray = answers.nearest.size();
     search(trees_.front());
     for (const NearestHit& hit : hits_) {
-      answers.nearest.push_back(hit.slot == NearestHit::kNone
+      answers.nearest.push_back(hit.primitive == NearestHit::kNone
                                     ? std::nullopt
-                                    : std::optional(trees_.front().bvh.triangle_of(hit.slot)));
+                                    : std::optional(trees_.front().bvh.triangle_of(hit.primitive)));
     }
     answers.tests.resize(first_test + rays_.size() * triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -111,7 +111,7 @@ class IntersectorSubject : public Subject {
       again_.assign(rays.size(), {});
       tree.intersector->intersect(rays, {.common_origin = true}, again_);
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (again_[i].slot != hits_[number(i)].slot) torn_[number(i)] = true;
+        if (again_[i].primitive != hits_[number(i)].primitive) torn_[number(i)] = true;
       }
     };
     for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
@@ -130,7 +130,7 @@ class IntersectorSubject : public Subject {
     const NearestHit& hit = hits_[number];
     Answer answer;
     answer.doubt = work_[number].doubts != 0;
-    answer.hit = hit.slot != NearestHit::kNone;
+    answer.hit = hit.primitive != NearestHit::kNone;
     if (!answer.hit) return answer;
     answer.point = hit.point;
     if (way_.exact) {

@@ -21,7 +21,7 @@ HITS = ("nearest", "any", "all")
 # Where each part begins, as callgrind names the functions. What is neither of the others is shading: making rays,
 # materials, lights, sampling, the film.
 WHOLE = r"raygate::TileRenderer::trace\("
-PARTS_OF_A_PICTURE = {"hit_tests": r"raygate::CpuIntersector::find\(", "doubts": r"raygate::settle_doubt\(",
+PARTS_OF_A_PICTURE = {"hit_tests": r"raygate::CpuIntersector::find\(", "doubts": r"raygate::resolve_doubt\(",
          "departures": r"raygate::RaySpawner::"}
 
 

@@ -75,9 +75,9 @@ Seen check(const std::vector<Corners>& mesh, Random& random) {
   const Bvh bvh(test::scene_of(mesh));
   const NeighborClearances clearances(bvh);
   Seen seen;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    const Corners& t = bvh.corners_of(slot);
-    const NeighborClearance& clearance = clearances.of(slot);
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    const Corners& t = bvh.corners_of(primitive);
+    const NeighborClearance& clearance = clearances.of(primitive);
     const double clear = std::abs(clearance.length);
     if (clear > 0.0) check_shape(clearance, t);
     for (int i = 0; i < 2; ++i) {
@@ -89,12 +89,12 @@ Seen check(const std::vector<Corners>& mesh, Random& random) {
       const glm::dvec3 x = w.x * glm::dvec3(t[0]) + w.y * glm::dvec3(t[1]) + w.z * glm::dvec3(t[2]);
       double least = std::min(clear * std::min({w.x, w.y, w.z}), spawn_reach(t));
       if (clearance.length < 0.0f) {
-        least = std::min(least, reach_beyond(clearances.overlaps_of(slot), x));
+        least = std::min(least, reach_beyond(clearances.overlaps_of(primitive), x));
       }
-      for (std::uint32_t other = 0; other < bvh.slot_count(); ++other) {
+      for (std::uint32_t other = 0; other < bvh.primitive_count(); ++other) {
         const Corners& o = bvh.corners_of(other);
-        if (other == slot || (lies_beyond(o, t, 1) && lies_beyond(o, t, -1))) continue;
-        EXPECT_GE(distance(x, o) + 2.0 * clearances.margin(), least) << slot << " " << other;
+        if (other == primitive || (lies_beyond(o, t, 1) && lies_beyond(o, t, -1))) continue;
+        EXPECT_GE(distance(x, o) + 2.0 * clearances.margin(), least) << primitive << " " << other;
       }
     }
   }

@@ -16,10 +16,11 @@ using test::rectangle, test::scene_of, test::sphere;
 std::vector<OuterSide> sides_of(const std::vector<Corners>& triangles, std::size_t others = 0) {
   const Scene scene = scene_of(triangles);
   const Bvh bvh(scene);
-  std::vector<std::uint32_t> slots(triangles.size());
-  for (std::uint32_t slot = 0; slot < slots.size(); ++slot) slots[bvh.triangle_of(slot)] = slot;
-  slots.resize(slots.size() - others);
-  return outer_sides(bvh, slots);
+  std::vector<std::uint32_t> primitives(triangles.size());
+  for (std::uint32_t primitive = 0; primitive < primitives.size(); ++primitive)
+    primitives[bvh.triangle_of(primitive)] = primitive;
+  primitives.resize(primitives.size() - others);
+  return outer_sides(bvh, primitives);
 }
 
 TEST(OuterSides, OfEachSphereAreOutside) {

@@ -40,17 +40,17 @@ class ShadowRaysTest : public testing::Test {
     std::vector<NearestHit> hits(rays.size());
     intersector_->intersect(rays, {}, hits);
     for (int i = 0; i < count; ++i) {
-      const std::uint32_t slot = hits[i].slot;
-      if (slot == NearestHit::kNone) continue;
-      const auto origin = spawner.find(rays[i], slot, SpawnSide::kIncident);
+      const std::uint32_t primitive = hits[i].primitive;
+      if (primitive == NearestHit::kNone) continue;
+      const auto origin = spawner.find(rays[i], primitive, SpawnSide::kIncident);
       if (!origin) continue;
       ShadowRay ray;
       ray.radiance = glm::vec3(1.0f);
       ray.surface = *origin;
-      ray.surface_slot = slot;
-      const int side = plane_side(eye, bvh_.corners_of(slot));
+      ray.surface_slot = primitive;
+      const int side = orient3d(eye, bvh_.corners_of(primitive));
       const auto ask = [&](const glm::vec3& at) {
-        if (plane_side(at, bvh_.corners_of(slot)) == side) questions_.push_back(ray);
+        if (orient3d(at, bvh_.corners_of(primitive)) == side) questions_.push_back(ray);
       };
       for (ray.point_light = 0; ray.point_light < 2; ++ray.point_light) {
         ask(scene_.lights[ray.point_light].position);
@@ -60,11 +60,12 @@ class ShadowRaysTest : public testing::Test {
       const LightPoint<float> point = lights_.sample<float>(
           area_light, {float(random_.uniform(0, 1)), float(random_.uniform(0, 1))});
       ray.target = {point.position.x, point.position.y, point.position.z};
-      ray.target_slot = point.slot;
+      ray.target_slot = point.primitive;
       ask(ray.target);
       ray.target = glm::vec3(-scene_.directional_lights[0].direction);
       ray.target_slot = NearestHit::kNone;
-      if (direction_side(ray.target, bvh_.corners_of(slot)) == -side) questions_.push_back(ray);
+      if (direction_side(ray.target, bvh_.corners_of(primitive)) == -side)
+        questions_.push_back(ray);
     }
   }
 
@@ -81,9 +82,9 @@ class ShadowRaysTest : public testing::Test {
     const double share = is_point ? 1.0 : 1.0 - 0x1p-16;
     const auto limit =
         static_cast<float>(share * std::sqrt(glm::dot(way, way) / glm::dot(scaled, scaled)));
-    for (std::uint32_t slot = 0; slot < bvh_.slot_count(); ++slot) {
-      if (!is_point && slot == question.target_slot) continue;
-      const Corners& t = bvh_.corners_of(slot);
+    for (std::uint32_t primitive = 0; primitive < bvh_.primitive_count(); ++primitive) {
+      if (!is_point && primitive == question.target_slot) continue;
+      const Corners& t = bvh_.corners_of(primitive);
       if (hits_triangle(ray, t) && compare_hit_to_limit(ray, t, limit) < 0) return true;
     }
     return false;
@@ -91,8 +92,8 @@ class ShadowRaysTest : public testing::Test {
 
   bool is_blocked_from_afar(const ShadowRay& question) const {
     const Ray ray = {question.surface, scaled_direction(glm::dvec3(question.target))};
-    for (std::uint32_t slot = 0; slot < bvh_.slot_count(); ++slot) {
-      if (hits_triangle(ray, bvh_.corners_of(slot))) return true;
+    for (std::uint32_t primitive = 0; primitive < bvh_.primitive_count(); ++primitive) {
+      if (hits_triangle(ray, bvh_.corners_of(primitive))) return true;
     }
     return false;
   }

@@ -26,10 +26,10 @@ std::vector<Corners> wedge(float angle, const glm::vec3& at) {
 
 std::optional<std::uint32_t> nearest(const Bvh& bvh, const Ray& ray) {
   std::optional<std::uint32_t> best;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    const Corners& t = bvh.corners_of(slot);
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    const Corners& t = bvh.corners_of(primitive);
     if (!hits_triangle(ray, t)) continue;
-    if (!best || compare_hits(ray, t, bvh.corners_of(*best)) < 0) best = slot;
+    if (!best || compare_hits(ray, t, bvh.corners_of(*best)) < 0) best = primitive;
   }
   return best;
 }
@@ -37,8 +37,8 @@ std::optional<std::uint32_t> nearest(const Bvh& bvh, const Ray& ray) {
 /// By the parity of what a ray in some direction hits.
 bool inside(const Bvh& bvh, const glm::vec3& point) {
   int hits = 0;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    hits += hits_triangle({point, glm::vec3(0.371f, 1.02f, -0.593f)}, bvh.corners_of(slot));
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    hits += hits_triangle({point, glm::vec3(0.371f, 1.02f, -0.593f)}, bvh.corners_of(primitive));
   }
   return hits % 2 == 1;
 }
@@ -78,13 +78,13 @@ Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random&
                            glm::dvec3(random.point(off)) - glm::dvec3(start);
     Ray ray = {start, scaled_direction(aim)};
     for (int i = 0; i < 20; ++i) {
-      const auto slot = nearest(bvh, ray);
-      if (!slot) {
+      const auto primitive = nearest(bvh, ray);
+      if (!primitive) {
         ADD_FAILURE() << "a ray escaped";
         return result;
       }
-      const Corners& t = bvh.corners_of(*slot);
-      const auto origin = spawner.find(ray, *slot, SpawnSide::kIncident);
+      const Corners& t = bvh.corners_of(*primitive);
+      const auto origin = spawner.find(ray, *primitive, SpawnSide::kIncident);
       if (!origin) {
         ++result.ended;
         break;
@@ -92,7 +92,7 @@ Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random&
       result.farthest = std::max(result.farthest, steps_between(*origin, ray, t));
       EXPECT_TRUE(inside(bvh, *origin));
       const glm::vec3 direction = mirrored(ray.direction, t);
-      if (!spawner.leaves(ray, *slot, SpawnSide::kIncident, direction)) break;
+      if (!spawner.leaves(ray, *primitive, SpawnSide::kIncident, direction)) break;
       ray = {*origin, direction};
       EXPECT_FALSE(hits_triangle(ray, t));
       ++result.bounces;
@@ -150,11 +150,11 @@ TEST(RaySpawner, NoRayEndsOnARidge) {
         glm::mix(glm::dvec3(target[0]), glm::dvec3(target[1]), random.uniform(0, 1)) +
         glm::dvec3(random.point(std::exp(random.uniform(-18, -13)))) - glm::dvec3(eye);
     const Ray ray = {eye, scaled_direction(aim)};
-    const auto slot = nearest(bvh, ray);
-    if (!slot) continue;
+    const auto primitive = nearest(bvh, ray);
+    if (!primitive) continue;
     ++hits;
-    const auto before = spawner.find(ray, *slot, SpawnSide::kIncident);
-    const auto after = spawner.find(ray, *slot, SpawnSide::kTransmitted);
+    const auto before = spawner.find(ray, *primitive, SpawnSide::kIncident);
+    const auto after = spawner.find(ray, *primitive, SpawnSide::kTransmitted);
     ASSERT_TRUE(before && after) << i;
     ASSERT_FALSE(inside(bvh, *before)) << i;
     ASSERT_TRUE(inside(bvh, *after)) << i;
@@ -178,16 +178,17 @@ TEST(RaySpawner, ManyAtOnceAreTheSame) {
     rays.push_back({eye, scaled_direction(glm::dvec3(random.point(1.5f) - eye))});
   }
   for (const Ray& ray : rays) {
-    const auto slot = nearest(bvh, ray);
-    if (!slot) continue;
+    const auto primitive = nearest(bvh, ray);
+    if (!primitive) continue;
     questions.push_back(
-        {&ray, *slot, questions.size() % 3 == 0 ? SpawnSide::kTransmitted : SpawnSide::kIncident});
+        {&ray, *primitive,
+         questions.size() % 3 == 0 ? SpawnSide::kTransmitted : SpawnSide::kIncident});
   }
   ASSERT_GT(questions.size(), 1000u);
   std::vector<std::optional<glm::vec3>> expected;
   for (const SpawnQuery& q : questions) {
     const UsingVectors using_vectors(Vectors::kBaseline);
-    expected.push_back(spawner.find(*q.ray, q.slot, q.side));
+    expected.push_back(spawner.find(*q.ray, q.primitive, q.side));
   }
   for (const Vectors vectors : machine_vectors()) {
     const UsingVectors using_vectors(vectors);
@@ -223,8 +224,8 @@ TEST(RaySpawner, StaysWithinTheBoundOnBothSides) {
     for (const SpawnSide way : {SpawnSide::kIncident, SpawnSide::kTransmitted}) {
       const auto point = spawner.find(ray, 0, way);
       ASSERT_TRUE(point);
-      const int side = plane_side(origin, t);
-      ASSERT_EQ(plane_side(*point, t), way == SpawnSide::kIncident ? side : -side);
+      const int side = orient3d(origin, t);
+      ASSERT_EQ(orient3d(*point, t), way == SpawnSide::kIncident ? side : -side);
       farthest = std::max(farthest, steps_between(*point, ray, t));
       // The rest of the ray, from beyond: it never hits again.
       ASSERT_TRUE(spawner.leaves(ray, 0, SpawnSide::kTransmitted, ray.direction));

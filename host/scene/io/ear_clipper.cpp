@@ -56,7 +56,7 @@ bool EarClipper::project(std::span<const glm::vec3> corners) {
 
 int EarClipper::turn_at(std::uint32_t corner) const {
   const Corner& c = ring_[corner];
-  return turn(ring_[c.previous].position, c.position, ring_[c.next].position);
+  return orient2d(ring_[c.previous].position, c.position, ring_[c.next].position);
 }
 
 // An ear: a strictly convex corner whose triangle holds no other corner, not even on its border.
@@ -138,7 +138,7 @@ PolygonKind EarClipper::clip_ears() {
   for (std::size_t i = 2; i < candidates_.size(); ++i) {
     const Corner& a = ring_[candidates_[i - 1]];
     const Corner& b = ring_[candidates_[i]];
-    const int winding = turn(hub.position, a.position, b.position);
+    const int winding = orient2d(hub.position, a.position, b.position);
     if (winding <= 0) kind = PolygonKind::kSelfTouching;
     if (winding != 0) triangles_.push_back({hub.number, a.number, b.number});
   }

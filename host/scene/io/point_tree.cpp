@@ -21,7 +21,8 @@ struct PointTree::Question {
 
   [[nodiscard]] bool holds(const glm::vec2& point) const {
     for (int i = 0; i < 3; ++i) {
-      if (point == triangle[i] || turn(triangle[i], triangle[(i + 1) % 3], point) < 0) return false;
+      if (point == triangle[i] || orient2d(triangle[i], triangle[(i + 1) % 3], point) < 0)
+        return false;
     }
     return true;
   }
@@ -38,7 +39,7 @@ struct PointTree::Question {
       const glm::vec2& from = triangle[i];
       const glm::vec2& to = triangle[(i + 1) % 3];
       const glm::vec2 innermost(to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y);
-      if (turn(from, to, innermost) < 0) return true;
+      if (orient2d(from, to, innermost) < 0) return true;
     }
     return false;
   }

@@ -40,8 +40,8 @@ TYPED_TEST(BoxUnitTest, EqualsItsReference) {
     std::memcpy(&model->node_i, &line, sizeof line);
     std::memcpy(&model->origin_i, &ray.origin, sizeof ray.origin);
     std::memcpy(&model->inverse_i, &ray.inverse, sizeof ray.inverse);
-    model->t_max_i = std::bit_cast<std::uint32_t>(ray.limit);
-    model->no_cull_i = ray.every_box;
+    model->t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
+    model->no_cull_i = ray.no_cull;
     taken.push_front(box);
     model.clock();
     if (taken.size() < kLatency) continue;

@@ -108,11 +108,11 @@ class RayCoreAxiTest : public testing::Test {
   void offer(const CoreRay& ray) {
     std::memcpy(&model_->ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
     std::memcpy(&model_->ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
-    model_->ray_t_max_i = std::bit_cast<std::uint32_t>(ray.limit);
-    model_->ray_skip_id_i = ray.ignored;
+    model_->ray_t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
+    model_->ray_skip_id_i = ray.skip_id;
     model_->ray_start_i = ray.start;
     model_->ray_any_hit_i = ray.any_hit;
-    model_->ray_no_cull_i = ray.every_box;
+    model_->ray_no_cull_i = ray.no_cull;
     model_->ray_tag_i = ray.tag;
     model_->ray_valid_i = 1;
   }
@@ -219,11 +219,11 @@ TEST_F(RayCoreAxiTest, RaysAtThePortAreTraced) {
   for (const Ray& ray : test::some_rays(test::bodies(), random, 1'000)) {
     CoreRay& sent = rays.emplace_back(CoreRay{.ray = ray});
     sent.tag = static_cast<std::uint32_t>(rays.size() * 0x00F1'1F05 + 0x8000'0000);
-    if (random_() % 4 == 0) sent.limit = random.uniform(0.01f, 3.0f);
-    if (random_() % 4 == 0) sent.ignored = random_() % bvh_.slot_count();
+    if (random_() % 4 == 0) sent.t_max = random.uniform(0.01f, 3.0f);
+    if (random_() % 4 == 0) sent.skip_id = random_() % bvh_.primitive_count();
     sent.start = starts[random_() % starts.size()];
     sent.any_hit = random_() % 8 == 0;
-    sent.every_box = random_() % 16 == 0;
+    sent.no_cull = random_() % 16 == 0;
   }
   std::size_t ended = 0, seen = 0;
   auto next = rays.begin();
@@ -245,7 +245,7 @@ TEST_F(RayCoreAxiTest, RaysAtThePortAreTraced) {
     ASSERT_EQ(end.kind, CoreResult::Kind::kEnd);
     std::vector<CoreResult> expected;
     reference.trace(image_.lines(), {&ray, 1}, expected);
-    if (ray.every_box) {
+    if (ray.no_cull) {
       ++every;
       if (!ray.any_hit) {
         EXPECT_EQ(end.tests, expected.back().tests);

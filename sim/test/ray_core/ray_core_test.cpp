@@ -26,13 +26,13 @@ using test::some_rays;
 class RayCoreTest : public testing::Test {
  protected:
   /// Throws where the core, with the host's help, and CpuIntersector differ.
-  void check(const std::vector<Ray>& rays, const RayQuery& search, std::unique_ptr<CoreUnit> core) {
+  void check(const std::vector<Ray>& rays, const RayQuery& query, std::unique_ptr<CoreUnit> core) {
     const CoreUnit& unit = *core;
     CheckIntersector intersector(bvh_,
                                  std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
                                  std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
-    intersector.intersect(rays, search, hits);
+    intersector.intersect(rays, query, hits);
     counters_ = unit.counters();
   }
 
@@ -102,12 +102,12 @@ TEST_F(RayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
                                            : random_.uniform(0.01f, 3.0f));
     enough.push_back(random_.below(2) == 0 ? limits.back() : 0.5f * limits.back());
     ignored.push_back(
-        static_cast<std::uint32_t>(random_.below(static_cast<int>(bvh_.slot_count()))));
+        static_cast<std::uint32_t>(random_.below(static_cast<int>(bvh_.primitive_count()))));
   }
-  check(rays, {.limits = limits}, core(Arith::kBehavioural));
-  check(rays, {.limits = limits, .ignored = ignored}, core(Arith::kBehavioural));
+  check(rays, {.t_max = limits}, core(Arith::kBehavioural));
+  check(rays, {.t_max = limits, .skip_ids = ignored}, core(Arith::kBehavioural));
   const std::uint64_t triangles = counters_.triangles;
-  check(rays, {.limits = limits, .ignored = ignored, .enough_before = enough},
+  check(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = enough},
         core(Arith::kBehavioural));
   EXPECT_LT(counters_.triangles, triangles);
 }
@@ -116,7 +116,7 @@ TEST_F(RayCoreTest, WithoutCullingEveryTriangleIsTested) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 70);
   std::vector<RayWork> work(rays.size());
   check(rays, {.culling = false, .work = work}, core(Arith::kBehavioural));
-  for (const RayWork& ray : work) EXPECT_EQ(ray.tests, bvh_.slot_count());
+  for (const RayWork& ray : work) EXPECT_EQ(ray.tests, bvh_.primitive_count());
 }
 
 /// A line that was read ahead may come when the last ray has ended; the core tells, or CoreModel
@@ -166,7 +166,7 @@ TEST_F(RayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
   for (const Ray& ray : some_rays(bodies(), random_, 3'000)) {
     CoreRay& one = all.emplace_back(CoreRay{.ray = ray});
     one.tag = static_cast<std::uint32_t>(all.size() - 1);
-    if (one.tag % 4 != 0) one.limit = random_.uniform(0.01f, 3.0f);
+    if (one.tag % 4 != 0) one.t_max = random_.uniform(0.01f, 3.0f);
   }
   std::vector<CoreResult> results;
   ReferenceCore().trace(image_->lines(), all, results);

@@ -14,9 +14,9 @@ struct BoxCase {
   NodeLine node;
   Ray ray;  ///< scaled; what the unit reads of it is `read()`
   float limit = std::numeric_limits<float>::infinity();
-  bool every_box = false;
+  bool no_cull = false;
 
-  [[nodiscard]] BoxRay read() const { return {ray.origin, 1.0f / ray.direction, limit, every_box}; }
+  [[nodiscard]] BoxRay read() const { return {ray.origin, 1.0f / ray.direction, limit, no_cull}; }
 };
 
 /// Always the same cases for the same seed.
@@ -69,7 +69,7 @@ class BoxCases {
                            (one_in(2) ? 1.0f : number()));
     if (one_in(64)) box.limit = std::ldexp(1.0f, between(-149, 127));
     if (box.limit == 0.0f) box.limit = 1.0f;
-    box.every_box = one_in(16);
+    box.no_cull = one_in(16);
     return box;
   }
 

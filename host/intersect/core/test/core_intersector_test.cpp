@@ -19,15 +19,15 @@ using test::some_rays;
 class CoreIntersectorTest : public testing::Test {
  protected:
   /// Throws where the two differ.
-  void check(const std::vector<Ray>& rays, const RayQuery& search, int stack_depth) {
+  void check(const std::vector<Ray>& rays, const RayQuery& query, int stack_depth) {
     auto core = std::make_unique<ReferenceCore>(stack_depth);
     core_ = core.get();
     CheckIntersector intersector(bvh_,
                                  std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
                                  std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
-    intersector.intersect(rays, search, hits);
-    for (const NearestHit& hit : hits) found_ += hit.slot != NearestHit::kNone;
+    intersector.intersect(rays, query, hits);
+    for (const NearestHit& hit : hits) found_ += hit.primitive != NearestHit::kNone;
     counters_ = core_->counters();
   }
 
@@ -67,11 +67,11 @@ TEST_F(CoreIntersectorTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
     enough.push_back(random_.below(2) == 0 ? limits.back() : 0.5f * limits.back());
     ignored.push_back(static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
   }
-  check(rays, {.limits = limits}, 8);
+  check(rays, {.t_max = limits}, 8);
   EXPECT_GT(found_, 1'000);
-  check(rays, {.limits = limits, .ignored = ignored}, 8);
+  check(rays, {.t_max = limits, .skip_ids = ignored}, 8);
   const std::uint64_t nodes = counters_.nodes;
-  check(rays, {.limits = limits, .ignored = ignored, .enough_before = enough}, 8);
+  check(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = enough}, 8);
   EXPECT_LT(counters_.nodes, nodes);
 }
 
@@ -91,7 +91,7 @@ TEST(MemoryImage, OfNothingIsANodeWithoutChildren) {
   const Ray ray{glm::vec3(0), glm::vec3(1, 0, 0)};
   NearestHit hit;
   intersector.intersect({&ray, 1}, {}, {&hit, 1});
-  EXPECT_EQ(hit.slot, NearestHit::kNone);
+  EXPECT_EQ(hit.primitive, NearestHit::kNone);
 }
 
 TEST(MemoryImage, LinesHoldWhatTheyAreMadeOf) {

@@ -80,7 +80,7 @@ TEST(SetUp, BoundHolds) {
     }
   }
   std::cout << "worst error " << worst << " of the bound\n";
-  EXPECT_GT(worst, 0.1);  // the search does reach the neighbourhood of the bound
+  EXPECT_GT(worst, 0.1);  // the query does reach the neighbourhood of the bound
 }
 
 TEST(SetUp, SureAnswersAreRightAtEveryScale) {
@@ -94,7 +94,7 @@ TEST(SetUp, SureAnswersAreRightAtEveryScale) {
     for (glm::vec3& corner : view.triangle) corner *= size;
     const SetUpRecord made = set_up(view.origin, view.triangle);
     if (!std::isnan(made.record.d)) {
-      ASSERT_EQ(plane_side(view.origin, view.triangle), made.record.d > 0 ? 1 : -1) << i;
+      ASSERT_EQ(orient3d(view.origin, view.triangle), made.record.d > 0 ? 1 : -1) << i;
       ++of_known_d;
     }
     const PolygonRecord host_record = make_record(view.origin, view.triangle);

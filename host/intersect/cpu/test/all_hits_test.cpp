@@ -43,11 +43,11 @@ class AllHits : public testing::Test {
  private:
   static std::size_t compare_one(const Bvh& bvh, const Ray& ray, float limit) {
     std::vector<std::pair<mpq_class, std::uint32_t>> expected;
-    for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-      const test::RationalOracle truth(ray, bvh.corners_of(slot));
+    for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+      const test::RationalOracle truth(ray, bvh.corners_of(primitive));
       if (!truth.hit()) continue;
       if (limit == std::numeric_limits<float>::infinity() || truth.t() < mpq_class(limit)) {
-        expected.emplace_back(truth.t(), bvh.triangle_of(slot));
+        expected.emplace_back(truth.t(), bvh.triangle_of(primitive));
       }
     }
     std::ranges::sort(expected);
@@ -56,7 +56,7 @@ class AllHits : public testing::Test {
     all_hits(bvh, ray, limit, hits, work);
     EXPECT_EQ(hits.size(), expected.size());
     for (std::size_t i = 0; i < std::min(hits.size(), expected.size()); ++i) {
-      EXPECT_EQ(bvh.triangle_of(hits[i].slot), expected[i].second) << "hit " << i;
+      EXPECT_EQ(bvh.triangle_of(hits[i].primitive), expected[i].second) << "hit " << i;
       EXPECT_LE(mpq_class(hits[i].t.low), expected[i].first);
       EXPECT_GE(mpq_class(hits[i].t.high), expected[i].first);
     }

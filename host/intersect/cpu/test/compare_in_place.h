@@ -28,25 +28,25 @@ struct InPlace {
 };
 
 /// Expects the same of every vector code that the machine has: hits, bit by bit, and work.
-inline void compare_vectors(const Bvh& bvh, std::span<const Ray> rays, RayQuery search,
+inline void compare_vectors(const Bvh& bvh, std::span<const Ray> rays, RayQuery query,
                             std::span<const NearestHit> expected) {
   for (const Vectors vectors : machine_vectors()) {
     const UsingVectors in_use(vectors);
     std::vector<RayWork> work(rays.size());
     std::vector<NearestHit> found(rays.size());
     CpuIntersector intersector(bvh);
-    const std::span<const RayWork> expected_work = search.work;
-    RayQuery again = search;
+    const std::span<const RayWork> expected_work = query.work;
+    RayQuery again = query;
     again.work = work;
     intersector.intersect(rays, again, found);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      EXPECT_EQ(found[i].slot, expected[i].slot) << i << ", " << name_of(vectors);
+      EXPECT_EQ(found[i].primitive, expected[i].primitive) << i << ", " << name_of(vectors);
       EXPECT_EQ(work[i].tests, expected_work[i].tests) << i << ", " << name_of(vectors);
       EXPECT_EQ(work[i].doubts, expected_work[i].doubts) << i << ", " << name_of(vectors);
-      if (found[i].slot == NearestHit::kNone) continue;
+      if (found[i].primitive == NearestHit::kNone) continue;
       EXPECT_EQ(found[i].t.low, expected[i].t.low) << i << ", " << name_of(vectors);
       EXPECT_EQ(found[i].t.high, expected[i].t.high) << i << ", " << name_of(vectors);
-      if (!search.ignored.empty() || !search.enough_before.empty()) continue;
+      if (!query.skip_ids.empty() || !query.any_hit_before.empty()) continue;
       EXPECT_EQ(std::memcmp(&found[i].point, &expected[i].point, sizeof found[i].point), 0)
           << i << ", " << name_of(vectors);
     }
@@ -55,29 +55,29 @@ inline void compare_vectors(const Bvh& bvh, std::span<const Ray> rays, RayQuery 
 
 /// Expects what both find to be the same, P's bits included, whatever vectors are used; and each
 /// ray's counts to add up.
-inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, RayQuery search) {
+inline InPlace compare_in_place(const Bvh& bvh, std::span<const Ray> rays, RayQuery query) {
   CpuIntersector in_place(bvh);
   std::vector<NearestHit> found(rays.size()), expected(rays.size());
-  reference_intersector(bvh)->intersect(rays, search, expected);
+  reference_intersector(bvh)->intersect(rays, query, expected);
   std::vector<RayWork> work(rays.size());
-  search.work = work;
-  in_place.intersect(rays, search, found);
-  compare_vectors(bvh, rays, search, found);
+  query.work = work;
+  in_place.intersect(rays, query, found);
+  compare_vectors(bvh, rays, query, found);
   InPlace done;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const NearestHit &a = found[i], &b = expected[i];
-    if (search.enough_before.empty()) {
-      EXPECT_EQ(a.slot, b.slot) << i;
-      if (search.ignored.empty()) {
+    if (query.any_hit_before.empty()) {
+      EXPECT_EQ(a.primitive, b.primitive) << i;
+      if (query.skip_ids.empty()) {
         EXPECT_EQ(std::memcmp(&a.point, &b.point, sizeof a.point), 0) << i;
         EXPECT_EQ(a.point_error, b.point_error) << i;
       }
       EXPECT_LE(a.t.low, b.t.high);
       EXPECT_GE(a.t.high, b.t.low);
     } else {
-      EXPECT_EQ(a.slot == NearestHit::kNone, b.slot == NearestHit::kNone) << i;
+      EXPECT_EQ(a.primitive == NearestHit::kNone, b.primitive == NearestHit::kNone) << i;
     }
-    done.hits += a.slot != NearestHit::kNone;
+    done.hits += a.primitive != NearestHit::kNone;
   }
   done.counters = in_place.counters().hit;
   EXPECT_EQ(done.counters.tests,

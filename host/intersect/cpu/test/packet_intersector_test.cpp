@@ -35,10 +35,10 @@ std::vector<Ray> fan(Random& random, const std::vector<Corners>& mesh, const glm
 class PacketIntersectorTest : public testing::Test {
  protected:
   /// Traces in place and in batches; returns the number of hits.
-  int compare(const std::vector<Corners>& mesh, const std::vector<Ray>& rays, RayQuery search) {
+  int compare(const std::vector<Corners>& mesh, const std::vector<Ray>& rays, RayQuery query) {
     const Bvh bvh(test::scene_of(mesh));
-    search.common_origin = true;
-    const test::InPlace done = test::compare_in_place(bvh, rays, search);
+    query.common_origin = true;
+    const test::InPlace done = test::compare_in_place(bvh, rays, query);
     tests_ += done.counters.tests;
     return done.hits;
   }
@@ -60,9 +60,9 @@ class PacketIntersectorTest : public testing::Test {
                                                 : static_cast<std::uint32_t>(random_.below(
                                                       static_cast<int>(mesh.size()))));
       }
-      hits += compare(mesh, rays, {.limits = limits});
-      hits += compare(mesh, rays, {.limits = limits, .ignored = ignored});
-      hits += compare(mesh, rays, {.limits = limits, .ignored = ignored, .enough_before = limits});
+      hits += compare(mesh, rays, {.t_max = limits});
+      hits += compare(mesh, rays, {.t_max = limits, .skip_ids = ignored});
+      hits += compare(mesh, rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = limits});
     }
     EXPECT_GT(hits, rounds);
     EXPECT_GT(tests_, static_cast<std::uint64_t>(hits));

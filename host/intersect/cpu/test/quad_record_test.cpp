@@ -48,7 +48,7 @@ class QuadRecordTest : public testing::Test {
     make_quad_record({origin.x, origin.y, origin.z}, words.data(), count, record);
     ASSERT_EQ(record.unsure >> count, 0u);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const int side = plane_side(origin, triangles[i]);
+      const int side = orient3d(origin, triangles[i]);
       if ((record.unsure >> i & 1) == 0) {
         ASSERT_EQ(side, record.flip[i] != 0 ? -1 : 1);
         ++sides_;

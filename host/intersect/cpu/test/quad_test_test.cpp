@@ -29,7 +29,7 @@ class QuadTest : public testing::Test {
       }
     }
     const ShearedRay sheared(ray);
-    const double pace = std::abs(ray.direction[sheared.axes[2]]);
+    const double t_scale = std::abs(ray.direction[sheared.axes[2]]);
     QuadVerdict verdict;
     test_quad(sheared, words.data(), count, verdict);
     ASSERT_EQ((verdict.hit | verdict.level | verdict.doubt) >> count, 0u);
@@ -49,8 +49,8 @@ class QuadTest : public testing::Test {
       }
       if (!hit) continue;
       const Interval t = hit_distance(ray, triangles[i]);
-      ASSERT_LE(verdict.low[i], t.high * pace);
-      ASSERT_GE(verdict.high[i], t.low * pace);
+      ASSERT_LE(verdict.low[i], t.high * t_scale);
+      ASSERT_GE(verdict.high[i], t.low * t_scale);
     }
   }
 

@@ -47,8 +47,8 @@ class SingleRayIntersectorTest : public testing::Test {
   }
 
   /// Traces one by one and in batches; returns the number of hits.
-  int compare(const Bvh& bvh, const std::vector<Ray>& rays, const RayQuery& search) {
-    const test::InPlace done = test::compare_in_place(bvh, rays, search);
+  int compare(const Bvh& bvh, const std::vector<Ray>& rays, const RayQuery& query) {
+    const test::InPlace done = test::compare_in_place(bvh, rays, query);
     EXPECT_GT(done.counters.tests, 0u);
     return done.hits;
   }
@@ -66,10 +66,10 @@ class SingleRayIntersectorTest : public testing::Test {
                                               : static_cast<std::uint32_t>(
                                                     random_.below(static_cast<int>(mesh.size()))));
     }
-    hits += compare(bvh, rays, {.limits = limits});
-    hits += compare(bvh, rays, {.limits = limits, .culling = false});
-    hits += compare(bvh, rays, {.limits = limits, .ignored = ignored});
-    hits += compare(bvh, rays, {.limits = limits, .ignored = ignored, .enough_before = limits});
+    hits += compare(bvh, rays, {.t_max = limits});
+    hits += compare(bvh, rays, {.t_max = limits, .culling = false});
+    hits += compare(bvh, rays, {.t_max = limits, .skip_ids = ignored});
+    hits += compare(bvh, rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = limits});
     EXPECT_GT(hits, 1000);
   }
 
@@ -107,11 +107,11 @@ TEST_F(SingleRayIntersectorTest, LimitsAndTiesAreExact) {
   const std::vector<Ray> rays(3, {glm::vec3(0), glm::vec3(0.25f, 0.5f, 1)});
   const float past = std::nextafter(3.0f, 4.0f);
   const std::vector<float> limits = {std::nextafter(3.0f, 0.0f), 3.0f, past};
-  intersector.intersect(rays, {.limits = limits}, hits);
-  EXPECT_EQ(hits[0].slot, NearestHit::kNone);
-  EXPECT_EQ(hits[1].slot, NearestHit::kNone);
-  ASSERT_NE(hits[2].slot, NearestHit::kNone);
-  EXPECT_EQ(bvh.triangle_of(hits[2].slot), 0u);
+  intersector.intersect(rays, {.t_max = limits}, hits);
+  EXPECT_EQ(hits[0].primitive, NearestHit::kNone);
+  EXPECT_EQ(hits[1].primitive, NearestHit::kNone);
+  ASSERT_NE(hits[2].primitive, NearestHit::kNone);
+  EXPECT_EQ(bvh.triangle_of(hits[2].primitive), 0u);
   EXPECT_EQ(hits[2].point, glm::vec3(0.75f, 1.5f, 3));
 }
 

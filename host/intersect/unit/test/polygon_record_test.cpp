@@ -64,7 +64,7 @@ TEST(PolygonRecord, BoundHolds) {
     }
   }
   std::cout << tests << " tests, worst error " << worst << " of the bound\n";
-  EXPECT_GT(worst, 0.1);  // the search does reach the neighbourhood of the bound
+  EXPECT_GT(worst, 0.1);  // the query does reach the neighbourhood of the bound
 }
 
 // Sure signs are right at every scale, the ones at which unscaled words would leave float's range
@@ -77,7 +77,7 @@ TEST(PolygonRecord, SureSignsAreRightAtEveryScale) {
     const glm::vec3 o = random.point(size);
     const Corners t = {random.point(size), random.point(size), random.point(size)};
     const PolygonRecord record = make_record(o, t);
-    ASSERT_EQ(plane_side(o, t), (record.d > 0) - (record.d < 0));
+    ASSERT_EQ(orient3d(o, t), (record.d > 0) - (record.d < 0));
     const glm::dvec3 aim =
         glm::mix(glm::dvec3(t[0]), glm::dvec3(t[1]), random.uniform(0, 1)) - glm::dvec3(o);
     const Ray ray = {o, scaled_direction(aim + 1e-6 * glm::dvec3(random.point(size)))};

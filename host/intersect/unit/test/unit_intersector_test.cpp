@@ -17,12 +17,13 @@ using test::Random;
 std::uint32_t exact_nearest(const Bvh& bvh, const Ray& ray, float limit,
                             std::uint32_t ignored = NearestHit::kNone) {
   std::uint32_t best = NearestHit::kNone;
-  for (std::uint32_t slot = 0; slot < bvh.slot_count(); ++slot) {
-    const Corners& t = bvh.corners_of(slot);
-    if (slot == ignored || !hits_triangle(ray, t)) continue;
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    const Corners& t = bvh.corners_of(primitive);
+    if (primitive == ignored || !hits_triangle(ray, t)) continue;
     if (std::isfinite(limit) && compare_hit_to_limit(ray, t, limit) >= 0) continue;
     const int order = best == NearestHit::kNone ? -1 : compare_hits(ray, t, bvh.corners_of(best));
-    if (order < 0 || (order == 0 && bvh.triangle_of(slot) < bvh.triangle_of(best))) best = slot;
+    if (order < 0 || (order == 0 && bvh.triangle_of(primitive) < bvh.triangle_of(best)))
+      best = primitive;
   }
   return best;
 }
@@ -58,9 +59,9 @@ class UnitIntersectorTest : public testing::Test {
       bvh_, std::make_shared<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>())};
   Random random_;
 
-  std::vector<NearestHit> find(const std::vector<Ray>& rays, const RayQuery& search = {}) {
+  std::vector<NearestHit> find(const std::vector<Ray>& rays, const RayQuery& query = {}) {
     std::vector<NearestHit> hits(rays.size());
-    intersector_.intersect(rays, search, hits);
+    intersector_.intersect(rays, query, hits);
     return hits;
   }
 };
@@ -72,11 +73,11 @@ TEST_F(UnitIntersectorTest, OwnOriginsFindTheExactNearest) {
     limits.push_back(i % 2 == 0 ? std::numeric_limits<float>::infinity()
                                 : random_.uniform(0.01f, 3.0f));
   }
-  const auto hits_found = find(rays, {.limits = limits});
+  const auto hits_found = find(rays, {.t_max = limits});
   int hits = 0, misses = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::uint32_t expected = exact_nearest(bvh_, rays[i], limits[i]);
-    ASSERT_EQ(hits_found[i].slot, expected) << i;
+    ASSERT_EQ(hits_found[i].primitive, expected) << i;
     ++(expected == NearestHit::kNone ? misses : hits);
   }
   EXPECT_GT(hits, 1000);
@@ -94,7 +95,7 @@ TEST_F(UnitIntersectorTest, CachedRecordsChangeNothing) {
   EXPECT_LE(intersector_.counters().common_records, mesh_.size());
   const auto own = find(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    ASSERT_EQ(own[i].slot, cached[i].slot);
+    ASSERT_EQ(own[i].primitive, cached[i].primitive);
     ASSERT_EQ(own[i].point, cached[i].point);
   }
   EXPECT_GT(intersector_.counters().own_records, mesh_.size())
@@ -113,7 +114,7 @@ TEST_F(UnitIntersectorTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
   EXPECT_EQ(tests, intersector_.counters().hit.tests);
   const auto all = find(rays, {.culling = false, .work = work});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    ASSERT_EQ(all[i].slot, culled[i].slot);
+    ASSERT_EQ(all[i].primitive, culled[i].primitive);
     ASSERT_EQ(work[i].tests, mesh_.size());
   }
 }
@@ -128,11 +129,11 @@ TEST_F(UnitIntersectorTest, RaysEndAtAnyHitThatWillDo) {
     ray.direction = scaled_direction(glm::dvec3(random_.point(2.0f) - ray.origin));
     enough.push_back(random_.below(4) == 0 ? INFINITY : random_.uniform(2.0f, 20.0f));
   }
-  const auto hits = find(rays, {.enough_before = enough});
+  const auto hits = find(rays, {.any_hit_before = enough});
   int ended = 0, farther = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::uint32_t exact = exact_nearest(bvh_, rays[i], INFINITY);
-    const std::uint32_t found = hits[i].slot;
+    const std::uint32_t found = hits[i].primitive;
     ASSERT_EQ(exact == NearestHit::kNone, found == NearestHit::kNone);
     if (found == NearestHit::kNone) continue;
     const bool is_before = raygate::is_before(bvh_, rays[i], hits[i], enough[i]);
@@ -153,11 +154,11 @@ TEST_F(UnitIntersectorTest, IgnoredSlotsDoNotCount) {
     ray.direction = scaled_direction(glm::dvec3(random_.point(1.5f) - ray.origin));
   }
   std::vector<std::uint32_t> ignored;
-  for (const NearestHit& hit : find(rays)) ignored.push_back(hit.slot);
-  const auto others = find(rays, {.ignored = ignored});
+  for (const NearestHit& hit : find(rays)) ignored.push_back(hit.primitive);
+  const auto others = find(rays, {.skip_ids = ignored});
   int hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::uint32_t found = others[i].slot;
+    const std::uint32_t found = others[i].primitive;
     ASSERT_EQ(found, exact_nearest(bvh_, rays[i], INFINITY, ignored[i]));
     hits += found != NearestHit::kNone;
   }
@@ -176,11 +177,11 @@ TEST(UnitIntersector, IgnoredHitsHideNothing) {
   const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
   std::vector<NearestHit> hits(1);
   intersector.intersect(rays, {}, hits);
-  const std::uint32_t first = hits[0].slot;
+  const std::uint32_t first = hits[0].primitive;
   ASSERT_EQ(bvh.triangle_of(first), 0u);
-  intersector.intersect(rays, {.ignored = std::span(&first, 1)}, hits);
-  ASSERT_NE(hits[0].slot, NearestHit::kNone);
-  EXPECT_EQ(bvh.triangle_of(hits[0].slot), 1u);
+  intersector.intersect(rays, {.skip_ids = std::span(&first, 1)}, hits);
+  ASSERT_NE(hits[0].primitive, NearestHit::kNone);
+  EXPECT_EQ(bvh.triangle_of(hits[0].primitive), 1u);
 }
 
 TEST_F(UnitIntersectorTest, DirectionsThatLeadNowhereHitNothing) {
@@ -189,9 +190,9 @@ TEST_F(UnitIntersectorTest, DirectionsThatLeadNowhereHitNothing) {
                                  {glm::vec3(0), glm::vec3(nan, 1, 0)},
                                  {glm::vec3(0), glm::vec3(0, 0, 1)}};
   const auto hits = find(rays);
-  EXPECT_EQ(hits[0].slot, NearestHit::kNone);
-  EXPECT_EQ(hits[1].slot, NearestHit::kNone);
-  EXPECT_NE(hits[2].slot, NearestHit::kNone);
+  EXPECT_EQ(hits[0].primitive, NearestHit::kNone);
+  EXPECT_EQ(hits[1].primitive, NearestHit::kNone);
+  EXPECT_NE(hits[2].primitive, NearestHit::kNone);
 }
 
 }  // namespace

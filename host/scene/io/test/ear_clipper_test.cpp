@@ -30,7 +30,7 @@ void expect_triangulation(const Polygon& polygon, const EarClipper& clipper, int
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (const auto& triangle : clipper.triangles()) {
     const auto flat = [&](int i) { return glm::vec2(polygon[triangle[i]]); };
-    ASSERT_EQ(turn(flat(0), flat(1), flat(2)), winding);
+    ASSERT_EQ(orient2d(flat(0), flat(1), flat(2)), winding);
     for (int i = 0; i < 3; ++i) ++sides[{triangle[i], triangle[(i + 1) % 3]}];
   }
   for (std::uint32_t i = 0; i < polygon.size(); ++i) {
@@ -139,7 +139,7 @@ TEST(EarClipper, CutsRandomStarShapedPolygons) {
       angle = std::uniform_real_distribution(0.0, 2.0 * std::numbers::pi)(random);
     }
     std::sort(angles.begin(), angles.end());
-    // Star-shaped from the origin only if no gap is half a turn or more.
+    // Star-shaped from the origin only if no gap is half a orient2d or more.
     double gap = angles.front() + 2.0 * std::numbers::pi - angles.back();
     for (std::size_t i = 1; i < size; ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
     if (gap > 3.0) continue;
