@@ -1,4 +1,4 @@
-// A whole file in memory, and its numbers by their place.
+// A whole file in memory, and the binary numbers in it.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 namespace raygate {
 
@@ -25,5 +24,10 @@ template <class Number>
   std::memcpy(&number, ordered, sizeof number);
   return number;
 }
+
+/// Types that a file names at run time.
+enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+[[nodiscard]] std::size_t bytes_of(NumberType type);
+[[nodiscard]] double number_at(const char* bytes, NumberType type, bool highest_first = false);
 
 }  // namespace raygate

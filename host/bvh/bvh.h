@@ -12,7 +12,7 @@
 #include "host/base/vectors.h"
 #include "host/bvh/instance_bvh.h"
 #include "host/bvh/range_map.h"
-#include "host/scene/instance_transform.h"
+#include "host/scene/instances.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

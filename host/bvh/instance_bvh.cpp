@@ -76,7 +76,7 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
   for (int i = 0; i < Bvh::kWidth; ++i) to.child[i] = placed(at, from.child[i]);
 }
 
-/// Makes the corners of a leaf's triangles: as `transform_point` (host/scene/instance_transform.h)
+/// Makes the corners of a leaf's triangles: as `transform_point` (host/scene/instances.h)
 /// does of each.
 RAYGATE_INLINE void place(const InstanceBvh& at, const float* from, std::size_t count, float* to) {
   for (std::size_t v = 0; v < 3; ++v) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/scene/camera.h"
-#include "host/scene/io/light_settings.h"
+#include "host/scene/scene.h"
 
 namespace CLI {
 class App;

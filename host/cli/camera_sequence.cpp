@@ -7,7 +7,7 @@
 #include "host/cli/format.h"
 #include "host/exact/exact.h"
 #include "host/light/default_lights.h"
-#include "host/scene/camera_path.h"
+#include "host/scene/camera_setting.h"
 
 namespace raygate {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <glm/glm.hpp>
 
-#include "host/scene/io/light_settings.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

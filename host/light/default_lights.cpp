@@ -5,8 +5,8 @@
 
 #include "host/exact/exact.h"
 #include "host/light/light_values.h"
+#include "host/scene/bounds.h"
 #include "host/scene/camera.h"
-#include "host/scene/instances.h"
 
 namespace raygate {
 namespace {

@@ -9,7 +9,7 @@
 #include "host/base/elementary.h"
 #include "host/base/lane_math.h"
 #include "host/light/sampler.h"
-#include "host/scene/environment_map.h"
+#include "host/scene/scene.h"
 
 namespace raygate {
 

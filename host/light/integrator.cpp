@@ -6,7 +6,7 @@
 #include "host/light/path.h"
 #include "host/light/primary.h"
 #include "host/light/whitted.h"
-#include "host/scene/instance_transform.h"
+#include "host/scene/instances.h"
 
 namespace raygate {
 namespace {

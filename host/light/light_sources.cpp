@@ -7,7 +7,7 @@
 #include "host/light/light_values.h"
 #include "host/light/lights.h"
 #include "host/light/outer_sides.h"
-#include "host/scene/instances.h"
+#include "host/scene/bounds.h"
 
 namespace raygate {
 namespace {

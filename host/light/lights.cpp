@@ -10,8 +10,8 @@
 
 #include "host/exact/exact.h"
 #include "host/light/light_values.h"
+#include "host/scene/bounds.h"
 #include "host/scene/camera.h"
-#include "host/scene/instances.h"
 
 namespace raygate {
 namespace {

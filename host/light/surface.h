@@ -8,7 +8,7 @@
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/light/material_parameters.h"
-#include "host/scene/instance_transform.h"
+#include "host/scene/instances.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/scene/instances.h"
+#include "host/scene/bounds.h"
 
 namespace raygate {
 

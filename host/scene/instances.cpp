@@ -4,7 +4,12 @@
 #include <cmath>
 #include <iterator>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "host/base/input_error.h"
+#include "host/scene/bounds.h"
 
 namespace raygate {
 namespace {
@@ -21,11 +26,6 @@ void shift(std::array<std::uint32_t, 3>& indices, std::uint32_t by) {
   for (std::uint32_t& index : indices) {
     if (index != kNoIndex) index += by;
   }
-}
-
-void grow(Bounds3& box, const glm::dvec3& position) {
-  box.low = glm::min(box.low, position);
-  box.high = glm::max(box.high, position);
 }
 
 /// Drops positions of no triangle.
@@ -69,6 +69,15 @@ std::uint64_t triangle_count(const Scene& scene) {
   return count;
 }
 
+void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3& to,
+              Instance& instance) {
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3 row(world[0][k], world[1][k], world[2][k]);
+    for (int axis = 0; axis < 3; ++axis) instance.rows[k][axis] = row[axis];
+    instance.rows[k][3] = world[3][k] + glm::dot(row, from) - to[k];
+  }
+}
+
 std::uint32_t add_mesh(Scene& scene, Scene&& part) {
   const bool has_materials = !part.materials.empty();
   const std::uint32_t normals = append(scene.normals, std::move(part.normals));
@@ -99,26 +108,52 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
 }
 
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
-  Mesh turned = scene.meshes[mesh];
+  Mesh mirrored = scene.meshes[mesh];
   // Normals point to the front, on whichever side that is.
-  const Run normals(turned);
+  const Run normals(mirrored);
   const auto first = static_cast<std::uint32_t>(scene.normals.size());
   for (std::uint32_t i = normals.begin; i < normals.end; ++i) {
     scene.normals.push_back(-glm::vec3(scene.normals[i]));
   }
-  for (Triangle& triangle : turned.triangles) {
+  for (Triangle& triangle : mirrored.triangles) {
     std::swap(triangle.vertices[0], triangle.vertices[2]);
     std::swap(triangle.texcoords[0], triangle.texcoords[2]);
     std::swap(triangle.normals[0], triangle.normals[2]);
     shift(triangle.normals, first - normals.begin);
   }
-  scene.meshes.push_back(std::move(turned));
+  scene.meshes.push_back(std::move(mirrored));
   return static_cast<std::uint32_t>(scene.meshes.size() - 1);
+}
+
+MeshInstancer::MeshInstancer(Scene& scene, Scene&& part)
+    : scene_(scene), origin_(part.origin), mesh_(add_mesh(scene, std::move(part))) {
+  const Bounds3 box = bounds_of(scene.meshes[mesh_].positions);
+  size_ = glm::max(glm::abs(box.low), glm::abs(box.high));
+}
+
+bool MeshInstancer::add(const glm::dmat4& world, std::uint32_t object) {
+  Instance instance{.mesh = mesh_, .object = object};
+  set_rows(world, origin_, scene_.origin, instance);
+  for (const auto& row : instance.rows) {
+    constexpr double kMost = 0x1p100;
+    const double sum = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
+    const double most = std::abs(row[0]) * size_.x + std::abs(row[1]) * size_.y +
+                        std::abs(row[2]) * size_.z + std::abs(row[3]);
+    if (!(sum <= kMost && most <= kMost)) return false;
+  }
+  const glm::dvec3 x(world[0][0], world[1][0], world[2][0]),
+      y(world[0][1], world[1][1], world[2][1]), z(world[0][2], world[1][2], world[2][2]);
+  if (glm::dot(glm::cross(x, y), z) < 0.0) {
+    if (mirrored_ == kNoIndex) mirrored_ = add_mirrored(scene_, mesh_);
+    instance.mesh = mirrored_;
+  }
+  scene_.instances.push_back(instance);
+  return true;
 }
 
 namespace {
 
-void write(Scene& scene, std::span<const Instance> instances) {
+void flatten(Scene& scene, std::span<const Instance> instances) {
   std::size_t positions = scene.positions.size(), triangles = scene.triangles.size();
   for (const Instance& instance : instances) {
     positions += scene.meshes[instance.mesh].positions.size();
@@ -149,17 +184,7 @@ void write(Scene& scene, std::span<const Instance> instances) {
   }
 }
 
-}  // namespace
-
-void flatten_instances(Scene& scene) {
-  const std::vector<Instance> instances = std::exchange(scene.instances, {});
-  write(scene, instances);
-  scene.meshes.clear();
-}
-
-namespace {
-
-/// Before all others.
+/// Replaces the instances that emit, before all others.
 void flatten_emitters(Scene& scene) {
   std::vector<bool> emits;
   emits.reserve(scene.meshes.size());
@@ -174,7 +199,7 @@ void flatten_emitters(Scene& scene) {
                             [&](const Instance& instance) { return emits[instance.mesh]; });
   const std::vector<Instance> emitters(scene.instances.begin(), others);
   scene.instances.erase(scene.instances.begin(), others);
-  write(scene, emitters);
+  flatten(scene, emitters);
   for (std::size_t i = 0; i < emits.size(); ++i) {
     if (emits[i]) scene.meshes[i] = {};
   }
@@ -182,93 +207,24 @@ void flatten_emitters(Scene& scene) {
 
 }  // namespace
 
-bool resolve_instances(Scene& scene, InstanceMode use) {
-  if (scene.instances.empty()) return true;
+void flatten_instances(Scene& scene) {
+  const std::vector<Instance> instances = std::exchange(scene.instances, {});
+  flatten(scene, instances);
+  scene.meshes.clear();
+}
+
+void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file) {
+  if (scene.instances.empty()) return;
   const std::uint64_t triangles = triangle_count(scene);
-  if (triangles + scene.instances.size() >= (std::uint64_t{1} << 31) - 1) return false;
+  if (triangles + scene.instances.size() >= (std::uint64_t{1} << 31) - 1) {
+    throw InputError(file.string() + ": found " + std::to_string(triangles) +
+                     " triangles with all instances, expected fewer than 2^31");
+  }
   flatten_emitters(scene);
   const bool is_many = triangles - scene.triangles.size() > kFlattenLimit;
-  if (use == InstanceMode::kFlatten || (use == InstanceMode::kAutomatic && !is_many)) {
+  if (mode == InstanceMode::kFlatten || (mode == InstanceMode::kAutomatic && !is_many)) {
     flatten_instances(scene);
   }
-  return true;
-}
-
-Bounds3 bounds_of(std::span<const glm::vec3> positions) {
-  const glm::dvec3 first(positions[0]);
-  Bounds3 box{first, first};
-  for (const glm::vec3& position : positions) grow(box, position);
-  return box;
-}
-
-// The largest of a coordinate is at one of the box's corners, in the very operations of
-// transform_coordinate, too: each of them is monotonic in its operands, rounding included.
-Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box) {
-  Bounds3 result{};
-  for (int k = 0; k < 3; ++k) {
-    const auto& row = rows[k];
-    double low[3], high[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool is_turned = row[axis] < 0.0;
-      low[axis] = is_turned ? box.high[axis] : box.low[axis];
-      high[axis] = is_turned ? box.low[axis] : box.high[axis];
-    }
-    transform_coordinate(row, low, result.low[k]);
-    transform_coordinate(row, high, result.high[k]);
-  }
-  return result;
-}
-
-void expand_by_instances(const Scene& scene, Bounds3& box) {
-  std::vector<Bounds3> boxes;
-  boxes.reserve(scene.meshes.size());
-  for (const Mesh& mesh : scene.meshes) {
-    boxes.push_back(mesh.positions.empty() ? Bounds3{} : bounds_of(mesh.positions));
-  }
-  for (const Instance& instance : scene.instances) {
-    const Bounds3 whole = transform_bounds(instance.rows, boxes[instance.mesh]);
-    // Rounding to float keeps order: the middle of the scene need not be looked at.
-    if (glm::all(glm::lessThanEqual(box.low, glm::dvec3(glm::vec3(whole.low)))) &&
-        glm::all(glm::lessThanEqual(glm::dvec3(glm::vec3(whole.high)), box.high))) {
-      continue;
-    }
-    for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
-      grow(box, transform_point(instance.rows, position));
-    }
-  }
-}
-
-namespace {
-
-/// A box to begin with: around `position`, or around a position of an instance.
-Bounds3 first_box(const Scene& scene, const glm::vec3* position) {
-  glm::dvec3 first;
-  if (position != nullptr) {
-    first = *position;
-  } else {
-    const Instance& instance = scene.instances.at(0);
-    first = transform_point(instance.rows, scene.meshes[instance.mesh].positions[0]);
-  }
-  return {first, first};
-}
-
-}  // namespace
-
-Bounds3 triangle_bounds(const Scene& scene) {
-  Bounds3 box = first_box(
-      scene, scene.triangles.empty() ? nullptr : &scene.positions[scene.triangles[0].vertices[0]]);
-  for (const Triangle& triangle : scene.triangles) {
-    for (const std::uint32_t vertex : triangle.vertices) grow(box, scene.positions[vertex]);
-  }
-  expand_by_instances(scene, box);
-  return box;
-}
-
-Bounds3 position_bounds(const Scene& scene) {
-  Bounds3 box = first_box(scene, scene.positions.empty() ? nullptr : &scene.positions[0]);
-  for (const glm::vec3& position : scene.positions) grow(box, position);
-  expand_by_instances(scene, box);
-  return box;
 }
 
 }  // namespace raygate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "host/scene/camera_setting.h"
-#include "host/scene/environment_map.h"
 #include "host/scene/texture.h"
 
 namespace raygate {
@@ -117,6 +117,29 @@ struct PointLight {
 struct DirectionalLight {
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< in which the light goes; unit length
   glm::vec3 irradiance{0.0f};            ///< of a surface across it, scene-linear RGB
+};
+
+/// Radiance from where no geometry is, in place of a background: a latitude-longitude picture. Its
+/// upper edge is straight up, its lower edge straight down; in its middle is what is ahead, to the
+/// right of that what is on the right. Between the middles of texels it is bilinear; it goes on
+/// from the right edge at the left one.
+struct EnvironmentMap {
+  int width = 0, height = 0;         ///< at least 1
+  std::vector<glm::vec3> texels;     ///< row by row from the top; finite, none negative
+  float strength = 1.0f;             ///< times the texels: radiance, scene-linear RGB
+  glm::dvec3 up{0.0, 1.0, 0.0};      ///< where the picture's upper edge is; unit length
+  glm::dvec3 ahead{0.0, 0.0, -1.0};  ///< and where its middle is; unit length, across `up`
+
+  [[nodiscard]] const glm::vec3& texel(int x, int y) const {
+    return texels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+  }
+};
+
+/// An environment map that is still in its file.
+struct EnvironmentSetting {
+  std::filesystem::path file;  ///< OpenEXR or Radiance HDR, latitude-longitude
+  double rotation = 0.0;       ///< in degrees around what is up, counter-clockwise seen from above
+  double strength = 1.0;       ///< times what the file has; 0 or more
 };
 
 /// All geometry, materials and lights besides the faces that emit. Positions are relative to

@@ -7,12 +7,11 @@
 #include <climits>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/base/srgb.h"
 #include "host/scene/scene.h"
@@ -24,13 +23,6 @@ constexpr std::int64_t kMaxTexels = std::int64_t{1} << 26;
 
 [[noreturn]] void fail(const std::string& name, const std::string& what) {
   throw InputError(name + ": " + what);
-}
-
-std::string read_bytes(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.good()) fail(file.string(), "cannot read the texture");
-  return bytes;
 }
 
 const std::array<float, 256>& linear_of_code() {
@@ -94,7 +86,7 @@ Texture::Texture(int width, int height, std::vector<Texel> texels)
 }
 
 Texture Texture::load(const std::filesystem::path& file, Content content) {
-  return decode(read_bytes(file), file.string(), content);
+  return decode(read_file(file), file.string(), content);
 }
 
 Texture Texture::decode(std::string_view bytes, const std::string& file, Content content) {

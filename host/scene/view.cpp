@@ -6,19 +6,14 @@
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"
 #include "host/scene/camera.h"
-#include "host/scene/instances.h"
+#include "host/scene/bounds.h"
 
 namespace raygate {
 namespace {
 
-struct Box : Bounds3 {
-  [[nodiscard]] glm::dvec3 middle() const { return 0.5 * (low + high); }
-  [[nodiscard]] glm::dvec3 half() const { return 0.5 * (high - low); }
-};
-
-Box bounding_box(const Scene& scene) {
+Bounds3 bounding_box(const Scene& scene) {
   if (is_empty(scene)) throw InputError("cannot frame a scene without faces");
-  return {triangle_bounds(scene)};
+  return triangle_bounds(scene);
 }
 
 /// Twice the area of a triangle as a vector along its normal; its corners.
@@ -33,7 +28,7 @@ struct Face {
 };
 
 /// The share of the box's lower end along `axis` that faces lying flat on it cover.
-double standing(const Scene& scene, const Box& box, int axis) {
+double standing(const Scene& scene, const Bounds3& box, int axis) {
   const glm::dvec3 size = box.high - box.low;
   const double end = box.low[axis] + 0.01 * size[axis];
   double area = 0.0;
@@ -63,7 +58,7 @@ struct Axes {
 }  // namespace
 
 View front_view(const Scene& scene, const glm::dvec3& up) {
-  const glm::dvec3 half = bounding_box(scene).half(), upright = glm::abs(Axes(up).up);
+  const glm::dvec3 half = bounding_box(scene).half_size(), upright = glm::abs(Axes(up).up);
   const glm::dvec3 across = half * (1.0 - upright);
   const double flatness =
       1.0 - std::min(1.0, glm::dot(half, upright) / std::max({across.x, across.y, across.z}));
@@ -73,7 +68,7 @@ View front_view(const Scene& scene, const glm::dvec3& up) {
 // The volume that faces enclose is negative where they look inwards. A closed box without one of
 // its walls has -5/6 of its volume, a ball turned inside out -0.52.
 bool is_interior(const Scene& scene) {
-  const Box box = bounding_box(scene);
+  const Bounds3 box = bounding_box(scene);
   const glm::dvec3 size = box.high - box.low, middle = box.middle();
   double volume = 0.0;
   for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
@@ -90,7 +85,7 @@ View default_view(const Scene& scene, const glm::dvec3& up) {
 
 glm::dvec3 guess_up_axis(const Scene& scene) {
   if (scene.up) return *scene.up;
-  const Box box = bounding_box(scene);
+  const Bounds3 box = bounding_box(scene);
   constexpr double kClearly = 0.2;
   const bool is_z = standing(scene, box, 2) > standing(scene, box, 1) + kClearly;
   return is_z ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
@@ -98,8 +93,8 @@ glm::dvec3 guess_up_axis(const Scene& scene) {
 
 CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view,
                           FrameFit filling) {
-  const Box box = bounding_box(scene);
-  const glm::dvec3 centre = box.middle(), half = box.half();
+  const Bounds3 box = bounding_box(scene);
+  const glm::dvec3 centre = box.middle(), half = box.half_size();
   const Axes axes(view.up);
   const SineCosine<double> turned = sine_cosine(view.azimuth / 360.0);
   const SineCosine<double> raised = sine_cosine(view.elevation / 360.0);

@@ -111,7 +111,7 @@ TEST_F(TraceRays, LosesNothing) {
 TEST_F(TraceRays, RefusesWhatItCannotDo) {
   expect_refused({"sheets.obj"}, "expected SCENE and RAYS");
   expect_refused({"sheets.obj", "none.csv"}, "none.csv: cannot read: No such file");
-  expect_refused({"none.obj", "rays.csv"}, "none.obj: cannot be opened");
+  expect_refused({"none.obj", "rays.csv"}, "none.obj: cannot read");
   expect_refused({"sheets.obj", "rays.csv", "-o", "hits.txt"},
                  "--output: expected FILE.csv, FILE.npy or -, got 'hits.txt'");
   expect_refused({"sheets.obj", "rays.csv", "--hits", "nearst"},

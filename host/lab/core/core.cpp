@@ -18,7 +18,7 @@
 #include "host/lab/rays/ray_sets.h"
 #include "host/lab/results.h"
 #include "host/lab/timing.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 #include "sim/rtl_core.h"
 
 namespace raygate::lab {

@@ -7,7 +7,7 @@
 #include "host/bvh/bvh.h"
 #include "host/light/default_lights.h"
 #include "host/scene/camera.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate::lab {
 

@@ -10,7 +10,7 @@
 #include "host/lab/rays/ray_sets.h"
 #include "host/lab/results.h"
 #include "host/lab/timing.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate::lab {
 namespace {

@@ -123,7 +123,7 @@ class Render(unittest.TestCase):
             self.assertEqual(channel.tobytes(), again[name].tobytes(), name)
 
     def test_says_what_is_wrong(self):
-        with self.assertRaisesRegex(raygate.InputError, "none.obj: cannot be opened"):
+        with self.assertRaisesRegex(raygate.InputError, "none.obj: cannot read"):
             raygate.Scene("none.obj")
         scene = raygate.Scene(SCENES / "cornell.obj")
         for wrong in ({"width": 0}, {"height": 2.5}, {"spp": 0}, {"seed": -1}, {"depth": -1},

@@ -9,7 +9,7 @@
 
 #include "host/base/input_error.h"
 #include "host/render/fuzz/draw.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <string_view>
 
@@ -152,16 +153,39 @@ std::size_t GltfFile::count(int accessor) const {
   return at(model_.accessors, accessor, "accessor").count;
 }
 
+/// A type of numbers, and what stands for 1 where they are normalized.
+struct GltfFile::Component {
+  int code;
+  NumberType type;
+  double one;
+};
+
+/// Where an accessor's elements are, all within their buffer.
+struct GltfFile::Elements {
+  const char* first;
+  std::size_t stride, count;
+  const Component* component;
+  int components;
+  bool normalized;
+};
+
 GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
+  static constexpr Component kComponents[] = {
+      {TINYGLTF_COMPONENT_TYPE_BYTE, NumberType::kInt8, 127.0},
+      {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, NumberType::kUint8, 255.0},
+      {TINYGLTF_COMPONENT_TYPE_SHORT, NumberType::kInt16, 32767.0},
+      {TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, NumberType::kUint16, 65535.0},
+      {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, NumberType::kUint32, 4294967295.0},
+      {TINYGLTF_COMPONENT_TYPE_FLOAT, NumberType::kFloat, 1.0}};
   const std::string number = "accessor " + std::to_string(accessor) + " (" + what + "): ";
   const tinygltf::Accessor& a = at(model_.accessors, accessor, "accessor");
   if (a.sparse.isSparse) fail(number + "sparse, which is not read");
   const tinygltf::BufferView& view = at(model_.bufferViews, a.bufferView, "buffer view");
   const tinygltf::Buffer& buffer = at(model_.buffers, view.buffer, "buffer");
-  const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(a.componentType));
+  const auto* const component = std::ranges::find(kComponents, a.componentType, &Component::code);
   const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
-  if (size <= 0 || components <= 0) fail(number + "of an unknown type");
-  const std::size_t element = static_cast<std::size_t>(size) * static_cast<std::size_t>(components);
+  if (component == std::end(kComponents) || components <= 0) fail(number + "of an unknown type");
+  const std::size_t element = bytes_of(component->type) * static_cast<std::size_t>(components);
   const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
   const std::size_t whole = buffer.data.size();
   const bool is_within = view.byteOffset <= whole && view.byteLength <= whole - view.byteOffset &&
@@ -169,12 +193,9 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
                          element <= view.byteLength - a.byteOffset &&
                          a.count - 1 <= (view.byteLength - a.byteOffset - element) / stride;
   if (!is_within) fail(number + "beyond its buffer, which ends too soon");
-  return {buffer.data.data() + view.byteOffset + a.byteOffset,
-          stride,
-          a.count,
-          a.componentType,
-          components,
-          a.normalized};
+  const unsigned char* const first = buffer.data.data() + view.byteOffset + a.byteOffset;
+  return {
+      reinterpret_cast<const char*>(first), stride, a.count, component, components, a.normalized};
 }
 
 std::vector<double> GltfFile::vectors(int accessor, int width, const char* what) const {
@@ -183,65 +204,89 @@ std::vector<double> GltfFile::vectors(int accessor, int width, const char* what)
     fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
   };
   if (from.components < width) fail_here("too few components");
+  if (from.component->type == NumberType::kUint32) {
+    fail_here("numbers of a type that is not expected there");
+  }
+  const auto [ignored, type, one] = *from.component;
   std::vector<double> numbers;
   numbers.reserve(from.count * static_cast<std::size_t>(width));
-  const auto add = [&]<class Number>(Number) {
-    constexpr double kOne = std::is_integral_v<Number> ? std::numeric_limits<Number>::max() : 1.0;
-    for (std::size_t i = 0; i < from.count; ++i) {
-      const char* at = reinterpret_cast<const char*>(from.first + i * from.stride);
-      for (int k = 0; k < width; ++k, at += sizeof(Number)) {
-        double number = static_cast<double>(number_at<Number>(at));
-        if (from.normalized) number = std::max(number / kOne, -1.0);
-        if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
-          fail_here("a number that is not finite");
-        }
-        numbers.push_back(number);
+  for (std::size_t i = 0; i < from.count; ++i) {
+    const char* at = from.first + i * from.stride;
+    for (int k = 0; k < width; ++k, at += bytes_of(type)) {
+      double number = number_at(at, type);
+      if (from.normalized) number = std::max(number / one, -1.0);
+      if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
+        fail_here("a number that is not finite");
       }
+      numbers.push_back(number);
     }
-  };
-  switch (from.component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      add(std::int8_t{});
-      break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      add(std::uint8_t{});
-      break;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      add(std::int16_t{});
-      break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      add(std::uint16_t{});
-      break;
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      add(float{});
-      break;
-    default:
-      fail_here("numbers of a type that is not expected there");
   }
   return numbers;
 }
 
 std::vector<std::uint32_t> GltfFile::indices(int accessor) const {
   const Elements from = elements(accessor, "indices");
+  const NumberType type = from.component->type;
+  if (type != NumberType::kUint8 && type != NumberType::kUint16 && type != NumberType::kUint32) {
+    fail("accessor " + std::to_string(accessor) + " (indices): not of whole numbers");
+  }
   std::vector<std::uint32_t> numbers;
   numbers.reserve(from.count);
   for (std::size_t i = 0; i < from.count; ++i) {
-    const char* const at = reinterpret_cast<const char*>(from.first + i * from.stride);
-    switch (from.component_type) {
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        numbers.push_back(number_at<std::uint8_t>(at));
-        break;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        numbers.push_back(number_at<std::uint16_t>(at));
-        break;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        numbers.push_back(number_at<std::uint32_t>(at));
-        break;
-      default:
-        fail("accessor " + std::to_string(accessor) + " (indices): not of whole numbers");
-    }
+    numbers.push_back(static_cast<std::uint32_t>(number_at(from.first + i * from.stride, type)));
   }
   return numbers;
+}
+
+glm::dmat4 local_matrix(const tinygltf::Node& node) {
+  glm::dmat4 matrix(1.0);
+  if (node.matrix.size() == 16) {
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+    return matrix;
+  }
+  if (const auto& t = node.translation; t.size() == 3) {
+    matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
+  }
+  if (const auto& r = node.rotation; r.size() == 4) {
+    const glm::dquat turn(r[3], r[0], r[1], r[2]);
+    const double length = glm::length(turn);
+    if (length > 0.0) matrix = matrix * glm::mat4_cast(turn / length);
+  }
+  if (const auto& s = node.scale; s.size() == 3) {
+    for (int axis = 0; axis < 3; ++axis) matrix[axis] *= s[static_cast<std::size_t>(axis)];
+  }
+  return matrix;
+}
+
+std::vector<glm::dmat4> GltfFile::instance_transforms(const tinygltf::Node& node) const {
+  const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+  if (extension == node.extensions.end() || !extension->second.Has("attributes")) {
+    return {glm::dmat4(1.0)};
+  }
+  const tinygltf::Value& attributes = extension->second.Get("attributes");
+  std::vector<tinygltf::Node> nodes;
+  const auto read = [&](const char* name, std::size_t width,
+                        std::vector<double>(tinygltf::Node::*to)) {
+    if (!attributes.Has(name) || !attributes.Get(name).IsInt()) return;
+    const std::vector<double> all =
+        vectors(attributes.Get(name).GetNumberAsInt(), static_cast<int>(width), name);
+    const std::size_t count = all.size() / width;
+    if (!nodes.empty() && count != nodes.size()) {
+      fail("instances: not as many of each attribute");
+    }
+    nodes.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* const first = all.data() + width * i;
+      (nodes[i].*to).assign(first, first + width);
+    }
+  };
+  read("TRANSLATION", 3, &tinygltf::Node::translation);
+  read("ROTATION", 4, &tinygltf::Node::rotation);
+  read("SCALE", 3, &tinygltf::Node::scale);
+  std::vector<glm::dmat4> all;
+  all.reserve(nodes.size());
+  for (const tinygltf::Node& one : nodes) all.push_back(local_matrix(one));
+  return all;
 }
 
 }  // namespace raygate

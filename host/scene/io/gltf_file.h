@@ -1,4 +1,4 @@
-// A glTF 2.0 file as tinygltf understands it, and the numbers of its accessors, each checked.
+// A glTF 2.0 file as tinygltf parses it, and the numbers of its accessors, each checked.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -47,14 +47,12 @@ class GltfFile {
   /// How many elements an accessor has.
   [[nodiscard]] std::size_t count(int accessor) const;
 
+  /// Where a node has its mesh, in its own coordinates: once, or as EXT_mesh_gpu_instancing says.
+  [[nodiscard]] std::vector<glm::dmat4> instance_transforms(const tinygltf::Node& node) const;
+
  private:
-  /// Where an accessor's elements are, all within their buffer.
-  struct Elements {
-    const unsigned char* first;
-    std::size_t stride, count;
-    int component_type, components;
-    bool normalized;
-  };
+  struct Component;
+  struct Elements;
   [[nodiscard]] Elements elements(int accessor, const char* what) const;
   [[noreturn]] void fail_index(const char* what, int index, std::size_t count) const;
 
@@ -63,5 +61,8 @@ class GltfFile {
   std::size_t bytes_ = 0;
   tinygltf::Model model_;
 };
+
+/// From a node's coordinates to its parent's.
+[[nodiscard]] glm::dmat4 local_matrix(const tinygltf::Node& node);
 
 }  // namespace raygate

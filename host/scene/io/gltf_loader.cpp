@@ -1,37 +1,25 @@
-#include "host/scene/io/gltf_loader.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/gltf_camera.h"
+#include "host/scene/bounds.h"
+#include "host/scene/instances.h"
 #include "host/scene/io/gltf_file.h"
-#include "host/scene/io/gltf_lights.h"
 #include "host/scene/io/gltf_meshes.h"
-#include "host/scene/io/gltf_places.h"
-#include "host/scene/io/instance_settings.h"
 #include "host/scene/io/mesh_builder.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate {
 namespace {
 
-/// A mesh that stands in several places.
-struct SharedMesh {
-  Scene part;                      // until it is the scene's
-  Bounds3 box;                     // around its positions
-  std::optional<PlacedMesh> mesh;  // then
-};
-
-/// One of these places.
-struct Place {
-  int mesh;
-  glm::dmat4 world;
-  std::uint32_t object;
-};
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kLumensPerWatt = 683.0;
+constexpr double kMostFloat = std::numeric_limits<float>::max();
 
 bool is_finite(const glm::dmat4& m) {
   for (int column = 0; column < 4; ++column) {
@@ -42,36 +30,58 @@ bool is_finite(const glm::dmat4& m) {
   return true;
 }
 
+/// A mesh that stands in several places.
+struct SharedMesh {
+  Scene part;                              // until it is the scene's
+  Bounds3 box;                             // of its positions
+  std::optional<MeshInstancer> instancer;  // then
+};
+
+/// One of these places.
+struct MeshInstance {
+  int mesh;
+  glm::dmat4 world;
+  std::uint32_t object;
+};
+
+/// A point or spot light, where its node puts it in the world.
+struct PlacedLight {
+  glm::dvec3 position;
+  glm::dvec3 intensity;
+  std::optional<SpotCone> spot;
+};
+
 class GltfReader {
  public:
   GltfReader(const std::filesystem::path& path, const LoadOptions& options)
       : file_(path),
         options_(options),
-        own_{MeshBuilder(file_.name())},
-        meshes_(file_, scene_, options.textures),
-        lights_(file_, scene_) {}
+        builder_(file_.name()),
+        meshes_(file_, scene_, options.textures) {}
 
   Scene read() {
     walk(roots());
     for (const auto& [node, world] : nodes_) count_uses(*node);
     for (const auto& [node, world] : nodes_) read_node(*node, world);
-    for (const Place& place : places_) expand_extent(place);
-    if (!places_.empty()) own_.builder.allow_empty();
-    own_.builder.build(options_, scene_);
-    for (const Place& place : places_) add_instance(place);
+    for (const MeshInstance& instance : instances_) expand_extent(instance);
+    if (!instances_.empty()) builder_.allow_empty();
+    builder_.build(options_, scene_);
+    for (const MeshInstance& instance : instances_) add_instance(instance);
     if (is_empty(scene_)) throw InputError(file_.name() + ": no face has an area");
-    lights_.place();
-    aim_camera(scene_);
+    place_lights();
+    aim_camera();
     if (!options_.keep_instances) resolve_instances(scene_, InstanceMode::kFlatten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
     if (!file_.model().animations.empty() || !file_.model().skins.empty()) {
-      file_.warn_once("animations and skins are not read", scene_.warnings);
+      warn_once("animations and skins are not read");
     }
     return std::move(scene_);
   }
 
  private:
+  void warn_once(const std::string& what) { file_.warn_once(what, scene_.warnings); }
+
   [[nodiscard]] std::vector<int> roots() const {
     const tinygltf::Model& model = file_.model();
     if (!model.scenes.empty()) {
@@ -91,6 +101,7 @@ class GltfReader {
     return found;
   }
 
+  /// Collects the nodes depth first, with their transforms to the world.
   void walk(const std::vector<int>& roots) {
     struct Step {
       int node;
@@ -120,87 +131,163 @@ class GltfReader {
     }
   }
 
-  void read_node(const tinygltf::Node& node, const glm::dmat4& world) {
-    if (node.mesh >= 0) {
-      const tinygltf::Mesh& mesh = file_.at(file_.model().meshes, node.mesh, "mesh");
-      const auto object = static_cast<std::uint32_t>(scene_.objects.size());
-      scene_.objects.push_back(!node.name.empty()   ? node.name
-                               : !mesh.name.empty() ? mesh.name
-                                                    : "object " + std::to_string(object));
-      if (uses_[node.mesh] > 1) {
-        for (const glm::dmat4& own : places_in(file_, node)) {
-          places_.push_back({node.mesh, world * own, object});
-        }
-      } else {
-        meshes_.read(mesh, world, object, own_);
-      }
-    }
-    if (node.camera >= 0) {
-      read_camera(file_, file_.at(file_.model().cameras, node.camera, "camera"), world, scene_);
-    }
-    const auto light = node.extensions.find("KHR_lights_punctual");
-    if (light != node.extensions.end() && light->second.Has("light") &&
-        light->second.Get("light").IsInt()) {
-      lights_.add(
-          file_.at(file_.model().lights, light->second.Get("light").GetNumberAsInt(), "light"),
-          world);
-    }
-  }
-
   void count_uses(const tinygltf::Node& node) {
     if (node.mesh < 0) return;
     const bool many = node.extensions.contains("EXT_mesh_gpu_instancing");
     uses_[node.mesh] += many ? 2 : 1;
   }
 
-  /// The mesh of a place, read when it is first asked for: in its own coordinates.
+  void read_node(const tinygltf::Node& node, const glm::dmat4& world) {
+    const tinygltf::Model& model = file_.model();
+    if (node.mesh >= 0) {
+      const tinygltf::Mesh& mesh = file_.at(model.meshes, node.mesh, "mesh");
+      const auto object = static_cast<std::uint32_t>(scene_.objects.size());
+      scene_.objects.push_back(!node.name.empty()   ? node.name
+                               : !mesh.name.empty() ? mesh.name
+                                                    : "object " + std::to_string(object));
+      if (uses_[node.mesh] > 1) {
+        for (const glm::dmat4& own : file_.instance_transforms(node)) {
+          instances_.push_back({node.mesh, world * own, object});
+        }
+      } else {
+        meshes_.read(mesh, world, object, builder_);
+      }
+    }
+    if (node.camera >= 0) read_camera(file_.at(model.cameras, node.camera, "camera"), world);
+    const auto light = node.extensions.find("KHR_lights_punctual");
+    if (light != node.extensions.end() && light->second.Has("light") &&
+        light->second.Get("light").IsInt()) {
+      read_light(file_.at(model.lights, light->second.Get("light").GetNumberAsInt(), "light"),
+                 world);
+    }
+  }
+
+  /// The mesh of an instance, read when it is first asked for: in its own coordinates.
   SharedMesh& shared(int number) {
     const auto [at, is_new] = shared_.try_emplace(number);
     if (!is_new) return at->second;
-    GltfGeometry geometry{MeshBuilder(file_.name())};
-    geometry.builder.allow_empty();
+    MeshBuilder builder(file_.name());
+    builder.allow_empty();
     meshes_.read(file_.model().meshes[static_cast<std::size_t>(number)], glm::dmat4(1.0), 0,
-                 geometry);
+                 builder);
     Scene& part = at->second.part;
-    geometry.builder.build(options_, part);
-    if (!part.triangles.empty()) at->second.box = bounds_of(part.positions);
+    builder.build(options_, part);
+    at->second.box = bounds_of(part.positions);
     return at->second;
   }
 
-  /// The whole scene is recentred. And what will be written out is counted.
-  void expand_extent(const Place& place) {
-    const auto& [part, own_box, ignored] = shared(place.mesh);
+  /// The whole scene is recentred. And what will be flattened is counted.
+  void expand_extent(const MeshInstance& instance) {
+    const auto& [part, own_box, ignored] = shared(instance.mesh);
     if (part.triangles.empty()) return;
     if (!options_.keep_instances) meshes_.count(part.positions.size() + 3 * part.triangles.size());
-    const Bounds3 box = transform_bounds(rows_of(place.world), part.origin, own_box);
-    constexpr double kMost = std::numeric_limits<float>::max();
-    if (!(largest(box.low) <= kMost && largest(box.high) <= kMost)) {
+    const Bounds3 box = transform_bounds(instance.world, part.origin, own_box);
+    if (!(largest(box.low) <= kMostFloat && largest(box.high) <= kMostFloat)) {
       file_.fail("a vertex is beyond the range of float");
     }
-    own_.builder.expand_extent(box);
+    builder_.expand_extent(box);
   }
 
-  void add_instance(const Place& place) {
-    SharedMesh& shared_mesh = shared(place.mesh);
-    if (!shared_mesh.mesh) {
-      if (shared_mesh.part.triangles.empty()) return;
-      shared_mesh.mesh.emplace(scene_, std::move(shared_mesh.part));
+  void add_instance(const MeshInstance& instance) {
+    SharedMesh& mesh = shared(instance.mesh);
+    if (!mesh.instancer) {
+      if (mesh.part.triangles.empty()) return;
+      mesh.instancer.emplace(scene_, std::move(mesh.part));
     }
-    if (!shared_mesh.mesh->add(rows_of(place.world), place.object)) {
+    if (!mesh.instancer->add(instance.world, instance.object)) {
       file_.fail("an instance is beyond the range of float");
+    }
+  }
+
+  /// Gives a scene that has none yet this camera, with a target ahead.
+  void read_camera(const tinygltf::Camera& camera, const glm::dmat4& world) {
+    const bool is_orthographic = camera.type == "orthographic";
+    // An orthographic picture is as large as a perspective one has it at the target.
+    const double fov = is_orthographic ? 90.0 : camera.perspective.yfov * kDegrees;
+    const double distance = is_orthographic ? camera.orthographic.ymag : 1.0;
+    if (!(fov > 0.0 && fov < 180.0)) {
+      file_.fail("a camera's yfov: expected more than 0 and less than pi");
+    }
+    if (!(distance > 0.0 && distance <= kMostFloat)) {
+      file_.fail("a camera's ymag: expected a positive number within the range of float");
+    }
+    if (scene_.camera) return warn_once("of several cameras the first one is taken");
+    const glm::dvec3 eye(world[3]), back(world[2]), up(world[1]);
+    if (glm::length(back) == 0.0 || glm::length(glm::cross(back, up)) == 0.0) {
+      return warn_once("a camera without a direction is left out");
+    }
+    scene_.camera = {eye, eye - distance * glm::normalize(back), up, fov};
+    if (is_orthographic) scene_.camera->lens.projection = Projection::kOrthographic;
+  }
+
+  /// Moves the camera's target along the view to the middle of the scene, which is whole by now;
+  /// the picture stays as large.
+  void aim_camera() {
+    if (!scene_.camera) return;
+    CameraSetting& camera = *scene_.camera;
+    glm::dvec3 forward = camera.target - camera.eye;
+    double fov = *camera.fov;
+    const bool is_orthographic = camera.lens.projection == Projection::kOrthographic;
+    const double size = glm::length(forward);
+    if (is_orthographic) forward /= size;
+    const glm::dvec3 middle = position_bounds(scene_).middle();
+    const double depth = glm::dot(middle + scene_.origin - camera.eye, forward);
+    if (is_orthographic) fov = 2.0 * std::atan(size / depth) * kDegrees;
+    if (!(depth > 0.0 && fov > 0.0 && fov < 180.0)) return;
+    camera.target = camera.eye + depth * forward;
+    camera.fov = fov;
+  }
+
+  void read_light(const tinygltf::Light& light, const glm::dmat4& world) {
+    glm::dvec3 intensity(light.intensity / kLumensPerWatt);
+    for (int k = 0; k < 3; ++k) {
+      if (light.color.size() == 3) intensity[k] *= light.color[static_cast<std::size_t>(k)];
+      if (!(intensity[k] >= 0.0 && intensity[k] <= kMostFloat)) {
+        file_.fail("a light's intensity: expected no negative number within the range of float");
+      }
+    }
+    const double length = glm::length(glm::dvec3(world[2]));
+    const bool is_directional = light.type == "directional", is_spot = light.type == "spot";
+    if ((is_directional || is_spot) && !(length > 0.0 && std::isfinite(length))) {
+      return warn_once("a light without a direction is left out");
+    }
+    const glm::dvec3 direction = -glm::dvec3(world[2]) / length;
+    if (is_directional) {
+      scene_.directional_lights.push_back({direction, glm::vec3(intensity)});
+      return;
+    }
+    PlacedLight& placed = lights_.emplace_back(PlacedLight{glm::dvec3(world[3]), intensity, {}});
+    if (!is_spot) return;
+    const double inner = light.spot.innerConeAngle * kDegrees,
+                 outer = light.spot.outerConeAngle * kDegrees;
+    // 90 degrees are pi / 2 but for rounding.
+    if (!(inner >= 0.0 && inner < outer && outer <= 90.0 + 1e-9)) {
+      file_.fail("a spot light's angles: expected 0 <= inner < outer <= pi / 2");
+    }
+    placed.spot = SpotCone{direction, inner, std::min(outer, 90.0)};
+  }
+
+  /// Gives the scene its point lights, when its origin is known.
+  void place_lights() {
+    for (const PlacedLight& light : lights_) {
+      const glm::vec3 rounded(light.position - scene_.origin);
+      if (!std::isfinite(rounded.x + rounded.y + rounded.z)) {
+        file_.fail("a light is beyond the range of float");
+      }
+      scene_.lights.push_back({rounded, light.intensity, light.spot});
     }
   }
 
   const GltfFile file_;
   const LoadOptions& options_;
   Scene scene_;
-  GltfGeometry own_;  // of meshes that stand in one place
+  MeshBuilder builder_;  // of meshes that stand in one place
   GltfMeshes meshes_;
-  GltfLights lights_;
   std::vector<std::pair<const tinygltf::Node*, glm::dmat4>> nodes_;  // in their order
   std::map<int, int> uses_;                                          // of meshes, by number
   std::map<int, SharedMesh> shared_;
-  std::vector<Place> places_;
+  std::vector<MeshInstance> instances_;
+  std::vector<PlacedLight> lights_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ constexpr std::size_t kMostVertices = 12'000'000;  // besides one for each byte
 }  // namespace
 
 void GltfMeshes::read(const tinygltf::Mesh& mesh, const glm::dmat4& world, std::uint32_t object,
-                      GltfGeometry& to) {
+                      MeshBuilder& to) {
   for (const tinygltf::Primitive& primitive : mesh.primitives) read(primitive, world, object, to);
 }
 
@@ -47,7 +47,7 @@ std::vector<std::uint32_t> GltfMeshes::corners_of(const tinygltf::Primitive& pri
 }
 
 void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& world,
-                      std::uint32_t object, GltfGeometry& to) {
+                      std::uint32_t object, MeshBuilder& to) {
   if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
     return file_.warn_once("points and lines are ignored: only polygons are rendered",
                            scene_.warnings);
@@ -69,8 +69,7 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
   if (corners.size() % 3 != 0)
     file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
 
-  const std::int32_t first_position = to.positions, first_normal = to.normals,
-                     first_texcoord = to.texcoords;
+  const MeshBuilder::Counts before = to.counts();
   const double sign = glm::determinant(glm::dmat3(world)) < 0.0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < vertices; ++i) {
     const glm::dvec3 at(
@@ -79,13 +78,12 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
           std::numeric_limits<float>::max())) {
       file_.fail("a vertex is beyond the range of float");
     }
-    to.builder.add_position(at);
+    to.add_position(at);
   }
-  to.positions += static_cast<std::int32_t>(vertices);
   if (normal >= 0) add_normals(normal, glm::dmat3(world), sign, vertices, to);
   if (texcoord >= 0) add_texcoords(texcoord, vertices, to);
 
-  const std::size_t first_face = to.builder.face_count();
+  const std::size_t first_face = to.face_count();
   for (std::size_t i = 0; i < corners.size(); i += 3) {
     std::array<FileCorner, 3> face;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -94,18 +92,19 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
         file_.fail("index " + std::to_string(vertex) + " in a primitive of " +
                    std::to_string(vertices) + " vertices");
       }
-      const auto number = static_cast<std::int32_t>(vertex) + 1;
-      face[k] = {first_position + number, texcoord >= 0 ? first_texcoord + number : 0,
-                 normal >= 0 ? first_normal + number : 0};
+      const auto number = [&](std::size_t earlier) {
+        return static_cast<std::int32_t>(earlier + vertex + 1);
+      };
+      face[k] = {number(before.positions), texcoord >= 0 ? number(before.texcoords) : 0,
+                 normal >= 0 ? number(before.normals) : 0};
     }
-    to.builder.add_face(face, 0);
+    to.add_face(face, 0);
   }
-  to.builder.assign_faces(first_face, to.builder.face_count(),
-                          materials_.number_of(primitive.material), object);
+  to.assign_faces(first_face, to.face_count(), materials_.number_of(primitive.material), object);
 }
 
 void GltfMeshes::add_normals(int accessor, const glm::dmat3& world, double sign,
-                             std::size_t vertices, GltfGeometry& to) const {
+                             std::size_t vertices, MeshBuilder& to) const {
   const std::vector<double> normals = file_.vectors(accessor, 3, "NORMAL");
   if (normals.size() != 3 * vertices) file_.fail("not as many normals as positions");
   // The inverse transpose but for a factor, which a flat matrix has, too.
@@ -116,20 +115,18 @@ void GltfMeshes::add_normals(int accessor, const glm::dmat3& world, double sign,
         cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
     const bool is_finite =
         std::isfinite(turned.x) && std::isfinite(turned.y) && std::isfinite(turned.z);
-    to.builder.add_normal(is_finite ? sign * turned : glm::dvec3(0.0));
+    to.add_normal(is_finite ? sign * turned : glm::dvec3(0.0));
   }
-  to.normals += static_cast<std::int32_t>(vertices);
 }
 
-void GltfMeshes::add_texcoords(int accessor, std::size_t vertices, GltfGeometry& to) const {
+void GltfMeshes::add_texcoords(int accessor, std::size_t vertices, MeshBuilder& to) const {
   const std::vector<double> texcoords = file_.vectors(accessor, 2, "TEXCOORD");
   if (texcoords.size() != 2 * vertices) {
     file_.fail("not as many texture coordinates as positions");
   }
   for (std::size_t i = 0; i < vertices; ++i) {
-    to.builder.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
+    to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
   }
-  to.texcoords += static_cast<std::int32_t>(vertices);
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// The meshes of a glTF file as vertices and faces.
+// The meshes of a glTF file as vertices and faces of a MeshBuilder.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,6 @@
 
 namespace raygate {
 
-/// What becomes of the vertices and faces of meshes, and how many it has so far.
-struct GltfGeometry {
-  MeshBuilder builder;
-  std::int32_t positions = 0, normals = 0, texcoords = 0;
-};
-
 /// Reads meshes, with their materials, and counts what they have of vertices and corners.
 class GltfMeshes {
  public:
@@ -29,7 +23,7 @@ class GltfMeshes {
   /// Appends a mesh as `world` places it, faces of an object. Warns and leaves out points, lines
   /// and what has no positions. Throws InputError: what is no geometry, or too much of it.
   void read(const tinygltf::Mesh& mesh, const glm::dmat4& world, std::uint32_t object,
-            GltfGeometry& to);
+            MeshBuilder& to);
 
   /// Counts vertices and corners, so that what is written out does not fill the memory. Throws
   /// InputError where there are too many for a file of this size.
@@ -37,13 +31,13 @@ class GltfMeshes {
 
  private:
   void read(const tinygltf::Primitive& primitive, const glm::dmat4& world, std::uint32_t object,
-            GltfGeometry& to);
+            MeshBuilder& to);
   /// The triangles' corners, as numbers of the primitive's vertices.
   [[nodiscard]] std::vector<std::uint32_t> corners_of(const tinygltf::Primitive& primitive,
                                                       std::size_t vertices);
   void add_normals(int accessor, const glm::dmat3& world, double sign, std::size_t vertices,
-                   GltfGeometry& to) const;
-  void add_texcoords(int accessor, std::size_t vertices, GltfGeometry& to) const;
+                   MeshBuilder& to) const;
+  void add_texcoords(int accessor, std::size_t vertices, MeshBuilder& to) const;
 
   const GltfFile& file_;
   Scene& scene_;

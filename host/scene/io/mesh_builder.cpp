@@ -127,16 +127,14 @@ void MeshBuilder::check_indices() const {
 void MeshBuilder::place_positions(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const Corner& corner : corners_) new_index[corner.position] = 0;
-  const auto first = corners_.empty() ? glm::dvec3(0.0) : positions_[corners_[0].position];
-  auto [low, high] = others_.value_or(Bounds3{first, first});
+  Bounds3 box = others_;
   std::uint32_t used = 0;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     if (new_index[i] == kNoIndex) continue;
     new_index[i] = used++;
-    low = glm::min(low, positions_[i]);
-    high = glm::max(high, positions_[i]);
+    box.expand(positions_[i]);
   }
-  scene.origin = origin_for_box(low, high);
+  scene.origin = box.is_empty() ? glm::dvec3(0.0) : origin_for_box(box.low, box.high);
   scene.positions.resize(used);
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     if (new_index[i] != kNoIndex) {
@@ -206,12 +204,6 @@ std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Sc
   touching.report(file_name_, "polygon crosses or touches itself, cut as well as can be", scene);
   no_direction.report(file_name_, "normal of length 0, the face is taken as flat", scene);
   return groups;
-}
-
-void MeshBuilder::expand_extent(const Bounds3& box) {
-  if (!others_) others_ = box;
-  others_->low = glm::min(others_->low, box.low);
-  others_->high = glm::max(others_->high, box.high);
 }
 
 void MeshBuilder::build(const LoadOptions& options, Scene& scene) {

@@ -4,13 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "host/scene/instances.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/bounds.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -50,13 +49,19 @@ class MeshBuilder {
       return *this;
     }
   };
+  [[nodiscard]] Counts counts() const {
+    return {positions_.size(), texcoords_.size(), normals_.size()};
+  }
   /// Where the file's earlier parts, which have so many, go to other builders: before all else.
   void begin_after(const Counts& earlier) { earlier_ = earlier; }
   /// Adds what the file's next part gave, whose builder began after this one's counts.
   void append(MeshBuilder&& part);
 
   /// What else the scene is to be recentred with.
-  void expand_extent(const Bounds3& box);
+  void expand_extent(const Bounds3& box) {
+    others_.expand(box.low);
+    others_.expand(box.high);
+  }
   /// No face with an area is no error.
   void allow_empty() { may_be_nothing_ = true; }
 
@@ -84,7 +89,7 @@ class MeshBuilder {
                                                      Scene& scene) const;
 
   std::string file_name_;
-  std::optional<Bounds3> others_;
+  Bounds3 others_;
   bool may_be_nothing_ = false;
   Counts earlier_;
   std::vector<glm::dvec3> positions_;

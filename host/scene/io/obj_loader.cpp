@@ -1,10 +1,9 @@
-#include "host/scene/io/obj_loader.h"
-
 #include <vector>
 
 #include "host/scene/io/load_textures.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/obj_reader.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/tokens.h"
 
 namespace raygate {

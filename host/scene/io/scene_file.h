@@ -9,11 +9,39 @@
 #include <vector>
 
 #include "host/scene/camera.h"
-#include "host/scene/io/instance_settings.h"
-#include "host/scene/io/light_settings.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
+
+/// A parallelogram that emits to both sides: corner, corner + edges[0], ...
+struct AreaLightSetting {
+  glm::dvec3 corner{0.0};
+  glm::dvec3 edges[2]{};     ///< not parallel
+  glm::vec3 radiance{0.0f};  ///< scene-linear RGB, none negative
+};
+
+struct PointLightSetting {
+  glm::dvec3 position{0.0};
+  glm::vec3 intensity{0.0f};  ///< radiant intensity, scene-linear RGB, none negative
+  std::optional<SpotCone> spot = {};
+};
+
+/// Lights in world coordinates.
+struct LightSettings {
+  std::vector<PointLightSetting> points;
+  std::vector<AreaLightSetting> areas;
+  std::vector<DirectionalLight> directions;
+  std::optional<EnvironmentSetting> environment;
+  std::optional<glm::vec3> background;  ///< radiance, scene-linear RGB, none negative
+};
+
+/// A model, and where it stands.
+struct InstanceSetting {
+  std::filesystem::path model;
+  std::vector<glm::dmat4> transforms;  ///< from the model's coordinates to the world's
+  std::size_t line = 0;
+};
 
 /// A command-line option that the file sets, unless the command line does.
 struct OptionSetting {
@@ -40,10 +68,14 @@ struct SceneFile {
 /// read or is not JSON, unknown keys, values of a wrong type or out of range.
 [[nodiscard]] SceneFile read_scene_file(const std::filesystem::path& file);
 
-/// Loads the scene that the file is about, with its instances, and without its lights.
+/// Loads the scene that the file is about, without the file's lights, and adds instances of its
+/// models: an object for each of a model's in each place; lights and cameras of models are left
+/// out. Throws InputError as load_scene does, and where an instance is beyond the range of float.
 [[nodiscard]] Scene load_scene(const SceneFile& file, const LoadOptions& options = {});
 
-/// Adds the file's lights to its scene.
+/// Adds the file's lights to its scene; area lights as two triangles each of an object and a
+/// material of their own, "light 1" and on. Throws InputError if a light is too far away or too
+/// small for float. The environment is left for load_environment.
 void add_lights(const SceneFile& file, Scene& scene);
 
 }  // namespace raygate

@@ -3,9 +3,6 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/gltf_loader.h"
-#include "host/scene/io/ply_loader.h"
-#include "host/scene/io/stl_loader.h"
 
 namespace raygate {
 namespace {

@@ -1,5 +1,3 @@
-#include "host/scene/io/stl_loader.h"
-
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/scene/io/mesh_builder.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/token_reader.h"
 #include "host/scene/io/tokens.h"
 

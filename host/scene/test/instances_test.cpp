@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "host/scene/bounds.h"
 #include "host/scene/test/instanced_scene.h"
 
 namespace raygate {

@@ -10,7 +10,7 @@
 #include "host/base/input_error.h"
 #include "host/base/srgb.h"
 #include "host/base/test/temp_folder.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/scene.h"
 #include "host/scene/test/tga.h"
 
@@ -101,7 +101,7 @@ TEST_F(TextureFile, TexelsAreThoseOfTheFile) {
 
 TEST_F(TextureFile, WhatIsNoPictureIsRefused) {
   EXPECT_TRUE(error_of("text").starts_with("t.png: not a PNG, JPEG, TGA or BMP picture"));
-  EXPECT_TRUE(error_of("").starts_with("t.png: not a PNG, JPEG, TGA or BMP picture"));
+  EXPECT_EQ(error_of(""), "t.png: the file is empty");
   EXPECT_TRUE(error_of("\x89PNG\r\n\x1a\n").starts_with("t.png: not a PNG, JPEG, TGA or BMP"));
 }
 

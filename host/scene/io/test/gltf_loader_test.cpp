@@ -1,5 +1,3 @@
-#include "host/scene/io/gltf_loader.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +5,9 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
+#include "host/scene/bounds.h"
 #include "host/scene/instances.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/binary.h"
 
 namespace raygate {

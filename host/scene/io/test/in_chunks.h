@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate::test {
 

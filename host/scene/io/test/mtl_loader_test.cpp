@@ -4,7 +4,7 @@
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/material_library.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/test/tga.h"
 
 namespace raygate {

@@ -1,12 +1,11 @@
 // Every valid file loads right: each odd kind of OBJ, to the last bit.
-#include "host/scene/io/obj_loader.h"
-
 #include <gtest/gtest.h>
 
 #include <clocale>
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/in_chunks.h"
 
 namespace raygate {

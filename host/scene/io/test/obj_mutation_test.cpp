@@ -4,7 +4,7 @@
 #include "host/base/input_error.h"
 #include "host/base/test/damage.h"
 #include "host/base/test/temp_folder.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/in_chunks.h"
 #include "host/scene/io/test/sound.h"
 #include "host/scene/test/tga.h"

@@ -6,7 +6,7 @@
 #include "host/base/input_error.h"
 #include "host/base/test/damage.h"
 #include "host/base/test/temp_folder.h"
-#include "host/scene/io/obj_loader.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate {
 namespace {
@@ -126,7 +126,7 @@ TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
   EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0, 0],\n\"target\": [0, 0, 0]}}"),
             "s.json:2: camera.eye: an array of 2, expected [x, y, z]");
   EXPECT_EQ(error("{\"camera\": {\n\"eye\": [0,\n0,\n\"up\"],\n\"target\": [0, 0, 0]}}"),
-            "s.json:4: camera.eye: 'up', expected a number within the range of float");
+            "s.json:4: camera.eye[2]: 'up', expected a number within the range of float");
   EXPECT_EQ(
       error(R"({"background": "blue"})"),
       "s.json:1: background: 'blue', expected [red, green, blue] or one number for all three");
@@ -162,7 +162,7 @@ TEST_F(ReadSceneFile, ValuesOutOfRange) {
   EXPECT_EQ(error(R"({"background": -1})"),
             "s.json:1: background: -1, expected no negative number");
   EXPECT_EQ(error(R"({"background": [0, 1e39, 0]})"),
-            "s.json:1: background: 1e39, expected a number within the range of float");
+            "s.json:1: background[1]: 1e39, expected a number within the range of float");
   EXPECT_EQ(error(R"({"area_lights": [{"corner": [0, 0, 0], "edges": [[1, 0, 0], [2, 0, 0]],
                       "radiance": 1}]})"),
             "s.json:1: area_lights[0].edges: an array of 2, expected two that are not parallel");

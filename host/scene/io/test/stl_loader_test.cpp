@@ -1,11 +1,10 @@
-#include "host/scene/io/stl_loader.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/binary.h"
 
 namespace raygate {

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "host/scene/camera.h"
-#include "host/scene/io/obj_loader.h"
 #include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate {
 namespace {

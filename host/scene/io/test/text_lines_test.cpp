@@ -70,7 +70,7 @@ TEST(TextLines, RefuseWhatIsNoText) {
   EXPECT_EQ(error_of(folder.write("empty", "")), path + "/empty: the file is empty");
   EXPECT_EQ(error_of(folder.path()), path + ": is a folder, expected a file");
   EXPECT_EQ(error_of(folder.path() / "none"),
-            path + "/none: cannot be opened: No such file or directory");
+            path + "/none: cannot read: No such file or directory");
   EXPECT_EQ(error_of("/dev/zero"), "/dev/zero: is a device, expected a file");
   EXPECT_EQ(error_of(folder.write("nul", std::string_view("v\nv\n\0\nv", 7))),
             path + "/nul:3: a byte of value 0: not a text file");

@@ -1,4 +1,4 @@
-#include "host/scene/camera_path.h"
+#include "host/scene/camera_setting.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,0 +1,76 @@
+// Bounding boxes of a scene, its instances included, and visits to all that lies in it.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <limits>
+#include <span>
+
+#include "host/exact/exact.h"
+#include "host/scene/instances.h"
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// An axis-aligned box; empty until it is expanded.
+struct Bounds3 {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+  void expand(const glm::dvec3& position) {
+    low = glm::min(low, position);
+    high = glm::max(high, position);
+  }
+  [[nodiscard]] bool is_empty() const { return low.x > high.x; }
+  [[nodiscard]] glm::dvec3 middle() const { return 0.5 * (low + high); }
+  [[nodiscard]] glm::dvec3 half_size() const { return 0.5 * (high - low); }
+};
+
+[[nodiscard]] Bounds3 bounds_of(std::span<const glm::vec3> positions);
+
+/// Bounds of what is in `box`, as an instance transforms it (and no tighter).
+[[nodiscard]] Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box);
+/// The same in the world, for a box of coordinates relative to `origin`.
+[[nodiscard]] Bounds3 transform_bounds(const glm::dmat4& world, const glm::dvec3& origin,
+                                       const Bounds3& box);
+
+/// Bounds of the corners of all triangles.
+[[nodiscard]] Bounds3 triangle_bounds(const Scene& scene);
+/// Bounds of all positions, those of no triangle included.
+[[nodiscard]] Bounds3 position_bounds(const Scene& scene);
+
+/// Neither triangles nor instances.
+[[nodiscard]] inline bool is_empty(const Scene& scene) {
+  return scene.triangles.empty() && scene.instances.empty();
+}
+
+/// Calls visit(position) for all positions of the scene and of its instances.
+template <class Visit>
+void for_each_position(const Scene& scene, const Visit& visit) {
+  for (const glm::vec3& position : scene.positions) visit(position);
+  for (const Instance& instance : scene.instances) {
+    for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
+      visit(transform_point(instance.rows, position));
+    }
+  }
+}
+
+/// Calls visit(corners, face) for all triangles of the scene in the order of their numbers.
+template <class Visit>
+void for_each_face(const Scene& scene, const Visit& visit) {
+  Corners corners;
+  for (const Triangle& face : scene.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = scene.positions[face.vertices[k]];
+    visit(corners, face);
+  }
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (const Triangle& face : mesh.triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = transform_point(instance.rows, mesh.positions[face.vertices[k]]);
+      }
+      visit(corners, face);
+    }
+  }
+}
+
+}  // namespace raygate
