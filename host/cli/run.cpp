@@ -27,7 +27,7 @@
 #include "host/ranks/job_queue.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
-#include "host/scene/ground.h"
+#include "host/scene/view.h"
 #include "host/scene/instances.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"

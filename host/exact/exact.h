@@ -34,6 +34,14 @@ template <class T>
 /// nothing.
 [[nodiscard]] bool is_usable(const glm::vec3& direction);
 
+/// Of length 1, also where the square of a component would overflow or underflow; `v` is not 0.
+[[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
+
+template <class T>
+[[nodiscard]] bool is_finite(const glm::vec<3, T>& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
 /// Whether the largest component's magnitude is in [1, 2): how intersectors, trees and units want
 /// directions. Multiplying one by a power of two changes no rounding and no hit.
 [[nodiscard]] bool is_scaled(const glm::vec3& direction);

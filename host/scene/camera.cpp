@@ -17,13 +17,6 @@ double half_tangent(double degrees) {
   return half.sine / half.cosine;
 }
 
-bool is_finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// Length 1, also where the square of a component would overflow or underflow.
-glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
-
 std::string text(const glm::dvec3& v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
 }
@@ -79,7 +72,7 @@ Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const gl
   camera.right_ = glm::normalize(sideways);
   camera.up_ = glm::cross(camera.right_, camera.forward_);
   camera.eye_ = glm::vec3(eye);
-  if (!is_finite(glm::dvec3(camera.eye_))) {
+  if (!is_finite(camera.eye_)) {
     throw InputError("camera: eye " + text(eye) + " is beyond the range of float");
   }
   camera.vertical_fov_degrees_ = vertical_fov_degrees;

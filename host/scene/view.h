@@ -1,4 +1,4 @@
-// The whole of a scene from one side: the camera where nobody gives one.
+// The view of a whole scene, and the ground below it, for a picture that names no camera.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -46,5 +46,10 @@ enum class FrameFit {
 /// float.
 [[nodiscard]] CameraSetting frame_scene(const Scene& scene, double aspect, double fov,
                                         const View& view, FrameFit filling = FrameFit::kVertices);
+
+/// Adds a square of two triangles under the scene, a hair below its lowest point and 32 times its
+/// size, of an object and a material of its own, "ground": it catches shadows (illum 10) and is
+/// else not to be seen. `up` is not zero. A scene too large for that is left as it is.
+void add_ground(Scene& scene, const glm::dvec3& up);
 
 }  // namespace raygate

@@ -21,7 +21,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kLumensPerWatt = 683.0;
 constexpr double kMostFloat = std::numeric_limits<float>::max();
 
-bool is_finite(const glm::dmat4& m) {
+bool has_finite_elements(const glm::dmat4& m) {
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) {
       if (!std::isfinite(m[column][row])) return false;
@@ -123,7 +123,7 @@ class GltfReader {
       }
       seen[static_cast<std::size_t>(step.node)] = true;
       const glm::dmat4 world = step.parent * local_matrix(node);
-      if (!is_finite(world)) {
+      if (!has_finite_elements(world)) {
         file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
       }
       nodes_.emplace_back(&node, world);
@@ -271,7 +271,7 @@ class GltfReader {
   void place_lights() {
     for (const PlacedLight& light : lights_) {
       const glm::vec3 rounded(light.position - scene_.origin);
-      if (!std::isfinite(rounded.x + rounded.y + rounded.z)) {
+      if (!is_finite(rounded)) {
         file_.fail("a light is beyond the range of float");
       }
       scene_.lights.push_back({rounded, light.intensity, light.spot});

@@ -113,9 +113,7 @@ void GltfMeshes::add_normals(int accessor, const glm::dmat3& world, double sign,
   for (std::size_t i = 0; i < vertices; ++i) {
     const glm::dvec3 turned =
         cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
-    const bool is_finite =
-        std::isfinite(turned.x) && std::isfinite(turned.y) && std::isfinite(turned.z);
-    to.add_normal(is_finite ? sign * turned : glm::dvec3(0.0));
+    to.add_normal(is_finite(turned) ? sign * turned : glm::dvec3(0.0));
   }
 }
 

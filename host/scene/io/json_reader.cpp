@@ -221,7 +221,7 @@ glm::dvec3 JsonValue::vector() const {
 glm::dvec3 JsonValue::direction() const {
   const glm::dvec3 xyz = vector();
   if (xyz == glm::dvec3(0.0)) fail("a direction: not all three 0");
-  return glm::normalize(xyz / largest(xyz));
+  return unit(xyz);
 }
 
 glm::vec3 JsonValue::light() const {

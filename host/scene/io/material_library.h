@@ -1,4 +1,4 @@
-// The materials of a scene, by name, from the MTL files that its OBJ names.
+// The materials of an OBJ file, by name, from the MTL files that it names; and their textures.
 #pragma once
 
 #include <cstdint>
@@ -43,5 +43,11 @@ class MaterialLibrary {
   std::map<std::string, std::uint32_t> index_of_name_;
   std::vector<Material> materials_;
 };
+
+/// Loads the textures that materials of triangles name by files, each file once for each use;
+/// fills Scene::textures and the materials' indices. Pictures of roughness and of metalness
+/// become one. Masks that hide nothing are left out. Warns of a file that is missing; throws
+/// InputError as Texture::load.
+void load_textures(Scene& scene);
 
 }  // namespace raygate

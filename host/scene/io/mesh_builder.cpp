@@ -49,10 +49,7 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
 }
 
 void MeshBuilder::add_normal(const glm::dvec3& normal) {
-  // Scaled first, so that neither tiny nor huge components are lost in the squares.
-  const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
-  normals_.push_back(largest == 0.0 ? glm::vec3(0.0f)
-                                    : glm::vec3(glm::normalize(normal / largest)));
+  normals_.push_back(normal == glm::dvec3(0.0) ? glm::vec3(0.0f) : glm::vec3(unit(normal)));
 }
 
 std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count, const char* what,
@@ -219,6 +216,13 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   scene.normals = std::move(normals_);
   scene.texcoords = std::move(texcoords_);
   if (options.smooth || !groups.empty()) add_smooth_normals(groups, options.smooth, scene);
+}
+
+void MeshBuilder::build_plain(const LoadOptions& options, Scene& scene) {
+  build(options, scene);
+  scene.materials.emplace_back().name = "default";
+  scene.objects = {"default"};
+  scene.files = {file_name_};
 }
 
 }  // namespace raygate

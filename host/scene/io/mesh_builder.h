@@ -57,7 +57,7 @@ class MeshBuilder {
   /// Adds what the file's next part gave, whose builder began after this one's counts.
   void append(MeshBuilder&& part);
 
-  /// What else the scene is to be recentred with.
+  /// Recentres the scene with this box, too.
   void expand_extent(const Bounds3& box) {
     others_.expand(box.low);
     others_.expand(box.high);
@@ -68,6 +68,8 @@ class MeshBuilder {
   /// Fills positions, normals, texcoords, triangles and origin, and appends to the warnings.
   /// Throws InputError: an index of nothing, a face without area, no face at all.
   void build(const LoadOptions& options, Scene& scene);
+  /// The same where all faces are one object of a default material: a whole scene of one file.
+  void build_plain(const LoadOptions& options, Scene& scene);
 
  private:
   struct Corner {

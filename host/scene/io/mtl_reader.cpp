@@ -159,7 +159,7 @@ void MtlReader::read_colour(std::string_view keyword, std::string_view words, gl
   for (std::string_view word = take_token_before_comment(words); !word.empty();
        word = take_token_before_comment(words)) {
     if (count == 3) lines().fail(std::string(keyword) + " with more than 3 numbers");
-    rgb[count] = expect_number(lines(), word, keyword);
+    rgb[count] = lines().number(word, keyword);
     if (rgb[count] < 0.0) {
       warn(std::string(keyword) + " " + in_quotes(word) + " is negative, taken as 0");
       rgb[count] = 0.0;
@@ -187,7 +187,7 @@ void MtlReader::read_value(std::string_view keyword, std::string_view words) {
     // Tr of three numbers is what old exporters write for Tf; its meaning is anyone's guess.
     lines().fail(std::string(keyword) + ": expected one number");
   }
-  double number = expect_number(lines(), word, keyword);
+  double number = lines().number(word, keyword);
   const Value& value = *std::find_if(kValues.begin(), kValues.end(),
                                      [&](const Value& v) { return v.keyword == keyword; });
   if (number < value.low || number > value.high) {
@@ -236,7 +236,7 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
     } else if (name == "-o") {
       mapping.offset = take_texture_vector(map + " -o", words);
     } else if (name == "-bm" && keyword == "norm") {
-      normal_scale = static_cast<float>(expect_number(lines(), take_token(rest), "norm -bm"));
+      normal_scale = static_cast<float>(lines().number(take_token(rest), "norm -bm"));
       words = rest;
     } else {
       warn_once(map + " option", map + " " + std::string(name) + " is not supported, ignored");
@@ -277,7 +277,7 @@ glm::vec2 MtlReader::take_texture_vector(const std::string& of_what,
     std::string_view rest = words;
     const std::string_view word = take_token(rest);
     if (i > 0 && !to_number(word)) break;
-    uvw[i] = expect_number(lines(), word, of_what);
+    uvw[i] = lines().number(word, of_what);
     words = rest;
   }
   return {uvw[0], uvw[1]};

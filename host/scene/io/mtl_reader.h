@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "host/scene/io/statement_reader.h"
+#include "host/scene/io/text_lines.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

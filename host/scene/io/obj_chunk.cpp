@@ -98,7 +98,7 @@ std::span<const double> ObjChunk::read_numbers(std::string_view keyword, std::st
   for (std::string_view word = take_token_before_comment(words); !word.empty();
        word = take_token_before_comment(words)) {
     if (count == numbers_.size()) lines_.fail("too many numbers after " + in_quotes(keyword));
-    numbers_[count++] = expect_number(lines_, word, keyword);
+    numbers_[count++] = lines_.number(word, keyword);
   }
   const auto expect = [&](bool right, const char* what) {
     if (!right) {

@@ -178,10 +178,6 @@ std::vector<OptionSetting> read_options(const JsonValue& render) {
   return options;
 }
 
-bool is_finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 }  // namespace
 
 SceneFile read_scene_file(const std::filesystem::path& file) {
@@ -245,7 +241,7 @@ void add_lights(const SceneFile& file, Scene& scene) {
     scene.positions.emplace_back(corner + light.edges[0] + light.edges[1]);
     scene.positions.emplace_back(corner + light.edges[1]);
     const glm::vec3* const corners = &scene.positions[first];
-    if (!std::all_of(corners, corners + 4, is_finite) ||
+    if (!std::all_of(corners, corners + 4, is_finite<float>) ||
         collinear(corners[0], corners[1], corners[2]) ||
         collinear(corners[0], corners[2], corners[3])) {
       throw InputError(file.file.string() + ": area_lights[" + std::to_string(number - 1) +

@@ -8,7 +8,6 @@
 #include "host/base/input_error.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/io/token_reader.h"
 #include "host/scene/io/tokens.h"
 
 namespace raygate {
@@ -100,11 +99,8 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
                      " bytes for its " + std::to_string(facets) + " facets");
   }
   Scene scene;
-  mesh.build(options, scene);
-  scene.materials.emplace_back().name = "default";
-  scene.objects = {"default"};
+  mesh.build_plain(options, scene);
   scene.up = glm::dvec3(0.0, 0.0, 1.0);
-  scene.files = {file};
   return scene;
 }
 

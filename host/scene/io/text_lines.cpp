@@ -1,9 +1,12 @@
 #include "host/scene/io/text_lines.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -97,8 +100,16 @@ std::vector<TextLines> TextLines::split(std::size_t most, std::size_t size) cons
   return parts;
 }
 
-std::string TextLines::place() const {
-  return name_ + ":" + std::to_string(statement_line_) + ": ";
+std::string TextLines::place() const { return InputError::location(name_, statement_line_); }
+
+double TextLines::number(std::string_view word, std::string_view of_what) const {
+  const std::optional<double> number = to_number(word);
+  if (!number) fail(std::string(of_what) + ": " + in_quotes(word) + ", expected a number");
+  if (!(std::abs(*number) <= std::numeric_limits<float>::max())) {
+    fail(std::string(of_what) + ": " + in_quotes(word) +
+         ", expected a finite number within the range of float");
+  }
+  return *number;
 }
 
 void TextLines::fail(const std::string& what) const {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,9 @@ class TextLines {
 
   /// Throws InputError that names the file and the line of the last statement.
   [[noreturn]] void fail(const std::string& what) const;
+  /// The word as a finite number within the range of float; else fails and says what it is the
+  /// number of ("Kd").
+  [[nodiscard]] double number(std::string_view word, std::string_view of_what) const;
 
  private:
   static constexpr std::size_t kNotLooked = std::string_view::npos;
@@ -60,6 +64,31 @@ class TextLines {
   std::size_t newline_ = kNotLooked;  // the first LF at or after position_, or the end
   std::size_t lines_taken_ = 0;
   std::size_t statement_line_ = 0;
+};
+
+/// What readers of OBJ and MTL files share: their statements, and warnings about them.
+class StatementReader {
+ public:
+  /// `warnings` must outlive this.
+  StatementReader(const std::filesystem::path& file, std::vector<std::string>& warnings)
+      : lines_(file), warnings_(warnings) {}
+
+ protected:
+  /// Where the reading is.
+  [[nodiscard]] const TextLines& lines() const { return lines_; }
+  [[nodiscard]] TextLines& lines() { return lines_; }
+
+  void warn(const std::string& what) { warnings_.push_back(lines_.place() + what); }
+
+  /// Warns of the first statement with this keyword alone.
+  void warn_once(std::string_view keyword, const std::string& what) {
+    if (warned_of_.emplace(keyword).second) warn(what);
+  }
+
+ private:
+  TextLines lines_;
+  std::vector<std::string>& warnings_;
+  std::set<std::string, std::less<>> warned_of_;
 };
 
 }  // namespace raygate

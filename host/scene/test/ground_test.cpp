@@ -1,4 +1,4 @@
-#include "host/scene/ground.h"
+#include "host/scene/view.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
-#include "host/scene/io/obj_reader.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/in_chunks.h"
 

@@ -1,4 +1,4 @@
-#include "host/scene/io/point_tree.h"
+#include "host/scene/io/ear_clipper.h"
 
 #include <gtest/gtest.h>
 
