@@ -119,7 +119,7 @@ enum class InstanceMode {
 };
 inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 
-/// Flattens what is not to be kept, and in any case what emits: emitters are lists of triangles.
+/// Flattens what is not to be kept, and in any case what emits: area lights are lists of triangles.
 /// What is numbered how does not depend on `mode`. Throws InputError, beginning with `file`, where
 /// there are about 2^31 triangles or more.
 void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file);
