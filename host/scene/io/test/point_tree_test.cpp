@@ -1,11 +1,10 @@
-#include "host/scene/io/ear_clipper.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
 #include "host/exact/exact_sign.h"
+#include "host/scene/io/ear_clipper.h"
 
 namespace raygate {
 namespace {
@@ -47,14 +46,14 @@ TEST(PointTree, AgreesWithLookingAtAllPoints) {
     tree.build(points, 3 * points.size());
     while (!points.empty()) {
       std::array<glm::vec2, 3> triangle{point(), point(), point()};
-      const int orientation = turn(triangle[0], triangle[1], triangle[2]);
+      const int orientation = orient2d(triangle[0], triangle[1], triangle[2]);
       if (orientation < 0) std::swap(triangle[0], triangle[1]);
       if (orientation != 0) {
         const bool expected = std::any_of(points.begin(), points.end(), [&](const auto& p) {
           return std::find(triangle.begin(), triangle.end(), p.position) == triangle.end() &&
-                 turn(triangle[0], triangle[1], p.position) >= 0 &&
-                 turn(triangle[1], triangle[2], p.position) >= 0 &&
-                 turn(triangle[2], triangle[0], p.position) >= 0;
+                 orient2d(triangle[0], triangle[1], p.position) >= 0 &&
+                 orient2d(triangle[1], triangle[2], p.position) >= 0 &&
+                 orient2d(triangle[2], triangle[0], p.position) >= 0;
         });
         ++(expected ? yes : no);
         ASSERT_EQ(tree.any_in_triangle(triangle), expected) << "round " << round;
