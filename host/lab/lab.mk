@@ -20,7 +20,7 @@ endef
 stress: ## measure: try to make hit tests wrong: make stress [QUICK=1 ONLY=core TESTS=10000000 SEED=1 MPIRUN=]
 ifdef QUICK
 	$(call build,build,lab >/dev/null)
-	@build/lab stress --quiet --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
+	@build/lab stress --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
 else
 	$(call build,lab,lab $(if $(MPIRUN),share))
 	$(measure)
@@ -35,7 +35,7 @@ peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [Q
 	$(measure)
 
 speed: ## measure: rays/s next to Embree, exact decisions, skips, where time goes: make speed [QUICK=1 ONLY=rays,phases BEFORE=]
-	$(call build,lab,scenes $(if $(call of,rays predicates skips),lab) $(if $(call of,profile phases),render) $(if $(call of,trace),trace))
+	$(call build,lab,scenes $(if $(call of,rays predicates),lab) $(if $(call of,skips profile phases),render compare) $(if $(call of,trace),trace))
 	@$(if $(call of,skips),python3 -B scenes/make_teapot.py build/scenes/teapot_coarse.obj --fineness 3)
 	$(measure)
 

@@ -12,22 +12,19 @@ int run(int argc, char** argv) {
   require_ieee_floats();
   choose_vectors();
   CLI::App app("Measures raygate: how wrong, how fast, at what cost. make targets call it.", "lab");
-  lab::Common common;
-  app.add_option("--results", common.results,
-                 "keep all that is found in this file: a JSON object a line");
+  std::filesystem::path file;
+  app.add_option("--results", file, "keep all that is found in this file: a JSON object a line");
   app.require_subcommand(1);
-  lab::add_stress(app, common);
-  lab::add_predicates(app, common);
-  lab::add_variants(app, common);
-  lab::add_check(app, common);
-  lab::add_pictures(app, common);
-  lab::add_rays(app, common);
-  lab::add_core(app, common);
-  lab::add_skips(app, common);
-  lab::add_techniques(app, common);
+  lab::Outcome outcome;
+  for (lab::AddCommand* const add :
+       {lab::add_stress, lab::add_predicates, lab::add_rays, lab::add_core, lab::add_variants,
+        lab::add_check, lab::add_pictures, lab::add_techniques}) {
+    add(app, outcome);
+  }
   try {
     app.parse(argc, argv);
-    return common.status;
+    if (!file.empty()) outcome.results.write(file);
+    return outcome.status;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

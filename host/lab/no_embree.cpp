@@ -1,5 +1,5 @@
 // Where CMake found no Embree 3: the lab leaves it out.
-#include "host/lab/rays/peer.h"
+#include "host/lab/rays/rays.h"
 #include "host/lab/stress/subjects.h"
 
 namespace raygate::lab {

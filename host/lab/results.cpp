@@ -14,63 +14,41 @@
 namespace raygate::lab {
 namespace {
 
-/// The rows of `file` that are of that run; a line that is damaged is none.
-std::vector<Row> rows_of(const std::filesystem::path& file, const Row& run) {
-  std::vector<Row> rows;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) {
-    Row row = Row::parse(line, nullptr, false);
-    if (row.is_object() && row.contains("run") && row["run"] == run) rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-std::string cell(const TextTable::Column& column, const Row& row) {
-  const auto value = row.find(column.key);
-  if (value == row.end() || value->is_null()) return "-";
-  if (value->is_string()) return value->get<std::string>();
-  if (column.decimals >= 0) return format_fixed(value->get<double>(), column.decimals);
-  return format_count(value->get<std::uint64_t>());
+std::string text_of(const Row& value) {
+  if (value.is_null()) return "-";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_unsigned()) return format_count(value.get<std::uint64_t>());
+  if (!value.is_number_float()) return value.dump();
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value.get<double>());
+  return text;
 }
 
 }  // namespace
 
-Results::Results(std::filesystem::path file, const Row& run) : file_(std::move(file)), run_(run) {
-  if (file_.empty()) return;
-  std::error_code error;
-  if (file_.has_parent_path()) std::filesystem::create_directories(file_.parent_path(), error);
-  if (error) throw InputError(file_.string() + ": cannot make the folder: " + error.message());
-  add(run_.is_null() ? std::vector<Row>{} : rows_of(file_, run_));
-}
-
-void Results::add(const std::vector<Row>& rows) {
-  for (const Row& row : rows) {
-    Row& added = rows_.emplace_back(row);
-    if (!run_.is_null()) added["run"] = run_;
-    text_ += added.dump() + "\n";
+void Results::add(Row row) {
+  std::string head, line;
+  for (const auto& [key, value] : row.items()) {
+    if (key == "table" || value.is_structured()) continue;
+    const std::size_t width = std::max<std::size_t>(key.size(), value.is_string() ? 18 : 9);
+    const std::string text = text_of(value), room(width - std::min(width, text.size()), ' ');
+    head += key + std::string(width - key.size() + 2, ' ');
+    line += (value.is_string() ? text + room : room + text) + "  ";
   }
-  if (!file_.empty()) AtomicFile(file_, text_).commit();
-}
-
-TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {
-  for (Column& column : columns_) {
-    column.width = std::max(column.width, static_cast<int>(column.head.size()));
-  }
-}
-
-void TextTable::print(const Row& row) {
-  const auto print_line = [&](const auto& text_of) {
-    for (const Column& column : columns_) {
-      const bool is_text = row.contains(column.key) && row[column.key].is_string();
-      std::printf("%s%*s", &column == columns_.data() ? "" : "  ",
-                  is_text ? -column.width : column.width, text_of(column).c_str());
-    }
-    std::printf("\n");
-  };
-  if (!begun_) print_line([](const Column& column) { return column.head; });
-  begun_ = true;
-  print_line([&](const Column& column) { return cell(column, row); });
+  if (head != head_) std::printf("%s\n", head.c_str());
+  head_ = head;
+  std::printf("%s\n", line.c_str());
   std::fflush(stdout);
+  keep(std::move(row));
+}
+
+void Results::write(const std::filesystem::path& file) const {
+  std::error_code error;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
+  if (error) throw InputError(file.string() + ": cannot make the folder: " + error.message());
+  std::string text;
+  for (const Row& row : rows_) text += row.dump() + "\n";
+  AtomicFile(file, text).commit();
 }
 
 Row with_usual(const Row& object, Row usual, const std::string& what) {

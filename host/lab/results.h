@@ -1,4 +1,4 @@
-// What the lab finds: rows. One way to keep them, one way to print them.
+// Rows of measurements: one way to keep them, one way to print them.
 #pragma once
 
 #include <filesystem>
@@ -8,46 +8,23 @@
 
 namespace raygate::lab {
 
-/// A row: the column `table` says of which table; host/lab/report explains all columns. JSON has no
-/// infinity: null stands for it.
+/// A row: the column `table` says of which table. JSON has no infinity: null stands for it.
 using Row = nlohmann::ordered_json;
 
-/// The rows of a run, in a file with a JSON object a line. What was added is in the file, all of
-/// it or nothing, so that a run which is interrupted can go on.
+/// What a command has found.
 class Results {
  public:
-  /// Begins `file` anew (empty: keeps no file), or goes on with it: rows whose column `run` is the
-  /// given one stay, all others go. A null `run` goes on with nothing. Throws InputError where the
-  /// file or its folder cannot be made.
-  explicit Results(std::filesystem::path file, const Row& run = {});
-
-  void add(const Row& row) { add(std::vector<Row>{row}); }
-  void add(const std::vector<Row>& rows);
+  void keep(Row row) { rows_.push_back(std::move(row)); }
+  /// Keeps a row and prints its columns, but for nested ones, in a table that grows row by row.
+  void add(Row row);
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  /// Writes all rows, a JSON object a line: the whole file or nothing. Throws InputError where the
+  /// file or its folder cannot be made.
+  void write(const std::filesystem::path& file) const;
 
  private:
-  std::filesystem::path file_;
-  Row run_;
   std::vector<Row> rows_;
-  std::string text_;  // of the file
-};
-
-/// A table in the terminal that grows row by row.
-class TextTable {
- public:
-  struct Column {
-    std::string key, head;
-    int decimals = -1;  ///< of a number; -1: a whole number with commas, or text
-    int width = 0;      ///< 0: the head's
-  };
-  explicit TextTable(std::vector<Column> columns);
-
-  /// Prints the head first. A row without a column's key has a dash there.
-  void print(const Row& row);
-
- private:
-  std::vector<Column> columns_;
-  bool begun_ = false;
+  std::string head_;  // of the table in the terminal
 };
 
 /// `object` with the values of `usual` where it has none. Throws InputError, "WHAT has ...": an

@@ -3,6 +3,7 @@
 import concurrent.futures
 import dataclasses
 import hashlib
+import json
 import os
 import pathlib
 import re
@@ -10,6 +11,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 
 from host.lab import machine, rows as kept
@@ -73,3 +75,18 @@ def run(target: str, steps: list[Step], asked: str = "", launcher: str = "", at_
              for step, file in files for row in kept.read(file)]
     shutil.rmtree(folder)
     return [about, *found]
+
+def render(command: list, *words: object, picture: pathlib.Path | None = None, **how: object) -> dict:
+    """What ./render says about a picture, by the cpu engine unless `words` say otherwise; `how`: of subprocess.run."""
+    engine = () if "--engine" in words else ("--engine", "cpu")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        subprocess.run([*command, *engine, "--quiet", *words, "--output", picture or folder / "picture.exr",
+                        "--stats", folder / "stats.json"], cwd=ROOT, check=True, **how)
+        return json.loads((folder / "stats.json").read_text())
+
+
+def difference(picture: pathlib.Path, reference: pathlib.Path) -> dict:
+    """What ./compare says about two pictures."""
+    said = subprocess.run([ROOT / "compare", picture, reference, "--json"], cwd=ROOT, check=True, capture_output=True, text=True)
+    return json.loads(said.stdout)

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
 
 #include "host/intersect/check_intersector.h"
@@ -14,9 +13,7 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/lab/commands.h"
 #include "host/lab/core/record_cache.h"
-#include "host/lab/rays/peer.h"
-#include "host/lab/rays/ray_sets.h"
-#include "host/lab/results.h"
+#include "host/lab/rays/rays.h"
 #include "host/lab/timing.h"
 #include "host/scene/io/scene_loader.h"
 #include "sim/rtl_core.h"
@@ -34,23 +31,14 @@ struct Options {
 
 class CoreBench {
  public:
-  CoreBench(const Options& options, const std::filesystem::path& results)
-      : options_(options), results_(results) {}
+  CoreBench(const Options& options, Results& results) : options_(options), results_(results) {}
 
   void scene(const std::filesystem::path& file) {
     const Scene scene = load_obj(file);
     name_ = file.stem().string();
     const Bvh bvh(scene);
     const auto image = std::make_shared<const MemoryImage>(bvh);
-    const RaySet camera = camera_rays(scene, options_.size);
-    const auto cpu = make_raygate(scene);
-    Found seen;
-    seen.triangle.resize(camera.rays.size());
-    seen.t.resize(camera.rays.size());
-    cpu->prepare(camera);
-    cpu->run(seen);
-    for (const RaySet& set :
-         {camera, light_rays(scene, camera, seen), scattered_rays(scene, camera, seen)}) {
+    for (const RaySet& set : ray_sets(scene, options_.size - options_.size % 128)) {
       if (std::ranges::find(options_.kinds, set.name) == options_.kinds.end()) continue;
       const RaySet chosen = every(set);
       if (options_.records) {
@@ -72,10 +60,10 @@ class CoreBench {
   [[nodiscard]] RaySet every(const RaySet& set) const {
     RaySet some = set;
     some.rays.clear();
-    some.limits.clear();
+    some.t_max.clear();
     for (std::size_t i = 0; i < set.rays.size(); i += static_cast<std::size_t>(options_.every)) {
       some.rays.push_back(set.rays[i]);
-      if (!set.limits.empty()) some.limits.push_back(set.limits[i]);
+      if (!set.t_max.empty()) some.t_max.push_back(set.t_max[i]);
     }
     return some;
   }
@@ -90,9 +78,7 @@ class CoreBench {
           for (RecordCache& cache : caches) cache.use(origin, triangle);
         }));
     std::vector<NearestHit> hits(set.rays.size());
-    RayQuery query{.t_max = set.limits};
-    if (set.any_hit) query.any_hit_before = set.limits;
-    intersector.intersect(set.rays, query, hits);
+    intersector.intersect(set.rays, set.query(0, set.rays.size()), hits);
     Row row = {{"table", "records"},
                {"scene", name_},
                {"rays", set.name},
@@ -101,7 +87,6 @@ class CoreBench {
     for (const RecordCache& cache : caches) {
       row["of_" + std::to_string(cache.records()) + "_percent"] = cache.hits_percent();
     }
-    records_.print(row);
     results_.add(row);
   }
 
@@ -117,64 +102,42 @@ class CoreBench {
     CheckIntersector intersector(bvh, std::make_unique<CoreIntersector>(bvh, image, core),
                                  std::make_unique<CpuIntersector>(bvh));
     std::vector<NearestHit> hits(set.rays.size());
-    RayQuery query{.t_max = set.limits};
-    if (set.any_hit) query.any_hit_before = set.limits;
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-    intersector.intersect(set.rays, query, hits);
+    intersector.intersect(set.rays, set.query(0, set.rays.size()), hits);
     const double seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     const CoreCounters counters = core->counters();
-    const auto rays = static_cast<double>(set.rays.size());
-    const auto clocks = static_cast<double>(counters.clocks);
-    const double core_clocks = clocks * cores.cores;
-    const Row row = {
-        {"table", "core"},
-        {"scene", name_},
-        {"rays", set.name},
-        {"latency", timing.latency},
-        {"cores", cores.cores},
-        {"in_flight", cores.rays == 0 ? Row("all") : Row(cores.rays)},
-        {"clocks_per_ray", clocks / rays},
-        {"lines_per_ray", static_cast<double>(counters.lines) / rays},
-        {"bytes_per_ray", 64.0 * static_cast<double>(counters.lines) / rays},
-        {"nodes_percent", 100.0 * static_cast<double>(counters.nodes) / core_clocks},
-        {"triangles_percent", 100.0 * static_cast<double>(counters.triangles) / core_clocks},
-        {"busier_percent", 100.0 * static_cast<double>(counters.busier) / core_clocks},
-        {"waits_percent", 100.0 * static_cast<double>(counters.waits) / core_clocks},
-        {"doubts_per_1000", 1e3 * static_cast<double>(counters.doubts) / rays},
-        {"near_ties_per_1000", 1e3 * static_cast<double>(counters.near_ties) / rays},
-        {"rays_per_second", rays / seconds}};
-    table_.print(row);
-    results_.add(row);
+    const auto a_ray = [&](std::uint64_t count) {
+      return static_cast<double>(count) / static_cast<double>(set.rays.size());
+    };
+    const auto percent = [&](std::uint64_t clocks) {  // of the clocks of all cores
+      return 100.0 * a_ray(clocks) / (a_ray(counters.clocks) * cores.cores);
+    };
+    results_.add({{"table", "core"},
+                  {"scene", name_},
+                  {"rays", set.name},
+                  {"latency", timing.latency},
+                  {"cores", cores.cores},
+                  {"in_flight", cores.rays == 0 ? Row("all") : Row(cores.rays)},
+                  {"clocks_per_ray", a_ray(counters.clocks)},
+                  {"lines_per_ray", a_ray(counters.lines)},
+                  {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
+                  {"nodes_percent", percent(counters.nodes)},
+                  {"triangles_percent", percent(counters.triangles)},
+                  {"busier_percent", percent(counters.busier)},
+                  {"waits_percent", percent(counters.waits)},
+                  {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
+                  {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)},
+                  {"rays_per_second", static_cast<double>(set.rays.size()) / seconds}});
   }
 
   const Options& options_;
-  Results results_;
+  Results& results_;
   std::string name_;
-  TextTable records_{{{"scene", "scene", -1, 16},
-                      {"rays", "rays", -1, 10},
-                      {"tests_per_ray", "tests/ray", 2},
-                      {"of_16_percent", "found of 16 records, %", 1},
-                      {"of_64_percent", "of 64, %", 1},
-                      {"of_256_percent", "of 256, %", 1}}};
-  TextTable table_{{{"scene", "scene", -1, 16},
-                    {"rays", "rays", -1, 10},
-                    {"latency", "latency", -1},
-                    {"cores", "cores", -1},
-                    {"in_flight", "in flight", -1},
-                    {"clocks_per_ray", "clocks/ray", 2},
-                    {"lines_per_ray", "lines/ray", 2},
-                    {"bytes_per_ray", "bytes/ray", 0},
-                    {"nodes_percent", "boxes busy, %", 1},
-                    {"triangles_percent", "triangles busy, %", 1},
-                    {"busier_percent", "busier of 256 clocks, %", 1},
-                    {"doubts_per_1000", "doubts/1000 rays", 2},
-                    {"near_ties_per_1000", "near ties/1000", 2},
-                    {"rays_per_second", "rays/s", 0}}};
 };
 
 }  // namespace
 
-void add_core(CLI::App& lab, Common& common) {
+void add_core(CLI::App& lab, Outcome& outcome) {
   auto* app = lab.add_subcommand("core", "clocks, lines and bytes a ray of the simulated ray core");
   const auto options = std::make_shared<Options>();
   app->add_option("scenes", options->scenes, "OBJ files")->required();
@@ -194,16 +157,11 @@ void add_core(CLI::App& lab, Common& common) {
   app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
   app->add_flag("--records", options->records,
                 "instead: tests whose records a cache of them would hold; no clocks");
-  app->callback([options, &common] {
-    options->size -= options->size % 128;
+  app->callback([options, &outcome] {
     if (options->structural && std::ranges::max(options->in_flight) > kTableRays) {
       throw CLI::ValidationError("--in-flight", "expected at most 64 with --structural");
     }
-    std::printf(
-        "%dx%d pixels; a line of 64 bytes a clock. rays/s: simulated, %s\n"
-        "arithmetic, the comparison with the cpu engine included.\n",
-        options->size, options->size, options->structural ? "structural" : "behavioural");
-    CoreBench bench(*options, common.results);
+    CoreBench bench(*options, outcome.results);
     for (const std::string& scene : options->scenes) bench.scene(scene);
   });
 }

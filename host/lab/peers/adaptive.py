@@ -1,16 +1,15 @@
 """Samples by error (`--error`) beside the same number everywhere: time at equal RMSE, and at equal FLIP."""
 
-import json
 import math
 import pathlib
 import statistics
-import subprocess
 import tempfile
 
 import numpy
 
 from host.lab.report import plots
 from host.lab.rows import ROOT
+from host.lab.steps import difference, render
 
 MEASURES = ("rmse", "flip")
 # most: --spp with --error; counts: of uniform samples; reference: samples of the picture that is the truth.
@@ -31,22 +30,19 @@ class Pictures:
     """Of one scene, by one program, in a folder that is removed."""
 
     def __init__(self, program: pathlib.Path, scene: pathlib.Path, size: str, folder: pathlib.Path) -> None:
-        self.command = [program, scene, "--engine", "cpu", "--integrator", "path", "--size", size, "--threads", "1",
-                        "--quiet", "--stats", folder / "stats.json"]
+        self.command = [program, scene, "--integrator", "path", "--size", size, "--threads", "1"]
         self.folder = folder
 
     def render(self, name: str, *words: str) -> dict:
         """Statistics of a run that writes NAME.exr and NAME.png."""
-        subprocess.run([*self.command, *words, "-o", self.folder / name], cwd=ROOT, check=True)
-        return json.loads((self.folder / "stats.json").read_text())
+        return render(self.command, *words, picture=self.folder / name)
 
     def errors(self, name: str) -> dict:
         """RMSE, FLIP and bias against the reference."""
         files = [self.folder / f"{which}.exr" for which in (name, "reference")]
-        said = subprocess.run([ROOT / "compare", *files, "--json"], cwd=ROOT, check=True, capture_output=True, text=True)
-        pngs = [file.with_suffix(".png") for file in files]
-        measures = json.loads(said.stdout)
-        return {"rmse": measures["rmse"], "flip": plots.flip(*reversed(pngs))[1], "bias": measures["bias"]}
+        measures = difference(*files)
+        error = plots.flip(*(file.with_suffix(".png") for file in reversed(files)))[1]
+        return {"rmse": measures["rmse"], "flip": error, "bias": measures["bias"]}
 
     def measured(self, seeds: int, *words: str) -> dict:
         """Processor seconds of rendering, samples a pixel and errors, over seeds: the root mean square of RMSE,

@@ -3,7 +3,6 @@
 import json
 import math
 import pathlib
-import subprocess
 import sys
 import tempfile
 
@@ -13,9 +12,11 @@ import numpy
 mitsuba.set_variant("scalar_rgb")
 
 from host.lab.peers.gltf_scene import mitsuba_meshes  # noqa: E402  (wants a variant)
+from host.lab.peers.measure import shown  # noqa: E402
 from host.lab.peers.renderers import light_of  # noqa: E402
 from host.lab.report import plots  # noqa: E402
 from host.lab.rows import ROOT  # noqa: E402
+from host.lab.steps import render  # noqa: E402
 
 sys.path.insert(0, str(ROOT / "scenes"))
 from contact_sheet import ASSIMP, write_balls  # noqa: E402
@@ -64,19 +65,11 @@ def by_mitsuba(meshes: dict, camera: dict, light: dict, samples: int) -> numpy.n
 
 def by_raygate(program: pathlib.Path, model: pathlib.Path, camera: dict, light: dict, samples: int,
                folder: pathlib.Path) -> numpy.ndarray:
-    scene = folder / "scene.json"
-    scene.write_text(json.dumps({"obj": str(model), "camera": camera, "area_lights": [light],
-                                 "background": [SKY] * 3}))
-    picture = folder / "picture.exr"
-    subprocess.run([program, scene, "--engine", "cpu", "--quiet", "--integrator", "path", "--filter", "box", "--spp",
-                    str(samples), "--size", f"{WIDTH}x{HEIGHT}", "-o", picture], check=True)
+    scene, picture = folder / "scene.json", folder / "picture.exr"
+    scene.write_text(json.dumps({"obj": str(model), "camera": camera, "area_lights": [light], "background": [SKY] * 3}))
+    render([program, scene], "--integrator", "path", "--filter", "box", "--spp", str(samples), "--size", f"{WIDTH}x{HEIGHT}",
+           picture=picture)
     return light_of(mitsuba.Bitmap(str(picture)))
-
-
-def shown(picture: numpy.ndarray) -> numpy.ndarray:
-    """As sRGB."""
-    limited = numpy.clip(picture, 0, 1)
-    return numpy.where(limited <= 0.0031308, 12.92 * limited, 1.055 * limited ** (1 / 2.4) - 0.055)
 
 
 def measure(program: pathlib.Path, samples: int) -> list[dict]:

@@ -32,12 +32,15 @@ def mse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
     return float(numpy.mean((picture.astype(float) - reference) ** 2))
 
 
+def shown(light: numpy.ndarray) -> numpy.ndarray:
+    """As a display shows it (sRGB), from 0 to 1."""
+    light = numpy.clip(light.astype(float), 0.0, 1.0)
+    return numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
 def display_rmse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
-    """As an 8-bit display shows both (sRGB), in its steps."""
-    def shown(light: numpy.ndarray) -> numpy.ndarray:
-        light = numpy.clip(light.astype(float), 0.0, 1.0)
-        return 255.0 * numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
-    return float(numpy.mean((shown(picture) - shown(reference)) ** 2)) ** 0.5
+    """As an 8-bit display shows both, in its steps."""
+    return 255.0 * mse(shown(picture), shown(reference)) ** 0.5
 
 
 def reference(renderer: object, sampler: str, samples: int, size: dict) -> tuple[numpy.ndarray, float]:

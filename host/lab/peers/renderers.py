@@ -11,6 +11,7 @@ import numpy
 
 from host.lab.peers.convert import DEPTH
 from host.lab.rows import ROOT
+from host.lab.steps import render
 
 mitsuba.set_variant("scalar_rgb")  # to read EXR files
 
@@ -28,24 +29,21 @@ class Raygate:
     most_samples = 1024  # of a pixel, with --error
 
     def __init__(self, folder: pathlib.Path, threads: int, program: pathlib.Path) -> None:
-        self._words = [program, folder / "scene.json", "--engine", "cpu", "--quiet", "--integrator", "path",
-                       "--filter", "box", "--depth", str(DEPTH), "--threads", str(threads)]
+        self._command = [program, folder / "scene.json", "--integrator", "path", "--filter", "box", "--depth", str(DEPTH),
+                         "--threads", str(threads)]
 
     def render(self, sampler: str, samples: int, seed: int, width: int, height: int) -> tuple[dict, numpy.ndarray]:
         """What it took, and the picture. It has one sampler; `--error X` gives its samples where they are needed."""
-        adaptive = sampler.startswith("--error")
-        if adaptive:
-            samples = self.most_samples
+        adaptive = sampler.split() if sampler.startswith("--error") else []
+        samples = self.most_samples if adaptive else samples
         with tempfile.TemporaryDirectory() as name:
-            picture, stats = pathlib.Path(name) / "picture.exr", pathlib.Path(name) / "stats.json"
-            words = [*self._words, *(sampler.split() if adaptive else [])]
-            subprocess.run([*words, "--size", f"{width}x{height}", "--spp", str(samples), "--seed", str(seed),
-                            "--output", picture, "--stats", stats], check=True, cwd=ROOT)
-            found = json.loads(stats.read_text())
-            pixels = mitsuba.Bitmap(str(picture))
+            picture = pathlib.Path(name) / "picture.exr"
+            found = render(self._command, *adaptive, "--size", f"{width}x{height}", "--spp", str(samples), "--seed", str(seed),
+                           picture=picture)
+            pixels = light_of(mitsuba.Bitmap(str(picture)))
         seconds = found["seconds"]
         return {"seconds": seconds["render"], "processor_seconds": seconds.get("processor", seconds["render"]),
-                "samples": samples, "rays": found["rays"]}, light_of(pixels)
+                "samples": samples, "rays": found["rays"]}, pixels
 
     def close(self) -> None:
         """Nothing goes on."""

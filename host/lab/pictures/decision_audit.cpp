@@ -14,17 +14,22 @@
 namespace raygate::lab {
 namespace {
 
+/// Of the tests of an audit.
+struct Counts {
+  std::uint64_t tests = 0, doubts = 0, wrong_hits = 0, wrong_misses = 0;
+};
+
 /// Passes batches on, and judges each of their tests.
 class AuditTester : public HitTester {
  public:
   AuditTester(const Bvh& bvh, const glm::vec3& origin, const Variant& variant, HitTester& tester,
-              DecisionAudit& audit)
+              Counts& counts)
       : bvh_(bvh),
         origin_(origin),
         variant_(variant),
         unit_(variant.math),
         tester_(tester),
-        audit_(audit) {
+        counts_(counts) {
     host_.rounding = Rounding::kNearestEven;
   }
 
@@ -54,19 +59,19 @@ class AuditTester : public HitTester {
 
   void count(UnitVerdict said, const PolygonRecord& record, const glm::vec3& direction,
              std::uint32_t primitive) {
-    ++audit_.tests;
+    ++counts_.tests;
     bool hit = said == UnitVerdict::kHit;
     if (said == UnitVerdict::kDoubt) {
       if (variant_.doubts) {
-        ++audit_.doubts;
+        ++counts_.doubts;
         return;
       }
       const float t = unit_.distance(record, host_.read(direction)).t;
       hit = t > 0.0f && !std::isinf(t);
     }
     const bool truth = hits_triangle({origin_, direction}, bvh_.corners_of(primitive));
-    audit_.wrong_hits += hit && !truth;
-    audit_.wrong_misses += !hit && truth;
+    counts_.wrong_hits += hit && !truth;
+    counts_.wrong_misses += !hit && truth;
   }
 
   const Bvh& bvh_;
@@ -75,7 +80,7 @@ class AuditTester : public HitTester {
   VariantBurstUnit unit_;
   Arithmetic host_ = variant_.math;  // what puts a ray into the format
   HitTester& tester_;
-  DecisionAudit& audit_;
+  Counts& counts_;
 };
 
 /// In units of the last place of the float next to `exact`.
@@ -102,42 +107,27 @@ std::vector<Ray> camera_rays(const Camera& camera, int width, int height) {
   return rays;
 }
 
-ErrorSummary summary_of(const std::vector<double>& errors) {
-  if (errors.empty()) return {};
-  return {quantile(errors, 0.5), quantile(errors, 0.99), quantile(errors, 1.0)};
+Row summary_of(const std::vector<double>& errors) {
+  const auto at = [&](double part) { return errors.empty() ? 0.0 : quantile(errors, part); };
+  return {{"p50", at(0.5)}, {"p99", at(0.99)}, {"max", at(1.0)}};
 }
 
 }  // namespace
 
-Row DecisionAudit::row() const {
-  const auto errors = [](const ErrorSummary& summary) -> Row {
-    return {{"p50", summary.p50}, {"p99", summary.p99}, {"max", summary.max}};
-  };
-  return {{"tests", tests},
-          {"doubts", doubts},
-          {"wrong_hits", wrong_hits},
-          {"wrong_misses", wrong_misses},
-          {"rays", rays},
-          {"wrong_rays", wrong_rays},
-          {"hits", hits},
-          {"t_ulp", errors(t_ulp)},
-          {"point_ulp", errors(point_ulp)}};
-}
-
-DecisionAudit audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
-                              const Variant& variant, HitTester& tester) {
-  DecisionAudit audit;
+Row audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
+                    const Variant& variant, HitTester& tester) {
+  Counts counts;
+  std::uint64_t wrong_rays = 0;
   const glm::vec3 eye = camera.eye();
   const std::vector<Ray> rays = camera_rays(camera, width, height);
   std::vector<NearestHit> seen(rays.size()), exact(rays.size());
-  UnitIntersector(bvh, std::make_shared<AuditTester>(bvh, eye, variant, tester, audit))
+  UnitIntersector(bvh, std::make_shared<AuditTester>(bvh, eye, variant, tester, counts))
       .intersect(rays, {.common_origin = true}, seen);
   CpuIntersector(bvh).intersect(rays, {.common_origin = true}, exact);
   std::vector<double> t_errors, point_errors;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const NearestHit &got = seen[i], &truth = exact[i];
-    ++audit.rays;
-    if (got.primitive != truth.primitive) ++audit.wrong_rays;
+    if (got.primitive != truth.primitive) ++wrong_rays;
     if (got.primitive != truth.primitive || truth.primitive == NearestHit::kNone) continue;
     const Interval t = hit_distance(rays[i], bvh.corners_of(got.primitive));
     const double exact_t = 0.5 * (t.low + t.high);
@@ -149,10 +139,15 @@ DecisionAudit audit_decisions(const Bvh& bvh, const Camera& camera, int width, i
     }
     point_errors.push_back(worst);
   }
-  audit.hits = t_errors.size();
-  audit.t_ulp = summary_of(t_errors);
-  audit.point_ulp = summary_of(point_errors);
-  return audit;
+  return {{"tests", counts.tests},
+          {"doubts", counts.doubts},
+          {"wrong_hits", counts.wrong_hits},
+          {"wrong_misses", counts.wrong_misses},
+          {"rays", rays.size()},
+          {"wrong_rays", wrong_rays},
+          {"hits", t_errors.size()},
+          {"t_ulp", summary_of(t_errors)},
+          {"point_ulp", summary_of(point_errors)}};
 }
 
 }  // namespace raygate::lab

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -11,6 +13,7 @@
 #include <utility>
 
 #include "host/base/input_error.h"
+#include "host/bvh/bvh.h"
 #include "host/cli/engines.h"
 #include "host/film/atomic_file.h"
 #include "host/film/compare.h"
@@ -18,11 +21,13 @@
 #include "host/film/png.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/pictures/decision_audit.h"
-#include "host/lab/pictures/lit_scene.h"
 #include "host/lab/timing.h"
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/lab/variants/variant_hit_tester.h"
+#include "host/light/default_lights.h"
 #include "host/render/renderer.h"
+#include "host/scene/camera.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate::lab {
 
@@ -76,6 +81,21 @@ bool same_picture(const Film& a, const Film& b) {
   };
   return same(a.color, b.color) && same(a.depth, b.depth) && same(a.primitive, b.primitive);
 }
+
+/// A scene with its tree, lit, for as many pictures as are wanted.
+struct LitScene {
+  Scene scene;
+  Bvh bvh;
+
+  explicit LitScene(const std::filesystem::path& file) : scene(load_obj(file)), bvh(scene) {
+    add_default_lights(scene, Camera::frame(scene, 4.0 / 3.0));
+  }
+
+  /// The whole scene in view.
+  [[nodiscard]] Camera camera(int width, int height) const {
+    return Camera::frame(scene, static_cast<double>(width) / height);
+  }
+};
 
 /// Red, green and blue, to compare.
 ChannelPicture light_of(const Film& film) {
@@ -169,8 +189,7 @@ class TimedRun {
                      {"shading", stats_.shade_seconds}}}});
     if (run_.audit) {
       row["decisions"] = audit_decisions(stage_.bvh, camera_, run_.width, run_.height, variant_,
-                                         *tester_of(run_, variant_))
-                             .row();
+                                         *tester_of(run_, variant_));
     }
     return row;
   }
@@ -234,35 +253,33 @@ PictureRun parse_run(const Row& object) {
   return run;
 }
 
-std::vector<Row> measure(const std::vector<PictureRun>& runs,
-                         const std::function<void(const std::string&)>& progress) {
-  std::map<std::string, std::unique_ptr<LitScene>> stages;
-  std::vector<std::unique_ptr<TimedRun>> timed_runs;
+std::vector<Row> measure(const std::vector<PictureRun>& runs) {
+  std::map<std::string, LitScene> scenes;
+  std::deque<TimedRun> timed_runs;
   for (const PictureRun& run : runs) {
-    std::unique_ptr<LitScene>& stage = stages[run.scene];
-    if (!stage) stage = std::make_unique<LitScene>(run.scene);
-    timed_runs.push_back(std::make_unique<TimedRun>(run, *stage));
+    timed_runs.emplace_back(run, scenes.try_emplace(run.scene, run.scene).first->second);
   }
   for (bool busy = true; busy;) {
     busy = false;
-    for (const auto& performance : timed_runs) {
-      if (performance->done()) continue;
-      const PictureRun& run = performance->run();
-      progress(run.scene + " " + run.variant + " " + run.engine);
-      performance->render_once();
+    for (TimedRun& timed : timed_runs) {
+      if (timed.done()) continue;
+      const PictureRun& run = timed.run();
+      std::fprintf(stderr, "%s %s %s\n", run.scene.c_str(), run.variant.c_str(),
+                   run.engine.c_str());
+      timed.render_once();
       busy = true;
     }
   }
   std::vector<Row> rows;
-  for (const auto& performance : timed_runs) {
-    performance->write_picture();
-    Row& row = rows.emplace_back(performance->row());
-    const std::string& against = performance->run().against;
+  for (const TimedRun& timed : timed_runs) {
+    timed.write_picture();
+    Row& row = rows.emplace_back(timed.row());
+    const std::string& against = timed.run().against;
     if (against.empty()) continue;
     const auto reference = std::ranges::find_if(
-        timed_runs, [&](const auto& other) { return other->run().picture == against; });
+        timed_runs, [&](const TimedRun& other) { return other.run().picture == against; });
     if (reference == timed_runs.end()) fail("against", against, "another run's picture");
-    row.update(difference(performance->film(), (*reference)->film()));
+    row.update(difference(timed.film(), reference->film()));
   }
   return rows;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -47,13 +46,12 @@ struct PictureRun {
 ///   seconds              of render alone, one for each repeat; thread_seconds of the last one
 ///   processor_seconds    the same without what others computed then
 ///   yardstick_seconds    of a fixed piece of work after each repeat
-///   decisions            with `audit`: see DecisionAudit
+///   decisions            with `audit`: see audit_decisions
 ///   rmse, psnr_db, ssim, differing_pixels               with `against`
 ///
 /// The repeats of all runs are interleaved: first each run once, then each again. Pictures of one
-/// run must be equal each time; throws std::logic_error where they are not. `progress` gets a line
-/// before each picture.
-[[nodiscard]] std::vector<Row> measure(const std::vector<PictureRun>& runs,
-                                       const std::function<void(const std::string&)>& progress);
+/// run must be equal each time; throws std::logic_error where they are not. A line on
+/// standard error says which picture is next.
+[[nodiscard]] std::vector<Row> measure(const std::vector<PictureRun>& runs);
 
 }  // namespace raygate::lab

@@ -7,29 +7,10 @@
 #include "host/base/input_error.h"
 #include "host/lab/commands.h"
 #include "host/lab/pictures/picture_run.h"
-#include "host/lab/variants/variant_check.h"
+#include "host/lab/variants/rtl_variant_units.h"
 
 namespace raygate::lab {
 namespace {
-
-/// Whether the reference model is the hardware.
-bool check(const Variant& variant, std::uint64_t tests, std::uint64_t seed, Results& results,
-           TextTable& table) {
-  const VariantCheck check = check_variant(variant, tests, seed);
-  const Row row = {{"table", "checks"},
-                   {"variant", variant.name},
-                   {"tests", check.tests},
-                   {"misses", check.misses},
-                   {"hits", check.hits},
-                   {"doubts", check.doubts},
-                   {"near_ties", check.near_ties},
-                   {"clocks", check.clocks},
-                   {"seed", seed},
-                   {"difference", check.difference.empty() ? "none" : check.difference}};
-  results.add(row);
-  table.print(row);
-  return check.difference.empty();
-}
 
 std::vector<PictureRun> read_runs(const std::string& run, const std::string& file) {
   std::ifstream in(file);
@@ -44,25 +25,17 @@ std::vector<PictureRun> read_runs(const std::string& run, const std::string& fil
 
 }  // namespace
 
-void add_variants(CLI::App& lab, Common& common) {
-  auto* app = lab.add_subcommand("variants", "the variants of arithmetic that there are");
-  app->callback([&common] {
-    Results results(common.results);
-    TextTable table({{"variant", "variant", -1, 18},
-                     {"unit", "unit", -1, 8},
-                     {"exponent_bits", "exponent bits"},
-                     {"digits", "digits"},
-                     {"rounding", "rounding"}});
+void add_variants(CLI::App& lab, Outcome& outcome) {
+  lab.add_subcommand("variants", "the variants of arithmetic that there are")->callback([&outcome] {
     for (const Variant& variant : all_variants_of_arithmetic()) {
       Row row = {{"table", "variants"}};
       row.update(variant.row());
-      results.add(row);
-      table.print(row);
+      outcome.results.add(std::move(row));
     }
   });
 }
 
-void add_check(CLI::App& lab, Common& common) {
+void add_check(CLI::App& lab, Outcome& outcome) {
   auto* app = lab.add_subcommand(
       "check", "is each variant's reference model its hardware? exit status 1: no");
   struct Asked {
@@ -71,23 +44,26 @@ void add_check(CLI::App& lab, Common& common) {
   const auto asked = std::make_shared<Asked>();
   app->add_option("--tests", asked->tests, "of each variant");
   app->add_option("--seed", asked->seed, "of everything random");
-  app->callback([asked, &common] {
-    Results results(common.results);
-    TextTable table({{"variant", "variant", -1, 18},
-                     {"tests", "tests", -1, 9},
-                     {"misses", "misses", -1, 9},
-                     {"hits", "hits", -1, 9},
-                     {"doubts", "doubts", -1, 9},
-                     {"near_ties", "near ties", -1, 9},
-                     {"difference", "difference"}});
+  app->callback([asked, &outcome] {
     for (const Variant& variant : all_variants_of_arithmetic()) {
       if (!variant.has_hardware()) continue;
-      if (!check(variant, asked->tests, asked->seed, results, table)) common.status = 1;
+      const VariantCheck check = check_variant(variant, asked->tests, asked->seed);
+      if (!check.difference.empty()) outcome.status = 1;
+      outcome.results.add({{"table", "checks"},
+                           {"variant", variant.name},
+                           {"tests", check.tests},
+                           {"misses", check.misses},
+                           {"hits", check.hits},
+                           {"doubts", check.doubts},
+                           {"near_ties", check.near_ties},
+                           {"clocks", check.clocks},
+                           {"seed", asked->seed},
+                           {"difference", check.difference.empty() ? "none" : check.difference}});
     }
   });
 }
 
-void add_pictures(CLI::App& lab, Common& common) {
+void add_pictures(CLI::App& lab, Outcome& outcome) {
   auto* app = lab.add_subcommand("pictures", "pictures in any variant, timed and judged");
   struct Asked {
     std::string run, file;
@@ -97,14 +73,10 @@ void add_pictures(CLI::App& lab, Common& common) {
   what->add_option("--run", asked->run, "one run, a JSON object (host/lab/pictures/picture_run.h)");
   what->add_option("--runs", asked->file, "a file with an array of them, repeats interleaved");
   what->require_option(1);
-  app->callback([asked, &common] {
-    Results results(common.results);
-    const auto rows = measure(read_runs(asked->run, asked->file), [](const std::string& line) {
-      std::fprintf(stderr, "%s\n", line.c_str());
-    });
-    for (const Row& row : rows) {
-      results.add(row);
-      if (common.results.empty()) std::printf("%s\n", row.dump(1).c_str());
+  app->callback([asked, &outcome] {
+    for (Row& row : measure(read_runs(asked->run, asked->file))) {
+      if (!asked->run.empty()) std::printf("%s\n", row.dump(1).c_str());
+      outcome.results.keep(std::move(row));
     }
   });
 }

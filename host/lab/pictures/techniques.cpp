@@ -1,7 +1,6 @@
 // What each technique of the path tracer gains: the same pictures with each one changed by itself,
 // time against error. One thread, CPU engine; compare rows of one run.
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "host/cli/engines.h"
 #include "host/cli/options.h"
 #include "host/lab/commands.h"
-#include "host/lab/results.h"
 #include "host/lab/timing.h"
 #include "host/light/path_options.h"
 #include "host/render/renderer.h"
@@ -97,7 +95,7 @@ double mean_squared_error(const Film& film, const Film& reference) {
   return sum / (3.0 * static_cast<double>(film.color.size()));
 }
 
-void measure(const Set& set, const Plan& plan, Results& results, TextTable& table) {
+void measure(const Set& set, const Plan& plan, Results& results) {
   constexpr int kReferenceSeed = 1000;
   RenderStats stats;
   const Film reference = set.film({}, plan.reference, kReferenceSeed, stats);
@@ -117,19 +115,17 @@ void measure(const Set& set, const Plan& plan, Results& results, TextTable& tabl
     const double time = median(seconds[i]) / median(seconds[0]), error = errors[i] / errors[0];
     Row row = {{"table", "techniques"}, {"scene", set.name()}, {"technique", kTechniques[i].name},
                {"rays", rays[i]},       {"mse", errors[i]},    {"error_over_first", error}};
-    if (kTechniques[i].is_timed) {
-      row["seconds"] = median(seconds[i]);
-      row["time_over_first"] = time;
-      row["time_mse_over_first"] = time * error;
-    }
-    results.add(row);
-    table.print(row);
+    const bool timed = kTechniques[i].is_timed;
+    row["seconds"] = timed ? Row(median(seconds[i])) : Row();
+    row["time_over_first"] = timed ? Row(time) : Row();
+    row["time_mse_over_first"] = timed ? Row(time * error) : Row();
+    results.add(std::move(row));
   }
 }
 
 }  // namespace
 
-void add_techniques(CLI::App& lab, Common& common) {
+void add_techniques(CLI::App& lab, Outcome& outcome) {
   auto* app = lab.add_subcommand("techniques", "what each technique of the path tracer gains");
   const auto plan = std::make_shared<Plan>();
   app->add_option("scenes", plan->scenes, "scene files")->required();
@@ -141,26 +137,9 @@ void add_techniques(CLI::App& lab, Common& common) {
       ->check(CLI::Range(1, 1 << 20));
   app->add_option("--repeats", plan->repeats, "other seeds, of which times are medians (3)")
       ->check(CLI::Range(1, 1000));
-  app->callback([plan, &common] {
-    std::printf(
-        "%dx%d, path, %d samples per pixel, one thread, engine cpu, against %d samples of another\n"
-        "seed. time x MSE is over that of the scene's first row: below 1 is better. Lights by "
-        "power "
-        "alone\n"
-        "are chosen by the same walk through the tree, slower than a list: no time is given.\n",
-        plan->side, plan->side, plan->samples, plan->reference);
-    Results results(common.results);
-    TextTable table({{"scene", "scene", -1, 14},
-                     {"technique", "technique", -1, 22},
-                     {"rays", "rays", -1, 10},
-                     {"seconds", "seconds", 3},
-                     {"mse", "MSE", 6, 9},
-                     {"time_over_first", "time", 2},
-                     {"error_over_first", "MSE over first", 2},
-                     {"time_mse_over_first", "time x MSE", 2}});
-    for (const std::string& scene : plan->scenes) {
-      measure(Set(scene, *plan), *plan, results, table);
-    }
+  app->callback([plan, &outcome] {
+    for (const std::string& scene : plan->scenes)
+      measure(Set(scene, *plan), *plan, outcome.results);
   });
 }
 

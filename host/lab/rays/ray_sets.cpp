@@ -1,9 +1,9 @@
-#include "host/lab/rays/ray_sets.h"
-
+// Rays of a picture: from the camera, from a light, scattered.
 #include <cmath>
 #include <random>
 
 #include "host/film/film.h"
+#include "host/lab/rays/rays.h"
 #include "host/scene/camera.h"
 
 namespace raygate::lab {
@@ -23,8 +23,6 @@ glm::vec3 light_of(const Scene& scene) {
   const glm::dvec3 eye(camera.eye());
   return glm::vec3(eye + 0.25 * glm::length(eye) * (camera.right() + camera.up()));
 }
-
-}  // namespace
 
 RaySet camera_rays(const Scene& scene, int size) {
   const Camera camera = Camera::frame(scene, 1.0);
@@ -52,7 +50,7 @@ RaySet light_rays(const Scene& scene, const RaySet& camera, const Found& found) 
     const glm::dvec3 way = point - glm::dvec3(light);
     const glm::vec3 scaled = scaled_direction(way);
     set.rays.push_back({light, scaled});
-    set.limits.push_back(
+    set.t_max.push_back(
         static_cast<float>(0.9999 * glm::length(way) / glm::length(glm::dvec3(scaled))));
   }
   return set;
@@ -75,6 +73,18 @@ RaySet scattered_rays(const Scene& scene, const RaySet& camera, const Found& fou
                         scaled_direction(way)});
   }
   return set;
+}
+
+}  // namespace
+
+std::vector<RaySet> ray_sets(const Scene& scene, int size) {
+  RaySet camera = camera_rays(scene, size);
+  Found seen(camera.rays.size());
+  const auto raygate = make_raygate(scene);
+  raygate->prepare(camera);
+  raygate->run(seen);
+  RaySet light = light_rays(scene, camera, seen), scattered = scattered_rays(scene, camera, seen);
+  return {std::move(camera), std::move(light), std::move(scattered)};
 }
 
 }  // namespace raygate::lab

@@ -6,7 +6,7 @@
 
 #include "host/bvh/bvh.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/lab/rays/peer.h"
+#include "host/lab/rays/rays.h"
 
 namespace raygate::lab {
 namespace {
@@ -21,15 +21,12 @@ class RaygatePeer : public Peer {
 
   void run(Found& found) override {
     CpuIntersector intersector(bvh_);
-    RayQuery query;
-    query.common_origin = set_->common_origin;
     const std::span<const Ray> rays(set_->rays);
     std::vector<NearestHit> hits(intersector.preferred_batch());
     for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
       const std::size_t count = std::min(hits.size(), rays.size() - first);
-      if (!set_->limits.empty()) query.t_max = std::span(set_->limits).subspan(first, count);
-      if (set_->any_hit) query.any_hit_before = query.t_max;
-      intersector.intersect(rays.subspan(first, count), query, std::span(hits).first(count));
+      intersector.intersect(rays.subspan(first, count), set_->query(first, count),
+                            std::span(hits).first(count));
       for (std::size_t i = 0; i < count; ++i) {
         found.triangle[first + i] = triangle_of(hits[i]);
         found.t[first + i] = static_cast<float>(hits[i].t.low);

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "host/lab/stress/case_text.h"
+#include "host/lab/stress/shot.h"
 #include "host/lab/stress/subjects.h"
 
 namespace raygate::lab {

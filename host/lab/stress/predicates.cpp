@@ -1,14 +1,13 @@
-// What an exact decision costs: nanoseconds for each ray and triangle, by method and kind of case.
-// Compare the columns of one run.
+// What an exact decision costs: nanoseconds of a processor for each ray and triangle, by method and
+// suite. double and
+// __float128 are not exact. Compare the columns of one run.
 #include <gmpxx.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <stdexcept>
 
 #include "host/exact/exact.h"
 #include "host/lab/commands.h"
-#include "host/lab/results.h"
 #include "host/lab/stress/oracle.h"
 #include "host/lab/stress/suites.h"
 #include "host/lab/timing.h"
@@ -121,30 +120,14 @@ Row row_of(const Suite& suite) {
 
 }  // namespace
 
-void add_predicates(CLI::App& lab, Common& common) {
+void add_predicates(CLI::App& lab, Outcome& outcome) {
   auto* app = lab.add_subcommand("predicates",
                                  "what an exact decision costs, beside rationals and __float128");
-  app->callback([&common] {
-    std::printf(
-        "Nanoseconds of a processor for each ray and triangle (median of %d). raygate: double "
-        "with\n"
-        "an error bound, and expansions where that is not enough. double and __float128 are not\n"
-        "exact; rationals are GMP's; the oracle of `lab stress` also finds t and the nearest.\n",
-        kRepeats);
-    Results results(common.results);
-    TextTable table({{"suite", "suite", -1, 18},
-                     {"double_ns", "double", 1, 9},
-                     {"raygate_ns", "raygate", 1, 9},
-                     {"float128_ns", "__float128", 1},
-                     {"rationals_ns", "rationals", 1},
-                     {"oracle_ns", "oracle", 1, 9},
-                     {"raygate", "raygate is"}});
+  app->callback([&outcome] {
     for (const Suite& suite : all_suites()) {
       if (suite.name == "useless") continue;  // has no rationals
-      const Row row = row_of(suite);
-      results.add(row);
-      table.print(row);
-      if (row["raygate"] != "right") common.status = 1;
+      outcome.results.add(row_of(suite));
+      if (outcome.results.rows().back()["raygate"] != "right") outcome.status = 1;
     }
   });
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <set>
 
 #include "host/base/threads.h"
@@ -13,12 +12,14 @@ namespace {
 
 constexpr std::uint64_t kBlockTests = 4096;  // made, decided and counted at once
 
-SuiteOutcome run_suite(const Suite& suite, const std::vector<SubjectKind>& kinds,
-                       const StressOptions& options) {
+/// What each subject did in a suite.
+std::vector<Row> run_suite(const Suite& suite, const std::vector<SubjectKind>& kinds,
+                           const StressOptions& options) {
   const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-  SuiteOutcome outcome;
-  outcome.suite = &suite;
-  outcome.tallies.resize(kinds.size());
+  std::vector<Tally> tallies(kinds.size());
+  // Rays that start inside a closed mesh but cross it an even number of times, in truth: the
+  // generator's own claim is broken, or the rule for the origins of mirrored rays.
+  std::uint64_t broken_claims = 0;
   std::vector<std::unique_ptr<Subject>> subjects;
   std::vector<std::uint64_t> wanted;
   for (const SubjectKind& kind : kinds) {
@@ -44,11 +45,11 @@ SuiteOutcome run_suite(const Suite& suite, const std::vector<SubjectKind>& kinds
       for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
         std::uint64_t hits = 0;
         for (std::size_t i = 0; i < shot.mesh->triangles.size(); ++i) hits += (verdict++)->hit;
-        outcome.broken_claims += hits % 2 == 0;
+        broken_claims += hits % 2 == 0;
       }
     }
     for (std::size_t v = 0; v < subjects.size(); ++v) {
-      Tally& tally = outcome.tallies[v];
+      Tally& tally = tallies[v];
       if (tally.tests >= wanted[v]) continue;
       answers.orders.clear();  // few subjects give any
       subjects[v]->run(shots, answers);
@@ -56,41 +57,32 @@ SuiteOutcome run_suite(const Suite& suite, const std::vector<SubjectKind>& kinds
       more = more || tally.tests < wanted[v];
     }
   }
-  outcome.seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
-  return outcome;
+  const double seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    Row& row = rows.emplace_back(Row{{"table", "stress"},
+                                     {"suite", suite.name},
+                                     {"suite_is", suite.what},
+                                     {"subject", kinds[i].name},
+                                     {"subject_is", kinds[i].what},
+                                     {"exact", kinds[i].exact},
+                                     {"spotless", tallies[i].spotless()},
+                                     {"broken_claims", broken_claims},
+                                     {"seconds", seconds}});
+    row.update(tallies[i].row());
+  }
+  return rows;
 }
 
 }  // namespace
 
-std::vector<SuiteOutcome> run(const std::vector<const Suite*>& suites,
-                              const std::vector<SubjectKind>& subjects,
-                              const StressOptions& options,
-                              const std::function<void(const SuiteOutcome&)>& done) {
-  std::vector<SuiteOutcome> outcomes(suites.size());
-  std::mutex mutex;
-  for_each_on_threads(options.threads, suites.size(), [&](std::size_t i) {
-    outcomes[i] = run_suite(*suites[i], subjects, options);
-    const std::scoped_lock lock(mutex);
-    done(outcomes[i]);
-  });
-  return outcomes;
-}
-
-std::vector<Row> rows_of(const SuiteOutcome& outcome, const std::vector<SubjectKind>& subjects) {
+std::vector<Row> run(const std::vector<const Suite*>& suites,
+                     const std::vector<SubjectKind>& subjects, const StressOptions& options) {
+  std::vector<std::vector<Row>> found(suites.size());
+  for_each_on_threads(options.threads, suites.size(),
+                      [&](std::size_t i) { found[i] = run_suite(*suites[i], subjects, options); });
   std::vector<Row> rows;
-  for (std::size_t i = 0; i < subjects.size(); ++i) {
-    const SubjectKind& subject = subjects[i];
-    Row& row = rows.emplace_back(Row{{"table", "stress"},
-                                     {"suite", outcome.suite->name},
-                                     {"suite_is", outcome.suite->what},
-                                     {"subject", subject.name},
-                                     {"subject_is", subject.what},
-                                     {"exact", subject.exact},
-                                     {"spotless", outcome.tallies[i].spotless()},
-                                     {"broken_claims", outcome.broken_claims},
-                                     {"seconds", outcome.seconds}});
-    row.update(outcome.tallies[i].row());
-  }
+  for (const std::vector<Row>& suite : found) rows.insert(rows.end(), suite.begin(), suite.end());
   return rows;
 }
 

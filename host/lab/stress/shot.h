@@ -1,9 +1,10 @@
-// What the stress test shoots: rays with a common origin at a few triangles.
+// Shots of the stress test: rays with a common origin at a few triangles; failures as text.
 #pragma once
 
 #include <array>
 #include <glm/glm.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace raygate::lab {
@@ -25,5 +26,20 @@ struct Shot {
   /// Shots have so many results of each kind: ray by ray, triangle by triangle.
   [[nodiscard]] std::size_t tests() const { return directions.size() * mesh->triangles.size(); }
 };
+
+/// One ray and the triangles it is tested against: what a failure comes down to.
+struct Case {
+  glm::vec3 origin{0.0f}, direction{0.0f};
+  std::vector<Corners> triangles;
+};
+
+/// A line of test/regressions.txt: words in hex, origin, direction, the triangles' vertices.
+[[nodiscard]] std::string to_text(const Case& failure);
+
+/// And back; std::invalid_argument where the line is no case.
+[[nodiscard]] Case case_from(const std::string& line);
+
+/// As something to shoot at.
+[[nodiscard]] Shot shot_of(const Case& failure);
 
 }  // namespace raygate::lab

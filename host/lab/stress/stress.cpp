@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <set>
 
 #include "host/lab/commands.h"
-#include "host/lab/stress/error_bounds.h"
+#include "host/lab/stress/errors.h"
 #include "host/lab/stress/minimise.h"
 #include "host/lab/stress/runner.h"
 
@@ -20,7 +19,7 @@ namespace {
 struct Asked {
   StressOptions options{.tests = 10'000'000};
   std::vector<std::string> suites, subjects;
-  bool quiet = false, minimised = false, listed = false;
+  bool minimised = false, listed = false;
 };
 
 template <class List>
@@ -62,16 +61,6 @@ void keep_memory() {
   mallopt(M_TRIM_THRESHOLD, 1 << 25);
 }
 
-/// What makes rows those of one run: the program, and all that they depend on.
-Row run_of(const StressOptions& options, const std::vector<SubjectKind>& subjects) {
-  std::ifstream program("/proc/self/exe", std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(program), {}};
-  return {{"program", digest(bytes)},
-          {"tests", options.tests},
-          {"seed", options.seed},
-          {"subjects", names_of(subjects)}};
-}
-
 /// How far off the unit's t may be, from a sine of 1 down to 1e-8, ten steps a decade.
 Row bounds() {
   Row sines = Row::array(), ulps = Row::array();
@@ -82,34 +71,7 @@ Row bounds() {
   return {{"table", "bounds"}, {"sine", sines}, {"t_ulp", ulps}};
 }
 
-/// All rows but the bounds.
-std::vector<Row> stress_rows(const Results& results) {
-  std::vector<Row> rows = results.rows();
-  std::erase_if(rows, [](const Row& row) { return row["table"] != "stress"; });
-  return rows;
-}
-
-void print_suite(std::span<const Row> rows) {
-  std::printf("%-18s %6.1f s", rows[0]["suite"].get<std::string>().c_str(),
-              rows[0]["seconds"].get<double>());
-  for (const Row& row : rows) {
-    std::uint64_t bad = 0;
-    for (const char* key : {"wrong", "wrong_nearest", "leaks", "double_hits"}) {
-      bad += row[key].get<std::uint64_t>();
-    }
-    if (row["exact"]) {
-      for (const char* key : {"wrong_ties", "wrong_tied_nearest", "wrong_order"}) {
-        bad += row[key].get<std::uint64_t>();
-      }
-    }
-    std::printf("  %s %llu", row["subject"].get<std::string>().c_str(),
-                static_cast<unsigned long long>(bad));
-  }
-  std::printf("\n");
-  std::fflush(stdout);
-}
-
-int run_stress(const Asked& asked, const std::filesystem::path& file) {
+int run_stress(const Asked& asked, Results& results) {
   if (asked.listed) {
     for (const Suite& suite : all_suites()) std::printf("%s\n", suite.name.c_str());
     return 0;
@@ -120,23 +82,13 @@ int run_stress(const Asked& asked, const std::filesystem::path& file) {
   };
   std::vector<SubjectKind> subjects = all_subjects();
   std::erase_if(subjects, [&](const SubjectKind& s) { return !wanted(asked.subjects, s.name); });
-  Results results(file, run_of(asked.options, subjects));
-  std::set<std::string> done;
-  if (results.rows().empty()) results.add(bounds());
-  for (const Row& row : stress_rows(results)) done.insert(row["suite"]);
-  if (!done.empty() && !asked.quiet) {
-    std::printf("(%zu suites were there already, in %s)\n", done.size(), file.c_str());
-  }
-  std::vector<const Suite*> to_run;
+  std::vector<const Suite*> suites;
   for (const Suite& suite : all_suites()) {
-    if (wanted(asked.suites, suite.name) && !done.contains(suite.name)) to_run.push_back(&suite);
+    if (wanted(asked.suites, suite.name)) suites.push_back(&suite);
   }
-  (void)run(to_run, subjects, asked.options, [&](const SuiteOutcome& outcome) {
-    const std::vector<Row> rows = rows_of(outcome, subjects);
-    results.add(rows);
-    if (!asked.quiet) print_suite(rows);
-  });
-  const std::vector<Row> rows = stress_rows(results);
+  const std::vector<Row> rows = run(suites, subjects, asked.options);
+  results.keep(bounds());
+  for (const Row& row : rows) results.keep(row);
   print_failures(rows, subjects, asked.minimised);
   const Verdicts verdicts = sum_up(rows, asked.options.seed);
   std::printf("%s\n", verdicts.summary.c_str());
@@ -145,7 +97,7 @@ int run_stress(const Asked& asked, const std::filesystem::path& file) {
 
 }  // namespace
 
-void add_stress(CLI::App& lab, Common& common) {
+void add_stress(CLI::App& lab, Outcome& outcome) {
   auto* app = lab.add_subcommand(
       "stress", "engines and cheaper arithmetic in hard cases; exit status 1: an engine was wrong");
   const auto asked = std::make_shared<Asked>();
@@ -160,9 +112,8 @@ void add_stress(CLI::App& lab, Common& common) {
       ->check(CLI::IsMember(names_of(all_subjects())));
   app->add_flag("--minimise", asked->minimised,
                 "print some wrong decisions of all subjects, made as simple as they can be");
-  app->add_flag("--quiet", asked->quiet, "the last line only");
   app->add_flag("--list", asked->listed, "the suites' names, and no more");
-  app->callback([asked, &common] { common.status = run_stress(*asked, common.results); });
+  app->callback([asked, &outcome] { outcome.status = run_stress(*asked, outcome.results); });
 }
 
 }  // namespace raygate::lab

@@ -49,7 +49,7 @@ struct SubjectKind {
   std::string name{};
   std::string what{};     ///< one line for the report
   bool exact = false;     ///< it promises to be never wrong: the run fails where it is
-  bool binary32 = false;  ///< what error_bounds.h says of t and P holds
+  bool binary32 = false;  ///< what errors.h says of t and P holds
   double share = 0.1;     ///< of the number of tests asked for
   std::function<std::unique_ptr<Subject>()> make{};  ///< one for each thread
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "host/lab/stress/error_bounds.h"
+#include "host/lab/stress/errors.h"
 
 namespace raygate::lab {
 namespace {

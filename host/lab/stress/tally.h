@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "host/lab/results.h"
-#include "host/lab/stress/case_text.h"
 #include "host/lab/stress/errors.h"
 #include "host/lab/stress/oracle.h"
+#include "host/lab/stress/shot.h"
 #include "host/lab/stress/subjects.h"
 
 namespace raygate::lab {
@@ -37,7 +37,7 @@ struct Tally {
   /// 10^-k.
   static constexpr int kDecades = 8;
   std::array<Errors, kDecades> t_ulp_by_angle;
-  /// The largest errors of sure hits over what error_bounds.h allows binary32.
+  /// The largest errors of sure hits over what errors.h allows binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
   /// The largest error of P over what the hit itself says (NearestHit::point_error).
   double point_of_said = 0.0;

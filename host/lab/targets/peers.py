@@ -12,12 +12,12 @@ from host.lab.rows import ROOT, of
 from host.lab.steps import Step
 
 
-def scenes_of(given: argparse.Namespace, usual: tuple[str, ...]) -> list[str]:
+def scenes_of(given: argparse.Namespace, usual: tuple[str, ...], known: tuple[str, ...] = tuple(SCENES)) -> list[str]:
     """Those asked for; else all, or the usual ones of a quick run."""
-    unknown = set(given.scenes.split()) - set(SCENES)
+    unknown = set(given.scenes.split()) - set(known)
     if unknown:
-        raise ValueError(f"{', '.join(sorted(unknown))}: expected {', '.join(SCENES)}")
-    return given.scenes.split() or list(usual if given.quick else SCENES)
+        raise ValueError(f"{', '.join(sorted(unknown))}: expected {', '.join(known)}")
+    return given.scenes.split() or list(usual if given.quick else known)
 
 
 def pictures_steps(given: argparse.Namespace) -> list[Step]:
@@ -39,11 +39,11 @@ def adaptive_steps(given: argparse.Namespace) -> list[Step]:
     """--error beside uniform --spp."""
     return [Step("adaptive", scene, measure=lambda scene=scene: [adaptive.row(
         given.render, scene_file(scene), adaptive.QUICK if given.quick else adaptive.USUAL)])
-        for scene in scenes_of(given, ("cornell",))]
+        for scene in scenes_of(given, ("cornell",), (*SCENES, "rough_spheres"))]  # which Mitsuba cannot have
 
 
 def techniques_steps(given: argparse.Namespace) -> list[Step]:
-    """PathOptions of the path tracer, one changed at a time."""
+    """Techniques of the path tracer, one changed at a time."""
     size = ("--side", 32, "--spp", 4, "--reference", 64, "--repeats", 1) if given.quick else ()
     return [Step("techniques", scene, ("techniques", scene_file(scene).relative_to(ROOT), *size))
             for scene in scenes_of(given, ("cornell",))]

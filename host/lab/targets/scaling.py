@@ -14,18 +14,16 @@ Sizes of tiles and steps are those of host/render (tiles.h, remote_workers.cpp).
 import argparse
 import dataclasses
 import hashlib
-import json
 import os
 import pathlib
 import statistics
-import subprocess
 import tempfile
 
 import numpy
 
 from host.lab.report import plots
 from host.lab.rows import ROOT, of
-from host.lab.steps import Step
+from host.lab.steps import Step, render
 from synth.drawing import plt
 
 SAMPLES = (4, 16, 64)
@@ -42,17 +40,13 @@ LINK, FILES, THREADS = 1.25e9, 5e9, 64
 def picture(program: pathlib.Path, scene: str, ranks: int, samples: int, size: tuple[int, int]) -> list[dict]:
     """One picture by so many ranks of a thread each: its statistics, and what its bytes are."""
     with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks), program, scene,
-                        "--engine", "cpu", "--integrator", "path", "--threads", "1", "--size", "{}x{}".format(*size),
-                        "--spp", str(samples), "--quiet", "-o", folder / "a.exr", "--stats", folder / "a.json"],
-                       cwd=ROOT, env=ENVIRONMENT, check=True)
-        found = json.loads((folder / "a.json").read_text())
-        return [{"table": "scaling", "scene": scene, "ranks": ranks, "samples": samples, "width": size[0], "height": size[1],
-                 "pixels": size[0] * size[1], "triangles": found["triangles"], "seconds": found["seconds"],
-                 "gathered_tiles": found["gathered_tiles"], "gathered_bytes": found["gathered_bytes"],
-                 "scene_bytes": (ROOT / scene).stat().st_size,
-                 "bytes": hashlib.sha256((folder / "a.exr").read_bytes()).hexdigest()}]
+        file = pathlib.Path(name) / "a.exr"
+        found = render(["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks), program, scene],
+                       "--integrator", "path", "--threads", "1", "--size", "{}x{}".format(*size), "--spp", str(samples),
+                       picture=file, env=ENVIRONMENT)
+        return [{"table": "scaling", "scene": scene, "ranks": ranks, "samples": samples, "pixels": size[0] * size[1],
+                 **{key: found[key] for key in ("width", "height", "triangles", "seconds", "gathered_tiles", "gathered_bytes")},
+                 "scene_bytes": (ROOT / scene).stat().st_size, "bytes": hashlib.sha256(file.read_bytes()).hexdigest()}]
 
 
 def steps(given: argparse.Namespace) -> list[Step]:

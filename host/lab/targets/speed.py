@@ -2,7 +2,6 @@
 
 import argparse
 import collections
-import json
 import pathlib
 import re
 import subprocess
@@ -11,17 +10,21 @@ import tempfile
 import numpy
 
 from host.lab.rows import ROOT, grouped, of
-from host.lab.steps import Step
+from host.lab.steps import Step, difference, render
 
 SMALL = ("scenes/cornell.obj", "scenes/teapot.obj")
 LARGE = ("build/scenes/sphere.obj", "build/scenes/sphereflake.obj", "build/scenes/landscape.obj")
 PHASES = ("load", "tree", "render", "write", "total")
 HITS = ("nearest", "any", "all")
+# Of `--no-skip`, but for divisions, of which the pipelined unit has no switch.
+SKIPS = ("culling", "records", "light-behind", "weightless", "empty-tiles", "first-occluder")
+# Without culling every ray is tested against every polygon: with more tests than these nobody can wait for the picture.
+MOST_TESTS = 3e8
 
 # Where each part begins, as callgrind names the functions. What is neither of the others is shading: making rays,
 # materials, lights, sampling, the film.
 WHOLE = r"raygate::TileRenderer::trace\("
-PARTS_OF_A_PICTURE = {"hit_tests": r"raygate::CpuIntersector::find\(", "doubts": r"raygate::resolve_doubt\(",
+PARTS_OF_A_PICTURE = {"hit_tests": r"raygate::CpuIntersector::intersect\(", "doubts": r"raygate::resolve_doubt\(",
          "departures": r"raygate::RaySpawner::"}
 
 
@@ -49,21 +52,36 @@ def inside(found: collections.Counter, part: str) -> int:
 
 
 
-def stats_of(command: list, *words: object) -> dict:
-    """What ./render says about a picture by the cpu engine."""
+def skips(program: pathlib.Path, scene: str, repeats: int) -> list[dict]:
+    """A row for the picture with all skips, one by the simulated unit, and one without each skip. All must be the same."""
+    ways = {"all skips": (), "the simulated unit": ("--engine", "rtl"),
+            **{f"without {skip}": ("--no-skip", skip) for skip in SKIPS}}
+    found: list[dict] = []
     with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        subprocess.run([*command, "--engine", "cpu", "--quiet", *words, "--output", folder / "picture.exr",
-                        "--stats", folder / "stats.json"], cwd=ROOT, check=True)
-        return json.loads((folder / "stats.json").read_text())
+        for what, words in ways.items():
+            if what == "without culling" and found[0]["every_test"] > MOST_TESTS:
+                continue
+            picture = pathlib.Path(name) / f"{what}.exr"
+            runs = [render([program, scene], "--threads", "1", "--integrator", "whitted", "--spp", "1", "--size", "320x200",
+                           *words, picture=picture) for _ in range(repeats)]
+            stats, seconds = runs[0], min(run["seconds"]["processor"] for run in runs)
+            same = difference(picture, pathlib.Path(name) / "all skips.exr")["differing"] == 0
+            found.append({"table": "skips", "scene": pathlib.Path(scene).stem, "polygons": stats["triangles"], "what": what,
+                          "rays": stats["rays"], "tests": stats["tests"], "records": stats["records"] + stats["common_records"],
+                          "milliseconds": 1000 * seconds, "picture": "same" if same else "ANOTHER"})
+            # As in the paper: every ray on every polygon.
+            found[-1]["every_test"] = found[0]["rays"] * stats["triangles"]
+            found[-1]["times_fewer_tests"] = found[-1]["every_test"] / stats["tests"]
+            found[-1]["time_over_all_skips"] = found[-1]["milliseconds"] / found[0]["milliseconds"]
+    return found
 
 
 def profile(program: pathlib.Path, scene: str, size: str) -> dict:
     """Shares of the instructions of a path-traced picture, in percent; the same in every run."""
     with tempfile.TemporaryDirectory() as name:
         file = pathlib.Path(name) / "profile"
-        counts = stats_of(["valgrind", "--quiet", "--tool=callgrind", f"--callgrind-out-file={file}", program, scene],
-                          "--threads", "1", "--integrator", "path", "--size", size, "--spp", "4")
+        counts = render(["valgrind", "--quiet", "--tool=callgrind", f"--callgrind-out-file={file}", program, scene],
+                        "--threads", "1", "--integrator", "path", "--size", size, "--spp", "4")
         found = calls(file.read_text())
     whole = inside(found, WHOLE)
     shares = {part: 100 * inside(found, names) / whole for part, names in PARTS_OF_A_PICTURE.items()}
@@ -75,7 +93,7 @@ def profile(program: pathlib.Path, scene: str, size: str) -> dict:
 
 def phases(programs: list[pathlib.Path], scene: str, size: str, repeats: int) -> list[dict]:
     """A row for each program, which take turns: seconds of each phase of a picture, the least of the repeats."""
-    runs = [[stats_of([program, scene], "--integrator", "whitted", "--spp", "1", "--size", size)
+    runs = [[render([program, scene], "--integrator", "whitted", "--spp", "1", "--size", size)
              for program in programs] for _ in range(repeats)]
     return [{"table": "phase_times", "scene": scene, "program": number, "triangles": mine[0]["triangles"],
              "seconds": {phase: min(run["seconds"][phase] for run in mine) for phase in PHASES}}
@@ -133,7 +151,8 @@ def skips_steps(given: argparse.Namespace) -> list[Step]:
     """What each skip saves."""
     scenes = ("scenes/cornell.obj",) if given.quick else \
         ("scenes/paper.obj", "build/scenes/teapot_coarse.obj", "scenes/teapot.obj", *LARGE[:2])
-    return [Step("skips", scene, ("skips", scene)) for scene in scenes]
+    return [Step("skips", scene, measure=lambda scene=scene: skips(given.render, scene, 1 if given.quick else 3))
+            for scene in scenes]
 
 
 def profile_steps(given: argparse.Namespace) -> list[Step]:

@@ -1,5 +1,4 @@
-#include "host/lab/variants/variant_check.h"
-
+// Whether the reference model of a variant is its hardware, bit by bit.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -40,7 +40,7 @@ class Scaling(unittest.TestCase):
         self.assertAlmostEqual(fixed.compute, one.compute / 2560)  # as many as there are tiles
 
     def test_numbers_are_those_of_the_program(self) -> None:
-        workers = (ROOT / "host/render/workers.cpp").read_text()
+        workers = (ROOT / "host/render/remote_workers.cpp").read_text()
         tiles = (ROOT / "host/render/tiles.h").read_text()
         self.assertIn(f"kSeconds = {scaling.JOB_SECONDS};", workers)
         self.assertIn(f"kRate = {scaling.RATE / 1e6:.0f}e6;", workers)

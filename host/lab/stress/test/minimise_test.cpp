@@ -31,14 +31,15 @@ TEST(Minimise, WrongDecisionsOfTheUnitWithoutDoubts) {
   const auto no_doubts = std::ranges::find(kinds, "binary32-raw", &SubjectKind::name);
   const auto edges = std::ranges::find(all_suites(), "sphere edges", &Suite::name);
   ASSERT_NE(no_doubts, kinds.end());
-  const auto outcomes = run({&*edges}, {*no_doubts}, {.tests = 200000}, [](const SuiteOutcome&) {});
-  const auto& failures = outcomes[0].tallies[0].failures;
+  const std::vector<Row> rows = run({&*edges}, {*no_doubts}, {.tests = 200000});
+  const auto failures = rows[0]["failures"].get<std::vector<std::string>>();
   ASSERT_FALSE(failures.empty());
   const auto subject = no_doubts->make();
   const auto fails = [&](const Case& c) { return decides_wrongly(*no_doubts, *subject, c); };
   const auto cpu = engine_subjects()[0];
   const auto engine = cpu.make();
-  for (const Case& failure : failures) {
+  for (const std::string& text : failures) {
+    const Case failure = case_from(text);
     ASSERT_TRUE(fails(failure));
     const Case simple = minimise(failure, fails);
     EXPECT_TRUE(fails(simple));

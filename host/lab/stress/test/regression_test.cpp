@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "host/lab/stress/case_text.h"
 #include "host/lab/stress/oracle.h"
+#include "host/lab/stress/shot.h"
 #include "host/lab/stress/subjects.h"
 
 namespace raygate::lab {

@@ -1,4 +1,4 @@
-// What was kept comes back, and only for the same run.
+// Rows as they are written and printed, and the verdict on them.
 #include "host/lab/results.h"
 
 #include <gtest/gtest.h>
@@ -21,35 +21,40 @@ class ResultsTest : public testing::Test {
   const std::filesystem::path file_ = folder_ / "rows.jsonl";
 };
 
-TEST_F(ResultsTest, RowsOfARunComeBack) {
-  const auto subjects = float_subjects();
-  const auto outcomes =
-      run({&all_suites()[1]}, subjects, {.tests = 20000}, [](const SuiteOutcome&) {});
-  const std::vector<Row> rows = rows_of(outcomes[0], subjects);
+TEST_F(ResultsTest, RowsComeBack) {
+  const std::vector<Row> rows = run({&all_suites()[1]}, float_subjects(), {.tests = 20000});
   ASSERT_FALSE(rows[0]["failures"].empty());
-  {
-    Results results(file_, {{"seed", 1}});
-    EXPECT_TRUE(results.rows().empty());
-    results.add(rows);
+  Results results;
+  for (const Row& row : rows) results.keep(row);
+  results.write(file_);
+  std::ifstream in(file_);
+  std::string line;
+  for (const Row& row : rows) {
+    ASSERT_TRUE(std::getline(in, line));
+    EXPECT_EQ(Row::parse(line), row);
   }
-  const Results again(file_, {{"seed", 1}});
-  ASSERT_EQ(again.rows().size(), rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    Row row = rows[i];
-    row["run"] = {{"seed", 1}};
-    EXPECT_EQ(again.rows()[i], row);
-  }
+  EXPECT_FALSE(std::getline(in, line));
 }
 
-TEST_F(ResultsTest, RowsOfAnotherRunAndDamagedOnesDoNot) {
-  Results(file_, {{"seed", 1}}).add(Row{{"tests", 7}});
-  EXPECT_TRUE(Results(file_, Row{{"seed", 2}}).rows().empty());
-  Results(file_, {{"seed", 1}}).add(Row{{"tests", 7}});
-  std::ofstream(file_, std::ios::app) << "{\"run\":";
-  EXPECT_EQ(Results(file_, Row{{"seed", 1}}).rows().size(), 1u);
-  Results(file_).add(Row{{"tests", 7}});
-  EXPECT_TRUE(Results(file_, Row{{"seed", 1}}).rows().empty());
-  EXPECT_THROW(Results(file_ / "below", Row()), InputError);
+TEST_F(ResultsTest, AFileIsReplacedAndItsFolderMade) {
+  Results results;
+  results.keep({{"tests", 7}});
+  results.write(file_);
+  Results().write(file_);
+  EXPECT_EQ(std::filesystem::file_size(file_), 0u);
+  EXPECT_THROW(results.write(file_ / "below"), InputError);
+}
+
+TEST_F(ResultsTest, ATableHasOneHeadForRowsOfTheSameColumns) {
+  testing::internal::CaptureStdout();
+  Results results;
+  results.add({{"table", "t"}, {"scene", "a"}, {"rays", 12345u}, {"nested", Row::array()}});
+  results.add({{"table", "t"}, {"scene", "b"}, {"rays", nullptr}});
+  EXPECT_EQ(testing::internal::GetCapturedStdout(),
+            "scene               rays       \n"
+            "a                      12,345  \n"
+            "b                           -  \n");
+  EXPECT_EQ(results.rows().size(), 2u);
 }
 
 // A run passes only where exact subjects were judged, in tests that were done, and were never

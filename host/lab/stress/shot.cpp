@@ -1,4 +1,4 @@
-#include "host/lab/stress/case_text.h"
+#include "host/lab/stress/shot.h"
 
 #include <bit>
 #include <cstdint>

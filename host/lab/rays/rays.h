@@ -1,4 +1,4 @@
-// What `lab rays` times: one way of tracing a set of rays.
+// Sets of rays, and the ray tracers that trace them: raygate and Embree.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/exact/exact.h"
+#include "host/intersect/intersector.h"
 #include "host/scene/scene.h"
 
 namespace raygate::lab {
@@ -19,14 +20,31 @@ struct RaySet {
   std::string name;
   std::vector<Ray> rays;
   bool common_origin = false;  ///< all rays begin at rays[0].origin
-  std::vector<float> limits;   ///< empty, or one a ray: only hits with t < limits[i] count
+  std::vector<float> t_max;    ///< empty, or one a ray: only hits with t < t_max[i] count
   bool any_hit = false;        ///< whether there is a hit is all that is asked for
+
+  /// What an intersector is asked about `count` of the rays from `first` on.
+  [[nodiscard]] RayQuery query(std::size_t first, std::size_t count) const {
+    RayQuery query{.common_origin = common_origin};
+    if (!t_max.empty()) query.t_max = std::span(t_max).subspan(first, count);
+    if (any_hit) query.any_hit_before = query.t_max;
+    return query;
+  }
 };
+
+/// The rays of a picture of size x size pixels with the whole scene in view: `camera`; `light`,
+/// from a point light, above the eye and to its right, to just before what the camera sees: does
+/// anything lie between; and `scattered` from there, in random directions as of diffuse light. The
+/// camera's are in tiles of 128 x 128 pixels, in them squares of 8 x 8, in them blocks of 4 x 2, as
+/// the renderer has them; so is the order of the others.
+[[nodiscard]] std::vector<RaySet> ray_sets(const Scene& scene, int size);
 
 /// What was found, one a ray.
 struct Found {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   static constexpr std::uint32_t kSome = kNone - 1;  ///< any_hit: some triangle
+
+  explicit Found(std::size_t rays) : triangle(rays), t(rays) {}
 
   std::vector<std::uint32_t> triangle;
   std::vector<float> t;  ///< of the nearest hit; unspecified for a miss and for any_hit
