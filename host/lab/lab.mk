@@ -10,7 +10,6 @@ ifdef MPIRUN
 stress bench: configure += -DRAYGATE_MPI=ON
 endif
 define measure
-$(if $(MPIRUN),@$(SETUP) mpi)
 @$(PYTHON) -B -m host.lab $@ $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
   $(if $(SCENES),--scenes '$(SCENES)') $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)') \
   $(if $(BASE),--base '$(BASE)') $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS) \
@@ -22,11 +21,13 @@ ifdef QUICK
 	$(call build,build,lab >/dev/null)
 	@build/lab stress --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
 else
+	@$(if $(MPIRUN),$(SETUP) mpi)
 	$(call build,lab,lab $(if $(MPIRUN),share))
 	$(measure)
 endif
 
 bench: ## measure: run time against error, adder to picture: make bench [QUICK=1 ONLY=lanes BASE=old.jsonl MPIRUN=]
+	@$(if $(MPIRUN),$(SETUP) mpi)
 	$(call build,bench,lab render scenes unit_bench $(if $(MPIRUN),share))
 	$(measure)
 

@@ -9,7 +9,6 @@ from matplotlib import ticker
 from host.lab.report import plots
 from host.lab.rows import grouped, of
 from host.lab.steps import Step
-from synth.drawing import plt
 
 FEW = ("scenes/cornell.obj", "scenes/teapot.obj", "build/scenes/sphereflake.obj")
 ALL = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj",
