@@ -1,5 +1,5 @@
 // Sines, logarithms and powers with the same bits on every machine: additions, multiplications and
-// divisions of IEEE 754 in a written order, and no C library.
+// divisions of IEEE 754 in a fixed order, without the C library.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The one exception for what a user gave us and we cannot use.
+// InputError: the exception for invalid input, which main prints before it exits with status 2.
 #pragma once
 
 #include <stdexcept>

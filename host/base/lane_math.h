@@ -1,4 +1,4 @@
-// One text for one hit or for many: arithmetic over `float` or over a register of floats.
+// Arithmetic written once for a float and for a vector of floats: masks, conversions, triples.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
-// Eight rays at a time: vectors, and what is done with them. They are compiled for each kind of
-// machine by in_vectors (host/base/vectors.h).
+// Lanes: vectors of eight floats or integers and operations on them, compiled for each instruction
+// set by in_vectors (host/base/vectors.h).
 #pragma once
 
 #include <cmath>

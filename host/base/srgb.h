@@ -1,4 +1,4 @@
-// From scene-linear light to the 8-bit codes of a display (IEC 61966-2-1).
+// sRGB (IEC 61966-2-1): conversion between scene-linear light and 8-bit codes.
 #pragma once
 
 #include <cstdint>

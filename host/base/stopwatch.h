@@ -1,4 +1,4 @@
-// Splits time between the parts of a job.
+// Stopwatch: wall-clock seconds lap by lap; and the processor time of the program.
 #pragma once
 
 #include <chrono>

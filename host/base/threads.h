@@ -1,4 +1,4 @@
-// The same work on several threads.
+// Runs work on several threads, the caller's among them.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Which vector code runs: one source, compiled once for each kind of machine.
+// Selection of vector code at run time: one source, compiled once for each instruction set.
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "host/scene/texture.h"
+#include "host/scene/material_lookup.h"
 
 namespace raygate {
 

@@ -1,15 +1,18 @@
 #include "host/scene/camera.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
-#include "host/scene/view.h"
 
 namespace raygate {
 namespace {
+
+constexpr std::string_view kProjections[] = {"perspective", "orthographic", "panorama"};
 
 /// The tangent of half an angle in degrees.
 double half_tangent(double degrees) {
@@ -24,23 +27,13 @@ std::string text(const glm::dvec3& v) {
 }  // namespace
 
 std::optional<Projection> projection_named(std::string_view name) {
-  for (const Projection projection :
-       {Projection::kPerspective, Projection::kOrthographic, Projection::kPanorama}) {
-    if (name == to_string(projection)) return projection;
-  }
-  return std::nullopt;
+  const auto* const found = std::ranges::find(kProjections, name);
+  if (found == std::end(kProjections)) return std::nullopt;
+  return static_cast<Projection>(found - std::begin(kProjections));
 }
 
 std::string_view to_string(Projection projection) {
-  switch (projection) {
-    case Projection::kPerspective:
-      return "perspective";
-    case Projection::kOrthographic:
-      return "orthographic";
-    case Projection::kPanorama:
-      return "panorama";
-  }
-  return "";
+  return kProjections[static_cast<std::size_t>(projection)];
 }
 
 Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up,
@@ -101,11 +94,6 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
                      ": expected a distance, more than 0");
   }
   return camera;
-}
-
-Camera Camera::frame(const Scene& scene, double aspect, double vertical_fov_degrees) {
-  return look_at(
-      frame_scene(scene, aspect, vertical_fov_degrees, front_view(scene), FrameFit::kBox), aspect);
 }
 
 /// A thin lens: all rays of a point of the picture meet where the ray through its middle is at the

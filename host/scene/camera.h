@@ -1,4 +1,4 @@
-// A camera: where rays begin, and which way the ray of a point of the picture goes.
+// Camera: origin and direction of the ray through each point of the picture.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -7,7 +7,6 @@
 
 #include "host/exact/exact.h"
 #include "host/scene/camera_setting.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -35,10 +34,6 @@ class Camera {
   /// map has there, -z. Without `fov` it is kDefaultFov. Throws as above, and for an aperture that
   /// is negative, or a focus that is not positive.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
-
-  /// Looks at all of a scene from the front: see front_view().
-  [[nodiscard]] static Camera frame(const Scene& scene, double aspect,
-                                    double vertical_fov_degrees = kDefaultFov);
 
   /// The origin of all camera rays, where has_common_origin(); of orthographic ones the middle.
   [[nodiscard]] const glm::vec3& eye() const { return eye_; }

@@ -1,4 +1,4 @@
-// Where a camera stands and looks, as a user or a file says it; and where it is in an animation.
+// Camera settings as a user or a file gives them, and those of a frame of an animation.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/scene/bounds.h"
 
 namespace raygate {
 namespace {
@@ -44,11 +43,11 @@ void compact(Mesh& mesh) {
   mesh.positions = std::move(kept);
 }
 
-/// The run of Scene::normals that a mesh's triangles name; empty where they name none.
-struct Run {
+/// The range of Scene::normals that a mesh's triangles name; empty where they name none.
+struct NormalRange {
   std::uint32_t begin = kNoIndex, end = 0;
 
-  explicit Run(const Mesh& mesh) {
+  explicit NormalRange(const Mesh& mesh) {
     for (const Triangle& triangle : mesh.triangles) {
       for (const std::uint32_t normal : triangle.normals) {
         if (normal == kNoIndex) continue;
@@ -110,7 +109,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
   Mesh mirrored = scene.meshes[mesh];
   // Normals point to the front, on whichever side that is.
-  const Run normals(mirrored);
+  const NormalRange normals(mirrored);
   const auto first = static_cast<std::uint32_t>(scene.normals.size());
   for (std::uint32_t i = normals.begin; i < normals.end; ++i) {
     scene.normals.push_back(-glm::vec3(scene.normals[i]));
@@ -127,8 +126,9 @@ std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
 
 MeshInstancer::MeshInstancer(Scene& scene, Scene&& part)
     : scene_(scene), origin_(part.origin), mesh_(add_mesh(scene, std::move(part))) {
-  const Bounds3 box = bounds_of(scene.meshes[mesh_].positions);
-  size_ = glm::max(glm::abs(box.low), glm::abs(box.high));
+  for (const glm::vec3& position : scene.meshes[mesh_].positions) {
+    size_ = glm::max(size_, glm::dvec3(glm::abs(position)));
+  }
 }
 
 bool MeshInstancer::add(const glm::dmat4& world, std::uint32_t object) {
@@ -141,8 +141,9 @@ bool MeshInstancer::add(const glm::dmat4& world, std::uint32_t object) {
                         std::abs(row[2]) * size_.z + std::abs(row[3]);
     if (!(sum <= kMost && most <= kMost)) return false;
   }
-  const glm::dvec3 x(world[0][0], world[1][0], world[2][0]),
-      y(world[0][1], world[1][1], world[2][1]), z(world[0][2], world[1][2], world[2][2]);
+  const auto& m = instance.rows;
+  const glm::dvec3 x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+      z(m[2][0], m[2][1], m[2][2]);
   if (glm::dot(glm::cross(x, y), z) < 0.0) {
     if (mirrored_ == kNoIndex) mirrored_ = add_mirrored(scene_, mesh_);
     instance.mesh = mirrored_;
@@ -161,7 +162,7 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
   }
   scene.positions.reserve(positions);
   scene.triangles.reserve(triangles);
-  std::vector<Run> normals;
+  std::vector<NormalRange> normals;
   normals.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) normals.emplace_back(mesh);
   for (const Instance& instance : instances) {
@@ -170,14 +171,14 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
     for (const glm::vec3& position : mesh.positions) {
       scene.positions.push_back(transform_point(instance.rows, position));
     }
-    const Run& run = normals[instance.mesh];
+    const NormalRange& range = normals[instance.mesh];
     const auto first_normal = static_cast<std::uint32_t>(scene.normals.size());
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
       scene.normals.push_back(transform_normal(instance, glm::vec3(scene.normals[i])));
     }
     for (Triangle triangle : mesh.triangles) {
       shift(triangle.vertices, first);
-      shift(triangle.normals, first_normal - run.begin);
+      shift(triangle.normals, first_normal - range.begin);
       triangle.object += instance.object;
       scene.triangles.push_back(triangle);
     }

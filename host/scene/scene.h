@@ -1,4 +1,4 @@
-// What is rendered: triangles with materials, as read from a file and recentred.
+// Scene: triangles, materials, textures, lights and instances, recentred on an origin.
 #pragma once
 
 #include <array>

@@ -139,6 +139,11 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
   return {centre + distance * towards_eye, centre, up, fov};
 }
 
+Camera front_camera(const Scene& scene, double aspect, double fov) {
+  return Camera::look_at(frame_scene(scene, aspect, fov, front_view(scene), FrameFit::kBox),
+                         aspect);
+}
+
 void add_ground(Scene& scene, const glm::dvec3& up) {
   if (is_empty(scene)) return;
   const glm::dvec3 upright = unit(up);

@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "host/scene/camera_setting.h"
+#include "host/scene/camera.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -46,6 +46,10 @@ enum class FrameFit {
 /// float.
 [[nodiscard]] CameraSetting frame_scene(const Scene& scene, double aspect, double fov,
                                         const View& view, FrameFit filling = FrameFit::kVertices);
+
+/// A camera of front_view(): all of the scene's box in the picture.
+[[nodiscard]] Camera front_camera(const Scene& scene, double aspect,
+                                  double fov = Camera::kDefaultFov);
 
 /// Adds a square of two triangles under the scene, a hair below its lowest point and 32 times its
 /// size, of an object and a material of its own, "ground": it catches shadows (illum 10) and is

@@ -28,6 +28,7 @@
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/scene_loader.h"
+#include "host/scene/view.h"
 
 namespace raygate::lab {
 
@@ -88,12 +89,12 @@ struct LitScene {
   Bvh bvh;
 
   explicit LitScene(const std::filesystem::path& file) : scene(load_obj(file)), bvh(scene) {
-    add_default_lights(scene, Camera::frame(scene, 4.0 / 3.0));
+    add_default_lights(scene, front_camera(scene, 4.0 / 3.0));
   }
 
   /// The whole scene in view.
   [[nodiscard]] Camera camera(int width, int height) const {
-    return Camera::frame(scene, static_cast<double>(width) / height);
+    return front_camera(scene, static_cast<double>(width) / height);
   }
 };
 

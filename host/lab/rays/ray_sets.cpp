@@ -5,6 +5,7 @@
 #include "host/film/film.h"
 #include "host/lab/rays/rays.h"
 #include "host/scene/camera.h"
+#include "host/scene/view.h"
 
 namespace raygate::lab {
 namespace {
@@ -19,13 +20,13 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
 
 /// Beside the eye, a quarter of its distance from the scene's middle up and to the right.
 glm::vec3 light_of(const Scene& scene) {
-  const Camera camera = Camera::frame(scene, 1.0);
+  const Camera camera = front_camera(scene, 1.0);
   const glm::dvec3 eye(camera.eye());
   return glm::vec3(eye + 0.25 * glm::length(eye) * (camera.right() + camera.up()));
 }
 
 RaySet camera_rays(const Scene& scene, int size) {
-  const Camera camera = Camera::frame(scene, 1.0);
+  const Camera camera = front_camera(scene, 1.0);
   RaySet set{"camera", {}, true, {}, false};
   for_blocks({0, 0, size, size}, 128, 128, [&](const PixelRect& tile) {
     for_blocks(tile, 8, 8, [&](const PixelRect& square) {

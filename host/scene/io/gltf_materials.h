@@ -1,4 +1,4 @@
-// glTF's metallic-roughness materials as the materials that we have.
+// Materials and textures of a glTF file as those of a Scene.
 #pragma once
 
 #include <cstdint>

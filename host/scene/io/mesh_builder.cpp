@@ -11,7 +11,7 @@
 namespace raygate {
 
 // Counts what happens often, and says so once, with the first line where it did.
-class MeshBuilder::Warner {
+class MeshBuilder::WarningCount {
  public:
   void note(std::size_t line) {
     if (count_++ == 0) first_line_ = line;
@@ -121,7 +121,7 @@ void MeshBuilder::check_indices() const {
 }
 
 // Keeps the positions that some face uses, relative to the origin, and renumbers the corners.
-void MeshBuilder::place_positions(Scene& scene) {
+void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const Corner& corner : corners_) new_index[corner.position] = 0;
   Bounds3 box = others_;
@@ -141,11 +141,12 @@ void MeshBuilder::place_positions(Scene& scene) {
   for (Corner& corner : corners_) corner.position = new_index[corner.position];
 }
 
-std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Scene& scene) const {
+std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
+                                                    Scene& scene) const {
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::vec3> polygon;
-  Warner dropped, touching, no_direction;
+  WarningCount dropped, touching, no_direction;
   scene.triangles.reserve(corners_.size() - 2 * faces_.size());
   std::size_t begin = 0;
   for (const Face& face : faces_) {
@@ -204,13 +205,13 @@ std::vector<std::uint32_t> MeshBuilder::cut_faces(const LoadOptions& options, Sc
 }
 
 void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
-  if (faces_.empty() && !may_be_nothing_) {
+  if (faces_.empty() && !may_be_empty_) {
     throw InputError(file_name_ + ": no faces, expected at least one polygon");
   }
   check_indices();
-  place_positions(scene);
-  const std::vector<std::uint32_t> groups = cut_faces(options, scene);
-  if (scene.triangles.empty() && !may_be_nothing_) {
+  recentre(scene);
+  const std::vector<std::uint32_t> groups = triangulate(options, scene);
+  if (scene.triangles.empty() && !may_be_empty_) {
     throw InputError(file_name_ + ": no face has an area");
   }
   scene.normals = std::move(normals_);

@@ -1,4 +1,4 @@
-// From the vertices and polygons of a file to the triangles of a scene.
+// MeshBuilder: collects the vertices and polygons of a file and triangulates them into a scene.
 #pragma once
 
 #include <cstddef>
@@ -63,7 +63,7 @@ class MeshBuilder {
     others_.expand(box.high);
   }
   /// No face with an area is no error.
-  void allow_empty() { may_be_nothing_ = true; }
+  void allow_empty() { may_be_empty_ = true; }
 
   /// Fills positions, normals, texcoords, triangles and origin, and appends to the warnings.
   /// Throws InputError: an index of nothing, a face without area, no face at all.
@@ -80,19 +80,19 @@ class MeshBuilder {
     std::size_t line;
     std::uint32_t material = 0, object = 0, group = 0;
   };
-  class Warner;
+  class WarningCount;
 
   [[nodiscard]] std::uint32_t resolve(std::int32_t index, std::size_t count, const char* what,
                                       std::size_t line) const;
   void check_indices() const;
-  void place_positions(Scene& scene);
+  void recentre(Scene& scene);
   /// Returns the smoothing groups of the triangles; empty: all are flat.
-  [[nodiscard]] std::vector<std::uint32_t> cut_faces(const LoadOptions& options,
-                                                     Scene& scene) const;
+  [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,
+                                                       Scene& scene) const;
 
   std::string file_name_;
   Bounds3 others_;
-  bool may_be_nothing_ = false;
+  bool may_be_empty_ = false;
   Counts earlier_;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> normals_;

@@ -1,4 +1,4 @@
-// One MTL file into materials.
+// Reader of an MTL file: its materials.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// A part of an OBJ file, read by itself: its vertices and faces, and what else it says.
+// Chunk of an OBJ file, parsed by one thread: its vertices and faces; other statements are kept.
 #pragma once
 
 #include <array>

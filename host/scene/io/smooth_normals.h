@@ -1,4 +1,4 @@
-// Normals for faces that the file wants smooth and has none for.
+// Smooth vertex normals for faces that have no normals of their own.
 #pragma once
 
 #include <cstdint>

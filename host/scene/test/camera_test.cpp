@@ -10,13 +10,10 @@
 
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
+#include "host/scene/view.h"
 
 namespace raygate {
 namespace {
-
-float largest(const glm::vec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
 
 TEST(ScaledDirection, HasItsLargestComponentBetweenOneAndTwo) {
   std::mt19937_64 random(6);
@@ -114,7 +111,7 @@ TEST(Frame, ShowsTheWholeSceneAndFillsThePicture) {
       scene.triangles.emplace_back().vertices = {i, i + 1, i + 2};
     }
     const double aspect = std::exp(uniform(random));
-    const Camera camera = Camera::frame(scene, aspect);
+    const Camera camera = front_camera(scene, aspect);
     EXPECT_LT(camera.forward().z, 0.0);
     EXPECT_LT(camera.forward().y, 0.0);
     double reach = 0.0;
@@ -130,20 +127,20 @@ TEST(Frame, TakesAFlatScene) {
   Scene scene;
   scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
   scene.triangles.emplace_back().vertices = {0, 1, 2};
-  EXPECT_GT(Camera::frame(scene, 1.5).eye().y, 0.0f) << "seen from above";
+  EXPECT_GT(front_camera(scene, 1.5).eye().y, 0.0f) << "seen from above";
   scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  EXPECT_GT(Camera::frame(scene, 1.5).eye().z, 0.0f);
+  EXPECT_GT(front_camera(scene, 1.5).eye().z, 0.0f);
   scene.positions = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  EXPECT_NO_THROW((void)Camera::frame(scene, 1.5));
+  EXPECT_NO_THROW((void)front_camera(scene, 1.5));
 }
 
 TEST(Frame, RefusesNothingToSeeAndTooMuch) {
   Scene scene;
-  EXPECT_THROW((void)Camera::frame(scene, 1), InputError);
+  EXPECT_THROW((void)front_camera(scene, 1), InputError);
   const float huge = std::numeric_limits<float>::max();
   scene.positions = {{-huge, 0, 0}, {huge, 0, 0}, {0, huge, 0}};
   scene.triangles.emplace_back().vertices = {0, 1, 2};
-  EXPECT_THROW((void)Camera::frame(scene, 1), InputError);
+  EXPECT_THROW((void)front_camera(scene, 1), InputError);
 }
 
 /// Looks along -z from (1, 2, 3) at what is 4 away; the picture is twice as wide as high.

@@ -1,8 +1,8 @@
-#include "host/scene/view.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "host/scene/view.h"
 
 namespace raygate {
 namespace {

@@ -11,6 +11,7 @@
 #include "host/base/srgb.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
+#include "host/scene/material_lookup.h"
 #include "host/scene/scene.h"
 #include "host/scene/test/tga.h"
 

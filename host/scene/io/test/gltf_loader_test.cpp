@@ -9,6 +9,7 @@
 #include "host/scene/instances.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/binary.h"
+#include "host/scene/material_lookup.h"
 
 namespace raygate {
 namespace {

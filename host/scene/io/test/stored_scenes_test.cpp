@@ -9,6 +9,7 @@
 #include "host/scene/camera.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
+#include "host/scene/view.h"
 
 namespace raygate {
 namespace {
@@ -40,7 +41,7 @@ TEST(StoredScenes, CornellBox) {
   EXPECT_EQ(scene.materials[3].emission, glm::vec3(17, 12, 4));
 
   // It is seen through its opening: from in front, below the ceiling, between the walls.
-  const glm::vec3 eye = Camera::frame(scene, 1.0).eye();
+  const glm::vec3 eye = front_camera(scene, 1.0).eye();
   EXPECT_GT(eye.z, 559.2f);
   EXPECT_LT(eye.y, 548.8f);
   EXPECT_NEAR(eye.x, 278.0f, 1.0f);

@@ -1,0 +1,82 @@
+#include "host/scene/material_lookup.h"
+
+#include <cmath>
+
+namespace raygate {
+namespace {
+
+/// Where on its texture a point of a triangle is that has texture coordinates.
+glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
+                    const glm::dvec3& weights) {
+  glm::dvec2 uv(0.0);
+  for (int k = 0; k < 3; ++k) {
+    uv += weights[k] * glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(k)]]);
+  }
+  return uv * glm::dvec2(mapping.scale) + glm::dvec2(mapping.offset);
+}
+
+Wrap wrap_of(const TextureMapping& mapping) { return mapping.clamp ? Wrap::kClamp : Wrap::kRepeat; }
+
+}  // namespace
+
+glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const Material& material = scene.materials[triangle.material];
+  if (material.diffuse_texture == kNoIndex || triangle.texcoords[0] == kNoIndex) {
+    return material.diffuse;
+  }
+  const TextureMapping& mapping = material.diffuse_mapping;
+  return material.diffuse * scene.textures[material.diffuse_texture].at(
+                                place_on(mapping, scene, triangle, weights), wrap_of(mapping));
+}
+
+bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const Material& material = scene.materials[triangle.material];
+  const MaterialMap& map = material.opacity_map;
+  if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return false;
+  const glm::dvec2 place = place_on(map.mapping, scene, triangle, weights);
+  return scene.textures[map.texture].codes_at(place, wrap_of(map.mapping)).r <
+         material.opacity_cutoff;
+}
+
+glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
+                        const std::array<glm::vec3, 3>& corners, const glm::dvec3& weights,
+                        const glm::vec3& normal) {
+  const Material& material = scene.materials[triangle.material];
+  const MaterialMap& map = material.normal_map;
+  if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return normal;
+  const auto uv = [&](std::size_t k) {
+    return glm::dvec2(scene.texcoords[triangle.texcoords[k]]) * glm::dvec2(map.mapping.scale);
+  };
+  const glm::dvec2 to_1 = uv(1) - uv(0), to_2 = uv(2) - uv(0);
+  const glm::dvec3 a(corners[0]), edge_1 = glm::dvec3(corners[1]) - a,
+                                  edge_2 = glm::dvec3(corners[2]) - a;
+  const double sign = to_1.x * to_2.y < to_1.y * to_2.x ? -1.0 : 1.0;
+  const glm::dvec3 n(normal), along_u = sign * (edge_1 * to_2.y - edge_2 * to_1.y),
+                              along_v = sign * (edge_2 * to_1.x - edge_1 * to_2.x);
+  const glm::dvec3 across = along_u - n * glm::dot(n, along_u);
+  const double length = glm::length(across);
+  const glm::dvec3 side = glm::cross(n, across);
+  const double turn = glm::dot(side, along_v);
+  if (!(length > 0.0) || !std::isfinite(length) || turn == 0.0) return normal;
+  const glm::dvec3 x = across / length, y = (turn < 0.0 ? -side : side) / length;
+  const glm::dvec2 place = place_on(map.mapping, scene, triangle, weights);
+  const glm::dvec3 codes(scene.textures[map.texture].codes_at(place, wrap_of(map.mapping)));
+  const double scale = material.normal_scale;
+  const glm::dvec3 bent = x * ((2.0 * codes.x - 1.0) * scale) +
+                          y * ((2.0 * codes.y - 1.0) * scale) + n * (2.0 * codes.z - 1.0);
+  const double size = glm::length(bent);
+  return size > 0.0 && std::isfinite(size) ? glm::vec3(bent / size) : normal;
+}
+
+glm::vec2 roughness_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const auto& shares = scene.materials[triangle.material].metallic_roughness;
+  if (!shares || shares->map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) {
+    return glm::vec2(1.0f);
+  }
+  const TextureMapping& mapping = shares->map.mapping;
+  const glm::vec3 codes = scene.textures[shares->map.texture].codes_at(
+      place_on(mapping, scene, triangle, weights), wrap_of(mapping));
+  return {codes.g, codes.b};
+}
+
+}  // namespace raygate

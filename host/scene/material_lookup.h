@@ -1,0 +1,35 @@
+// Textured values of a triangle's material at a point: colour, mask, normal, roughness.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+#include "host/scene/scene.h"
+
+namespace raygate {
+
+/// The diffuse colour of `triangle`, one of the scene's, at the point with these weights of its
+/// vertices (they sum to 1): the material's Kd times its texture. Where the face has no texture
+/// coordinates the texture counts as white.
+[[nodiscard]] glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle,
+                                   const glm::dvec3& weights);
+
+/// Whether the mask of the triangle's material hides that point. Never, where it has none or the
+/// face has no texture coordinates.
+[[nodiscard]] bool is_masked_out(const Scene& scene, const Triangle& triangle,
+                                 const glm::dvec3& weights);
+
+/// The normal at that point by the map of the triangle's material, around `normal`, a unit vector
+/// on the side where the vertices, at `corners`, run counter-clockwise: the map's x and y are along
+/// the directions in which u and v grow (their part across the normal). `normal` itself where there
+/// is no map or where the texture coordinates have no direction.
+[[nodiscard]] glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
+                                      const std::array<glm::vec3, 3>& corners,
+                                      const glm::dvec3& weights, const glm::vec3& normal);
+
+/// What the texture of a metallic-roughness material multiplies at that point: x roughness, y
+/// metallic. 1 where it has none, or the face has no texture coordinates.
+[[nodiscard]] glm::vec2 roughness_at(const Scene& scene, const Triangle& triangle,
+                                     const glm::dvec3& weights);
+
+}  // namespace raygate
