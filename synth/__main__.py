@@ -101,10 +101,11 @@ def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
     try:
+        one = bool(given.top) and given.top != "adders"
         targets = measure.Targets(
-            measure.available(given.targets.split(",") if given.targets else None),
+            measure.available(given.targets.split(",") if given.targets else None, whole=not one),
             int(given.jobs))
-        if given.top and given.top != "adders":
+        if one:
             return run_one(given, targets)
         return run_all(given, targets)
     except (tools.MissingTool, FileNotFoundError, ValueError) as error:

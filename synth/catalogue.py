@@ -76,6 +76,11 @@ class Library:
         return {}
 
     @property
+    def is_made(self) -> bool:
+        """Whether its tables are there: a library's own come with it."""
+        return True
+
+    @property
     def gate(self) -> str:
         """The cell by which gates are counted."""
         return "NAND2X1"
@@ -132,6 +137,11 @@ class Characterised(Library):
     def corners(self) -> dict[str, pathlib.Path]:
         """The slow corner and the fast one."""
         return {corner.name: measured.liberty_file(corner.name) for corner in cells.CORNERS[1:]}
+
+    @property
+    def is_made(self) -> bool:
+        """Whether all cells are measured."""
+        return all(measured.is_made(corner) for corner in cells.CORNERS)
 
     @property
     def gate(self) -> str:

@@ -15,16 +15,20 @@ class Targets:
     workers: int = 2
 
 
-def available(names: list[str] | None) -> tuple[str, ...]:
+def available(names: list[str] | None, whole: bool = True) -> tuple[str, ...]:
     """The targets asked for, or all whose tools are installed.
 
     Raises MissingTool for one that was asked for and for the standard-cell tools; an FPGA whose
-    placer is absent is left out of a run of everything.
+    placer is absent is left out of a run of everything. So are, of a run that is not `whole`, cells
+    that would have to be measured first: that takes longer than one design.
     """
     tools.find("yosys")
     chosen = []
     for library in LIBRARIES:
-        if not names or library.name in names:
+        if not names and not whole and not library.is_made:
+            print(f"no {library.title}: its cells are not measured yet; TARGETS={library.name} does that first (half an "
+                  "hour on one processor), `make cells` too", file=sys.stderr)
+        elif not names or library.name in names:
             tools.find("sta")
             _ = library.liberty, library.corners
             chosen.append(library.name)

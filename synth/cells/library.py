@@ -41,6 +41,14 @@ def _measure(cell: Cell, at: Corner) -> dict:
     return {**delays.combinational(cell, circuit, at, folder), "leakage": leakage.leakage(cell, circuit, at, folder)}
 
 
+def is_made(at: Corner) -> bool:
+    """Whether all cells are measured at a corner; not where what measures them is missing."""
+    try:
+        return all(store.kept(_folder(cell, at), _key(cell, at)) is not None for cell in CELLS)
+    except (tools.MissingTool, FileNotFoundError):
+        return False
+
+
 def _tell(got: dict) -> str:
     arc, i = got["arcs"][0], delays.MIDDLE
     return f"{arc['input']} to {arc['output']} {1000 * max(arc['cell_rise'][i][i], arc['cell_fall'][i][i]):.0f} ps"

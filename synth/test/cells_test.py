@@ -8,7 +8,7 @@ import tempfile
 import unittest
 from unittest import mock
 
-from synth import mapping, tools
+from synth import mapping, measure, tools
 from synth.catalogue import Characterised, Design
 from synth.cells import __main__ as program
 from synth.cells import catalogue, delays, extraction, leakage, liberty, models, ngspice, package, published
@@ -33,6 +33,23 @@ class Functions(unittest.TestCase):
         self.assertEqual([(arc.input, arc.inverts, arc.held) for arc in catalogue.arcs(CELLS["nand2_1"])],
                          [("A", True, (("B", True),)), ("B", True, (("A", True),))])
         self.assertEqual([arc.inverts for arc in catalogue.arcs(CELLS["xor2_1"])], [False, True, False, True])
+
+
+class Targets(unittest.TestCase):
+    """measure.available: cells that are not measured yet."""
+
+    def test_one_design_does_not_wait_for_them(self):
+        """They are left out with a word of how to have them; a report of everything has them."""
+        made = mock.patch.object(Characterised, "is_made", new_callable=mock.PropertyMock, return_value=False)
+        file = mock.patch.object(Characterised, "liberty", new_callable=mock.PropertyMock)
+        corners = mock.patch.object(Characterised, "corners", new_callable=mock.PropertyMock)
+        said = io.StringIO()
+        with made, file as measured, corners, contextlib.redirect_stderr(said):
+            self.assertNotIn("sky130", measure.available(None, whole=False))
+            measured.assert_not_called()
+            self.assertIn("TARGETS=sky130", said.getvalue())
+            self.assertIn("sky130", measure.available(None))
+            self.assertEqual(measure.available(["sky130"], whole=False), ("sky130",))
 
 
 class Models(unittest.TestCase):
