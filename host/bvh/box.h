@@ -1,4 +1,4 @@
-// Axis-aligned boxes in one register each: what a tree is built with.
+// Box: an axis-aligned bounding box in one register, for building trees.
 #pragma once
 
 #include <algorithm>

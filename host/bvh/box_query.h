@@ -1,4 +1,4 @@
-// What is near: the triangles whose boxes touch a given box.
+// Box query: the triangles whose bounds overlap a box.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-// A tree of boxes around a scene's triangles.
+// Bvh: an eight-wide bounding volume hierarchy around a scene's triangles and instances.
 #pragma once
 
 #include <array>
@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "host/base/vectors.h"
-#include "host/bvh/instance_bvh.h"
 #include "host/bvh/range_map.h"
 #include "host/scene/instances.h"
 #include "host/scene/scene.h"
@@ -18,6 +17,20 @@
 namespace raygate {
 
 struct TreeContent;
+
+/// Its nodes and primitives are those of the mesh's tree, of numbers from `first_node` and
+/// `first_primitive` on.
+struct InstanceBvh {
+  double rows[3][4];      ///< as Instance has them
+  float matrix[3][3];     ///< the first three of each
+  float low[3], high[3];  ///< about the fourth: what bounds begin with
+  std::uint32_t mesh;     ///< whose tree it is
+  std::uint32_t first_node = 0, first_primitive = 0;
+  std::uint32_t first_triangle = 0;  ///< in the scene
+
+  /// `size`: the largest magnitudes of the bounds of the mesh's tree.
+  InstanceBvh(const Instance& instance, const glm::dvec3& size);
+};
 
 /// A tree of axis-aligned boxes, eight to a node. A leaf holds a run of primitives; primitive s
 /// stands for triangle `triangle_of(s)` of the scene. The tree does not refer to the scene after it

@@ -1,5 +1,3 @@
-#include "host/bvh/instance_bvh.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>

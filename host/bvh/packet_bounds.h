@@ -1,5 +1,5 @@
-// A bundle of rays of one origin against the eight boxes of a node, as if it were one ray; and
-// eight bundles against one box.
+// Packet bounds: slab tests of a packet of rays with one origin, as if it were one ray, against the
+// eight boxes of a node; and of eight packets against one box.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The way of eight rays through the tree, leaf by leaf, to the triangles that they may hit.
+// Packet traversal: takes eight rays through the tree and stops at each leaf.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Numbers in runs, one run after the other: which run is a number in?
+// Range map: finds which of many consecutive ranges a number is in.
 #pragma once
 
 #include <algorithm>

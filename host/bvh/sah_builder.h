@@ -1,4 +1,4 @@
-// How triangles are divided, two ways at a time: the plan of a tree.
+// SAH builder: splits triangles into a binary tree by the surface area heuristic.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,4 @@
-// The way of a bundle of rays through the tree, or of whatever else meets boxes: leaf by leaf, near
-// before far.
+// Traversal: the tree's ordered walk, leaf by leaf and near before far, for any visitor.
 #pragma once
 
 #include <algorithm>

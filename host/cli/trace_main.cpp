@@ -18,9 +18,8 @@
 #include "host/film/atomic_file.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/trace/answers.h"
-#include "host/trace/question.h"
-#include "host/trace/rays_in.h"
+#include "host/trace/hit_table.h"
+#include "host/trace/ray_table_reader.h"
 #include "host/trace/tracer.h"
 
 namespace raygate {
@@ -66,13 +65,13 @@ struct TraceOptions {
   std::string information;
   std::filesystem::path scene, rays, output = "-";
   Hits hits = Hits::kNearest;
-  std::vector<Answer> columns;
+  std::vector<HitColumn> columns;
   EngineOptions engine;
   bool strict = false, quiet = false;
 
   [[nodiscard]] bool is_to_standard_output() const { return output == "-"; }
-  [[nodiscard]] AnswerFormat format() const {
-    return output.extension() == ".npy" ? AnswerFormat::kNpy : AnswerFormat::kCsv;
+  [[nodiscard]] TableFormat format() const {
+    return output.extension() == ".npy" ? TableFormat::kNpy : TableFormat::kCsv;
   }
 };
 
@@ -119,9 +118,9 @@ TraceOptions parse(const std::vector<std::string>& words) {
 /// Where the rows go.
 class Table {
  public:
-  Table(const TraceOptions& options, const Answers& answers) : answers_(answers) {
+  Table(const TraceOptions& options, const HitTable& answers) : answers_(answers) {
     if (!options.is_to_standard_output()) file_.emplace(options.output);
-    if (file_ && file_->is_stream() && options.format() == AnswerFormat::kNpy) {
+    if (file_ && file_->is_stream() && options.format() == TableFormat::kNpy) {
       throw InputError(options.output.string() + ": found a stream, expected a file for NPY");
     }
     write(answers.header(0));
@@ -135,14 +134,14 @@ class Table {
     }
   }
   /// Now that they are counted.
-  void finish(std::uint64_t rows, AnswerFormat format) {
+  void finish(std::uint64_t rows, TableFormat format) {
     if (!file_) return;
-    if (format == AnswerFormat::kNpy) file_->replace_start(answers_.header(rows));
+    if (format == TableFormat::kNpy) file_->replace_start(answers_.header(rows));
     file_->commit();
   }
 
  private:
-  const Answers& answers_;
+  const HitTable& answers_;
   std::optional<AtomicFile> file_;
 };
 
@@ -181,13 +180,13 @@ int run(const TraceOptions& options) {
     const std::filesystem::path outputs[] = {options.output};
     require_distinct(outputs, inputs);
   }
-  RaysIn rays(options.rays, scene.origin);
-  const Answers answers(scene, bvh, options.columns, options.format());
+  RayTableReader rays(options.rays, scene.origin);
+  const HitTable answers(scene, bvh, options.columns, options.format());
   Table table(options, answers);
   note_interruptions();
   const auto start = std::chrono::steady_clock::now();
   const TraceCounts counts =
-      trace([&](std::size_t most, RayBlock& block) { return rays.read(most, block); }, options.hits,
+      trace([&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits,
             bvh, answers, make_intersector_factory(options.engine, bvh), options.engine.threads,
             [&](std::string_view rows) { table.write(rows); }, [] { return interruption() == 0; });
   if (interruption() != 0) {

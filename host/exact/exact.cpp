@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "host/base/lanes.h"
-#include "host/exact/exact_vector.h"
+#include "host/exact/expansion.h"
 
 namespace raygate {
 namespace {

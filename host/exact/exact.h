@@ -1,4 +1,4 @@
-// Decisions that are never wrong: does a ray hit a triangle, and which of two hits is nearer.
+// Exact predicates: whether a ray hits a triangle, and which of two hits is nearer.
 #pragma once
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "host/exact/exact_sum.h"
+#include "host/exact/expansion.h"
 
 namespace raygate {
 namespace {

@@ -1,4 +1,4 @@
-// Questions of plane geometry, answered exactly.
+// Exact predicates of points: orientation, area's sign, collinearity.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,8 +1,11 @@
-// Exact sums and products of doubles, after Shewchuk, "Adaptive Precision Floating-Point
-// Arithmetic and Fast Robust Geometric Predicates", 1997.
+// Exact sums and products of doubles, and exact vectors, after Shewchuk, "Adaptive Precision
+// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <glm/glm.hpp>
+#include <vector>
 
 namespace raygate {
 
@@ -143,5 +146,47 @@ template <int N, int M>
   multiply(e, f, result, scratch);
   return result;
 }
+
+template <int N>
+using ExactVector = std::array<Expansion<N>, 3>;
+
+/// a - b.
+[[nodiscard]] inline ExactVector<2> exact_difference(const glm::vec3& a, const glm::vec3& b) {
+  return {exact_difference(a.x, b.x), exact_difference(a.y, b.y), exact_difference(a.z, b.z)};
+}
+
+[[nodiscard]] inline ExactVector<16> exact_cross(const ExactVector<2>& u, const ExactVector<2>& v) {
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+[[nodiscard]] inline Expansion<192> exact_dot(const ExactVector<2>& u, const ExactVector<16>& v) {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+[[nodiscard]] inline Expansion<96> exact_dot(const glm::vec3& u, const ExactVector<16>& v) {
+  return v[0] * static_cast<double>(u.x) + v[1] * static_cast<double>(u.y) +
+         v[2] * static_cast<double>(u.z);
+}
+
+/// A sum of doubles without rounding: what an Expansion is, without a bound of its size
+/// (Shewchuk's GROW-EXPANSION with zero elimination). Terms and sums must not overflow.
+class ExactSum {
+ public:
+  void add(double term) {
+    std::size_t kept = 0;
+    for (const double part : parts_) {
+      const ExactPair pair = two_sum(term, part);
+      if (pair.error != 0.0) parts_[kept++] = pair.error;
+      term = pair.value;
+    }
+    parts_.resize(kept);
+    if (term != 0.0) parts_.push_back(term);
+  }
+  /// -1, 0 or 1.
+  [[nodiscard]] int sign() const { return parts_.empty() ? 0 : (parts_.back() > 0.0 ? 1 : -1); }
+
+ private:
+  std::vector<double> parts_;  // not overlapping, of growing magnitude
+};
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// What exactness rests on: IEEE 754 arithmetic, each operation rounded by itself, to nearest.
+// Checks for IEEE 754 arithmetic, each operation rounded to nearest, on which exactness rests.
 #pragma once
 
 #include <cfloat>

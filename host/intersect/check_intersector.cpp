@@ -57,9 +57,8 @@ bool CheckIntersector::agree(const Ray& ray, const RayQuery& query, std::size_t 
     const float enough = query.any_hit_before[number];
     return is_before(bvh_, ray, a, enough) && is_before(bvh_, ray, b, enough);
   }
-  const bool with_point = query.skip_ids.empty() && query.any_hit_before.empty();
   return a.primitive == b.primitive && a.t.low <= b.t.high && b.t.low <= a.t.high &&
-         (!with_point || (same_bits(a.point, b.point) && a.point_error == b.point_error));
+         (!query.with_points() || (same_bits(a.point, b.point) && a.point_error == b.point_error));
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// Two intersectors side by side: the first answer in which they differ stops the run.
+// Check intersector: compares two intersectors and stops at the first ray where they differ.
 #pragma once
 
 #include <memory>

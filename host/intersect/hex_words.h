@@ -1,4 +1,4 @@
-// Floats as their words, for messages from which a case is replayed.
+// Floats as hexadecimal words, for messages from which a case can be replayed.
 #pragma once
 
 #include <bit>

@@ -1,44 +1,72 @@
-// What searches have done, counted.
+// Counters of what intersectors have done.
 #pragma once
 
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace raygate {
 
+/// Adds counters to counters of their kind, a struct of nothing but std::uint64_t: its declaration
+/// is the list of the fields.
+template <class Counters>
+void add_counters(Counters& sum, const Counters& other) {
+  using Words = std::array<std::uint64_t, sizeof(Counters) / sizeof(std::uint64_t)>;
+  auto words = std::bit_cast<Words>(sum);
+  const auto others = std::bit_cast<Words>(other);
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] += others[i];
+  sum = std::bit_cast<Counters>(words);
+}
+
 /// Tests of rays against polygons, and what a hit-test unit did for them.
 struct HitCounters {
   std::uint64_t tests = 0;         ///< (ray, polygon) pairs; misses + hits + edge_doubts
-  std::uint64_t misses = 0;        ///< surely missed
-  std::uint64_t hits = 0;          ///< surely hit
+  std::uint64_t misses = 0;        ///< certain misses
+  std::uint64_t hits = 0;          ///< certain hits
   std::uint64_t edge_doubts = 0;   ///< neither
-  std::uint64_t depth_doubts = 0;  ///< sure hits that float32 cannot put in order
+  std::uint64_t depth_doubts = 0;  ///< certain hits that float32 cannot put in order
   std::uint64_t plane_tests = 0;   ///< points P = d I / (I . N) computed
-  // What follows is 0 where no unit is asked.
-  std::uint64_t unit_tests = 0;     ///< tests that went through the unit
-  std::uint64_t quotients = 0;      ///< divisions that the unit did
-  std::uint64_t input_bytes = 0;    ///< of the words it took: records, or rays and planes
-  std::uint64_t clocks = 0;         ///< simulated clock cycles; 0 where nothing is simulated
-  std::uint64_t idle_clocks = 0;    ///< of the pipelined unit's lanes: no test was there
-  std::uint64_t output_stalls = 0;  ///< of these: a result was not taken
+  // The rest is 0 without a unit.
+  std::uint64_t unit_tests = 0;     ///< tests done by the unit
+  std::uint64_t quotients = 0;      ///< divisions done by the unit
+  std::uint64_t input_bytes = 0;    ///< bytes sent to the unit: records, or rays and planes
+  std::uint64_t clocks = 0;         ///< simulated clock cycles
+  std::uint64_t idle_clocks = 0;    ///< clocks of the pipelined unit's lanes without a test
+  std::uint64_t output_stalls = 0;  ///< clocks of the lanes in which a result was not taken
 
-  HitCounters& operator+=(const HitCounters& other);
+  HitCounters& operator+=(const HitCounters& other) {
+    add_counters(*this, other);
+    return *this;
+  }
 };
 
-/// What a intersector has done since it was made.
+/// What an intersector has done since it was made.
 struct IntersectCounters {
   HitCounters hit;
-  std::uint64_t exact_inside = 0;    ///< doubts about edges that exact arithmetic settled: not
-                                     ///< those surely too far away
-  std::uint64_t exact_depth = 0;     ///< pairs of hits, or a hit and a limit, that it put in order
-  std::uint64_t ended_early = 0;     ///< searches that RayQuery::any_hit_before ended
-  std::uint64_t own_records = 0;     ///< polygon records made for a single packet of rays
-  std::uint64_t common_records = 0;  ///< polygon records made for origins that searches share
+  std::uint64_t exact_inside = 0;    ///< edge doubts that exact arithmetic resolved; those surely
+                                     ///< too far away are not counted
+  std::uint64_t exact_depth = 0;     ///< exact comparisons of two hits, or of a hit and t_max
+  std::uint64_t ended_early = 0;     ///< rays that ended at RayQuery::any_hit_before
+  std::uint64_t own_records = 0;     ///< polygon records made for one packet of rays
+  std::uint64_t common_records = 0;  ///< polygon records made for an origin that queries share
   // Seconds.
   double traverse = 0.0;   ///< boxes, and records of common origins
   double record = 0.0;     ///< own records
-  double hit_tests = 0.0;  ///< tests, and settling what they leave open; of tests in place: all
+  double hit_tests = 0.0;  ///< tests and resolving their doubts; without a unit: everything
 
-  IntersectCounters& operator+=(const IntersectCounters& other);
+  IntersectCounters& operator+=(const IntersectCounters& other) {
+    hit += other.hit;
+    exact_inside += other.exact_inside;
+    exact_depth += other.exact_depth;
+    ended_early += other.ended_early;
+    own_records += other.own_records;
+    common_records += other.common_records;
+    traverse += other.traverse;
+    record += other.record;
+    hit_tests += other.hit_tests;
+    return *this;
+  }
 };
 
 }  // namespace raygate

@@ -1,9 +1,23 @@
 #include "host/intersect/intersector.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
 namespace raygate {
+namespace {
+
+bool overlap(const Interval& a, const Interval& b) { return a.low <= b.high && b.low <= a.high; }
+
+/// Whether the interval says on which side of t_max the hit is.
+bool tells(const Interval& t, float t_max) { return t.high < t_max || t.low >= t_max; }
+
+}  // namespace
+
+void Intersector::clear(const RayQuery& query, std::span<NearestHit> hits) {
+  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest is not valid
+  std::ranges::fill(query.work, RayWork{});
+}
 
 void throw_unscaled(const Ray& ray) {
   const glm::vec3& d = ray.direction;
@@ -12,6 +26,46 @@ void throw_unscaled(const Ray& ray) {
                 "direction (%g, %g, %g): found unscaled, expected a largest component in [1, 2)",
                 d.x, d.y, d.z);
   throw std::invalid_argument(text);
+}
+
+bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float t_max) {
+  if (t_max == std::numeric_limits<float>::infinity()) return true;
+  if (tells(hit.t, t_max)) return hit.t.high < t_max;
+  return compare_hit_to_limit(ray, bvh.corners_of(hit.primitive), t_max) < 0;
+}
+
+bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a, const NearestHit& b) {
+  if (!overlap(a.t, b.t)) return a.t.high < b.t.low;
+  const int order = compare_hits(ray, bvh.corners_of(a.primitive), bvh.corners_of(b.primitive));
+  return order < 0 || (order == 0 && bvh.triangle_of(a.primitive) <= bvh.triangle_of(b.primitive));
+}
+
+bool take_if_nearer(const Bvh& bvh, const Ray& ray, float t_max, const NearestHit& hit,
+                    NearestHit& best, IntersectCounters& counters) {
+  const bool has_limit = t_max != std::numeric_limits<float>::infinity();
+  counters.exact_depth += has_limit && !tells(hit.t, t_max);
+  if (!is_before(bvh, ray, hit, t_max)) return false;
+  if (best.primitive == NearestHit::kNone) {
+    best = hit;
+    return true;
+  }
+  counters.exact_depth += overlap(hit.t, best.t);
+  if (!is_nearer(bvh, ray, hit, best)) return false;
+  const double farthest = best.t.high;
+  best = hit;
+  best.t.high = std::min(best.t.high, farthest);  // it is nearer than what it replaces
+  return true;
+}
+
+bool resolve_doubt(const Bvh& bvh, const Ray& ray, float t_max, NearestHit doubt, NearestHit& best,
+                   IntersectCounters& counters) {
+  const Corners& corners = bvh.corners_of(doubt.primitive);
+  doubt.t = hit_distance(ray, corners);
+  if (doubt.t.low >= t_max || (best.primitive != NearestHit::kNone && doubt.t.low > best.t.high)) {
+    return false;
+  }
+  ++counters.exact_inside;
+  return hits_triangle(ray, corners) && take_if_nearer(bvh, ray, t_max, doubt, best, counters);
 }
 
 }  // namespace raygate

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What --point-error costs and changes: a table of one run, as host/intersect/README.md has it.
+"""What --point-error costs and changes: a table of one run; host/intersect/README.md sums it up.
 
     python3 -B host/intersect/point_error.py [--repeats N] [SCENE ...]
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/base/lane_math.h"
-#include "host/intersect/nearest_hit.h"
+#include "host/intersect/intersector.h"
 #include "host/light/bsdf.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/intersect/nearest_hit.h"
+#include "host/intersect/intersector.h"
 #include "host/light/hits.h"
 #include "host/light/integrator_kind.h"
 #include "host/light/lights.h"

@@ -9,8 +9,8 @@
 #include "host/intersect/cpu/all_hits.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/scene/scene.h"
-#include "host/trace/hit_place.h"
-#include "host/trace/ray_block.h"
+#include "host/trace/hit_table.h"
+#include "host/trace/ray_table.h"
 
 namespace raygate {
 namespace {
@@ -39,8 +39,8 @@ Scene scene_of(std::span<const Tracer::Triangle> triangles) {
   return scene;
 }
 
-RayBlock block_of(std::span<const Tracer::Ray> rays) {
-  RayBlock block;
+RayTable block_of(std::span<const Tracer::Ray> rays) {
+  RayTable block;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const char* const wrong =
         block.add(glm::dvec3(vector(rays[i].origin)), glm::dvec3(vector(rays[i].direction)),
@@ -73,14 +73,14 @@ struct Tracer::Tree {
   Tree(std::span<const Triangle> triangles, int threads)
       : bvh(scene_of(checked(triangles)), threads) {}
 
-  [[nodiscard]] Hit answer(const RayBlock& block, std::size_t i, const NearestHit& hit) const {
+  [[nodiscard]] Hit answer(const RayTable& block, std::size_t i, const NearestHit& hit) const {
     if (hit.primitive == NearestHit::kNone) return {};
-    const HitPlace place = place_of_hit(block.rays[i], bvh.corners_of(hit.primitive));
+    const HitPoint place = hit_point_of(block.rays[i], bvh.corners_of(hit.primitive));
     return {bvh.triangle_of(hit.primitive), std::ldexp(place.t, block.exponents[i]), place.u,
             place.v};
   }
 
-  [[nodiscard]] std::vector<NearestHit> find(const RayBlock& block, bool any) const {
+  [[nodiscard]] std::vector<NearestHit> find(const RayTable& block, bool any) const {
     std::vector<NearestHit> hits(block.rays.size());
     RayQuery query{.t_max = block.limits};
     if (any) query.any_hit_before = block.limits;
@@ -99,7 +99,7 @@ Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 
 void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
   require_room(rays.size(), hits.size());
-  const RayBlock block = block_of(rays);
+  const RayTable block = block_of(rays);
   const std::vector<NearestHit> found = tree_->find(block, false);
   for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = tree_->answer(block, i, found[i]);
 }
@@ -113,7 +113,7 @@ void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) cons
 }
 
 std::vector<Tracer::Hit> Tracer::all(const Ray& ray) const {
-  const RayBlock block = block_of({&ray, 1});
+  const RayTable block = block_of({&ray, 1});
   std::vector<NearestHit> found;
   RayWork work;
   all_hits(tree_->bvh, block.rays[0], block.limits[0], found, work);

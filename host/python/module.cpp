@@ -36,9 +36,8 @@
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
-#include "host/trace/answers.h"
-#include "host/trace/question.h"
-#include "host/trace/ray_block.h"
+#include "host/trace/hit_table.h"
+#include "host/trace/ray_table.h"
 #include "host/trace/tracer.h"
 
 namespace nb = nanobind;
@@ -160,7 +159,7 @@ class PythonScene {
     return names;
   }
 
-  /// The rows of Answers as bytes, and what their fields are.
+  /// The rows of HitTable as bytes, and what their fields are.
   nb::object trace_rays(const Vectors3& origins, const Vectors3& directions,
                         const std::optional<Numbers>& limits, const std::string& hits,
                         const std::vector<std::string>& columns, const std::string& engine,
@@ -174,9 +173,9 @@ class PythonScene {
     const Elements from("origins", origins), way("directions", directions);
     std::optional<Elements> limit;
     if (limits) limit.emplace("limits", *limits);
-    const Answers answers(scene_, *bvh_, columns_of(columns, asked, engine == "cpu", ""),
-                          AnswerFormat::kNpy);
-    const auto read = [&, next = std::size_t{0}](std::size_t most, RayBlock& block) mutable {
+    const HitTable answers(scene_, *bvh_, columns_of(columns, asked, engine == "cpu", ""),
+                           TableFormat::kNpy);
+    const auto read = [&, next = std::size_t{0}](std::size_t most, RayTable& block) mutable {
       block.clear(next);
       for (; block.rays.size() < most && next < count; ++next) {
         const char* const wrong = block.add(

@@ -14,7 +14,7 @@ namespace {
 /// What one thread works with.
 struct Desk {
   std::unique_ptr<Intersector> intersector;  ///< none where all hits are asked for
-  RayBlock block;
+  RayTable block;
   std::vector<NearestHit> nearest;
   std::vector<RayWork> work;
   std::vector<RayHit> found;
@@ -44,7 +44,7 @@ void find_all(Desk& desk, const Bvh& bvh) {
 
 }  // namespace
 
-TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const Answers& answers,
+TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTable& answers,
                   const IntersectorFactory& make_intersector, unsigned threads,
                   const std::function<void(std::string_view)>& write,
                   const std::function<bool()>& keep_going) {

@@ -1,4 +1,4 @@
-// Rays in, answers out, in their order, on all threads.
+// Tracer: reads rays, intersects them on all threads and writes rows in the rays' order.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,8 @@
 
 #include "host/bvh/bvh.h"
 #include "host/intersect/intersector.h"
-#include "host/trace/answers.h"
-#include "host/trace/question.h"
-#include "host/trace/ray_block.h"
+#include "host/trace/hit_table.h"
+#include "host/trace/ray_table.h"
 
 namespace raygate {
 
@@ -20,13 +19,13 @@ struct TraceCounts {
 };
 
 /// Replaces a block by the next rays, at most so many; false where there are none.
-using ReadRays = std::function<bool(std::size_t, RayBlock&)>;
+using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
 /// Reads all rays and gives the rows to `write`, block by block in the order of the rays. At most
 /// `threads` blocks are in memory at a time. What `read` and `write` throw ends it. `keep_going` is
 /// asked between blocks.
 [[nodiscard]] TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh,
-                                const Answers& answers, const IntersectorFactory& make_intersector,
+                                const HitTable& answers, const IntersectorFactory& make_intersector,
                                 unsigned threads,
                                 const std::function<void(std::string_view)>& write,
                                 const std::function<bool()>& keep_going);

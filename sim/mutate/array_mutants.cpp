@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "Vhit_test_array_mutants.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/same_results.h"
 #include "sim/array_model.h"
 #include "sim/random_bursts.h"
 

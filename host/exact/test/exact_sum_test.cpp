@@ -1,10 +1,10 @@
-#include "host/exact/exact_sum.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 #include <random>
+
+#include "host/exact/expansion.h"
 
 namespace raygate {
 namespace {

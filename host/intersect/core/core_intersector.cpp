@@ -39,8 +39,7 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
                                 std::span<NearestHit> hits) {
   assert(hits.size() == rays.size());
   Stopwatch watch;
-  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest has no meaning
-  std::ranges::fill(query.work, RayWork{});
+  clear(query, hits);
   sent_.clear();
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (!is_usable(rays[i].direction)) continue;

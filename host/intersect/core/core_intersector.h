@@ -1,4 +1,4 @@
-// Hits found by a ray core: rays go to hardware that walks the tree by itself.
+// Core intersector: sends rays to a ray core, hardware that traverses the tree by itself.
 #pragma once
 
 #include <memory>
@@ -11,9 +11,8 @@
 
 namespace raygate {
 
-/// Sends rays to a core and settles by exact arithmetic what it leaves open. P is the hit-test
-/// unit's, from a record that the host makes, once for each hit: so that it has the bits of other
-/// intersectors'.
+/// Exact arithmetic resolves what the core leaves open. P is computed once for each nearest hit,
+/// from a record that the host makes, so that it has the bits of the other intersectors'.
 class CoreIntersector : public Intersector {
  public:
   /// `image`, of `bvh`, is what the core reads. The tree must outlive this. Intersectors of one

@@ -1,4 +1,4 @@
-// The ray core as software sees it: rays in, sure hits and doubts out.
+// Core unit: the interface of the ray core, rays in, certain hits and doubts out.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 #include "host/exact/exact.h"
 #include "host/intersect/core/memory_image.h"
+#include "host/intersect/intersect_counters.h"
 
 namespace raygate {
 
@@ -65,18 +66,7 @@ struct CoreCounters {
   std::uint64_t clocks = 0;
 
   CoreCounters& operator+=(const CoreCounters& other) {
-    rays += other.rays;
-    nodes += other.nodes;
-    triangles += other.triangles;
-    hits += other.hits;
-    misses += other.misses;
-    doubts += other.doubts;
-    near_ties += other.near_ties;
-    rests += other.rests;
-    lines += other.lines;
-    waits += other.waits;
-    busier += other.busier;
-    clocks += other.clocks;
+    add_counters(*this, other);
     return *this;
   }
 };

@@ -1,4 +1,4 @@
-// What the ray core reads: a tree of seven-wide nodes on grids, and its triangles.
+// Memory image: the nodes and triangles that the ray core reads.
 #pragma once
 
 #include <span>

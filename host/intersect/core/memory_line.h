@@ -1,4 +1,4 @@
-// The lines of the ray core's memory: 64 bytes each, see hw/ray_core/ray_core_pkg.sv.
+// Memory lines: the ray core's nodes and triangles, 64 bytes each (hw/ray_core/ray_core_pkg.sv).
 #pragma once
 
 #include <array>

@@ -1,6 +1,8 @@
-// The ray core's camera unit in C++, bit for bit: directions through a grid of pixels.
+// Pixel grid: the ray core's ray generator in C++, bit for bit.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -17,5 +19,21 @@ struct PixelGrid {
   /// is zero. It means nothing where the sum is zero or not finite.
   [[nodiscard]] glm::vec3 direction(std::uint16_t x, std::uint16_t y) const;
 };
+
+// The steps are those of hw/ray_core/ray_generator.sv.
+inline glm::vec3 PixelGrid::direction(std::uint16_t x, std::uint16_t y) const {
+  glm::vec3 way = first + static_cast<float>(y) * down;
+  way = way + static_cast<float>(x) * right;
+  const auto field = [&](int k) { return std::bit_cast<std::uint32_t>(way[k]) >> 23 & 0xFF; };
+  const std::uint32_t largest = std::max({field(0), field(1), field(2)});
+  for (int k = 0; k < 3; ++k) {
+    const auto word = std::bit_cast<std::uint32_t>(way[k]);
+    const std::uint32_t below = largest - field(k);
+    const bool zero = field(k) == 0 || below > 126;
+    way[k] = std::bit_cast<float>((word & 0x80000000u) |
+                                  (zero ? 0u : (127 - below) << 23 | (word & 0x7FFFFF)));
+  }
+  return way;
+}
 
 }  // namespace raygate

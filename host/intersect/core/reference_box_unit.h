@@ -1,4 +1,4 @@
-// The ray core's box unit in C++, bit for bit: which children of a node a ray enters, near first.
+// Reference box unit: the ray core's box unit in C++, bit for bit.
 #pragma once
 
 #include <array>

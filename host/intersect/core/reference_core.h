@@ -1,4 +1,4 @@
-// The ray core in C++, without its clocks: the same units, one ray after the other.
+// Reference core: the ray core in C++ without clocks, one ray after the other.
 #pragma once
 
 #include <functional>

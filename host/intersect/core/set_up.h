@@ -1,11 +1,11 @@
-// The set-up unit's reference model: a triangle and an origin make a polygon record, in binary32.
+// Reference model of the ray core's set-up unit: a triangle and an origin in, a polygon record out.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 
 #include "host/exact/exact.h"
-#include "host/intersect/unit/polygon_record.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 

@@ -45,21 +45,21 @@ RAYGATE_INLINE void test_leaf(const Bvh& bvh, const Ray& ray, const ShearedRay& 
 
 }  // namespace
 
-void all_hits(const Bvh& bvh, const Ray& ray, float limit, std::vector<NearestHit>& hits,
+void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHit>& hits,
               RayWork& work) {
   hits.clear();
   if (!is_usable(ray.direction)) return;
   if (!is_scaled(ray.direction)) throw_unscaled(ray);
   in_vectors([&](auto) RAYGATE_BODY {
     const ShearedRay sheared(ray);
-    const LineVisitor visitor{PacketBounds(ray.origin, ray.direction), cutoff_beyond(limit)};
+    const LineVisitor visitor{PacketBounds(ray.origin, ray.direction), cutoff_beyond(t_max)};
     TraversalStack<SingleRay> stack({});
     StackEntry<SingleRay> leaf;
     while (next_leaf(bvh, visitor, stack, leaf)) {
       test_leaf(bvh, ray, sheared, leaf.child, hits, work);
     }
   });
-  std::erase_if(hits, [&](const NearestHit& hit) { return !is_before(bvh, ray, hit, limit); });
+  std::erase_if(hits, [&](const NearestHit& hit) { return !is_before(bvh, ray, hit, t_max); });
   std::ranges::sort(hits, [&](const NearestHit& a, const NearestHit& b) {
     return a.primitive != b.primitive && is_nearer(bvh, ray, a, b);
   });

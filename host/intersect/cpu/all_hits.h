@@ -1,4 +1,4 @@
-// Every triangle that a ray hits, in exact order.
+// All hits of a ray, in exact order.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace raygate {
 
-/// Replaces `hits` by all hits of `ray` with t < limit, near before far; of equally far ones the
-/// one of the lower triangle comes first. `limit` is positive, +infinity for none; the direction
-/// scaled, or not usable, and then nothing is hit. A hit's `point` and `point_error` say nothing.
-void all_hits(const Bvh& bvh, const Ray& ray, float limit, std::vector<NearestHit>& hits,
+/// Replaces `hits` by all hits of `ray` with t < t_max, near before far; ties in t: lower triangle
+/// index first. `t_max` is positive, +infinity for all. The direction is scaled; one that is not
+/// usable hits nothing. `point` and `point_error` of the hits are not valid.
+void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHit>& hits,
               RayWork& work);
 
 }  // namespace raygate

@@ -9,11 +9,11 @@
 namespace raygate {
 namespace {
 
-constexpr int kGroups = RayBlock::kGroups;
+constexpr int kGroups = RayPacket::kGroups;
 
 /// The axis along which the active rays go farthest, by the one that goes least; -1 where that is
 /// less than 1/4 on every axis.
-RAYGATE_INLINE int t_scale_axis(const RayBlock& block, const LaneMask* active) {
+RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) {
   FloatLanes least[3] = {FloatLanes{} + 4.0f, FloatLanes{} + 4.0f, FloatLanes{} + 4.0f};
   for (int g = 0; g < kGroups; ++g) {
     if (active[g] == 0) continue;
@@ -62,23 +62,16 @@ RAYGATE_INLINE void largest_of_each(const FloatLanes (&each)[kGroups], FloatLane
 /// is the ray's too.
 RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (&components)[3]) {
   static_assert(offsetof(Ray, direction) + sizeof(Ray::direction) == sizeof(Ray));
-  FloatQuad a, b, c, d;
-  load_quad(reinterpret_cast<const float*>(rays[0] + 1) - kQuad, a);
-  load_quad(reinterpret_cast<const float*>(rays[1] + 1) - kQuad, b);
-  load_quad(reinterpret_cast<const float*>(rays[2] + 1) - kQuad, c);
-  load_quad(reinterpret_cast<const float*>(rays[3] + 1) - kQuad, d);
-  const FloatQuad ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-  const FloatQuad ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-  const FloatQuad cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const FloatQuad cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  components[0] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
-  components[1] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
-  components[2] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+  FloatQuad rows[kQuad];
+  for (int i = 0; i < kQuad; ++i)
+    load_quad(reinterpret_cast<const float*>(rays[i] + 1) - kQuad, rows[i]);
+  transpose(rows);
+  for (int k = 0; k < 3; ++k) components[k] = rows[k + 1];
 }
 
 }  // namespace
 
-std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block) {
+std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   return in_vectors([&](auto) RAYGATE_BODY {
     LaneMask positive[3] = {}, negative[3] = {};  // whether any
     std::uint64_t unscaled = 0;
@@ -124,7 +117,7 @@ std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block) {
   });
 }
 
-void make_cones(const RayBlock& block, const glm::vec3& origin, int octant, Cones& cones) {
+void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones) {
   in_vectors([&](auto) RAYGATE_BODY {
     // Each rounding of what follows is off by a factor 1 + 2^-24 at most. Components over a t_scale
     // are below 8, so that two roundings have them off by less than kScaleError.

@@ -1,4 +1,4 @@
-// Up to 64 rays of one origin and octant, and cones around them: eight groups of eight.
+// Ray packet: up to 64 rays of one origin, and bounding cones around groups of eight.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace raygate {
 
 /// The directions of up to 64 rays, ray k of group g being number 8 g + k of the block.
-struct RayBlock {
+struct RayPacket {
   static constexpr int kGroups = 8, kRays = kGroups * kLanes;
 
   FloatLanes direction[3][kGroups];
@@ -29,16 +29,16 @@ struct RayBlock {
 };
 
 /// Loads up to 64 rays. Bit k of the result is set where ray k is usable but not scaled.
-[[nodiscard]] std::uint64_t load_block(std::span<const Ray> rays, RayBlock& block);
+[[nodiscard]] std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block);
 
 /// Cones around rays of one octant, whatever the lengths of their directions. Lane g of a member
 /// stands for group g; absent groups have a radius of 0. A ray I stands here as I / t_scale, where
 /// its t_scale is one component's magnitude, the same one's for all, or 1 for all; its t becomes
 /// t_scale t. On each axis |I_k / t_scale - center[k][g]| <= radius[k][g].
 struct Cones {
-  LaneMask active[RayBlock::kGroups];     ///< the rays of each group
-  LaneMask groups;                        ///< the groups with any
-  FloatLanes t_scale[RayBlock::kGroups];  ///< of each ray; an absent one's is 1
+  LaneMask active[RayPacket::kGroups];     ///< the rays of each group
+  LaneMask groups;                         ///< the groups with any
+  FloatLanes t_scale[RayPacket::kGroups];  ///< of each ray; an absent one's is 1
   FloatLanes center[3], radius[3];
   PacketBounds8 bounds8;  ///< cutoffs are left to the caller
   PacketBounds whole;     ///< around all groups
@@ -46,6 +46,6 @@ struct Cones {
 
 /// Cones around the block's rays in `cones.active`, which are of this octant. `cones.groups` is
 /// found here, and so is all else.
-void make_cones(const RayBlock& block, const glm::vec3& origin, int octant, Cones& cones);
+void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones);
 
 }  // namespace raygate

@@ -1,26 +1,24 @@
-// What a cone walk found, handed over.
+// Writes the nearest hits of a finished packet, with their points P.
 #include <algorithm>
 #include <bit>
 
 #include "host/intersect/cpu/packet_intersector.h"
-#include "host/intersect/unit/point_error.h"
-#include "host/intersect/unit/record_batch.h"
+#include "host/intersect/point_error.h"
+#include "host/intersect/record_batch.h"
 
 namespace raygate {
 
 /// Hands the nearest hits over, with their P where that is asked for: triangle by triangle, as rays
 /// that hit one share its plane.
-void finish(PacketIntersector& intersector, const ConeTraversal& walk) {
+void PacketIntersector::finish(const ConeTraversal& walk) {
   in_vectors([&](auto) RAYGATE_BODY {
-    const bool with_points =
-        intersector.query_.skip_ids.empty() && intersector.query_.any_hit_before.empty();
-    if (!intersector.query_.work.empty()) intersector.put_work(walk);
+    if (!query_.work.empty()) put_work(walk);
     std::uint64_t left = 0;
     for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
       left |= std::uint64_t{0xFF & ~sign_mask(walk.primitive[g])} << (8 * g);
     }
-    PacketIntersector::Seen seen[kPlanes];
+    Seen seen[kPlanes];
     int count = 0;
     while (left != 0) {
       const int first = std::countr_zero(left);
@@ -34,10 +32,10 @@ void finish(PacketIntersector& intersector, const ConeTraversal& walk) {
       left &= ~same;
       seen[count++] = {static_cast<std::uint32_t>(primitive), same};
       if (count < kPlanes && left != 0) continue;
-      if (with_points) {
-        intersector.put_with_points(walk, std::span(seen, static_cast<std::size_t>(count)));
+      if (query_.with_points()) {
+        put_with_points(walk, std::span(seen, static_cast<std::size_t>(count)));
       } else {
-        for (int i = 0; i < count; ++i) intersector.put(walk, seen[i]);
+        for (int i = 0; i < count; ++i) put(walk, seen[i]);
       }
       count = 0;
     }
@@ -71,24 +69,15 @@ RAYGATE_INLINE void PacketIntersector::put_with_points(const ConeTraversal& walk
   make_planes(views, planes);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const PolygonRecord plane = planes.record(i);
-    const glm::vec3& n = plane.normal;
-    const float d = plane.d;
+    const float n[3] = {plane.normal.x, plane.normal.y, plane.normal.z};
+    const IntLanes largest = IntLanes{} + largest_field(plane.normal);
     for (LaneMask groups = groups_of(seen[i].rays); groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
-      const FloatLanes &x = walk.block->direction[0][g], &y = walk.block->direction[1][g],
-                       &z = walk.block->direction[2][g];
-      const FloatLanes v = 0.0f + ((n.x * x + n.y * y) + n.z * z);
-      FloatLanes point[3] = {d * x / v, d * y / v, d * z / v};
-      IntLanes v_bits, grazing, error_bits;
-      bits_of(v, v_bits);
-      grazing_of(plane, v_bits, grazing);
-      point_error_of(plane, v_bits, grazing, error_bits);
-      FloatLanes error;
+      const auto& from = walk.block->direction;
+      FloatLanes point[3], error;
+      IntLanes error_bits;
+      plane_points(n, plane.d, largest, {from[0][g], from[1][g], from[2][g]}, point, error_bits);
       floats_of(error_bits, error);
-      for (FloatLanes& p : point) {
-        const IntLanes nan = IntLanes{} + 0x7FC00000;
-        p = p == p ? p : reinterpret_cast<FloatLanes>(nan);
-      }
       for (LaneMask lanes = rays_of(seen[i].rays, g); lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         hits_[walk.number(g, lane)] = {seen[i].primitive,

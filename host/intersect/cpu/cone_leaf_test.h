@@ -1,5 +1,5 @@
-// A cone walk's tests at a leaf: a triangle against eight rays at a time, where most of a group's
-// rays come to it, or a ray against four triangles.
+// Leaf tests of a packet: one triangle against eight rays or, where few rays reach the leaf, one
+// ray against four triangles.
 #pragma once
 
 #include <cstdint>
@@ -82,7 +82,7 @@ struct GroupVerdict {
 template <Vectors kCode>
 RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& record, int triangle,
                                int group, LaneMask tested, GroupVerdict& verdict) {
-  const RayBlock& block = *walk.block;
+  const RayPacket& block = *walk.block;
   const FloatLanes &x = block.direction[0][group], &y = block.direction[1][group],
                    &z = block.direction[2][group];
   FloatLanes worst;

@@ -1,4 +1,4 @@
-// A cone walk's step through an inner node: which rays go on to which children.
+// Node step of a packet: finds which of its rays enter which children.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-// Up to 64 rays of one origin on their way through the tree.
+// Traversal state of a packet of up to 64 rays.
 #pragma once
 
 #include <bit>
@@ -33,7 +33,7 @@ RAYGATE_INLINE bool several(std::uint64_t set) { return (set & (set - 1)) != 0; 
 
 /// Distances (t) are the bits of floats: positive floats are in the order of their bits.
 struct ConeTraversal {
-  static constexpr int kGroups = RayBlock::kGroups;
+  static constexpr int kGroups = RayPacket::kGroups;
 
   /// What of the tree waits to be visited: the nearest last, as far as one node knows.
   struct StackEntry {
@@ -42,7 +42,7 @@ struct ConeTraversal {
     std::uint64_t rays;  ///< those that may meet it
   };
 
-  const RayBlock* block;
+  const RayPacket* block;
   std::uint32_t first;  ///< the number of the block's first ray
   Cones cones;
   PacketBounds8 ray_bounds8[kGroups];    ///< around each ray, where a group has been split

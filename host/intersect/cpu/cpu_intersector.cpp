@@ -1,6 +1,5 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "host/base/stopwatch.h"
@@ -13,13 +12,16 @@ void CpuIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
                                std::span<NearestHit> hits) {
   assert(hits.size() == rays.size());
   Stopwatch watch;
-  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest has no meaning
-  std::ranges::fill(query.work, RayWork{});
+  clear(query, hits);
+  HitCounters& counters = counters_.hit;
+  const HitCounters before = counters;
   if (query.common_origin && query.culling && !rays.empty()) {
     PacketIntersector(bvh_, counters_).trace(rays, query, hits);
   } else {
     SingleRayIntersector(bvh_, counters_).trace(rays, query, hits);
   }
+  counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
+                     (counters.edge_doubts - before.edge_doubts);
   counters_.hit_tests += watch.lap();
 }
 

@@ -1,4 +1,4 @@
-// Hits found in place: corners against rays, without records, batches or a unit.
+// CPU intersector: tests rays against triangles without a hit-test unit.
 #pragma once
 
 #include "host/intersect/intersector.h"

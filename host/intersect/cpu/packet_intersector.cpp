@@ -38,11 +38,11 @@ void count_work(RayWork (&work)[kLanes], LaneMask tested, LaneMask doubts) {
 
 }  // namespace
 
-/// Everything of a walk but its cones and where it begins.
-void begin(const PacketIntersector& intersector, ConeTraversal& walk) {
+/// Sets everything of a traversal but its cones.
+void PacketIntersector::begin(ConeTraversal& walk) const {
   in_vectors([&](auto) RAYGATE_BODY {
-    const std::span limits = intersector.query_.t_max, enough = intersector.query_.any_hit_before;
-    const std::span skip_id = intersector.query_.skip_ids;
+    const std::span limits = query_.t_max, enough = query_.any_hit_before;
+    const std::span skip_id = query_.skip_ids;
     slack_of(walk.cones.radius, walk.slack);
     walk.split = 0;
     walk.going = 0;
@@ -63,7 +63,7 @@ void begin(const PacketIntersector& intersector, ConeTraversal& walk) {
       shorten(walk, g);
     }
     walk.cutoff = largest_of(walk.cones.bounds8.cutoff);
-    if (!intersector.query_.work.empty()) {
+    if (!query_.work.empty()) {
       std::memset(walk.work, 0, sizeof walk.work);
       std::memcpy(walk.started, walk.cones.active, sizeof walk.started);
     }
@@ -158,10 +158,10 @@ RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const Quad
 }
 
 /// Walks the tree, near before far, and tests what is there.
-void walk_tree(PacketIntersector& intersector, ConeTraversal& walk) {
+void PacketIntersector::traverse(ConeTraversal& walk) {
   in_vectors([&](auto code) RAYGATE_BODY {
-    const Bvh& tree = intersector.bvh_;
-    const bool ending = !intersector.query_.any_hit_before.empty();
+    const Bvh& tree = bvh_;  // a local: read once, in these loops
+    const bool ending = !query_.any_hit_before.empty();
     Cones& cones = walk.cones;
     while (walk.depth > 0 && walk.going != 0) {
       const ConeTraversal::StackEntry item = walk.stack[--walk.depth];
@@ -180,12 +180,12 @@ void walk_tree(PacketIntersector& intersector, ConeTraversal& walk) {
       make_quad_record(cones.whole.origin, tree.corners_of(item.child, room), item.child.count,
                        record);
       LaneMask there = (1u << item.child.count) - 1;
-      if (record.unsure != 0) intersector.resolve_sides(item.child, record, there);
+      if (record.unsure != 0) resolve_sides(item.child, record, there);
       LaneMask changed = 0;
       if (is_sparse(rays, groups, item.child.count)) {
-        intersector.test_rays(walk, record, item.child, there, rays, changed);
+        test_rays(walk, record, item.child, there, rays, changed);
       } else {
-        intersector.template test_groups<code()>(walk, record, item.child, there, rays, changed);
+        test_groups<code()>(walk, record, item.child, there, rays, changed);
       }
       if (changed == 0) continue;
       for (; changed != 0; changed &= changed - 1) {
@@ -194,7 +194,7 @@ void walk_tree(PacketIntersector& intersector, ConeTraversal& walk) {
           const LaneMask ended = cones.active[g] & ~sign_mask<code()>(walk.primitive[g]) &
                                  sign_mask<code()>(walk.high[g] < walk.enough[g]);
           cones.active[g] &= ~ended;
-          intersector.counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
+          counters_.ended_early += static_cast<std::uint64_t>(std::popcount(ended));
         }
         shorten(walk, g);
       }
@@ -210,14 +210,12 @@ void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   hits_ = hits;
   origin_ = rays[0].origin;
   assert(std::ranges::all_of(rays, [&](const Ray& ray) { return ray.origin == origin_; }));
-  HitCounters& counters = counters_.hit;
-  const HitCounters before = counters;
-  RayBlock block;
+  RayPacket block;
   ConeTraversal walk;
   walk.block = &block;
-  for (std::size_t first = 0; first < rays.size(); first += RayBlock::kRays) {
-    const std::size_t count = std::min<std::size_t>(RayBlock::kRays, rays.size() - first);
-    const std::uint64_t unscaled = load_block(rays.subspan(first, count), block);
+  for (std::size_t first = 0; first < rays.size(); first += RayPacket::kRays) {
+    const std::size_t count = std::min<std::size_t>(RayPacket::kRays, rays.size() - first);
+    const std::uint64_t unscaled = load_packet(rays.subspan(first, count), block);
     if (unscaled != 0) throw_unscaled(rays[first + std::countr_zero(unscaled)]);
     walk.first = static_cast<std::uint32_t>(first);
     for (std::uint32_t octants = block.octants; octants != 0; octants &= octants - 1) {
@@ -227,13 +225,11 @@ void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
       }
       make_cones(block, origin_, octant, walk.cones);
       if (walk.cones.groups == 0) continue;
-      begin(*this, walk);
-      walk_tree(*this, walk);
-      finish(*this, walk);
+      begin(walk);
+      traverse(walk);
+      finish(walk);
     }
   }
-  counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
-                     (counters.edge_doubts - before.edge_doubts);
 }
 
 /// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it

@@ -1,4 +1,4 @@
-// Rays of one origin, tested in place: cones of up to 64 rays walk the tree as one.
+// Packet intersector: rays of one origin, traversed in packets of up to 64 with bounding cones.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,15 @@
 
 namespace raygate {
 
-/// A part of CpuIntersector, for rays of one origin. What is needed of polygon records is made in
-/// float32 when a cone comes to a leaf, and tested while it is at hand, against those of eight
-/// groups of eight rays whose cone it meets at all. What float32 leaves open exact arithmetic
-/// settles: decisions are the same, whatever decides first.
+/// A part of CpuIntersector, for rays of one origin. A packet is eight groups of eight rays, each
+/// with a bounding cone. At a leaf the packet makes a QuadRecord in float32 and tests it against
+/// the groups whose cones it meets. Exact arithmetic resolves what float32 leaves open.
 class PacketIntersector {
  public:
   PacketIntersector(const Bvh& bvh, IntersectCounters& counters) : bvh_(bvh), counters_(counters) {}
 
-  /// As Intersector::find, but always culling. All rays begin at the first one's origin; `hits` are
-  /// empty.
+  /// As Intersector::intersect, but always culling. All rays begin at the first one's origin;
+  /// `hits` are empty.
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
  private:
@@ -30,10 +29,9 @@ class PacketIntersector {
     std::uint64_t rays;
   };
 
-  friend void begin(const PacketIntersector& intersector, ConeTraversal& walk);
-  friend void walk_tree(PacketIntersector& intersector, ConeTraversal& walk);
-  friend void finish(PacketIntersector& intersector, const ConeTraversal& walk);
-
+  void begin(ConeTraversal& walk) const;
+  void traverse(ConeTraversal& walk);
+  void finish(const ConeTraversal& walk);
   template <Vectors kCode>
   void test_groups(ConeTraversal& walk, const QuadRecord& record, const Bvh::Child& leaf,
                    LaneMask there, std::uint64_t rays, LaneMask& changed);

@@ -1,4 +1,4 @@
-// Up to four triangles seen from one origin, in float32: made in passing, for a few rays.
+// Quad record: the edge and normal planes of up to four triangles seen from one origin, in float32.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// One ray against up to four triangles in float32: what it is sure of, straight from the corners.
+// Quad test: one ray against up to four triangles, in float32 with error bounds.
 #pragma once
 
 #include <bit>

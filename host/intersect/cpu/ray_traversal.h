@@ -1,4 +1,4 @@
-// A ray on its way through the tree, alone, and its steps: many such rays take turns.
+// Traversal state and steps of a single ray; many such rays are interleaved.
 #pragma once
 
 #include <algorithm>

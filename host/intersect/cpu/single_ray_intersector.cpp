@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/intersect/cpu/ray_traversal.h"
-#include "host/intersect/unit/point_error.h"
-#include "host/intersect/unit/record_batch.h"
+#include "host/intersect/point_error.h"
+#include "host/intersect/record_batch.h"
 
 namespace raygate {
 
@@ -196,16 +196,12 @@ void SingleRayIntersector::trace(std::span<const Ray> rays, const RayQuery& quer
   query_ = query;
   hits_ = hits;
   next_ = 0;
-  HitCounters& counters = counters_.hit;
-  const HitCounters before = counters;
   if (query.culling) {
     walk_all();
   } else {
     visit_all();
   }
   add_points(1);
-  counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
-                     (counters.edge_doubts - before.edge_doubts);
 }
 
 /// P, which the query did without: four at a time, until fewer than `enough` rays wait for theirs.
@@ -236,19 +232,13 @@ void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
   std::memcpy(n, planes.words, sizeof n);
   in_vectors([&](auto) RAYGATE_BODY {
     transpose(d);  // of d[0] nothing is wanted: it is the last coordinate of the origins
-    const FloatQuad v = 0.0f + ((n[0] * d[1] + n[1] * d[2]) + n[2] * d[3]);
-    IntQuad fields[3], grazing, error;
+    IntQuad fields[3], error;
     for (int k = 0; k < 3; ++k) fields[k] = reinterpret_cast<IntQuad>(n[k]) >> 23 & 0xFF;
     IntQuad largest = fields[0] > fields[1] ? fields[0] : fields[1];
     largest = largest > fields[2] ? largest : fields[2];
-    grazing_of(largest, reinterpret_cast<IntQuad>(v), grazing);
-    point_error_of(reinterpret_cast<IntQuad>(n[3]), reinterpret_cast<IntQuad>(v), grazing, error);
-    FloatQuad rows[kQuad];
-    for (int k = 0; k < 3; ++k) {
-      const FloatQuad p = n[3] * d[k + 1] / v;
-      const IntQuad nan = IntQuad{} + 0x7FC00000;
-      rows[k] = p == p ? p : reinterpret_cast<FloatQuad>(nan);
-    }
+    FloatQuad rows[kQuad], point[3];
+    plane_points({n[0], n[1], n[2]}, n[3], largest, {d[1], d[2], d[3]}, point, error);
+    std::copy_n(point, 3, rows);
     rows[3] = reinterpret_cast<FloatQuad>(error);
     transpose(rows);
     static_assert(offsetof(NearestHit, point_error) ==

@@ -1,4 +1,4 @@
-// Rays of any origins, tested in place, one by one: no records, no batches.
+// Single-ray intersector: interleaved rays of any origins, tested from the triangles' corners.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include "host/bvh/bvh.h"
 #include "host/intersect/cpu/ray_traversal.h"
 #include "host/intersect/intersector.h"
-#include "host/intersect/unit/record_batch.h"
+#include "host/intersect/record_batch.h"
 
 namespace raygate {
 
@@ -21,7 +21,7 @@ class SingleRayIntersector {
   SingleRayIntersector(const Bvh& bvh, IntersectCounters& counters)
       : bvh_(bvh), counters_(counters) {}
 
-  /// As Intersector::find. `hits` are empty.
+  /// As Intersector::intersect. `hits` are empty.
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
  private:

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "host/exact/ieee_floats.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/reference_plane_unit.h"
 
 namespace raygate {
 namespace {

@@ -1,11 +1,10 @@
 // The nearest hit does not depend on the order in which hits are reported.
-#include "host/intersect/nearest_hit.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/intersector.h"
 
 namespace raygate {
 namespace {

@@ -1,10 +1,10 @@
-// Bursts of hit tests and their nearest hits: the pipelined unit, as software sees it.
+// Burst unit: the interface of the pipelined hit-test unit, bursts of tests in, nearest hits out.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "host/intersect/unit/hit_tester.h"
@@ -78,27 +78,22 @@ struct BurstCounters {
 /// (hw/hit_test/hit_test_pkg.sv has the proof). Of a burst's hits one is kept: the first; then
 /// each one whose t is smaller takes its place. Where the two are no farther apart, in floats,
 /// than the sum of their errors, the one that isn't kept is reported as a near tie.
-class BurstUnit {
+class BurstUnit : public BatchTester<BurstResults> {
  public:
-  virtual ~BurstUnit() = default;
-
-  /// Adds what `batch` gives to `results`. Not between a start and its finish.
-  virtual void run(std::span<const RayBundle> batch, BurstResults& results) = 0;
-
-  /// The same in two steps, so that a unit need not run empty while its user thinks: at most two
-  /// batches may be started and not finished. Each finish is that of the oldest one, which must
-  /// have lived until then. Where nothing is gained by it, all is done in finish.
-  virtual void start(std::span<const RayBundle> batch) { started_.push(batch); }
-  virtual void finish(BurstResults& results) { run(started_.pop(), results); }
-
-  /// As HitTester::enough_tests.
-  [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
-
   /// Not between a start and its finish.
   [[nodiscard]] virtual BurstCounters counters() const = 0;
-
- protected:
-  StartedBatches started_;
 };
+
+/// Thrown by require_same. Its text is ready to replay: the burst's direction and the 16 words of
+/// each record in hex, and what each unit made of them.
+class BurstUnitMismatch : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws BurstUnitMismatch at the first burst where `actual` is not `expected`, bit for bit; both
+/// are results of `batch`.
+void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
+                  const BurstResults& expected);
 
 }  // namespace raygate

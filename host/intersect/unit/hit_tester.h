@@ -1,15 +1,17 @@
-// Batches of rays against polygon records: a hit-test unit and what its host does around it.
+// Hit tester: decides batches of rays against polygon records, by a hit-test unit and software.
 #pragma once
 
 #include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "host/base/lanes.h"
 #include "host/intersect/intersect_counters.h"
-#include "host/intersect/unit/polygon_record.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 
@@ -58,51 +60,49 @@ struct HitResults {
   }
 };
 
-/// One or two batches that wait to be finished, in the order of their start.
-class StartedBatches {
+/// Tests batches of bundles, either at once (run) or in two steps (start and finish), so that a
+/// unit need not run empty while its user thinks.
+template <class Results>
+class BatchTester {
  public:
-  void push(std::span<const RayBundle> batch) {
-    assert(count_ < 2);
-    batches_[count_++] = batch;
-  }
-  std::span<const RayBundle> pop() {
-    assert(count_ > 0);
-    const std::span<const RayBundle> oldest = batches_[0];
-    batches_[0] = batches_[1];
-    --count_;
-    return oldest;
-  }
-
- private:
-  std::span<const RayBundle> batches_[2];
-  int count_ = 0;
-};
-
-/// A unit and its host. Not for use by two threads at once: each thread makes its own.
-///
-/// What it promises: a sure hit is a hit and an unreported pair a miss (or farther than a sure hit
-/// of its burst) in exact arithmetic on the records' coordinates; P has the unit's bits.
-/// Which pairs are in doubt may differ between engines; decisions made from the reports do not.
-class HitTester {
- public:
-  virtual ~HitTester() = default;
+  virtual ~BatchTester() = default;
 
   /// Tests all bursts of `batch` and adds what it found to `results`, in the order of the batch.
-  virtual void test(std::span<const RayBundle> batch, HitResults& results) = 0;
+  /// Not between a start and its finish.
+  virtual void run(std::span<const RayBundle> batch, Results& results) = 0;
 
-  /// The same in two steps, as of a BurstUnit: two batches at most on their way, the oldest one
-  /// finished first.
-  virtual void start(std::span<const RayBundle> batch) { started_.push(batch); }
-  virtual void finish(HitResults& results) { test(started_.pop(), results); }
+  /// At most two batches may be started and not finished; each must live until its finish. A finish
+  /// is that of the oldest one. Where two steps gain nothing, all is done in finish.
+  virtual void start(std::span<const RayBundle> batch) {
+    assert(started_count_ < 2);
+    started_[started_count_++] = batch;
+  }
+  virtual void finish(Results& results) { run(pop_started(), results); }
 
   /// Batches of fewer tests leave the unit mostly empty: they are worth lengthening by tests that
   /// may turn out to be behind a hit.
   [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
 
-  [[nodiscard]] virtual HitCounters counters() const = 0;
-
  protected:
-  StartedBatches started_;
+  std::span<const RayBundle> pop_started() {
+    assert(started_count_ > 0);
+    --started_count_;
+    return std::exchange(started_[0], started_[1]);
+  }
+
+ private:
+  std::span<const RayBundle> started_[2];
+  int started_count_ = 0;
+};
+
+/// A hit-test unit and the software around it. One thread each.
+///
+/// Promises: a sure hit is a hit and an unreported pair a miss (or farther than a sure hit
+/// of its burst) in exact arithmetic on the records' coordinates; P has the unit's bits.
+/// Which pairs are in doubt may differ between engines; decisions made from the reports do not.
+class HitTester : public BatchTester<HitResults> {
+ public:
+  [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
 }  // namespace raygate

@@ -22,18 +22,18 @@ Interval around(const HitDistance& distance) {
 
 PipelineHitTester::PipelineHitTester(std::unique_ptr<BurstUnit> unit) : unit_(std::move(unit)) {}
 
-void PipelineHitTester::test(std::span<const RayBundle> batch, HitResults& results) {
+void PipelineHitTester::run(std::span<const RayBundle> batch, HitResults& results) {
   start(batch);
   finish(results);
 }
 
 void PipelineHitTester::start(std::span<const RayBundle> batch) {
-  started_.push(batch);
+  HitTester::start(batch);
   unit_->start(batch);
 }
 
 void PipelineHitTester::finish(HitResults& results) {
-  const std::span<const RayBundle> batch = started_.pop();
+  const std::span<const RayBundle> batch = pop_started();
   found_.clear();
   unit_->finish(found_);
   auto report = found_.reports.begin();

@@ -1,4 +1,4 @@
-// Hit tests by the pipelined unit: what a burst unit reports, in a hit tester's terms.
+// Hit tester for the pipelined unit.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ class PipelineHitTester : public HitTester {
  public:
   explicit PipelineHitTester(std::unique_ptr<BurstUnit> unit);
 
-  void test(std::span<const RayBundle> batch, HitResults& results) override;
+  void run(std::span<const RayBundle> batch, HitResults& results) override;
   void start(std::span<const RayBundle> batch) override;
   void finish(HitResults& results) override;
   [[nodiscard]] std::size_t enough_tests() const override { return unit_->enough_tests(); }

@@ -1,9 +1,12 @@
-// Where a ray meets a polygon's plane: the paper's hit-test unit, as software sees it.
+// Plane unit: the interface of the paper's hit-test unit, which intersects rays and planes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+
+#include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
 
@@ -27,6 +30,16 @@ class PlaneUnit {
 
   /// Simulated clock cycles since construction; 0 where nothing is simulated.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
+};
+
+/// The reference model: BurstUnit's point has the same bits.
+class ReferencePlaneUnit : public PlaneUnit {
+ public:
+  void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override {
+    std::ranges::transform(tests, points.begin(), [](const PlaneTest& test) {
+      return ReferenceBurstUnit().point({.normal = test.normal, .d = test.d}, test.direction);
+    });
+  }
 };
 
 }  // namespace raygate

@@ -8,7 +8,7 @@
 #include <span>
 #include <thread>
 
-#include "host/intersect/unit/record_batch.h"
+#include "host/intersect/record_batch.h"
 
 namespace raygate {
 namespace {

@@ -1,4 +1,4 @@
-// The polygon records of one common origin, each made when a ray first comes near its polygon.
+// Record cache: the polygon records of a common origin, each made on first touch.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include <mutex>
 
 #include "host/bvh/bvh.h"
-#include "host/intersect/unit/polygon_record.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 

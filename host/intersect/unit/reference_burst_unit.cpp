@@ -1,6 +1,6 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 
-#include "host/intersect/unit/point_error.h"
+#include "host/intersect/point_error.h"
 
 namespace raygate {
 
@@ -18,9 +18,9 @@ float point_error(const PolygonRecord& record, const glm::vec3& direction,
                   std::optional<std::uint32_t> grazing) {
   const auto v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));
   std::int32_t g = 0, error = 0;
-  grazing_of(record, v, g);
+  grazing_of(largest_field(record.normal), v, g);
   if (grazing) g = static_cast<std::int32_t>(*grazing);
-  point_error_of(record, v, g, error);
+  point_error_of(std::bit_cast<std::int32_t>(record.d), v, g, error);
   return std::bit_cast<float>(error);
 }
 

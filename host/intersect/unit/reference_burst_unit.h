@@ -1,4 +1,4 @@
-// The pipelined unit's reference model: the unit in C++, whatever its arithmetic.
+// Reference burst unit: the pipelined unit in C++, in any arithmetic.
 #pragma once
 
 #include <algorithm>

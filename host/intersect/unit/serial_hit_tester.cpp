@@ -37,7 +37,7 @@ HitCounters SerialHitTester::counters() const {
   return counters;
 }
 
-void SerialHitTester::test(std::span<const RayBundle> batch, HitResults& results) {
+void SerialHitTester::run(std::span<const RayBundle> batch, HitResults& results) {
   pairs_.clear();
   plane_tests_.clear();
   for (std::uint32_t i = 0; i < batch.size(); ++i) collect(i, batch[i]);

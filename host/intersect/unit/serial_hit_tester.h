@@ -1,4 +1,4 @@
-// Hit tests by a unit that knows planes only: the paper's hardware and the software around it.
+// Hit tester for the paper's serial unit, which intersects planes only.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class SerialHitTester : public HitTester {
 
   explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit, Order order = Order::kEdgesFirst);
 
-  void test(std::span<const RayBundle> batch, HitResults& results) override;
+  void run(std::span<const RayBundle> batch, HitResults& results) override;
   [[nodiscard]] HitCounters counters() const override;
 
  private:

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "host/base/stopwatch.h"
-#include "host/intersect/unit/record_batch.h"
+#include "host/intersect/record_batch.h"
 
 namespace raygate {
 
@@ -34,8 +34,7 @@ void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
   rays_ = rays;
   query_ = query;
   hits_ = hits;
-  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest has no meaning
-  std::ranges::fill(query.work, RayWork{});
+  clear(query, hits);
   common_ = nullptr;
   if (query.common_origin && !rays.empty()) {
     common_ = &caches_->at(rays[0].origin, counters_.common_records);

@@ -1,5 +1,4 @@
-// Hits found by a hit-test unit: many rays in flight, and while some wait for their tests, others
-// walk the tree.
+// Unit intersector: batches of leaf tests for a hit-test unit, while other rays traverse the tree.
 #pragma once
 
 #include <array>
@@ -16,13 +15,12 @@
 
 namespace raygate {
 
-/// In each round every packet of eight rays goes on to its next leaf; the leaves' tests together
-/// are one batch for the tester; its answers shorten the rays. The packets are two halves: while
-/// the tester works on the one, the other goes on. The unit sees few large batches, the host's
-/// memory a few packets.
+/// In each round every packet of eight rays traverses the tree to its next leaf. The tests of all
+/// these leaves are one batch for the tester, and its answers shorten the rays. There are two
+/// halves of packets: while the tester works on one, the other traverses.
 ///
-/// Polygon records of a common origin come from a cache. Otherwise they are made for the leaf that
-/// a ray comes to, once for those rays of a packet that have one origin.
+/// Polygon records of a common origin come from a cache. Other records are made for the leaf that a
+/// ray reaches, once for all rays of its packet that share an origin.
 class UnitIntersector : public Intersector {
  public:
   /// `caches`: those that intersectors share; without them this one has its own. The tree must

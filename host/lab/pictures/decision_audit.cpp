@@ -33,8 +33,8 @@ class AuditTester : public HitTester {
     host_.rounding = Rounding::kNearestEven;
   }
 
-  void test(std::span<const RayBundle> batch, HitResults& results) override {
-    tester_.test(batch, results);
+  void run(std::span<const RayBundle> batch, HitResults& results) override {
+    tester_.run(batch, results);
     for (const RayBundle& bundle : batch) judge(bundle);
   }
 

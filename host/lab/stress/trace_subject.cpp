@@ -38,22 +38,22 @@ class TraceSubject : public Subject {
         : scene(scene_of(mesh)),
           bvh(scene),
           table(scene, bvh,
-                {raygate::Answer::kRay, raygate::Answer::kTriangle, raygate::Answer::kT,
-                 raygate::Answer::kDoubts},
-                AnswerFormat::kNpy) {}
+                {raygate::HitColumn::kRay, raygate::HitColumn::kTriangle, raygate::HitColumn::kT,
+                 raygate::HitColumn::kDoubts},
+                TableFormat::kNpy) {}
     Target(const Target&) = delete;
     Target& operator=(const Target&) = delete;
 
     Scene scene;
     Bvh bvh;
-    raygate::Answers table;
+    raygate::HitTable table;
   };
 
   /// Directions are not scaled as intersectors want them, but by powers of two from 2^-20 to 2^20.
   static int exponent(std::size_t ray) { return static_cast<int>(ray % 41) - 20; }
 
   std::vector<RowOfTable> rows(std::span<const Shot> shots, Hits hits) const {
-    const auto read = [&, done = false](std::size_t, RayBlock& block) mutable {
+    const auto read = [&, done = false](std::size_t, RayTable& block) mutable {
       if (std::exchange(done, true)) return false;
       block.clear(0);
       for (const Shot& shot : shots) {

@@ -83,9 +83,9 @@ class SerialVariantTester : public SerialHitTester {
   SerialVariantTester(const Variant& variant, std::unique_ptr<PlaneUnit> unit)
       : SerialHitTester(std::move(unit)), variant_(variant) {}
 
-  void test(std::span<const RayBundle> batch, HitResults& results) override {
+  void run(std::span<const RayBundle> batch, HitResults& results) override {
     const std::size_t hits = results.hits.size(), doubts = results.doubts.size();
-    SerialHitTester::test(batch, results);
+    SerialHitTester::run(batch, results);
     for (std::size_t i = hits; i < results.hits.size(); ++i) widen(batch, results.hits[i]);
     for (std::size_t i = doubts; i < results.doubts.size(); ++i) widen(batch, results.doubts[i]);
   }
@@ -183,7 +183,7 @@ void VariantHitTester::narrow(std::span<const RayBundle> batch) {
   }
 }
 
-void VariantHitTester::test(std::span<const RayBundle> batch, HitResults& results) {
+void VariantHitTester::run(std::span<const RayBundle> batch, HitResults& results) {
   narrow(batch);
   found_.clear();
   unit_->run(batch_, found_);

@@ -39,7 +39,7 @@ class VariantHitTester : public HitTester {
   /// `unit`: computes in the format of `variant`, whose unit is the pipelined one.
   VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit);
 
-  void test(std::span<const RayBundle> batch, HitResults& results) override;
+  void run(std::span<const RayBundle> batch, HitResults& results) override;
   [[nodiscard]] HitCounters counters() const override;
 
  private:

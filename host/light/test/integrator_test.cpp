@@ -7,7 +7,7 @@
 
 #include "host/base/vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/reference_plane_unit.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "host/intersect/unit/serial_hit_tester.h"
 #include "host/light/test/light_scenes.h"
 

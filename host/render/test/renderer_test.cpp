@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/unit/reference_plane_unit.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "host/intersect/unit/serial_hit_tester.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/scene/camera.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/trace/rays_in.h"
+#include "host/trace/ray_table_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const int file = memfd_create("rays", 0);
@@ -17,8 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::abort();
   }
   try {
-    raygate::RaysIn rays(path, glm::dvec3(1.0, -2.0, 1e6));
-    raygate::RayBlock block;
+    raygate::RayTableReader rays(path, glm::dvec3(1.0, -2.0, 1e6));
+    raygate::RayTable block;
     while (rays.read(7, block)) {
       for (const raygate::Ray& ray : block.rays) {
         // What intersectors refuse must not get to them.

@@ -13,7 +13,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/damage.h"
-#include "host/trace/rays_in.h"
+#include "host/trace/ray_table_reader.h"
 
 namespace raygate {
 namespace {
@@ -61,8 +61,8 @@ class DamagedRays : public testing::Test {
   Outcome read(std::size_t most) const {
     Outcome outcome;
     try {
-      RaysIn rays(path_, glm::dvec3(0.0));
-      for (RayBlock block; rays.read(most, block);) {
+      RayTableReader rays(path_, glm::dvec3(0.0));
+      for (RayTable block; rays.read(most, block);) {
         outcome.rays.insert(outcome.rays.end(), block.rays.begin(), block.rays.end());
         outcome.limits.insert(outcome.limits.end(), block.limits.begin(), block.limits.end());
       }
@@ -128,8 +128,8 @@ TEST_F(DamagedRays, LargeOnesTakeNoMemory) {
   start.replace(start.find("(1, 6), }      "), 15, "(4000000, 6), }");
   write(start);
   ASSERT_EQ(ftruncate(file_, 128 + 4000000 * 24), 0);
-  RaysIn rays(path_, glm::dvec3(0.0));
-  RayBlock block;
+  RayTableReader rays(path_, glm::dvec3(0.0));
+  RayTable block;
   std::size_t count = 0;
   while (rays.read(1 << 14, block)) count += block.rays.size();
   EXPECT_EQ(count, 4000000u);

@@ -9,7 +9,7 @@
 #include "Vhit_test_array_2.h"
 #include "Vhit_test_array_4.h"
 #include "Vhit_test_array_8.h"
-#include "host/intersect/unit/same_results.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "sim/array_model.h"
 #include "sim/random_bursts.h"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <tuple>
 
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/same_results.h"
 #include "sim/random_bursts.h"
 
 namespace raygate {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/exact/exact_vector.h"
+#include "host/exact/expansion.h"
 #include "host/exact/test/meshes.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 

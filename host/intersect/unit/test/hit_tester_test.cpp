@@ -10,8 +10,8 @@
 
 #include "host/exact/test/meshes.h"
 #include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/plane_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/reference_plane_unit.h"
 #include "host/intersect/unit/serial_hit_tester.h"
 #include "host/scene/camera.h"
 
@@ -78,7 +78,7 @@ void expect_the_truth(HitTester& tester) {
   Random random;
   const Batch batch(random, 20000);
   HitResults results;
-  tester.test(batch.bundles, results);
+  tester.run(batch.bundles, results);
 
   std::set<Key> doubtful, sure;
   for (const Doubt& doubt : results.doubts) doubtful.insert({doubt.bundle, doubt.lane, doubt.tag});
@@ -135,8 +135,8 @@ TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
   SerialHitTester serial(std::make_unique<ReferencePlaneUnit>());
   PipelineHitTester pipeline(std::make_unique<ReferenceBurstUnit>());
   HitResults a, b;
-  serial.test(batch.bundles, a);
-  pipeline.test(batch.bundles, b);
+  serial.run(batch.bundles, a);
+  pipeline.run(batch.bundles, b);
   std::map<Key, glm::vec3> points;
   for (const SureHit& hit : a.hits) points[{hit.bundle, hit.lane, hit.tag}] = hit.point;
   for (const Doubt& doubt : a.doubts) points[{doubt.bundle, doubt.lane, doubt.tag}] = doubt.point;
@@ -195,8 +195,8 @@ TEST(SerialHitTester, BothOrdersReportTheSame) {
   SerialHitTester paper(std::make_unique<ReferencePlaneUnit>(),
                         SerialHitTester::Order::kPlanesFirst);
   HitResults a, b;
-  first.test(batch.bundles, a);
-  paper.test(batch.bundles, b);
+  first.run(batch.bundles, a);
+  paper.run(batch.bundles, b);
   ASSERT_GT(a.hits.size(), 0u);
   ASSERT_EQ(a.hits.size(), b.hits.size());
   ASSERT_EQ(a.doubts.size(), b.doubts.size());
@@ -220,7 +220,7 @@ TEST(SerialHitTester, ThePlaneOfTheOriginIsAMissAndAnEmptyRunNothing) {
   const RayBundle batch[] = {bundle, empty};
   SerialHitTester tester(std::make_unique<ReferencePlaneUnit>());
   HitResults results;
-  tester.test(batch, results);
+  tester.run(batch, results);
   EXPECT_TRUE(results.hits.empty() && results.doubts.empty());
   EXPECT_EQ(tester.counters().misses, 1u);
 }

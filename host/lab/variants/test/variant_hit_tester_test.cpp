@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "host/exact/exact.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/same_results.h"
 #include "host/lab/stress/random.h"
 #include "host/lab/variants/variant_units.h"
 #include "host/scene/camera.h"
@@ -61,7 +61,7 @@ HitResults test(HitTester& tester, const Case& c, const PolygonRecord& record) {
   bundle.record_count = 1;
   bundle.lanes = 1;
   HitResults results;
-  tester.test({&bundle, 1}, results);
+  tester.run({&bundle, 1}, results);
   return results;
 }
 
@@ -121,7 +121,7 @@ TEST(VariantHitTester, IgnoringDoubtsKeepsTheNearestOfABurst) {
   bundle.first_tag = 10;
   bundle.lanes = 1;
   HitResults results;
-  make_variant_tester(variant_named("e8p12-raw"))->test({&bundle, 1}, results);
+  make_variant_tester(variant_named("e8p12-raw"))->run({&bundle, 1}, results);
   ASSERT_EQ(results.hits.size(), 1u);
   EXPECT_EQ(results.hits[0].tag, 11u);
   EXPECT_EQ(results.hits[0].point, glm::vec3(0, 0, 2));

@@ -1,5 +1,5 @@
 ; Hit or miss, binary32: an edge product U = I . E beyond its bound has the sign of the exact one. The steps
-; are those of host/intersect/unit/polygon_record.cpp. For z3: "sat" where a question says so, for its
+; are those of host/intersect/polygon_record.cpp. For z3: "sat" where a question says so, for its
 ; assumptions can be; else "unsat".
 ;
 ; Real numbers. An operation to nearest is off by at most u of its exact result, and by 2^-150 more where

@@ -1,4 +1,4 @@
-// Rays of the scene file's coordinates, made ready for a intersector.
+// Ray table: a block of rays in the scene file's coordinates, converted for an intersector.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace raygate {
 
 /// Some rays in a row.
-struct RayBlock {
+struct RayTable {
   std::uint64_t first = 0;     ///< number of the first ray, from 0
   std::vector<Ray> rays;       ///< relative to the scene's origin, scaled
   std::vector<float> limits;   ///< of the scaled rays; +infinity: none

@@ -1,11 +1,11 @@
-// Polygon records, four at a time.
+// Makes polygon records and planes, four at a time.
 #pragma once
 
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <span>
 
-#include "host/intersect/unit/polygon_record.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 

@@ -1,4 +1,4 @@
-#include "host/intersect/unit/same_results.h"
+#include "host/intersect/unit/burst_unit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Rays as people have them: a CSV table or a NumPy array, in the scene file's coordinates.
+// Reads tables of rays, CSV or NumPy, block by block.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "host/trace/ray_block.h"
+#include "host/trace/ray_table.h"
 
 namespace raygate {
 
@@ -21,18 +21,18 @@ namespace raygate {
 /// shape (N, 6) or (N, 7), float32 or float64, little-endian, C order (NumPy's NEP 1). Which of the
 /// two it is, the first bytes say.
 ///
-/// What the numbers mean, RayBlock::add says.
-class RaysIn {
+/// What the numbers mean, RayTable::add says.
+class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".
-  RaysIn(const std::filesystem::path& file, const glm::dvec3& scene_origin);
-  ~RaysIn();
-  RaysIn(const RaysIn&) = delete;
-  RaysIn& operator=(const RaysIn&) = delete;
+  RayTableReader(const std::filesystem::path& file, const glm::dvec3& scene_origin);
+  ~RayTableReader();
+  RayTableReader(const RayTableReader&) = delete;
+  RayTableReader& operator=(const RayTableReader&) = delete;
 
   /// Replaces `block` by the next rays, at most `most`; false at the end. Throws InputError with
   /// the line (CSV) or row (NPY): what was found and what was expected.
-  bool read(std::size_t most, RayBlock& block);
+  bool read(std::size_t most, RayTable& block);
 
  private:
   class Source;

@@ -1,11 +1,11 @@
-#include "host/trace/ray_block.h"
+#include "host/trace/ray_table.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace raygate {
 
-void RayBlock::clear(std::uint64_t its_first) {
+void RayTable::clear(std::uint64_t its_first) {
   first = its_first;
   rays.clear();
   limits.clear();
@@ -13,7 +13,7 @@ void RayBlock::clear(std::uint64_t its_first) {
   rounded = 0;
 }
 
-const char* RayBlock::add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
+const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                           const glm::dvec3& scene_origin) {
   constexpr double kFarthest = 0x1p126;  // see Ray
   const auto is_finite = [](const glm::dvec3& v) {

@@ -1,5 +1,5 @@
 // Tables of rays: what is read, and what is said of those that cannot be.
-#include "host/trace/rays_in.h"
+#include "host/trace/ray_table_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -25,10 +25,10 @@ class Table : public testing::Test {
 
   void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
 
-  RayBlock read_all(const std::string& bytes, const glm::dvec3& origin = glm::dvec3(0.0)) {
+  RayTable read_all(const std::string& bytes, const glm::dvec3& origin = glm::dvec3(0.0)) {
     write(bytes);
-    RaysIn rays(path_, origin);
-    RayBlock all, block;
+    RayTableReader rays(path_, origin);
+    RayTable all, block;
     rounded_ = 0;
     while (rays.read(3, block)) {
       EXPECT_EQ(block.first, all.rays.size());
@@ -78,7 +78,7 @@ class Table : public testing::Test {
 };
 
 TEST_F(Table, OfText) {
-  const RayBlock rays = read_all(
+  const RayTable rays = read_all(
       "ox,oy,oz,dx,dy,dz,limit\n# a comment\n\n1,2,3,0,0,-1\r\n +4 , 5e0,6, 3,0,0, 2\n"
       "0,0,0,1,1,0.25,inf\n7,8,9,0,0,0\n0.5,0,0,0,-0.125,0,1e-3");
   ASSERT_EQ(rays.rays.size(), 5u);
@@ -121,14 +121,14 @@ TEST_F(Table, SaysWhichLineIsWrong) {
 }
 
 TEST_F(Table, OfNumbersOfEitherWidth) {
-  const RayBlock narrow =
+  const RayTable narrow =
       read_all(npy("<f4", "(2, 6)", raw<float>({1, 2, 3, 0, 0, 2, 4, 5, 6, 0, 1, 0})));
   ASSERT_EQ(narrow.rays.size(), 2u);
   EXPECT_EQ(narrow.rays[1].origin, glm::vec3(4.0f, 5.0f, 6.0f));
   EXPECT_EQ(narrow.exponents[0], -1);
   EXPECT_EQ(rounded_, 0u);
   for (const char version : {1, 2, 3}) {
-    const RayBlock wide =
+    const RayTable wide =
         read_all(npy("<f8", "(1, 7)", raw<double>({0.1, 2, 3, 0, 0, 1, 5}), version));
     ASSERT_EQ(wide.rays.size(), 1u);
     EXPECT_EQ(wide.rays[0].origin.x, 0.1f);
@@ -155,13 +155,13 @@ TEST_F(Table, SaysWhatIsWrongWithAnArray) {
 }
 
 TEST_F(Table, IsSeenFromTheScenesOrigin) {
-  const RayBlock rays = read_all("1000000.25,0,0,1,0,0\n", glm::dvec3(1e6, 1.0, 0.0));
+  const RayTable rays = read_all("1000000.25,0,0,1,0,0\n", glm::dvec3(1e6, 1.0, 0.0));
   EXPECT_EQ(rays.rays.at(0).origin, glm::vec3(0.25f, -1.0f, 0.0f));
   EXPECT_EQ(rounded_, 0u);
 }
 
 TEST_F(Table, ScalesWhatRoundsUpToTheNextPowerOfTwo) {
-  const RayBlock rays = read_all("0,0,0,1.9999999999,0,0,1\n0,0,0,0,5e-324,0\n0,0,0,0,0,1e308\n");
+  const RayTable rays = read_all("0,0,0,1.9999999999,0,0,1\n0,0,0,0,5e-324,0\n0,0,0,0,0,1e308\n");
   EXPECT_EQ(rays.rays.at(0).direction.x, 1.0f);
   EXPECT_EQ(rays.exponents[0], -1);
   EXPECT_EQ(rays.limits[0], 2.0f);

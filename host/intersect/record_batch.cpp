@@ -1,4 +1,4 @@
-#include "host/intersect/unit/record_batch.h"
+#include "host/intersect/record_batch.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,10 +17,10 @@ namespace {
 
 constexpr int kBatch = kPlanes;
 
-using Doubles = double __attribute__((vector_size(8 * kBatch), aligned(8 * kBatch)));
-using Longs = std::int64_t __attribute__((vector_size(8 * kBatch), aligned(8 * kBatch)));
-using Floats = float __attribute__((vector_size(4 * kBatch), aligned(4 * kBatch)));
-using Ints = std::int32_t __attribute__((vector_size(4 * kBatch), aligned(4 * kBatch)));
+using Doubles = DoubleQuad;
+using Longs = LongQuad;
+using Floats = FloatQuad;
+using Ints = IntQuad;
 
 constexpr double kU = 0x1p-53;  // as in exact.cpp
 
@@ -57,14 +57,8 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
 template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& c, const Floats& d,
                                 float (&words)[kBatch][kWords], std::size_t first = 0) {
-  const Floats ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-  const Floats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-  const Floats cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const Floats cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  const Floats record[kBatch] = {__builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5),
-                                 __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
-                                 __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5),
-                                 __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
+  Floats record[kBatch] = {a, b, c, d};
+  transpose(record);
   for (int i = 0; i < kBatch; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 

@@ -1,4 +1,4 @@
-#include "host/trace/rays_in.h"
+#include "host/trace/ray_table_reader.h"
 
 #include <algorithm>
 #include <bit>
@@ -93,7 +93,7 @@ std::string shown(std::string_view text) {
 }  // namespace
 
 /// A table of numbers, row by row.
-class RaysIn::Source {
+class RayTableReader::Source {
  public:
   virtual ~Source() = default;
   /// How many numbers the next row has, 6 or 7, and these; 0 at the end.
@@ -102,7 +102,7 @@ class RaysIn::Source {
   [[noreturn]] virtual void fail(const std::string& what) const = 0;
 };
 
-class RaysIn::CsvSource : public RaysIn::Source {
+class RayTableReader::CsvSource : public RayTableReader::Source {
  public:
   explicit CsvSource(std::unique_ptr<Bytes> bytes) : bytes_(std::move(bytes)) {}
 
@@ -160,7 +160,7 @@ class RaysIn::CsvSource : public RaysIn::Source {
   bool past_header_ = false;
 };
 
-class RaysIn::NpySource : public RaysIn::Source {
+class RayTableReader::NpySource : public RayTableReader::Source {
  public:
   /// After the magic string: two bytes of version, the header's length, the header.
   explicit NpySource(std::unique_ptr<Bytes> bytes) : bytes_(std::move(bytes)) {
@@ -268,7 +268,7 @@ class RaysIn::NpySource : public RaysIn::Source {
   int columns_ = 0;
 };
 
-RaysIn::RaysIn(const std::filesystem::path& file, const glm::dvec3& scene_origin)
+RayTableReader::RayTableReader(const std::filesystem::path& file, const glm::dvec3& scene_origin)
     : scene_origin_(scene_origin) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   auto bytes = std::make_unique<Bytes>(file);
@@ -281,9 +281,9 @@ RaysIn::RaysIn(const std::filesystem::path& file, const glm::dvec3& scene_origin
   }
 }
 
-RaysIn::~RaysIn() = default;
+RayTableReader::~RayTableReader() = default;
 
-bool RaysIn::read(std::size_t most, RayBlock& block) {
+bool RayTableReader::read(std::size_t most, RayTable& block) {
   block.clear(number_);
   double numbers[kMostNumbers];
   while (block.rays.size() < most) {

@@ -1,13 +1,13 @@
-// How far off the unit's P may be.
+// Error bound of the hit-test unit's point P.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
+#include <glm/glm.hpp>
+#include <type_traits>
 
 #include "host/base/lanes.h"
-#include "host/intersect/unit/polygon_record.h"
 
 // Why P is no farther off
 //
@@ -28,12 +28,10 @@ RAYGATE_INLINE void grazing_of(const Bits& largest, const Bits& v, Bits& grazing
   grazing = grazing > 0 ? grazing : Bits{};
 }
 
-/// The same, of one plane.
-template <class Bits>
-RAYGATE_INLINE void grazing_of(const PolygonRecord& plane, const Bits& v, Bits& grazing) {
+/// The largest exponent field of a normal's words.
+[[nodiscard]] inline std::int32_t largest_field(const glm::vec3& n) {
   const auto field = [](float x) { return std::bit_cast<std::int32_t>(x) >> 23 & 0xFF; };
-  const glm::vec3& n = plane.normal;
-  grazing_of(Bits{} + std::max({field(n.x), field(n.y), field(n.z)}), v, grazing);
+  return std::max({field(n.x), field(n.y), field(n.z)});
 }
 
 /// The bits of NearestHit::point_error: 2^(grazing - 18), or +infinity where the unit says nothing
@@ -48,11 +46,25 @@ RAYGATE_INLINE void point_error_of(const Bits& d, const Bits& v, const Bits& gra
   error = in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
 }
 
-/// The same, of one plane.
-template <class Bits>
-RAYGATE_INLINE void point_error_of(const PolygonRecord& plane, const Bits& v, const Bits& grazing,
-                                   Bits& error) {
-  point_error_of(Bits{} + std::bit_cast<std::int32_t>(plane.d), v, grazing, error);
+/// P of a plane (N, d) and a direction each lane, and the bits of its error: those of plane_point.
+/// `Number`: float, one plane for all lanes, or Floats. `largest`: the largest exponent field of N.
+template <class Floats, class Ints, class Number>
+RAYGATE_INLINE void plane_points(const Number (&n)[3], const Number& d, const Ints& largest,
+                                 const Floats (&direction)[3], Floats (&point)[3], Ints& error) {
+  const Floats v = 0.0f + ((n[0] * direction[0] + n[1] * direction[1]) + n[2] * direction[2]);
+  Ints d_bits, grazing;
+  if constexpr (std::is_same_v<Number, float>) {
+    d_bits = Ints{} + std::bit_cast<std::int32_t>(d);
+  } else {
+    d_bits = reinterpret_cast<Ints>(d);
+  }
+  grazing_of(largest, reinterpret_cast<Ints>(v), grazing);
+  point_error_of(d_bits, reinterpret_cast<Ints>(v), grazing, error);
+  for (int k = 0; k < 3; ++k) {
+    const Floats p = d * direction[k] / v;
+    const Ints nan = Ints{} + 0x7FC00000;
+    point[k] = p == p ? p : reinterpret_cast<Floats>(nan);
+  }
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-#include "host/intersect/unit/polygon_record.h"
+#include "host/intersect/polygon_record.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Four records at a time are what they are one by one.
-#include "host/intersect/unit/record_batch.h"
+#include "host/intersect/record_batch.h"
 
 #include <gtest/gtest.h>
 

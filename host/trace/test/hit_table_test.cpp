@@ -1,5 +1,5 @@
 // What is said of hits, where it is easy to say something odd.
-#include "host/trace/answers.h"
+#include "host/trace/hit_table.h"
 
 #include <gtest/gtest.h>
 
@@ -9,17 +9,17 @@
 
 #include "host/exact/test/meshes.h"
 #include "host/intersect/cpu/all_hits.h"
-#include "host/trace/ray_block.h"
+#include "host/trace/ray_table.h"
 
 namespace raygate {
 namespace {
 
-TEST(Answers, SharesOfCornersAreNeverNegative) {
+TEST(HitTable, SharesOfCornersAreNeverNegative) {
   const Scene scene = test::scene_of(test::sphere(2));
   const Bvh bvh(scene);
-  const Answers answers(scene, bvh, {Answer::kUv}, AnswerFormat::kNpy);
+  const HitTable answers(scene, bvh, {HitColumn::kUv}, TableFormat::kNpy);
   test::Random random;
-  RayBlock block;
+  RayTable block;
   std::vector<RayHit> found;
   for (int i = 0; i < 2000; ++i) {  // at corners and edges, where a share is 0
     const Triangle& aim = scene.triangles[static_cast<std::size_t>(random.below(320))];

@@ -1,9 +1,9 @@
 // The words of a record, and the bound that makes its sure answers sure.
-#include "host/intersect/unit/polygon_record.h"
+#include "host/intersect/polygon_record.h"
 
 #include <gtest/gtest.h>
 
-#include "host/exact/exact_vector.h"
+#include "host/exact/expansion.h"
 #include "host/exact/test/meshes.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 

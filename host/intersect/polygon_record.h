@@ -1,4 +1,4 @@
-// One triangle seen from one origin: the 64 bytes that a hit test reads.
+// Polygon record: one triangle seen from one origin, the 64 bytes that a hit test reads.
 #pragma once
 
 #include <array>

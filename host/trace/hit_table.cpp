@@ -1,0 +1,211 @@
+#include "host/trace/hit_table.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "host/base/input_error.h"
+
+namespace raygate {
+namespace {
+
+struct Column {
+  std::string_view name;
+  bool is_integer;
+  std::vector<std::string> fields;
+};
+
+/// In the order of HitColumn.
+const Column kColumns[] = {{"ray", true, {"ray"}},
+                           {"hit", true, {"hit"}},
+                           {"triangle", true, {"triangle"}},
+                           {"object", true, {"object"}},
+                           {"material", true, {"material"}},
+                           {"t", false, {"t"}},
+                           {"point", false, {"x", "y", "z"}},
+                           {"uv", false, {"u", "v"}},
+                           {"normal", false, {"nx", "ny", "nz"}},
+                           {"doubts", true, {"doubts"}},
+                           {"unit-point", false, {"unit_x", "unit_y", "unit_z"}},
+                           {"unit-error", false, {"unit_error"}}};
+
+/// Appends decimals and a comma (CSV), or a little-endian word of 64 bits (NPY).
+template <class T>
+void put(TableFormat format, T value, std::string& bytes) {
+  if (format == TableFormat::kCsv) {
+    char text[32];
+    bytes.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+    bytes += ',';
+    return;
+  }
+  const auto word = std::bit_cast<std::uint64_t>(value);
+  for (int i = 0; i < 8; ++i) bytes += static_cast<char>(word >> (8 * i));
+}
+
+}  // namespace
+
+std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits, bool is_cpu,
+                                  const std::string& dashes) {
+  using enum HitColumn;
+  // Units keep nearest hits alone.
+  if (hits == Hits::kAll && !is_cpu) {
+    throw InputError(dashes + "engine: expected cpu with " + dashes + "hits all");
+  }
+  if (names.empty()) {
+    if (hits == Hits::kAny) return {kRay, kHit};
+    return {kRay, kHit, kTriangle, kObject, kT, kPoint, kUv, kNormal, kDoubts};
+  }
+  std::vector<HitColumn> columns;
+  const auto fail = [&](const std::string& name, const std::string& expected) {
+    throw InputError(dashes + "columns: found '" + name + "', expected " + expected);
+  };
+  for (const std::string& name : names) {
+    const auto* const at = std::ranges::find(kColumns, name, &Column::name);
+    if (at == std::end(kColumns)) {
+      std::string list;
+      for (const Column& known : kColumns) list.append(list.empty() ? "" : ", ").append(known.name);
+      fail(name, "some of " + list);
+    }
+    const auto column = static_cast<HitColumn>(at - std::begin(kColumns));
+    if (std::ranges::find(columns, column) != columns.end()) fail(name, "each name once");
+    // Which hit is found first is the engine's affair; that there is one is not.
+    if (hits == Hits::kAny && column != kRay && column != kHit && column != kDoubts) {
+      fail(name, "ray, hit or doubts with " + dashes + "hits any");
+    }
+    if (hits == Hits::kAll && (column == kUnitPoint || column == kUnitError)) {
+      fail(name, "none of the unit's with " + dashes + "hits all");
+    }
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+HitPoint hit_point_of(const Ray& ray, const Corners& corners) {
+  const Interval t = hit_distance(ray, corners);
+  const glm::dvec3 direction(ray.direction);
+  double weights[3];
+  for (int k = 0; k < 3; ++k) {
+    weights[k] =
+        glm::dot(direction, edge_normal(ray.origin, corners[(k + 1) % 3], corners[(k + 2) % 3]));
+  }
+  const double sum = weights[0] + weights[1] + weights[2];
+  const auto within = [](double share, double most) {
+    return std::max(0.0, std::min(share, most));
+  };
+  const double u = within(weights[1] / sum, 1.0);
+  return {0.5 * (t.low + t.high), u, within(weights[2] / sum, 1.0 - u)};
+}
+
+std::vector<std::pair<std::string, std::string>> HitTable::fields() const {
+  std::vector<std::pair<std::string, std::string>> fields;
+  for (const HitColumn column : columns_) {
+    const Column& known = kColumns[static_cast<std::size_t>(column)];
+    for (const std::string& field : known.fields) {
+      fields.emplace_back(field, known.is_integer ? "<i8" : "<f8");
+    }
+  }
+  return fields;
+}
+
+/// NPY: version 1.0, padded so that any number of rows fits and the rows begin at a multiple of 64.
+std::string HitTable::header(std::uint64_t rows) const {
+  std::string text;
+  for (const auto& [name, type] : fields()) {
+    if (format_ == TableFormat::kCsv) {
+      text.append(text.empty() ? "" : ",").append(name);
+    } else {
+      text.append(text.empty() ? "('" : ", ('")
+          .append(name)
+          .append("', '")
+          .append(type)
+          .append("')");
+    }
+  }
+  if (format_ == TableFormat::kCsv) return text + "\n";
+  text = "{'descr': [" + text + "], 'fortran_order': False, 'shape': (";
+  constexpr std::size_t kLongestNumber = 20, kStart = 10;
+  const std::size_t longest = kStart + text.size() + kLongestNumber + sizeof ",), }";
+  const std::size_t length = (longest + 63) / 64 * 64 - kStart;
+  text += std::to_string(rows) + ",), }";
+  text.resize(length - 1, ' ');
+  text += '\n';
+  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xFF) +
+         static_cast<char>(length >> 8) + text;
+}
+
+void HitTable::append(const RayTable& rays, const RayHit& found, std::string& bytes) const {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const NearestHit& hit = found.hit;
+  const bool is_hit = hit.primitive != NearestHit::kNone;
+  const Ray& ray = rays.rays[found.ray];
+  Corners corners{};
+  std::int64_t number = -1;
+  FaceRef stored;
+  HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // t of the scaled ray
+  if (is_hit) {
+    corners = bvh_.corners_of(hit.primitive);
+    number = bvh_.triangle_of(hit.primitive);
+    stored = bvh_.face_of(hit.primitive);
+    place = hit_point_of(ray, corners);
+  }
+  const auto integer = [&](std::int64_t value) { put(format_, value, bytes); };
+  const auto real = [&](double value) { put(format_, value, bytes); };
+  const auto vector = [&](const glm::dvec3& v) {
+    for (int k = 0; k < 3; ++k) real(is_hit ? v[k] : kNan);
+  };
+  const auto from_origin = [&](const glm::dvec3& way) {
+    vector(scene_.origin + (glm::dvec3(ray.origin) + way));
+  };
+  for (const HitColumn column : columns_) {
+    switch (column) {
+      case HitColumn::kRay:
+        integer(static_cast<std::int64_t>(rays.first + found.ray));
+        break;
+      case HitColumn::kHit:
+        integer(is_hit ? 1 : 0);
+        break;
+      case HitColumn::kTriangle:
+        integer(number);
+        break;
+      case HitColumn::kObject:
+        integer(is_hit ? std::int64_t{object_at(scene_, stored)} : -1);
+        break;
+      case HitColumn::kMaterial:
+        integer(is_hit ? std::int64_t{face_at(scene_, stored).material} : -1);
+        break;
+      case HitColumn::kT:
+        real(std::ldexp(place.t, rays.exponents[found.ray]));
+        break;
+      case HitColumn::kPoint:
+        from_origin(place.t * glm::dvec3(ray.direction));
+        break;
+      case HitColumn::kUv:
+        real(place.u);
+        real(place.v);
+        break;
+      case HitColumn::kNormal:
+        vector(glm::normalize(triangle_normal(corners)));
+        break;
+      case HitColumn::kDoubts:
+        integer(found.doubts);
+        break;
+      case HitColumn::kUnitPoint:
+        from_origin(glm::dvec3(hit.point));
+        break;
+      case HitColumn::kUnitError:
+        real(is_hit ? double{hit.point_error} : kNan);
+        break;
+    }
+  }
+  if (format_ == TableFormat::kCsv) bytes.back() = '\n';
+}
+
+void HitTable::append(const RayTable& rays, std::span<const RayHit> hits,
+                      std::string& bytes) const {
+  for (const RayHit& hit : hits) append(rays, hit, bytes);
+}
+
+}  // namespace raygate
