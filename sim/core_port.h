@@ -10,6 +10,37 @@
 
 namespace raygate {
 
+/// Offers a ray at the ray port of `top`, a class that Verilator made of ray_core or ray_core_axi.
+template <class Top>
+void put_ray(Top& top, const CoreRay& ray) {
+  std::memcpy(&top.ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
+  std::memcpy(&top.ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
+  top.ray_t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
+  top.ray_skip_id_i = ray.skip_id;
+  top.ray_start_i = ray.start;
+  top.ray_any_hit_i = ray.any_hit;
+  top.ray_no_cull_i = ray.no_cull;
+  top.ray_tag_i = ray.tag;
+  top.ray_valid_i = 1;
+}
+
+/// The word at the result port of `top`.
+template <class Top>
+CoreResult result_at(const Top& top) {
+  CoreResult result;
+  result.kind = static_cast<CoreResult::Kind>(top.result_kind_o);
+  result.found = top.result_found_o != 0;
+  result.tag = top.result_tag_o;
+  result.triangle = top.result_triangle_o;
+  result.t = std::bit_cast<float>(top.result_t_o);
+  result.t_error = top.result_t_error_o;
+  std::memcpy(&result.point, &top.result_point_o, sizeof result.point);
+  result.tests = top.result_tests_o;
+  result.line = top.result_line_o;
+  result.nodes = top.result_nodes_o;
+  return result;
+}
+
 /// The core `Top` (a class that Verilator made), held by a `Holder`: Model, or WaveModel for waves.
 template <class Top, template <class> class Holder = Model>
 class CorePort {
@@ -39,15 +70,7 @@ class CorePort {
   [[nodiscard]] bool is_offering() const { return model_->ray_valid_i != 0; }
   /// Offers a ray until it is taken; only while none is on offer.
   void offer(const CoreRay& ray) {
-    std::memcpy(&model_->ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
-    std::memcpy(&model_->ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
-    model_->ray_t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
-    model_->ray_skip_id_i = ray.skip_id;
-    model_->ray_start_i = ray.start;
-    model_->ray_any_hit_i = ray.any_hit;
-    model_->ray_no_cull_i = ray.no_cull;
-    model_->ray_tag_i = ray.tag;
-    model_->ray_valid_i = 1;
+    put_ray(*model_, ray);
     ++rays_;
   }
   /// Rays offered whose ends were not taken.
@@ -63,20 +86,7 @@ class CorePort {
     return taken;
   }
   [[nodiscard]] bool has_result() const { return model_->result_valid_o != 0; }
-  [[nodiscard]] CoreResult result() const {
-    CoreResult result;
-    result.kind = static_cast<CoreResult::Kind>(model_->result_kind_o);
-    result.found = model_->result_found_o != 0;
-    result.tag = model_->result_tag_o;
-    result.triangle = model_->result_triangle_o;
-    result.t = std::bit_cast<float>(model_->result_t_o);
-    result.t_error = model_->result_t_error_o;
-    std::memcpy(&result.point, &model_->result_point_o, sizeof result.point);
-    result.tests = model_->result_tests_o;
-    result.line = model_->result_line_o;
-    result.nodes = model_->result_nodes_o;
-    return result;
-  }
+  [[nodiscard]] CoreResult result() const { return result_at(*model_); }
 
   // ---- Memory
 

@@ -49,6 +49,7 @@ class Model {
   Top* operator->() { return top_.get(); }
   const Top* operator->() const { return top_.get(); }
   Top& operator*() { return *top_; }
+  const Top& operator*() const { return *top_; }
   VerilatedContext& context() { return *context_; }
 
   /// Lets the outputs follow the inputs: all that a combinational top needs.

@@ -32,11 +32,11 @@ void set_words(Port& port, const std::vector<std::uint32_t>& words) {
 }
 
 template <class Top>
-class AxiLineReaderTest : public testing::Test {};
+class AxiReadManagerTest : public testing::Test {};
 using Tops = testing::Types<Vaxi_read_manager_32, Vaxi_read_manager_128, Vaxi_read_manager_512>;
-TYPED_TEST_SUITE(AxiLineReaderTest, Tops);
+TYPED_TEST_SUITE(AxiReadManagerTest, Tops);
 
-TYPED_TEST(AxiLineReaderTest, EveryTagGetsItsLineOnce) {
+TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   struct Burst {
     bool open = false;

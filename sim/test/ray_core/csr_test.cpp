@@ -14,9 +14,9 @@ namespace {
 constexpr std::uint32_t kSeed = 20261122;
 constexpr unsigned kEvents = 10;  // ray_core_pkg::NumEvents
 
-class CoreRegistersTest : public testing::Test {
+class CsrTest : public testing::Test {
  protected:
-  CoreRegistersTest() {
+  CsrTest() {
     model_->axi_awvalid_i = model_->axi_wvalid_i = model_->axi_bready_i = 0;
     model_->axi_arvalid_i = model_->axi_rready_i = 0;
     model_->camera_busy_i = model_->core_busy_i = model_->doubt_i = model_->bus_error_i = 0;
@@ -86,7 +86,7 @@ class CoreRegistersTest : public testing::Test {
   int started_ = 0, invalidated_ = 0;
 };
 
-TEST_F(CoreRegistersTest, PlainRegistersKeepTheirBytes) {
+TEST_F(CsrTest, PlainRegistersKeepTheirBytes) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
   for (unsigned n = 5; n < 27; ++n) write(4 * n, words[n] = random_());
@@ -113,7 +113,7 @@ TEST_F(CoreRegistersTest, PlainRegistersKeepTheirBytes) {
   EXPECT_EQ(read(0x004), 0u);
 }
 
-TEST_F(CoreRegistersTest, CommandsLastAClock) {
+TEST_F(CsrTest, CommandsLastAClock) {
   write(0x004, 1);
   EXPECT_EQ(started_, 1);
   write(0x004, 2);
@@ -122,7 +122,7 @@ TEST_F(CoreRegistersTest, CommandsLastAClock) {
   EXPECT_EQ(invalidated_, 1);
 }
 
-TEST_F(CoreRegistersTest, FlagsRiseFallAndInterrupt) {
+TEST_F(CsrTest, FlagsRiseFallAndInterrupt) {
   EXPECT_EQ(read(0x010), 0u);
   model_->doubt_i = 1;
   clock();
@@ -165,7 +165,7 @@ TEST_F(CoreRegistersTest, FlagsRiseFallAndInterrupt) {
   EXPECT_EQ(read(0x010), 0u);
 }
 
-TEST_F(CoreRegistersTest, CountersCountTheirEvents) {
+TEST_F(CsrTest, CountersCountTheirEvents) {
   std::array<std::uint64_t, kEvents + 1> counts{};
   for (int i = 0; i < 5'000; ++i) {
     model_->events_i = random_() & ((1u << kEvents) - 1);
@@ -186,7 +186,7 @@ TEST_F(CoreRegistersTest, CountersCountTheirEvents) {
 
 /// Reads and writes of any word, close upon each other, while the core works: each word and each
 /// output as the header says.
-TEST_F(CoreRegistersTest, AnyTrafficIsAsTheHeaderSays) {
+TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
   for (unsigned n = 5; n < 27; ++n) write(4 * n, words[n] = random_());

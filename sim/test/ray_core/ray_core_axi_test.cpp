@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <deque>
 #include <map>
 #include <random>
@@ -15,7 +14,7 @@
 #include "host/intersect/core/pixel_grid.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
-#include "sim/model.h"
+#include "sim/core_port.h"
 
 namespace raygate {
 namespace {
@@ -58,7 +57,8 @@ class RayCoreAxiTest : public testing::Test {
     }
     const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
     const bool ray_taken = (model_->ray_valid_i & model_->ray_ready_o) != 0;
-    if ((model_->result_valid_o & model_->result_ready_i) != 0) take_result();
+    if ((model_->result_valid_o & model_->result_ready_i) != 0)
+      results_.push_back(result_at(*model_));
     model_.clock();
     if (beat_taken) model_->mem_rvalid_i = 0;
     if (ray_taken) model_->ray_valid_i = 0;
@@ -89,32 +89,6 @@ class RayCoreAxiTest : public testing::Test {
     EXPECT_EQ(model_->reg_rvalid_o, 1);
     clock();
     return data;
-  }
-
-  void take_result() {
-    CoreResult result;
-    result.kind = static_cast<CoreResult::Kind>(model_->result_kind_o);
-    result.tag = model_->result_tag_o;
-    result.found = model_->result_found_o != 0;
-    result.triangle = model_->result_triangle_o;
-    result.t = std::bit_cast<float>(model_->result_t_o);
-    result.t_error = model_->result_t_error_o;
-    std::memcpy(&result.point, &model_->result_point_o, sizeof result.point);
-    result.tests = model_->result_tests_o;
-    results_.push_back(result);
-  }
-
-  /// Offers a ray at the port for rays.
-  void offer(const CoreRay& ray) {
-    std::memcpy(&model_->ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
-    std::memcpy(&model_->ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
-    model_->ray_t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
-    model_->ray_skip_id_i = ray.skip_id;
-    model_->ray_start_i = ray.start;
-    model_->ray_any_hit_i = ray.any_hit;
-    model_->ray_no_cull_i = ray.no_cull;
-    model_->ray_tag_i = ray.tag;
-    model_->ray_valid_i = 1;
   }
 
   struct Beat {
@@ -230,7 +204,8 @@ TEST_F(RayCoreAxiTest, RaysAtThePortAreTraced) {
   std::map<std::uint32_t, std::vector<CoreResult>> words;
   for (int n = 0; ended < rays.size(); ++n) {
     ASSERT_LT(n, 400'000);
-    if (next != rays.end() && model_->ray_valid_i == 0 && random_() % 4 != 0) offer(*next++);
+    if (next != rays.end() && model_->ray_valid_i == 0 && random_() % 4 != 0)
+      put_ray(*model_, *next++);
     clock();
     for (; seen < results_.size(); ++seen) {
       words[results_[seen].tag].push_back(results_[seen]);

@@ -19,11 +19,11 @@ namespace {
 constexpr std::uint32_t kSeed = 20261122;
 
 template <class Top>
-class CameraUnitTest : public testing::Test {};
+class RayGeneratorTest : public testing::Test {};
 using Tops = testing::Types<Vray_generator_behavioural, Vray_generator_structural>;
-TYPED_TEST_SUITE(CameraUnitTest, Tops);
+TYPED_TEST_SUITE(RayGeneratorTest, Tops);
 
-TYPED_TEST(CameraUnitTest, EqualsItsReference) {
+TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   Model<TypeParam> model;
   std::mt19937 random(kSeed);
@@ -102,7 +102,7 @@ TYPED_TEST(CameraUnitTest, EqualsItsReference) {
 }
 
 /// A ray in every clock, where it is taken.
-TYPED_TEST(CameraUnitTest, GivesARayAClock) {
+TYPED_TEST(RayGeneratorTest, GivesARayAClock) {
   Model<TypeParam> model;
   model->start_i = 0;
   model->ready_i = 1;
