@@ -20,9 +20,13 @@ module fifo #(
   output logic [Width-1:0] data_o
 );
 
-  localparam int unsigned IndexWidth = $clog2(Depth);
+  localparam int unsigned IndexWidth = (Depth < 2) ? 1 : $clog2(Depth);
   localparam int unsigned CountWidth = $clog2(Depth + 1);
   localparam logic [IndexWidth-1:0] Last = IndexWidth'(Depth - 1);
+
+  if (Depth < 2 || Reserve >= Depth) begin : gen_check
+    $error("fifo: expected a Depth of 2 or more and a Reserve below it");
+  end
 
   logic [Width-1:0] words[Depth];
   logic [IndexWidth-1:0] write_q, read_q;

@@ -1,6 +1,6 @@
 // Picks one of Width requests: the first at or above start_i, or else the first of all.
 //
-// Combinational. Width is a power of two, at least 2.
+// Combinational. Width is at least 2.
 module rr_arbiter #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)
@@ -11,6 +11,10 @@ module rr_arbiter #(
   output logic [IndexWidth-1:0] index_o
 );
 
+  if (Width < 2) begin : gen_check
+    $error("rr_arbiter: expected a Width of 2 or more");
+  end
+
   logic [Width-1:0] above, among, picked;
 
   assign above  = requests_i & ({Width{1'b1}} << start_i);
@@ -18,10 +22,13 @@ module rr_arbiter #(
   assign picked = among & -among;  // its lowest bit
   assign valid_o = requests_i != '0;
 
+  // The numbers with bit b
+  function automatic bit [Width-1:0] numbers(int unsigned b);
+    for (int unsigned i = 0; i < Width; i++) numbers[i] = ((i >> b) % 2) == 1;
+  endfunction
+
   for (genvar b = 0; b < IndexWidth; b++) begin : gen_bit
-    // The numbers with bit b.
-    localparam logic [Width-1:0] Numbers = {(Width >> (b + 1)){{(1 << b){1'b1}}, {(1 << b){1'b0}}}};
-    assign index_o[b] = (picked & Numbers) != '0;
+    assign index_o[b] = (picked & numbers(b)) != '0;
   end
 
 endmodule

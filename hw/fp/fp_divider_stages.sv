@@ -43,8 +43,8 @@ module fp_divider_stages #(
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
   localparam int unsigned RoundSigWidth = FracWidth + 5;  // of the rounder: to its sticky bit
 
-  if (QuotientBits > FracWidth + 1) begin : gen_check
-    $error("fp_divider_stages: QuotientBits is 0 or at most the significand's FracWidth + 1");
+  if (QuotientBits > FracWidth + 1 || Rows > 27) begin : gen_check
+    $error("fp_divider_stages: expected at most FracWidth + 1 QuotientBits and 27 rows");
   end
 
   // ---- Unpack

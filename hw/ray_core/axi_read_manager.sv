@@ -49,6 +49,10 @@ module axi_read_manager #(
   localparam int unsigned BeatWidth = (Beats == 1) ? 1 : $clog2(Beats);
   localparam logic [1:0] BurstIncrement = 2'b01;
 
+  if (DataWidth < 32 || Beats * DataWidth != LineWidth || DataWidth % 32 != 0) begin : gen_check
+    $error("axi_read_manager: expected a DataWidth of 32 to 512, a power of two");
+  end
+
   // ---- Requests: a free ID for each
 
   logic [Ids-1:0] free_q;
@@ -94,7 +98,7 @@ module axi_read_manager #(
   logic [BeatWidth-1:0] counts[Ids];  // beats that have come; set back when the ID is line_fire
   logic last;
 
-  if (Beats == 1) begin : gen_whole
+  if (Beats <= 1) begin : gen_whole
     assign last   = 1'b1;
     assign line_o = axi_rdata_i;
   end else begin : gen_beats

@@ -15,7 +15,7 @@
 // invalidate_i, while no line is outstanding, empties the cache.
 module line_cache #(
   parameter int unsigned Lines    = 256,  // a power of two, at least 16
-  parameter int unsigned Targets  = 64,   // requests that may wait for lines; a power of two
+  parameter int unsigned Targets  = 64,   // requests that may wait for lines, at least 2
   parameter int unsigned RayWidth = 6,
   parameter int unsigned Width    = ray_core_pkg::LineWidth,  // of what is kept of a line
   localparam int unsigned EntryWidth = $clog2(Lines),
@@ -53,6 +53,10 @@ module line_cache #(
   localparam int unsigned Sets = Lines / Ways;
   localparam int unsigned SetWidth = EntryWidth - WayWidth;
   localparam int unsigned TagWidth = AddressWidth - SetWidth;
+
+  if (Lines < 2 * Ways || 2 ** EntryWidth != Lines) begin : gen_check
+    $error("line_cache: expected Lines to be a power of two, at least 16");
+  end
 
   logic [Width-1:0] words[Lines];  // by entry, {set, way}
   logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way

@@ -66,6 +66,10 @@ module traversal #(
 
   localparam int unsigned NextWidth = Children + EnterWidth;
 
+  if (Depth < 1) begin : gen_check
+    $error("traversal: expected a Depth of 1 or more");
+  end
+
   logic [GroupWidth-1:0] groups[Rays*Depth];
   logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
   logic [Rays-1:0] busy_q;     // waits for a node
