@@ -61,7 +61,7 @@ module line_cache #(
   logic [Width-1:0] words[Lines];  // by entry, {set, way}
   logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way
   logic [Ways*TagWidth-1:0] tags[Sets];  // the other bits of its number
-  logic [WayWidth-1:0] victim[Sets];  // the way after the one that was used last
+  logic [Sets*WayWidth-1:0] victims_q;  // of each set the way after the one that was used last
 
   // ---- Look up
 
@@ -90,7 +90,7 @@ module line_cache #(
     .Width(Ways)
   ) u_victim (
     .requests_i(~pending),
-    .start_i(victim[set]),
+    .start_i(victims_q[WayWidth*set +: WayWidth]),
     .valid_o(some_way),
     .index_o(victim_way)
   );
@@ -106,10 +106,11 @@ module line_cache #(
     end
   end
 
-  always_ff @(posedge clk_i) begin
-    if (valid_i && ready_o) victim[set] <= way + 1'b1;
-    if (allocate) tags[set] <= new_tags;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) victims_q <= '0;
+    else if (valid_i && ready_o) victims_q[WayWidth*set +: WayWidth] <= way + 1'b1;
   end
+  always_ff @(posedge clk_i) if (allocate) tags[set] <= new_tags;
 
   // ---- Targets: lists of requests that wait, one for each entry
 
