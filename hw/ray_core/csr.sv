@@ -16,12 +16,14 @@
 //   0x024  size       rw   its width and height, likewise
 //   0x030  eye        rw   where generated rays begin; 0x040 first, 0x050 right, 0x060 down: see ray_generator
 //   0x100  counters   ro   two words each, low word first: clocks with status bit 1 high, then those of
-//                          ray_core_pkg::event_e in their order. Of 48 bits, modulo 2**48
+//                          ray_core_pkg::event_e in their order. Of 48 bits, modulo 2**48; a high word is
+//                          that of the moment when a low word was read last
 //
-// So a picture is drawn by one write of `size` and one of `command`, where the camera stays. Commands and writes
-// to what the camera reads are the user's to hold back while status is not 0.
+// So a picture is drawn by one write of `size` and one of `command`, where the camera stays. While status is not
+// 0, commands 0 and 1 and writes to 0x014 to 0x068 do nothing and are answered by SLVERR. A rectangle without
+// pixels is done at once.
 //
-// One write and one read at a time: a write is taken when its address and its data are there.
+// One write and one read at a time; no output of AXI depends on an input in the same clock.
 // interrupt_o is high while a flag is that is enabled.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr #(
@@ -74,49 +76,73 @@ module csr #(
   localparam logic [9:0] WordEnable = 10'h003;
   localparam logic [9:0] WordFlags = 10'h004;
   localparam logic [9:0] WordBase = 10'h005;
-  localparam logic [9:0] WordEnd = 10'h01b;  // behind the plain registers, whose first is WordBase
+  localparam logic [31:0] PlainWords = 32'h0777_7360;  // by number, those of plain registers
   localparam logic [9:0] WordCounters = 10'h040;
 
-  // ---- Writes
+  // ---- Writes: address and data are taken, each into a register; then the word is written
 
-  logic write;
-  logic [9:0] write_word, read_word;
-  logic [31:0] written;  // bits that are
+  logic write, refused, address_q, data_q;  // here
+  logic [9:0] write_word_q, read_word;
+  logic [3:0] strobes_q;
+  logic [31:0] write_data_q, mask;  // the bits to write
 
-  assign write         = axi_awvalid_i & axi_wvalid_i & (~axi_bvalid_o | axi_bready_i);
-  assign axi_awready_o = write;
-  assign axi_wready_o  = write;
-  assign axi_bresp_o   = 2'b00;
-  assign write_word    = axi_awaddr_i[AddressWidth-1:2];
-  assign written       = {{8{axi_wstrb_i[3]}}, {8{axi_wstrb_i[2]}}, {8{axi_wstrb_i[1]}},
-                          {8{axi_wstrb_i[0]}}};
+  assign write         = address_q & data_q & ~axi_bvalid_o;
+  assign axi_awready_o = ~address_q;
+  assign axi_wready_o  = ~data_q;
+  assign mask = {{8{strobes_q[3]}}, {8{strobes_q[2]}}, {8{strobes_q[1]}}, {8{strobes_q[0]}}};
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) axi_bvalid_o <= 1'b0;
-    else axi_bvalid_o <= write | (axi_bvalid_o & ~axi_bready_i);
+    if (!rst_ni) begin
+      address_q    <= 1'b0;
+      data_q       <= 1'b0;
+      axi_bvalid_o <= 1'b0;
+    end else begin
+      address_q    <= address_q ? ~write : axi_awvalid_i;
+      data_q       <= data_q ? ~write : axi_wvalid_i;
+      axi_bvalid_o <= write | (axi_bvalid_o & ~axi_bready_i);
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (!address_q) write_word_q <= axi_awaddr_i[AddressWidth-1:2];
+    if (!data_q) {strobes_q, write_data_q} <= {axi_wstrb_i, axi_wdata_i};
+    if (write) axi_bresp_o <= {refused, 1'b0};
   end
 
-  logic command, clear;
-  assign command      = write & (write_word == WordCommand);
-  assign start_o      = command & axi_wdata_i[0] & axi_wstrb_i[0];
-  assign invalidate_o = command & axi_wdata_i[1] & axi_wstrb_i[0];
-  assign clear        = command & axi_wdata_i[2] & axi_wstrb_i[0];
+  logic command, plain, clear;
+  logic [2:0] commands;
+  assign commands     = write_data_q[2:0] & {3{write & (write_word_q == WordCommand) & strobes_q[0]}};
+  assign plain        = (write_word_q < 10'd32) && PlainWords[write_word_q[4:0]];
+  assign refused      = (camera_busy_i | core_busy_i) & (plain | (commands[1:0] != '0));
+  assign command      = write & ~refused;
+  assign start_o      = command & commands[0];
+  assign invalidate_o = command & commands[1];
+  assign clear        = command & commands[2];
 
   // ---- Plain registers: base, corner, size and the camera's
 
-  logic [31:0] words[32];  // by word number; those of other registers are not used
+  logic [32*32-1:0] words;  // by word number
 
-  always_ff @(posedge clk_i) begin
-    if (write && write_word < 10'd32) begin
-      words[write_word[4:0]] <= (axi_wdata_i & written) | (words[write_word[4:0]] & ~written);
+  for (genvar n = 0; n < 32; n++) begin : gen_word
+    localparam logic [31:0] Bits = (n == 32'(WordBase)) ? ~32'd63 : '1;  // that can be written
+    if (PlainWords[n]) begin : gen_plain
+      logic [31:0] word_q;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) word_q <= '0;
+        else if (command && write_word_q == 10'(n)) begin
+          word_q <= (write_data_q & mask & Bits) | (word_q & ~mask);
+        end
+      end
+      assign words[32*n+:32] = word_q;
+    end else begin : gen_none
+      assign words[32*n+:32] = '0;
     end
   end
 
-  assign base_o   = {words[6], words[5]};
-  assign corner_o = words[8];
-  assign size_o   = words[9];
+  assign base_o   = words[32*5+:64];
+  assign corner_o = words[32*8+:32];
+  assign size_o   = words[32*9+:32];
   for (genvar v = 0; v < 4; v++) begin : gen_vector
-    assign camera_o[96*v+:96] = {words[14+4*v], words[13+4*v], words[12+4*v]};
+    assign camera_o[96*v+:96] = words[32*(12+4*v)+:96];
   end
 
   // ---- Flags
@@ -126,7 +152,7 @@ module csr #(
 
   assign done    = drawing_q & ~camera_busy_i & ~core_busy_i;
   assign raised  = {bus_error_i, done, doubt_i};
-  assign lowered = (write && write_word == WordFlags) ? axi_wdata_i[2:0] & written[2:0] : '0;
+  assign lowered = (write && write_word_q == WordFlags) ? write_data_q[2:0] & mask[2:0] : '0;
   assign interrupt_o = (enable_q & flags_q) != '0;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -135,11 +161,11 @@ module csr #(
       flags_q   <= '0;
       drawing_q <= 1'b0;
     end else begin
-      if (write && write_word == WordEnable) begin
-        enable_q <= (axi_wdata_i[2:0] & written[2:0]) | (enable_q & ~written[2:0]);
+      if (write && write_word_q == WordEnable) begin
+        enable_q <= (write_data_q[2:0] & mask[2:0]) | (enable_q & ~mask[2:0]);
       end
       flags_q   <= (flags_q & ~lowered) | raised;
-      drawing_q <= camera_busy_i | (drawing_q & ~done);
+      drawing_q <= start_o | camera_busy_i | (drawing_q & ~done);
     end
   end
 
@@ -158,25 +184,26 @@ module csr #(
     assign counters[CounterWidth*n+:CounterWidth] = count_q;
   end
 
-  // ---- Reads
+  // ---- Reads: with a counter's low word its high one is held for the next read
 
   logic read;
   logic [31:0] value;
+  logic [CounterWidth-33:0] high, high_q;
 
-  assign read          = axi_arvalid_i & (~axi_rvalid_o | axi_rready_i);
-  assign axi_arready_o = read;
+  assign read          = axi_arvalid_i & axi_arready_o;
+  assign axi_arready_o = ~axi_rvalid_o;
   assign axi_rresp_o   = 2'b00;
   assign read_word     = axi_araddr_i[AddressWidth-1:2];
 
   always_comb begin
-    value = '0;
+    value = (read_word < 10'd32) ? words[32*read_word[4:0]+:32] : '0;
+    high  = high_q;
     for (int unsigned n = 0; n < NumCounters; n++) begin
-      if (read_word == WordCounters + 10'(2 * n)) value = counters[CounterWidth*n+:32];
-      if (read_word == WordCounters + 10'(2 * n + 1)) begin
-        value = 32'(counters[CounterWidth*n+32+:CounterWidth-32]);
+      if (read_word == WordCounters + 10'(2 * n)) begin
+        {high, value} = counters[CounterWidth*n+:CounterWidth];
       end
+      if (read_word == WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
     end
-    if (read_word >= WordBase && read_word < WordEnd) value = words[read_word[4:0]];
     if (read_word == WordIdentity) value = Identity;
     if (read_word == WordStatus) value = {30'd0, core_busy_i, camera_busy_i};
     if (read_word == WordEnable) value = 32'(enable_q);
@@ -187,7 +214,7 @@ module csr #(
     if (!rst_ni) axi_rvalid_o <= 1'b0;
     else axi_rvalid_o <= read | (axi_rvalid_o & ~axi_rready_i);
   end
-  always_ff @(posedge clk_i) if (read) axi_rdata_o <= value;
+  always_ff @(posedge clk_i) if (read) {high_q, axi_rdata_o} <= {high, value};
 
   logic unused;  // words begin at multiples of four
   assign unused = ^{axi_awaddr_i[1:0], axi_araddr_i[1:0]};

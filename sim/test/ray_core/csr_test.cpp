@@ -14,6 +14,12 @@ namespace {
 constexpr std::uint32_t kSeed = 20261122;
 constexpr unsigned kEvents = 10;  // ray_core_pkg::NumEvents
 
+/// Whether word `n` is a plain register, and which of its bits can be written.
+bool is_plain(unsigned n) {
+  return n == 5 || n == 6 || n == 8 || n == 9 || (n >= 12 && n < 27 && n % 4 != 3);
+}
+std::uint32_t bits_of(unsigned n) { return n == 5 ? ~63u : ~0u; }
+
 class CsrTest : public testing::Test {
  protected:
   CsrTest() {
@@ -32,32 +38,31 @@ class CsrTest : public testing::Test {
     model_.clock();
   }
 
-  /// With pauses; address and data in any order.
-  void write(std::uint32_t address, std::uint32_t data, unsigned strobes = 15) {
-    bool address_there = false, data_there = false;
+  /// With pauses; address and data in any order. The answer, 0 or 2: okay or refused.
+  unsigned write(std::uint32_t address, std::uint32_t data, unsigned strobes = 15) {
     model_->axi_awaddr_i = address;
     model_->axi_wdata_i = data;
     model_->axi_wstrb_i = strobes;
-    for (bool taken = false; !taken;) {
-      address_there |= random_() % 3 == 0;
-      data_there |= random_() % 3 == 0;
-      model_->axi_awvalid_i = address_there;
-      model_->axi_wvalid_i = data_there;
-      model_.eval();
-      ASSERT_EQ(model_->axi_awready_o, model_->axi_wready_o);
-      taken = address_there && data_there && model_->axi_awready_o != 0;
+    for (bool address_taken = false, data_taken = false; !address_taken || !data_taken;) {
+      if (!address_taken && random_() % 3 == 0) model_->axi_awvalid_i = 1;
+      if (!data_taken && random_() % 3 == 0) model_->axi_wvalid_i = 1;
+      const bool takes_address = (model_->axi_awvalid_i & model_->axi_awready_o) != 0;
+      const bool takes_data = (model_->axi_wvalid_i & model_->axi_wready_o) != 0;
       clock();
+      if (takes_address) model_->axi_awvalid_i = 0;
+      if (takes_data) model_->axi_wvalid_i = 0;
+      address_taken |= takes_address;
+      data_taken |= takes_data;
     }
-    model_->axi_awvalid_i = model_->axi_wvalid_i = 0;
-    for (bool done = false; !done;) {
-      model_->axi_bready_i = random_() % 2;
-      ASSERT_EQ(model_->axi_bvalid_o, 1);
-      ASSERT_EQ(model_->axi_bresp_o, 0);
-      done = model_->axi_bready_i != 0;
-      clock();
-    }
+    clock();
+    EXPECT_EQ(model_->axi_bvalid_o, 1);
+    const unsigned response = model_->axi_bresp_o;
+    while (random_() % 2 == 0) clock();
+    model_->axi_bready_i = 1;
+    clock();
     model_->axi_bready_i = 0;
-    ASSERT_EQ(model_->axi_bvalid_o, 0);
+    EXPECT_EQ(model_->axi_bvalid_o, 0);
+    return response;
   }
 
   std::uint32_t read(std::uint32_t address) {
@@ -89,13 +94,12 @@ class CsrTest : public testing::Test {
 TEST_F(CsrTest, PlainRegistersKeepTheirBytes) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
-  for (unsigned n = 5; n < 27; ++n) write(4 * n, words[n] = random_());
   for (int i = 0; i < 2'000; ++i) {
     const unsigned n = 5 + random_() % 22, strobes = random_() % 16;
-    const std::uint32_t data = random_();
-    write(4 * n, data, strobes);
+    const std::uint32_t data = random_() & bits_of(n);
+    ASSERT_EQ(write(4 * n, data | (random_() & ~bits_of(n)), strobes), 0u);
     for (unsigned b = 0; b < 4; ++b) {
-      if ((strobes >> b & 1) == 0) continue;
+      if ((strobes >> b & 1) == 0 || !is_plain(n)) continue;
       words[n] = (words[n] & ~(0xFFu << 8 * b)) | (data & 0xFFu << 8 * b);
     }
     write(0x800 + 4 * n, random_());  // nothing is there
@@ -120,6 +124,35 @@ TEST_F(CsrTest, CommandsLastAClock) {
   write(0x004, 3, 14);  // not that byte
   EXPECT_EQ(started_, 1);
   EXPECT_EQ(invalidated_, 1);
+}
+
+/// While rays are to be made or in the core, what would change them is refused and does nothing.
+TEST_F(CsrTest, CommandsWhileBusyAreRefused) {
+  EXPECT_EQ(write(0x020, 17), 0u);
+  for (const bool camera : {true, false}) {
+    model_->camera_busy_i = camera;
+    model_->core_busy_i = !camera;
+    for (const std::uint32_t command : {1u, 2u, 3u, 7u}) EXPECT_EQ(write(0x004, command), 2u);
+    for (const std::uint32_t address : {0x014u, 0x020u, 0x024u, 0x068u}) {
+      EXPECT_EQ(write(address, 99), 2u);
+    }
+    EXPECT_EQ(write(0x004, 4), 0u) << "counters";
+    EXPECT_EQ(write(0x00C, 1), 0u) << "enable";
+    EXPECT_EQ(write(0x010, 7), 0u) << "flags";
+  }
+  EXPECT_EQ(read(0x020), 17u);
+  EXPECT_EQ(started_ + invalidated_, 0);
+  model_->core_busy_i = 0;
+  EXPECT_EQ(write(0x004, 1), 0u);
+  EXPECT_EQ(started_, 1);
+}
+
+/// A rectangle without pixels, which makes no camera busy, is done.
+TEST_F(CsrTest, AnEmptyRectangleIsDone) {
+  write(0x00C, 2);
+  write(0x004, 1);
+  EXPECT_EQ(model_->interrupt_o, 1);
+  EXPECT_EQ(read(0x010), 2u);
 }
 
 TEST_F(CsrTest, FlagsRiseFallAndInterrupt) {
@@ -189,10 +222,10 @@ TEST_F(CsrTest, CountersCountTheirEvents) {
 TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
-  for (unsigned n = 5; n < 27; ++n) write(4 * n, words[n] = random_());
   std::array<std::uint64_t, kEvents + 1> counts{};
-  std::uint32_t enable = 0, flags = 0, expected = 0;
-  bool drawing = false, written = false, answered = false;
+  std::uint32_t enable = 0, flags = 0, expected = 0, address_here = 0, data_here = 0, strobes = 0;
+  bool drawing = false, written = false, answered = false, has_address = false, has_data = false;
+  unsigned response = 0, refusals = 0;
   unsigned writes = 0, reads = 0;
   const auto value = [&](unsigned word) -> std::uint32_t {
     if (word == 0) return 0x52470001;
@@ -232,7 +265,13 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     model_->events_i = random_() & ((1u << kEvents) - 1);
     model_.eval();
     ASSERT_EQ(model_->axi_bvalid_o, written);
+    if (written) {
+      ASSERT_EQ(model_->axi_bresp_o, response);
+    }
     ASSERT_EQ(model_->axi_rvalid_o, answered);
+    ASSERT_EQ(model_->axi_awready_o, !has_address);
+    ASSERT_EQ(model_->axi_wready_o, !has_data);
+    ASSERT_EQ(model_->axi_arready_o, !answered);
     if (answered) {
       ASSERT_EQ(model_->axi_rdata_o, expected);
     }
@@ -245,38 +284,51 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     ASSERT_EQ(model_->interrupt_o, (enable & flags) != 0);
 
     // What this clock does.
-    const bool write = (model_->axi_awvalid_i & model_->axi_wvalid_i & model_->axi_awready_o) != 0;
-    const bool read = (model_->axi_arvalid_i & model_->axi_arready_o) != 0;
-    ASSERT_EQ(model_->axi_wready_o, model_->axi_awready_o);
-    ASSERT_EQ(write, model_->axi_awvalid_i != 0 && model_->axi_wvalid_i != 0 &&
-                         (!written || model_->axi_bready_i != 0));
-    ASSERT_EQ(read, model_->axi_arvalid_i != 0 && (!answered || model_->axi_rready_i != 0));
+    const bool takes_address = model_->axi_awvalid_i != 0 && !has_address;
+    const bool takes_data = model_->axi_wvalid_i != 0 && !has_data;
+    const bool write = has_address && has_data && !written;
+    const bool read = model_->axi_arvalid_i != 0 && !answered;
     if (read) expected = value(model_->axi_araddr_i / 4);
-    const unsigned word = write ? model_->axi_awaddr_i / 4 : 1023;
+    const unsigned word = write ? address_here / 4 : 1023;
     std::uint32_t mask = 0;
-    for (unsigned b = 0; b < 4; ++b) mask |= (model_->axi_wstrb_i >> b & 1) * (0xFFu << 8 * b);
-    const std::uint32_t data = model_->axi_wdata_i & mask;
-    ASSERT_EQ(model_->start_o, word == 1 && (data & 1) != 0);
-    ASSERT_EQ(model_->invalidate_o, word == 1 && (data & 2) != 0);
+    for (unsigned b = 0; b < 4; ++b) mask |= (strobes >> b & 1) * (0xFFu << 8 * b);
+    const std::uint32_t data = data_here & mask;
     const bool busy = (model_->camera_busy_i | model_->core_busy_i) != 0;
+    const bool refused = busy && (is_plain(word) || (word == 1 && (data & 3) != 0));
+    const bool starts = word == 1 && (data & 1) != 0 && !refused;
+    ASSERT_EQ(model_->start_o, starts);
+    ASSERT_EQ(model_->invalidate_o, word == 1 && (data & 2) != 0 && !refused);
     if (word == 3) enable = (data | (enable & ~mask)) & 7;
     if (word == 4) flags &= ~data;
     flags |= model_->doubt_i | (drawing && !busy ? 2u : 0u) | (model_->bus_error_i != 0 ? 4u : 0u);
-    drawing = model_->camera_busy_i != 0 || (drawing && busy);
-    if (word >= 5 && word < 27) words[word] = data | (words[word] & ~mask);
+    drawing = starts || model_->camera_busy_i != 0 || (drawing && busy);
+    if (is_plain(word) && !refused) words[word] = (data & bits_of(word)) | (words[word] & ~mask);
     counts[0] += model_->core_busy_i;
     for (unsigned n = 0; n < kEvents; ++n) counts[n + 1] += model_->events_i >> n & 1;
-    if (word == 1 && (data & 4) != 0) counts = {};
+    if (word == 1 && (data & 4) != 0 && !refused) counts = {};
+    if (write) response = refused ? 2 : 0;
+    refusals += write && refused;
     written = write || (written && model_->axi_bready_i == 0);
     answered = read || (answered && model_->axi_rready_i == 0);
     writes += write;
     reads += read;
     model_.clock();
-    if (write) model_->axi_awvalid_i = model_->axi_wvalid_i = 0;
+    if (takes_address) {
+      address_here = model_->axi_awaddr_i;
+      model_->axi_awvalid_i = 0;
+    }
+    if (takes_data) {
+      data_here = model_->axi_wdata_i;
+      strobes = model_->axi_wstrb_i;
+      model_->axi_wvalid_i = 0;
+    }
+    has_address = takes_address || (has_address && !write);
+    has_data = takes_data || (has_data && !write);
     if (read) model_->axi_arvalid_i = 0;
   }
-  EXPECT_GT(writes, 15'000u);
-  EXPECT_GT(reads, 15'000u);
+  EXPECT_GT(writes, 10'000u);
+  EXPECT_GT(reads, 10'000u);
+  EXPECT_GT(refusals, 1'000u);
 }
 
 }  // namespace
