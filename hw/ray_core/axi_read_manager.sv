@@ -5,7 +5,8 @@
 // answered in any order, and their beats come mixed. base_i is the address of line 0.
 //
 // At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock of its last beat.
-// bus_error_o: a beat has come with an error; its line goes on as it came.
+// bus_error_o: a beat has come with an error, or RLAST where it is not its burst's last or not where it is; its line
+// goes on as it came. No output of AXI depends on an input in the same clock.
 //
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
 module axi_read_manager #(
@@ -17,7 +18,7 @@ module axi_read_manager #(
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic [63:0]             base_i,  // a multiple of 64
+  input  logic [63:0]             base_i,  // bits below 64 do not count
   // the core's
   input  logic                    read_valid_i,
   output logic                    read_ready_o,
@@ -35,12 +36,14 @@ module axi_read_manager #(
   output logic [7:0]              axi_arlen_o,
   output logic [2:0]              axi_arsize_o,
   output logic [1:0]              axi_arburst_o,
+  output logic [2:0]              axi_arprot_o,
   // AXI4, read data
   input  logic                    axi_rvalid_i,
   output logic                    axi_rready_o,
   input  logic [IdWidth-1:0]      axi_rid_i,
   input  logic [DataWidth-1:0]    axi_rdata_i,
   input  logic [1:0]              axi_rresp_i,
+  input  logic                    axi_rlast_i,
   output logic                    bus_error_o
 );
 
@@ -57,7 +60,8 @@ module axi_read_manager #(
 
   logic [Ids-1:0] free_q;
   logic [IdWidth-1:0] id;
-  logic some_free, load, request_fire, line_fire;
+  logic some_free, load, request_fire, line_fire, beat_valid, beat_fire, beat_error, beat_last;
+  logic [IdWidth-1:0] beat_id;
   logic [ReadIdWidth-1:0] read_ids[Ids];
 
   rr_arbiter #(
@@ -78,7 +82,7 @@ module axi_read_manager #(
       axi_arvalid_o <= 1'b0;
     end else begin
       if (request_fire) free_q[id] <= 1'b0;
-      if (line_fire) free_q[axi_rid_i] <= 1'b1;
+      if (line_fire) free_q[beat_id] <= 1'b1;
       if (load) axi_arvalid_o <= request_fire;
     end
   end
@@ -86,45 +90,62 @@ module axi_read_manager #(
     if (request_fire) begin
       read_ids[id] <= read_id_i;
       axi_arid_o   <= id;
-      axi_araddr_o <= base_i + {{(58 - AddressWidth) {1'b0}}, read_line_i, 6'd0};
+      axi_araddr_o <= {base_i[63:6] + 58'(read_line_i), 6'd0};
     end
   end
   assign axi_arlen_o   = 8'(Beats - 1);
   assign axi_arsize_o  = 3'($clog2(DataWidth / 8));
   assign axi_arburst_o = BurstIncrement;
+  assign axi_arprot_o  = 3'b000;  // data, secure, unprivileged
 
   // ---- Beats: all but a line's last one wait for it
 
-  logic [BeatWidth-1:0] counts[Ids];  // beats that have come; set back when the ID is line_fire
+  logic [DataWidth-1:0] beat;
+
+  fifo #(
+    .Width(2 + IdWidth + DataWidth),
+    .Depth(2)
+  ) u_beats (
+    .clk_i,
+    .rst_ni,
+    .push_i(axi_rvalid_i & axi_rready_o),
+    .data_i({axi_rresp_i[1], axi_rlast_i, axi_rid_i, axi_rdata_i}),
+    .space_o(axi_rready_o),
+    .pop_i(beat_fire),
+    .valid_o(beat_valid),
+    .data_o({beat_error, beat_last, beat_id, beat})
+  );
+
+  logic [BeatWidth-1:0] counts[Ids];  // beats that have come; 0 when the ID is given
   logic last;
 
   if (Beats <= 1) begin : gen_whole
     assign last   = 1'b1;
-    assign line_o = axi_rdata_i;
+    assign line_o = beat;
   end else begin : gen_beats
-    assign last = counts[axi_rid_i] == BeatWidth'(Beats - 1);
-    assign line_o[LineWidth-1 -: DataWidth] = axi_rdata_i;
+    assign last = counts[beat_id] == BeatWidth'(Beats - 1);
+    assign line_o[LineWidth-1 -: DataWidth] = beat;
     for (genvar b = 0; b < Beats - 1; b++) begin : gen_beat
       logic [DataWidth-1:0] parts[Ids];
       always_ff @(posedge clk_i) begin
-        if (axi_rvalid_i && counts[axi_rid_i] == BeatWidth'(b)) parts[axi_rid_i] <= axi_rdata_i;
+        if (beat_fire && counts[beat_id] == BeatWidth'(b)) parts[beat_id] <= beat;
       end
-      assign line_o[DataWidth*b+:DataWidth] = parts[axi_rid_i];
+      assign line_o[DataWidth*b+:DataWidth] = parts[beat_id];
     end
   end
 
   always_ff @(posedge clk_i) begin
     if (request_fire) counts[id] <= '0;
-    if (axi_rvalid_i && !last) counts[axi_rid_i] <= counts[axi_rid_i] + 1'b1;
+    if (beat_fire && !last) counts[beat_id] <= counts[beat_id] + 1'b1;
   end
 
-  assign axi_rready_o = ~last | line_ready_i;
-  assign line_valid_o = axi_rvalid_i & last;
-  assign line_id_o    = read_ids[axi_rid_i];
+  assign beat_fire    = beat_valid & (~last | line_ready_i);
+  assign line_valid_o = beat_valid & last;
+  assign line_id_o    = read_ids[beat_id];
   assign line_fire    = line_valid_o & line_ready_i;
-  assign bus_error_o  = axi_rvalid_i & axi_rready_o & axi_rresp_i[1];
+  assign bus_error_o  = beat_fire & (beat_error | (beat_last != last));
 
   logic unused;  // EXOKAY is never answered
-  assign unused = axi_rresp_i[0];
+  assign unused = ^{axi_rresp_i[0], base_i[5:0]};
 
 endmodule

@@ -110,7 +110,7 @@ module csr #(
 
   logic command, plain, clear;
   logic [2:0] commands;
-  assign commands     = write_data_q[2:0] & {3{write & (write_word_q == WordCommand) & strobes_q[0]}};
+  assign commands     = (write && write_word_q == WordCommand) ? write_data_q[2:0] & mask[2:0] : '0;
   assign plain        = (write_word_q < 10'd32) && PlainWords[write_word_q[4:0]];
   assign refused      = (camera_busy_i | core_busy_i) & (plain | (commands[1:0] != '0));
   assign command      = write & ~refused;

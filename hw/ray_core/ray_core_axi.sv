@@ -51,11 +51,13 @@ module ray_core_axi #(
   output logic [7:0]             mem_arlen_o,
   output logic [2:0]             mem_arsize_o,
   output logic [1:0]             mem_arburst_o,
+  output logic [2:0]             mem_arprot_o,
   input  logic                   mem_rvalid_i,
   output logic                   mem_rready_o,
   input  logic [IdWidth-1:0]     mem_rid_i,
   input  logic [DataWidth-1:0]   mem_rdata_i,
   input  logic [1:0]             mem_rresp_i,
+  input  logic                   mem_rlast_i,
   // rays
   input  logic                   ray_valid_i,
   output logic                   ray_ready_o,
@@ -252,11 +254,13 @@ module ray_core_axi #(
     .axi_arlen_o(mem_arlen_o),
     .axi_arsize_o(mem_arsize_o),
     .axi_arburst_o(mem_arburst_o),
+    .axi_arprot_o(mem_arprot_o),
     .axi_rvalid_i(mem_rvalid_i),
     .axi_rready_o(mem_rready_o),
     .axi_rid_i(mem_rid_i),
     .axi_rdata_i(mem_rdata_i),
     .axi_rresp_i(mem_rresp_i),
+    .axi_rlast_i(mem_rlast_i),
     .bus_error_o(bus_error)
   );
 

@@ -55,13 +55,13 @@ bind ray_generator stream_checks #(
   .data ({direction_o, pixel_o})
 );
 bind axi_read_manager stream_checks #(
-  .Width($bits({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o}))
+  .Width($bits({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o, axi_arprot_o}))
 ) u_request_checks (
   .clk_i,
   .rst_ni,
   .valid(axi_arvalid_o),
   .ready(axi_arready_i),
-  .data ({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o})
+  .data ({axi_arid_o, axi_araddr_o, axi_arlen_o, axi_arsize_o, axi_arburst_o, axi_arprot_o})
 );
 bind csr stream_checks #(
   .Width($bits(axi_bresp_o))
@@ -80,6 +80,13 @@ bind csr stream_checks #(
   .valid(axi_rvalid_o),
   .ready(axi_rready_i),
   .data ({axi_rdata_o, axi_rresp_o})
+);
+bind ray_core_axi stream_checks u_ray_checks (
+  .clk_i,
+  .rst_ni,
+  .valid(core_valid),
+  .ready(core_ready),
+  .data (camera_valid)
 );
 bind ray_core stream_checks #(
   .Width($bits({read_line_o, read_id_o}))

@@ -41,6 +41,7 @@ class RayCoreAxiTest : public testing::Test {
     if (model_->mem_rvalid_i == 0 && !beats_.empty() && random_() % 4 != 0) {
       model_->mem_rid_i = beats_.front().id;
       model_->mem_rdata_i = beats_.front().data;
+      model_->mem_rlast_i = beats_.front().last;
       model_->mem_rvalid_i = 1;
       beats_.pop_front();
     }
@@ -51,8 +52,8 @@ class RayCoreAxiTest : public testing::Test {
       ASSERT_EQ(model_->mem_arlen_o, 7);
       for (unsigned beat = 0; beat < 8; ++beat) {
         const auto& words = image_.lines()[line].words;
-        beats_.push_back(
-            {model_->mem_arid_o, std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat]});
+        beats_.push_back({model_->mem_arid_o,
+                          std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat], beat == 7});
       }
     }
     const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
@@ -64,15 +65,17 @@ class RayCoreAxiTest : public testing::Test {
     if (ray_taken) model_->ray_valid_i = 0;
   }
 
-  void write(std::uint32_t address, std::uint32_t data) {
+  /// The answer: 0, or 2 for what is refused.
+  unsigned write(std::uint32_t address, std::uint32_t data) {
     model_->reg_awaddr_i = address;
     model_->reg_wdata_i = data;
     model_->reg_awvalid_i = model_->reg_wvalid_i = 1;
-    model_.eval();
-    ASSERT_EQ(model_->reg_awready_o, 1);
+    EXPECT_EQ(model_->reg_awready_o & model_->reg_wready_o, 1);
     clock();
     model_->reg_awvalid_i = model_->reg_wvalid_i = 0;
     clock();
+    EXPECT_EQ(model_->reg_bvalid_o, 1);
+    return model_->reg_bresp_o;
   }
   void write(std::uint32_t address, const glm::vec3& vector) {
     for (int k = 0; k < 3; ++k) {
@@ -94,6 +97,7 @@ class RayCoreAxiTest : public testing::Test {
   struct Beat {
     std::uint32_t id;
     std::uint64_t data;
+    bool last;
   };
 
   Bvh bvh_{test::scene_of(test::bodies())};
@@ -238,6 +242,25 @@ TEST_F(RayCoreAxiTest, RaysAtThePortAreTraced) {
   EXPECT_GT(compared, 600);
   EXPECT_GT(every, 20);
   EXPECT_EQ(read(0x108), rays.size()) << "rays";
+}
+
+/// A camera that is started while rays of the user's are in the core would take them for its own.
+TEST_F(RayCoreAxiTest, ACommandWhileRaysAreInTheCoreIsRefused) {
+  write(0x014, static_cast<std::uint32_t>(kBase));
+  write(0x018, static_cast<std::uint32_t>(kBase >> 32));
+  write(0x024, 2u << 16 | 2u);
+  test::Random random;
+  unsigned refused = 0;
+  std::size_t sent = 0;
+  for (const Ray& ray : test::some_rays(test::bodies(), random, 40)) {
+    put_ray(*model_, {.ray = ray, .tag = static_cast<std::uint32_t>(sent++)});
+    if (sent % 3 == 0) refused += write(0x004, 1) == 2;
+    while (model_->ray_valid_i != 0) clock();
+  }
+  EXPECT_GT(refused, 10u);
+  for (int n = 0; (read(0x008) & 2) != 0; ++n) ASSERT_LT(n, 10'000);
+  EXPECT_EQ(read(0x108), sent) << "rays, none of the camera's";
+  EXPECT_EQ(write(0x004, 1), 0u);
 }
 
 /// Memory that fails is told of.
