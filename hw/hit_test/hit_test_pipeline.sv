@@ -35,6 +35,7 @@ module hit_test_pipeline #(
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
+  parameter bit          AlwaysReady = 1'b0,  // ready_i is always high: no queue is needed
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
   localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
 ) (
@@ -327,11 +328,11 @@ module hit_test_pipeline #(
 
   // ---- Results: the queue keeps a word free for each clock edge at which what is on its way may end
 
-  localparam int unsigned Reserve = hit_test_pkg::point_latency(FracWidth) - 1;
+  localparam int unsigned Reserve = AlwaysReady ? 0 : hit_test_pkg::point_latency(FracWidth) - 1;
 
   fifo #(
     .Width(2 + TagWidth + 2 + TagWidth + Width + TErrorWidth + 1 + 3 * Width),
-    .Depth(Reserve + 3),
+    .Depth(AlwaysReady ? 2 : Reserve + 3),
     .Reserve(Reserve)
   ) u_results (
     .clk_i,

@@ -108,7 +108,7 @@ module line_cache #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) victims_q <= '0;
-    else if (valid_i && ready_o) victims_q[WayWidth*set +: WayWidth] <= way + 1'b1;
+    else if (valid_i && ready_o) victims_q[WayWidth*set+:WayWidth] <= way + 1'b1;
   end
   always_ff @(posedge clk_i) if (allocate) tags[set] <= new_tags;
 

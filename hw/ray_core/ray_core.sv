@@ -324,8 +324,15 @@ module ray_core #(
   logic [RayWidth-1:0] point_ctx;
   logic [95:0] end_point;
 
+  // From the clock in which a triangle line leaves memory to that in which its test is over, one more for tests_allowed
+  localparam int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
+                                   + hit_test_pkg::divide_latency(
+    23
+  ) + 6;
+
   closest_hit #(
-    .Rays(Rays)
+    .Rays(Rays),
+    .InFlight(InFlight)
   ) u_closest_hit (
     .clk_i,
     .rst_ni,

@@ -85,7 +85,8 @@ module triangle_test #(
   hit_test_pipeline #(
     .Arith(Arith),
     .Adder(Adder),
-    .TagWidth(TagWidth)
+    .TagWidth(TagWidth),
+    .AlwaysReady(1'b1)
   ) u_tests (
     .clk_i,
     .rst_ni,
