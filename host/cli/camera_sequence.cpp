@@ -17,30 +17,31 @@ CameraSetting completed(const CameraSetting& camera, const Options& options, con
   CameraSetting result = camera;
   result.eye -= scene.origin;
   result.target -= scene.origin;
-  if (options.view.up) result.up = options.view.up;
-  if (options.view.fov) result.fov = options.view.fov;
-  result.lens = camera.lens.overridden_by(options.view.lens);
+  if (options.camera.up) result.up = options.camera.up;
+  if (options.camera.fov) result.fov = options.camera.fov;
+  result.lens = camera.lens.overridden_by(options.camera.lens);
   return result;
 }
 
 View chosen_view(const Options& options, const Scene& scene) {
-  const glm::dvec3 up = options.view.up ? *options.view.up : guess_up_axis(scene);
-  if (!options.view.angles) return default_view(scene, up);
-  return {options.view.angles->first, options.view.angles->second, up};
+  const glm::dvec3 up = options.camera.up ? *options.camera.up : guess_up_axis(scene);
+  if (!options.camera.angles) return default_view(scene, up);
+  return {options.camera.angles->first, options.camera.angles->second, up};
 }
 
 double aspect_of(const Options& options) {
-  return static_cast<double>(options.width) / options.height;
+  return static_cast<double>(options.render.width) / options.render.height;
 }
 
 }  // namespace
 
 CameraSequence::CameraSequence(const Options& options, Scene& scene)
     : options_(options),
-      given_(options.camera        ? options.camera
-             : options.view.angles ? std::nullopt
-                                   : scene.camera),
-      view_(given_ && !options.ground.value_or(false) ? View{} : chosen_view(options, scene)) {
+      given_(options.camera.camera   ? options.camera.camera
+             : options.camera.angles ? std::nullopt
+                                     : scene.camera),
+      view_(given_ && !options.camera.ground.value_or(false) ? View{}
+                                                             : chosen_view(options, scene)) {
   bool has_preview_lights = false;
   const std::vector<PointLight> lights = scene.lights;
   const glm::vec3 background = scene.background;
@@ -56,7 +57,7 @@ CameraSequence::CameraSequence(const Options& options, Scene& scene)
     frame.background = std::exchange(scene.background, background);
   }
   const bool is_first_look = has_preview_lights && view_.elevation > 0.0 && !is_interior(scene);
-  has_ground_ = options.ground.value_or(is_first_look);
+  has_ground_ = options.camera.ground.value_or(is_first_look);
   if (!given_) text_ = view_text(scene);
 }
 
@@ -69,9 +70,9 @@ const Camera& CameraSequence::light(int number, Scene& scene) const {
 
 CameraSetting CameraSequence::setting(const Scene& scene, int number) const {
   const int frames = options_.output.frames;
-  if (frames > 1 && !options_.path.empty()) {
+  if (frames > 1 && !options_.camera.path.empty()) {
     const double time = (number - 1.0) / (frames - 1.0);
-    return completed(camera_at(options_.path, time, Camera::kDefaultFov), options_, scene);
+    return completed(camera_at(options_.camera.path, time, Camera::kDefaultFov), options_, scene);
   }
   const double turn = frames > 1 ? (number - 1.0) / frames : 0.0;
   if (given_) {
@@ -81,9 +82,9 @@ CameraSetting CameraSequence::setting(const Scene& scene, int number) const {
   View view = view_;
   view.azimuth += 360.0 * turn;
   CameraSetting whole =
-      frame_scene(scene, aspect_of(options_), options_.view.fov.value_or(Camera::kDefaultFov), view,
-                  frames > 1 ? FrameFit::kCylinder : FrameFit::kVertices);
-  whole.lens = options_.view.lens;
+      frame_scene(scene, aspect_of(options_), options_.camera.fov.value_or(Camera::kDefaultFov),
+                  view, frames > 1 ? FrameFit::kCylinder : FrameFit::kVertices);
+  whole.lens = options_.camera.lens;
   return whole;
 }
 
@@ -96,7 +97,7 @@ std::string CameraSequence::view_text(const Scene& scene) const {
     if (std::abs(view_.up[axis]) < largest(view_.up)) continue;
     text += std::string(" --up ") + (view_.up[axis] < 0.0 ? "-" : "") + "xyz"[axis];
   }
-  if (!options_.view.up) text += scene.up ? " (of the format)" : " (a guess)";
+  if (!options_.camera.up) text += scene.up ? " (of the format)" : " (a guess)";
   text += "; --camera ";
   for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";
   for (int axis = 0; axis < 3; ++axis) text += format_number(target[axis]) + ",";
@@ -104,28 +105,18 @@ std::string CameraSequence::view_text(const Scene& scene) const {
 }
 
 std::vector<std::pair<std::string, std::string>> CameraSequence::options() const {
-  const LightOptions& light = options_.light;
-  std::vector<std::pair<std::string, std::string>> all = {
-      {"integrator", to_string(light.integrator)},
-      {"spp", std::to_string(light.samples)},
-      {"filter", to_string(light.filter)},
-      {"depth", std::to_string(light.max_depth())},
-      {"threshold", format_exactly(light.threshold)},
-      {"pointError", format_exactly(light.point_error)}};
-  if (light.error > 0.0) {
-    all.emplace_back("error", format_exactly(light.error));
-    const double exposure = options_.output.display.exposure;
-    if (exposure != 0.0) all.emplace_back("exposure", format_exactly(exposure));
-  }
-  if (light.ambient) all.emplace_back("ambient", format_exactly(*light.ambient));
+  const RenderOptions& render = options_.render;
+  auto all = option_values(options_, kInExr);
+  if (render.error == 0.0) std::erase(all, std::pair<std::string, std::string>("error", "0"));
+  const double exposure = options_.output.display.exposure;
+  if (render.error > 0.0 && exposure != 0.0) all.emplace_back("exposure", number_text(exposure));
   const auto numbers = [](std::initializer_list<double> values) {
     std::string text;
     for (const double value : values)
-      text.append(text.empty() ? "" : ",").append(format_exactly(value));
+      text.append(text.empty() ? "" : ",").append(number_text(value));
     return text;
   };
-  if (options_.smooth) all.emplace_back("smooth", format_exactly(*options_.smooth));
-  const ViewOptions& asked = options_.view;
+  const CameraOptions& asked = options_.camera;
   std::optional<glm::dvec3> up = asked.up;
   if (given_) {
     const glm::dvec3 &eye = given_->eye, &target = given_->target;

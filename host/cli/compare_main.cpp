@@ -1,66 +1,54 @@
 // The program `compare`: how far an EXR picture is from a reference.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/cli/command_line.h"
-#include "host/cli/option_text.h"
 #include "host/cli/process.h"
 #include "host/film/atomic_file.h"
 #include "host/film/compare.h"
 #include "host/film/false_color.h"
 #include "host/film/png.h"
+#include "host/options/option_table.h"
 
 namespace raygate {
 namespace {
 
 constexpr int kTooFar = 1;
 
-constexpr const char* kHelp =
-    R"(Usage: ./compare PICTURE REFERENCE [options]
+constexpr const char* kAbout = R"(Usage: ./compare PICTURE REFERENCE [options]
 
 Compares an OpenEXR picture with a reference, over the pixels that both hold.
 
   ./compare noisy.exr converged.exr --threshold rmse=0.02 --difference error.png
+)";
 
-  --threshold MEASURE=NUMBER  exit with status 1 if that measure is worse;
-                              may be given several times
-  --difference FILE.png       the largest difference of each pixel's channels in
-                              false colours
-  --scale NUMBER              the difference that is yellow there (the largest)
-  --channels NAMES            the channels to compare (R,G,B)
-  --json                      print the measures as a JSON object
-  -h, --help; --version
-
-Measures of PICTURE minus REFERENCE
-  rmse, mse                   root of the mean square; mean square
-  mae, max                    mean and greatest magnitude
-  bias                        sum / that of REFERENCE: -0.01 is 1 % too dark;
-                              a threshold is of its magnitude
-  relative_mse                mean of square / (REFERENCE squared + 0.01)
-  psnr                        decibels of a peak of 1; infinite if equal
-  ssim                        structural similarity (Wang et al., 2004) of what
-                              a display shows, at most 1
-  differing                   pixels with any difference, however small
-  not_finite                  pixels with a NaN or an infinity in one picture
-                              only, which make the errors infinite
+constexpr const char* kFooter = R"(Measures of PICTURE minus REFERENCE
+  rmse, mse                  root of the mean square; mean square
+  mae, max                   mean and greatest magnitude
+  bias                       sum / that of REFERENCE: -0.01 is 1 % too dark; a
+                             threshold is of its magnitude
+  relative_mse               mean of square / (REFERENCE squared + 0.01)
+  psnr                       decibels of a peak of 1; infinite if equal
+  ssim                       structural similarity (Wang et al., 2004) of what a
+                             display shows, at most 1
+  differing                  pixels with any difference, however small
+  not_finite                 pixels with a NaN or an infinity in one picture
+                             only, which make the errors infinite
 
 Exit status: 0 within all thresholds; 1 a threshold is exceeded; 2 a picture,
-the command line or an output cannot be used.
-)";
+the command line or an output cannot be used.)";
 
 struct CompareOptions {
   std::string picture, reference, difference;
   std::vector<std::string> thresholds;
   std::string channels = "R,G,B";
-  std::string scale_text;
   double scale = 0.0;  ///< of the difference picture; 0: up to its largest difference
   bool json = false;
 };
@@ -86,14 +74,10 @@ std::vector<Measure> measures_of(const Comparison& c) {
 
 /// "MEASURE=VALUE" against the measures: whether it is kept. Throws InputError.
 bool is_kept(const std::string& text, const std::vector<Measure>& measures) {
-  const std::size_t equals = std::min(text.find('='), text.size());
-  const std::string name = text.substr(0, equals);
-  const auto limit =
-      parse_number<double>(std::string_view(text).substr(std::min(equals + 1, text.size())));
-  std::string list;
+  const auto [name, number] = split_at_equals(text);
+  const auto limit = parse_number<double>(number);
   std::vector<std::string> names;
   for (const Measure& measure : measures) {
-    list += (list.empty() ? "" : ", ") + std::string(measure.name);
     names.emplace_back(measure.name);
     if (measure.name != name || !limit || std::isnan(*limit)) continue;
     if (!measure.value) {
@@ -102,7 +86,7 @@ bool is_kept(const std::string& text, const std::vector<Measure>& measures) {
     return measure.more_is_better ? *measure.value >= *limit : std::abs(*measure.value) <= *limit;
   }
   const bool is_known = std::ranges::find(names, name) != names.end();
-  fail_value("--threshold", text, "MEASURE=NUMBER with one of " + list,
+  fail_value("--threshold", text, "MEASURE=NUMBER with one of " + listed(names, ", "),
              is_known ? "" : did_you_mean(name, names));
 }
 
@@ -115,7 +99,7 @@ std::vector<std::string> channel_names(const std::string& list) {
 }
 
 /// Numbers that JSON has no word for become strings.
-nlohmann::ordered_json number(const std::optional<double>& value) {
+nlohmann::ordered_json json_of(const std::optional<double>& value) {
   if (!value) return nullptr;
   if (std::isfinite(*value)) return *value;
   return std::isnan(*value) ? "nan" : *value > 0.0 ? "inf" : "-inf";
@@ -133,7 +117,7 @@ void print_text(const Comparison& c, const std::vector<Measure>& measures) {
 void print_json(const Comparison& c, const std::vector<Measure>& measures) {
   nlohmann::ordered_json json = {{"pixels", c.pixels},
                                  {"window", {c.window.x0, c.window.y0, c.window.x1, c.window.y1}}};
-  for (const Measure& measure : measures) json[measure.name] = number(measure.value);
+  for (const Measure& measure : measures) json[measure.name] = json_of(measure.value);
   std::printf("%s\n", json.dump(2, ' ', true).c_str());
 }
 
@@ -178,35 +162,36 @@ int compare_files(const CompareOptions& options) {
   return exceeded.empty() ? 0 : kTooFar;
 }
 
-/// Of the picture of differences.
-void check_scale(CompareOptions& options) {
-  if (options.scale_text.empty()) return;
-  const auto scale = parse_number<double>(options.scale_text);
-  if (!scale || !std::isfinite(*scale) || *scale <= 0.0) {
-    fail_value("--scale", options.scale_text, "a number above 0");
-  }
-  if (options.difference.empty()) throw InputError("--scale: expected --difference beside it");
-  options.scale = *scale;
-}
-
 int run(int argc, char** argv) {
   CompareOptions options;
-  CLI::App app("", "compare");
-  app.add_option("PICTURE", options.picture);
-  app.add_option("REFERENCE", options.reference);
-  app.add_option("--threshold", options.thresholds)->allow_extra_args(false);
-  app.add_option("--difference", options.difference);
-  app.add_option("--scale", options.scale_text);
-  app.add_option("--channels", options.channels);
-  app.add_flag("--json", options.json);
+  OptionTable table(kAbout, kFooter);
+  table.positional(options.picture);
+  table.positional(options.reference);
+  table.group("Options");
+  table.add(
+      "--threshold", "MEASURE=NUMBER",
+      "exit with status 1 if that measure is worse; may be given several times",
+      [&](const auto&, const std::string& text) { options.thresholds.push_back(text); }, {},
+      kNowhere, true);
+  table.text("--difference", "FILE.png",
+             "the largest difference of each pixel's channels in false colours",
+             options.difference);
+  table.number("--scale", "NUMBER", "the difference that is yellow there (the largest)",
+               options.scale,
+               Range{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
+                     "a number above 0"});
+  table.text("--channels", "NAMES", "the channels to compare (R,G,B)", options.channels);
+  table.flag("--json", "print the measures as a JSON object", options.json);
   const std::string information =
-      read_command_line(app, {argv + 1, argv + argc}, kHelp, "a third picture; two are compared");
+      table.parse({argv + 1, argv + argc}, "a third picture; two are compared");
   if (!information.empty()) {
     print(information);
     return 0;
   }
   if (options.reference.empty()) throw InputError("expected PICTURE and REFERENCE (see --help)");
-  check_scale(options);
+  if (options.scale > 0.0 && options.difference.empty()) {
+    throw InputError("--scale: expected --difference beside it");
+  }
   return compare_files(options);
 }
 

@@ -1,28 +1,15 @@
 #include "host/cli/core_files.h"
 
-#include <CLI/CLI.hpp>
 #include <system_error>
 
 #include "host/base/input_error.h"
 #include "host/cli/format.h"
-#include "host/cli/option_text.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/core/core_intersector.h"
 #include "sim/rtl_core.h"
 
 namespace raygate {
 namespace {
-
-/// A pixel of the frame, "X,Y".
-glm::ivec2 parse_pixel(const std::string& text, const glm::ivec2& size) {
-  const std::vector<std::string> words = split_at_commas(text);
-  if (words.size() == 2) {
-    const auto x = parse_number<int>(words[0]), y = parse_number<int>(words[1]);
-    if (x && y && *x >= 0 && *x < size.x && *y >= 0 && *y < size.y) return {*x, *y};
-  }
-  fail_value("--trace-pixel", text,
-             "X,Y, a pixel of " + std::to_string(size.x) + "x" + std::to_string(size.y));
-}
 
 /// A file that gets its name only when it is whole, for others to write; removed before that.
 class UnnamedFile {
@@ -57,35 +44,42 @@ std::vector<std::filesystem::path> CoreFileOptions::paths() const {
   return paths;
 }
 
-void declare_core_file_options(CLI::App& app, RawCoreFileOptions& raw) {
-  app.add_option("--dump-image", raw.image)->take_last();
-  app.add_option("--trace", raw.wave)->take_last();
-  app.add_option("--trace-pixel", raw.pixel)->take_last();
+void add_core_file_options(OptionTable& table, CoreFileOptions& files) {
+  table.text("--dump-image", "FILE", "dump the ray cores' memory image", files.image);
+  table.text("--trace", "FILE.vcd", "write a pixel's waveform; render nothing", files.wave);
+  table.add("--trace-pixel", "X,Y", "the pixel of --trace",
+            [&files](const std::string& option, const std::string& text) {
+              const auto numbers = parse_list<int>(text);
+              if (!numbers || numbers->size() != 2) fail_value(option, text, "X,Y, a pixel");
+              files.pixel = {(*numbers)[0], (*numbers)[1]};
+            });
 }
 
-CoreFileOptions parse_core_file_options(const RawCoreFileOptions& raw, const EngineOptions& engine,
-                                        const glm::ivec2& size) {
-  if (!raw.image.empty() && !engine.has_core()) {
+void check_core_file_options(const CoreFileOptions& files, const EngineOptions& engine,
+                             const glm::ivec2& size) {
+  if (!files.image.empty() && !engine.has_core()) {
     throw InputError("--dump-image: expected with --unit core and no --engine cpu, got " +
-                     raw.image);
+                     files.image.string());
   }
-  if (raw.wave.empty() != raw.pixel.empty()) {
+  if (files.wave.empty() == files.pixel.has_value()) {
     throw InputError("--trace: expected with --trace-pixel X,Y, and that with --trace FILE");
   }
-  CoreFileOptions files{.image = raw.image, .wave = raw.wave, .pixel = {}};
-  if (raw.pixel.empty()) return files;
-  if (!engine.has_core() || engine.engine == Engine::kModel) {
+  if (!files.pixel) return;
+  if (!engine.has_core() || !engine.simulates()) {
     throw InputError("--trace: expected with --unit core and --engine rtl or check, got " +
-                     raw.wave);
+                     files.wave.string());
   }
-  files.pixel = parse_pixel(raw.pixel, size);
-  return files;
+  const glm::ivec2& pixel = *files.pixel;
+  if (pixel.x < 0 || pixel.x >= size.x || pixel.y < 0 || pixel.y >= size.y) {
+    fail_value("--trace-pixel", std::to_string(pixel.x) + "," + std::to_string(pixel.y),
+               "X,Y, a pixel of " + std::to_string(size.x) + "x" + std::to_string(size.y));
+  }
 }
 
 std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine,
                                                      const CoreFileOptions& files, const Bvh& bvh) {
   if (!engine.has_core()) return nullptr;
-  auto image = std::make_shared<const MemoryImage>(bvh, static_cast<int>(engine.threads));
+  auto image = std::make_shared<const MemoryImage>(bvh, engine.threads);
   if (!files.image.empty()) AtomicFile(files.image, image->bytes()).commit();
   return image;
 }

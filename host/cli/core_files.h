@@ -1,4 +1,4 @@
-// What is written of a ray core: the memory that it reads, and the wave of a pixel's ray.
+// Files of a ray core: the memory image that it reads, and the waveform of a pixel's ray.
 #pragma once
 
 #include <filesystem>
@@ -9,32 +9,27 @@
 #include <vector>
 
 #include "host/bvh/bvh.h"
-#include "host/cli/engine_options.h"
+#include "host/cli/engines.h"
 #include "host/intersect/core/memory_image.h"
 
 namespace raygate {
 
 struct CoreFileOptions {
-  std::filesystem::path image;      ///< where the memory image goes; empty: nowhere
-  std::filesystem::path wave;       ///< where the wave of `pixel`'s ray goes, in place of a picture
+  std::filesystem::path image;  ///< where the memory image goes; empty: nowhere
+  std::filesystem::path wave;   ///< where the waveform of `pixel`'s ray goes, in place of a picture
   std::optional<glm::ivec2> pixel;  ///< there exactly with `wave`
 
   /// The files that are written.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
 };
 
-/// As they were typed; empty where they were not given.
-struct RawCoreFileOptions {
-  std::string image, wave, pixel;
-};
-
-void declare_core_file_options(CLI::App& app, RawCoreFileOptions& raw);
+/// Adds to a table what sets `files`.
+void add_core_file_options(OptionTable& table, CoreFileOptions& files);
 
 /// Throws InputError, one line, where `engine` has no ray core, or the pixel is none of a frame of
 /// `size`.
-[[nodiscard]] CoreFileOptions parse_core_file_options(const RawCoreFileOptions& raw,
-                                                      const EngineOptions& engine,
-                                                      const glm::ivec2& size);
+void check_core_file_options(const CoreFileOptions& files, const EngineOptions& engine,
+                             const glm::ivec2& size);
 
 /// The image of `bvh` that the engine's cores read, and its file, if that is wanted; null for an
 /// engine without cores.

@@ -1,8 +1,12 @@
 #include "host/cli/engines.h"
 
+#include <algorithm>
+#include <bit>
 #include <memory>
+#include <thread>
 #include <utility>
 
+#include "host/base/input_error.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/reference_core.h"
@@ -13,6 +17,7 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/serial_hit_tester.h"
 #include "host/intersect/unit/unit_intersector.h"
+#include "host/options/light_options.h"
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_core.h"
 #include "sim/rtl_plane_unit.h"
@@ -20,18 +25,47 @@
 namespace raygate {
 namespace {
 
+const Choices<Engine> kEngines = {{"rtl", Engine::kRtl},
+                                  {"model", Engine::kModel},
+                                  {"cpu", Engine::kCpu},
+                                  {"check", Engine::kCheck}};
+const Choices<Arith> kAriths = {{"structural", Arith::kStructural},
+                                {"behavioural", Arith::kBehavioural}};
+
+/// "latency=100,bytes=16,cache=1024", each of them or not.
+MemoryTiming parse_memory(const std::string& option, const std::string& text) {
+  MemoryTiming timing;
+  for (const std::string& word : split_at_commas(text)) {
+    const auto [name, number] = split_at_equals(word);
+    const auto value = parse_number<int>(number);
+    const auto is_power = [&](int most) {
+      return *value >= 1 && *value <= most && std::has_single_bit(static_cast<unsigned>(*value));
+    };
+    if (value && name == "latency" && *value >= 1 && *value <= 10'000) {
+      timing.latency = *value;
+    } else if (value && name == "bytes" && is_power(64)) {
+      timing.bytes = *value;
+    } else if (value && name == "cache" && (*value == 0 || is_power(1 << 24))) {
+      timing.cache_lines = *value;
+    } else {
+      fail_value(option, text,
+                 "latency=1 to 10000, bytes=1, 2, 4 ... 64, cache=0 or lines, a power of two");
+    }
+  }
+  return timing;
+}
+
 /// The unit of an engine that has one, with what its host does around it: rtl's, or its model.
 std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips& skips) {
-  const bool simulated = options.engine != Engine::kModel;
   if (options.unit == "serial") {
     std::unique_ptr<PlaneUnit> unit = std::make_unique<ReferencePlaneUnit>();
-    if (simulated) unit = std::make_unique<RtlPlaneUnit>(options.arith);
+    if (options.simulates()) unit = std::make_unique<RtlPlaneUnit>(options.arith);
     return std::make_unique<SerialHitTester>(
         std::move(unit), skips.divisions ? SerialHitTester::Order::kEdgesFirst
                                          : SerialHitTester::Order::kPlanesFirst);
   }
   std::unique_ptr<BurstUnit> unit = std::make_unique<ReferenceBurstUnit>();
-  if (simulated) unit = std::make_unique<RtlBurstUnit>(options.lanes, options.arith);
+  if (options.simulates()) unit = std::make_unique<RtlBurstUnit>(options.lanes, options.arith);
   return std::make_unique<PipelineHitTester>(std::move(unit));
 }
 
@@ -39,7 +73,7 @@ std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips
 IntersectorFactory make_core_factory(const EngineOptions& options, const Bvh& bvh,
                                      std::shared_ptr<const MemoryImage> image) {
   if (!image) {
-    image = std::make_shared<const MemoryImage>(bvh, static_cast<int>(options.threads));
+    image = std::make_shared<const MemoryImage>(bvh, options.threads);
   }
   return [options, &bvh, image]() -> std::unique_ptr<Intersector> {
     std::unique_ptr<CoreUnit> core;
@@ -65,12 +99,69 @@ IntersectorFactory make_unit_factory(const EngineOptions& options, const Bvh& bv
 }  // namespace
 
 void prepare_engine(const EngineOptions& options) {
-  if (options.engine == Engine::kCpu || options.engine == Engine::kModel) return;
+  if (!options.simulates()) return;
   if (options.unit == "core") {
     (void)make_rtl_core(options.arith);
   } else {
     (void)make_tester(options, {});
   }
+}
+
+std::string to_string(Engine engine) { return name_of(kEngines, engine); }
+std::string to_string(Arith arith) { return name_of(kAriths, arith); }
+
+void add_engine_options(OptionTable& table, EngineOptions& options) {
+  table.choice("--engine", "NAME",
+               "rtl: simulated hardware; cpu: identical hits without simulation, much faster; "
+               "model: its reference model; check: rtl and cpu, stopping where they differ ({})",
+               options.engine, kEngines, kInStats);
+  table.choice<std::string>(
+      "--unit", "NAME",
+      "pipeline: a test per clock; serial: the paper's unit; core: a whole ray core ({})",
+      options.unit, {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}}, kInStats);
+  table.choice(
+      "--arith", "NAME",
+      "structural: Booth trees, carry-select; behavioural: + and *, faster to simulate ({})",
+      options.arith, kAriths, kInStats);
+  table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
+                    options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats);
+  table.add("--memory", "latency=N,bytes=N,cache=N",
+            "ray core: clocks to a line (50), bytes per clock (64), cache lines (0)",
+            [&options](const std::string& option, const std::string& text) {
+              options.memory = parse_memory(option, text);
+            });
+  table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
+               Range{1, 64, "a whole number, 1 to 64"}, kInStats);
+  table.number("--threads", "N", "threads (one per processor)", options.threads, kThreadRange,
+               kInStats);
+  table.choice<InstanceMode>(
+      "--instances", "auto|keep|write",
+      "a mesh in many places: in memory once or written out ({}: once above 4 million triangles)",
+      options.instances,
+      {{"auto", InstanceMode::kAutomatic},
+       {"keep", InstanceMode::kKeep},
+       {"write", InstanceMode::kFlatten}});
+}
+
+void check_engine_options(const OptionTable& table, EngineOptions& options, unsigned processors) {
+  for (const char* name : {"memory", "cores"}) {
+    const std::string typed = table.typed(name);
+    if (!typed.empty() && !(options.has_core() && options.simulates())) {
+      throw InputError("--" + std::string(name) +
+                       ": expected with --unit core and --engine rtl or check, got " + typed);
+    }
+  }
+  if (options.unit != "pipeline" && options.lanes != 1) {
+    throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " +
+                     table.typed("lanes"));
+  }
+  if (processors == 0) processors = std::max(1u, std::thread::hardware_concurrency());
+  if (table.typed("threads").empty()) options.threads = static_cast<int>(processors);
+  if (!options.has_core()) return;
+  if (options.instances == InstanceMode::kKeep) {
+    throw InputError("--instances: expected auto or write with --unit core, got keep");
+  }
+  options.instances = InstanceMode::kFlatten;  // its memory holds one tree
 }
 
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,

@@ -1,14 +1,56 @@
-// Engines by name: which intersector stands behind --engine.
+// Engines: the options that say what finds the hits, and the intersectors behind them.
 #pragma once
 
 #include <memory>
+#include <string>
 
-#include "host/cli/engine_options.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/intersector.h"
 #include "host/light/skips.h"
+#include "host/options/option_table.h"
+#include "host/scene/instances.h"
+#include "sim/arith.h"
+#include "sim/memory_timing.h"
 
 namespace raygate {
+
+/// Who tests rays against polygons.
+enum class Engine {
+  kRtl,    ///< the simulated hardware
+  kModel,  ///< its reference model in C++, in the hardware's place
+  kCpu,    ///< no unit: tests in place
+  kCheck,  ///< rtl and cpu, compared ray by ray
+};
+
+struct EngineOptions {
+  Engine engine = Engine::kRtl;
+  std::string unit = "pipeline";  ///< or "serial", "core"
+  Arith arith = Arith::kStructural;
+  int lanes = 1;          ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
+  MemoryTiming memory{};  ///< of a simulated core
+  int cores = 1;          ///< behind one memory, for each thread; 1 for other units
+  int threads = 1;
+  InstanceMode instances = InstanceMode::kAutomatic;  ///< what is in the tree
+
+  /// Whether rays go to ray cores, simulated or not.
+  [[nodiscard]] bool has_core() const { return unit == "core" && engine != Engine::kCpu; }
+  [[nodiscard]] bool simulates() const {
+    return engine == Engine::kRtl || engine == Engine::kCheck;
+  }
+};
+
+/// Adds to a table what sets `options`.
+void add_engine_options(OptionTable& table, EngineOptions& options);
+
+/// Refuses what does not go together and settles what was left open; there are so many
+/// `processors`, 0: the machine's. Throws InputError, one line.
+void check_engine_options(const OptionTable& table, EngineOptions& options,
+                          unsigned processors = 0);
+
+/// "rtl", "model", "cpu" or "check".
+[[nodiscard]] std::string to_string(Engine engine);
+/// "structural" or "behavioural".
+[[nodiscard]] std::string to_string(Arith arith);
 
 /// Builds the simulated model that `options` ask for, if it isn't built: before threads wait for
 /// it. Throws InputError where it can't be built.

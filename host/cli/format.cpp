@@ -1,6 +1,5 @@
 #include "host/cli/format.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -41,11 +40,6 @@ std::string format_duration(double seconds) {
   text += minutes ? " min " : " h ";
   if (small < 10) text += '0';
   return text + std::to_string(small) + (minutes ? " s" : " min");
-}
-
-std::string format_exactly(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 std::string format_number(double value) {

@@ -19,9 +19,6 @@ namespace raygate {
 /// `value` with `digits` decimals: "7.00".
 [[nodiscard]] std::string format_fixed(double value, int digits);
 
-/// `value` by the shortest text that is read as it again.
-[[nodiscard]] std::string format_exactly(double value);
-
 /// `value` with at most seven digits that count: "35", "-0.125".
 [[nodiscard]] std::string format_number(double value);
 

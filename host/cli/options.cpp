@@ -1,160 +1,195 @@
 #include "host/cli/options.h"
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
+#include <tuple>
 
 #include "host/base/input_error.h"
-#include "host/cli/camera_options.h"
-#include "host/cli/command_line.h"
-#include "host/cli/help.h"
-#include "host/cli/option_text.h"
-#include "host/cli/values.h"
 #include "host/render/adaptive_sampling.h"
 
 namespace raygate {
 namespace {
 
-/// Option values as they were typed; empty where the option was not given.
-struct RawValues {
-  std::string scene, size, camera, view, up, fov, ground, crop, seed, smooth, resume;
-  RawEngineOptions engine;
-  RawCoreFileOptions core_files;
-  RawOutputOptions output;
-  RawLightOptions light;
-  RawCameraOptions camera_values;
+constexpr const char* kAbout =
+    R"(Usage: ./render SCENE [options]     SCENE.obj, .glb, .gltf, .ply or .stl, or a
+                                    SCENE.json with its camera and lights
+Renders a scene. A ray-tracing unit, simulated from its SystemVerilog, finds the
+hits; --engine cpu gives identical hits without simulation, faster.
+Writes SCENE.exr and SCENE.png into the current folder.
+
+  ./render scenes/cornell.obj --engine cpu
+  ./render scenes/teapot.obj -o pot.png --size 1280x720 --spp 16 --engine cpu
+  ./render scenes/paper.obj --size 320x200 --lanes 4 --stats run.json
+)";
+
+constexpr const char* kFooter =
+    R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
+line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
+
+void require_pixels(const std::string& option, const std::string& text, int width, int height) {
+  if (std::int64_t{width} * height <= kMaxPixels) return;
+  fail_value(option, text,
+             "at most " + std::to_string(kMaxPixels) +
+                 " pixels in one run, for their memory (a larger frame can be rendered in parts "
+                 "with --crop)");
+}
+
+std::string size_text(const RenderOptions& options) {
+  return std::to_string(options.width) + "x" + std::to_string(options.height);
+}
+
+void read_size(const std::string& option, const std::string& text, RenderOptions& options) {
+  const std::size_t x = text.find('x');
+  const auto width = parse_number<int>(text.substr(0, x));
+  const auto height = x == std::string::npos
+                          ? std::nullopt
+                          : parse_number<int>(std::string_view(text).substr(x + 1));
+  if (!width || !height || !kSideRange.contains(*width) || !kSideRange.contains(*height)) {
+    fail_value(
+        option, text,
+        "WIDTHxHEIGHT, each from 1 to " + std::to_string(kSideRange.high) + " pixels (640x480)");
+  }
+  options.width = *width;
+  options.height = *height;
+}
+
+/// A command line's options: every one of ./render, in the order of --help.
+struct CommandLine {
+  OptionTable table{kAbout, kFooter};
+  std::string scene;
   bool no_scene_file = false;
+
+  explicit CommandLine(Options& options) {
+    RenderOptions& render = options.render;
+    table.positional(scene);
+    table.group("Engine");
+    add_engine_options(table, options);
+    add_core_file_options(table, options.core_files);
+    add_skip_options(table, render);
+    table.group("Picture");
+    add_picture_options(table, options.output);
+    table.add(
+        "--size", "WxH", "the frame in pixels ({})",
+        [&render](const std::string& option, const std::string& text) {
+          read_size(option, text, render);
+        },
+        [&render] { return size_text(render); });
+    table.add("--crop", "X0,Y0,X1,Y1", "only this part of it; X1 and Y1 are not included",
+              [&render](const std::string& /*option*/, const std::string& text) {
+                const auto n = parse_list<int>(text);
+                const bool are_four = n && n->size() == 4;
+                render.window = are_four ? PixelRect{(*n)[0], (*n)[1], (*n)[2], (*n)[3]}
+                                         : PixelRect{0, 0, -1, -1};  // which check_crop refuses
+              });
+    add_camera_options(table, options.camera);
+    table.number("--smooth", "DEGREES",
+                 "smooth shading over edges up to this angle, of faces without normals (as the "
+                 "OBJ's s says)",
+                 options.smooth, kSmoothRange, kInExr);
+    table.number("--frames", "N",
+                 "animation of N frames, NAME-0001 and on: along the scene file's path, or once "
+                 "around the target",
+                 options.output.frames, Range{1, 9999});
+    table.group("Light");
+    add_light_options(table, render);
+    add_environment_options(table, options.environment);
+    table.group("Run");
+    table.text("--resume", "FILE.exr", "resume an unfinished render, or an animation",
+               options.resume);
+    add_run_output_options(table, options.output);
+    table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
+    table.flag("--no-scene-file", "ignore the .json beside an OBJ", no_scene_file);
+    table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
+    table.flag("-v,--verbose", "print all statistics", options.verbose);
+  }
+
+  [[nodiscard]] std::string parse(const std::vector<std::string>& words) {
+    return table.parse(words, "a second scene; one run renders one scene");
+  }
 };
 
-/// Every name must be in kRenderHelp.
-void declare(CLI::App& app, RawValues& raw, Options& options) {
-  const auto value = [&app](const char* names, std::string& text) {
-    app.add_option(names, text)->take_last();
-  };
-  const auto flag = [&app](const char* names, bool& on) {
-    app.add_flag(names, on)->disable_flag_override();
-  };
-  app.add_option("scene", raw.scene);
-  value("--size", raw.size);
-  value("--crop", raw.crop);
-  value("--camera", raw.camera);
-  value("--view", raw.view);
-  value("--up", raw.up);
-  value("--fov", raw.fov);
-  value("--ground", raw.ground);
-  declare_output_options(app, raw.output);
-  declare_light_options(app, raw.light);
-  declare_camera_options(app, raw.camera_values);
-  declare_engine_options(app, raw.engine);
-  declare_core_file_options(app, raw.core_files);
-  value("--seed", raw.seed);
-  value("--smooth", raw.smooth);
-  value("--resume", raw.resume);
-  flag("--strict", options.strict);
-  flag("--no-scene-file", raw.no_scene_file);
-  flag("-q,--quiet", options.quiet);
-  flag("-v,--verbose", options.verbose);
+void check_crop(const OptionTable& table, RenderOptions& options) {
+  const std::string typed = table.typed("crop");
+  PixelRect& window = options.window;
+  if (typed.empty()) {
+    window = {0, 0, options.width, options.height};
+    require_pixels("--size", size_text(options), options.width, options.height);
+    return;
+  }
+  if (window.x0 < 0 || window.x0 >= window.x1 || window.x1 > options.width || window.y0 < 0 ||
+      window.y0 >= window.y1 || window.y1 > options.height) {
+    fail_value("--crop", typed,
+               "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 within the frame of " + size_text(options) +
+                   " (0,0 is the top left corner, X1 and Y1 are not included)");
+  }
+  require_pixels("--crop", typed, window.width(), window.height());
 }
 
-/// Flags go to `options`.
-RawValues read_line(const std::vector<std::string>& words, Options& options) {
-  RawValues raw;
-  CLI::App app("", "render");
-  declare(app, raw, options);
-  options.information =
-      read_command_line(app, words, kRenderHelp, "a second scene; one run renders one scene");
-  return raw;
-}
-
-/// What --error asks for beside it.
-void check_error(const RawValues& raw, Options& options) {
-  if (raw.light.samples.empty()) options.light.samples = kMostSamples;
-  if (options.light.samples <= kMinAdaptiveSamples) {
+/// What --error asks of other options.
+void check_error(const OptionTable& table, RenderOptions& options) {
+  if (options.error == 0.0) return;
+  if (table.typed("spp").empty()) options.samples = kMostSamples;
+  if (options.samples <= kMinAdaptiveSamples) {
     fail_value(
-        "--spp", raw.light.samples,
+        "--spp", table.typed("spp"),
         "more than the " + std::to_string(kMinAdaptiveSamples) + " that --error begins with");
   }
-  if (options.light.range) throw InputError("--samples: expected no --error beside it");
+  if (options.end_sample > 0) throw InputError("--samples and --error exclude each other");
   const PixelRect& window = options.window;
   const auto is_edge = [](int at, int end) { return at % kErrorBlock == 0 || at == end; };
   if (!is_edge(window.x0, 0) || !is_edge(window.y0, 0) || !is_edge(window.x1, options.width) ||
       !is_edge(window.y1, options.height)) {
-    fail_value("--crop", raw.crop, "multiples of 4, or the frame's edge, beside --error");
+    fail_value("--crop", table.typed("crop"), "multiples of 4, or the frame's edge, with --error");
   }
 }
 
-void check_values(const RawValues& raw, Options& options) {
-  options.output = parse_output_options(raw.output, options.scene);
-  options.light = parse_light_options(raw.light);
-  Size size{options.width, options.height};
-  if (!raw.size.empty()) size = parse_size(raw.size);
-  options.width = size.width;
-  options.height = size.height;
-  options.window = parse_crop(raw.crop, size);
-  if (!raw.camera.empty() && !raw.view.empty()) {
-    throw InputError("--view: expected no --camera beside it");
+/// What options ask of each other.
+void check(const OptionTable& table, Options& options, unsigned processors) {
+  RenderOptions& render = options.render;
+  name_outputs(table, options.scene, options.output);
+  check_crop(table, render);
+  if (!table.typed("camera").empty() && !table.typed("view").empty()) {
+    throw InputError("--view and --camera exclude each other");
   }
-  if (!raw.camera.empty() || !raw.view.empty()) {
-    options.camera.reset();
-    options.path.clear();
-  }
-  if (!raw.camera.empty()) options.camera = parse_camera(raw.camera);
-  if (!raw.view.empty()) options.view.angles = parse_view(raw.view);
-  if (!raw.up.empty()) options.view.up = parse_axis(raw.up);
-  if (!raw.fov.empty()) options.view.fov = parse_fov(raw.fov);
-  options.view.lens = parse_lens(raw.camera_values, options.view.lens);
-  options.environment = parse_environment(raw.camera_values, options.environment);
-  if (!raw.ground.empty()) {
-    options.ground = choose<bool>("--ground", raw.ground, {{"on", true}, {"off", false}});
-  }
-  static_cast<EngineOptions&>(options) =
-      parse_engine_options(raw.engine, {.processors = options.processors});
-  options.core_files =
-      parse_core_file_options(raw.core_files, options, {options.width, options.height});
-  if (raw.light.samples.empty() && options.engine == Engine::kCpu) {
-    options.light.samples = kCpuSamples;
-  }
-  if (options.light.error > 0.0) check_error(raw, options);
-  if (const auto& range = options.light.range) {
-    if (range->end > options.light.samples) {
-      fail_value("--samples", raw.light.range,
-                 "some of the " + std::to_string(options.light.samples) + " of --spp");
+  check_engine_options(table, options, processors);
+  check_core_file_options(options.core_files, options, {render.width, render.height});
+  check_error(table, render);
+  if (render.end_sample > 0) {
+    if (render.end_sample > render.samples) {
+      fail_value("--samples", table.typed("samples"),
+                 "some of the " + std::to_string(render.samples) + " of --spp");
     }
     if (!options.output.exr) throw InputError("--samples: expected an EXR among the outputs");
     options.output.channels.sums = true;
   }
   for (const FalseColorOutput& output : options.output.false_colors) {
-    if (options.light.error == 0.0 && (output.channel == "samples" || output.channel == "error")) {
-      throw InputError("--false-colour: expected --error beside the channel " + output.channel);
+    if (render.error == 0.0 && (output.channel == "samples" || output.channel == "error")) {
+      throw InputError("--false-colour: expected --error for the channel " + output.channel);
     }
   }
-  if (!raw.resume.empty()) {
-    options.resume = raw.resume;
-    const auto& film = options.output.exr;
-    if (options.output.frames > 0 && (!film || *film != options.resume)) {
-      fail_value("--resume", raw.resume,
-                 film ? film->string() + " beside --frames, the animation's own name"
-                      : "an EXR among the outputs of --frames");
-    }
+  const auto& film = options.output.exr;
+  if (options.output.frames > 0 && !options.resume.empty() && film != options.resume) {
+    fail_value("--resume", options.resume.string(),
+               film ? film->string() + " with --frames, the animation's own name"
+                    : "an EXR among the outputs of --frames");
   }
-  if (!raw.seed.empty()) options.seed = parse_seed(raw.seed);
-  if (!raw.smooth.empty()) options.smooth = parse_smooth(raw.smooth);
 }
 
 /// The file that the scene is, or that stands beside it.
-std::optional<SceneFile> find_scene_file(const RawValues& raw) {
-  const std::filesystem::path scene = raw.scene;
+std::optional<SceneFile> find_scene_file(const CommandLine& line) {
+  const std::filesystem::path scene = line.scene;
   if (scene.extension() == ".json") {
-    if (raw.no_scene_file) throw InputError("--no-scene-file: expected an OBJ, got " + raw.scene);
+    if (line.no_scene_file) throw InputError("--no-scene-file: expected an OBJ, got " + line.scene);
     return read_scene_file(scene);
   }
   const std::filesystem::path beside = std::filesystem::path(scene).replace_extension(".json");
   std::error_code ignored;
-  if (raw.no_scene_file || !std::filesystem::is_regular_file(beside, ignored)) return std::nullopt;
+  if (line.no_scene_file || !std::filesystem::is_regular_file(beside, ignored)) {
+    return std::nullopt;
+  }
   SceneFile file = read_scene_file(beside);
   // A scene that is made, somewhere else, goes by the name of its scene file.
   if (!std::filesystem::exists(scene, ignored)) return file;
   if (file.obj.lexically_normal() != scene.lexically_normal()) {
-    throw InputError(beside.string() + ": is about " + file.obj.string() + ", not " + raw.scene +
+    throw InputError(beside.string() + ": is about " + file.obj.string() + ", not " + line.scene +
                      "; --no-scene-file leaves it alone");
   }
   return file;
@@ -167,7 +202,9 @@ std::vector<std::string> words_of(const SceneFile& file) {
     words.push_back("--" + setting.name + "=" + setting.value);
     try {
       Options ignored;
-      check_values(read_line({words.back()}, ignored), ignored);
+      CommandLine line(ignored);
+      (void)line.parse({words.back()});
+      check(line.table, ignored, 0);
     } catch (const InputError& error) {
       throw InputError(file.file.string(), setting.line, error.what());
     }
@@ -176,7 +213,7 @@ std::vector<std::string> words_of(const SceneFile& file) {
 }
 
 /// No output may take the place of the scene or of another output.
-void require_distinct(const Options& options) {
+void require_distinct_outputs(const Options& options) {
   // What cannot be resolved is refused where it is read or written.
   const auto resolve = [](const std::filesystem::path& path) {
     std::error_code error;
@@ -204,29 +241,37 @@ void require_distinct(const Options& options) {
 Options parse_options(int argc, const char* const* argv, unsigned processors) {
   std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
-  options.processors = processors;
-  RawValues raw = read_line(words, options);
-  if (!options.information.empty()) return options;
-  if (raw.scene.empty()) throw InputError("no scene given; try ./render scenes/cornell.obj");
-  options.scene = raw.scene;
-  options.scene_file = find_scene_file(raw);
-  if (options.scene_file) {
-    // Of two values of an option the later one counts.
-    const std::vector<std::string> settings = words_of(*options.scene_file);
-    words.insert(words.begin(), settings.begin(), settings.end());
-    raw = read_line(words, options);
-    options.camera = options.scene_file->camera;
-    options.path = options.scene_file->path;
-    options.view.lens = options.scene_file->lens;
-    options.environment = options.scene_file->lights.environment;
-    if (!options.camera) {
-      options.view.up = options.scene_file->up;
-      options.view.fov = options.scene_file->fov;
-    }
+  {
+    Options first;                // for the scene's name
+    first.environment.emplace();  // the scene file may have one
+    CommandLine line(first);
+    options.information = line.parse(words);
+    if (!options.information.empty()) return options;
+    if (line.scene.empty()) throw InputError("no scene given; try ./render scenes/cornell.obj");
+    options.scene = line.scene;
+    options.scene_file = find_scene_file(line);
   }
-  check_values(raw, options);
-  require_distinct(options);
+  if (const auto& file = options.scene_file) {
+    // Of two values of an option the later one counts.
+    const std::vector<std::string> settings = words_of(*file);
+    words.insert(words.begin(), settings.begin(), settings.end());
+    options.camera.camera = file->camera;
+    options.camera.path = file->path;
+    options.camera.lens = file->lens;
+    options.environment = file->lights.environment;
+    if (!file->camera)
+      std::tie(options.camera.up, options.camera.fov) = std::tie(file->up, file->fov);
+  }
+  CommandLine line(options);
+  (void)line.parse(words);
+  check(line.table, options, processors);
+  require_distinct_outputs(options);
   return options;
+}
+
+std::vector<std::pair<std::string, std::string>> option_values(Options options,
+                                                               OptionPlaces place) {
+  return CommandLine(options).table.values(place);
 }
 
 }  // namespace raygate

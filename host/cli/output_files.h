@@ -1,4 +1,4 @@
-// The files of a picture.
+// Output files: the pictures of a film, finished or not.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/cli/output_options.h"
+#include "host/cli/progress_bar.h"
 #include "host/film/atomic_file.h"
 #include "host/film/exr.h"
 #include "host/film/film.h"
@@ -23,5 +24,38 @@ struct StagedFiles {
 /// metadata (see ExrMetadata::partial). Throws InputError as AtomicFile does.
 [[nodiscard]] StagedFiles stage_files(const OutputOptions& options, const Film& film,
                                       const ExrMetadata& metadata, int threads = 1);
+
+/// "a.exr, a.png".
+[[nodiscard]] std::string listed(const std::vector<std::filesystem::path>& paths);
+
+/// Saves what there is of a picture now and then, and when a signal ends the run. The files say
+/// that they are partial.
+class Checkpointer {
+ public:
+  /// The references must outlive this.
+  /// `outputs` are of the picture, `all` of the run: the same, but for an animation.
+  Checkpointer(const OutputOptions& outputs, const OutputOptions& all, const ExrMetadata& metadata,
+               int threads, ProgressBar& bar)
+      : outputs_(outputs), all_(all), metadata_(metadata), threads_(threads), bar_(bar) {}
+
+  /// What goes wrong is said once and tried again.
+  void save(const Film& film) { save(film, outputs_); }
+
+  /// What a rank that has died has not brought down, without pictures that nothing goes on from.
+  void save_urgently(const Film& film);
+
+  /// Writes what had been rendered when a signal came, if that is anything, and throws Interrupted.
+  [[noreturn]] void end_interrupted(const Film& film) const;
+
+ private:
+  void save(const Film& film, const OutputOptions& outputs);
+  void write(const Film& film, const OutputOptions& outputs) const;
+
+  const OutputOptions &outputs_, &all_;
+  const ExrMetadata& metadata_;
+  int threads_;
+  ProgressBar& bar_;
+  std::string last_trouble_;
+};
 
 }  // namespace raygate

@@ -1,6 +1,5 @@
 #include "host/cli/output_options.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,7 +8,6 @@
 #include <utility>
 
 #include "host/base/input_error.h"
-#include "host/cli/option_text.h"
 
 namespace raygate {
 namespace {
@@ -29,20 +27,6 @@ bool want(std::string_view name, ExtraChannels& channels) {
     return true;
   }
   return false;
-}
-
-ExtraChannels parse_channels(const std::string& text) {
-  ExtraChannels channels;
-  for (const std::string& name : split_at_commas(text)) {
-    if (!want(name, channels)) {
-      std::vector<std::string> names;
-      for (const auto& [known, wanted] : kExtraChannels) names.emplace_back(known);
-      fail_value("--channels", text,
-                 "some of P, Albedo, objectId, tests, doubts, sums with commas between",
-                 did_you_mean(name, names));
-    }
-  }
-  return channels;
 }
 
 /// The pictures to write: "a.exr" and "a.png" ask for that one alone, "a" for both; "" for both
@@ -69,45 +53,16 @@ void parse_output(const std::string& text, const std::filesystem::path& scene,
   options.png = stem.string() + ".png";
 }
 
-double parse_exposure(const std::string& text) {
-  const auto stops = parse_number<double>(text);
-  if (!stops || !(std::abs(*stops) <= 100.0)) {
-    fail_value("--exposure", text, "a number of stops from -100 to 100 (1 is twice as bright)");
-  }
-  return *stops;
-}
-
-Tone parse_tone(const std::string& text) {
-  return choose<Tone>("--tone", text, {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}});
-}
-
-int parse_frames(const std::string& text) {
-  const auto frames = parse_number<int>(text);
-  if (!frames || *frames < 1 || *frames > 9999) {
-    fail_value("--frames", text, "a whole number from 1 to 9999");
-  }
-  return *frames;
-}
-
-double parse_save_every(const std::string& text) {
-  const auto seconds = parse_number<double>(text);
-  if (!seconds || !(*seconds >= 0.1 && *seconds <= 1e6)) {
-    fail_value("--save-every", text, "seconds from 0.1 to 1000000");
-  }
-  return *seconds;
-}
-
-FalseColorOutput parse_false_color(const std::string& text) {
+FalseColorOutput parse_false_color(const std::string& option, const std::string& text) {
   static constexpr std::string_view kChannels[] = {
       "R",        "G",        "B",     "A",      "Z",       "N.X",      "N.Y",
       "N.Z",      "id",       "P.X",   "P.Y",    "P.Z",     "Albedo.R", "Albedo.G",
       "Albedo.B", "objectId", "tests", "doubts", "samples", "error"};
-  constexpr const char* kOption = "--false-colour";
   const std::size_t equals = std::min(text.find('='), text.size() - 1);
   FalseColorOutput output;
   output.path = text.substr(equals + 1);
   if (output.path.extension() != ".png") {
-    fail_value(kOption, text, "CHANNEL=FILE.png or CHANNEL:LOW:HIGH=FILE.png");
+    fail_value(option, text, "CHANNEL=FILE.png or CHANNEL:LOW:HIGH=FILE.png");
   }
   std::string what = text.substr(0, equals);
   std::ranges::replace(what, ':', ',');
@@ -115,7 +70,7 @@ FalseColorOutput parse_false_color(const std::string& text) {
   output.channel = what.substr(0, name_end);
   if (std::ranges::find(kChannels, output.channel) == std::end(kChannels)) {
     fail_value(
-        kOption, text,
+        option, text,
         "one of the EXR's channels, such as Z, N.X, P.X, Albedo.R, id, objectId, tests, doubts, "
         "samples, error");
   }
@@ -123,7 +78,7 @@ FalseColorOutput parse_false_color(const std::string& text) {
   const auto limits = parse_list<double>(what.substr(name_end + 1));
   if (!limits || limits->size() != 2 || !std::isfinite((*limits)[0]) ||
       !std::isfinite((*limits)[1]) || (*limits)[0] >= (*limits)[1]) {
-    fail_value(kOption, text, "CHANNEL:LOW:HIGH=FILE.png with numbers LOW < HIGH");
+    fail_value(option, text, "CHANNEL:LOW:HIGH=FILE.png with numbers LOW < HIGH");
   }
   output.scale = Scale{(*limits)[0], (*limits)[1]};
   return output;
@@ -169,38 +124,48 @@ OutputOptions OutputOptions::numbered(int frame) const {
   return result;
 }
 
-void declare_picture_options(CLI::App& app, RawOutputOptions& raw) {
-  app.add_option("-o,--output", raw.output)->take_last();
-  app.add_option("--exposure", raw.exposure)->take_last();
-  app.add_option("--tone", raw.tone)->take_last();
-  app.add_option("--channels", raw.channels)->take_last();
-  app.add_option("--false-colour,--false-color", raw.false_colors)->allow_extra_args(false);
+void add_picture_options(OptionTable& table, OutputOptions& options) {
+  table.add("-o,--output", "NAME", "NAME.exr, NAME.png, or NAME (or a folder) for both",
+            [](const auto&, const auto&) {});  // see name_outputs()
+  table.number("--exposure", "STOPS", "PNG exposure in stops: +1 is twice as bright ({})",
+               options.display.exposure,
+               Range{-100.0, 100.0, "a number of stops from -100 to 100 (1 is twice as bright)"});
+  table.choice<Tone>("--tone", "clip|filmic", "tone curve of the PNG ({})", options.display.tone,
+                     {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}});
+  table.add("--channels", "NAMES",
+            "extra EXR channels (AOVs): P, Albedo, objectId, tests, doubts; or sums, for --resume "
+            "and ./merge",
+            [&options](const std::string& option, const std::string& text) {
+              std::vector<std::string> names;
+              for (const auto& [name, wanted] : kExtraChannels) names.emplace_back(name);
+              options.channels = {};
+              for (const std::string& name : choose_some(option, text, names)) {
+                want(name, options.channels);
+              }
+            });
+  table.add(
+      "--false-colour,--false-color", "CHANNEL[:LOW:HIGH]=FILE.png", "a channel in false colours",
+      [&options](const std::string& option, const std::string& text) {
+        options.false_colors.push_back(parse_false_color(option, text));
+      },
+      {}, kNowhere, true);
 }
 
-void declare_output_options(CLI::App& app, RawOutputOptions& raw) {
-  declare_picture_options(app, raw);
-  app.add_option("--frames", raw.frames)->take_last();
-  app.add_option("--save-every", raw.save_every)->take_last();
-  app.add_option("--stats", raw.stats)->take_last();
+void add_run_output_options(OptionTable& table, OutputOptions& options) {
+  table.number("--save-every", "SECONDS", "save the unfinished picture now and then",
+               options.save_seconds, Range{0.1, 1e6, "seconds from 0.1 to 1000000"});
+  table.add("--stats", "FILE.json", "all statistics as JSON; - prints them",
+            [&options](const auto&, const std::string& text) {
+              options.stats = text == "-" ? kStandardOutput : text;
+            });
 }
 
-OutputOptions parse_output_options(const RawOutputOptions& raw,
-                                   const std::filesystem::path& scene) {
-  OutputOptions options;
-  parse_output(raw.output, scene, options);
-  if (!raw.stats.empty()) options.stats = raw.stats == "-" ? kStandardOutput : raw.stats;
-  if (!raw.channels.empty()) {
-    options.channels = parse_channels(raw.channels);
-    if (!options.exr) throw InputError("--channels: expected an EXR among the outputs");
+void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
+                  OutputOptions& options) {
+  parse_output(table.typed("output"), scene, options);
+  if (!table.typed("channels").empty() && !options.exr) {
+    throw InputError("--channels: expected an EXR among the outputs");
   }
-  if (!raw.exposure.empty()) options.display.exposure = parse_exposure(raw.exposure);
-  if (!raw.tone.empty()) options.display.tone = parse_tone(raw.tone);
-  for (const std::string& text : raw.false_colors) {
-    options.false_colors.push_back(parse_false_color(text));
-  }
-  if (!raw.frames.empty()) options.frames = parse_frames(raw.frames);
-  if (!raw.save_every.empty()) options.save_seconds = parse_save_every(raw.save_every);
-  return options;
 }
 
 }  // namespace raygate

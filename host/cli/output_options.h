@@ -1,4 +1,4 @@
-// The options that say which files are written and what they show.
+// Output options: which files are written, and what they show.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,7 @@
 #include "host/film/display.h"
 #include "host/film/false_color.h"
 #include "host/film/film.h"
-
-namespace CLI {
-class App;
-}
+#include "host/options/option_table.h"
 
 namespace raygate {
 
@@ -42,20 +39,14 @@ struct OutputOptions {
   [[nodiscard]] OutputOptions numbered(int frame) const;
 };
 
-/// As they were typed; empty where they were not given.
-struct RawOutputOptions {
-  std::string output, stats, channels, exposure, tone, frames, save_every;
-  std::vector<std::string> false_colors;
-};
+/// Adds to a table what sets `options`, of a picture, whoever made it.
+void add_picture_options(OptionTable& table, OutputOptions& options);
+/// And of a run that renders pictures.
+void add_run_output_options(OptionTable& table, OutputOptions& options);
 
-/// Those of a picture, whoever made it.
-void declare_picture_options(CLI::App& app, RawOutputOptions& raw);
-/// All of them.
-void declare_output_options(CLI::App& app, RawOutputOptions& raw);
-
-/// Names that are not given come from `scene`'s, in the current folder. Throws InputError, one
-/// line.
-[[nodiscard]] OutputOptions parse_output_options(const RawOutputOptions& raw,
-                                                 const std::filesystem::path& scene);
+/// Names the pictures: what was not typed comes from `scene`'s name, in the current folder. Throws
+/// InputError, one line, also where --channels has no EXR to go into.
+void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
+                  OutputOptions& options);
 
 }  // namespace raygate

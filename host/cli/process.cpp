@@ -9,7 +9,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
-#include "host/ranks/rank_guard.h"
+#include "host/ranks/ranks.h"
 
 namespace raygate {
 namespace {

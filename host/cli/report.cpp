@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/cli/format.h"
-#include "host/cli/version.h"
+#include "host/options/version.h"
 
 namespace raygate {
 namespace {
@@ -27,12 +27,13 @@ std::string rate(std::uint64_t count, double seconds, const char* of_what) {
 
 std::string headline(const Report& report) {
   const Options& options = report.options;
-  std::string line = options.obj().filename().string() + ": " +
-                     format_count(report.triangles, "triangle") + ", " +
-                     std::to_string(options.width) + "x" + std::to_string(options.height);
-  if (options.window.width() != options.width || options.window.height() != options.height) {
-    line += " cropped to " + std::to_string(options.window.width()) + "x" +
-            std::to_string(options.window.height());
+  std::string line =
+      options.obj().filename().string() + ": " + format_count(report.triangles, "triangle") + ", " +
+      std::to_string(options.render.width) + "x" + std::to_string(options.render.height);
+  if (options.render.window.width() != options.render.width ||
+      options.render.window.height() != options.render.height) {
+    line += " cropped to " + std::to_string(options.render.window.width()) + "x" +
+            std::to_string(options.render.window.height());
   }
   line += ", engine " + to_string(options.engine);
   if (options.engine != Engine::kCpu) {
@@ -113,7 +114,7 @@ std::vector<Skipped> skipped(const Report& report) {
       of_rays(counts.empty_tile_rays, "camera rays where there is nothing"),
       {counts.first_occluders, "searches for a nearer occluder than the first", 0.0, 0.0}};
   if (render.intersect.hit.unit_tests != 0 &&
-      (report.options.unit == "pipeline" || report.options.light.skips.divisions)) {
+      (report.options.unit == "pipeline" || report.options.render.skips.divisions)) {
     const std::uint64_t quotients = 3 * render.intersect.hit.tests;
     all.push_back({quotients - std::min(quotients, render.intersect.hit.quotients),
                    "divisions of the paper's three per test", 0.0, 0.0});
@@ -124,8 +125,8 @@ std::vector<Skipped> skipped(const Report& report) {
 
 /// "1,234,567, 12.3 % of 1,024 per pixel; the others where ...".
 std::string samples_line(const Report& report) {
-  const LightOptions& light = report.options.light;
-  const PixelRect& window = report.options.window;
+  const RenderOptions& light = report.options.render;
+  const PixelRect& window = report.options.render.window;
   const double all = static_cast<double>(window.width()) * window.height() * light.samples;
   const double taken = all - static_cast<double>(report.render.spare_samples);
   return row("samples", format_fixed(100.0 * taken / all, 1) + " % of " +
@@ -208,7 +209,7 @@ std::string to_text(const Report& report) {
                                 format_fixed(clocks_per_test(hit), 2) + " per test"
                           : "") +
           ": " + rate(hit.tests, render.wall_seconds, "tests"));
-  if (report.options.light.error > 0.0) text += samples_line(report);
+  if (report.options.render.error > 0.0) text += samples_line(report);
   text += skipped_line(report);
   std::string pictures;
   for (const auto& path : report.pictures) {
@@ -225,29 +226,18 @@ std::string to_json(const Report& report) {
   const Options& options = report.options;
   const RenderStats& render = report.render;
   const HitCounters& hit = render.intersect.hit;
-  const PixelRect& window = options.window;
+  const PixelRect& window = options.render.window;
   ordered_json pictures = ordered_json::array();
   for (const auto& path : report.pictures) pictures.push_back(path.string());
-  const ordered_json json = {
-      {"software", kSoftware},
-      {"scene", options.obj().string()},
-      {"triangles", report.triangles},
-      {"width", options.width},
-      {"height", options.height},
-      {"window", {window.x0, window.y0, window.x1, window.y1}},
-      {"engine", to_string(options.engine)},
-      {"unit", options.unit},
-      {"arith", to_string(options.arith)},
-      {"lanes", options.lanes},
-      {"cores", options.cores},
-      {"ranks", report.ranks},
-      {"threads", options.threads},
-      {"seed", options.seed},
-      {"pictures", pictures},
-      {"integrator", to_string(options.light.integrator)},
-      {"spp", options.light.samples},
-      {"error", options.light.error},
-      {"depth", options.light.max_depth()},
+  ordered_json json = {
+      {"software", kSoftware},           {"scene", options.obj().string()},
+      {"triangles", report.triangles},   {"width", options.render.width},
+      {"height", options.render.height}, {"window", {window.x0, window.y0, window.x1, window.y1}},
+      {"ranks", report.ranks},           {"pictures", pictures}};
+  for (const auto& [name, value] : option_values(options, kInStats)) {
+    json[name] = ordered_json::accept(value) ? ordered_json::parse(value) : ordered_json(value);
+  }
+  json.update(ordered_json{
       {"rays", render.rays},
       {"camera_rays", render.camera_rays},
       {"shadow_rays", render.shadow_rays},
@@ -293,7 +283,7 @@ std::string to_json(const Report& report) {
         {"records", render.intersect.record},
         {"hit_tests", render.intersect.hit_tests},
         {"shading", render.shade_seconds}}},
-  };
+  });
   // File names need not be UTF-8, JSON must be.
   return json.dump(2, ' ', true, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -40,10 +40,11 @@ void require_place(const Options& options, const std::string& name, const ExrMet
   const auto layout = [](int width, int height, const PixelRect& w) {
     return std::tuple(width, height, w.x0, w.y0, w.x1, w.y1);
   };
-  const PixelRect window =
-      options.window.width() > 0 ? options.window : PixelRect{0, 0, options.width, options.height};
+  const PixelRect window = options.render.window.width() > 0
+                               ? options.render.window
+                               : PixelRect{0, 0, options.render.width, options.render.height};
   if (layout(found.width, found.height, found.window) !=
-      layout(options.width, options.height, window)) {
+      layout(options.render.width, options.render.height, window)) {
     throw InputError(name + ": found another frame or crop, expected those of this run");
   }
   if (found_metadata.world_to_camera != metadata.world_to_camera) {
@@ -77,7 +78,7 @@ Film read_unfinished(const Options& options, const std::filesystem::path& path,
   }
   // A single sample is its pixel's middle, the first of several is not.
   std::string* const spp = option_of(file.metadata, "spp");
-  if (spp != nullptr && *spp != "1") *spp = std::to_string(options.light.samples);
+  if (spp != nullptr && *spp != "1") *spp = std::to_string(options.render.samples);
   if (const auto difference = different_picture(file.metadata, metadata)) {
     throw InputError(name + ": found " + *difference + " as this run has it");
   }
@@ -89,8 +90,8 @@ Film read_unfinished(const Options& options, const std::filesystem::path& path,
   keep(needed.object, film.object, "objectId", name);
   keep(needed.tests, film.tests, "tests", name);
   keep(needed.doubts, film.doubts, "doubts", name);
-  keep(options.light.error > 0.0, film.sums.error, "error", name);
-  keep(options.light.error > 0.0, film.sums.shown, "sums.shown", name);
+  keep(options.render.error > 0.0, film.sums.error, "error", name);
+  keep(options.render.error > 0.0, film.sums.shown, "sums.shown", name);
   return film;
 }
 
@@ -108,7 +109,7 @@ FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
   if (difference) throw InputError(name + ": found " + *difference + " as this run has it");
   require_place(options, name, metadata, found, found.metadata);
   if (found.metadata.partial || !found.is_complete) return {};
-  if (found.channels != channels_of_file(outputs.needed_channels(), options.light.error > 0.0)) {
+  if (found.channels != channels_of_file(outputs.needed_channels(), options.render.error > 0.0)) {
     throw InputError(name + ": found other channels, expected those of this run");
   }
   return {std::ranges::all_of(outputs.paths(),

@@ -18,8 +18,8 @@ namespace raygate {
 
 /// What --resume finds of one frame of an animation.
 struct FoundFrame {
-  bool is_finished = false;   ///< all its files are there
-  std::optional<Film> begun;  ///< if not, and there is something to go on from
+  bool is_finished = false;        ///< all its files are there
+  std::optional<Film> unfinished;  ///< if not, and there is something to resume
 };
 
 /// Looks at the files of a frame, `outputs`. One that was broken off without sums counts as none.

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,7 +11,6 @@
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
 #include "host/cli/camera_sequence.h"
-#include "host/cli/checkpointer.h"
 #include "host/cli/engines.h"
 #include "host/cli/format.h"
 #include "host/cli/output_files.h"
@@ -21,22 +18,22 @@
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
 #include "host/cli/resume.h"
-#include "host/cli/version.h"
 #include "host/film/environment_file.h"
+#include "host/film/sample_range.h"
 #include "host/light/neighbor_clearance.h"
-#include "host/ranks/job_queue.h"
+#include "host/options/version.h"
+#include "host/ranks/ranks.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
-#include "host/scene/view.h"
 #include "host/scene/instances.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
+#include "host/scene/view.h"
 
 namespace raygate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using CoreImage = std::shared_ptr<const MemoryImage>;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -64,237 +61,247 @@ void require_scene(const Options& options) {
                         : ""));
 }
 
-/// No output may take the place of a file that the scene was read from.
-void require_inputs_kept(const Options& options, const Scene& scene) {
-  std::vector<std::filesystem::path> inputs = scene.files;
-  inputs.push_back(options.scene);
-  const int frames = options.output.frames;
-  for (int frame = frames == 0 ? 0 : 1; frame <= frames; ++frame) {
-    require_distinct(frame == 0 ? options.output.paths() : options.output.numbered(frame).paths(),
-                     inputs);
-  }
-  require_distinct(options.core_files.paths(), inputs);
-}
-
-ExrMetadata make_metadata(const Options& options, const Scene& scene, const CameraSequence& cameras,
-                          const Camera& camera) {
-  const glm::dvec3 eye = scene.origin + glm::dvec3(camera.eye());
-  glm::mat4 world_to_camera(1.0f);
-  const glm::dvec3 axes[] = {camera.right(), camera.up(), camera.forward()};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      world_to_camera[column][row] = static_cast<float>(axes[row][column]);
-    }
-    world_to_camera[3][row] = static_cast<float>(-glm::dot(axes[row], eye));
-  }
-  const double height = 2.0 * camera.half_height();
-  ExrMetadata metadata{
-      .software = kSoftware,
-      .scene = options.obj().filename().string(),
-      .seed = options.seed,
-      .options = cameras.options(),
-      .world_to_camera = world_to_camera,
-      .screen_window_width = static_cast<float>(height * options.width / options.height)};
-  if (options.light.range) set_samples(metadata, *options.light.range);
-  return metadata;
-}
-
-/// Renders with a progress bar. Throws Interrupted when a signal comes.
-Film render_film(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                 const NeighborClearances& clearances, const CoreImage& image, const Camera& camera,
-                 const ExrMetadata& metadata, const Film* begun, Ranks& ranks, RenderStats& stats) {
-  const SampleRange all{0, options.light.samples};
-  const auto threads = static_cast<int>(options.threads);
-  RenderOptions render_options{.width = options.width,
-                               .height = options.height,
-                               .window = options.window,
-                               .threads = threads,
-                               .ranks = &ranks,
-                               .samples = options.light.samples,
-                               .first_sample = options.light.range.value_or(all).first,
-                               .end_sample = options.light.range.value_or(all).end,
-                               .begun = begun,
-                               .error = options.light.error,
-                               .exposure = options.output.display.exposure,
-                               .filter = options.light.filter,
-                               .seed = options.seed,
-                               .channels = options.output.needed_channels(),
-                               .integrator = options.light.integrator,
-                               .max_depth = options.light.max_depth(),
-                               .threshold = options.light.threshold,
-                               .ambient = options.light.ambient,
-                               .skips = options.light.skips,
-                               .point_error = options.light.point_error};
-  // What a rank that dies has not brought down is there to go on from.
-  if (ranks.count() > 1) render_options.channels.sums = true;
-  ProgressBar bar(!options.quiet && ranks.index() == 0,
-                  ranks.count() > 1 ? ProgressBar::Style::kLines : ProgressBar::Style::kBar);
-  Checkpointer checkpointer(outputs, options.output, metadata, threads, bar);
-  if (outputs.save_seconds > 0.0) {
-    render_options.snapshot = [&](const Film& film) { checkpointer.save(film); };
-    render_options.snapshot_seconds = outputs.save_seconds;
-  }
-  if (ranks.count() > 1) {
-    note_warnings();
-    render_options.is_urgent = take_warning;
-    render_options.urgent_snapshot = [&](const Film& film) { checkpointer.save_urgently(film); };
-  }
-  // The threads are deep in a search and will not stop soon: end without them.
-  render_options.abandon = [&](const Film& film) {
-    bar.erase();
-    std::_Exit(run_guarded([&]() -> int { checkpointer.end_interrupted(film); }, 1));
-  };
-  Film film =
-      render(scene, clearances, camera, render_options,
-             make_intersector_factory(options, clearances.bvh(), options.light.skips, image), stats,
-             [&](double fraction) {
-               // Before there is something to save, a signal simply ends the program.
-               if (interruption() == 0) note_interruptions();
-               bar.update(fraction);
-               return interruption() == 0;
-             });
-  bar.erase();
-  if (stats.cancelled) {
-    if (ranks.index() != 0) throw Interrupted(interruption(), "rank 0 has the picture");
-    checkpointer.end_interrupted(film);
-  }
-  if (stats.missing_threads > 0) {
-    print_warning("only " + std::to_string(options.threads - stats.missing_threads) + " of " +
-                  std::to_string(options.threads) + " threads could be started");
-  }
-  return film;
-}
-
-/// Renders one picture and writes it with `report` completed; false if it is a frame whose files
-/// are there.
-bool render_picture(const Options& options, const OutputOptions& outputs, const Scene& scene,
-                    const NeighborClearances& clearances, const CoreImage& image,
-                    const CameraSequence& cameras, const Camera& camera, Clock::time_point start,
-                    Ranks& ranks, Report& report) {
-  const ExrMetadata metadata = make_metadata(options, scene, cameras, camera);
-  const bool is_ours = ranks.index() == 0;
-  std::optional<Film> begun;
-  if (is_ours && !options.resume.empty()) {
-    if (options.output.frames == 0) {
-      begun = read_unfinished(options, options.resume, metadata);
-    } else {
-      FoundFrame found = find_frame(options, outputs, metadata);
-      if (found.is_finished) return false;
-      begun = std::move(found.begun);
-    }
-  }
-  Film film = render_film(options, outputs, scene, clearances, image, camera, metadata,
-                          begun ? &*begun : nullptr, ranks, report.render);
-  ranks.leave();
-  if (!is_ours) return true;
-  film.keeps_sums = outputs.needed_channels().sums;
-
-  // All files are made ready before the first takes its name: a full disk changes none of them.
-  const Clock::time_point write_start = Clock::now();
-  StagedFiles ready = stage_files(outputs, film, metadata, static_cast<int>(options.threads));
-  report.pictures = ready.paths;
-  report.legends = ready.legends;
-  report.write_seconds = seconds_since(write_start);
-  report.total_seconds = seconds_since(start);
-  if (outputs.stats) ready.files.emplace_back(*outputs.stats, to_json(report));
-  for (AtomicFile& file : ready.files) file.commit();
-  return true;
-}
-
-/// One picture after the other, each by the rank that is free; a line for each.
-void render_animation(const Options& options, Scene& scene, const NeighborClearances& clearances,
-                      const CoreImage& image, const CameraSequence& cameras, Ranks& ranks,
-                      Report& report, std::FILE* console) {
-  const int frames = options.output.frames;
-  JobQueue jobs(ranks, frames);
-  while (const auto job = jobs.next()) {
-    const int frame = *job + 1;
-    const Clock::time_point start = Clock::now();
-    Ranks alone;
-    const OutputOptions outputs = options.output.numbered(frame);
-    const bool is_new = render_picture(options, outputs, scene, clearances, image, cameras,
-                                       cameras.light(frame, scene), start, alone, report);
-    if (options.quiet) continue;
-    print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
-              (is_new ? format_duration(report.total_seconds) + ", wrote " + listed(report.pictures)
-                      : "kept " + outputs.exr->string()) +
-              "\n",
-          console);
-    flush_standard_output();
-  }
-}
-
 /// Upwards on the command line, in the scene file, or a guess.
 glm::dvec3 environment_up(const Options& options, const Scene& scene) {
-  if (options.view.up) return *options.view.up;
+  if (options.camera.up) return *options.camera.up;
   if (options.scene_file && options.scene_file->up) return *options.scene_file->up;
   return guess_up_axis(scene);
 }
 
-}  // namespace
-
-void run(const Options& options, Ranks& ranks) {
-  const Clock::time_point start = Clock::now();
-  const int frames = options.output.frames;
-  std::FILE* console = stdout;
-  const bool writes = ranks.index() == 0 || frames > 0;
-  for (int frame = frames == 0 ? 0 : 1; writes && frame <= frames; ++frame) {
-    const OutputOptions outputs = frame == 0 ? options.output : options.output.numbered(frame);
-    for (const auto& path : outputs.paths()) {
-      require_writable(path);
-      // What is for people makes room for what is for programs.
-      if (is_standard_output(path)) console = stderr;
-    }
-  }
-  for (const auto& path : options.core_files.paths()) require_writable(path);
-  Report report;
-  report.options = options;
-  report.ranks = ranks.count();
-
+Scene load(const Options& options) {
   require_scene(options);
-  if (!options.core_files.pixel) prepare_engine(options);
   const LoadOptions load_options{.strict = options.strict,
                                  .keep_instances = true,
                                  .smooth = options.smooth,
-                                 .threads = static_cast<int>(options.threads)};
+                                 .threads = options.threads};
   Scene scene = options.scene_file ? load_scene(*options.scene_file, load_options)
                                    : load_scene(options.scene, load_options);
   if (options.scene_file) add_lights(*options.scene_file, scene);
   if (options.environment) {
     load_environment(*options.environment, environment_up(options, scene), scene);
   }
-  report.load_seconds = seconds_since(start);
-  report.triangles = triangle_count(scene);
-  if (ranks.index() == 0) print_warnings(scene);
-  require_inputs_kept(options, scene);
-
-  // Cameras and lights are found before there is a ground, which is not to be framed.
-  const CameraSequence cameras(options, scene);
-  if (cameras.has_ground()) add_ground(scene, cameras.up());
-  report.view = cameras.text();
-  resolve_instances(scene, options.instances, options.scene);
-
-  const Clock::time_point tree_start = Clock::now();
-  const Bvh bvh(scene, static_cast<int>(options.threads));
-  report.tree_seconds = seconds_since(tree_start);
-  const NeighborClearances clearances(bvh);
-  const CoreImage image = make_memory_image(options, options.core_files, bvh);
-  if (const auto& pixel = options.core_files.pixel) {
-    const Ray ray = cameras.light(1, scene).ray((pixel->x + 0.5) / options.width,
-                                                (pixel->y + 0.5) / options.height, glm::dvec2(0.0));
-    if (ranks.index() == 0) {
-      print(trace_pixel(options, options.core_files, bvh, image, ray), console);
-    }
-    return;
-  }
-
-  if (frames > 0) {
-    render_animation(options, scene, clearances, image, cameras, ranks, report, console);
-  } else {
-    render_picture(options, options.output, scene, clearances, image, cameras,
-                   cameras.light(1, scene), start, ranks, report);
-    if (!options.quiet && ranks.index() == 0) print(to_text(report), console);
-  }
+  return scene;
 }
+
+/// A run of the program: a scene, and the pictures of it.
+class Run {
+ public:
+  Run(const Options& options, Ranks& ranks) : options_(options), ranks_(ranks) {
+    const int frames = options.output.frames;
+    if (frames == 0) outputs_.push_back(options.output);
+    for (int frame = 1; frame <= frames; ++frame) {
+      outputs_.push_back(options.output.numbered(frame));
+    }
+  }
+
+  void operator()() {
+    check_outputs();
+    report_.options = options_;
+    report_.ranks = ranks_.count();
+    scene_ = load(options_);
+    report_.load_seconds = seconds_since(start_);
+    report_.triangles = triangle_count(scene_);
+    if (ranks_.index() == 0) print_warnings(scene_);
+    require_inputs_kept();
+
+    // Cameras and lights are found before there is a ground, which is not to be framed.
+    const CameraSequence cameras(options_, scene_);
+    if (cameras.has_ground()) add_ground(scene_, cameras.up());
+    report_.view = cameras.text();
+    resolve_instances(scene_, options_.instances, options_.scene);
+
+    if (!options_.core_files.pixel) prepare_engine(options_);
+    const Clock::time_point tree_start = Clock::now();
+    const Bvh bvh(scene_, options_.threads);
+    report_.tree_seconds = seconds_since(tree_start);
+    const NeighborClearances clearances(bvh);
+    image_ = make_memory_image(options_, options_.core_files, bvh);
+    if (options_.core_files.pixel) {
+      write_wave(bvh, cameras.light(1, scene_));
+    } else if (options_.output.frames > 0) {
+      render_animation(clearances, cameras);
+    } else {
+      render_picture(clearances, cameras, 1, ranks_, start_);
+      if (!options_.quiet && ranks_.index() == 0) print(to_text(report_), console_);
+    }
+  }
+
+ private:
+  void check_outputs() {
+    for (const OutputOptions& outputs : outputs_) {
+      if (ranks_.index() != 0 && options_.output.frames == 0) break;  // rank 0 writes
+      for (const auto& path : outputs.paths()) {
+        require_writable(path);
+        // What is for people makes room for what is for programs.
+        if (is_standard_output(path)) console_ = stderr;
+      }
+    }
+    for (const auto& path : options_.core_files.paths()) require_writable(path);
+  }
+
+  /// No output may take the place of a file that the scene was read from.
+  void require_inputs_kept() const {
+    std::vector<std::filesystem::path> inputs = scene_.files;
+    inputs.push_back(options_.scene);
+    for (const OutputOptions& outputs : outputs_) require_distinct(outputs.paths(), inputs);
+    require_distinct(options_.core_files.paths(), inputs);
+  }
+
+  void write_wave(const Bvh& bvh, const Camera& camera) const {
+    const glm::ivec2& pixel = *options_.core_files.pixel;
+    const Ray ray = camera.ray((pixel.x + 0.5) / options_.render.width,
+                               (pixel.y + 0.5) / options_.render.height, glm::dvec2(0.0));
+    if (ranks_.index() == 0) {
+      print(trace_pixel(options_, options_.core_files, bvh, image_, ray), console_);
+    }
+  }
+
+  /// One picture after the other, each by the rank that is free; a line for each.
+  void render_animation(const NeighborClearances& clearances, const CameraSequence& cameras) {
+    const int frames = options_.output.frames;
+    JobQueue jobs(ranks_, frames);
+    while (const auto job = jobs.next()) {
+      const int frame = *job + 1;
+      Ranks alone;
+      const bool is_new = render_picture(clearances, cameras, frame, alone, Clock::now());
+      if (options_.quiet) continue;
+      print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
+                (is_new ? format_duration(report_.total_seconds) + ", wrote " +
+                              listed(report_.pictures)
+                        : "kept " + outputs_of(frame).exr->string()) +
+                "\n",
+            console_);
+      flush_standard_output();
+    }
+  }
+
+  /// Renders a picture, numbered from 1, and writes it with the report completed; false if it is a
+  /// frame whose files are there.
+  bool render_picture(const NeighborClearances& clearances, const CameraSequence& cameras,
+                      int number, Ranks& ranks, Clock::time_point start) {
+    const Camera& camera = cameras.light(number, scene_);
+    const OutputOptions& outputs = outputs_of(number);
+    const ExrMetadata metadata = make_metadata(cameras, camera);
+    std::optional<Film> unfinished;
+    if (ranks.index() == 0 && !options_.resume.empty()) {
+      if (options_.output.frames == 0) {
+        unfinished = read_unfinished(options_, options_.resume, metadata);
+      } else {
+        FoundFrame found = find_frame(options_, outputs, metadata);
+        if (found.is_finished) return false;
+        unfinished = std::move(found.unfinished);
+      }
+    }
+    RenderOptions render_options = options_.render;
+    render_options.threads = options_.threads;
+    render_options.ranks = &ranks;
+    render_options.unfinished = unfinished ? &*unfinished : nullptr;
+    render_options.exposure = options_.output.display.exposure;
+    render_options.channels = outputs.needed_channels();
+    // What a rank that dies has not sent is there to resume from.
+    if (ranks.count() > 1) render_options.channels.sums = true;
+    Film film = render_monitored(clearances, camera, render_options, outputs, metadata);
+    ranks.leave();
+    if (ranks.index() != 0) return true;
+    film.keeps_sums = outputs.needed_channels().sums;
+
+    // All files are staged before the first takes its name: a full disk changes none of them.
+    const Clock::time_point write_start = Clock::now();
+    StagedFiles staged = stage_files(outputs, film, metadata, options_.threads);
+    report_.pictures = staged.paths;
+    report_.legends = staged.legends;
+    report_.write_seconds = seconds_since(write_start);
+    report_.total_seconds = seconds_since(start);
+    if (outputs.stats) staged.files.emplace_back(*outputs.stats, to_json(report_));
+    for (AtomicFile& file : staged.files) file.commit();
+    return true;
+  }
+
+  /// Renders with a progress bar and checkpoints. Throws Interrupted when a signal comes.
+  Film render_monitored(const NeighborClearances& clearances, const Camera& camera,
+                        const RenderOptions& options, const OutputOptions& outputs,
+                        const ExrMetadata& metadata) {
+    const bool has_ranks = options.ranks->count() > 1, is_first = options.ranks->index() == 0;
+    ProgressBar bar(!options_.quiet && is_first,
+                    has_ranks ? ProgressBar::Style::kLines : ProgressBar::Style::kBar);
+    Checkpointer checkpointer(outputs, options_.output, metadata, options_.threads, bar);
+    RenderMonitor monitor;
+    monitor.progress = [&](double fraction) {
+      // Before there is something to save, a signal simply ends the program.
+      if (interruption() == 0) note_interruptions();
+      bar.update(fraction);
+      return interruption() == 0;
+    };
+    if (outputs.save_seconds > 0.0) {
+      monitor.snapshot = [&](const Film& film) { checkpointer.save(film); };
+      monitor.snapshot_seconds = outputs.save_seconds;
+    }
+    if (has_ranks) {
+      note_warnings();
+      monitor.is_urgent = take_warning;
+      monitor.urgent_snapshot = [&](const Film& film) { checkpointer.save_urgently(film); };
+    }
+    // The threads are deep in a search and will not stop soon: end without them.
+    monitor.abandon = [&](const Film& film) {
+      bar.erase();
+      std::_Exit(run_guarded([&]() -> int { checkpointer.end_interrupted(film); }, 1));
+    };
+    RenderStats& stats = report_.render;
+    Film film = render(scene_, clearances, camera, options,
+                       make_intersector_factory(options_, clearances.bvh(), options.skips, image_),
+                       stats, monitor);
+    bar.erase();
+    if (stats.cancelled) {
+      if (!is_first) throw Interrupted(interruption(), "rank 0 has the picture");
+      checkpointer.end_interrupted(film);
+    }
+    if (stats.missing_threads > 0) {
+      print_warning("only " + std::to_string(options_.threads - stats.missing_threads) + " of " +
+                    std::to_string(options_.threads) + " threads could be started");
+    }
+    return film;
+  }
+
+  [[nodiscard]] ExrMetadata make_metadata(const CameraSequence& cameras,
+                                          const Camera& camera) const {
+    const RenderOptions& render = options_.render;
+    const glm::dvec3 eye = scene_.origin + glm::dvec3(camera.eye());
+    glm::mat4 world_to_camera(1.0f);
+    const glm::dvec3 axes[] = {camera.right(), camera.up(), camera.forward()};
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        world_to_camera[column][row] = static_cast<float>(axes[row][column]);
+      }
+      world_to_camera[3][row] = static_cast<float>(-glm::dot(axes[row], eye));
+    }
+    const double height = 2.0 * camera.half_height();
+    ExrMetadata metadata{
+        .software = kSoftware,
+        .scene = options_.obj().filename().string(),
+        .seed = render.seed,
+        .options = cameras.options(),
+        .world_to_camera = world_to_camera,
+        .screen_window_width = static_cast<float>(height * render.width / render.height)};
+    if (render.end_sample > 0) set_samples(metadata, {render.first_sample, render.end_sample});
+    return metadata;
+  }
+
+  [[nodiscard]] const OutputOptions& outputs_of(int number) const {
+    return outputs_[static_cast<std::size_t>(number - 1)];
+  }
+
+  const Clock::time_point start_ = Clock::now();
+  const Options& options_;
+  Ranks& ranks_;
+  std::vector<OutputOptions> outputs_;  // of each picture
+  std::FILE* console_ = stdout;
+  Scene scene_;
+  std::shared_ptr<const MemoryImage> image_;  // of a ray core
+  Report report_;
+};
+
+}  // namespace
+
+void run(const Options& options, Ranks& ranks) { Run(options, ranks)(); }
 
 }  // namespace raygate

@@ -10,8 +10,6 @@
 
 #include "host/base/input_error.h"
 #include "host/cli/process.h"
-#include "host/ranks/job_queue.h"
-#include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
 
 namespace {

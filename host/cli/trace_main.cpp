@@ -1,5 +1,4 @@
-// The program `trace`: what rays hit, exactly.
-#include <CLI/CLI.hpp>
+// The program `trace`: a table of rays in, a table of their exact hits out.
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -8,11 +7,8 @@
 
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
-#include "host/cli/command_line.h"
-#include "host/cli/engine_options.h"
 #include "host/cli/engines.h"
 #include "host/cli/format.h"
-#include "host/cli/option_text.h"
 #include "host/cli/process.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/atomic_file.h"
@@ -25,8 +21,7 @@
 namespace raygate {
 namespace {
 
-constexpr const char* kHelp =
-    R"(Usage: ./trace SCENE RAYS [options]
+constexpr const char* kAbout = R"(Usage: ./trace SCENE RAYS [options]
 
 Says what rays hit in a scene (OBJ, glTF, PLY, STL), exactly: which triangle,
 where, and whether binary32 had left it open. RAYS is a CSV table or a NumPy
@@ -38,35 +33,22 @@ are the origin, the direction and, where wanted, a limit:
   ./trace scenes/cornell.obj rays.csv
   ./trace scenes/teapot.obj rays.npy -o hits.npy --hits all
   echo 0,1,5,0,0,-1 | ./trace scenes/cornell.obj - --columns triangle,t
+)";
 
-  -o, --output FILE          .csv or .npy; - is standard output, as CSV (default)
-  --hits nearest|any|all     nearest: a row for each ray (default); any: whether
-                             there is a hit, sooner; all: a row for each hit of
-                             each ray, near before far
-  --columns NAMES            ray,hit,triangle,object,material,t,point,uv,normal,
-                             doubts,unit-point,unit-error (all but material and
-                             the last two; of any: ray,hit)
-  --engine NAME              cpu (default), rtl, model or check: as in ./render
-  --unit, --arith, --lanes, --memory, --cores, --threads, --instances
-                             as in ./render
-  --strict                   refuse faces without area (they are left out)
-  -q, --quiet                print no summary (on standard error)
-  -h, --help; --version
-
-Numbers count from 0. A ray that hits nothing has triangle -1, t inf, the rest
+constexpr const char* kFooter =
+    R"(Numbers count from 0. A ray that hits nothing has triangle -1, t inf, the rest
 nan. Positions become binary32 relative to the scene's middle; the summary says
 how many rays that changed.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
-line, the scene, the rays or the output cannot be used; 130 interrupted.
-)";
+line, the scene, the rays or the output cannot be used; 130 interrupted.)";
 
 struct TraceOptions {
   std::string information;
   std::filesystem::path scene, rays, output = "-";
   Hits hits = Hits::kNearest;
   std::vector<HitColumn> columns;
-  EngineOptions engine;
+  EngineOptions engine{.engine = Engine::kCpu};
   bool strict = false, quiet = false;
 
   [[nodiscard]] bool is_to_standard_output() const { return output == "-"; }
@@ -77,37 +59,40 @@ struct TraceOptions {
 
 TraceOptions parse(const std::vector<std::string>& words) {
   TraceOptions options;
-  std::string scene, rays, output, hits, columns;
-  RawEngineOptions engine;
-  CLI::App app("", "trace");
-  app.add_option("scene", scene);
-  app.add_option("rays", rays);
-  app.add_option("-o,--output", output)->take_last();
-  app.add_option("--hits", hits)->take_last();
-  app.add_option("--columns", columns)->take_last();
-  declare_engine_options(app, engine);
-  app.add_flag("--strict", options.strict)->disable_flag_override();
-  app.add_flag("-q,--quiet", options.quiet)->disable_flag_override();
-  options.information =
-      read_command_line(app, words, kHelp, "a third file; expected SCENE and RAYS");
+  std::string scene, rays, columns;
+  OptionTable table(kAbout, kFooter);
+  table.positional(scene);
+  table.positional(rays);
+  table.group("Options");
+  table.text("-o,--output", "FILE", ".csv or .npy; - is standard output, as CSV (default)",
+             options.output);
+  table.choice<Hits>("--hits", "nearest|any|all",
+                     "nearest: a row for each ray; any: whether there is a hit, sooner; all: a row "
+                     "for each hit of each ray, near before far ({})",
+                     options.hits,
+                     {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
+  table.text(
+      "--columns", "NAMES",
+      "ray,hit,triangle,object,material,t,point,uv,normal,doubts, unit-point,unit-error (all "
+      "but material and the last two; of any: ray,hit)",
+      columns);
+  add_engine_options(table, options.engine);
+  table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
+  table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
+  options.information = table.parse(words, "a third file; expected SCENE and RAYS");
   if (!options.information.empty()) return options;
   if (rays.empty()) throw InputError("expected SCENE and RAYS (see --help)");
   options.scene = scene;
   options.rays = rays;
-  if (!output.empty()) options.output = output;
   const auto extension = options.output.extension();
   if (!options.is_to_standard_output() && extension != ".csv" && extension != ".npy") {
-    fail_value("--output", output, "FILE.csv, FILE.npy or -");
+    fail_value("--output", options.output.string(), "FILE.csv, FILE.npy or -");
   }
-  if (!hits.empty()) {
-    options.hits = choose<Hits>(
-        "--hits", hits, {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
-  }
-  options.engine = parse_engine_options(engine, {.engine = Engine::kCpu});
-  for (const auto& [name, value] :
-       {std::pair{"--unit", engine.unit}, {"--arith", engine.arith}, {"--lanes", engine.lanes}}) {
-    if (options.engine.engine == Engine::kCpu && !value.empty()) {
-      fail_value(name, value, "--engine rtl, model or check beside it");
+  check_engine_options(table, options.engine);
+  for (const char* name : {"unit", "arith", "lanes"}) {
+    const std::string typed = table.typed(name);
+    if (options.engine.engine == Engine::kCpu && !typed.empty()) {
+      fail_value("--" + std::string(name), typed, "--engine rtl, model or check beside it");
     }
   }
   const auto names = columns.empty() ? std::vector<std::string>() : split_at_commas(columns);
@@ -171,8 +156,7 @@ int run(const TraceOptions& options) {
   resolve_instances(scene, options.engine.instances, options.scene);
   for (const std::string& warning : scene.warnings) print_warning(warning);
   prepare_engine(options.engine);
-  const auto threads = static_cast<int>(options.engine.threads);
-  const Bvh bvh(scene, threads);
+  const Bvh bvh(scene, options.engine.threads);
   if (!options.is_to_standard_output()) {
     std::vector<std::filesystem::path> inputs = scene.files;
     inputs.push_back(options.scene);

@@ -29,6 +29,7 @@
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/light/default_lights.h"
 #include "host/light/neighbor_clearance.h"
+#include "host/options/light_options.h"
 #include "host/python/float_reference.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
@@ -49,20 +50,22 @@ using Vectors3 = nb::ndarray<nb::ro, nb::shape<-1, 3>, nb::device::cpu, nb::c_co
 using Numbers = nb::ndarray<nb::ro, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 using Three = std::array<double, 3>;
 
-template <class Value, std::size_t kCount>
-Value choose(const char* what, const std::string& found,
-             const std::pair<const char*, Value> (&choices)[kCount]) {
-  std::string expected;
-  for (const auto& [name, value] : choices) {
-    if (found == name) return value;
-    expected.append(expected.empty() ? "" : ", ").append(name);
-  }
-  throw InputError(std::string(what) + ": found '" + found + "', expected one of " + expected);
-}
+/// Keywords and their values as text.
+using Settings = std::vector<std::pair<std::string, std::string>>;
 
-int threads_of(std::optional<int> threads) {
-  return threads ? *threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
+/// Options of a function of the module, read from its keywords.
+struct Keywords : OptionTable {
+  Keywords() { number("--threads", "", "", threads, kThreadRange, kInPython); }
+  void add_engine() {
+    choice("--engine", "", "", uses_model, {{"cpu", false}, {"model", true}}, kInPython);
+  }
+  void read(const Settings& settings) const {
+    for (const auto& [name, text] : settings) set(name, text);
+  }
+
+  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool uses_model = false;  // the unit's reference model
+};
 
 /// Elements of an array of float32 or float64, as they lie there.
 class Elements {
@@ -108,8 +111,11 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
 /// A scene and the tree around it.
 class PythonScene {
  public:
-  PythonScene(const std::string& file, bool strict, std::optional<double> smooth,
-              std::optional<int> threads) {
+  PythonScene(const std::string& file, bool strict, const Settings& settings) {
+    std::optional<double> smooth;
+    Keywords keywords;
+    keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
+    keywords.read(settings);
     const std::filesystem::path path = file;
     if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
@@ -122,12 +128,14 @@ class PythonScene {
         load_environment(*environment, file_->up.value_or(guess_up_axis(scene_)), scene_);
     }
     resolve_instances(scene_, InstanceMode::kFlatten, path);
-    build(threads);
+    build(keywords.threads);
   }
 
   /// Triangles alone: their corners, one after the other. Refuses those without area, so that
   /// their numbers stay.
-  PythonScene(const Vectors3& corners, std::optional<int> threads) {
+  PythonScene(const Vectors3& corners, const Settings& settings) {
+    Keywords keywords;
+    keywords.read(settings);
     const Elements points("triangles", corners);
     const nb::gil_scoped_release release;
     MeshBuilder mesh("triangles");
@@ -149,7 +157,7 @@ class PythonScene {
     }
     scene_.materials.emplace_back().name = "default";
     scene_.objects = {"default"};
-    build(threads);
+    build(keywords.threads);
   }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -161,19 +169,23 @@ class PythonScene {
 
   /// The rows of HitTable as bytes, and what their fields are.
   nb::object trace_rays(const Vectors3& origins, const Vectors3& directions,
-                        const std::optional<Numbers>& limits, const std::string& hits,
-                        const std::vector<std::string>& columns, const std::string& engine,
-                        std::optional<int> threads) const {
+                        const std::optional<Numbers>& limits,
+                        const std::vector<std::string>& columns, const Settings& settings) const {
     const std::size_t count = origins.shape(0);
     if (directions.shape(0) != count || (limits && limits->shape(0) != count)) {
       throw InputError("trace: expected as many directions and limits as origins");
     }
-    const Hits asked = choose<Hits>(
-        "hits", hits, {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
+    Hits asked = Hits::kNearest;
+    Keywords keywords;
+    keywords.choice("--hits", "", "", asked,
+                    {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}},
+                    kInPython);
+    keywords.add_engine();
+    keywords.read(settings);
     const Elements from("origins", origins), way("directions", directions);
     std::optional<Elements> limit;
     if (limits) limit.emplace("limits", *limits);
-    const HitTable answers(scene_, *bvh_, columns_of(columns, asked, engine == "cpu", ""),
+    const HitTable answers(scene_, *bvh_, columns_of(columns, asked, !keywords.uses_model, ""),
                            TableFormat::kNpy);
     const auto read = [&, next = std::size_t{0}](std::size_t most, RayTable& block) mutable {
       block.clear(next);
@@ -190,8 +202,8 @@ class PythonScene {
     {
       const nb::gil_scoped_release release;
       (void)trace(
-          read, asked, *bvh_, answers, intersectors(engine),
-          static_cast<unsigned>(threads_of(threads)),
+          read, asked, *bvh_, answers, intersectors(keywords.uses_model),
+          static_cast<unsigned>(keywords.threads),
           [&](std::string_view bytes) { rows->append(bytes); }, keep_going);
     }
     std::string* const kept = rows.release();
@@ -201,30 +213,24 @@ class PythonScene {
         answers.fields());
   }
 
-  /// The film's channels by name.
-  nb::dict render_film(int width, int height, int spp, const std::string& integrator,
-                       const std::optional<Three>& eye, const std::optional<Three>& target,
-                       const std::optional<Three>& up, std::optional<double> fov,
-                       std::optional<int> depth, std::uint64_t seed, const std::string& filter,
-                       const std::string& engine, std::optional<int> threads) {
-    RenderOptions options{.width = width,
-                          .height = height,
-                          .window = {0, 0, width, height},
-                          .threads = threads_of(threads),
-                          .samples = spp,
-                          .seed = seed};
+  /// The film's channels by name. `settings`: options and their values as text.
+  nb::dict render_film(const std::optional<Three>& eye, const std::optional<Three>& target,
+                       const std::optional<Three>& up, const Settings& settings) {
+    RenderOptions options;
     options.channels = {.position = true, .albedo = true, .object = true};
-    options.integrator = choose<IntegratorKind>("integrator", integrator,
-                                                {{"primary", IntegratorKind::kPrimary},
-                                                 {"whitted", IntegratorKind::kWhitted},
-                                                 {"path", IntegratorKind::kPath}});
-    options.filter =
-        choose<ReconstructionFilter>("filter", filter,
-                                     {{"box", ReconstructionFilter::kBox},
-                                      {"tent", ReconstructionFilter::kTent},
-                                      {"gauss", ReconstructionFilter::kGauss},
-                                      {"blackman-harris", ReconstructionFilter::kBlackmanHarris}});
-    options.max_depth = depth.value_or(options.integrator == IntegratorKind::kPath ? 64 : 4);
+    std::optional<double> fov;
+    Keywords keywords;
+    keywords.number("--width", "", "", options.width, kSideRange, kInPython);
+    keywords.number("--height", "", "", options.height, kSideRange, kInPython);
+    keywords.number("--fov", "", "", fov, kFovRange, kInPython);
+    keywords.add_engine();
+    add_light_options(keywords, options);
+    keywords.read(settings);
+    options.threads = keywords.threads;
+    const int width = options.width, height = options.height;
+    if (std::int64_t{width} * height > kMaxPixels) {
+      throw InputError("width, height: expected at most " + std::to_string(kMaxPixels) + " pixels");
+    }
     const Camera camera = camera_of(eye, target, up, fov, static_cast<double>(width) / height);
     // A light for a dark scene depends on the camera: it is there for this picture alone.
     const auto lights = scene_.lights;
@@ -238,8 +244,8 @@ class PythonScene {
     {
       const nb::gil_scoped_release release;
       RenderStats stats;
-      *film = render(scene_, *clearances_, camera, options, intersectors(engine), stats,
-                     [](double) { return keep_going(); });
+      *film = render(scene_, *clearances_, camera, options, intersectors(keywords.uses_model),
+                     stats, {.progress = [](double) { return keep_going(); }});
     }
     scene_.lights = lights;
     scene_.background = background;
@@ -257,13 +263,13 @@ class PythonScene {
 
  private:
   /// The tree, when the scene is there.
-  void build(std::optional<int> threads) {
-    bvh_ = std::make_unique<Bvh>(scene_, threads_of(threads));
+  void build(int threads) {
+    bvh_ = std::make_unique<Bvh>(scene_, threads);
     clearances_ = std::make_unique<NeighborClearances>(*bvh_);
   }
 
-  [[nodiscard]] IntersectorFactory intersectors(const std::string& engine) const {
-    if (choose<bool>("engine", engine, {{"cpu", false}, {"model", true}})) {
+  [[nodiscard]] IntersectorFactory intersectors(bool uses_model) const {
+    if (uses_model) {
       return [this, caches = std::make_shared<RecordCaches>(*bvh_)] {
         return std::make_unique<UnitIntersector>(
             *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()),
@@ -313,10 +319,8 @@ NB_MODULE(_raygate, m) {
   nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
   raygate::add_float_reference(m);
   nb::class_<PythonScene>(m, "Scene")
-      .def(nb::init<const std::string&, bool, std::optional<double>, std::optional<int>>(),
-           "file"_a, "strict"_a, "smooth"_a.none(), "threads"_a.none())
-      .def(nb::init<const raygate::Vectors3&, std::optional<int>>(), "corners"_a,
-           "threads"_a.none())
+      .def(nb::init<const std::string&, bool, const raygate::Settings&>())
+      .def(nb::init<const raygate::Vectors3&, const raygate::Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects", [](const PythonScene& s) { return s.scene().objects; })
@@ -328,8 +332,7 @@ NB_MODULE(_raygate, m) {
                      return raygate::Three{o.x, o.y, o.z};
                    })
       .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
-           "hits"_a, "columns"_a, "engine"_a, "threads"_a.none())
-      .def("render", &PythonScene::render_film, "width"_a, "height"_a, "spp"_a, "integrator"_a,
-           "eye"_a.none(), "target"_a.none(), "up"_a.none(), "fov"_a.none(), "depth"_a.none(),
-           "seed"_a, "filter"_a, "engine"_a, "threads"_a.none());
+           "columns"_a, "settings"_a)
+      .def("render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
+           "settings"_a);
 }

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
 
 namespace raygate {

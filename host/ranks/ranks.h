@@ -1,12 +1,16 @@
-// The processes that share a run, "ranks" as MPI calls them, and what they tell each other.
+// Ranks: the processes that share a run, as MPI calls them, what they tell each other, and the jobs
+// that they take one after the other.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -104,5 +108,46 @@ struct RunIsOver : std::exception {};
 /// InputError where a launcher has started several, and this program was built without MPI or with
 /// another one than the launcher's.
 [[nodiscard]] std::unique_ptr<Ranks> join_ranks();
+
+/// Runs `work` of a rank other than 0. Of what it throws, as `ending` puts it, rank 0 hears, and
+/// has the last word: to the user, and about the exit status.
+void run_rank(Ranks& ranks, const std::function<void()>& work,
+              const std::function<Ending(std::exception_ptr)>& ending);
+
+/// Jobs 0 to count - 1: each goes to the rank that asks first. Rank 0 hands the numbers out on a
+/// thread of its own while it works on jobs itself. All ranks make one of the same count; nobody
+/// else may use `ranks` meanwhile.
+class JobQueue {
+ public:
+  JobQueue(Ranks& ranks, int count) : ranks_(ranks), count_(count) {}
+  JobQueue(const JobQueue&) = delete;
+  JobQueue& operator=(const JobQueue&) = delete;
+
+  /// A job for this rank; none when all have been begun. On rank 0 not before those of the other
+  /// ranks have ended, or one of them could not go on; then throws what receive() does.
+  [[nodiscard]] std::optional<int> next();
+
+ private:
+  void serve(const std::stop_token& stop);
+
+  Ranks& ranks_;
+  int count_;
+  std::atomic<int> next_ = 0;
+  std::atomic<bool> has_failed_ = false;
+  std::exception_ptr error_;
+  std::jthread server_;  // last: it uses the others
+};
+
+/// Whether a launcher of MPI programs did: mpirun, or Slurm's srun by PMI or PMIx.
+[[nodiscard]] bool is_launched();
+
+/// How many processes the launcher says that it started; 0 where it says nothing.
+[[nodiscard]] int launched_count();
+
+/// Which of them this is, from 0; 0 where it says nothing.
+[[nodiscard]] int launched_index();
+
+/// Takes out of the environment what the launcher has put there, for programs that this one starts.
+void forget_launcher();
 
 }  // namespace raygate

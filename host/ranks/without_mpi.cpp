@@ -3,7 +3,6 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/ranks/launcher.h"
 #include "host/ranks/ranks.h"
 
 namespace raygate {

@@ -2,10 +2,51 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 
 #include "host/film/display.h"
 
 namespace raygate {
+namespace {
+
+constexpr int kBlockWidth = 4, kBlockHeight = 2;
+static_assert(kErrorBlock % kBlockWidth == 0 && kErrorBlock % kBlockHeight == 0);
+constexpr int kSquare = 8;
+constexpr std::size_t kManySamples = 1 << 14;  // at once
+
+/// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
+/// smaller.
+template <class Visit>
+void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit) {
+  for (int y = rect.y0; y < rect.y1; y += height) {
+    for (int x = rect.x0; x < rect.x1; x += width) {
+      visit(PixelRect{x, y, std::min(x + width, rect.x1), std::min(y + height, rect.y1)});
+    }
+  }
+}
+
+/// Whether the pixels of a block need no more, by RenderOptions::error.
+bool needs_no_more(const RenderOptions& options, const Film& film, const PixelRect& block) {
+  if (options.error == 0.0) return false;
+  const std::size_t index = film.index_of(block.x0, block.y0);
+  return has_converged(film.sums.error[index], static_cast<int>(film.sums.samples[index]),
+                       options.error);
+}
+
+/// How many samples each pixel that needs more may take at once.
+int samples_ahead(const RenderOptions& options, const Film& film, const PixelRect& tile, int end) {
+  if (options.error == 0.0) return 0;
+  std::size_t pixels = 0;
+  for_blocks(tile, kErrorBlock, kErrorBlock, [&](const PixelRect& block) {
+    const std::size_t index = film.index_of(block.x0, block.y0);
+    if (static_cast<int>(film.sums.samples[index]) >= end || needs_no_more(options, film, block))
+      return;
+    pixels += static_cast<std::size_t>(block.width() * block.height());
+  });
+  return static_cast<int>(kManySamples / std::max<std::size_t>(1, pixels));
+}
+
+}  // namespace
 
 void update_block_error(Film& film, int x, int y, double exposure) {
   FilmSums& sums = film.sums;
@@ -55,6 +96,27 @@ double fraction_done(const Film& film, int most, double wanted) {
   // What has not been judged is taken to be like what has.
   left += unknown * (judged > 0.0 ? expected / judged : most);
   return taken + left > 0.0 ? std::clamp(taken / (taken + left), 0.0, 1.0) : 1.0;
+}
+
+std::vector<PixelSamples> samples_to_trace(const RenderOptions& options, const Film& film,
+                                           const PixelRect& tile, int end) {
+  std::vector<PixelSamples> pixels;
+  const int ahead = samples_ahead(options, film, tile, end);
+  const std::vector<std::uint32_t>& done = film.sums.samples;
+  for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
+    for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
+      if (needs_no_more(options, film, block)) return;
+      for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
+        const std::size_t index = film.index_of(pixel.x0, pixel.y0);
+        const int first = options.first_sample + (done.empty() ? 0 : static_cast<int>(done[index]));
+        if (first >= end) return;
+        const int last =
+            std::max(end, std::min({first + ahead, next_error_check(first), options.samples}));
+        pixels.push_back({pixel.x0, pixel.y0, index, first, last});
+      });
+    });
+  });
+  return pixels;
 }
 
 }  // namespace raygate

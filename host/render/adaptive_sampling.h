@@ -1,10 +1,14 @@
-// Which pixels get more samples: those whose error still falls.
+// Adaptive sampling: which samples a tile's pixels take next, by their error if --error asks for
+// it.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "host/film/film.h"
+#include "host/render/render_options.h"
 
 namespace raygate {
 
@@ -62,5 +66,19 @@ void update_block_error(Film& film, int x, int y, double exposure);
 
 /// The share of a render that is done, in [0, 1], by `film`; samples of up to `most` a pixel.
 [[nodiscard]] double fraction_done(const Film& film, int most, double wanted);
+
+struct PixelSamples {
+  int x, y;
+  std::size_t index;  ///< of the pixel, in the film
+  int first, end;     ///< samples [first, end)
+};
+
+/// Those that pixels of `tile` lack for having all up to number `end`; with RenderOptions::error,
+/// none of pixels that need no more, and some beyond `end` where few pixels do, for a batch to have
+/// many rays. Square by square of 8 x 8 pixels, and in them block by block of 4 x 2: intersectors'
+/// packets are such blocks, the cones around eight of them such squares.
+[[nodiscard]] std::vector<PixelSamples> samples_to_trace(const RenderOptions& options,
+                                                         const Film& film, const PixelRect& tile,
+                                                         int end);
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// What rank 0, or the only process, does in a render: it traces all tiles, with the others' help.
+// Who renders: rank 0, or the only process, as coordinator; the other ranks as its workers.
 #pragma once
 
 #include <memory>
@@ -8,16 +8,23 @@
 #include "host/intersect/intersector.h"
 #include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
-#include "host/render/renderer.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
 
-/// Traces on options.threads threads until all is in `film`, or `report` says stop
-/// (RenderStats::cancelled). Throws what a intersector throws, and RankFailure.
-void trace_all(const RenderJob& job, const Tiles& tiles,
-               std::unique_ptr<Intersector> first_intersector,
-               const IntersectorFactory& make_intersector, const ProgressFunction& report,
-               Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats);
+/// Renders all tiles on options.threads threads, and on the other ranks, until all is in `film`, or
+/// `monitor` says stop (RenderStats::cancelled). Throws what an intersector throws, and
+/// RankFailure.
+void run_coordinator(const RenderJob& job, const Tiles& tiles,
+                     std::unique_ptr<Intersector> first_intersector,
+                     const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
+                     Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats);
+
+/// Renders the tiles that rank 0 sends, on options.threads threads, until it says that all is done,
+/// or `monitor` says stop. `film`, with sums, becomes this rank's notebook. Throws what an
+/// intersector throws, and RunIsOver.
+void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+                const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
+                Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats);
 
 }  // namespace raygate

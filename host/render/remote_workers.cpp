@@ -6,7 +6,6 @@
 #include <cassert>
 
 #include "host/film/film_region.h"
-#include "host/render/tile_message.h"
 
 namespace raygate {
 namespace {
@@ -61,8 +60,8 @@ void RemoteWorkers::take(const Message& message, TileQueue& queue) {
     room = value_of<int>(message.bytes);
     most_room_ += room;
   } else if (message.about == About::kTraced) {
-    const auto tile = value_of<TileMessage>(message.bytes);
-    set_region(film_, tile.rect, slice_in(message.bytes));
+    const auto tile = value_of<TileWork>(message.bytes);
+    set_region(film_, tile.rect, region_in(message.bytes));
     queue.end(tile.number);
     seconds_ += tile.seconds;
     passes_ += (tile.last - tile.end) / tile.step + 1;
@@ -85,12 +84,12 @@ int RemoteWorkers::most_passes(const TileQueue& queue) const {
 
 void RemoteWorkers::give(int rank, const TileQueue::Step& step) {
   const auto samples = [&](int pass) { return first_sample_ + tiles_.samples_after(pass); };
-  const TileMessage tile{.number = step.tile,
-                         .rect = tiles_[step.tile],
-                         .end = samples(step.pass),
-                         .step = tiles_.samples_per_pass,
-                         .last = samples(step.end_pass - 1),
-                         .seconds = 0.0};
+  const TileWork tile{.number = step.tile,
+                      .rect = tiles_[step.tile],
+                      .end = samples(step.pass),
+                      .step = tiles_.samples_per_pass,
+                      .last = samples(step.end_pass - 1),
+                      .seconds = 0.0};
   ranks_.send(rank, About::kTile,
               message_of(tile, step.moves ? region_bytes(film_, tile.rect) : std::string()));
 }
@@ -100,7 +99,7 @@ bool RemoteWorkers::finish(RenderStats& stats) {
   told_ = true;
   while (const auto message = ranks_.receive()) {
     if (message->about != About::kCounts) continue;  // one that has just come to help
-    add(stats, value_of<RenderStats>(message->bytes));
+    stats.add(value_of<RenderStats>(message->bytes));
     ++heard_;
   }
   if (heard_ < ranks_.count() - 1) return false;

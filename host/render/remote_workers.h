@@ -1,15 +1,26 @@
-// The other ranks, as rank 0 sees them: who traces which tiles.
+// Remote workers: the other ranks as rank 0 sees them, and the messages about tiles.
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/film/film.h"
 #include "host/ranks/ranks.h"
-#include "host/render/renderer.h"
 #include "host/render/tile_queue.h"
+#include "host/render/tile_workers.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
+
+/// A message about a tile: with the work goes what the film has of the tile (film_region.h), there
+/// where the worker lacks it, and back what it has then.
+[[nodiscard]] inline std::string message_of(const TileWork& work, std::string_view region) {
+  return bytes_of(work).append(region);
+}
+[[nodiscard]] inline std::string_view region_in(const std::string& message) {
+  return std::string_view(message).substr(sizeof(TileWork));
+}
 
 /// Hands out tiles and puts what comes back into the film. For one thread at a time, which also
 /// has the film and the queue to itself meanwhile.

@@ -1,9 +1,14 @@
-// What all threads of a render read.
+// Render job: what all threads of a render read, and the camera rays that they begin with.
 #pragma once
 
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "host/film/reconstruction_filter.h"
 #include "host/light/lights.h"
 #include "host/light/neighbor_clearance.h"
-#include "host/render/renderer.h"
+#include "host/light/sampler.h"
+#include "host/render/render_options.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -23,5 +28,35 @@ struct RenderJob {
     return scene.materials[face_at(scene, bvh.face_of(primitive)).material].emission;
   }
 };
+
+// Streams of random numbers; the integrators' are made from others.
+inline constexpr std::uint32_t kFilterStream = 0, kEmitterEdgeStream = 7, kLensStream = 8;
+
+/// Sample `index` of the pixel that `sampler` is of, where `stream` has it in the filter. With one
+/// sample a pixel its ray goes through the middles of pixel and lens.
+[[nodiscard]] inline Ray camera_ray(const RenderJob& job, int pixel_x, int pixel_y,
+                                    const Sampler& sampler, std::uint32_t index,
+                                    std::uint32_t stream) {
+  const RenderOptions& options = job.options;
+  const Camera& camera = job.camera;
+  glm::dvec2 offset(0.0), lens(0.0);
+  if (options.samples > 1) {
+    const SquarePoint<float> u = sampler(index, stream);
+    offset = filter_offset(options.filter, {u.x, u.y});
+  }
+  const double x = (pixel_x + 0.5 + offset.x) / options.width;
+  const double y = (pixel_y + 0.5 + offset.y) / options.height;
+  if (camera.is_pinhole()) {
+    Ray ray;
+    ray.origin = camera.eye();
+    ray.direction = camera.direction(x, y);
+    return ray;
+  }
+  if (options.samples > 1 && camera.aperture() > 0.0) {
+    const SquarePoint<float> u = sampler(index, kLensStream);
+    lens = {u.x, u.y};
+  }
+  return camera.ray(x, y, lens);
+}
 
 }  // namespace raygate

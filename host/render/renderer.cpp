@@ -12,7 +12,6 @@
 #include "host/render/coordinator.h"
 #include "host/render/emitter_edges.h"
 #include "host/render/tiles.h"
-#include "host/render/worker.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -29,20 +28,9 @@ Film empty_film(const RenderOptions& options) {
 
 }  // namespace
 
-void add(RenderStats& stats, const RenderStats& of_worker) {
-  stats.rays += of_worker.rays;
-  stats.camera_rays += of_worker.camera_rays;
-  stats.shadow_rays += of_worker.shadow_rays;
-  stats.point_doubts += of_worker.point_doubts;
-  stats.skipped += of_worker.skipped;
-  stats.intersect += of_worker.intersect;
-  stats.shade_seconds += of_worker.shade_seconds;
-  stats.processor_seconds += of_worker.processor_seconds;
-}
-
 Film render(const Scene& scene, const NeighborClearances& clearances, const Camera& camera,
             const RenderOptions& options, const IntersectorFactory& make_intersector,
-            RenderStats& stats, const ProgressFunction& progress) {
+            RenderStats& stats, const RenderMonitor& monitor) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
   const double busy = processor_seconds();
@@ -54,8 +42,8 @@ Film render(const Scene& scene, const NeighborClearances& clearances, const Came
   const int ranks = options.ranks == nullptr ? 1 : options.ranks->count();
   const Tiles tiles(film.window, end - options.first_sample, first_intersector->preferred_batch(),
                     options.threads, ranks, options.error > 0.0);
-  if (options.begun != nullptr) {
-    film = *options.begun;
+  if (options.unfinished != nullptr) {
+    film = *options.unfinished;
     film.keeps_sums = options.channels.sums;
     assert(film.sums.samples.size() == film.color.size());
   } else if (tiles.passes() > 1 || film.keeps_sums || options.error > 0.0 || ranks > 1) {
@@ -79,12 +67,12 @@ Film render(const Scene& scene, const NeighborClearances& clearances, const Came
                       : is_path       ? glm::dvec3(0.0)
                                       : lights.ambient()};
   if (ranks > 1 && options.ranks->index() != 0) {
-    run_worker(*options.ranks, job, std::move(first_intersector), make_intersector, progress, film,
+    run_worker(*options.ranks, job, std::move(first_intersector), make_intersector, monitor, film,
                emitter_edges, stats);
     return film;
   }
-  trace_all(job, tiles, std::move(first_intersector), make_intersector, progress, film,
-            emitter_edges, stats);
+  run_coordinator(job, tiles, std::move(first_intersector), make_intersector, monitor, film,
+                  emitter_edges, stats);
   if (stats.intersect.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
     const std::uint64_t every_record = bvh.primitive_count() * origins * std::uint64_t(ranks);

@@ -6,9 +6,6 @@
 
 #include "host/base/stopwatch.h"
 #include "host/film/film_sums.h"
-#include "host/render/adaptive_sampling.h"
-#include "host/render/camera_ray.h"
-#include "host/render/emitter_edges.h"
 #include "host/render/tile_frustum.h"
 
 namespace raygate {
@@ -21,7 +18,7 @@ std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
   const RenderOptions& options = job.options;
   return make_integrator(
       options.integrator, job.scene, job.clearances, job.lights, options.skips,
-      {.max_depth = options.integrator == IntegratorKind::kPrimary ? 0 : options.max_depth,
+      {.max_depth = options.integrator == IntegratorKind::kPrimary ? 0 : options.depth(),
        .threshold = options.threshold,
        .ambient = job.ambient,
        .single_sample = options.samples == 1,

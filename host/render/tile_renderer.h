@@ -1,4 +1,4 @@
-// One thread's share of a render: the samples of a tile, batch by batch.
+// Tile renderer: one thread renders the samples of a tile, batch by batch.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 #include "host/light/integrator.h"
 #include "host/light/ray_batch.h"
 #include "host/light/shadow_rays.h"
+#include "host/render/adaptive_sampling.h"
 #include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
-#include "host/render/tile_samples.h"
 
 namespace raygate {
 

@@ -49,8 +49,8 @@ TEST_F(CoreFiles, CoresBehindOneMemoryDrawTheSamePicture) {
   render({kCornell, "--size", "32x24", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
   std::vector<double> clocks;
   for (const char* cores : {"1", "3"}) {
-    render({kCornell, "--size", "32x24", "--unit", "core", "--arith", "behavioural", "--threads",
-            "1", "--cores", cores, "-o", "core"});
+    render({kCornell, "--size", "32x24", "--spp", "1", "--unit", "core", "--arith", "behavioural",
+            "--threads", "1", "--cores", cores, "-o", "core"});
     expect_same_pictures("cpu", "core");
     clocks.push_back(stats_.at("clocks"));
   }

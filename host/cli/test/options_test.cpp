@@ -14,16 +14,16 @@ TEST(Options, OnlyASceneMeansTheDefaults) {
   EXPECT_EQ(options.output.exr, "cornell.exr");  // in the current folder
   EXPECT_EQ(options.output.png, "cornell.png");
   EXPECT_FALSE(options.output.stats);
-  EXPECT_EQ(options.width, 640);
-  EXPECT_EQ(options.height, 480);
-  EXPECT_EQ(options.window.x1, 640);
-  EXPECT_EQ(options.window.y1, 480);
+  EXPECT_EQ(options.render.width, 640);
+  EXPECT_EQ(options.render.height, 480);
+  EXPECT_EQ(options.render.window.x1, 640);
+  EXPECT_EQ(options.render.window.y1, 480);
   EXPECT_EQ(options.engine, Engine::kRtl);
   EXPECT_EQ(options.unit, "pipeline");
   EXPECT_EQ(options.lanes, 1);
-  EXPECT_GE(options.threads, 1u);
-  EXPECT_FALSE(options.camera);
-  EXPECT_EQ(options.seed, 0u);
+  EXPECT_GE(options.threads, 1);
+  EXPECT_FALSE(options.camera.camera);
+  EXPECT_EQ(options.render.seed, 0u);
   EXPECT_FALSE(options.quiet);
   EXPECT_FALSE(options.strict);
 }
@@ -52,22 +52,22 @@ TEST(Options, ReadsEveryOption) {
                                  "a.obj",
                                  "-o",
                                  "b"});
-  EXPECT_EQ(options.width, 320);
-  EXPECT_EQ(options.height, 200);
-  EXPECT_EQ(options.window.x0, 1);
-  EXPECT_EQ(options.window.y0, 2);
-  EXPECT_EQ(options.window.x1, 30);
-  EXPECT_EQ(options.window.y1, 40);
-  ASSERT_TRUE(options.camera);
-  EXPECT_EQ(options.camera->eye, glm::dvec3(-1, -0.5, 1000));
-  EXPECT_EQ(options.camera->target, glm::dvec3(0, 0, -2.5));
-  EXPECT_EQ(options.camera->fov, 40.0);
-  EXPECT_EQ(options.view.up, glm::dvec3(0, 0, -1));
-  EXPECT_EQ(options.view.fov, 50.0);
-  EXPECT_FALSE(options.view.angles);
+  EXPECT_EQ(options.render.width, 320);
+  EXPECT_EQ(options.render.height, 200);
+  EXPECT_EQ(options.render.window.x0, 1);
+  EXPECT_EQ(options.render.window.y0, 2);
+  EXPECT_EQ(options.render.window.x1, 30);
+  EXPECT_EQ(options.render.window.y1, 40);
+  ASSERT_TRUE(options.camera.camera);
+  EXPECT_EQ(options.camera.camera->eye, glm::dvec3(-1, -0.5, 1000));
+  EXPECT_EQ(options.camera.camera->target, glm::dvec3(0, 0, -2.5));
+  EXPECT_EQ(options.camera.camera->fov, 40.0);
+  EXPECT_EQ(options.camera.up, glm::dvec3(0, 0, -1));
+  EXPECT_EQ(options.camera.fov, 50.0);
+  EXPECT_FALSE(options.camera.angles);
   EXPECT_EQ(options.engine, Engine::kCheck);
-  EXPECT_EQ(options.threads, 7u);
-  EXPECT_EQ(options.seed, 18446744073709551615u);
+  EXPECT_EQ(options.threads, 7);
+  EXPECT_EQ(options.render.seed, 18446744073709551615u);
   EXPECT_TRUE(options.strict);
   EXPECT_TRUE(options.quiet);
   EXPECT_EQ(options.output.stats, "run.json");
@@ -76,7 +76,7 @@ TEST(Options, ReadsEveryOption) {
 }
 
 TEST(Options, TheLastOfSeveralValuesCounts) {
-  EXPECT_EQ(parse({"a.obj", "--threads", "3", "--threads", "5"}).threads, 5u);
+  EXPECT_EQ(parse({"a.obj", "--threads", "3", "--threads", "5"}).threads, 5);
 }
 
 TEST(Options, NoOutputOverwritesTheSceneOrAnotherOutput) {
@@ -94,12 +94,13 @@ TEST(Options, SizesThatAreImpossible) {
     expect_error({"a.obj", "--size", size}, std::string("'") + size + "'");
   }
   expect_error({"a.obj", "--size", "8193x8192"}, "at most 67108864 pixels in one run");
-  EXPECT_EQ(parse({"a.obj", "--size", "8192x8192"}).width, 8192);
-  EXPECT_EQ(parse({"a.obj", "--size", "65536x1"}).width, 65536);
+  EXPECT_EQ(parse({"a.obj", "--size", "8192x8192"}).render.width, 8192);
+  EXPECT_EQ(parse({"a.obj", "--size", "65536x1"}).render.width, 65536);
 }
 
 TEST(Options, PartOfAFrameTooLargeForOneRun) {
-  EXPECT_EQ(parse({"a.obj", "--size", "65536x65536", "--crop", "0,0,65536,1024"}).window.y1, 1024);
+  EXPECT_EQ(parse({"a.obj", "--size", "65536x65536", "--crop", "0,0,65536,1024"}).render.window.y1,
+            1024);
   expect_error({"a.obj", "--size", "65536x65536", "--crop", "0,0,65536,1025"},
                "--crop: expected at most 67108864 pixels");
 }
@@ -123,13 +124,13 @@ TEST(Options, CamerasThatAreImpossible) {
 
 TEST(Options, LensesAndEnvironments) {
   const Options none = parse({"a.obj"});
-  EXPECT_FALSE(none.view.lens.projection || none.view.lens.aperture || none.environment);
+  EXPECT_FALSE(none.camera.lens.projection || none.camera.lens.aperture || none.environment);
   const Options all = parse({"a.obj", "--projection", "orthographic", "--aperture", "0.25",
                              "--focus", "3", "--environment", "sky.hdr", "--environment-rotation",
                              "-90", "--environment-strength=2"});
-  EXPECT_EQ(all.view.lens.projection, Projection::kOrthographic);
-  EXPECT_EQ(all.view.lens.aperture, 0.25);
-  EXPECT_EQ(all.view.lens.focus, 3.0);
+  EXPECT_EQ(all.camera.lens.projection, Projection::kOrthographic);
+  EXPECT_EQ(all.camera.lens.aperture, 0.25);
+  EXPECT_EQ(all.camera.lens.focus, 3.0);
   ASSERT_TRUE(all.environment);
   EXPECT_EQ(all.environment->file, "sky.hdr");
   EXPECT_EQ(all.environment->rotation, -90.0);
@@ -162,19 +163,20 @@ TEST_F(OptionsOfASceneFile, AreTakenWhereTheCommandLineHasNone) {
   for (const std::string& scene : {json, obj}) {
     const Options options = parse({scene.c_str(), "--exposure", "2"});
     EXPECT_EQ(options.obj(), obj);
-    EXPECT_EQ(options.width, 20);
-    EXPECT_EQ(options.window.y1, 10);
+    EXPECT_EQ(options.render.width, 20);
+    EXPECT_EQ(options.render.window.y1, 10);
     EXPECT_EQ(options.output.display.exposure, 2.0) << "the command line has the last word";
     EXPECT_EQ(options.output.exr, "a.exr");
-    EXPECT_EQ(options.seed, 18446744073709551615u);
-    ASSERT_TRUE(options.camera);
-    EXPECT_EQ(options.camera->eye, glm::dvec3(1, 2, 3));
-    EXPECT_EQ(options.path.size(), 2u);
+    EXPECT_EQ(options.render.seed, 18446744073709551615u);
+    ASSERT_TRUE(options.camera.camera);
+    EXPECT_EQ(options.camera.camera->eye, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(options.camera.path.size(), 2u);
     const Options other = parse({scene.c_str(), "--camera", "0,0,9,0,0,0"});
-    EXPECT_EQ(other.camera->eye, glm::dvec3(0, 0, 9));
-    EXPECT_TRUE(other.path.empty()) << "the camera of the command line goes round its target";
+    EXPECT_EQ(other.camera.camera->eye, glm::dvec3(0, 0, 9));
+    EXPECT_TRUE(other.camera.path.empty())
+        << "the camera of the command line goes round its target";
   }
-  EXPECT_EQ(parse({obj.c_str(), "--no-scene-file"}).width, 640);
+  EXPECT_EQ(parse({obj.c_str(), "--no-scene-file"}).render.width, 640);
   expect_error({json.c_str(), "--no-scene-file"}, "--no-scene-file: expected an OBJ");
   expect_error({obj.c_str(), "--stats", json.c_str()}, "would overwrite");
 }
@@ -251,10 +253,10 @@ TEST(Options, MisspeltOnesAreAnsweredWithTheRightOnes) {
 
 TEST(Options, Views) {
   using Angles = std::pair<double, double>;
-  EXPECT_EQ(parse({"a.obj", "--view", "front"}).view.angles, Angles(0, 0));
-  EXPECT_EQ(parse({"a.obj", "--view", "left"}).view.angles, Angles(-90, 0));
-  EXPECT_EQ(parse({"a.obj", "--view", "top"}).view.angles, Angles(0, 90));
-  EXPECT_EQ(parse({"a.obj", "--view", "-33.5,24"}).view.angles, Angles(-33.5, 24));
+  EXPECT_EQ(parse({"a.obj", "--view", "front"}).camera.angles, Angles(0, 0));
+  EXPECT_EQ(parse({"a.obj", "--view", "left"}).camera.angles, Angles(-90, 0));
+  EXPECT_EQ(parse({"a.obj", "--view", "top"}).camera.angles, Angles(0, 90));
+  EXPECT_EQ(parse({"a.obj", "--view", "-33.5,24"}).camera.angles, Angles(-33.5, 24));
   for (const char* view : {"above", "33", "33,24,1", "33,91", "0,nan", "361,0"}) {
     expect_error({"a.obj", "--view", view}, "--view: expected ");
   }
@@ -268,9 +270,10 @@ TEST(Options, Views) {
   }
   EXPECT_EQ(parse({"a.obj", "--smooth", "30"}).smooth, 30.0);
   expect_error({"a.obj", "--ground", "yes"}, "--ground: expected on or off");
-  EXPECT_EQ(parse({"a.obj", "--ground", "off"}).ground, false);
-  EXPECT_FALSE(parse({"a.obj"}).ground);
-  expect_error({"a.obj", "--view", "top", "--camera", "0,0,9,0,0,0"}, "--view: expected no");
+  EXPECT_EQ(parse({"a.obj", "--ground", "off"}).camera.ground, false);
+  EXPECT_FALSE(parse({"a.obj"}).camera.ground);
+  expect_error({"a.obj", "--view", "top", "--camera", "0,0,9,0,0,0"},
+               "--view and --camera exclude each other");
 }
 
 TEST(Options, FilesOfTheRayCore) {
@@ -296,7 +299,7 @@ TEST(Options, FilesOfTheRayCore) {
 }
 
 TEST(Options, NamesThatPeopleType) {
-  EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).light.max_depth(), 7);
+  EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).render.depth(), 7);
 }
 
 TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {

@@ -72,34 +72,34 @@ TEST(OutputOptions, FalseColours) {
 }
 
 TEST(OutputOptions, LightByName) {
-  const LightOptions plain = parse({"a.obj"}).light;
+  const RenderOptions plain = parse({"a.obj"}).render;
   EXPECT_EQ(plain.integrator, IntegratorKind::kWhitted);
-  EXPECT_EQ(plain.max_depth(), 4);
-  EXPECT_EQ(plain.samples, 1);
-  EXPECT_EQ(parse({"a.obj", "--engine", "cpu"}).light.samples, 4);
-  EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).light.samples, 1);
-  EXPECT_EQ(parse({"a.obj", "--engine", "model"}).light.samples, 1);
-  const LightOptions path =
+  EXPECT_EQ(plain.depth(), 4);
+  for (const char* engine : {"rtl", "model", "cpu", "check"}) {
+    EXPECT_EQ(parse({"a.obj", "--engine", engine}).render.samples, 4) << "whatever the engine";
+  }
+  EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).render.samples, 1);
+  const RenderOptions path =
       parse({"a.obj", "--integrator", "path", "--spp", "16", "--filter", "tent", "--threshold",
              "0.5", "--ambient", "0", "--no-skip", "culling,records"})
-          .light;
+          .render;
   EXPECT_EQ(path.integrator, IntegratorKind::kPath);
-  EXPECT_EQ(path.max_depth(), 64);
+  EXPECT_EQ(path.depth(), 64);
   EXPECT_EQ(path.samples, 16);
   EXPECT_EQ(path.filter, ReconstructionFilter::kTent);
   EXPECT_EQ(path.threshold, 0.5);
   EXPECT_EQ(path.ambient, 0.0);
   EXPECT_FALSE(path.skips.culling || path.skips.records);
   EXPECT_TRUE(path.skips.weightless && path.skips.divisions);
-  EXPECT_EQ(parse({"a.obj", "--depth", "0"}).light.max_depth(), 0);
+  EXPECT_EQ(parse({"a.obj", "--depth", "0"}).render.depth(), 0);
   EXPECT_EQ(plain.point_error, 0x1p-16f);
   const auto point_error = [](const char* text) {
-    return parse({"a.obj", "--point-error", text}).light.point_error;
+    return parse({"a.obj", "--point-error", text}).render.point_error;
   };
   EXPECT_EQ(point_error("0"), 0.0f);
   EXPECT_EQ(point_error("1e-4"), 1e-4f);
   EXPECT_EQ(point_error("inf"), std::numeric_limits<float>::max());
-  const Skips none = parse({"a.obj", "--no-skip", "all"}).light.skips;
+  const Skips none = parse({"a.obj", "--no-skip", "all"}).render.skips;
   for (const SkipName& skip : kSkipNames) EXPECT_FALSE(none.*skip.on) << skip.name;
   expect_error({"a.obj", "--integrator", "photon"}, "--integrator: expected primary, whitted or");
   expect_error({"a.obj", "--spp", "0"}, "--spp: expected a whole number from 1");

@@ -163,15 +163,15 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
   expect_refused(part({"--resume", "a.exr", "--spp", "20"}),
                  "a.exr: found error 2, expected no error as this run has it");
   expect_refused(part({"--spp", "20", "--error", "2", "--crop", "0,0,30,44"}),
-                 "--crop: expected multiples of 4, or the frame's edge, beside --error");
+                 "--crop: expected multiples of 4, or the frame's edge, with --error");
   expect_refused(part({"--spp", "20", "--error", "2", "--samples", "0:18"}),
-                 "--samples: expected no --error beside it");
+                 "--samples and --error exclude each other");
   expect_refused(part({"--error", "2"}), "--spp: expected more than the 16 that --error begins");
   for (const char* error : {"0", "-1", "256", "nan", "few"}) {
     expect_refused(part({"--error", error}), "--error: expected steps of an 8-bit display");
   }
   expect_refused(part({"--false-colour", "samples=b.png"}),
-                 "--false-colour: expected --error beside the channel samples");
+                 "--false-colour: expected --error for the channel samples");
   make({"-o", "b.exr", "--samples", "0:5"});
   expect_refused(merge({"b.exr", "-o", "merged", "--false-colour", "error=b.png"}),
                  "--false-colour: found no channel error in the picture");
@@ -237,7 +237,7 @@ TEST_F(Parts, FramesOfAnotherAnimationAreRefused) {
   refuse({"--spp", "1", "--frames", "3"}, "a-0002.exr: found another camera");
   EXPECT_EQ(folder_.read("a-0002.exr"), before);
   expect_refused(part({"--frames", "2", "-o", "a.exr", "--resume", "b.exr"}),
-                 "--resume: expected a.exr beside --frames, the animation's own name, got 'b.exr'");
+                 "--resume: expected a.exr with --frames, the animation's own name, got 'b.exr'");
   expect_refused(part({"--frames", "2", "-o", "a.png", "--resume", "a.exr"}),
                  "--resume: expected an EXR among the outputs of --frames");
 }

@@ -61,8 +61,8 @@ std::set<std::string> documented_keys() {
 }
 
 TEST_F(Render, StatisticsAreWholeDocumentedAndAgree) {
-  const Outcome outcome =
-      render({kCornell, "--size", "60x50", "--threads", "2", "--seed", "9", "-o", "a.png"});
+  const Outcome outcome = render(
+      {kCornell, "--size", "60x50", "--spp", "1", "--threads", "2", "--seed", "9", "-o", "a.png"});
   EXPECT_EQ(keys_of(stats_), documented_keys());
   EXPECT_EQ(stats_.at("camera_rays"), 60 * 50);
   EXPECT_GT(stats_.at("shadow_rays"), 0);

@@ -62,10 +62,10 @@ class Set {
                                 .filter = ReconstructionFilter::kBox,
                                 .seed = static_cast<std::uint64_t>(seed),
                                 .integrator = IntegratorKind::kPath,
-                                .max_depth = options_.light.max_depth(),
+                                .max_depth = options_.render.depth(),
                                 .path = techniques};
     return render(scene_, *clearances_, *camera_, options,
-                  make_intersector_factory(options_, *bvh_, options_.light.skips), stats);
+                  make_intersector_factory(options_, *bvh_, options_.render.skips), stats);
   }
 
  private:

@@ -277,19 +277,20 @@ TEST(Threshold, SavesRaysThatHardlyCount) {
 // Snapshots show what is there, while the threads go on.
 TEST(Snapshots, AreTakenOnTheWay) {
   const Scene scene = everything();
-  RenderOptions options = light(IntegratorKind::kPath, 40, 30, 400);
+  const RenderOptions options = light(IntegratorKind::kPath, 40, 30, 400);
+  RenderMonitor monitor;
   int snapshots = 0;
   float seen = 0.0f;
-  options.snapshot = [&](const Film& film) {
+  monitor.snapshot = [&](const Film& film) {
     ++snapshots;
     EXPECT_EQ(film.color.size(), 1200u);
     seen = std::max(seen, film.color[600].r);
   };
-  options.snapshot_seconds = 0.0;
+  monitor.snapshot_seconds = 0.0;
   const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
   RenderStats stats;
   const Bvh bvh(scene);
-  (void)render(scene, bvh, camera, options, pipeline_model(bvh), stats);
+  (void)render(scene, bvh, camera, options, pipeline_model(bvh), stats, monitor);
   EXPECT_GT(snapshots, 0);
   EXPECT_GT(seen, 0.0f);
 }

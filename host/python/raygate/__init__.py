@@ -13,7 +13,6 @@ raygate.float is IEEE 754 arithmetic in any small format; raygate.results reads 
 repository's benchmarks and synthesis have measured.
 """
 
-import operator
 import os
 
 import numpy as np
@@ -33,13 +32,8 @@ class Scene:
         cannot be used. `strict`: refuse faces without area. `smooth`: degrees at which faces
         without normals may meet to be smooth. `threads`: one per processor if None, here as
         everywhere."""
-        if smooth is not None:
-            smooth = _numbers("smooth", smooth)
-            if smooth.shape != () or not 0 <= smooth <= 180:
-                raise InputError(f"smooth: found {smooth}, expected degrees from 0 to 180")
-            smooth = smooth.item()
-        self._scene = _raygate.Scene(os.fsdecode(file), bool(strict), smooth,
-                                     _whole("threads", threads, 1))
+        self._scene = _raygate.Scene(os.fsdecode(file), bool(strict),
+                                     _settings(smooth=smooth, threads=threads))
 
     @classmethod
     def of_triangles(cls, corners, *, threads=None):
@@ -54,7 +48,7 @@ class Scene:
                              f"{np.argmax(wrong)}, expected finite numbers")
         scene = cls.__new__(cls)
         scene._scene = _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3),
-                                      _whole("threads", threads, 1))
+                                      _settings(threads=threads))
         return scene
 
     @property
@@ -98,48 +92,25 @@ class Scene:
                 raise InputError(f"limits: found an array of shape {limits.shape}, expected one "
                                  f"number for each ray, ({len(origins)},)")
         columns = [str(column) for column in columns or []]
-        rows, fields = self._scene.trace(origins, directions, limits, str(hits), columns,
-                                         str(engine), _whole("threads", threads, 1))
+        rows, fields = self._scene.trace(origins, directions, limits, columns,
+                                         _settings(hits=hits, engine=engine, threads=threads))
         return rows.view(np.dtype([tuple(field) for field in fields]))
 
-    def render(self, width=640, height=480, *, spp=None, integrator="whitted", eye=None, target=None,
-               up=None, fov=None, depth=None, seed=0, filter="blackman-harris", engine="cpu",
-               threads=None):
+    def render(self, width=None, height=None, *, eye=None, target=None, up=None, **options):
         """A picture: a dictionary of arrays of `height` rows, the top one first.
 
         "color" (scene-linear R, G, B, A, premultiplied), "depth", "normal", "point", "albedo",
-        "triangle" and "object" (4294967295 where nothing is hit). Options are those of ./render (spp: 4, or
-        1 with engine "model");
-        the camera is the scene file's, or sees the whole scene."""
-        width, height = _whole("width", width, 1), _whole("height", height, 1)
-        if width * height > 2 ** 26:
-            raise InputError(f"width, height: found {width * height:,} pixels, expected at most "
-                             f"{2 ** 26:,}")
-        eye, target, up = _point("eye", eye), _point("target", target), _point("up", up)
-        if fov is not None:
-            fov = _numbers("fov", fov)
-            if fov.shape != () or not 0 < fov < 180:
-                raise InputError(f"fov: found {fov}, expected degrees above 0 and below 180")
-            fov = fov.item()
-        if spp is None:
-            spp = 4 if engine == "cpu" else 1
-        return self._scene.render(
-            width, height, _whole("spp", spp, 1), str(integrator), eye, target, up, fov, _whole("depth", depth, 0),
-            _whole("seed", seed, 0, 2 ** 64 - 1), str(filter), str(engine),
-            _whole("threads", threads, 1))
+        "triangle" and "object" (4294967295 where nothing is hit). The camera is the scene file's,
+        or sees the whole scene. Other keywords are options of ./render, with its defaults: spp,
+        integrator, fov, depth, seed, filter, threshold, ambient, threads; and engine, "cpu" or
+        "model"."""
+        return self._scene.render(_point("eye", eye), _point("target", target), _point("up", up),
+                                  _settings(width=width, height=height, **options))
 
 
-def _whole(name, value, least, most=2 ** 31 - 1):
-    """A whole number, or None where None is given."""
-    if value is None:
-        return None
-    try:
-        number = operator.index(value)
-    except TypeError:
-        number = None
-    if number is None or not least <= number <= most:
-        raise InputError(f"{name}: found {value!r}, expected a whole number from {least} to {most}")
-    return number
+def _settings(**options):
+    """Keywords as the options of ./render: names and text, without those that are None."""
+    return [(name, str(value)) for name, value in options.items() if value is not None]
 
 
 def _point(name, value):

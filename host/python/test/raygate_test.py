@@ -61,7 +61,7 @@ class Trace(unittest.TestCase):
             self.scene.trace(np.zeros((2, 3)), [[1, 0, 0], [np.nan, 0, 0]])
         with self.assertRaisesRegex(raygate.InputError, "as many directions"):
             self.scene.trace(np.zeros((2, 3)), np.ones((3, 3)))
-        with self.assertRaisesRegex(raygate.InputError, "hits: found 'some'"):
+        with self.assertRaisesRegex(raygate.InputError, "hits: expected nearest, any or all, got 'some'"):
             self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), hits="some")
 
         for wrong, line in (
@@ -74,8 +74,8 @@ class Trace(unittest.TestCase):
                 ({"columns": ["tt"]}, "columns: found 'tt', expected some of ray, hit, "),
                 ({"limits": [1, 2, 3]}, "limits: found an array of shape (3,), expected one number"),
                 ({"limits": ["a", "b"]}, "limits: found an array of <U1, expected numbers"),
-                ({"threads": "two"}, "threads: found 'two', expected a whole number from 1"),
-                ({"threads": 0}, "threads: found 0, expected a whole number from 1")):
+                ({"threads": "two"}, "threads: expected a whole number from 1 to 1024, got 'two'"),
+                ({"threads": 0}, "threads: expected a whole number from 1 to 1024, got '0'")):
             with self.assertRaises(ValueError) as caught:
                 self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), **wrong)
             self.assertEqual(str(caught.exception)[:len(line)], line)
@@ -118,7 +118,7 @@ class Render(unittest.TestCase):
         self.assertGreater(picture["color"][..., :3].max(), 0.1)
         np.testing.assert_array_equal(picture["color"][..., 3] == 1,
                                       picture["triangle"] != 0xFFFFFFFF)
-        again = scene.render(40, 30, engine="model", threads=1)
+        again = scene.render(40, 30, spp=1, engine="model", threads=1)
         for name, channel in picture.items():
             self.assertEqual(channel.tobytes(), again[name].tobytes(), name)
 

@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/ranks/job_queue.h"
-#include "host/ranks/rank_guard.h"
 
 namespace raygate {
 namespace {

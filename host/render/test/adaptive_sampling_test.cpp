@@ -238,15 +238,15 @@ TEST(AdaptiveSampling, GoesOnFromAnyFilm) {
     first.samples = fewer;
     const Film begun = uneven.film(first);
     RenderOptions rest = options;
-    rest.begun = &begun;
+    rest.unfinished = &begun;
     EXPECT_TRUE(same_film(whole, uneven.film(rest))) << fewer;
   }
   int reports = 0;
   RenderStats stats;
   const Film broken_off = render(uneven.scene, uneven.bvh, uneven.camera, options, cpu(uneven.bvh),
-                                 stats, [&](double) { return ++reports < 3; });
+                                 stats, {.progress = [&](double) { return ++reports < 3; }});
   RenderOptions rest = options;
-  rest.begun = &broken_off;
+  rest.unfinished = &broken_off;
   EXPECT_TRUE(same_film(whole, uneven.film(rest)));
 }
 

@@ -33,6 +33,8 @@ RenderOptions size(int width, int height, int threads = 1) {
   options.width = width;
   options.height = height;
   options.threads = threads;
+  options.samples = 1;
+  options.integrator = IntegratorKind::kPrimary;
   return options;
 }
 
@@ -203,14 +205,15 @@ TEST(Renderer, ProgressReachesOneAndCanCancel) {
   const Bvh bvh(scene);
   RenderStats stats;
   double last = 0.0;
-  (void)render(scene, bvh, kCamera, size(300, 300, 2), serial(bvh), stats, [&](double done) {
-    EXPECT_GE(done, last);
-    last = done;
-    return true;
-  });
+  (void)render(scene, bvh, kCamera, size(300, 300, 2), serial(bvh), stats,
+               {.progress = [&](double done) {
+                 EXPECT_GE(done, last);
+                 last = done;
+                 return true;
+               }});
   EXPECT_EQ(last, 1.0);
   (void)render(scene, bvh, kCamera, size(300, 300), serial(bvh), stats,
-               [](double) { return false; });
+               {.progress = [](double) { return false; }});
   EXPECT_TRUE(stats.cancelled);
   EXPECT_LT(stats.rays, 300u * 300u);
 }
@@ -224,12 +227,11 @@ TEST(Renderer, AThreadThatDoesNotStopIsAbandoned) {
     while (made++ > 0) std::this_thread::sleep_for(std::chrono::hours(1));
     return usual();
   };
-  RenderOptions options = size(300, 300, 2);
-  options.abandon = [](const Film& film) { std::_Exit(film.color.size() == 300 * 300 ? 7 : 8); };
+  const RenderMonitor monitor{
+      .progress = [reports = 0](double) mutable { return reports++ == 0; },
+      .abandon = [](const Film& film) { std::_Exit(film.color.size() == 300 * 300 ? 7 : 8); }};
   RenderStats stats;
-  int reports = 0;
-  EXPECT_EXIT((void)render(scene, bvh, kCamera, options, stuck, stats,
-                           [&](double) { return reports++ == 0; }),
+  EXPECT_EXIT((void)render(scene, bvh, kCamera, size(300, 300, 2), stuck, stats, monitor),
               testing::ExitedWithCode(7), "");
 }
 

@@ -1,4 +1,4 @@
-#include "host/cli/option_text.h"
+#include "host/options/option_text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -63,13 +63,29 @@ void fail_value(const std::string& option, const std::string& text, const std::s
   throw InputError(option + ": expected " + expected + ", got '" + text + "'" + hint);
 }
 
-void fail_choice(const std::string& option, const std::string& text,
-                 std::span<const std::string> choices) {
+std::pair<std::string, std::string> split_at_equals(const std::string& text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  return {text.substr(0, equals), text.substr(std::min(equals + 1, text.size()))};
+}
+
+std::string listed(std::span<const std::string> words, const char* last) {
   std::string list;
-  for (std::size_t i = 0; i < choices.size(); ++i) {
-    list += (i == 0 ? "" : i + 1 < choices.size() ? ", " : " or ") + choices[i];
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 < words.size() ? ", " : last) + words[i];
   }
-  fail_value(option, text, list, did_you_mean(text, choices));
+  return list;
+}
+
+std::vector<std::string> choose_some(const std::string& option, const std::string& text,
+                                     std::span<const std::string> names) {
+  std::vector<std::string> words = split_at_commas(text);
+  for (const std::string& word : words) {
+    if (std::ranges::find(names, word) == names.end()) {
+      fail_value(option, text, "some of " + listed(names, ", ") + " with commas between",
+                 did_you_mean(word, names));
+    }
+  }
+  return words;
 }
 
 }  // namespace raygate

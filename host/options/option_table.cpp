@@ -1,0 +1,176 @@
+#include "host/options/option_table.h"
+
+#include <CLI/CLI.hpp>
+#include <cctype>
+
+#include "host/base/input_error.h"
+#include "host/options/version.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::size_t kColumn = 28, kWidth = 80;  // of the help texts, of a terminal
+
+/// Two columns, the second one wrapped; a wide name goes on in the second column.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  [[nodiscard]] std::string make_description(const CLI::App* app) const override {
+    return app->get_description() + "\n";
+  }
+  [[nodiscard]] std::string make_usage(const CLI::App* /*app*/, std::string) const override {
+    return "";
+  }
+  [[nodiscard]] std::string make_positionals(const CLI::App* /*app*/) const override { return ""; }
+  [[nodiscard]] std::string make_group(std::string title, bool /*is_positional*/,
+                                       std::vector<const CLI::Option*> options) const override {
+    for (const CLI::Option* option : options) title += "\n" + make_option(option, false);
+    return title + "\n";
+  }
+  [[nodiscard]] std::string make_option(const CLI::Option* option,
+                                        bool /*is_positional*/) const override {
+    std::string line = "  ";
+    for (const char c : option->get_name(false, true)) line += c == ',' ? ", " : std::string(1, c);
+    if (const std::size_t at = line.find(", --false-color"); at != std::string::npos)
+      line.resize(at);
+    if (option->get_type_size() > 0) line += " " + option->get_type_name();
+    line.resize(std::max(kColumn, line.size() + 2), ' ');
+    std::string text;
+    for (const std::string& word : CLI::detail::split(option->get_description(), ' ')) {
+      if (line.size() + word.size() > kWidth) {
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+        line.assign(kColumn, ' ');
+      }
+      line += word + " ";
+    }
+    return text + line.substr(0, line.find_last_not_of(' ') + 1);
+  }
+};
+
+/// "point-error": "pointError".
+std::string camel_case(const std::string& name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    text += name[i] != '-' ? name[i] : static_cast<char>(std::toupper(name[++i]));
+  }
+  return text;
+}
+
+}  // namespace
+
+struct OptionTable::Row {
+  std::string name;
+  Read read;
+  Show show;
+  unsigned places;
+  CLI::Option* option;
+};
+
+struct OptionTable::CommandLine {
+  CLI::App app;
+  std::vector<std::string*> positionals;
+  std::vector<std::string>* all_positionals = nullptr;
+};
+
+OptionTable::OptionTable(const char* about, const char* footer)
+    : line_(new CommandLine{CLI::App(about == nullptr ? "" : about), {}}) {
+  line_->app.formatter(std::make_shared<HelpFormatter>());
+  line_->app.footer(footer);
+  line_->app.allow_extras();  // so that an unknown option can be answered with a known one
+}
+
+OptionTable::~OptionTable() = default;
+
+void OptionTable::add(const std::string& names, const char* value, std::string help, Read read,
+                      Show show, unsigned places, bool repeats) {
+  if (const std::size_t at = help.find("{}"); at != std::string::npos) help.replace(at, 2, show());
+  CLI::Option* const option = line_->app.add_option(
+      names, [](const CLI::results_t&) { return true; }, help);
+  option->type_name(value)->group(group_)->allow_extra_args(false);
+  if (repeats) {
+    option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
+  } else {
+    option->take_last();
+  }
+  rows_.push_back({option->get_lnames().at(0), std::move(read), std::move(show), places, option});
+}
+
+void OptionTable::flag(const std::string& names, const char* help, bool& on) {
+  line_->app.add_flag(names, on, help)->disable_flag_override()->group(group_);
+}
+
+void OptionTable::positional(std::string& target) { line_->positionals.push_back(&target); }
+void OptionTable::positionals(std::vector<std::string>& targets) {
+  line_->all_positionals = &targets;
+}
+
+std::string OptionTable::parse(const std::vector<std::string>& words, const std::string& too_many) {
+  CLI::App& app = line_->app;
+  app.set_help_flag("-h,--help", "print this text")->group(group_);
+  app.set_version_flag("--version", std::string(kSoftware), "print the version")->group(group_);
+  try {
+    std::vector<std::string> reversed(words.rbegin(), words.rend());  // as the library wants them
+    app.parse(reversed);
+  } catch (const CLI::CallForHelp&) {
+    return app.help();
+  } catch (const CLI::CallForVersion&) {
+    return std::string(kSoftware) + "\n";
+  } catch (const CLI::ArgumentMismatch& error) {  // "--size: 1 required TEXT missing"
+    const std::string what = error.what();
+    throw InputError(what.substr(0, what.find(':')) + ": expected a value (see --help)");
+  } catch (const CLI::ParseError& error) {
+    throw InputError(std::string(error.what()) + " (see --help)");
+  }
+  std::size_t place = 0;
+  for (const std::string& extra : app.remaining()) {
+    if (extra.size() > 1 && extra[0] == '-') {
+      std::vector<std::string> names;
+      for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+      }
+      throw InputError(extra + ": unknown option" +
+                       did_you_mean(split_at_equals(extra).first, names) + " (see --help)");
+    }
+    if (line_->all_positionals != nullptr) {
+      line_->all_positionals->push_back(extra);
+    } else if (place < line_->positionals.size()) {
+      *line_->positionals[place++] = extra;
+    } else {
+      throw InputError(extra + ": " + too_many);
+    }
+  }
+  for (const Row& row : rows_) {
+    for (const std::string& text : row.option->results()) {
+      if (text.empty()) throw InputError("--" + row.name + ": expected a value, got ''");
+    }
+    for (const std::string& text : row.option->reduced_results()) row.read("--" + row.name, text);
+  }
+  return "";
+}
+
+void OptionTable::set(const std::string& name, const std::string& text) const {
+  std::vector<std::string> names;
+  for (const Row& row : rows_) {
+    if ((row.places & kInPython) == 0) continue;
+    if (row.name == name) return row.read(name, text);
+    names.push_back(row.name);
+  }
+  throw InputError(name + ": unknown option" + did_you_mean(name, names));
+}
+
+std::string OptionTable::typed(const std::string& name) const {
+  const CLI::results_t& results = line_->app.get_option("--" + name)->results();
+  return results.empty() ? "" : results.back();
+}
+
+std::vector<std::pair<std::string, std::string>> OptionTable::values(OptionPlaces place) const {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const Row& row : rows_) {
+    if ((row.places & place) == 0) continue;
+    if (std::string value = row.show(); !value.empty()) {
+      found.emplace_back(place == kInExr ? camel_case(row.name) : row.name, std::move(value));
+    }
+  }
+  return found;
+}
+
+}  // namespace raygate

@@ -1,0 +1,97 @@
+#include "host/ranks/ranks.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+namespace raygate {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{1};  // between looks for a message
+
+/// Of the first of these variables that is there; 0: none is.
+int number_in(std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (const char* const text = std::getenv(name)) {
+      return static_cast<int>(std::strtol(text, nullptr, 10));
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+void run_rank(Ranks& ranks, const std::function<void()>& work,
+              const std::function<Ending(std::exception_ptr)>& ending) {
+  try {
+    work();
+  } catch (const RunIsOver&) {  // NOLINT(bugprone-empty-catch): nothing left to do
+  } catch (...) {
+    ranks.send(0, About::kFailure, RankFailure::message_of(ending(std::current_exception())));
+  }
+}
+
+std::optional<int> JobQueue::next() {
+  if (ranks_.index() != 0) {
+    ranks_.send(0, About::kNext, {});
+    while (true) {
+      if (const auto message = ranks_.receive()) {
+        const int job = value_of<int>(message->bytes);
+        return job < count_ ? std::optional(job) : std::nullopt;
+      }
+      std::this_thread::sleep_for(kLook);
+    }
+  }
+  if (ranks_.count() > 1 && !server_.joinable())
+    server_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+  const int job = next_++;
+  if (job < count_ && !has_failed_) return job;
+  if (server_.joinable()) server_.join();
+  if (error_) std::rethrow_exception(error_);
+  return std::nullopt;
+}
+
+/// Until each of the others has heard that there is no more.
+void JobQueue::serve(const std::stop_token& stop) {
+  try {
+    for (int gone = 0; gone < ranks_.count() - 1 && !stop.stop_requested();) {
+      if (const auto message = ranks_.receive()) {
+        const int job = next_++;
+        gone += static_cast<int>(job >= count_);
+        ranks_.send(message->from, About::kJob, bytes_of(job));
+      } else {
+        std::this_thread::sleep_for(kLook);
+      }
+    }
+  } catch (...) {
+    error_ = std::current_exception();
+    has_failed_ = true;
+  }
+}
+
+bool is_launched() {
+  return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK"},
+                             [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
+int launched_count() { return number_in({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}); }
+
+int launched_index() { return number_in({"OMPI_COMM_WORLD_RANK", "PMI_RANK"}); }
+
+void forget_launcher() {
+  std::vector<std::string> names;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    for (const std::string_view prefix : {"OMPI_", "PMI_", "PMIX_"}) {
+      if (text.starts_with(prefix)) names.emplace_back(text.substr(0, text.find('=')));
+    }
+  }
+  for (const std::string& name : names) ::unsetenv(name.c_str());
+}
+
+}  // namespace raygate
