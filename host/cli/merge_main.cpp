@@ -9,7 +9,6 @@
 #include "host/cli/output_options.h"
 #include "host/cli/process.h"
 #include "host/film/merge.h"
-#include "host/film/sample_range.h"
 
 namespace raygate {
 namespace {

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/film/channels.h"
-#include "host/film/exr_reader.h"
+#include "host/film/exr.h"
+#include "host/film/film.h"
 #include "host/film/merge.h"
-#include "host/film/sample_range.h"
 
 namespace raygate {
 namespace {

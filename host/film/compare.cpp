@@ -1,6 +1,7 @@
 #include "host/film/compare.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host/base/input_error.h"
@@ -46,7 +47,66 @@ std::string size_of(const ChannelPicture& picture) {
   return std::to_string(picture.width) + "x" + std::to_string(picture.height);
 }
 
+constexpr std::size_t kSide = 11;
+
+std::array<double, kSide> gaussian() {
+  std::array<double, kSide> weights{};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kSide; ++i) {
+    const double x = static_cast<double>(i) - (kSide - 1) / 2.0;
+    sum += weights[i] = std::exp(-x * x / (2.0 * 1.5 * 1.5));
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+/// Weighted means of a(p) b(p) around each place where the window fits: rows, then columns.
+template <typename Value>
+std::vector<double> blurred(Value value, std::size_t width, std::size_t height) {
+  static const std::array<double, kSide> kWeights = gaussian();
+  const std::size_t columns = width - kSide + 1, rows = height - kSide + 1;
+  std::vector<double> across(columns * height), means(columns * rows);
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x < columns; ++x) {
+      for (std::size_t i = 0; i < kSide; ++i) {
+        across[y * columns + x] += kWeights[i] * value(y * width + x + i);
+      }
+    }
+  }
+  for (std::size_t y = 0; y < rows; ++y) {
+    for (std::size_t i = 0; i < kSide; ++i) {
+      for (std::size_t x = 0; x < columns; ++x) {
+        means[y * columns + x] += kWeights[i] * across[(y + i) * columns + x];
+      }
+    }
+  }
+  return means;
+}
+
 }  // namespace
+
+std::optional<double> ssim(const std::vector<double>& a, const std::vector<double>& b,
+                           std::size_t width) {
+  const std::size_t height = width > 0 ? a.size() / width : 0;
+  if (width < kSide || height < kSide) return std::nullopt;
+  const auto blur = [&](auto value) { return blurred(value, width, height); };
+  const auto mean_a = blur([&](std::size_t i) { return a[i]; });
+  const auto mean_b = blur([&](std::size_t i) { return b[i]; });
+  const auto mean_aa = blur([&](std::size_t i) { return a[i] * a[i]; });
+  const auto mean_bb = blur([&](std::size_t i) { return b[i] * b[i]; });
+  const auto mean_ab = blur([&](std::size_t i) { return a[i] * b[i]; });
+  constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mean_a.size(); ++i) {
+    const double products = mean_a[i] * mean_b[i];
+    const double squares = mean_a[i] * mean_a[i] + mean_b[i] * mean_b[i];
+    const double covariance = mean_ab[i] - products;
+    const double variances = mean_aa[i] + mean_bb[i] - squares;
+    sum +=
+        (2.0 * products + kC1) * (2.0 * covariance + kC2) / ((squares + kC1) * (variances + kC2));
+  }
+  return sum / static_cast<double>(mean_a.size());
+}
 
 Comparison compare(const ChannelPicture& picture, const ChannelPicture& reference) {
   if (picture.width != reference.width || picture.height != reference.height) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "host/film/exr_reader.h"
+#include "host/film/exr.h"
 
 namespace raygate {
 

@@ -1,7 +1,11 @@
 #include "host/film/display.h"
 
+#include <png.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <stdexcept>
 
 #include "host/base/elementary.h"
 #include "host/base/srgb.h"
@@ -10,6 +14,58 @@ namespace raygate {
 namespace {
 
 double gain_of(double exposure) { return binary_power(std::clamp(exposure, -126.0, 127.0)); }
+
+/// libpng's writer; its errors leave as C++ exceptions.
+class PngWriter {
+ public:
+  explicit PngWriter(std::string& bytes)
+      : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, throw_error, ignore_warning)),
+        info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
+    if (info_ == nullptr) {
+      png_destroy_write_struct(&png_, nullptr);
+      throw std::runtime_error("libpng: out of memory");
+    }
+    png_set_write_fn(png_, &bytes, append, nullptr);
+  }
+  PngWriter(const PngWriter&) = delete;
+  PngWriter& operator=(const PngWriter&) = delete;
+  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
+
+  void write_header(const Image8& picture) {
+    const PixelRect& window = picture.window;
+    // libpng refuses sides of more than a million by default; the film has been made already.
+    png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_IHDR(png_, info_, static_cast<png_uint_32>(window.width()),
+                 static_cast<png_uint_32>(window.height()), 8, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (window.width() != picture.width || window.height() != picture.height) {
+      png_set_oFFs(png_, info_, window.x0, window.y0, PNG_OFFSET_PIXEL);
+    }
+    for (const auto& [name, words] : picture.texts) {
+      png_text text{};
+      text.compression = PNG_TEXT_COMPRESSION_NONE;
+      text.key = const_cast<char*>(name.c_str());
+      text.text = const_cast<char*>(words.c_str());
+      png_set_text(png_, info_, &text, 1);
+    }
+    png_write_info(png_, info_);
+  }
+  void write_row(const Rgb8* row) { png_write_row(png_, row->data()); }
+  void finish() { png_write_end(png_, info_); }
+
+ private:
+  static void append(png_structp png, png_bytep data, std::size_t size) {
+    static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<char*>(data), size);
+  }
+  [[noreturn]] static void throw_error(png_structp, png_const_charp message) {
+    throw std::runtime_error(std::string("libpng: ") + message);
+  }
+  static void ignore_warning(png_structp, png_const_charp) {}
+
+  png_structp png_;
+  png_infop info_;
+};
 
 }  // namespace
 
@@ -38,6 +94,19 @@ Image8 to_display(const Film& film, const DisplayOptions& options) {
     }
   }
   return picture;
+}
+
+std::string encode_png(const Image8& picture) {
+  static_assert(sizeof(Rgb8) == 3, "rows go to libpng as they are");
+  std::string bytes;
+  PngWriter writer(bytes);
+  writer.write_header(picture);
+  const auto width = static_cast<std::size_t>(picture.window.width());
+  for (std::size_t start = 0; start < picture.pixels.size(); start += width) {
+    writer.write_row(picture.pixels.data() + start);
+  }
+  writer.finish();
+  return bytes;
 }
 
 }  // namespace raygate

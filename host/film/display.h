@@ -1,9 +1,25 @@
-// From the light of a film to the codes of a display.
+// Images of 8 bits for a display: sRGB codes of a film, and PNG files.
 #pragma once
 
-#include "host/film/image8.h"
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/film/film.h"
 
 namespace raygate {
+
+using Rgb8 = std::array<std::uint8_t, 3>;  ///< sRGB codes
+
+/// Pixels of `window` within a `width` x `height` frame, row by row from the top.
+struct Image8 {
+  int width = 0, height = 0;
+  PixelRect window;
+  std::vector<Rgb8> pixels;
+  std::vector<std::pair<std::string, std::string>> texts;  ///< what the file says of itself
+};
 
 /// How light of more than a display can show becomes a code.
 enum class Tone {
@@ -28,5 +44,10 @@ struct DisplayOptions {
 
 /// The film over black, channel by channel. Each code is the one nearest to the exact value.
 [[nodiscard]] Image8 to_display(const Film& film, const DisplayOptions& options = {});
+
+/// The bytes of a PNG file of `picture`: 24-bit RGB, marked as sRGB; where the window is a part of
+/// the frame, its place is in the oFFs chunk; the texts are tEXt chunks. Equal pictures give equal
+/// bytes. Throws std::runtime_error if libpng fails.
+[[nodiscard]] std::string encode_png(const Image8& picture);
 
 }  // namespace raygate

@@ -1,5 +1,4 @@
-// Sums of samples without rounding: the same whatever order they come in, and wherever a sum breaks
-// off and goes on.
+// Exact accumulator: a sum without rounding, the same in whatever order its numbers come.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace raygate {
 /// NaN counts as 0.
 class ExactAccumulator {
  public:
-  static_assert(std::endian::native == std::endian::little, "words() are in files");
+  static_assert(std::endian::native == std::endian::little, "files have its words");
 
   void add(double number) {
     const double size = std::min(std::abs(number), kMost);
@@ -61,10 +60,6 @@ class ExactAccumulator {
            (std::ldexp(static_cast<double>(words_[1]), 64 - kFraction) +
             std::ldexp(static_cast<double>(words_[0]), -kFraction));
   }
-
-  /// The state, in words of 32 bits, the lowest first: a film's files have them.
-  static constexpr int kWords = 6;
-  [[nodiscard]] const void* words() const { return words_; }
 
   friend bool operator==(const ExactAccumulator&, const ExactAccumulator&) = default;
 

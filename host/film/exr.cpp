@@ -5,22 +5,50 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfTestFile.h>
+#include <ImfThreading.h>
 
-#include <algorithm>
+#include <charconv>
 #include <cstddef>
-#include <cstdint>
-#include <vector>
+#include <exception>
+#include <fstream>
+#include <system_error>
 
-#include "host/base/threads.h"
-#include "host/film/channels.h"
-#include "host/film/exr_slices.h"
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {
+
+Imf::PixelType type_of(const Channel& channel) {
+  return channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
+}
+
+/// Where the library finds the numbers of `window` in memory, row by row. Its slices start at pixel
+/// (0, 0), which may lie outside the window.
+Imf::Slice slice_of(Imf::PixelType type, const void* first, std::size_t stride,
+                    const PixelRect& window) {
+  const std::size_t row = stride * static_cast<std::size_t>(window.width());
+  return {type,
+          static_cast<char*>(const_cast<void*>(first)) -
+              static_cast<std::ptrdiff_t>(stride) * window.x0 -
+              static_cast<std::ptrdiff_t>(row) * window.y0,
+          stride, row};
+}
+
+/// All numbers of a film, to write them or to read a file into them.
+Imf::FrameBuffer slices_of(const Film& film) {
+  Imf::FrameBuffer slices;
+  for (const Channel& channel : channels_of(film)) {
+    slices.insert(channel.name,
+                  slice_of(type_of(channel), channel.first, channel.stride, film.window));
+  }
+  return slices;
+}
 
 /// glm multiplies column vectors, Imath row vectors: glm's columns are Imath's rows.
 Imath::M44f to_imath(const glm::mat4& m) {
@@ -31,8 +59,8 @@ Imath::M44f to_imath(const glm::mat4& m) {
   return result;
 }
 
-/// A file of `window`, the film's or a part of it.
-Imf::Header make_header(const Film& film, const PixelRect& window, const ExrMetadata& metadata) {
+Imf::Header make_header(const Film& film, const ExrMetadata& metadata) {
+  const PixelRect& window = film.window;
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
                      Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}));
   header.screenWindowWidth() = metadata.screen_window_width;
@@ -47,61 +75,216 @@ Imf::Header make_header(const Film& film, const PixelRect& window, const ExrMeta
   if (metadata.partial) header.insert("partial", Imf::StringAttribute(kPartial));
   Imf::addWorldToCamera(header, to_imath(metadata.world_to_camera));
   for (const Channel& channel : channels_of(film)) {
-    const auto type = channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
-    header.channels().insert(channel.name, Imf::Channel(type));
+    header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
   }
   return header;
 }
 
-/// The file of `window`, with all of its rows or, as yet, with none.
-std::string encode_window(const Film& film, const PixelRect& window, const ExrMetadata& metadata,
-                          bool with_rows) {
-  Imf::StdOSStream stream;
-  {
-    // None of the library's threads; the destructor completes the file.
-    Imf::OutputFile file(stream, make_header(film, window, metadata), 0);
-    file.setFrameBuffer(exr_slices(film));
-    if (with_rows) file.writePixels(window.height());
-  }
-  return stream.str();
-}
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 
-/// The number of bytes from `at` on, as the file has it: the lowest byte first.
-template <class Number>
-void put(std::string& bytes, std::size_t at, Number number) {
-  for (std::size_t i = 0; i < sizeof number; ++i) {
-    bytes[at + i] = static_cast<char>(number >> (8 * i) & 0xFF);
+std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
+
+void require_exr(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (error) throw InputError(file.string() + ": cannot read: " + error.message());
+  if (std::filesystem::is_directory(status)) {
+    throw InputError(file.string() + ": cannot read: it is a folder");
+  }
+  if (!std::ifstream(file).good()) {
+    throw InputError(file.string() + ": cannot read: Permission denied");
+  }
+  if (!Imf::isOpenExrFile(file.c_str())) {
+    throw InputError(file.string() + ": not an OpenEXR file");
   }
 }
 
-constexpr int kBlockRows = 16;      // that ZIP compresses at once
-constexpr std::size_t kOffset = 8;  // bytes of a block's offset
+/// "R, G, B, Z".
+std::string names_in(const Imf::ChannelList& channels) {
+  std::string names;
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    names += (names.empty() ? "" : ", ") + std::string(channel.name());
+  }
+  return names;
+}
 
-std::size_t block_count(int rows) {
-  return static_cast<std::size_t>((rows + kBlockRows - 1) / kBlockRows);
+void require_channels(const std::filesystem::path& file, const Imf::ChannelList& channels,
+                      std::span<const std::string> names) {
+  for (const std::string& name : names) {
+    const Imf::Channel* const found = channels.findChannel(name);
+    if (found == nullptr) {
+      throw InputError(file.string() + ": no channel " + name + "; the file has " +
+                       names_in(channels));
+    }
+    if (found->xSampling != 1 || found->ySampling != 1) {
+      throw InputError(file.string() + ": channel " + name +
+                       " is subsampled, expected a number for each pixel");
+    }
+  }
+}
+
+template <typename T>
+std::vector<double> read_channel(Imf::InputFile& file, const std::string& name, Imf::PixelType type,
+                                 const PixelRect& window) {
+  std::vector<T> values(std::size_t(window.width()) * std::size_t(window.height()));
+  Imf::FrameBuffer buffer;
+  buffer.insert(name, slice_of(type, values.data(), sizeof(T), window));
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.y0, window.y1 - 1);
+  return {values.begin(), values.end()};
+}
+
+/// Calls read(file) for an OpenEXR file of no more pixels than we take.
+template <class Read>
+auto with_file(const std::filesystem::path& path, const Read& read) {
+  require_exr(path);
+  try {
+    Imf::InputFile file(path.c_str(), 0);
+    const Imath::Box2i& data = file.header().dataWindow();
+    if (side(data.min.x, data.max.x) * side(data.min.y, data.max.y) > kMaxPixels) {
+      throw InputError(path.string() + ": more than " + std::to_string(kMaxPixels) + " pixels");
+    }
+    return read(file);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    // The library's messages may run over several lines and repeat the file's name.
+    std::string what = error.what();
+    for (char& c : what) {
+      if (c == '\n') c = ' ';
+    }
+    throw InputError(path.string() + ": damaged: " + what);
+  }
+}
+
+/// The windows of a file, in the frame's coordinates.
+void read_windows(const Imf::Header& header, int& width, int& height, PixelRect& window) {
+  const Imath::Box2i& data = header.dataWindow();
+  const Imath::Box2i& frame = header.displayWindow();
+  width = static_cast<int>(side(frame.min.x, frame.max.x));
+  height = static_cast<int>(side(frame.min.y, frame.max.y));
+  window = {data.min.x - frame.min.x, data.min.y - frame.min.y, data.max.x + 1 - frame.min.x,
+            data.max.y + 1 - frame.min.y};
+}
+
+/// A film with the arrays of a file's channels.
+Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
+  const Imf::ChannelList& channels = header.channels();
+  const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
+  if (!has("sums.R.0")) {
+    throw InputError(path.string() +
+                     ": found no sums of samples, expected a picture of `render --channels sums`");
+  }
+  int width = 0, height = 0;
+  PixelRect window;
+  read_windows(header, width, height, window);
+  Film film = make_film(width, height, window,
+                        {.position = has("P.X"),
+                         .albedo = has("Albedo.R"),
+                         .object = has("objectId"),
+                         .tests = has("tests"),
+                         .doubts = has("doubts"),
+                         .sums = true});
+  add_sums(film, has("error"));
+  std::vector<std::string> names;
+  for (const Channel& channel : channels_of(film)) names.push_back(channel.name);
+  require_channels(path, channels, names);
+  return film;
+}
+
+/// What encode_exr wrote of them.
+ExrMetadata metadata_of(const Imf::Header& header) {
+  ExrMetadata metadata;
+  for (auto at = header.begin(); at != header.end(); ++at) {
+    const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute());
+    if (text == nullptr) continue;
+    const std::string name = at.name();
+    const std::string& value = text->value();
+    if (name == "software") {
+      metadata.software = value;
+    } else if (name == "scene") {
+      metadata.scene = value;
+    } else if (name == "seed") {
+      std::from_chars(value.data(), value.data() + value.size(), metadata.seed);
+    } else if (name == "partial") {
+      metadata.partial = true;
+    } else {
+      metadata.options.emplace_back(name, value);
+    }
+  }
+  if (Imf::hasWorldToCamera(header)) {
+    const Imath::M44f& m = Imf::worldToCamera(header);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) metadata.world_to_camera[i][j] = m[i][j];
+    }
+  }
+  metadata.screen_window_width = header.screenWindowWidth();
+  return metadata;
 }
 
 }  // namespace
 
-// A file is a header, the offsets of its blocks, and the blocks, each of which says which rows it
-// has. So blocks that were compressed as files of their own make up the whole one.
+// The library compresses on its own threads; the bytes do not depend on how many there are.
 std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
-  const PixelRect& window = film.window;
-  std::string bytes = encode_window(film, window, metadata, false);
-  const std::size_t blocks = block_count(window.height());
-  const std::size_t header = bytes.size() - kOffset * blocks;
-  std::vector<std::string> parts(blocks);
-  for_each_on_threads(threads, blocks, [&](std::size_t i) {
-    PixelRect rows = window;
-    rows.y0 += static_cast<int>(i) * kBlockRows;
-    rows.y1 = std::min(rows.y0 + kBlockRows, window.y1);
-    parts[i] = encode_window(film, rows, metadata, true).substr(header + kOffset);
+  const int helpers = threads > 1 ? threads : 0;
+  if (helpers > Imf::globalThreadCount()) Imf::setGlobalThreadCount(helpers);
+  Imf::StdOSStream stream;
+  {
+    Imf::OutputFile file(stream, make_header(film, metadata), helpers);
+    file.setFrameBuffer(slices_of(film));
+    file.writePixels(film.window.height());
+  }  // the destructor completes the file
+  return stream.str();
+}
+
+ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::string> names) {
+  return with_file(path, [&](Imf::InputFile& file) {
+    const Imf::Header& header = file.header();
+    ChannelPicture picture;
+    read_windows(header, picture.width, picture.height, picture.window);
+    require_channels(path, header.channels(), names);
+    const Imath::Box2i& data = header.dataWindow();
+    const PixelRect window{data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
+    for (const std::string& name : names) {
+      picture.names.push_back(name);
+      const bool is_uint = header.channels().findChannel(name)->type == Imf::UINT;
+      picture.channels.push_back(is_uint
+                                     ? read_channel<std::uint32_t>(file, name, Imf::UINT, window)
+                                     : read_channel<float>(file, name, Imf::FLOAT, window));
+    }
+    return picture;
   });
-  for (std::size_t i = 0; i < blocks; ++i) {
-    put(bytes, header + kOffset * i, std::uint64_t{bytes.size()});
-    bytes += parts[i];
-  }
-  return bytes;
+}
+
+ExrSummary read_summary(const std::filesystem::path& path) {
+  return with_file(path, [&](Imf::InputFile& file) {
+    const Imf::Header& header = file.header();
+    ExrSummary summary;
+    read_windows(header, summary.width, summary.height, summary.window);
+    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
+      summary.channels.emplace_back(at.name());
+    }
+    summary.metadata = metadata_of(header);
+    summary.is_complete = file.isComplete();
+    return summary;
+  });
+}
+
+FilmFile read_film(const std::filesystem::path& path) {
+  return with_file(path, [&](Imf::InputFile& file) {
+    const Imath::V2i& corner = file.header().displayWindow().min;
+    if (corner != Imath::V2i(0, 0)) {
+      throw InputError(path.string() + ": found a frame that begins at " +
+                       std::to_string(corner.x) + "," + std::to_string(corner.y) +
+                       ", expected a picture of `render`");
+    }
+    FilmFile result{film_like(path, file.header()), metadata_of(file.header())};
+    file.setFrameBuffer(slices_of(result.film));
+    file.readPixels(result.film.window.y0, result.film.window.y1 - 1);
+    return result;
+  });
 }
 
 }  // namespace raygate

@@ -12,23 +12,9 @@
 namespace raygate {
 namespace {
 
-constexpr std::array<Rgb8, 17> kViridis{{{68, 1, 84},
-                                         {72, 24, 106},
-                                         {71, 45, 123},
-                                         {66, 64, 134},
-                                         {59, 82, 139},
-                                         {51, 99, 141},
-                                         {44, 114, 142},
-                                         {38, 129, 142},
-                                         {33, 144, 140},
-                                         {31, 159, 136},
-                                         {40, 174, 128},
-                                         {62, 188, 116},
-                                         {93, 201, 99},
-                                         {130, 211, 76},
-                                         {171, 220, 50},
-                                         {213, 226, 26},
-                                         {253, 231, 37}}};
+constexpr std::uint32_t kViridis[] = {
+    0x440154, 0x48186A, 0x472D7B, 0x424086, 0x3B528B, 0x33638D, 0x2C728E, 0x26818E, 0x21908C,
+    0x1F9F88, 0x28AE80, 0x3EBC74, 0x5DC963, 0x82D34C, 0xABDC32, 0xD5E21A, 0xFDE725};  // 0xRRGGBB
 constexpr Rgb8 kNothing{0, 0, 0};
 
 bool holds_labels(const Channel& channel) {
@@ -38,12 +24,13 @@ bool holds_labels(const Channel& channel) {
 }  // namespace
 
 Rgb8 viridis(double fraction) {
-  const double place = std::clamp(fraction, 0.0, 1.0) * (kViridis.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
+  const double place = std::clamp(fraction, 0.0, 1.0) * (std::size(kViridis) - 1);
+  const auto below = std::min(static_cast<std::size_t>(place), std::size(kViridis) - 2);
   Rgb8 color;
   for (std::size_t k = 0; k < 3; ++k) {
-    color[k] = static_cast<std::uint8_t>(std::lround(
-        std::lerp(kViridis[below][k], kViridis[below + 1][k], place - static_cast<double>(below))));
+    const auto code = [&](std::size_t i) { return kViridis[i] >> (16 - 8 * k) & 0xFF; };
+    color[k] = static_cast<std::uint8_t>(
+        std::lround(std::lerp(code(below), code(below + 1), place - static_cast<double>(below))));
   }
   return color;
 }

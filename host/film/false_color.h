@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "host/film/channels.h"
-#include "host/film/image8.h"
+#include "host/film/display.h"
+#include "host/film/film.h"
 
 namespace raygate {
 

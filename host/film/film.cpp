@@ -1,6 +1,27 @@
 #include "host/film/film.h"
 
+#include <cassert>
+#include <cstring>
+#include <type_traits>
+
 namespace raygate {
+namespace {
+
+/// Calls `visit` with the first pixel of each row of `rect` in each array that is there, and how
+/// many bytes the row has.
+template <class AnyFilm, class Visit>
+void for_each_row(AnyFilm& film, const PixelRect& rect, const Visit& visit) {
+  const auto visit_rows = [&](const FilmField&, auto& values) {
+    using Pixel = std::remove_cvref_t<decltype(values.front())>;
+    static_assert(std::is_trivially_copyable_v<Pixel>);
+    for (int y = rect.y0; y < rect.y1 && !values.empty(); ++y) {
+      visit(values.data() + film.index_of(rect.x0, y), sizeof(Pixel) * std::size_t(rect.width()));
+    }
+  };
+  for_each_field(visit_rows, film);
+}
+
+}  // namespace
 
 Film make_film(int width, int height, const PixelRect& window, const ExtraChannels& extra) {
   Film film;
@@ -29,6 +50,60 @@ void add_sums(Film& film, bool with_error) {
   if (!with_error) return;
   film.sums.error.assign(pixels, std::numeric_limits<float>::infinity());
   film.sums.shown.assign(pixels, 0.0f);
+}
+
+// A pixel of any array is a row of 32-bit numbers: so many of each part.
+std::vector<Channel> channels_of(const Film& film) {
+  std::vector<Channel> channels;
+  const auto add = [&](const FilmField& field, const auto& values) {
+    using Pixel = std::remove_cvref_t<decltype(values.front())>;
+    constexpr bool kIsFloat = std::is_same_v<Pixel, float> || std::is_same_v<Pixel, glm::vec3> ||
+                              std::is_same_v<Pixel, glm::vec4>;
+    const bool is_in_files =
+        !field.is_sum || film.keeps_sums || (field.layer == "samples" && !film.sums.error.empty());
+    if (values.empty() || !is_in_files) return;
+    const std::size_t numbers = sizeof(Pixel) / sizeof(std::uint32_t);
+    const std::size_t words = numbers / std::max<std::size_t>(1, field.parts.size());
+    for (std::size_t i = 0; i < numbers; ++i) {
+      std::string name(field.layer);
+      if (!field.parts.empty()) (name += name.empty() ? "" : ".") += field.parts[i / words];
+      if (words > 1) name += "." + std::to_string(i % words);
+      channels.push_back({name, kIsFloat ? Channel::Type::kFloat : Channel::Type::kUint,
+                          reinterpret_cast<const std::uint32_t*>(values.data()) + i,
+                          sizeof(Pixel)});
+    }
+  };
+  for_each_field(add, film);
+  return channels;
+}
+
+double value_at(const Channel& channel, std::size_t index) {
+  const char* const at = static_cast<const char*>(channel.first) + index * channel.stride;
+  if (channel.type == Channel::Type::kUint) {
+    std::uint32_t number = 0;
+    std::memcpy(&number, at, sizeof number);
+    return number;
+  }
+  float number = 0.0f;
+  std::memcpy(&number, at, sizeof number);
+  return number;
+}
+
+std::string region_bytes(const Film& film, const PixelRect& rect) {
+  std::string bytes;
+  for_each_row(film, rect, [&](const auto* row, std::size_t size) {
+    bytes.append(reinterpret_cast<const char*>(row), size);
+  });
+  return bytes;
+}
+
+void set_region(Film& film, const PixelRect& rect, std::string_view bytes) {
+  for_each_row(film, rect, [&](auto* row, std::size_t size) {
+    assert(bytes.size() >= size);
+    std::memcpy(static_cast<void*>(row), bytes.data(), size);
+    bytes.remove_prefix(size);
+  });
+  assert(bytes.empty());
 }
 
 }  // namespace raygate

@@ -1,12 +1,17 @@
-// What a render leaves behind: one value per pixel and channel.
+// The film: what a render knows of each pixel, array by array.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "host/film/film_sums.h"
+#include "host/film/exact_accumulator.h"
 
 namespace raygate {
 
@@ -19,6 +24,29 @@ struct PixelRect {
   [[nodiscard]] int width() const { return x1 - x0; }
   [[nodiscard]] int height() const { return y1 - y0; }
 };
+
+/// Arrays of a film's pixels, in its order.
+struct FilmSums {
+  std::vector<std::uint32_t> samples;  ///< how many
+  std::vector<std::array<ExactAccumulator, 4>> color;
+  std::vector<std::array<ExactAccumulator, 3>> albedo;  ///< if the film has it
+  // Of films whose pixels get samples by their error: as of the last look, see
+  // render/sample_choice.h. In steps of an 8-bit display.
+  std::vector<float> error;  ///< standard error, estimated; infinite before there is an estimate
+  std::vector<float> shown;  ///< what a display shows
+};
+
+/// The mean of so many samples, as a film has it: not negative, whatever
+/// small number rounding has left.
+template <std::size_t N>
+[[nodiscard]] glm::vec<N, float> mean_of(const std::array<ExactAccumulator, N>& sums,
+                                         double samples) {
+  glm::vec<N, float> mean;
+  for (std::size_t k = 0; k < N; ++k) {
+    mean[static_cast<int>(k)] = static_cast<float>(std::max(sums[k].value(), 0.0) / samples);
+  }
+  return mean;
+}
 
 /// What a film holds only if it was asked for.
 struct ExtraChannels {
@@ -59,28 +87,34 @@ struct Film {
   }
 };
 
-/// Calls `visit` with the first array of pixels that a film may have, of each of `films`, then with
-/// the second, and so on.
+/// An array of a film as its files name it: the numbers of "N" with the parts "XYZ" are the
+/// channels N.X, N.Y and N.Z.
+struct FilmField {
+  std::string_view layer, parts = {};
+  bool is_sum = false;  ///< in files only where the film keeps its sums
+};
+
+/// The one list of a film's arrays: calls `visit` with each field and its array in each of `films`.
 template <class Visit, class... Films>
-void for_each_array(const Visit& visit, Films&... films) {
-  visit(films.color...);
-  visit(films.depth...);
-  visit(films.normal...);
-  visit(films.primitive...);
-  visit(films.position...);
-  visit(films.albedo...);
-  visit(films.object...);
-  visit(films.tests...);
-  visit(films.doubts...);
-  visit(films.sums.samples...);
-  visit(films.sums.color...);
-  visit(films.sums.albedo...);
-  visit(films.sums.error...);
-  visit(films.sums.shown...);
+void for_each_field(const Visit& visit, Films&... films) {
+  visit(FilmField{"", "RGBA"}, films.color...);
+  visit(FilmField{"Z"}, films.depth...);
+  visit(FilmField{"N", "XYZ"}, films.normal...);
+  visit(FilmField{"id"}, films.primitive...);
+  visit(FilmField{"P", "XYZ"}, films.position...);
+  visit(FilmField{"Albedo", "RGB"}, films.albedo...);
+  visit(FilmField{"objectId"}, films.object...);
+  visit(FilmField{"tests"}, films.tests...);
+  visit(FilmField{"doubts"}, films.doubts...);
+  visit(FilmField{"samples", {}, true}, films.sums.samples...);
+  visit(FilmField{"error"}, films.sums.error...);
+  visit(FilmField{"sums.shown", {}, true}, films.sums.shown...);
+  visit(FilmField{"sums", "RGBA", true}, films.sums.color...);
+  visit(FilmField{"sums.Albedo", "RGB", true}, films.sums.albedo...);
 }
 static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
                   sizeof(Film) == 14 * sizeof(std::vector<int>) + 2 * sizeof(PixelRect),
-              "for_each_array() has them all");
+              "for_each_field() has them all");
 
 /// A film of `window` with the arrays that `extra` asks for, but for sums, in which every pixel is
 /// a miss.
@@ -90,5 +124,28 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
 /// Gives it sums of no samples; `with_error`: also what films have whose pixels get samples by
 /// their error.
 void add_sums(Film& film, bool with_error);
+
+/// One number of each pixel of a film, under the name that picture files give it. Valid as long as
+/// the film's arrays are.
+struct Channel {
+  enum class Type { kFloat, kUint };  ///< float or std::uint32_t
+
+  std::string name;  ///< as in OpenEXR: "R", "Z", "N.X", "id"
+  Type type;
+  const void* first;   ///< of the window's first pixel
+  std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
+};
+
+/// The channels of all arrays that the film holds; `samples` and the sums only where it keeps its
+/// sums (`samples` also where it has an error).
+[[nodiscard]] std::vector<Channel> channels_of(const Film& film);
+
+/// The channel's number at pixel `index` (row by row) as a double, exactly.
+[[nodiscard]] double value_at(const Channel& channel, std::size_t index);
+
+/// The numbers of `rect`, a part of the film's window, as bytes: for another process or film.
+[[nodiscard]] std::string region_bytes(const Film& film, const PixelRect& rect);
+/// Writes bytes that region_bytes() gave for the same window and arrays into `film`.
+void set_region(Film& film, const PixelRect& rect, std::string_view bytes);
 
 }  // namespace raygate

@@ -1,15 +1,21 @@
 #include "host/film/merge.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <map>
 #include <tuple>
 
 #include "host/base/input_error.h"
-#include "host/film/sample_range.h"
 
 namespace raygate {
 namespace {
+
+const std::string* option_of(const ExrMetadata& metadata, const std::string& name) {
+  const auto at =
+      std::ranges::find(metadata.options, name, &std::pair<std::string, std::string>::first);
+  return at == metadata.options.end() ? nullptr : &at->second;
+}
 
 std::string text(const PixelRect& r) {
   return std::to_string(r.x0) + "," + std::to_string(r.y0) + "," + std::to_string(r.x1) + "," +
@@ -34,26 +40,12 @@ void require_like(const NamedFilm& part, const NamedFilm& first) {
     throw InputError(name + ": found " + *difference + " as in " + first.first);
   }
   bool is_like = film.width == other.width && film.height == other.height;
-  for_each_array([&](const auto& a, const auto& b) { is_like = is_like && a.empty() == b.empty(); },
+  for_each_field([&](const FilmField&, const auto& a,
+                     const auto& b) { is_like = is_like && a.empty() == b.empty(); },
                  film, other);
   if (!is_like) {
     throw InputError(name + ": found another frame or other channels than in " + first.first +
                      ", expected the same");
-  }
-}
-
-/// Copies `values` of one film into the place that its window has in a larger one.
-template <class T>
-void place(const std::vector<T>& values, const PixelRect& from, std::vector<T>& into,
-           const PixelRect& window) {
-  if (values.empty()) return;
-  into.resize(std::size_t(window.width()) * std::size_t(window.height()));
-  for (int y = from.y0; y < from.y1; ++y) {
-    const auto row = std::size_t(y - from.y0) * std::size_t(from.width());
-    const auto at =
-        std::size_t(y - window.y0) * std::size_t(window.width()) + std::size_t(from.x0 - window.x0);
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row), from.width(),
-                into.begin() + static_cast<std::ptrdiff_t>(at));
   }
 }
 
@@ -141,6 +133,36 @@ void require_tiling(const std::vector<NamedFilm>& windows, const PixelRect& all)
 
 }  // namespace
 
+std::optional<SampleRange> parse_sample_range(const std::string& text) {
+  SampleRange range;
+  const char *at = text.data(), *const end = at + text.size();
+  const auto first = std::from_chars(at, end, range.first);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ':') return std::nullopt;
+  const auto last = std::from_chars(first.ptr + 1, end, range.end);
+  if (last.ec != std::errc() || last.ptr != end) return std::nullopt;
+  if (range.first < 0 || range.first >= range.end) return std::nullopt;
+  return range;
+}
+
+std::string to_string(const SampleRange& range) {
+  return std::to_string(range.first) + ":" + std::to_string(range.end);
+}
+
+SampleRange samples_of(const ExrMetadata& metadata) {
+  const std::string* const range = option_of(metadata, kSamplesAttribute);
+  const std::string* const all = option_of(metadata, "spp");
+  if (range != nullptr) return parse_sample_range(*range).value_or(SampleRange{});
+  return all == nullptr ? SampleRange{} : parse_sample_range("0:" + *all).value_or(SampleRange{});
+}
+
+void set_samples(ExrMetadata& metadata, const SampleRange& range) {
+  std::erase_if(metadata.options,
+                [](const auto& option) { return option.first == kSamplesAttribute; });
+  const SampleRange all = samples_of(metadata);
+  if (range.first == all.first && range.end == all.end) return;
+  metadata.options.emplace_back(kSamplesAttribute, to_string(range));
+}
+
 std::optional<std::string> different_picture(const ExrMetadata& found,
                                              const ExrMetadata& expected) {
   const auto facts = [](const ExrMetadata& metadata) {
@@ -185,10 +207,13 @@ FilmFile merge(std::vector<NamedFilm> parts) {
   film.height = windows[0].second.film.height;
   film.window = all;
   film.keeps_sums = true;
+  const auto make_room = [&](const FilmField&, const auto& values, auto& whole) {
+    if (!values.empty()) whole.resize(std::size_t(all.width()) * std::size_t(all.height()));
+  };
+  for_each_field(make_room, windows[0].second.film, film);
   for (const NamedFilm& window : windows) {
     const Film& part = window.second.film;
-    for_each_array([&](const auto& values, auto& into) { place(values, part.window, into, all); },
-                   part, film);
+    set_region(film, part.window, region_bytes(part, part.window));
   }
   return result;
 }

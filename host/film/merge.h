@@ -1,4 +1,4 @@
-// One film from several that have a part of its samples, or of its pixels.
+// Parts of a picture: which samples a file has, and one film made of several.
 #pragma once
 
 #include <optional>
@@ -6,9 +6,26 @@
 #include <utility>
 #include <vector>
 
-#include "host/film/exr_reader.h"
+#include "host/film/exr.h"
 
 namespace raygate {
+
+/// Samples [first, end) of each pixel.
+struct SampleRange {
+  int first = 0, end = 0;
+};
+
+/// "A:B"; none if it is no such range with 0 <= A < B.
+[[nodiscard]] std::optional<SampleRange> parse_sample_range(const std::string& text);
+[[nodiscard]] std::string to_string(const SampleRange& range);
+
+/// The attribute of a file that does not have all of "spp".
+inline constexpr const char* kSamplesAttribute = "samples";
+
+/// What a film file says that it holds: that attribute, or all of "spp".
+[[nodiscard]] SampleRange samples_of(const ExrMetadata& metadata);
+/// The attribute says so from now on; it is not there where that is all of "spp".
+void set_samples(ExrMetadata& metadata, const SampleRange& range);
 
 /// In what two files are not of the same picture, whatever samples and pixels of it they have:
 /// "spp 8, expected spp 16", or nothing.

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "host/base/input_error.h"
-#include "host/film/hdr_reader.h"
+#include "host/film/environment_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path file = std::filesystem::temp_directory_path() /

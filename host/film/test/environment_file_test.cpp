@@ -9,7 +9,6 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
-#include "host/film/hdr_reader.h"
 
 namespace raygate {
 namespace {

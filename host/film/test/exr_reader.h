@@ -1,5 +1,5 @@
 // OpenEXR files for tests: attributes, and channels by their types. A reader of its own, so that a
-// fault of host/film/exr_reader.h cannot hide one of the writer.
+// fault of host/film/exr.h cannot hide one of the writer.
 #pragma once
 
 #include <ImathBox.h>

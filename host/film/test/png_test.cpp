@@ -1,8 +1,8 @@
 // What encode_png writes, read back with libpng.
-#include "host/film/png.h"
-
 #include <gtest/gtest.h>
 #include <png.h>
+
+#include "host/film/display.h"
 
 namespace raygate {
 namespace {

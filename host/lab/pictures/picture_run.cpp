@@ -18,7 +18,6 @@
 #include "host/film/atomic_file.h"
 #include "host/film/compare.h"
 #include "host/film/display.h"
-#include "host/film/png.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/pictures/decision_audit.h"
 #include "host/lab/timing.h"

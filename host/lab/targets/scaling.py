@@ -88,7 +88,7 @@ def fit(rows: list[dict], scene: str) -> Costs:
     sample, rest = numpy.polyfit(samples, [seconds(rows, "processor", samples=n, **alone) for n in SAMPLES], 1)
     shared = [row for row in of(rows, "scaling", scene=scene) if row["gathered_bytes"]]
     one = of(rows, "scaling", **alone)[0]
-    # Every channel of a film with sums, see host/film/film_region.h: colour, depth, normal, triangle, sums.
+    # Every channel of a film with sums, see host/film/film.h: colour, depth, normal, triangle, sums.
     slice_bytes = 16 + 4 + 12 + 4 + 4 + 4 * 24
     return Costs(scene=seconds(rows, "load", **alone) + seconds(rows, "tree", **alone),
                  scene_bytes=one["scene_bytes"], pixel=max(rest, 0.0) / pixels, sample=sample,

@@ -1,5 +1,5 @@
 // A rectangle of a film, there and back.
-#include "host/film/film_region.h"
+#include "host/film/film.h"
 
 #include <gtest/gtest.h>
 
@@ -25,11 +25,11 @@ TEST(FilmRegion, BringsAllChannelsOfItsPixelsAndNoOthers) {
   const PixelRect window{3, 5, 16, 14};
   const Film source = with_sums(make_sample_film(20, 18, window, true));
   Film target = source;
-  const auto blank_out = [](auto& values) {
+  const auto blank_out = [](const FilmField&, auto& values) {
     ASSERT_FALSE(values.empty());
     values.assign(values.size(), {});
   };
-  for_each_array(blank_out, target);
+  for_each_field(blank_out, target);
   const Film blank = target;
   const PixelRect rect{4, 7, 9, 14};
   set_region(target, rect, region_bytes(source, rect));
@@ -48,7 +48,7 @@ TEST(FilmRegion, BringsAllChannelsOfItsPixelsAndNoOthers) {
 TEST(FilmRegion, HasEachNumberOnce) {
   const Film film = with_sums(make_sample_film(4, 4, {0, 0, 4, 4}, true));
   std::size_t bytes = 0;
-  for_each_array([&](const auto& values) { bytes += sizeof(values[0]); }, film);
+  for_each_field([&](const FilmField&, const auto& values) { bytes += sizeof(values[0]); }, film);
   EXPECT_EQ(bytes,
             4 * (4 + 1 + 3 + 1 + 3 + 3 + 1 + 1 + 1 + 1 + 1 + 1) + 7 * sizeof(ExactAccumulator));
   EXPECT_EQ(region_bytes(film, {1, 1, 2, 2}).size(), bytes);
