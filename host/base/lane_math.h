@@ -227,25 +227,60 @@ RAYGATE_INLINE Triple<WideOf<T>> wide(const Triple<T>& a) {
   return {wide(a.x), wide(a.y), wide(a.z)};
 }
 
-/// Numbers of several things, lane by lane: field f of lane k is [f][k]. Filled by lanes, read by
-/// fields.
-template <class T, int kFields, class Element = float>
-struct Gathered {
-  using Value = std::conditional_t<std::is_same_v<Element, float>, T, WordOf<T>>;
+/// What of(k) gives for each lane k: a number, a word, a mask or a triple, as it gives a float, a
+/// std::uint32_t, a bool or a glm::vec3.
+template <class T, class Of>
+RAYGATE_INLINE auto gather(const Of& of) {
+  constexpr int kCount = LanesOf<T>::kCount;
+  using Element = std::remove_cvref_t<decltype(of(0))>;
+  if constexpr (std::is_same_v<Element, glm::vec3>) {
+    alignas(4 * kCount) float x[kCount], y[kCount], z[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      const glm::vec3& v = of(k);
+      x[k] = v.x;
+      y[k] = v.y;
+      z[k] = v.z;
+    }
+    return Triple<T>{lanes_from<T>(x), lanes_from<T>(y), lanes_from<T>(z)};
+  } else if constexpr (std::is_same_v<Element, bool>) {
+    return MaskOf<T>(gather<T>([&](int k) RAYGATE_BODY { return of(k) ? 1.0f : 0.0f; }) > 0.0f);
+  } else {
+    alignas(4 * kCount) Element values[kCount];
+    for (int k = 0; k < kCount; ++k) values[k] = of(k);
+    return lanes_from<std::conditional_t<std::is_same_v<Element, float>, T, WordOf<T>>>(values);
+  }
+}
+/// The same member of each lane's object.
+template <class T, class Object, class Member>
+RAYGATE_INLINE auto gather(const Object* const (&objects)[LanesOf<T>::kCount],
+                           Member Object::*member) {
+  return gather<T>([&](int k) RAYGATE_BODY -> const Member& { return objects[k]->*member; });
+}
 
-  alignas(4 * LanesOf<T>::kCount) Element values[kFields][LanesOf<T>::kCount];
-
-  RAYGATE_INLINE void put(int field, int lane, const glm::vec3& v) {
-    values[field][lane] = v.x;
-    values[field + 1][lane] = v.y;
-    values[field + 2][lane] = v.z;
-  }
-  [[nodiscard]] RAYGATE_INLINE Value one(int field) const {
-    return lanes_from<Value>(values[field]);
-  }
-  [[nodiscard]] RAYGATE_INLINE Triple<T> triple(int field) const {
-    return {one(field), one(field + 1), one(field + 2)};
-  }
+/// Lanes to be read one by one.
+template <class Element, int kCount>
+struct LaneArray {
+  alignas(sizeof(Element) * kCount) Element values[kCount];
+  RAYGATE_INLINE Element operator[](int k) const { return values[k]; }
 };
+template <int kCount>
+struct TripleArray {
+  LaneArray<float, kCount> x, y, z;
+  RAYGATE_INLINE glm::vec3 operator[](int k) const { return {x[k], y[k], z[k]}; }
+};
+template <class Element>
+RAYGATE_INLINE LaneArray<Element, 1> unpack(Element x) requires std::is_arithmetic_v<Element> {
+  return {{x}};
+}
+template <class Lanes>
+RAYGATE_INLINE auto unpack(const Lanes& lanes) requires(!std::is_arithmetic_v<Lanes>) {
+  LaneArray<std::remove_cvref_t<decltype(lanes[0])>, kLanes> out;
+  lanes_to(out.values, lanes);
+  return out;
+}
+template <class T>
+RAYGATE_INLINE TripleArray<LanesOf<T>::kCount> unpack(const Triple<T>& triple) {
+  return {unpack(triple.x), unpack(triple.y), unpack(triple.z)};
+}
 
 }  // namespace raygate

@@ -3,11 +3,10 @@
 
 #include "host/base/elementary.h"
 #include "host/base/lane_math.h"
-#include "host/light/fresnel.h"
 #include "host/light/material_parameters.h"
 #include "host/light/metallic_roughness.h"
-#include "host/light/orthonormal_basis.h"
 #include "host/light/sampler.h"
+#include "host/light/scattering.h"
 #include "host/light/surface.h"
 
 namespace raygate {
@@ -159,29 +158,15 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
       transmission_(zero<T>()),
       emission_(zero<T>()),
       unlit_(zero<T>()) {
-  constexpr int kCount = LanesOf<T>::kCount;
-  enum : std::uint8_t { kDiffuse, kOpacity = 3, kPlain = 4 };
-  Gathered<T, kPlain> plain;
-  for (int k = 0; k < kCount; ++k) {
-    plain.put(kDiffuse, k, materials[k]->diffuse);
-    plain.values[kOpacity][k] = materials[k]->opacity;
-  }
+  using Material = MaterialParameters;
   const Triple<T>& colour = surface.colour;
-  const Triple<T> limited = {at_most(at_least(colour.x, 0.0f), 1.0f),
-                             at_most(at_least(colour.y, 0.0f), 1.0f),
-                             at_most(at_least(colour.z, 0.0f), 1.0f)};
-  diffuse_ = limited * plain.triple(kDiffuse);
-  const T opacity = plain.one(kOpacity), one = spread<T>(1.0f);
+  diffuse_ = clamped(colour) * gather<T>(materials, &Material::diffuse);
+  const T opacity = gather<T>(materials, &Material::opacity), one = spread<T>(1.0f);
   mirror_is_traced_ = one > 0.0f;
   is_refracting_ = one < 0.0f;
   if ((kind & kEmits) != 0) {
-    Gathered<T, 6> emitters;
-    for (int k = 0; k < kCount; ++k) {
-      emitters.put(0, k, materials[k]->emission);
-      emitters.put(3, k, materials[k]->unlit);
-    }
-    emission_ = emitters.triple(0);
-    unlit_ = colour * emitters.triple(3);
+    emission_ = gather<T>(materials, &Material::emission);
+    unlit_ = colour * gather<T>(materials, &Material::unlit);
   }
   if ((kind & kMetallicRoughness) != 0) {
     facets_ = MetallicRoughnessLobes<T>(surface, (kind & kGlossy) != 0, materials);
@@ -189,54 +174,28 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     return;
   }
   if ((kind & (kGlossy | kMirrors)) != 0) {
-    Gathered<T, 4> shiny;
-    for (int k = 0; k < kCount; ++k) {
-      shiny.put(0, k, materials[k]->glossy);
-      shiny.values[3][k] = materials[k]->exponent;
-    }
-    glossy_ = shiny.triple(0);
-    exponent_ = shiny.one(3);
+    glossy_ = gather<T>(materials, &Material::glossy);
+    exponent_ = gather<T>(materials, &Material::exponent);
   }
   auto is_glass = is_refracting_;
   if ((kind & (kMirrors | kTransmits)) != 0) {
-    enum : std::uint8_t {
-      kMirror,
-      kGrazing = 3,
-      kTransmission = 6,
-      kIndex = 9,
-      kGlass,
-      kRefracts,
-      kFresnel,
-      kTraced,
-      kClear
-    };
-    Gathered<T, kClear> clear;
-    for (int k = 0; k < kCount; ++k) {
-      const MaterialParameters& material = *materials[k];
-      clear.put(kMirror, k, material.mirror);
-      clear.put(kGrazing, k, material.grazing);
-      clear.put(kTransmission, k, material.transmittance);
-      clear.values[kIndex][k] = material.index;
-      clear.values[kGlass][k] = material.is_glass ? 1.0f : 0.0f;
-      clear.values[kRefracts][k] = material.refracts ? 1.0f : 0.0f;
-      clear.values[kFresnel][k] = material.is_fresnel ? 1.0f : 0.0f;
-      clear.values[kTraced][k] = material.mirror_is_traced ? 1.0f : 0.0f;
-    }
-    is_glass = clear.one(kGlass) > 0.0f;
-    is_refracting_ = clear.one(kRefracts) > 0.0f;
-    mirror_is_traced_ = clear.one(kTraced) > 0.0f;
-    const T index = clear.one(kIndex);
+    is_glass = gather<T>(materials, &Material::is_glass);
+    is_refracting_ = gather<T>(materials, &Material::refracts);
+    mirror_is_traced_ = gather<T>(materials, &Material::mirror_is_traced);
+    const T index = gather<T>(materials, &Material::index);
     eta_ = choose(is_refracting_, choose(surface.outside, index, 1.0f / index), one);
     const T cosine = at_most(at_least(dot(normal_, view_), 0.0f), 1.0f);
-    mirror_ = clear.triple(kMirror) + clear.triple(kGrazing) * schlick_weight(cosine);
+    mirror_ = gather<T>(materials, &Material::mirror) +
+              gather<T>(materials, &Material::grazing) * schlick_weight(cosine);
     const T reflectance = fresnel_reflectance(cosine, eta_);
-    const auto is_fresnel = is_refracting_ & ((clear.one(kFresnel) > 0.0f) | (reflectance >= 1.0f));
+    const auto is_fresnel =
+        is_refracting_ & (gather<T>(materials, &Material::is_fresnel) | (reflectance >= 1.0f));
     mirror_ = choose(is_fresnel, Triple<T>{reflectance, reflectance, reflectance}, mirror_);
     // What the mirror of glass takes is gone for all that lies under it.
     const Triple<T> rest =
         choose(is_glass, Triple<T>{one, one, one} - mirror_, Triple<T>{one, one, one});
     diffuse_ = diffuse_ * rest;
-    transmission_ = clear.triple(kTransmission) * rest;
+    transmission_ = gather<T>(materials, &Material::transmittance) * rest;
   }
   if ((kind & (kGlossy | kMirrors)) != 0) {
     const T sum = largest(diffuse_ + glossy_ + mirror_);

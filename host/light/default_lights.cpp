@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "host/exact/exact.h"
-#include "host/light/light_values.h"
+#include "host/light/lights.h"
 #include "host/scene/bounds.h"
 #include "host/scene/camera.h"
 

@@ -79,63 +79,54 @@ RAYGATE_INLINE Environment::Place<T> Environment::place(const Triple<T>& directi
   const T y = at_least(
       narrow(turns_of<T>(root(right * right + ahead * ahead), up) * (2.0 * double(height_)) + 0.5),
       0.0f);
-  float xs[kCount], ys[kCount];
-  lanes_to(xs, x);
-  lanes_to(ys, y);
+  const auto xs = unpack(x), ys = unpack(y);
   Place<T> found;
-  Gathered<T, 2> rest;
+  float from_left[kCount], from_top[kCount];
   for (int k = 0; k < kCount; ++k) {
     const auto column = static_cast<std::uint32_t>(xs[k]), row = static_cast<std::uint32_t>(ys[k]);
-    rest.values[0][k] = xs[k] - static_cast<float>(column);
     found.columns[k] = column % width_;
     found.rows[k] = std::min(row, height_);
-    rest.values[1][k] = std::min(ys[k] - static_cast<float>(found.rows[k]), 1.0f);
+    from_left[k] = xs[k] - static_cast<float>(column);
+    from_top[k] = std::min(ys[k] - static_cast<float>(found.rows[k]), 1.0f);
   }
-  found.x = rest.one(0);
-  found.y = rest.one(1);
+  found.x = lanes_from<T>(from_left);
+  found.y = lanes_from<T>(from_top);
   return found;
 }
 
 template <class T>
 RAYGATE_INLINE Triple<T> Environment::radiance(const Triple<T>& direction) const {
   const Place<T> at = place(direction);
-  Gathered<T, 12> corners;
-  for (int k = 0; k < LanesOf<T>::kCount; ++k) {
-    const std::uint32_t left = left_of(at.columns[k]), right = at.columns[k];
-    const std::uint32_t upper = above(at.rows[k]), lower = below(at.rows[k]);
-    corners.put(0, k, texel(left, upper));
-    corners.put(3, k, texel(right, upper));
-    corners.put(6, k, texel(left, lower));
-    corners.put(9, k, texel(right, lower));
-  }
+  const auto texels = [&](bool is_right, bool is_lower) RAYGATE_BODY {
+    return gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& {
+      return texel(is_right ? at.columns[k] : left_of(at.columns[k]),
+                   is_lower ? below(at.rows[k]) : above(at.rows[k]));
+    });
+  };
   const T x = 1.0f - at.x, y = 1.0f - at.y;
-  const Triple<T> upper = corners.triple(0) * x + corners.triple(3) * at.x;
-  const Triple<T> lower = corners.triple(6) * x + corners.triple(9) * at.x;
+  const Triple<T> upper = texels(false, false) * x + texels(true, false) * at.x;
+  const Triple<T> lower = texels(false, true) * x + texels(true, true) * at.x;
   return (upper * y + lower * at.y) * spread<T>(map_.strength);
 }
 
 template <class T>
 RAYGATE_INLINE T Environment::pdf(const Triple<T>& direction) const {
   const Place<T> at = place(direction);
-  Gathered<T, 1> pdfs;
-  for (int k = 0; k < LanesOf<T>::kCount; ++k) {
+  return gather<T>([&](int k) RAYGATE_BODY {
     const std::uint32_t row = at.rows[k], column = at.columns[k];
     const float* const cdf = &column_cdf_[std::size_t{row} * width_];
     const float in_row = cdf[column] - (column == 0 ? 0.0f : cdf[column - 1]);
     const float of_row = row_cdf_[row] - (row == 0 ? 0.0f : row_cdf_[row - 1]);
-    pdfs.values[0][k] = of_row * in_row * per_solid_angle_[row];
-  }
-  return pdfs.one(0);
+    return of_row * in_row * per_solid_angle_[row];
+  });
 }
 
 template <class T>
 RAYGATE_INLINE Triple<T> Environment::sample(const SquarePoint<T>& u) const {
   constexpr int kCount = LanesOf<T>::kCount;
-  float xs[kCount], ys[kCount];
-  lanes_to(xs, u.x);
-  lanes_to(ys, u.y);
-  enum : std::uint8_t { kUpper, kLower, kInRow, kColumn, kInColumn, kFields };
-  Gathered<T, kFields> in;
+  const auto xs = unpack(u.x), ys = unpack(u.y);
+  std::uint32_t rows[kCount];
+  float in_rows[kCount], columns[kCount], in_columns[kCount];
   // Where a number lies within what it chooses says where in that.
   const auto find = [](const float* cdf, std::uint32_t count, float wanted, float& rest) {
     const auto found =
@@ -145,18 +136,19 @@ RAYGATE_INLINE Triple<T> Environment::sample(const SquarePoint<T>& u) const {
     return found;
   };
   for (int k = 0; k < kCount; ++k) {
-    const std::uint32_t row = find(row_cdf_.data(), height_ + 1, ys[k], in.values[kInRow][k]);
-    const std::uint32_t column =
-        find(&column_cdf_[std::size_t{row} * width_], width_, xs[k], in.values[kInColumn][k]);
-    in.values[kUpper][k] = cosines_[row];
-    in.values[kLower][k] = cosines_[row + 1];
-    in.values[kColumn][k] = static_cast<float>(column);
+    rows[k] = find(row_cdf_.data(), height_ + 1, ys[k], in_rows[k]);
+    columns[k] = static_cast<float>(
+        find(&column_cdf_[std::size_t{rows[k]} * width_], width_, xs[k], in_columns[k]));
   }
-  const T in_row = in.one(kInRow);
-  const T cosine = in.one(kUpper) * (1.0f - in_row) + in.one(kLower) * in_row;
+  const T in_row = lanes_from<T>(in_rows);
+  const T upper = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k]]; });
+  const T lower = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k] + 1]; });
+  const T cosine = upper * (1.0f - in_row) + lower * in_row;
   const T sine = root(at_least(1.0f - cosine * cosine, 0.0f));
-  const auto turn = sine_cosine(
-      (wide(in.one(kColumn)) + wide(in.one(kInColumn)) - 0.5) * (1.0 / double(width_)) - 0.5);
+  const auto turn =
+      sine_cosine((wide(lanes_from<T>(columns)) + wide(lanes_from<T>(in_columns)) - 0.5) *
+                      (1.0 / double(width_)) -
+                  0.5);
   return spread<T>(up_) * cosine + spread<T>(right_) * (sine * narrow(turn.sine)) +
          spread<T>(ahead_) * (sine * narrow(turn.cosine));
 }

@@ -1,4 +1,5 @@
-// Hits that are shaded together: what goes into lanes, and what comes out of them.
+// Hits that are shaded together, as many as there are lanes: their surfaces and BSDFs, the light
+// that they sample, and the rays that they scatter.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +10,17 @@
 #include "host/base/lane_math.h"
 #include "host/intersect/intersector.h"
 #include "host/light/bsdf.h"
+#include "host/light/integrator_options.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
-#include "host/light/path_options.h"
 #include "host/light/ray_batch.h"
 #include "host/light/sampler.h"
-#include "host/light/shadow_catcher.h"
 #include "host/light/spawn_ray.h"
 #include "host/light/surface.h"
 
 namespace raygate {
 
-/// The light that one light may send to a hit, if nothing is between: a shadow ray to trace.
+/// What one light sends to a hit if nothing is between: a shadow ray to trace.
 struct LightSample {
   enum State : std::uint8_t {
     kNone,
@@ -34,7 +34,7 @@ struct LightSample {
   std::uint32_t primitive = 0;
 };
 
-/// A ray that may go on.
+/// A ray that a hit sends on: reflected, refracted or scattered.
 struct ScatteredRay {
   bool is_wanted = false;
   bool surely_leaves = false;  ///< the triangle, to that side; or else exact arithmetic decides
@@ -47,7 +47,7 @@ struct ScatteredRay {
   PathState state;  ///< but for sample and index, which stay
 };
 
-/// A part of a batch, its hits, and what they give: lists by the ray's place in the part.
+/// A part of a batch, its hits, and their results: lists by the ray's place in the part.
 struct HitBlock {
   const RayBatch* batch = nullptr;
   std::size_t begin = 0;                             ///< in the batch
@@ -58,6 +58,7 @@ struct HitBlock {
   std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` of each hit
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
   FirstSurface* first_surfaces = nullptr;  ///< by sample; none after the camera's rays
+  SkipCounters skipped;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
   [[nodiscard]] LightSample& light_sample(std::size_t i, std::size_t number) {
@@ -78,10 +79,33 @@ struct ShadingScene {
   float threshold = 0.0f;
   bool single_sample = false;
   bool skips_weightless = true;
-  bool sees_environment = true;      ///< rays that hit nothing
-  bool samples_environment = false;  ///< surfaces, as they do lights
   PathOptions path{};
 };
+
+/// The matte colour at which `surface` looks like the background, in the light of all lights
+/// from one point to all sides and of `around`, the radiance from all sides: where any of these is
+/// kept away it is darker. At most 1. Light of other sources makes it brighter.
+template <class T>
+RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& around,
+                                        const Surface<T>& surface) {
+  constexpr float kPerPi = 0.318309886183790671537767526745f;
+  Triple<T> light = spread<T>(around);
+  for (std::uint32_t i = 0; i < lights.points().size(); ++i) {
+    const Lights::Light& light_record = lights.light(i);
+    if (light_record.is_spot) continue;
+    const Triple<T> way =
+        (spread<T>(light_record.position) - surface.point) * spread<T>(lights.per_unit());
+    const T squared = dot(way, way), slope = dot(surface.normal, way);
+    // A cosine, over pi and the squared distance.
+    const T share = slope * kPerPi / (squared * root(squared));
+    light = light + spread<T>(light_record.emission) * choose(slope > 0.0f, share, T{});
+  }
+  const Triple<T> shown = spread<T>(lights.background());
+  const auto ratio = [](const T& wanted, const T& there) {
+    return choose(wanted < there, wanted / there, spread<T>(1.0f));
+  };
+  return {ratio(shown.x, light.x), ratio(shown.y, light.y), ratio(shown.z, light.z)};
+}
 
 /// As many hits of one kind as T has lanes.
 template <class T>
@@ -92,29 +116,21 @@ struct Hits {
   RAYGATE_INLINE Hits(const ShadingScene& shading, HitBlock& hits, HitKind hit_kind,
                       std::span<const std::uint32_t> at)
       : block(hits), kind(hit_kind), count(static_cast<int>(at.size())) {
-    enum : std::uint8_t { kThroughput, kPdf = 3, kScatteredAt = 4, kNormal = 7, kFields = 10 };
-    Gathered<T, kFields> in;
-    Gathered<T, 2, std::uint32_t> words;
+    const PathState* states[kCount];
     SurfaceHit places[kCount];
     const MaterialParameters* materials[kCount];
     for (int k = 0; k < kCount; ++k) {
       place[k] = at[static_cast<std::size_t>(k < count ? k : count - 1)];
-      const PathState& state = hits.state(place[k]);
-      in.put(kThroughput, k, state.throughput);
-      in.values[kPdf][k] = state.pdf;
-      in.put(kScatteredAt, k, state.scattered_at);
-      in.put(kNormal, k, state.normal);
-      words.values[0][k] = state.stream;
-      words.values[1][k] = state.index;
+      states[k] = &hits.state(place[k]);
       places[k] = hits.places[place[k]];
       materials[k] = hits.materials[place[k]];
     }
-    throughput = in.triple(kThroughput);
-    pdf = in.one(kPdf);
-    scattered_at = in.triple(kScatteredAt);
-    scattering_normal = in.triple(kNormal);
-    stream = words.one(0);
-    index = words.one(1);
+    throughput = gather<T>(states, &PathState::throughput);
+    pdf = gather<T>(states, &PathState::pdf);
+    scattered_at = gather<T>(states, &PathState::scattered_at);
+    scattering_normal = gather<T>(states, &PathState::normal);
+    stream = gather<T>(states, &PathState::stream);
+    index = gather<T>(states, &PathState::index);
     surface = surface_at<T>(shading.scene, shading.bvh, kind, places);
     if ((kind & kShadowCatcher) != 0) {
       surface.colour = catcher_colour(shading.lights, shading.ambient, surface);
@@ -129,8 +145,8 @@ struct Hits {
   }
 
   RAYGATE_INLINE void set_radiance(const Triple<T>& radiance) {
-    Gathered<T, 3> out = spread_out(radiance);
-    for (int k = 0; k < count; ++k) block.radiance[place[k]] = triple_of(out, k);
+    const auto out = unpack(radiance);
+    for (int k = 0; k < count; ++k) block.radiance[place[k]] = out[k];
   }
 
   HitBlock& block;
@@ -143,36 +159,17 @@ struct Hits {
   Surface<T> surface;
   Bsdf<T> bsdf;
 
-  /// Lanes of a triple, to be read one by one.
-  [[nodiscard]] RAYGATE_INLINE static Gathered<T, 3> spread_out(const Triple<T>& triple) {
-    Gathered<T, 3> out;
-    lanes_to(out.values[0], triple.x);
-    lanes_to(out.values[1], triple.y);
-    lanes_to(out.values[2], triple.z);
-    return out;
-  }
-  [[nodiscard]] RAYGATE_INLINE static glm::vec3 triple_of(const Gathered<T, 3>& lanes, int k) {
-    return {lanes.values[0][k], lanes.values[1][k], lanes.values[2][k]};
-  }
-  /// Lanes of a mask, to be read one by one: 1 or 0.
-  [[nodiscard]] RAYGATE_INLINE static Gathered<T, 1> spread_out(const MaskOf<T>& mask) {
-    Gathered<T, 1> out;
-    lanes_to(out.values[0], choose(mask, spread<T>(1.0f), T{}));
-    return out;
-  }
-
  private:
   RAYGATE_INLINE void show_first_surfaces() {
-    const Gathered<T, 3> normals = spread_out(surface.normal), colours = spread_out(surface.colour);
+    const auto normals = unpack(surface.normal), colours = unpack(surface.colour);
     for (int k = 0; k < count; ++k) {
-      block.first_surfaces[block.state(place[k]).sample] = {triple_of(normals, k),
-                                                            triple_of(colours, k)};
+      block.first_surfaces[block.state(place[k]).sample] = {normals[k], colours[k]};
     }
   }
 };
 
-/// What is neither infinite nor no number: those come of products of what is too bright and what is
-/// nothing, and are as bright as can be, or nothing.
+/// Finite numbers for products of what is too bright and what is nothing: infinity becomes the
+/// largest float, NaN 0.
 template <class T>
 RAYGATE_INLINE T bounded(const T& x) {
   const T most = spread<T>(std::numeric_limits<float>::max());
@@ -183,11 +180,11 @@ RAYGATE_INLINE Triple<T> bounded(const Triple<T>& x) {
   return {bounded(x.x), bounded(x.y), bounded(x.z)};
 }
 
-/// The way from surfaces to places, in the units of Lights.
+/// The directions from surfaces to points on lights, and the distances in the units of Lights.
 template <class T>
 struct DirectionToLight {
   Triple<T> direction;  ///< unit vector
-  T distance_squared, distance;
+  T distance_squared;
   MaskOf<T> is_in_front;  ///< it leads away from the surface, and somewhere
 
   RAYGATE_INLINE DirectionToLight(const Lights& lights, const Surface<T>& surface,
@@ -195,8 +192,7 @@ struct DirectionToLight {
     constexpr float kNear = 1e-30f;  // floats have room for the inverse
     const Triple<T> way = (place - surface.point) * spread<T>(lights.per_unit());
     distance_squared = dot(way, way);
-    distance = root(distance_squared);
-    direction = way * (1.0f / distance);
+    direction = way * (1.0f / root(distance_squared));
     is_in_front = (distance_squared > kNear) & (dot(surface.flat_normal, direction) > 0.0f);
   }
 };
@@ -208,20 +204,15 @@ RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number, const Ma
                                      const Triple<T>& light,
                                      const std::uint32_t (&indices)[LanesOf<T>::kCount],
                                      const LightPoint<T>& point) {
-  const Gathered<T, 1> asked = Hits<T>::spread_out(is_asked);
-  const Gathered<T, 3> lights = Hits<T>::spread_out(light);
-  const Gathered<T, 3> places = Hits<T>::spread_out(point.position);
-  std::uint32_t primitives[LanesOf<T>::kCount];
-  lanes_to(primitives, point.primitive);
+  const auto asked = unpack(is_asked);
+  const auto radiances = unpack(light), points = unpack(point.position);
+  const auto primitives = unpack(point.primitive);
   for (int k = 0; k < hits.count; ++k) {
-    if (asked.values[0][k] == 0.0f) continue;
-    LightSample& light_sample = hits.block.light_sample(hits.place[k], number);
-    light_sample.radiance = Hits<T>::triple_of(lights, k);
-    const bool is_dark = light_sample.radiance == glm::vec3(0.0f);
-    light_sample.state = is_dark ? LightSample::kDark : LightSample::kToTrace;
-    light_sample.light_index = indices[k];
-    light_sample.point = Hits<T>::triple_of(places, k);
-    light_sample.primitive = primitives[k];
+    if (!asked[k]) continue;
+    const bool is_dark = radiances[k] == glm::vec3(0.0f);
+    hits.block.light_sample(hits.place[k], number) = {
+        is_dark ? LightSample::kDark : LightSample::kToTrace, radiances[k], indices[k], points[k],
+        primitives[k]};
   }
 }
 
@@ -296,31 +287,27 @@ struct ScatteredRays {
   RAYGATE_INLINE void send(Hits<T>& hits, std::size_t number) const {
     const Triple<T> ahead = scaled(direction);
     const auto leaving = hits.surface.leaving(ahead, is_transmitted);
-    const auto wanted =
-        Hits<T>::spread_out(is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat));
-    const auto sure = Hits<T>::spread_out(leaving.leaves & leaving.is_sure),
-               flats = Hits<T>::spread_out(has_flat), through = Hits<T>::spread_out(is_transmitted);
-    const auto directions = Hits<T>::spread_out(ahead),
-               flat_ones = Hits<T>::spread_out(scaled(flat)),
-               throughputs = Hits<T>::spread_out(throughput),
-               places = Hits<T>::spread_out(scattered_at), normals = Hits<T>::spread_out(normal);
-    float pdfs[LanesOf<T>::kCount];
-    std::uint32_t streams[LanesOf<T>::kCount];
-    lanes_to(pdfs, pdf);
-    lanes_to(streams, stream);
+    const auto wanted = unpack(is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat));
+    const auto sure = unpack(leaving.leaves & leaving.is_sure), flats = unpack(has_flat),
+               transmitted = unpack(is_transmitted);
+    const auto directions = unpack(ahead), flat_ones = unpack(scaled(flat)),
+               throughputs = unpack(throughput), points = unpack(scattered_at),
+               normals = unpack(normal);
+    const auto pdfs = unpack(pdf);
+    const auto streams = unpack(stream);
     for (int k = 0; k < hits.count; ++k) {
-      if (wanted.values[0][k] == 0.0f) continue;
+      if (!wanted[k]) continue;
       ScatteredRay& ray = hits.block.scattered_ray(hits.place[k], number);
       ray.is_wanted = true;
-      ray.surely_leaves = sure.values[0][k] != 0.0f;
-      ray.has_flat = flats.values[0][k] != 0.0f;
-      ray.side = through.values[0][k] != 0.0f ? SpawnSide::kTransmitted : SpawnSide::kIncident;
-      ray.direction = Hits<T>::triple_of(directions, k);
-      ray.flat = Hits<T>::triple_of(flat_ones, k);
-      ray.state.throughput = Hits<T>::triple_of(throughputs, k);
+      ray.surely_leaves = sure[k];
+      ray.has_flat = flats[k];
+      ray.side = transmitted[k] ? SpawnSide::kTransmitted : SpawnSide::kIncident;
+      ray.direction = directions[k];
+      ray.flat = flat_ones[k];
+      ray.state.throughput = throughputs[k];
       ray.state.pdf = pdfs[k];
-      ray.state.scattered_at = Hits<T>::triple_of(places, k);
-      ray.state.normal = Hits<T>::triple_of(normals, k);
+      ray.state.scattered_at = points[k];
+      ray.state.normal = normals[k];
       ray.state.stream = streams[k];
     }
   }

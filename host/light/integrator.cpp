@@ -1,11 +1,9 @@
 #include "host/light/integrator.h"
 
 #include <algorithm>
+#include <type_traits>
 
-#include "host/light/infinite_light.h"
-#include "host/light/path.h"
-#include "host/light/primary.h"
-#include "host/light/whitted.h"
+#include "host/base/vectors.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
@@ -15,15 +13,30 @@ constexpr std::size_t kMostHits = 2048;             // of a block: its lists sta
 constexpr std::size_t kFacesAhead = 12;             // to fetch
 constexpr std::size_t kMostLightSamples = 1 << 16;  // of a block: 3 MB
 
+/// Each surface lit from the camera: its diffuse colour times the cosine of the view, and what it
+/// emits.
+void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
+                   std::span<const std::uint32_t> at) {
+  shade_in_lanes(shading, block, kind, at, [](auto& hits) RAYGATE_BODY {
+    using T = std::remove_cvref_t<decltype(hits.pdf)>;
+    const T facing = at_least(dot(hits.surface.normal, hits.surface.view), 0.0f);
+    const bool is_seen = (hits.kind & kShadowCatcher) == 0;
+    const Triple<T> colour = is_seen ? hits.surface.colour : zero<T>();
+    hits.set_radiance(colour * facing + hits.bsdf.emission());
+  });
+}
+
 }  // namespace
 
-Integrator::Integrator(const Scene& scene, const NeighborClearances& clearances,
-                       const Lights& lights, const Skips& skips, const IntegratorOptions& options,
-                       std::size_t light_samples_per_hit, std::size_t scattered_per_hit)
-    : shading_{.scene = scene,
+Integrator::Integrator(IntegratorKind kind, const Scene& scene,
+                       const NeighborClearances& clearances, const Lights& lights,
+                       const Skips& skips, const IntegratorOptions& options)
+    : kind_(kind),
+      shading_{.scene = scene,
                .bvh = clearances.bvh(),
                .lights = lights,
-               .ambient = glm::vec3(options.ambient),
+               .ambient =
+                   kind == IntegratorKind::kPath ? lights.background() : glm::vec3(options.ambient),
                .max_depth = options.max_depth,
                .threshold = static_cast<float>(options.threshold),
                .single_sample = options.single_sample,
@@ -32,14 +45,15 @@ Integrator::Integrator(const Scene& scene, const NeighborClearances& clearances,
       spawner_(clearances),
       skips_(skips),
       point_error_(options.point_error),
-      block_size_(std::clamp<std::size_t>(
-          kMostLightSamples / std::max<std::size_t>(1, light_samples_per_hit), 1, kMostHits)),
       materials_(material_parameters(scene)) {
+  const bool is_whitted = kind == IntegratorKind::kWhitted, is_path = kind == IntegratorKind::kPath;
+  block_.light_samples_per_hit = is_whitted ? lights.count() : is_path ? 1 : 0;
+  block_.scattered_per_hit = is_whitted ? 2 : is_path ? 1 : 0;
+  block_size_ = std::clamp<std::size_t>(
+      kMostLightSamples / std::max<std::size_t>(1, block_.light_samples_per_hit), 1, kMostHits);
   block_.places.resize(block_size_);
   block_.materials.resize(block_size_);
   block_.radiance.resize(block_size_);
-  block_.light_samples_per_hit = light_samples_per_hit;
-  block_.scattered_per_hit = scattered_per_hit;
   kinds_.resize(block_size_);
 }
 
@@ -54,10 +68,13 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   for (LightSample& light_sample : block_.light_samples) light_sample.state = LightSample::kNone;
   for (ScatteredRay& scattered : block_.scattered) scattered.is_wanted = false;
   sort(hits, count, output);
+  ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary   ? shade_primary
+                                    : kind_ == IntegratorKind::kWhitted ? shade_whitted
+                                                                        : shade_path;
   for (HitKind kind = 0; kind < kHitKinds; ++kind) {
     const std::span<const std::uint32_t> at(order_.data() + first_[kind],
                                             first_[kind + 1] - first_[kind]);
-    if (!at.empty()) shade_kind(block_, kind, at);
+    if (!at.empty()) shade_kind(shading_, block_, kind, at);
   }
   spawn_queries_.clear();
   for (std::size_t i = 0; i < count; ++i) {
@@ -109,9 +126,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     kinds_[i] = block_.materials[i]->kind | weights_needed(block_.places[i]);
     ++first_[kinds_[i] + 1];
   }
-  if (!escaped_.empty()) {
-    add_infinite_light(shading_, block_, escaped_, shading_.samples_environment, output);
-  }
+  add_infinite_light(output);
   for (HitKind kind = 0; kind < kHitKinds; ++kind) first_[kind + 1] += first_[kind];
   order_.resize(first_[kHitKinds]);
   for (std::size_t i = count; i-- > 0;) {
@@ -123,32 +138,73 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   first_.push_back(static_cast<std::uint32_t>(order_.size()));
 }
 
-/// Forgets what is not worth asking, and notes on which sides of the hit at place i rays begin.
+/// Adds what the environment sends along the rays that hit nothing else. Where surfaces sample the
+/// environment, too, a scattered ray counts by its MIS weight.
+void Integrator::add_infinite_light(ShadingOutput& output) {
+  if (escaped_.empty()) return;
+  const Lights& lights = shading_.lights;
+  const Environment& environment = *lights.environment();
+  const bool is_sampled = kind_ == IntegratorKind::kPath;
+  in_vectors([&](auto code) RAYGATE_BODY {
+    using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
+    constexpr std::size_t kCount = LanesOf<T>::kCount;
+    for (std::size_t i = 0; i < escaped_.size(); i += kCount) {
+      const std::size_t count = std::min(kCount, escaped_.size() - i);
+      const PathState* states[kCount];
+      const Ray* rays[kCount];
+      float pmfs[kCount] = {};
+      for (std::size_t k = 0; k < kCount; ++k) {
+        const std::uint32_t place = escaped_[i + std::min(k, count - 1)];
+        states[k] = &block_.state(place);
+        rays[k] = &block_.batch->rays[block_.begin + place];
+        if (is_sampled && states[k]->pdf > 0.0f) {
+          pmfs[k] = lights.pmf<T>(lights.environment_source(), states[k]->scattered_at,
+                                  states[k]->normal);
+        }
+      }
+      const Triple<T> direction = normalized(gather<T>(rays, &Ray::direction));
+      Triple<T> light = gather<T>(states, &PathState::throughput) * environment.radiance(direction);
+      if (is_sampled) {
+        const T pdf = gather<T>(states, &PathState::pdf);
+        const T light_pdf = environment.pdf(direction) * lanes_from<T>(pmfs);
+        light = light * choose(pdf > 0.0f, power_heuristic(pdf, light_pdf), spread<T>(1.0f));
+      }
+      const auto lights_out = unpack(light);
+      for (std::size_t k = 0; k < count; ++k) {
+        output.radiance[states[k]->sample] += lights_out[static_cast<int>(k)];
+      }
+    }
+  });
+}
+
+/// Drops light samples and scattered rays that bring nothing, and lists where those of the hit at
+/// place i have to be spawned.
 void Integrator::list_spawn_queries(std::size_t i) {
   const SurfaceHit& place = block_.places[i];
-  bool is_before = false, is_after = false;
+  bool any_incident = false, any_transmitted = false;
   for (std::size_t number = 0; number < block_.light_samples_per_hit; ++number) {
     LightSample& light_sample = block_.light_sample(i, number);
     if (light_sample.state == LightSample::kDark && skips_.light_behind) {
-      ++skipped_.lights_behind;
+      ++block_.skipped.lights_behind;
       light_sample.state = LightSample::kNone;
     }
-    is_before = is_before || light_sample.state != LightSample::kNone;
+    any_incident = any_incident || light_sample.state != LightSample::kNone;
   }
   for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {
     ScatteredRay& scattered = block_.scattered_ray(i, number);
     if (!scattered.is_wanted) continue;
     if (scattered.state.throughput == glm::vec3(0.0f) && skips_.weightless) {
-      ++skipped_.weightless;
+      ++block_.skipped.weightless;
       scattered.is_wanted = false;
       continue;
     }
     scattered.is_wanted = leaves(place, scattered);
-    (scattered.side == SpawnSide::kIncident ? is_before : is_after) |= scattered.is_wanted;
+    (scattered.side == SpawnSide::kIncident ? any_incident : any_transmitted) |=
+        scattered.is_wanted;
   }
-  if (is_before || is_after) spawner_.prefetch(place.primitive);
-  if (is_before) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kIncident});
-  if (is_after) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kTransmitted});
+  if (any_incident || any_transmitted) spawner_.prefetch(place.primitive);
+  if (any_incident) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kIncident});
+  if (any_transmitted) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kTransmitted});
 }
 
 /// Whether a scattered ray leads away from its triangle, if need be along the flat normal's
@@ -162,14 +218,14 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
   return scattered.has_flat && leaves(scattered.flat);
 }
 
-/// What the hit at place i gives, now that it is known where rays go on from: `origins` of its
-/// departures and those of the hits after it. A hit without one on a side sends nothing there.
+/// Passes on what the hit at place i gives. `origins` are those of its spawn queries and of the
+/// hits after it; a hit without an origin on a side sends nothing there.
 void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
   const PathState& state = block_.state(i);
   const SurfaceHit& place = block_.places[i];
   output.radiance[state.sample] += block_.radiance[i];
   const SpawnOrigin* points[2] = {nullptr, nullptr};
-  const auto departure = [&](SpawnSide side) -> const SpawnOrigin& {
+  const auto origin_on = [&](SpawnSide side) -> const SpawnOrigin& {
     return *points[side == SpawnSide::kIncident ? 0 : 1];
   };
   const auto* const end = spawn_queries_.data() + spawn_queries_.size();
@@ -180,7 +236,7 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
   for (std::size_t number = 0; number < block_.light_samples_per_hit; ++number) {
     const LightSample& light_sample = block_.light_sample(i, number);
     if (light_sample.state == LightSample::kNone) continue;
-    const auto& origin = departure(SpawnSide::kIncident);
+    const auto& origin = origin_on(SpawnSide::kIncident);
     if (!origin) continue;
     ShadowRay& shadow = output.shadows.emplace_back();
     shadow.sample = state.sample;
@@ -197,7 +253,7 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
   for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {
     const ScatteredRay& scattered = block_.scattered_ray(i, number);
     if (!scattered.is_wanted) continue;
-    const auto& origin = departure(scattered.side);
+    const auto& origin = origin_on(scattered.side);
     if (!origin) continue;
     Ray& ray = output.next.rays.emplace_back();
     ray.origin = *origin;
@@ -206,21 +262,6 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
     next.sample = state.sample;
     next.index = state.index;
   }
-}
-
-std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, const Scene& scene,
-                                            const NeighborClearances& clearances,
-                                            const Lights& lights, const Skips& skips,
-                                            const IntegratorOptions& options) {
-  switch (kind) {
-    case IntegratorKind::kPrimary:
-      return std::make_unique<Primary>(scene, clearances, lights, skips, options);
-    case IntegratorKind::kPath:
-      return std::make_unique<Path>(scene, clearances, lights, skips, options);
-    case IntegratorKind::kWhitted:
-      break;
-  }
-  return std::make_unique<Whitted>(scene, clearances, lights, skips, options);
 }
 
 }  // namespace raygate

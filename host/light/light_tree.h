@@ -26,13 +26,6 @@ struct LightBounds {
   double power = 0.0;
 };
 
-/// How sources are chosen.
-enum class LightSampling : std::uint8_t {
-  kNone,   ///< not at all: those who ask do ask all lights, or none
-  kTree,   ///< by what each may bring where it is asked for
-  kPower,  ///< by their power alone: what the tree is measured against
-};
-
 /// Chooses a source for a point of a surface, each nearly as likely as what it would bring there if
 /// nothing were between: by power, distance, and where source and surface face (Conty Estevez and
 /// Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018; no subtree is

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,13 +12,61 @@
 #include "host/base/lane_math.h"
 #include "host/bvh/bvh.h"
 #include "host/light/environment.h"
+#include "host/light/integrator_options.h"
 #include "host/light/light_tree.h"
-#include "host/light/outer_sides.h"
 #include "host/light/sampler.h"
-#include "host/light/spot.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
+
+[[nodiscard]] inline double mean(const glm::dvec3& colour) {
+  return (colour.x + colour.y + colour.z) / 3.0;
+}
+
+/// A float that is no infinity.
+[[nodiscard]] inline float finite_float(double x) {
+  return static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
+}
+[[nodiscard]] inline glm::vec3 finite_floats(const glm::dvec3& x) {
+  return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
+}
+
+/// A SpotCone as shading reads it: KHR_lights_punctual's ramp of the cosine from the axis.
+struct SpotFalloff {
+  glm::vec3 axis{0.0f};
+  float scale = 0.0f, offset = 1.0f;  ///< of a light to all sides: 1 everywhere
+
+  SpotFalloff() = default;
+  explicit SpotFalloff(const SpotCone& cone) : axis(cone.axis) {
+    constexpr double kLeastRamp = 1e-6;
+    const double inner = sine_cosine(cone.inner / 360.0).cosine;
+    const double outer = sine_cosine(cone.outer / 360.0).cosine;
+    const double slope = 1.0 / (inner - outer > kLeastRamp ? inner - outer : kLeastRamp);
+    scale = static_cast<float>(slope);
+    offset = static_cast<float>(-outer * slope);
+  }
+};
+
+/// The share of the intensity at an angle from the axis with this cosine: 1 within the cone's inner
+/// angle, 0 beyond its outer one.
+template <class T>
+RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
+  const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
+  return ramp * ramp;
+}
+
+/// Of a triangle: which of its sides is seen from outside of what it encloses.
+enum class OuterSide : std::uint8_t {
+  kBoth,           ///< it is no part of a closed surface, or not surely
+  kAlongNormal,    ///< that of its normal
+  kAgainstNormal,  ///< the other
+};
+
+/// For each of some primitives. A closed surface is a set of these triangles that hang together by their
+/// edges, each edge of just two of them, which run along it in opposite directions. Where anything
+/// else of the scene is within the box around it, it counts as open.
+[[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
+                                                 std::span<const std::uint32_t> primitives);
 
 /// The emitting faces of one object and material: one light, which shines to both sides of each
 /// face.
@@ -37,7 +86,7 @@ template <class T>
 struct LightPoint {
   /// Of a light that is infinitely far away a unit vector towards it, and no normal.
   Triple<T> position, normal;  ///< the normal to one of both sides
-  WordOf<T> primitive;         ///< NearestHit::kNone: infinitely far away
+  WordOf<T> primitive;              ///< NearestHit::kNone: infinitely far away
 };
 
 /// All lights of a scene, ready for use. Lengths in what is asked of a surface (areas, distances)
@@ -72,7 +121,7 @@ class Lights {
   /// The inverse of a power of two about as long as the scene.
   [[nodiscard]] float per_unit() const { return per_unit_; }
 
-  enum class Kind : std::uint8_t { kPoint, kArea, kDirection, kEnvironment };
+  enum class Kind : std::uint8_t { kNone, kPoint, kArea, kDirection, kEnvironment };
 
   /// What shading reads of a light, by its index as in count().
   struct Light {
@@ -96,7 +145,7 @@ class Lights {
   /// The same of one patch each.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
-      const std::uint32_t (&patches)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
+      const std::uint32_t (&numbers)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
   /// The middle of a flat light, or very near, as a sample. Its primitive is one of the light's.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
@@ -145,9 +194,8 @@ class Lights {
   /// A part of a light: a triangle, or two that make a parallelogram.
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
-    std::uint32_t primitive = 0,
-                  slot_beyond = 0;   ///< with more of u than of v, and the other way round
-    float begin = 0.0f, end = 0.0f;  ///< its part of the light's area, in [0, 1]
+    std::uint32_t primitive = 0, slot_beyond = 0;  ///< with more of u than of v, and the other way round
+    float begin = 0.0f, end = 0.0f;           ///< its part of the light's area, in [0, 1]
     double area = 0.0;
     bool is_triangle = true;
   };
@@ -176,46 +224,35 @@ template <class T>
 RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&indices)[LanesOf<T>::kCount],
                                             const SquarePoint<T>& u) const {
   constexpr int kCount = LanesOf<T>::kCount;
-  Gathered<T, 2> in;
-  std::uint32_t patches[kCount];
-  float wanted[kCount];
-  lanes_to(wanted, u.x);
+  const auto wanted = unpack(u.x);
+  std::uint32_t numbers[kCount];
+  const Patch* patches[kCount];
   for (int k = 0; k < kCount; ++k) {
     const Light& light = lights_[indices[k]];
     const auto first = patch_ends_.begin() + light.first_patch;
     const auto found = std::upper_bound(first, first + light.patches - 1, wanted[k]);
-    patches[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
-    in.values[0][k] = patches_[patches[k]].begin;
-    in.values[1][k] = patches_[patches[k]].end;
+    numbers[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
+    patches[k] = &patches_[numbers[k]];
   }
-  const T begin = in.one(0), size = in.one(1) - begin;
-  return sample_patches<T>(patches, {at_most(at_least((u.x - begin) / size, 0.0f), 1.0f), u.y});
+  const T begin = gather<T>(patches, &Patch::begin), size = gather<T>(patches, &Patch::end) - begin;
+  return sample_patches<T>(numbers, {at_most(at_least((u.x - begin) / size, 0.0f), 1.0f), u.y});
 }
 
 template <class T>
 RAYGATE_INLINE LightPoint<T> Lights::sample_patches(
-    const std::uint32_t (&patches)[LanesOf<T>::kCount], const SquarePoint<T>& u) const {
-  enum : std::uint8_t { kCorner, kU = 3, kV = 6, kNormal = 9, kTriangle = 12, kFields };
-  Gathered<T, kFields> in;
-  Gathered<T, 2, std::uint32_t> primitives;
-  for (int k = 0; k < LanesOf<T>::kCount; ++k) {
-    const Patch& patch = patches_[patches[k]];
-    in.put(kCorner, k, patch.corner);
-    in.put(kU, k, patch.u);
-    in.put(kV, k, patch.v);
-    in.put(kNormal, k, patch.normal);
-    in.values[kTriangle][k] = patch.is_triangle ? 1.0f : 0.0f;
-    primitives.values[0][k] = patch.primitive;
-    primitives.values[1][k] = patch.slot_beyond;
-  }
+    const std::uint32_t (&numbers)[LanesOf<T>::kCount], const SquarePoint<T>& u) const {
+  const Patch* patches[LanesOf<T>::kCount];
+  for (int k = 0; k < LanesOf<T>::kCount; ++k) patches[k] = &patches_[numbers[k]];
   // The square onto the triangle: sqrt keeps areas.
-  const auto is_triangle = in.one(kTriangle) > 0.0f;
+  const MaskOf<T> is_triangle = gather<T>(patches, &Patch::is_triangle);
   const T far = root(u.x);
   const T along_u = choose(is_triangle, far * (1.0f - u.y), u.x);
   const T along_v = choose(is_triangle, far * u.y, u.y);
-  return {in.triple(kCorner) + in.triple(kU) * along_u + in.triple(kV) * along_v,
-          in.triple(kNormal),
-          choose(is_triangle | (along_u > along_v), primitives.one(0), primitives.one(1))};
+  return {gather<T>(patches, &Patch::corner) + gather<T>(patches, &Patch::u) * along_u +
+              gather<T>(patches, &Patch::v) * along_v,
+          gather<T>(patches, &Patch::normal),
+          choose(is_triangle | (along_u > along_v), gather<T>(patches, &Patch::primitive),
+                 gather<T>(patches, &Patch::slot_beyond))};
 }
 
 }  // namespace raygate

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/light/ggx.h"
+#include "host/light/scattering.h"
 
 namespace raygate {
 namespace {

@@ -2,13 +2,19 @@
 #pragma once
 
 #include "host/base/lane_math.h"
-#include "host/light/fresnel.h"
-#include "host/light/ggx.h"
 #include "host/light/material_parameters.h"
 #include "host/light/sampler.h"
+#include "host/light/scattering.h"
 #include "host/light/surface.h"
 
 namespace raygate {
+
+/// A colour, limited to [0, 1].
+template <class T>
+RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
+  return {at_most(at_least(x.x, 0.0f), 1.0f), at_most(at_least(x.y, 0.0f), 1.0f),
+          at_most(at_least(x.z, 0.0f), 1.0f)};
+}
 
 /// For base colour c, metalness m, transmission t and r0, the reflectance straight on of the index
 /// of refraction; s is Schlick's Fresnel share of a cosine:
@@ -46,9 +52,9 @@ struct MetallicRoughnessLobes {
   Triple<T> view;
   Ggx<T> ggx;
   CoatAlbedo coat_albedo;
-  T view_cosine;       ///< off 0: it is divided by
-  Triple<T> f0;        ///< f0
-  T f90;               ///< f90
+  T view_cosine;  ///< off 0: it is divided by
+  Triple<T> f0;
+  T f90;
   Triple<T> specular;  ///< what facets reflect of the view, but for what they hide
   Triple<T> diffuse;   ///< what is diffuse of it
   T glass, eta;        ///< the share of glass; its index beyond the border over that before
@@ -60,44 +66,27 @@ struct MetallicRoughnessLobes {
   RAYGATE_INLINE MetallicRoughnessLobes(
       const Surface<T>& surface, bool is_rough,
       const MaterialParameters* const (&materials)[LanesOf<T>::kCount]) {
-    enum : std::uint8_t {
-      kMetallic,
-      kRoughness,
-      kTransmission,
-      kReflectance,
-      kIndex,
-      kOpacity,
-      kAll
-    };
-    Gathered<T, kAll> in;
-    for (int k = 0; k < LanesOf<T>::kCount; ++k) {
-      const MaterialParameters& material = *materials[k];
-      in.values[kMetallic][k] = material.metallic;
-      in.values[kRoughness][k] = material.roughness;
-      in.values[kTransmission][k] = material.transmission;
-      in.values[kReflectance][k] = material.reflectance;
-      in.values[kIndex][k] = material.index;
-      in.values[kOpacity][k] = material.opacity;
-    }
-    const T one = spread<T>(1.0f), opacity = in.one(kOpacity);
+    using Material = MaterialParameters;
+    const T one = spread<T>(1.0f), opacity = gather<T>(materials, &Material::opacity);
     clear = one - opacity;
-    tint = {limited(surface.colour.x), limited(surface.colour.y), limited(surface.colour.z)};
-    const T metallic = in.one(kMetallic) * surface.metallic;
-    const T roughness = in.one(kRoughness) * surface.roughness;
+    tint = clamped(surface.colour);
+    const T metallic = gather<T>(materials, &Material::metallic) * surface.metallic;
+    const T roughness = gather<T>(materials, &Material::roughness) * surface.roughness;
     view = surface.view;
     const T alpha = at_least(roughness * roughness, Ggx<T>::kLeast);
     ggx = Ggx<T>(surface.normal, alpha);
     view_cosine = at_most(at_least(dot(surface.normal, view), 0x1p-20f), 1.0f);
-    glass = (one - metallic) * in.one(kTransmission);
+    glass = (one - metallic) * gather<T>(materials, &Material::transmission);
     const T plastic = at_least((one - metallic) - glass, 0.0f);
-    const T reflectance = in.one(kReflectance), coat = plastic * reflectance;
+    const T reflectance = gather<T>(materials, &Material::reflectance),
+            coat = plastic * reflectance;
     f0 = (tint * metallic + grey(coat)) * opacity;
     f90 = (one - glass) * opacity;
     coat_albedo = CoatAlbedo(is_rough ? alpha : T{});
     const T share = coat_albedo.at(view_cosine);
     specular = schlick(share);
     diffuse = tint * (plastic * (one - reflectance) * (one - share) * opacity);
-    const T index = in.one(kIndex);
+    const T index = gather<T>(materials, &Material::index);
     is_glass = glass > 0.0f;
     eta = choose(is_glass, choose(surface.outside, index, one / index), one);
   }
@@ -152,9 +141,6 @@ struct MetallicRoughnessLobes {
 
  private:
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
-  [[nodiscard]] RAYGATE_INLINE static T limited(const T& x) {
-    return at_most(at_least(x, 0.0f), 1.0f);
-  }
 };
 
 }  // namespace raygate

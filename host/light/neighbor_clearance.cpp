@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <utility>
 
 #include "host/bvh/box_query.h"
@@ -41,6 +42,22 @@ float largest_coordinate(const Bvh& bvh) {
 
 }  // namespace
 
+void Overlaps::add(std::uint32_t primitive, const Corners& triangle) {
+  const auto lane = static_cast<int>(slots_.size() % kLanes);
+  slots_.push_back(primitive);
+  if (lane == 0) {
+    Boxes& empty = boxes_.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      std::ranges::fill(empty.low[k], std::numeric_limits<float>::infinity());
+      std::ranges::fill(empty.high[k], -std::numeric_limits<float>::infinity());
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    boxes_.back().low[k][lane] = std::min({triangle[0][k], triangle[1][k], triangle[2][k]});
+    boxes_.back().high[k][lane] = std::max({triangle[0][k], triangle[1][k], triangle[2][k]});
+  }
+}
+
 bool lies_beyond(const Corners& other, const Corners& hit, int side) {
   return std::ranges::all_of(
       other, [&](const glm::vec3& vertex) { return orient3d(vertex, hit) != side; });
@@ -70,8 +87,7 @@ NeighborClearances::Found NeighborClearances::look(std::uint32_t primitive) cons
       Bvh::Child waiting[kMostWaiting];
       std::size_t count = 0;
       const auto look = [&]() RAYGATE_BODY {
-        for (std::size_t i = 0; i < count; ++i)
-          take_in<code()>(bvh_, waiting[i], primitive, search);
+        for (std::size_t i = 0; i < count; ++i) take_in<code()>(bvh_, waiting[i], primitive, search);
         count = 0;
       };
       const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "host/light/neighbor_clearance.h"
-#include "host/light/widen.h"
 
 // Why c is a bound
 //

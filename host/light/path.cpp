@@ -1,18 +1,20 @@
-#include "host/light/path.h"
-
-#include "host/light/in_lanes.h"
+// Path tracing: next-event estimation and BSDF sampling, combined by multiple importance sampling.
+#include "host/light/shade.h"
 
 namespace raygate {
 namespace {
 
-// What random numbers and branches are for.
+// Streams of random numbers.
 constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                         kDirection = 5, kFacet = 6;
-constexpr int kRouletteDepth = 3;  // before chance decides whether a ray lives on
-constexpr float kNothing = -1.0f;  // in place of a kind of light
+constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
 constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
 
-/// How likely each way on is, in proportion to what it brings.
+// Where no light would bring anything.
+const Lights::Light kNoLight{.kind = Lights::Kind::kNone};
+const Lights::Source kNoSource{.per_area = 1.0f};
+
+/// How likely each lobe is to be sampled, in proportion to what it reflects.
 template <class T>
 struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
@@ -23,168 +25,137 @@ struct LobeProbabilities {
         scatter(largest(bsdf.diffuse() + bsdf.glossy())),
         sum(mirror + transmission + scatter) {}
 
-  /// Of scattering; 0 where there is no way on at all.
+  /// Of diffuse and glossy reflection together; 0 where nothing is reflected at all.
   [[nodiscard]] RAYGATE_INLINE T scatter_probability() const {
     return choose(sum > 0.0f, scatter / sum, T{});
   }
 };
 
-/// What a light's share is at least, of the two ways of finding it, where a scattered ray finds it:
-/// beside the light such a ray meets the sky, and where the light's share of its light is as bright
-/// as that, it is no matter of chance which of them it meets.
+/// The least MIS weight of a scattered ray that finds the light. Beside the light such a ray meets
+/// the sky: with this weight the light is as bright to it, and chance does not matter.
 float min_mis_weight(const ShadingScene& shading, const Lights::Source& source) {
   return shading.path.limits_mis_weight ? shading.lights.light(source.light).sky : 0.0f;
 }
 
-/// What the surfaces emit. Lights that a scattered ray has found count for the share of that way of
-/// finding them.
+/// What the surfaces emit, with the MIS weight of the ray that found it.
 template <class T>
 RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hits<T>& hits) {
   const Lights& lights = shading.lights;
-  Gathered<T, 2> places;
+  float area_pdfs[Hits<T>::kCount] = {}, min_weights[Hits<T>::kCount] = {};
   for (int k = 0; k < Hits<T>::kCount; ++k) {
     const std::uint32_t source = lights.source_of(hits.block.places[hits.place[k]].primitive);
     const PathState& state = hits.block.state(hits.place[k]);
-    const bool was_asked = source != kNoIndex && state.pdf > 0.0f;
-    places.values[0][k] = was_asked ? lights.pmf<T>(source, state.scattered_at, state.normal) *
-                                          lights.source(source).per_area
-                                    : 0.0f;
-    places.values[1][k] = was_asked ? min_mis_weight(shading, lights.source(source)) : 0.0f;
+    if (source == kNoIndex || !(state.pdf > 0.0f)) continue;
+    area_pdfs[k] =
+        lights.pmf<T>(source, state.scattered_at, state.normal) * lights.source(source).per_area;
+    min_weights[k] = min_mis_weight(shading, lights.source(source));
   }
+  const T area_pdf = lanes_from<T>(area_pdfs), min_weight = lanes_from<T>(min_weights);
   const Triple<T> way = (hits.surface.point - hits.scattered_at) * spread<T>(lights.per_unit());
   const T squared = dot(way, way);
   const T cosine = absolute(dot(hits.surface.flat_normal, way)) / root(squared);
-  const T asked = choose(cosine > 0.0f, places.one(0) * squared / cosine, T{});
-  const T share = choose((places.one(0) > 0.0f) & (hits.pdf > 0.0f),
-                         maximum(power_heuristic(hits.pdf, asked), places.one(1)), spread<T>(1.0f));
-  return hits.throughput * (hits.bsdf.emission() * share + hits.bsdf.unlit());
+  const T light_pdf = choose(cosine > 0.0f, area_pdf * squared / cosine, T{});
+  const T mis_weight =
+      choose((area_pdf > 0.0f) & (hits.pdf > 0.0f),
+             maximum(power_heuristic(hits.pdf, light_pdf), min_weight), spread<T>(1.0f));
+  return hits.throughput * (hits.bsdf.emission() * mis_weight + hits.bsdf.unlit());
 }
 
+/// Next-event estimation: chooses one light for each hit, and samples it.
 template <class T>
-RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits) {
+RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
+                                     const LobeProbabilities<T>& lobes) {
   constexpr int kCount = Hits<T>::kCount;
+  using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
   const SquarePoint<T> u = hits.random(kChooseLight);
-  float chosen[kCount], rest[kCount];
-  lanes_to(chosen, u.x);
-  lanes_to(rest, u.y);
-  const Gathered<T, 3> points = Hits<T>::spread_out(hits.surface.point),
-                       normals = Hits<T>::spread_out(hits.surface.normal);
-  enum : std::uint8_t {
-    kLight,
-    kPosition = 3,
-    kAxis = 6,
-    kFalloff = 9,
-    kKind = 11,
-    kChance,
-    kPlace,
-    kLeast,
-    kFields
-  };
-  Gathered<T, kFields> in;
-  std::uint32_t indices[kCount], patches[kCount];
-  bool any_point = false, any_area = false, any_direction = false, any_spot = false,
-       any_environment = false;
+  const auto high = unpack(u.x), low = unpack(u.y);
+  const auto points = unpack(hits.surface.point), normals = unpack(hits.surface.normal);
+  const Lights::Source* sources[kCount];
+  const Lights::Light* chosen[kCount];
+  std::uint32_t indices[kCount];
+  float pmfs[kCount];
   for (int k = 0; k < kCount; ++k) {
-    // Twice 24 bits: enough for a chance of one in many millions.
-    const LightTree::Sample choice =
-        lights.sample_source<T>(Hits<T>::triple_of(points, k), Hits<T>::triple_of(normals, k),
-                                double{chosen[k]} + double{rest[k]} * 0x1p-24);
-    if (choice.source == kNoIndex) {
-      in.put(kLight, k, glm::vec3(0.0f));
-      in.put(kPosition, k, glm::vec3(0.0f));
-      in.values[kKind][k] = kNothing;
-      in.values[kChance][k] = in.values[kPlace][k] = 1.0f;
-      in.values[kLeast][k] = 0.0f;
-      indices[k] = 0;
-      patches[k] = kNoIndex;
-      continue;
-    }
-    const Lights::Source& source = lights.source(choice.source);
-    indices[k] = source.light;
-    patches[k] = source.patch;
-    const Lights::Light& light_record = lights.light(source.light);
-    in.put(kLight, k, light_record.emission);
-    in.put(kPosition, k, light_record.position);
-    in.values[kKind][k] = static_cast<float>(light_record.kind);
-    in.values[kChance][k] = choice.pmf;
-    in.values[kPlace][k] = choice.pmf * source.per_area;
-    in.values[kLeast][k] = min_mis_weight(shading, source);
-    any_point = any_point || light_record.kind == Lights::Kind::kPoint;
-    any_area = any_area || light_record.kind == Lights::Kind::kArea;
-    any_direction = any_direction || light_record.kind == Lights::Kind::kDirection;
-    any_environment = any_environment || light_record.kind == Lights::Kind::kEnvironment;
-    any_spot = any_spot || light_record.is_spot;
+    // Twice 24 bits: enough for a probability of one in many millions.
+    const LightTree::Sample sample =
+        lights.sample_source<T>(points[k], normals[k], double{high[k]} + double{low[k]} * 0x1p-24);
+    const bool is_any = sample.source != kNoIndex;
+    sources[k] = is_any ? &lights.source(sample.source) : &kNoSource;
+    indices[k] = sources[k]->light;
+    chosen[k] = is_any ? &lights.light(indices[k]) : &kNoLight;
+    pmfs[k] = is_any ? sample.pmf : 1.0f;
   }
-  const T kinds = in.one(kKind);
-  const auto is_a = [&](Lights::Kind kind)
-                        RAYGATE_BODY { return kinds == spread<T>(static_cast<float>(kind)); };
-  const LightPoint<T> place = {in.triple(kPosition), zero<T>(), WordOf<T>{} + NearestHit::kNone};
-  if (any_point) {
-    Triple<T> light = in.triple(kLight);
-    if (any_spot) {
-      for (int k = 0; k < kCount; ++k) {
-        const SpotFalloff& spot = lights.light(indices[k]).spot;
-        in.put(kAxis, k, spot.axis);
-        in.values[kFalloff][k] = spot.scale;
-        in.values[kFalloff + 1][k] = spot.offset;
-      }
-      light = light * spot_falloff(spot_cosine(hits, lights, place.position, in.triple(kAxis)),
-                                   in.one(kFalloff), in.one(kFalloff + 1));
+  const WordOf<T> kinds =
+      gather<T>([&](int k) RAYGATE_BODY { return static_cast<std::uint32_t>(chosen[k]->kind); });
+  const auto is_a = [&](Kind kind)
+                        RAYGATE_BODY { return kinds == static_cast<std::uint32_t>(kind); };
+  const T pmf = lanes_from<T>(pmfs);
+  const Triple<T> emission = gather<T>(chosen, &Lights::Light::emission);
+  const LightPoint<T> place = {gather<T>(chosen, &Lights::Light::position), zero<T>(),
+                               WordOf<T>{} + NearestHit::kNone};
+  if (any(is_a(Kind::kPoint))) {
+    Triple<T> intensity = emission;
+    if (any(gather<T>(chosen, &Lights::Light::is_spot))) {
+      const auto axis = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.axis; });
+      const T scale = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.scale; });
+      const T offset = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.offset; });
+      intensity =
+          intensity * spot_falloff(spot_cosine(hits, lights, place.position, axis), scale, offset);
     }
-    light = point_light_contribution(hits, lights, place.position, light, in.one(kChance));
-    add_light_sample<T>(hits, 0, is_a(Lights::Kind::kPoint), light, indices, place);
+    add_light_sample<T>(hits, 0, is_a(Kind::kPoint),
+                        point_light_contribution(hits, lights, place.position, intensity, pmf),
+                        indices, place);
   }
-  if (any_direction) {
+  if (any(is_a(Kind::kDirection))) {
     const Triple<T> light = directional_light_contribution(
-        hits, place.position, hits.bsdf.eval_for_point_light(place.position), in.triple(kLight),
-        in.one(kChance));
-    add_light_sample<T>(hits, 0, is_a(Lights::Kind::kDirection), light, indices, place);
+        hits, place.position, hits.bsdf.eval_for_point_light(place.position), emission, pmf);
+    add_light_sample<T>(hits, 0, is_a(Kind::kDirection), light, indices, place);
   }
-  if (any_environment) {
+  if (any(is_a(Kind::kEnvironment))) {
     const Environment& environment = *lights.environment();
     const Triple<T> towards = environment.sample<T>(hits.random(kLightPoint));
-    const T asked = environment.pdf(towards) * in.one(kChance);
-    const T scattered =
-        hits.bsdf.pdf(towards) * LobeProbabilities<T>(hits.bsdf).scatter_probability();
+    const T light_pdf = environment.pdf(towards) * pmf;
+    const T bsdf_pdf = hits.bsdf.pdf(towards) * lobes.scatter_probability();
     const Triple<T> light = directional_light_contribution(
-        hits, towards, hits.bsdf.eval(towards) * power_heuristic(asked, scattered),
-        environment.radiance(towards), asked);
-    const auto is_environment = is_a(Lights::Kind::kEnvironment), scatters = hits.bsdf.scatters();
-    add_light_sample<T>(hits, 0, is_environment & scatters & (asked > kMinPdf), light, indices,
-                        {towards, zero<T>(), place.primitive});
+        hits, towards, hits.bsdf.eval(towards) * power_heuristic(light_pdf, bsdf_pdf),
+        environment.radiance(towards), light_pdf);
+    const auto is_valid = is_a(Kind::kEnvironment) & hits.bsdf.scatters() & (light_pdf > kMinPdf);
+    add_light_sample<T>(hits, 0, is_valid, light, indices, {towards, zero<T>(), place.primitive});
   }
-  if (!any_area) return;
+  if (!any(is_a(Kind::kArea))) return;
+  std::uint32_t patches[kCount];
   for (int k = 0; k < kCount; ++k) {
     // A lane without an area light samples one nevertheless, and nothing comes of it.
-    if (patches[k] == kNoIndex) patches[k] = 0;
+    patches[k] = sources[k]->patch == kNoIndex ? 0 : sources[k]->patch;
   }
   const LightPoint<T> point = lights.sample_patches<T>(patches, hits.random(kLightPoint));
   const DirectionToLight<T> to_light(lights, hits.surface, point.position);
-  const T per_area = in.one(kPlace), cosine = absolute(dot(point.normal, to_light.direction));
-  const T asked = per_area * to_light.distance_squared / cosine;
-  const T scattered =
-      hits.bsdf.pdf(to_light.direction) * LobeProbabilities<T>(hits.bsdf).scatter_probability();
-  const T share =
-      choose(scattered > kMinPdf, minimum(power_heuristic(asked, scattered), 1.0f - in.one(kLeast)),
-             spread<T>(1.0f));
-  const Triple<T> weighted = in.triple(kLight) * (share / per_area);
-  const auto is_area = is_a(Lights::Kind::kArea), scatters = hits.bsdf.scatters();
-  add_light_sample<T>(hits, 0, is_area & scatters & (cosine > 0.0f),
-                      area_light_contribution(hits, to_light, point, weighted), indices, point);
+  const T area_pdf = pmf * gather<T>(sources, &Lights::Source::per_area);
+  const T cosine = absolute(dot(point.normal, to_light.direction));
+  const T light_pdf = area_pdf * to_light.distance_squared / cosine;
+  const T bsdf_pdf = hits.bsdf.pdf(to_light.direction) * lobes.scatter_probability();
+  const T min_bsdf_weight =
+      gather<T>([&](int k) RAYGATE_BODY { return min_mis_weight(shading, *sources[k]); });
+  const T mis_weight = choose(bsdf_pdf > kMinPdf,
+                              minimum(power_heuristic(light_pdf, bsdf_pdf), 1.0f - min_bsdf_weight),
+                              spread<T>(1.0f));
+  add_light_sample<T>(
+      hits, 0, is_a(Kind::kArea) & hits.bsdf.scatters() & (cosine > 0.0f),
+      area_light_contribution(hits, to_light, point, emission * (mis_weight / area_pdf)), indices,
+      point);
 }
 
+/// Sends one ray on: a lobe of the BSDF is chosen by its probability, then a direction of it.
 template <class T>
 RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& hits,
-                                         Triple<T>& radiance) {
+                                         const LobeProbabilities<T>& lobes, Triple<T>& radiance) {
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
-  const LobeProbabilities<T> lobes(bsdf);
   const SquarePoint<T> choice = hits.random(kChooseLobe);
   Triple<T> throughput = hits.throughput;
   ScatteredRays<T> next;
   next.is_wanted = lobes.sum > 0.0f;
-  // Chance decides before the lobe is looked at, so that no work is lost on rays that end.
+  // Russian roulette comes before the lobe is chosen: no work is lost on rays that end.
   if (hits.block.batch->depth >= kRouletteDepth && shading.path.roulette_threshold > 0.0f) {
     const float per_threshold = 1.0f / shading.path.roulette_threshold;
     const T survival = at_most(largest(throughput) * lobes.sum * per_threshold, 1.0f);
@@ -193,7 +164,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   }
   if (!any(next.is_wanted)) return;
   const T u = choice.x * lobes.sum;
-  // Rough glass: its facet says what is mirrored.
+  // Rough glass: the sampled facet decides between reflection and transmission.
   const bool has_rough_glass = bsdf.has_rough_glass();
   const T glass_chance = lobes.mirror + lobes.transmission;
   Triple<T> facet = surface.normal;
@@ -266,15 +237,16 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
 
 }  // namespace
 
-void Path::shade_kind(HitBlock& block, HitKind kind, std::span<const std::uint32_t> at) {
-  const ShadingScene& shading = shading_;
+void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
+                std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(hits.pdf)>;
     Triple<T> radiance = zero<T>();
     if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
     if (block.batch->depth <= shading.max_depth) {
-      if (shading.lights.any_power()) sample_one_light(shading, hits);
-      sample_scattered_ray(shading, hits, radiance);
+      const LobeProbabilities<T> lobes(hits.bsdf);
+      if (shading.lights.any_power()) sample_one_light(shading, hits, lobes);
+      sample_scattered_ray(shading, hits, lobes, radiance);
     }
     hits.set_radiance(radiance);
   });

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "host/intersect/intersector.h"
+#include "host/light/integrator_options.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
-#include "host/light/skips.h"
 #include "host/light/spawn_ray.h"
 
 namespace raygate {

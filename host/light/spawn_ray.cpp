@@ -164,8 +164,7 @@ const NeighborClearance& RaySpawner::find_clearance(std::uint32_t primitive, std
   return (found_[lane] = clearances_.look(primitive)).clearance;
 }
 
-std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,
-                                            SpawnSide side) {
+std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
   const Corners& hit = bvh_.corners_of(primitive);
   const Interval t = hit_distance(ray, hit);
   const HitPoint x(ray, t);
@@ -182,14 +181,12 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
-    return !any_primitive_near(bvh_, low, high,
-                               [&](std::uint32_t other_slot, const Corners& other) {
-                                 if (other_slot == primitive || surely_apart(low, high, other))
-                                   return false;
-                                 if (lies_beyond(other, hit, sign)) return false;
-                                 const int wanted = side_of_ray(ray, hit, other, side);
-                                 return wanted != 0 && orient3d(candidate, other) != wanted;
-                               });
+    return !any_primitive_near(bvh_, low, high, [&](std::uint32_t other_slot, const Corners& other) {
+      if (other_slot == primitive || surely_apart(low, high, other)) return false;
+      if (lies_beyond(other, hit, sign)) return false;
+      const int wanted = side_of_ray(ray, hit, other, side);
+      return wanted != 0 && orient3d(candidate, other) != wanted;
+    });
   };
   for (int k = 0; k <= kLastStep; ++k) {
     for (const glm::dvec3& offset : offsets) {

@@ -63,10 +63,9 @@ class RaySpawner {
   explicit RaySpawner(const NeighborClearances& clearances)
       : clearances_(clearances), bvh_(clearances.bvh()) {}
 
-  /// O' for `ray`, whose nearest hit is the triangle in `primitive`. The triangles in whose plane
-  /// the ray runs have no say.
-  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive,
-                                              SpawnSide side);
+  /// O' for `ray`, whose nearest hit is the triangle in `primitive`. The triangles in whose plane the
+  /// ray runs have no say.
+  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive, SpawnSide side);
 
   /// Says that a primitive will soon be asked about.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
@@ -85,8 +84,7 @@ class RaySpawner {
   RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
 
   /// Of a query in this lane.
-  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t primitive,
-                                                                     int lane) {
+  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t primitive, int lane) {
     if (bvh_.is_instanced(primitive)) [[unlikely]]
       return find_clearance(primitive, static_cast<std::size_t>(lane));
     return clearances_.of(primitive);
@@ -94,8 +92,7 @@ class RaySpawner {
   [[nodiscard]] const NeighborClearance& find_clearance(std::uint32_t primitive, std::size_t lane);
 
   /// As find(), looking at what is near.
-  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive,
-                                                SpawnSide side);
+  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive, SpawnSide side);
 
   const NeighborClearances& clearances_;
   const Bvh& bvh_;

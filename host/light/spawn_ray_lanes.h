@@ -7,7 +7,6 @@
 
 #include "host/base/lanes.h"
 #include "host/light/neighbor_clearance.h"
-#include "host/light/widen.h"
 
 // Which side
 //

@@ -1,6 +1,7 @@
-// The surface where rays hit it: point, normals, colour, and which side was hit.
+// The surfaces that rays hit: point, normals, colour, and which side was hit.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -10,6 +11,7 @@
 #include "host/light/material_parameters.h"
 #include "host/scene/instances.h"
 #include "host/scene/scene.h"
+#include "host/scene/material_lookup.h"
 
 namespace raygate {
 
@@ -29,12 +31,14 @@ struct SurfaceHit {
   }
 };
 
+/// Whether the file has a normal for each vertex.
+[[nodiscard]] inline bool has_normals(const Triangle& face) {
+  return face.normals[0] != kNoIndex && face.normals[1] != kNoIndex && face.normals[2] != kNoIndex;
+}
+
 /// Whether the weights of the vertices at the hit matter.
 [[nodiscard]] inline HitKind weights_needed(const SurfaceHit& place) {
-  const auto& normals = place.face->normals;
-  const bool has_normals =
-      normals[0] != kNoIndex && normals[1] != kNoIndex && normals[2] != kNoIndex;
-  return place.point == nullptr || has_normals ? kInterpolates : 0;
+  return place.point == nullptr || has_normals(*place.face) ? kInterpolates : 0;
 }
 
 /// What shading needs to know of hits, one a lane. T is float or FloatLanes. In float, but for what
@@ -88,22 +92,6 @@ struct Surface {
   T side;                        ///< the exact sign of I . N, of the ray
 };
 
-/// The colour of a hit whose vertices have these weights.
-[[nodiscard]] glm::vec3 textured(const Scene& scene, const Triangle& face,
-                                 const glm::vec3& weights);
-
-/// What its texture multiplies of a metallic-roughness material: x roughness, y metallic.
-[[nodiscard]] glm::vec2 textured_roughness(const Scene& scene, const Triangle& face,
-                                           const glm::vec3& weights);
-
-/// The normal by the texture of the face's material; mapped_normal says more.
-[[nodiscard]] glm::vec3 bent_normal(const Scene& scene, const Triangle& face,
-                                    const Corners& corners, const glm::vec3& weights,
-                                    const glm::vec3& normal);
-
-/// Whether the mask of the face's material says that there is nothing where the ray hits it.
-[[nodiscard]] bool is_masked_out(const Scene& scene, const Bvh& bvh, const SurfaceHit& place);
-
 /// The weights of the vertices, up to a common factor: I . (B x C), I . (C x A), I . (A x B), all
 /// of one sign but for rounding.
 template <class D>
@@ -125,33 +113,28 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
                                      const SurfaceHit (&places)[LanesOf<T>::kCount]) {
   using Wide = WideOf<T>;
   constexpr int kCount = LanesOf<T>::kCount;
-  enum : std::uint8_t {
-    kOrigin,
-    kDirection = 3,
-    kPoint = 6,
-    kColour = 9,
-    kCorners = 12,
-    kFields = 21
+  const auto ray = [&](int k) RAYGATE_BODY -> const Ray& { return *places[k].ray; };
+  const Triple<T> origin =
+      gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return ray(k).origin; });
+  const Triple<T> direction =
+      gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return ray(k).direction; });
+  Corners own_corners[kCount];
+  for (int k = 0; k < kCount; ++k) own_corners[k] = bvh.corners_of(places[k].primitive);
+  const auto corner = [&](std::size_t c) RAYGATE_BODY {
+    return wide(
+        gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return own_corners[k][c]; }));
   };
-  Gathered<T, kFields> in;
-  for (int k = 0; k < kCount; ++k) {
-    const SurfaceHit& place = places[k];
-    const Corners corners = bvh.corners_of(place.primitive);
-    in.put(kOrigin, k, place.ray->origin);
-    in.put(kDirection, k, place.ray->direction);
-    in.put(kPoint, k, place.point != nullptr ? *place.point : glm::vec3(0.0f));
-    in.put(kColour, k, scene.materials[place.face->material].diffuse);
-    for (int c = 0; c < 3; ++c) in.put(kCorners + 3 * c, k, corners[c]);
-  }
-  const Triple<T> direction = in.triple(kDirection);
   Surface<T> surface;
-  surface.point = in.triple(kOrigin) + in.triple(kPoint);
+  surface.point = origin + gather<T>([&](int k) RAYGATE_BODY {
+                    return places[k].point != nullptr ? *places[k].point : glm::vec3(0.0f);
+                  });
   surface.view = -normalized(direction);
-  surface.colour = in.triple(kColour);
+  surface.colour = gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& {
+    return scene.materials[places[k].face->material].diffuse;
+  });
   if ((kind & kMetallicRoughness) != 0) surface.roughness = surface.metallic = spread<T>(1.0f);
 
-  const Triple<Wide> corners[3] = {wide(in.triple(kCorners)), wide(in.triple(kCorners + 3)),
-                                   wide(in.triple(kCorners + 6))};
+  const Triple<Wide> corners[3] = {corner(0), corner(1), corner(2)};
   const Triple<Wide> u = corners[1] - corners[0], v = corners[2] - corners[0];
   const Wide from[3] = {u.x, u.y, u.z}, to[3] = {v.x, v.y, v.z};
   Wide value[3], size[3];
@@ -164,22 +147,18 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
 
   // Which side was hit: double says it, or exact arithmetic does.
   const typename Surface<T>::Slope slope(surface, direction);
-  Gathered<T, 2> side;
-  lanes_to(side.values[0], slope.value);
-  lanes_to(side.values[1], choose(slope.is_sure, spread<T>(1.0f), T{}));
-  for (int k = 0; k < kCount; ++k) {
-    if (side.values[1][k] != 0.0f) continue;
-    side.values[0][k] = static_cast<float>(
-        direction_side(places[k].ray->direction, bvh.corners_of(places[k].primitive)));
-  }
-  surface.side = side.one(0);
+  const auto values = unpack(slope.value);
+  const auto is_sure = unpack(slope.is_sure);
+  surface.side = gather<T>([&](int k) RAYGATE_BODY {
+    return is_sure[k] ? values[k]
+                      : static_cast<float>(direction_side(ray(k).direction, own_corners[k]));
+  });
   const auto towards = surface.side < 0.0f;  // against the triangle's own normal
 
   surface.normal = surface.flat_normal;
   auto along = surface.normal.x == surface.normal.x;
   if ((kind & kInterpolates) != 0) {
-    const Triple<Wide> unscaled =
-        unscaled_weights(wide(in.triple(kOrigin)), wide(direction), corners);
+    const Triple<Wide> unscaled = unscaled_weights(wide(origin), wide(direction), corners);
     const Wide inverse = 1.0 / (unscaled.x + unscaled.y + unscaled.z);
     Triple<T> weights = narrow(unscaled * inverse);
     const T third = spread<T>(1.0f / 3.0f);  // where nothing is left of the triangle
@@ -187,63 +166,45 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
     weights = {choose(is_number, at_least(weights.x, 0.0f), third),
                choose(is_number, at_least(weights.y, 0.0f), third),
                choose(is_number, at_least(weights.z, 0.0f), third)};
-    enum : std::uint8_t { kNormals, kHasNormals = 9, kHasPoint = 10, kTextured = 11, kMore = 14 };
-    Gathered<T, kMore> more;
-    Gathered<T, 3> weight;
-    lanes_to(weight.values[0], weights.x);
-    lanes_to(weight.values[1], weights.y);
-    lanes_to(weight.values[2], weights.z);
-    for (int k = 0; k < kCount; ++k) {
-      const Triangle& face = *places[k].face;
-      more.values[kHasNormals][k] = 1.0f;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t index = face.normals[c];
-        if (index == kNoIndex) more.values[kHasNormals][k] = 0.0f;
-        more.put(kNormals + 3 * static_cast<int>(c), k,
-                 index == kNoIndex ? glm::vec3(0.0f) : places[k].normal(scene, index));
-      }
-      more.values[kHasPoint][k] = places[k].point != nullptr ? 1.0f : 0.0f;
-      more.put(
-          kTextured, k,
-          textured(scene, face, {weight.values[0][k], weight.values[1][k], weight.values[2][k]}));
-    }
-    surface.colour = more.triple(kTextured);
+    const auto weight = unpack(weights);
+    surface.colour = gather<T>([&](int k) RAYGATE_BODY {
+      return diffuse_at(scene, *places[k].face, glm::dvec3(weight[k]));
+    });
     if ((kind & kMetallicRoughness) != 0) {
-      Gathered<T, 2> factor;
+      glm::vec2 factors[kCount];
       for (int k = 0; k < kCount; ++k) {
-        const glm::vec2 textured =
-            textured_roughness(scene, *places[k].face,
-                               {weight.values[0][k], weight.values[1][k], weight.values[2][k]});
-        factor.values[0][k] = textured.x;
-        factor.values[1][k] = textured.y;
+        factors[k] = roughness_at(scene, *places[k].face, glm::dvec3(weight[k]));
       }
-      surface.roughness = factor.one(0);
-      surface.metallic = factor.one(1);
+      surface.roughness = gather<T>([&](int k) RAYGATE_BODY { return factors[k].x; });
+      surface.metallic = gather<T>([&](int k) RAYGATE_BODY { return factors[k].y; });
     }
     const Triple<T> own_point = narrow(corners[0] * wide(weights.x) + corners[1] * wide(weights.y) +
                                        corners[2] * wide(weights.z));
-    surface.point = choose(more.one(kHasPoint) > 0.0f, surface.point, own_point);
-    const Triple<T> sum = more.triple(kNormals) * weights.x +
-                          more.triple(kNormals + 3) * weights.y +
-                          more.triple(kNormals + 6) * weights.z;
+    const MaskOf<T> has_point =
+        gather<T>([&](int k) RAYGATE_BODY { return places[k].point != nullptr; });
+    surface.point = choose(has_point, surface.point, own_point);
+    const auto vertex_normal = [&](std::size_t c) RAYGATE_BODY {
+      return gather<T>([&](int k) RAYGATE_BODY {
+        const std::uint32_t index = places[k].face->normals[c];
+        return index == kNoIndex ? glm::vec3(0.0f) : places[k].normal(scene, index);
+      });
+    };
+    const MaskOf<T> have_normals =
+        gather<T>([&](int k) RAYGATE_BODY { return has_normals(*places[k].face); });
+    const Triple<T> sum =
+        vertex_normal(0) * weights.x + vertex_normal(1) * weights.y + vertex_normal(2) * weights.z;
     const T squared = dot(sum, sum);
-    const auto is_smooth = (more.one(kHasNormals) > 0.0f) & (squared > 0.0f);
+    const auto is_smooth = have_normals & (squared > 0.0f);
     surface.normal = choose(is_smooth, sum * (1.0f / root(squared)), surface.normal);
     along = !(dot(surface.flat_normal, surface.normal) < 0.0f);
     surface.flat_normal = choose(along, surface.flat_normal, -surface.flat_normal);
     if ((kind & kIsBumpy) != 0) {
-      Gathered<T, 3> normals;
-      lanes_to(normals.values[0], surface.normal.x);
-      lanes_to(normals.values[1], surface.normal.y);
-      lanes_to(normals.values[2], surface.normal.z);
-      for (int k = 0; k < kCount; ++k) {
-        normals.put(
-            0, k,
-            bent_normal(scene, *places[k].face, bvh.corners_of(places[k].primitive),
-                        {weight.values[0][k], weight.values[1][k], weight.values[2][k]},
-                        {normals.values[0][k], normals.values[1][k], normals.values[2][k]}));
-      }
-      surface.normal = normals.triple(0);
+      const auto normals = unpack(surface.normal);
+      surface.normal = gather<T>([&](int k) RAYGATE_BODY {
+        const Corners& c = own_corners[k];
+        return mapped_normal(scene, *places[k].face, {c[0], c[1], c[2]}, glm::dvec3(weight[k]),
+                             normals[k]);
+      });
     }
   }
   surface.outside = towards == along;
@@ -257,6 +218,20 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
              choose(tilted_size > 0.0f, tilted * (1.0f / root(tilted_size)), surface.flat_normal),
              surface.normal);
   return surface;
+}
+
+/// Whether the mask of the face's material says that there is nothing where the ray hits it.
+[[nodiscard]] inline bool is_masked_out(const Scene& scene, const Bvh& bvh,
+                                        const SurfaceHit& place) {
+  const Corners corners = bvh.corners_of(place.primitive);
+  const auto wide = [](const glm::vec3& v) { return Triple<double>{v.x, v.y, v.z}; };
+  const Triple<double> at =
+      unscaled_weights<double>(wide(place.ray->origin), wide(place.ray->direction),
+                               {wide(corners[0]), wide(corners[1]), wide(corners[2])});
+  const double sum = at.x + at.y + at.z;
+  const glm::dvec3 weights = glm::dvec3(at.x, at.y, at.z) / sum;
+  return std::isfinite(weights.x + weights.y + weights.z) &&
+         is_masked_out(scene, *place.face, weights);
 }
 
 }  // namespace raygate

@@ -1,11 +1,10 @@
-#include "host/light/whitted.h"
-
-#include "host/light/in_lanes.h"
+// Whitted's ray tracing: all lights, mirrors and glass.
+#include "host/light/shade.h"
 
 namespace raygate {
 namespace {
 
-// What random numbers and branches are for.
+// Streams of random numbers.
 constexpr std::uint32_t kMirror = 1, kTransmission = 2, kFacet = 3, kFirstAreaLight = 16;
 constexpr float kNarrow = 0.25f;  // alpha: what wider facets reflect counts as ambient light
 
@@ -20,61 +19,58 @@ RAYGATE_INLINE MaskOf<T> is_narrow(const Hits<T>& hits) {
   return !(hits.bsdf.facets().ggx.squared > kNarrow * kNarrow);
 }
 
+/// A light sample of each hit for every light but the environment, which is the ambient light.
 template <class T>
 RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits) {
+  using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
   const T one = spread<T>(1.0f);
-  std::uint32_t indices[Hits<T>::kCount];
   const std::size_t points = lights.points().size();
-  const WordOf<T> no_slot = WordOf<T>{} + NearestHit::kNone;
   for (std::uint32_t i = 0; i < lights.count(); ++i) {
-    const Lights::Light& light_record = lights.light(i);
-    for (std::uint32_t& number : indices) number = i;
-    const Triple<T> position = spread<T>(light_record.position);
-    Triple<T> light = spread<T>(light_record.emission);
-    if (light_record.kind == Lights::Kind::kPoint) {
-      if (light_record.is_spot) {
-        light =
-            light *
-            spot_falloff(spot_cosine(hits, lights, position, spread<T>(light_record.spot.axis)),
-                         spread<T>(light_record.spot.scale), spread<T>(light_record.spot.offset));
+    const Lights::Light& light = lights.light(i);
+    std::uint32_t indices[Hits<T>::kCount];
+    for (std::uint32_t& index : indices) index = i;
+    const LightPoint<T> place = {spread<T>(light.position), zero<T>(),
+                                 WordOf<T>{} + NearestHit::kNone};
+    Triple<T> emission = spread<T>(light.emission);
+    if (light.kind == Kind::kPoint) {
+      if (light.is_spot) {
+        const T cosine = spot_cosine(hits, lights, place.position, spread<T>(light.spot.axis));
+        emission = emission *
+                   spot_falloff(cosine, spread<T>(light.spot.scale), spread<T>(light.spot.offset));
       }
       add_light_sample<T>(hits, i, one > 0.0f,
-                          point_light_contribution(hits, lights, position, light, one), indices,
-                          {position, zero<T>(), no_slot});
-      continue;
+                          point_light_contribution(hits, lights, place.position, emission, one),
+                          indices, place);
+    } else if (light.kind == Kind::kDirection) {
+      const Triple<T> scattered = hits.bsdf.eval_for_point_light(place.position);
+      add_light_sample<T>(
+          hits, i, one > 0.0f,
+          directional_light_contribution(hits, place.position, scattered, emission, one), indices,
+          place);
+    } else if (light.kind == Kind::kArea && any(hits.bsdf.scatters())) {
+      const auto number = static_cast<std::uint32_t>(i - points);
+      const AreaLight& area = lights.areas()[number];
+      const LightPoint<T> point =
+          shading.single_sample && area.is_flat
+              ? Lights::middle<T>(area)
+              : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
+      const DirectionToLight<T> to_light(lights, hits.surface, point.position);
+      add_light_sample<T>(
+          hits, i, hits.bsdf.scatters(),
+          area_light_contribution(hits, to_light, point, emission * spread<T>(light.area)), indices,
+          point);
     }
-    if (light_record.kind == Lights::Kind::kDirection) {
-      add_light_sample<T>(hits, i, one > 0.0f,
-                          directional_light_contribution(
-                              hits, position, hits.bsdf.eval_for_point_light(position), light, one),
-                          indices, {position, zero<T>(), no_slot});
-      continue;
-    }
-    if (light_record.kind == Lights::Kind::kEnvironment) continue;  // it is the ambient light
-    const auto scatters = hits.bsdf.scatters();
-    if (!any(scatters)) continue;
-    const AreaLight& area = lights.areas()[i - points];
-    const auto number = static_cast<std::uint32_t>(i - points);
-    const LightPoint<T> point =
-        shading.single_sample && area.is_flat
-            ? Lights::middle<T>(area)
-            : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
-    const DirectionToLight<T> to_light(lights, hits.surface, point.position);
-    add_light_sample<T>(
-        hits, i, scatters,
-        area_light_contribution(hits, to_light, point, light * spread<T>(light_record.area)),
-        indices, point);
   }
 }
 
 /// The lanes in which a ray of this throughput is worth tracing; counts the others.
 template <class T>
 RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& hits,
-                                    const Triple<T>& throughput, SkipCounters& skipped) {
+                                    const Triple<T>& throughput) {
+  SkipCounters& skipped = hits.block.skipped;
   const T size = largest(throughput);
-  float sizes[Hits<T>::kCount];
-  lanes_to(sizes, size);
+  const auto sizes = unpack(size);
   for (int k = 0; k < hits.count; ++k) {
     if (sizes[k] == 0.0f) {
       skipped.weightless += shading.skips_weightless ? 1 : 0;
@@ -87,8 +83,7 @@ RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& 
 }
 
 template <class T>
-RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hits,
-                                        SkipCounters& skipped) {
+RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hits) {
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
   ScatteredRays<T> next;
@@ -116,7 +111,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   }
   next.is_wanted = bsdf.mirror_is_traced();
   if (any(next.is_wanted)) {
-    next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.throughput, skipped);
+    next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.throughput);
   }
   if (any(next.is_wanted)) {
     next.direction = reflect(surface.view, facet);
@@ -128,7 +123,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   }
   next.pdf = T{};
   next.throughput = hits.throughput * transmitted;
-  next.is_wanted = worthwhile(shading, hits, next.throughput, skipped);
+  next.is_wanted = worthwhile(shading, hits, next.throughput);
   if (any(next.is_wanted)) {
     const Refraction<T> bent(surface.view, facet, bsdf.eta());
     const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
@@ -145,9 +140,8 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
 
 }  // namespace
 
-void Whitted::shade_kind(HitBlock& block, HitKind kind, std::span<const std::uint32_t> at) {
-  const ShadingScene& shading = shading_;
-  SkipCounters& skipped = skipped_;
+void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
+                   std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(hits.pdf)>;
     const Bsdf<T>& bsdf = hits.bsdf;
@@ -166,7 +160,7 @@ void Whitted::shade_kind(HitBlock& block, HitKind kind, std::span<const std::uin
     hits.set_radiance(hits.throughput *
                       (shown + choose(bsdf.mirror_is_traced(), zero<T>(), background)));
     sample_all_lights(shading, hits);
-    if (goes_on) spawn_specular_rays(shading, hits, skipped);
+    if (goes_on) spawn_specular_rays(shading, hits);
   });
 }
 

@@ -60,7 +60,7 @@ class TileRenderer {
   Intersector& intersector_;
   Film& film_;
   std::span<EmitterEdge> emitter_edges_;
-  std::unique_ptr<Integrator> integrator_;
+  Integrator integrator_;
   ShadowRays shadow_rays_;
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.

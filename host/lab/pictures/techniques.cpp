@@ -10,7 +10,7 @@
 #include "host/cli/options.h"
 #include "host/lab/commands.h"
 #include "host/lab/timing.h"
-#include "host/light/path_options.h"
+#include "host/light/integrator_options.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/light/fresnel.h"
 #include "host/light/sampler.h"
+#include "host/light/scattering.h"
 #include "host/light/test/seen.h"
 
 namespace raygate {

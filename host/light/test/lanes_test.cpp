@@ -9,10 +9,8 @@
 #include "host/base/elementary.h"
 #include "host/base/lane_math.h"
 #include "host/base/vectors.h"
-#include "host/light/fresnel.h"
-#include "host/light/ggx.h"
-#include "host/light/orthonormal_basis.h"
 #include "host/light/sampler.h"
+#include "host/light/scattering.h"
 
 namespace raygate {
 namespace {

@@ -1,10 +1,9 @@
-#include "host/light/outer_sides.h"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <utility>
 
+#include "host/light/lights.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
