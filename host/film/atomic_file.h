@@ -1,4 +1,4 @@
-// Files that are there whole or not at all.
+// Atomic files: a target holds the old file or the new one, whole, whatever fails.
 #pragma once
 
 #include <sys/types.h>
@@ -16,8 +16,8 @@ namespace raygate {
 /// and several files can be made ready before the first one is replaced.
 ///
 /// Symbolic links are followed; an old file's permissions are kept. A device, a pipe or standard
-/// output (/dev/stdout) has nothing to keep whole: the bytes go there at once, or fail where nobody
-/// reads the pipe. All errors are InputError, "path: cannot write: reason".
+/// output (/dev/stdout) has nothing to keep whole: the bytes go there at once, or fail where no
+/// process has the pipe open. All errors are InputError, "path: cannot write: reason".
 class AtomicFile {
  public:
   /// Begins a file for `path`, to be written bit by bit.

@@ -1,4 +1,4 @@
-// How far a picture is from a reference.
+// Comparing pictures: error measures of a picture against a reference.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Numbers that are no colours, made visible.
+// False colours: channels of numbers (depths, counts, names) as 8-bit images.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// How much of its neighbourhood a pixel shows.
+// Reconstruction filters, sampled by their weight.
 #pragma once
 
 #include <glm/glm.hpp>

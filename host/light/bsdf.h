@@ -1,4 +1,4 @@
-// What a material does with light: the MTL illumination models, as lobes that make no energy.
+// BSDF: how a material reflects and transmits light, as lobes that never add energy.
 #pragma once
 
 #include "host/base/elementary.h"
@@ -11,7 +11,7 @@
 
 namespace raygate {
 
-/// What becomes of light that arrives along the view: four shares, each a colour.
+/// The BSDF of hits of one kind: four lobes, each with a colour as its albedo.
 ///
 /// `illum` says which there are; d is the opacity, 1 opaque. Where the lobes of an opaque surface
 /// add up to more than 1 they are scaled down, so that no energy comes from nowhere.

@@ -1,4 +1,4 @@
-// Lights for scenes that have none.
+// Default lights: for scenes without any.
 #pragma once
 
 #include "host/scene/scene.h"

@@ -4,15 +4,12 @@
 #include <cstddef>
 #include <numbers>
 
+#include "host/light/lights.h"
+
 namespace raygate {
 namespace {
 
-double brightness(const glm::vec3& radiance) {
-  return (double{radiance.x} + radiance.y + radiance.z) / 3.0;
-}
-
-/// Chances in the same proportions as `weights`, each with those before it; even ones where all are
-/// 0.
+/// The cumulative distribution of probabilities in proportion to `weights`; even where all are 0.
 void put_cdf(const std::vector<double>& weights, float* cdf) {
   double sum = 0.0;
   for (const double weight : weights) sum += weight;
@@ -56,7 +53,7 @@ Environment::Environment(const EnvironmentMap& map, bool is_sampled)
       for (const std::uint32_t x : {left_of(column), column}) {
         for (const std::uint32_t y : {above(row), below(row)}) {
           corners += glm::dvec3(texel(x, y));
-          bright += brightness(texel(x, y));
+          bright += mean(glm::dvec3(texel(x, y)));
         }
       }
       sum += 0.25 * solid_angle * corners;

@@ -1,4 +1,4 @@
-// Light from an environment map: what comes from a direction, and directions where much comes from.
+// Environment light: the radiance of a map of all directions, and importance sampling of it.
 #pragma once
 
 #include <algorithm>

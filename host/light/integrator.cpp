@@ -204,7 +204,8 @@ void Integrator::list_spawn_queries(std::size_t i) {
   }
   if (any_incident || any_transmitted) spawner_.prefetch(place.primitive);
   if (any_incident) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kIncident});
-  if (any_transmitted) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kTransmitted});
+  if (any_transmitted)
+    spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kTransmitted});
 }
 
 /// Whether a scattered ray leads away from its triangle, if need be along the flat normal's

@@ -11,7 +11,7 @@
 
 namespace raygate {
 
-/// What a light, or a flat part of one, may send where.
+/// Bounds of the light that a light, or a flat part of one, may send where.
 struct LightBounds {
   glm::dvec3 middle{0.0};  ///< of a ball around it
   double radius = 0.0;
@@ -71,10 +71,11 @@ class LightTree {
 
   class Builder;
 
-  /// What each child may bring, up to a common factor.
+  /// What each child may bring, up to a common factor, and the sum of that.
   template <class T>
   RAYGATE_INLINE static void importance(const Node& node, const glm::vec3& point,
-                                        const glm::vec3& normal, float (&weights)[kLanes]);
+                                        const glm::vec3& normal, float (&weights)[kLanes],
+                                        float& total);
 
   std::vector<Node> nodes_;              // the root first
   std::vector<std::uint32_t> place_of_;  // of a source: its node's number times kLanes and place
@@ -82,7 +83,8 @@ class LightTree {
 
 template <class T>
 RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& point,
-                                          const glm::vec3& normal, float (&weights)[kLanes]) {
+                                          const glm::vec3& normal, float (&weights)[kLanes],
+                                          float& total) {
   // Cosines are off by this much at most, so that nothing is left out that just shows.
   constexpr float kMargin = 0x1p-10f;
   constexpr float kLeastSquare = 0x1p-40f;
@@ -127,6 +129,8 @@ RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& poi
                       at_least(maximum(squared, radius), kLeastSquare);
     lanes_to(weights + k, choose(received > 0.0f, brought, T{}));
   }
+  total = 0.0f;
+  for (const float weight : weights) total += weight;
 }
 
 template <class T>
@@ -135,10 +139,8 @@ RAYGATE_INLINE LightTree::Sample LightTree::sample(const glm::vec3& point, const
   float pmf = 1.0f;
   for (std::uint32_t at = 0;;) {
     const Node& node = nodes_[at];
-    alignas(4 * kLanes) float weights[kLanes];
-    importance<T>(node, point, normal, weights);
-    float total = 0.0f;
-    for (const float weight : weights) total += weight;
+    alignas(4 * kLanes) float weights[kLanes], total;
+    importance<T>(node, point, normal, weights, total);
     if (!(total > 0.0f)) return {};
     // The last one that has any weight, where rounding leaves nothing to the others.
     const double wanted = u * double{total};
@@ -167,10 +169,8 @@ RAYGATE_INLINE float LightTree::pmf(std::uint32_t source, const glm::vec3& point
   std::uint32_t at = place_of_[source] / kLanes, place = place_of_[source] % kLanes;
   while (at != kNoIndex) {
     const Node& node = nodes_[at];
-    alignas(4 * kLanes) float weights[kLanes];
-    importance<T>(node, point, normal, weights);
-    float total = 0.0f;
-    for (const float weight : weights) total += weight;
+    alignas(4 * kLanes) float weights[kLanes], total;
+    importance<T>(node, point, normal, weights, total);
     if (!(weights[place] > 0.0f)) return 0.0f;
     pmf *= weights[place] / total;
     at = node.parent;

@@ -24,7 +24,8 @@ std::vector<std::uint32_t> emitting_slots(const Scene& scene, const Bvh& bvh) {
       primitives.push_back(primitive);
     }
   }
-  std::ranges::sort(primitives, {}, [&](std::uint32_t primitive) { return bvh.triangle_of(primitive); });
+  std::ranges::sort(primitives, {},
+                    [&](std::uint32_t primitive) { return bvh.triangle_of(primitive); });
   return primitives;
 }
 

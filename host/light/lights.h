@@ -1,4 +1,4 @@
-// Where light comes from.
+// Lights: point, area, directional and environment lights of a scene, ready for sampling.
 #pragma once
 
 #include <algorithm>
@@ -62,9 +62,9 @@ enum class OuterSide : std::uint8_t {
   kAgainstNormal,  ///< the other
 };
 
-/// For each of some primitives. A closed surface is a set of these triangles that hang together by their
-/// edges, each edge of just two of them, which run along it in opposite directions. Where anything
-/// else of the scene is within the box around it, it counts as open.
+/// For each of some primitives. A closed surface is a set of these triangles that hang together by
+/// their edges, each edge of just two of them, which run along it in opposite directions. Where
+/// anything else of the scene is within the box around it, it counts as open.
 [[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
                                                  std::span<const std::uint32_t> primitives);
 
@@ -86,11 +86,11 @@ template <class T>
 struct LightPoint {
   /// Of a light that is infinitely far away a unit vector towards it, and no normal.
   Triple<T> position, normal;  ///< the normal to one of both sides
-  WordOf<T> primitive;              ///< NearestHit::kNone: infinitely far away
+  WordOf<T> primitive;         ///< NearestHit::kNone: infinitely far away
 };
 
-/// All lights of a scene, ready for use. Lengths in what is asked of a surface (areas, distances)
-/// are in units of `unit()`: floats have room for their squares then.
+/// All lights of a scene. Areas and distances are in units of about the scene's length: floats have
+/// room for their squares then.
 class Lights {
  public:
   /// The references must outlive this. Without a `choice` there are no sources, and none of what
@@ -153,9 +153,9 @@ class Lights {
             spread<WordOf<T>>(light.primitives[0])};
   }
 
-  // For those who ask one light at a time:
+  // For sampling one light at a time:
 
-  /// What is chosen: a light, or of an area light a patch: a triangle, or two of them.
+  /// What the light tree chooses: a light, or a patch (a triangle or two) of an area light.
   struct Source {
     std::uint32_t light = 0;         ///< as in count()
     std::uint32_t patch = kNoIndex;  ///< of an area light
@@ -194,8 +194,9 @@ class Lights {
   /// A part of a light: a triangle, or two that make a parallelogram.
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
-    std::uint32_t primitive = 0, slot_beyond = 0;  ///< with more of u than of v, and the other way round
-    float begin = 0.0f, end = 0.0f;           ///< its part of the light's area, in [0, 1]
+    std::uint32_t primitive = 0,
+                  slot_beyond = 0;   ///< with more of u than of v, and the other way round
+    float begin = 0.0f, end = 0.0f;  ///< its part of the light's area, in [0, 1]
     double area = 0.0;
     bool is_triangle = true;
   };

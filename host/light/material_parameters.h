@@ -1,4 +1,4 @@
-// What a material's MTL statements come to: what shading reads of it.
+// Material parameters: a material of any file format as the one record that shading reads.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,7 @@
 
 namespace raygate {
 
-/// What there is to do at a hit: a set of these. Hits are shaded together with hits of the same
-/// set.
+/// Features of a hit's material: a set of these bits. Hits with the same set are shaded together.
 using HitKind = std::uint32_t;
 inline constexpr HitKind kInterpolates = 1;  ///< something is interpolated between the vertices
 inline constexpr HitKind kEmits = 2;    ///< an emitter, or a colour that is only there to be seen
@@ -22,7 +21,8 @@ inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; roug
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
 inline constexpr HitKind kHitKinds = 256;          ///< sets are less than that
 
-/// The shares of a material before an angle is known: Bsdf has the table.
+/// The lobes of a material before an angle is known. MTL's illumination models (Bsdf has the table)
+/// and metallic-roughness materials meet in this record.
 struct MaterialParameters {
   glm::vec3 diffuse{0.0f};  ///< of the texture's colour, limited to 1
   glm::vec3 unlit{0.0f};    ///< of the same
@@ -31,7 +31,7 @@ struct MaterialParameters {
   glm::vec3 grazing{0.0f};        ///< so much more at grazing angles
   glm::vec3 transmittance{0.0f};  ///< of what the mirror leaves
   glm::vec3 emission{0.0f};
-  float opacity = 1.0f;  ///< d, or 0 where d does not count
+  float opacity = 1.0f;  ///< d, or 0 for clear glass
   float exponent = 0.0f;
   float index = 1.0f;     ///< of refraction
   bool is_glass = false;  ///< what the mirror takes is gone for all that lies under it
@@ -48,7 +48,7 @@ struct MaterialParameters {
 
   explicit MaterialParameters(const Material& material);
 
-  /// Light goes straight on, all of it.
+  /// A material that is not there: all light goes straight on.
   [[nodiscard]] static MaterialParameters transparent() {
     Material clear;
     clear.illumination_model = 1;

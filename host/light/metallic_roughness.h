@@ -1,4 +1,4 @@
-// What a metallic-roughness material does with light: rough facets, and what is under them.
+// Metallic-roughness lobes (glTF 2.0): GGX facets over a diffuse base, or rough glass.
 #pragma once
 
 #include "host/base/lane_math.h"

@@ -87,7 +87,8 @@ NeighborClearances::Found NeighborClearances::look(std::uint32_t primitive) cons
       Bvh::Child waiting[kMostWaiting];
       std::size_t count = 0;
       const auto look = [&]() RAYGATE_BODY {
-        for (std::size_t i = 0; i < count; ++i) take_in<code()>(bvh_, waiting[i], primitive, search);
+        for (std::size_t i = 0; i < count; ++i)
+          take_in<code()>(bvh_, waiting[i], primitive, search);
         count = 0;
       };
       const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {

@@ -1,4 +1,4 @@
-// How near other triangles come to each: found when first asked for, and kept.
+// Neighbor clearance: how near other triangles come to a triangle, computed on first use and kept.
 #pragma once
 
 #include <atomic>
@@ -17,14 +17,14 @@
 
 namespace raygate {
 
-/// Triangles that come close to one triangle inside its borders: what stands on it, or cuts it.
+/// Overlaps: the triangles that stand on a triangle or cut it.
 class Overlaps {
  public:
   void add(std::uint32_t primitive, const Corners& triangle);
   [[nodiscard]] std::size_t size() const { return slots_.size(); }
 
-  /// Calls visit(primitive) for the triangles whose boxes are within `reach` of the point on each axis,
-  /// until it says true; whether it did.
+  /// Calls visit(primitive) for the triangles whose boxes are within `reach` of the point on each
+  /// axis, until it says true; whether it did.
   template <Vectors kCode = Vectors::kBaseline, class Visit>
   [[nodiscard]] RAYGATE_INLINE bool any_near(const glm::vec3& point, float reach,
                                              const Visit& visit) const {
@@ -56,7 +56,7 @@ class Overlaps {
   std::vector<std::uint32_t> slots_;
 };
 
-/// What rays need to know that go on from a triangle ABC: one cache line.
+/// The clearance of a triangle ABC, for rays that begin on it: one cache line.
 ///
 /// All other triangles are at least c w - margin() away from each point of this one, w being the
 /// least of that point's three barycentric weights, or farther than spawn_reach(), or one of its

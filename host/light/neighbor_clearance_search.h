@@ -1,4 +1,4 @@
-// How near other triangles come to one: its clearance, and its overlaps.
+// Neighbor clearance search: computes the clearance and the overlaps of one triangle.
 #pragma once
 
 #include <algorithm>

@@ -79,11 +79,12 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
   for (auto& entry : found) {
     const std::uint32_t number = entry.first;
     Part& part = entry.second;
-    part.is_open = part.is_open || part.volume == 0.0 ||
-                   any_primitive_near(bvh, part.low, part.high, [&](std::uint32_t primitive, const Corners&) {
-                     const auto known = part_of_slot.find(primitive);
-                     return known == part_of_slot.end() || known->second != number;
-                   });
+    part.is_open =
+        part.is_open || part.volume == 0.0 ||
+        any_primitive_near(bvh, part.low, part.high, [&](std::uint32_t primitive, const Corners&) {
+          const auto known = part_of_slot.find(primitive);
+          return known == part_of_slot.end() || known->second != number;
+        });
   }
   std::vector<OuterSide> sides(primitives.size());
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {

@@ -1,4 +1,4 @@
-// Rays of one depth, and what their surfaces give.
+// Ray batches: rays of one depth with the states of their paths, and the results of shading them.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace raygate {
 
-/// What a ray of light carries. Fifty-two bytes in a row: hits are shaded in another order than
-/// rays are traced in, and one cache line is fetched for a ray, not ten.
+/// The state of a path along its ray: 52 bytes in a row, since hits are shaded in another order
+/// than rays are traced in, and one cache line is fetched for a ray, not ten.
 struct PathState {
-  glm::vec3 throughput{1.0f};  ///< what light that comes along the ray counts for
-  /// Where a surface scattered it: how likely that was to give this direction, per steradian;
-  /// 0 where there was no choice (camera, mirror, glass).
+  glm::vec3 throughput{1.0f};  ///< what light along the ray is multiplied by
+  /// Per steradian, of sampling this direction where a surface scattered the ray; 0 where there was
+  /// no choice (camera, mirror, glass).
   float pdf = 0.0f;
   glm::vec3 scattered_at{0.0f};  ///< and where
   glm::vec3 normal{0.0f};        ///< of the surface there
@@ -36,12 +36,12 @@ struct RayBatch {
   }
 };
 
-/// What a camera ray's surface looks like.
+/// The surface that a camera ray hits.
 struct FirstSurface {
   glm::vec3 normal{0.0f}, albedo{0.0f};
 };
 
-/// What the surfaces of a batch give.
+/// The results of shading a batch.
 struct ShadingOutput {
   std::vector<glm::vec3> radiance;          ///< by sample
   std::vector<FirstSurface> first_surface;  ///< by sample

@@ -1,4 +1,4 @@
-// Numbers that look random but cover their square evenly: owen_scramble Sobol points.
+// Sampling: Owen-scrambled Sobol points, and directions around an axis.
 #pragma once
 
 #include <cstdint>

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "host/base/vectors.h"
+#include "host/light/direct_light.h"
 #include "host/light/hits.h"
 
 namespace raygate {

@@ -184,7 +184,8 @@ glm::vec3 ShadowRays::transmittance(std::size_t number) const {
   const FaceRef stored = bvh_.face_of(primitive);
   const Triangle& face = face_at(scene_, stored);
   const MaterialParameters& material = materials_[face.material];
-  const SurfaceHit place = {&batch_[number], primitive, &face, nullptr, instance_at(scene_, stored)};
+  const SurfaceHit place = {&batch_[number], primitive, &face, nullptr,
+                            instance_at(scene_, stored)};
   if (material.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
   if ((material.kind & kTransmits) == 0) return glm::vec3(0.0f);
   return shadow_transmittance(scene_, bvh_, place, material, through_refraction_);

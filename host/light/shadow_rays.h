@@ -1,4 +1,4 @@
-// How much light comes from a light to a surface.
+// Shadow rays: how much of a light reaches a surface.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace raygate {
 
-/// A question: what of `radiance` arrives?
+/// A query: how much of `radiance` arrives?
 struct ShadowRay {
   static constexpr std::uint32_t kNoPoint = NearestHit::kNone;
 

@@ -101,7 +101,8 @@ RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin
   }
   SpawnHits<kWidth> hits;
   spawn::load(triangles, rays, hits);
-  typename SpawnNumbers<kWidth>::Single point[3], reach;
+  Triple<typename SpawnNumbers<kWidth>::Single> point;
+  typename SpawnNumbers<kWidth>::Single reach;
   typename SpawnNumbers<kWidth>::SingleMask is_clear;
   spawn_lanes<kCode>(hits, __builtin_convertvector(ways, typename SpawnNumbers<kWidth>::Single),
                      clearances_.margin(), point, reach, is_clear);
@@ -164,7 +165,8 @@ const NeighborClearance& RaySpawner::find_clearance(std::uint32_t primitive, std
   return (found_[lane] = clearances_.look(primitive)).clearance;
 }
 
-std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
+std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,
+                                            SpawnSide side) {
   const Corners& hit = bvh_.corners_of(primitive);
   const Interval t = hit_distance(ray, hit);
   const HitPoint x(ray, t);
@@ -181,12 +183,14 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
-    return !any_primitive_near(bvh_, low, high, [&](std::uint32_t other_slot, const Corners& other) {
-      if (other_slot == primitive || surely_apart(low, high, other)) return false;
-      if (lies_beyond(other, hit, sign)) return false;
-      const int wanted = side_of_ray(ray, hit, other, side);
-      return wanted != 0 && orient3d(candidate, other) != wanted;
-    });
+    return !any_primitive_near(bvh_, low, high,
+                               [&](std::uint32_t other_slot, const Corners& other) {
+                                 if (other_slot == primitive || surely_apart(low, high, other))
+                                   return false;
+                                 if (lies_beyond(other, hit, sign)) return false;
+                                 const int wanted = side_of_ray(ray, hit, other, side);
+                                 return wanted != 0 && orient3d(candidate, other) != wanted;
+                               });
   };
   for (int k = 0; k <= kLastStep; ++k) {
     for (const glm::dvec3& offset : offsets) {

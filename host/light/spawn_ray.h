@@ -1,4 +1,5 @@
-// Where the ray begins that a surface sends on: reflected, refracted, or towards a light.
+// Spawning rays: the origin of a ray that leaves a surface, reflected, refracted or towards a
+// light.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +15,20 @@
 
 namespace raygate {
 
-/// Which side of the surface a ray goes on from.
+/// The side of the surface on which a spawned ray begins.
 enum class SpawnSide {
   kIncident,     ///< the side the ray came from: reflection, shadow rays
   kTransmitted,  ///< the other side: refraction
 };
 
-/// A ray that is to go on, its direction scaled, whose nearest hit is the triangle in `primitive`.
+/// A ray, its direction scaled, that hit the triangle `primitive` and spawns another ray.
 struct SpawnQuery {
   const Ray* ray = nullptr;
   std::uint32_t primitive = 0;
   SpawnSide side = SpawnSide::kIncident;
 };
 
-/// Where it goes on from, if there is such a point.
+/// The origin of the spawned ray, if there is one.
 struct SpawnOrigin {
   glm::vec3 point{0.0f};
   std::uint32_t exists = 0;  ///< or anything else
@@ -63,9 +64,10 @@ class RaySpawner {
   explicit RaySpawner(const NeighborClearances& clearances)
       : clearances_(clearances), bvh_(clearances.bvh()) {}
 
-  /// O' for `ray`, whose nearest hit is the triangle in `primitive`. The triangles in whose plane the
-  /// ray runs have no say.
-  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive, SpawnSide side);
+  /// O' for `ray`, whose nearest hit is the triangle in `primitive`. The triangles in whose plane
+  /// the ray runs have no say.
+  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive,
+                                              SpawnSide side);
 
   /// Says that a primitive will soon be asked about.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
@@ -84,7 +86,8 @@ class RaySpawner {
   RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
 
   /// Of a query in this lane.
-  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t primitive, int lane) {
+  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t primitive,
+                                                                     int lane) {
     if (bvh_.is_instanced(primitive)) [[unlikely]]
       return find_clearance(primitive, static_cast<std::size_t>(lane));
     return clearances_.of(primitive);
@@ -92,7 +95,8 @@ class RaySpawner {
   [[nodiscard]] const NeighborClearance& find_clearance(std::uint32_t primitive, std::size_t lane);
 
   /// As find(), looking at what is near.
-  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive, SpawnSide side);
+  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive,
+                                                SpawnSide side);
 
   const NeighborClearances& clearances_;
   const Bvh& bvh_;

@@ -1,11 +1,11 @@
-// Where rays go on from that hit triangles with nothing near, several at a time.
+// Spawn origins on triangles with nothing near, several hits at a time.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
-#include "host/base/lanes.h"
+#include "host/base/lane_math.h"
 #include "host/light/neighbor_clearance.h"
 
 // Which side
@@ -39,10 +39,7 @@
 
 namespace raygate {
 
-using DoubleLanes = double __attribute__((vector_size(8 * kLanes), aligned(8 * kLanes)));
-using LongLanes = std::int64_t __attribute__((vector_size(8 * kLanes), aligned(8 * kLanes)));
-
-/// Vectors of so many numbers, and what comparing them gives.
+/// Vectors of kWidth numbers, and their masks.
 template <int kWidth>
 struct SpawnNumbers;
 template <>
@@ -60,15 +57,16 @@ struct SpawnNumbers<kLanes> {
   using RealMask = LongLanes;
 };
 
-/// Hits to depart from, so many at a time.
+/// Hits to spawn rays from, kWidth at a time.
 template <int kWidth>
 struct SpawnHits {
   using Single = typename SpawnNumbers<kWidth>::Single;
   using Real = typename SpawnNumbers<kWidth>::Real;
 
-  Real normal[3];
-  Single length, corner[3], gradient[2][3];  ///< as NeighborClearance has them
-  Single origin[3], direction[3];            ///< of the rays
+  Triple<Real> normal;
+  Single length;
+  Triple<Single> corner, gradient[2];  ///< as NeighborClearance has them
+  Triple<Single> origin, direction;    ///< of the rays
 };
 
 namespace spawn {
@@ -91,50 +89,56 @@ RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* c
       sizeof(NeighborClearance) == 64 && sizeof(Ray) == 24);
   DoubleQuad reals[kQuad];
   columns(triangles, 0, reals);
-  for (int k = 0; k < 3; ++k) hits.normal[k] = reals[k];
+  hits.normal = {reals[0], reals[1], reals[2]};
   const auto pairs = reinterpret_cast<FloatLanes>(reals[3]);
   hits.length = __builtin_shufflevector(pairs, pairs, 0, 2, 4, 6);
-  hits.corner[0] = __builtin_shufflevector(pairs, pairs, 1, 3, 5, 7);
-  FloatQuad words[kQuad];
+  hits.corner.x = __builtin_shufflevector(pairs, pairs, 1, 3, 5, 7);
+  FloatQuad words[kQuad], more[kQuad];
   columns(triangles, 32, words);
-  hits.corner[1] = words[0];
-  hits.corner[2] = words[1];
-  hits.gradient[0][0] = words[2];
-  hits.gradient[0][1] = words[3];
-  columns(triangles, 48, words);
-  hits.gradient[0][2] = words[0];
-  for (int k = 0; k < 3; ++k) hits.gradient[1][k] = words[k + 1];
+  columns(triangles, 48, more);
+  hits.corner.y = words[0];
+  hits.corner.z = words[1];
+  hits.gradient[0] = {words[2], words[3], more[0]};
+  hits.gradient[1] = {more[1], more[2], more[3]};
   columns(rays, 0, words);
-  for (int k = 0; k < 3; ++k) hits.origin[k] = words[k];
+  hits.origin = {words[0], words[1], words[2]};
   columns(rays, 8, words);
-  for (int k = 0; k < 3; ++k) hits.direction[k] = words[k + 1];
+  hits.direction = {words[1], words[2], words[3]};
 }
 
 /// Row i: the point of lane i, and a word of it.
-RAYGATE_INLINE void store(const FloatQuad (&point)[3], const IntQuad& word, FloatQuad* rows) {
-  FloatQuad columns[kQuad] = {point[0], point[1], point[2], reinterpret_cast<FloatQuad>(word)};
+RAYGATE_INLINE void store(const Triple<FloatQuad>& point, const IntQuad& word, FloatQuad* rows) {
+  FloatQuad columns[kQuad] = {point.x, point.y, point.z, reinterpret_cast<FloatQuad>(word)};
   raygate::transpose(columns);
   for (int i = 0; i < kQuad; ++i) rows[i] = columns[i];
 }
-template <class Quad, class Lanes>
-RAYGATE_INLINE void split(const Lanes& both, Quad& a, Quad& b) {
-  a = __builtin_shufflevector(both, both, 0, 1, 2, 3);
-  b = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+/// One half of eight lanes.
+template <class Quad, int kHalf, class Lanes>
+RAYGATE_INLINE Quad half(const Lanes& both) {
+  constexpr int k = kQuad * kHalf;
+  return __builtin_shufflevector(both, both, k, k + 1, k + 2, k + 3);
 }
-RAYGATE_INLINE void store(const FloatLanes (&point)[3], const IntLanes& word, FloatQuad* rows) {
-  FloatQuad a[3], b[3];
-  IntQuad word_a, word_b;
-  for (int k = 0; k < 3; ++k) split(point[k], a[k], b[k]);
-  split(word, word_a, word_b);
-  store(a, word_a, rows);
-  store(b, word_b, rows + kQuad);
+template <int kHalf>
+RAYGATE_INLINE void store_half(const Triple<FloatLanes>& point, const IntLanes& word,
+                               FloatQuad* rows) {
+  store({half<FloatQuad, kHalf>(point.x), half<FloatQuad, kHalf>(point.y),
+         half<FloatQuad, kHalf>(point.z)},
+        half<IntQuad, kHalf>(word), rows + kHalf * kQuad);
+}
+RAYGATE_INLINE void store(const Triple<FloatLanes>& point, const IntLanes& word, FloatQuad* rows) {
+  store_half<0>(point, word, rows);
+  store_half<1>(point, word, rows);
 }
 
-RAYGATE_INLINE void join(const FloatQuad& a, const FloatQuad& b, FloatLanes& both) {
+template <class Quad, class Lanes>
+RAYGATE_INLINE void join(const Quad& a, const Quad& b, Lanes& both) {
   both = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
-RAYGATE_INLINE void join(const DoubleQuad& a, const DoubleQuad& b, DoubleLanes& both) {
-  both = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+template <class Quad, class Lanes>
+RAYGATE_INLINE void join(const Triple<Quad>& a, const Triple<Quad>& b, Triple<Lanes>& both) {
+  join(a.x, b.x, both.x);
+  join(a.y, b.y, both.y);
+  join(a.z, b.z, both.z);
 }
 
 RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* const* rays,
@@ -142,63 +146,48 @@ RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* c
   SpawnHits<kQuad> a, b;
   load(triangles, rays, a);
   load(triangles + kQuad, rays + kQuad, b);
+  join(a.normal, b.normal, hits.normal);
   join(a.length, b.length, hits.length);
-  for (int k = 0; k < 3; ++k) {
-    join(a.normal[k], b.normal[k], hits.normal[k]);
-    join(a.corner[k], b.corner[k], hits.corner[k]);
-    for (int v = 0; v < 2; ++v) join(a.gradient[v][k], b.gradient[v][k], hits.gradient[v][k]);
-    join(a.origin[k], b.origin[k], hits.origin[k]);
-    join(a.direction[k], b.direction[k], hits.direction[k]);
-  }
+  join(a.corner, b.corner, hits.corner);
+  for (int v = 0; v < 2; ++v) join(a.gradient[v], b.gradient[v], hits.gradient[v]);
+  join(a.origin, b.origin, hits.origin);
+  join(a.direction, b.direction, hits.direction);
 }
 
-template <Vectors kCode>
-RAYGATE_INLINE void convert(const FloatQuad& from, DoubleQuad& to) {
-  widen<kCode>(from, to);
-}
-template <Vectors kCode>
-RAYGATE_INLINE void convert(const FloatLanes& from, DoubleLanes& to) {
-  to = __builtin_convertvector(from, DoubleLanes);
-}
-template <Vectors kCode>
-RAYGATE_INLINE void convert(const DoubleQuad& from, FloatQuad& to) {
-  to = __builtin_convertvector(from, FloatQuad);
-}
-template <Vectors kCode>
-RAYGATE_INLINE void convert(const DoubleLanes& from, FloatLanes& to) {
-  to = __builtin_convertvector(from, FloatLanes);
+template <Vectors kCode, class From, class To>
+RAYGATE_INLINE void convert(const From& from, To& to) {
+  if constexpr (std::is_same_v<From, FloatQuad>) {
+    widen<kCode>(from, to);
+  } else {
+    to = __builtin_convertvector(from, To);
+  }
 }
 template <Vectors kCode, class From, class To>
-RAYGATE_INLINE void convert(const From (&from)[3], To (&to)[3]) {
-  for (int k = 0; k < 3; ++k) convert<kCode>(from[k], to[k]);
+RAYGATE_INLINE void convert(const Triple<From>& from, Triple<To>& to) {
+  convert<kCode>(from.x, to.x);
+  convert<kCode>(from.y, to.y);
+  convert<kCode>(from.z, to.z);
 }
 
 /// How far it is from a float that is not negative to the next one.
-RAYGATE_INLINE void step_of(const FloatQuad& x, FloatQuad& step) {
-  step = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(x) + 1) - x;
-}
-RAYGATE_INLINE void step_of(const FloatLanes& x, FloatLanes& step) {
-  step = reinterpret_cast<FloatLanes>(reinterpret_cast<IntLanes>(x) + 1) - x;
+template <class Mask, class T>
+RAYGATE_INLINE void step_of(const T& x, T& step) {
+  step = reinterpret_cast<T>(reinterpret_cast<Mask>(x) + 1) - x;
 }
 
 template <class T>
-RAYGATE_INLINE void subtract(const T (&a)[3], const T (&b)[3], T (&result)[3]) {
-  for (int k = 0; k < 3; ++k) result[k] = a[k] - b[k];
+RAYGATE_INLINE Triple<T> magnitudes(const Triple<T>& v) {
+  Triple<T> sizes;
+  magnitude(v.x, sizes.x);
+  magnitude(v.y, sizes.y);
+  magnitude(v.z, sizes.z);
+  return sizes;
 }
 template <class T>
-RAYGATE_INLINE void magnitudes(const T (&v)[3], T (&sizes)[3]) {
-  for (int k = 0; k < 3; ++k) magnitude(v[k], sizes[k]);
-}
-template <class T>
-RAYGATE_INLINE void largest(const T (&v)[3], T& result) {
-  T sizes[3];
-  magnitudes(v, sizes);
-  result = sizes[0] < sizes[1] ? sizes[1] : sizes[0];
-  result = result < sizes[2] ? sizes[2] : result;
-}
-template <class T>
-RAYGATE_INLINE void dot(const T (&u)[3], const T (&v)[3], T& result) {
-  result = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+RAYGATE_INLINE T largest(const Triple<T>& v) {
+  const Triple<T> sizes = magnitudes(v);
+  const T of_two = sizes.x < sizes.y ? sizes.y : sizes.x;
+  return of_two < sizes.z ? sizes.z : of_two;
 }
 
 }  // namespace spawn
@@ -209,67 +198,61 @@ RAYGATE_INLINE void dot(const T (&u)[3], const T (&v)[3], T& result) {
 template <Vectors kCode, int kWidth>
 RAYGATE_INLINE void spawn_lanes(const SpawnHits<kWidth>& hits,
                                 const typename SpawnNumbers<kWidth>::Single& way, float margin,
-                                typename SpawnNumbers<kWidth>::Single (&point)[3],
+                                Triple<typename SpawnNumbers<kWidth>::Single>& point,
                                 typename SpawnNumbers<kWidth>::Single& reach,
                                 typename SpawnNumbers<kWidth>::SingleMask& is_clear) {
-  using Single = typename SpawnNumbers<kWidth>::Single;
-  using Real = typename SpawnNumbers<kWidth>::Real;
+  using Numbers = SpawnNumbers<kWidth>;
+  using Single = typename Numbers::Single;
+  using Real = typename Numbers::Real;
+  using SingleMask = typename Numbers::SingleMask;
   // X = O + t I, and u.
-  Real corner[3], origin[3], direction[3], from_origin[3];
+  Triple<Real> corner, origin, direction;
   spawn::convert<kCode>(hits.corner, corner);
   spawn::convert<kCode>(hits.origin, origin);
   spawn::convert<kCode>(hits.direction, direction);
-  spawn::subtract(corner, origin, from_origin);
-  Real plane, slope, above, below;
-  spawn::dot(from_origin, hits.normal, plane);
-  spawn::dot(direction, hits.normal, slope);
+  const Triple<Real> from_origin = corner - origin;
+  const Real plane = dot(from_origin, hits.normal), slope = dot(direction, hits.normal);
+  Real above, below;
   magnitude(plane, above);
   magnitude(slope, below);
   const Real inverse = 1.0 / below;
   const Real t = above * inverse;
-  Real x[3], step;
-  for (int k = 0; k < 3; ++k) x[k] = origin[k] + t * direction[k];
-  Single rounded[3], x_size, u;
+  const Triple<Real> x = origin + direction * t;
+  Triple<Single> rounded;
+  Single u;
+  Real step;
   spawn::convert<kCode>(x, rounded);
-  spawn::largest(rounded, x_size);
-  spawn::step_of(x_size, u);
+  spawn::step_of<SingleMask>(spawn::largest(rounded), u);
   spawn::convert<kCode>(u, step);
 
   // How far off X may be, with |I|_max < 2.
-  Single origin_range;
-  Real origin_size, from_size;
-  spawn::largest(hits.origin, origin_range);
-  spawn::convert<kCode>(origin_range, origin_size);
-  spawn::largest(from_origin, from_size);
+  Real origin_size;
+  spawn::convert<kCode>(spawn::largest(hits.origin), origin_size);
   const Real along_ray = t + t;
-  const Real error = 0x1p-50 * (origin_size + along_ray) + 2.01 * inverse * (from_size + along_ray);
-  const typename SpawnNumbers<kWidth>::RealMask is_sure =
-      (below >= 0x1p35) & (16.0 * error <= step);
+  const Real error = 0x1p-50 * (origin_size + along_ray) +
+                     2.01 * inverse * (spawn::largest(from_origin) + along_ray);
+  const typename Numbers::RealMask is_sure = (below >= 0x1p35) & (16.0 * error <= step);
 
   // Candidate 0: the normal shows where orient3d is -1.
-  Real turn, longest;
+  Real turn;
   spawn::convert<kCode>(way, turn);
-  spawn::largest(hits.normal, longest);
-  const Real scale = (plane > 0.0 ? turn : -turn) / longest;
-  for (int k = 0; k < 3; ++k)
-    spawn::convert<kCode>(x[k] + step * (hits.normal[k] * scale), point[k]);
+  const Real scale = (plane > 0.0 ? turn : -turn) / spawn::largest(hits.normal);
+  spawn::convert<kCode>(x + hits.normal * scale * step, point);
 
   // c times its least weight.
-  Single length, p[3], second, third, sizes[3], point_size, point_step;
+  Single length, point_step;
   magnitude(hits.length, length);
-  spawn::subtract(point, hits.corner, p);
-  spawn::dot(p, hits.gradient[0], second);
-  spawn::dot(p, hits.gradient[1], third);
+  const Triple<Single> p = point - hits.corner;
+  const Single second = dot(p, hits.gradient[0]), third = dot(p, hits.gradient[1]);
   const Single first = length - second - third;
   Single least = first < second ? first : second;
   least = least < third ? least : third;
-  spawn::magnitudes(p, sizes);
-  const Single error_of_least = 0x1p-20f * (sizes[0] + sizes[1] + sizes[2] + length) + margin;
-  spawn::largest(point, point_size);
-  spawn::step_of(point_size, point_step);
+  const Triple<Single> sizes = spawn::magnitudes(p);
+  const Single error_of_least = 0x1p-20f * (sizes.x + sizes.y + sizes.z + length) + margin;
+  spawn::step_of<SingleMask>(spawn::largest(point), point_step);
   reach = 16.0f * u;
   is_clear = (point_step <= u) & (least > reach + error_of_least) &
-             __builtin_convertvector(is_sure, typename SpawnNumbers<kWidth>::SingleMask);
+             __builtin_convertvector(is_sure, SingleMask);
 }
 
 }  // namespace raygate
