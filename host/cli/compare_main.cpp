@@ -13,8 +13,8 @@
 #include "host/cli/process.h"
 #include "host/film/atomic_file.h"
 #include "host/film/compare.h"
+#include "host/film/display.h"
 #include "host/film/false_color.h"
-#include "host/film/png.h"
 #include "host/options/option_table.h"
 
 namespace raygate {

@@ -6,7 +6,7 @@
 
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/intersector.h"
-#include "host/light/skips.h"
+#include "host/light/integrator_options.h"
 #include "host/options/option_table.h"
 #include "host/scene/instances.h"
 #include "sim/arith.h"

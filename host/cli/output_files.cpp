@@ -5,10 +5,9 @@
 
 #include "host/base/input_error.h"
 #include "host/cli/process.h"
-#include "host/film/channels.h"
 #include "host/film/display.h"
 #include "host/film/false_color.h"
-#include "host/film/png.h"
+#include "host/film/film.h"
 
 namespace raygate {
 namespace {

@@ -19,7 +19,7 @@
 #include "host/cli/report.h"
 #include "host/cli/resume.h"
 #include "host/film/environment_file.h"
-#include "host/film/sample_range.h"
+#include "host/film/merge.h"
 #include "host/light/neighbor_clearance.h"
 #include "host/options/version.h"
 #include "host/ranks/ranks.h"

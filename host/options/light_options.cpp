@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/exact/exact.h"
-#include "host/film/sample_range.h"
+#include "host/film/merge.h"
 
 namespace raygate {
 namespace {

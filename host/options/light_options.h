@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/light/skips.h"
+#include "host/light/integrator_options.h"
 #include "host/options/option_table.h"
 #include "host/render/render_options.h"
 

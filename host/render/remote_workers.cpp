@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "host/film/film_region.h"
+#include "host/film/film.h"
 
 namespace raygate {
 namespace {

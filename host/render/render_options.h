@@ -8,10 +8,7 @@
 #include "host/film/film.h"
 #include "host/film/reconstruction_filter.h"
 #include "host/intersect/intersector.h"
-#include "host/light/integrator_kind.h"
-#include "host/light/path_options.h"
-#include "host/light/point_error.h"
-#include "host/light/skips.h"
+#include "host/light/integrator_options.h"
 
 namespace raygate {
 

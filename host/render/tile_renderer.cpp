@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "host/base/stopwatch.h"
-#include "host/film/film_sums.h"
+#include "host/film/film.h"
 #include "host/render/tile_frustum.h"
 
 namespace raygate {
@@ -14,16 +14,14 @@ namespace {
 constexpr int kEdgeSamples = 8;                   // at a light's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
-std::unique_ptr<Integrator> integrator_of(const RenderJob& job) {
+IntegratorOptions integrator_options(const RenderJob& job) {
   const RenderOptions& options = job.options;
-  return make_integrator(
-      options.integrator, job.scene, job.clearances, job.lights, options.skips,
-      {.max_depth = options.integrator == IntegratorKind::kPrimary ? 0 : options.depth(),
-       .threshold = options.threshold,
-       .ambient = job.ambient,
-       .single_sample = options.samples == 1,
-       .path = options.path,
-       .point_error = options.point_error});
+  return {.max_depth = options.integrator == IntegratorKind::kPrimary ? 0 : options.depth(),
+          .threshold = options.threshold,
+          .ambient = job.ambient,
+          .single_sample = options.samples == 1,
+          .path = options.path,
+          .point_error = options.point_error};
 }
 
 }  // namespace
@@ -34,9 +32,10 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
       intersector_(intersector),
       film_(film),
       emitter_edges_(emitter_edges),
-      integrator_(integrator_of(job)),
+      integrator_(job.options.integrator, job.scene, job.clearances, job.lights, job.options.skips,
+                  integrator_options(job)),
       shadow_rays_(job.scene, job.clearances, job.lights, intersector, job.options.skips,
-                   integrator_->shadows_through_refraction()),
+                   integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
 void TileRenderer::make_camera_rays() {
@@ -72,9 +71,9 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   tile_ = tile;
   edge_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
-  if (job_.options.skips.empty_tiles && !integrator_->sees_environment() &&
+  if (job_.options.skips.empty_tiles && !integrator_.sees_environment() &&
       !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
-    output_.radiance.assign(samples_, integrator_->background());
+    output_.radiance.assign(samples_, integrator_.background());
     stats_.skipped.empty_tile_rays += samples_;
     stats_.shade_seconds += watch.lap();
     return true;
@@ -162,8 +161,8 @@ void TileRenderer::trace_wave() {
   for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], batch_.states[i].sample);
   if (batch_.depth == 0) record_first_hits();
   for (std::size_t i = 0; i < rays.size();) {
-    const std::size_t end = std::min(rays.size(), i + integrator_->block_size());
-    integrator_->shade(batch_, hits_, i, end, output_);
+    const std::size_t end = std::min(rays.size(), i + integrator_.block_size());
+    integrator_.shade(batch_, hits_, i, end, output_);
     i = end;
     if (output_.shadows.size() < kManyShadowRays && i < rays.size()) continue;
     stats_.shade_seconds += watch.lap();
@@ -274,10 +273,10 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.rays += stats_.rays + shadow_rays;
   stats.camera_rays += stats_.camera_rays;
   stats.shadow_rays += shadow_rays;
-  stats.point_doubts += integrator_->point_doubts();
+  stats.point_doubts += integrator_.point_doubts();
   stats.intersect += intersector_.counters();
   stats.skipped += stats_.skipped;
-  stats.skipped += integrator_->skipped();
+  stats.skipped += integrator_.skipped();
   stats.skipped.first_occluders += intersector_.counters().ended_early;
   stats.shade_seconds += stats_.shade_seconds;
 }

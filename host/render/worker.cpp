@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/base/stopwatch.h"
-#include "host/film/film_region.h"
+#include "host/film/film.h"
 #include "host/render/coordinator.h"
 #include "host/render/remote_workers.h"
 #include "host/render/tile_workers.h"
