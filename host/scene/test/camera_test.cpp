@@ -193,6 +193,25 @@ TEST(Lens, RaysOfAPointMeetWhereItIsInFocus) {
   EXPECT_EQ(through({{}, 0.1, {}}).focus(), 4.0) << "the target's distance";
 }
 
+/// GCC 12's vectoriser of neighbouring statements left out the rounding of the origin (host/CMakeLists.txt).
+TEST(Lens, RaysGoFromTheirRoundedOriginToWhereItIsInFocus) {
+  const double aperture = 0.37, focus = 7.0;
+  const Camera camera = through({Projection::kPerspective, aperture, focus});
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = unit(random), y = unit(random);
+    const glm::dvec2 lens(unit(random), 0.0);
+    const glm::dvec3 eye(1, 2, 3), way(2.0 * (2.0 * x - 1.0), 1.0 - 2.0 * y, -1.0);
+    // volatile: what is stored there is rounded, whatever the compiler makes of it.
+    const volatile float start = static_cast<float>(eye.x + aperture * std::sqrt(lens.x));
+    const glm::dvec3 origin(start, eye.y, eye.z);
+    const Ray ray = camera.ray(x, y, lens);
+    EXPECT_EQ(ray.origin, glm::vec3(origin));
+    EXPECT_EQ(ray.direction, scaled_direction(eye + focus * way - origin));
+  }
+}
+
 TEST(Lens, APanoramaHasAllDirections) {
   const Camera camera = through({Projection::kPanorama, {}, {}});
   EXPECT_TRUE(camera.has_common_origin());
