@@ -31,7 +31,7 @@ struct FilmSums {
   std::vector<std::array<ExactAccumulator, 4>> color;
   std::vector<std::array<ExactAccumulator, 3>> albedo;  ///< if the film has it
   // Of films whose pixels get samples by their error: as of the last look, see
-  // render/sample_choice.h. In steps of an 8-bit display.
+  // render/adaptive_sampling.h. In steps of an 8-bit display.
   std::vector<float> error;  ///< standard error, estimated; infinite before there is an estimate
   std::vector<float> shown;  ///< what a display shows
 };

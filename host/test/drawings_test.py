@@ -20,6 +20,11 @@ def room(path: str) -> str:
     return "sim" if parts[0] == "sim" else parts[1]
 
 
+def folder(path: str) -> str:
+    """host/scene/io/x.h -> scene/io/"""
+    return path.removeprefix("host/").rpartition("/")[0] + "/"
+
+
 def includes() -> dict[str, set[str]]:
     """Each source without tests and fuzz targets, and what it includes; paths from the root."""
     sources = [path for folder in ("host", "sim") for path in (ROOT / folder).rglob("*")
@@ -61,7 +66,7 @@ class Drawings(unittest.TestCase):
         self.includes = includes()
         self.graphs = drawings()
         self.assertTrue(self.includes)
-        self.assertGreaterEqual(len(self.graphs), 2)
+        self.assertGreaterEqual(len(self.graphs), 4)
 
     def test_rooms(self) -> None:
         """The first drawing: every arrow is an include, and every include follows from arrows."""
@@ -79,16 +84,37 @@ class Drawings(unittest.TestCase):
         for name in sorted(rooms):
             self.assertNotIn(name, reachable(drawn, name), f"{name} is part of a circle")
 
+    def test_folders(self) -> None:
+        """The second drawing: folders within rooms, by the rules of the first."""
+        labels, arrows = self.graphs[1]
+        self.assertTrue(arrows)
+        nodes = set(labels.values())
+        drawn = {(labels[a], labels[b]) for a, b in arrows}
+        real = {(folder(a), folder(b)) for a, targets in self.includes.items() for b in targets}
+        self.assertEqual(drawn - real, set(), "drawn, but no such include")
+        for a, b in sorted(real):
+            if a != b and {a, b} <= nodes:
+                self.assertIn(b, reachable(drawn, a), f"{a} includes {b}, which is not drawn")
+        inner = {name for pair in real for name in pair
+                 if name.count("/") == 2 and name.split("/")[0] + "/" in nodes}
+        self.assertEqual(inner - nodes, set(), "folders that are not drawn")
+        for node in nodes:
+            self.assertNotIn(node, reachable(drawn, node), f"{node} is part of a circle")
+
     def test_ways(self) -> None:
-        """The other drawings: every node is a source, every arrow an include."""
+        """The other drawings: nodes are sources, arrows are includes, and no include between two nodes is left out."""
         pairs = {(stem(a), stem(b)) for a, targets in self.includes.items() for b in targets}
         stems = {stem(path) for path in self.includes}
-        for labels, arrows in self.graphs[1:]:
+        for labels, arrows in self.graphs[2:]:
             self.assertTrue(arrows)
             for label in labels.values():
                 self.assertIn(label, stems, "drawn, but no such source")
-            for a, b in arrows:
-                self.assertIn((labels[a], labels[b]), pairs, "drawn, but no such include")
+            drawn = {(labels[a], labels[b]) for a, b in arrows}
+            for arrow in sorted(drawn):
+                self.assertTrue(arrow in pairs, f"drawn, but no such include: {arrow}")
+            for a, b in sorted(pairs):
+                if a != b and {a, b} <= set(labels.values()) and (b, a) not in drawn:
+                    self.assertIn(b, reachable(drawn, a), f"{a} includes {b}, which is not drawn")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,41 @@
+"""host/FEATURES.md against the code: every test that it names exists, and every option of the programs has a row."""
+
+import pathlib
+import re
+import unittest
+
+HOST = pathlib.Path(__file__).resolve().parents[1]
+TESTS = re.compile(r"^\s*TEST(?:_F|_P)?\((\w+),\s*(\w+)|^\s+def (test_\w+)", re.MULTILINE)
+OPTION = re.compile(r'(?<=[" ,])--[a-z][a-z-]+(?=[",])')
+
+
+def sources(pattern: str) -> str:
+    return "\n".join(path.read_text() for path in sorted(HOST.glob(pattern)))
+
+
+class Features(unittest.TestCase):
+    def setUp(self) -> None:
+        text = (HOST / "FEATURES.md").read_text()
+        rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| ")]
+        self.rows = [row for row in rows if row[0].strip() != "Feature"]
+        self.assertGreater(len(self.rows), 30)
+
+    def test_every_test_exists(self) -> None:
+        found = TESTS.findall(sources("**/test/*.cpp") + sources("**/test/*.py"))
+        names = {f"{suite}.{name}" if suite else function for suite, name, function in found}
+        for feature, _, tests in self.rows:
+            named = re.findall(r"`([\w.]+)`", tests)
+            self.assertTrue(named, feature)
+            for name in named:
+                self.assertTrue(name in names, f"{feature.strip()}: no test {name}")
+
+    def test_every_option_has_a_row(self) -> None:
+        listed = set(re.findall(r"`(--[a-z-]+)`", "".join(row[1] for row in self.rows)))
+        real = set(OPTION.findall(sources("cli/*.cpp") + sources("options/*.cpp")))
+        self.assertTrue(real)
+        self.assertEqual(real - listed, set(), "options without a row")
+        self.assertEqual(listed - real, set(), "rows of options that no program has")
+
+
+if __name__ == "__main__":
+    unittest.main()
