@@ -10,8 +10,8 @@
 #include "host/exact/exact.h"
 #include "host/light/material_parameters.h"
 #include "host/scene/instances.h"
-#include "host/scene/scene.h"
 #include "host/scene/material_lookup.h"
+#include "host/scene/scene.h"
 
 namespace raygate {
 

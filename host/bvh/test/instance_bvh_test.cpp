@@ -1,11 +1,10 @@
 // What is below an instance is a tree like any other.
-#include "host/bvh/bvh.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "host/bvh/bvh.h"
 #include "host/bvh/range_map.h"
 #include "host/bvh/test/walk_bvh.h"
 #include "host/scene/test/instanced_scene.h"

@@ -193,7 +193,8 @@ TEST(Lens, RaysOfAPointMeetWhereItIsInFocus) {
   EXPECT_EQ(through({{}, 0.1, {}}).focus(), 4.0) << "the target's distance";
 }
 
-/// GCC 12's vectoriser of neighbouring statements left out the rounding of the origin (host/CMakeLists.txt).
+/// GCC 12's vectoriser of neighbouring statements left out the rounding of the origin
+/// (host/CMakeLists.txt).
 TEST(Lens, RaysGoFromTheirRoundedOriginToWhereItIsInFocus) {
   const double aperture = 0.37, focus = 7.0;
   const Camera camera = through({Projection::kPerspective, aperture, focus});
