@@ -229,7 +229,11 @@ ExrMetadata metadata_of(const Imf::Header& header) {
 // The library compresses on its own threads; the bytes do not depend on how many there are.
 std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
   const int helpers = threads > 1 ? threads : 0;
-  if (helpers > Imf::globalThreadCount()) Imf::setGlobalThreadCount(helpers);
+  try {
+    if (helpers > Imf::globalThreadCount()) Imf::setGlobalThreadCount(helpers);
+  } catch (const std::exception&) {
+    // Threads that cannot be started are done without.
+  }
   Imf::StdOSStream stream;
   {
     Imf::OutputFile file(stream, make_header(film, metadata), helpers);

@@ -123,7 +123,8 @@ module csr #(
   logic [32*32-1:0] words;  // by word number
 
   for (genvar n = 0; n < 32; n++) begin : gen_word
-    localparam logic [31:0] Bits = (n == 32'(WordBase)) ? ~32'd63 : '1;  // that can be written
+    // That can be written. Yosys 0.23 reads '1 in a conditional as 32'd1.
+    localparam logic [31:0] Bits = (n == 32'(WordBase)) ? 32'hFFFF_FFC0 : 32'hFFFF_FFFF;
     if (PlainWords[n]) begin : gen_plain
       logic [31:0] word_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -14,7 +14,7 @@ LANES = [(".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])
          ("count_q + increment", "count_q | increment")]
 RESULTS = [(".data_o({report_o, closed_o, found_o", ".data_o({report_o, found_o, closed_o"),
            (".push_i(report != hit_test_pkg::ReportNone | closed", ".push_i(closed")]
-HITS = [("(low <= limit)", "(low < limit)"),
+HITS = [("(low <= old_t_max)", "(low < old_t_max)"),
         ("(old_low <= high)", "(old_low < high)"),
         ("old_open ? nearest_triangle[result_ray_i] : result_triangle_i",
          "open ? result_triangle_i : nearest_triangle[result_ray_i]"),
@@ -22,7 +22,7 @@ HITS = [("(low <= limit)", "(low < limit)"),
         ("if (test_i && !same) counts", "if (test_i) counts")]
 
 LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
-          ("given & last & (remaining == '0)", "given & (remaining == '0)"),
+          ("fire & last & (remaining == '0)", "fire & (remaining == '0)"),
           ("triangle_valid_o & triangle_ready_i;", "triangle_valid_o;"),
           ("if (push) leaf_pending_o[box_ray_i] <= 1'b1;", "if (push && !done) leaf_pending_o[box_ray_i] <= 1'b1;")]
 
