@@ -20,23 +20,24 @@
 namespace raygate {
 namespace {
 
-const std::string kBuildFolder = RAYGATE_BUILD_FOLDER;
-const std::string kModels = kBuildFolder + "/sim/models/";
+constexpr const char* kBuildFolder = RAYGATE_BUILD_FOLDER;
+constexpr const char* kModels = RAYGATE_BUILD_FOLDER "/sim/models/";
 
 [[noreturn]] void fail(const ModelFile& file, const std::string& what) {
   throw InputError(std::string(file.what) + " is not built yet, and " + what + "; to build it: " +
-                   "cmake --build " + kBuildFolder + " --target " + file.name + ".so");
+                   "cmake --build " + std::string(kBuildFolder) + " --target " + file.name + ".so");
 }
 
 /// Keeps other processes from building in the same folder for as long as it lives.
 class BuildLock {
  public:
   explicit BuildLock(const ModelFile& file)
-      : descriptor_(::open((kModels + "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0 || ::access(kBuildFolder.c_str(), W_OK) != 0) {
+      : descriptor_(
+            ::open((std::string(kModels) + "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0 || ::access(kBuildFolder, W_OK) != 0) {
       const int why = errno;
       if (descriptor_ >= 0) ::close(descriptor_);
-      fail(file, kBuildFolder + " cannot be written: " + std::strerror(why));
+      fail(file, std::string(kBuildFolder) + " cannot be written: " + std::strerror(why));
     }
     while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) continue;
   }
@@ -56,7 +57,7 @@ std::string quoted(const std::string& text) {
 }
 
 void build(const ModelFile& file) {
-  const std::string log = kModels + file.name + ".log";
+  const std::string log = std::string(kModels) + file.name + ".log";
   std::fprintf(stderr, "building %s once (about %d s)\n", file.what, file.seconds);
   const std::string command = quoted(RAYGATE_CMAKE) + " --build " + quoted(kBuildFolder) +
                               " --target " + file.name + ".so >" + quoted(log) + " 2>&1";
@@ -67,7 +68,7 @@ void build(const ModelFile& file) {
 
 /// Null where there is no such file, or none that is whole.
 void* open_file(const ModelFile& file) {
-  return ::dlopen((kModels + file.name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
+  return ::dlopen((std::string(kModels) + file.name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 
 void* make_model_of(const ModelFile& file) {

@@ -51,7 +51,7 @@ std::pair<double, double> parse_view(const std::string& option, const std::strin
 
 /// A choice of values that are there or not; --help says what is there by default.
 template <typename T>
-OptionTable::Read chosen(std::optional<T>& target, Choices<T> choices) {
+OptionTable::Read chosen(std::optional<T>& target, const Choices<T>& choices) {
   return [&target, choices](const std::string& option, const std::string& text) {
     target = choose(option, text, choices);
   };

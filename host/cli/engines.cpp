@@ -25,12 +25,15 @@
 namespace raygate {
 namespace {
 
-const Choices<Engine> kEngines = {{"rtl", Engine::kRtl},
-                                  {"model", Engine::kModel},
-                                  {"cpu", Engine::kCpu},
-                                  {"check", Engine::kCheck}};
-const Choices<Arith> kAriths = {{"structural", Arith::kStructural},
-                                {"behavioural", Arith::kBehavioural}};
+Choices<Engine> engine_choices() {
+  return {{"rtl", Engine::kRtl},
+          {"model", Engine::kModel},
+          {"cpu", Engine::kCpu},
+          {"check", Engine::kCheck}};
+}
+Choices<Arith> arith_choices() {
+  return {{"structural", Arith::kStructural}, {"behavioural", Arith::kBehavioural}};
+}
 
 /// "latency=100,bytes=16,cache=1024", each of them or not.
 MemoryTiming parse_memory(const std::string& option, const std::string& text) {
@@ -107,14 +110,14 @@ void prepare_engine(const EngineOptions& options) {
   }
 }
 
-std::string to_string(Engine engine) { return name_of(kEngines, engine); }
-std::string to_string(Arith arith) { return name_of(kAriths, arith); }
+std::string to_string(Engine engine) { return name_of(engine_choices(), engine); }
+std::string to_string(Arith arith) { return name_of(arith_choices(), arith); }
 
 void add_engine_options(OptionTable& table, EngineOptions& options) {
   table.choice("--engine", "NAME",
                "rtl: simulated hardware; cpu: identical hits without simulation, much faster; "
                "model: its reference model; check: rtl and cpu, stopping where they differ ({})",
-               options.engine, kEngines, kInStats);
+               options.engine, engine_choices(), kInStats);
   table.choice<std::string>(
       "--unit", "NAME",
       "pipeline: a test per clock; serial: the paper's unit; core: a whole ray core ({})",
@@ -122,7 +125,7 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
   table.choice(
       "--arith", "NAME",
       "structural: Booth trees, carry-select; behavioural: + and *, faster to simulate ({})",
-      options.arith, kAriths, kInStats);
+      options.arith, arith_choices(), kInStats);
   table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
                     options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats);
   table.add("--memory", "latency=N,bytes=N,cache=N",

@@ -231,7 +231,7 @@ std::string encode_exr(const Film& film, const ExrMetadata& metadata, int thread
   const int helpers = threads > 1 ? threads : 0;
   try {
     if (helpers > Imf::globalThreadCount()) Imf::setGlobalThreadCount(helpers);
-  } catch (const std::exception&) {
+  } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
     // Threads that cannot be started are done without.
   }
   Imf::StdOSStream stream;

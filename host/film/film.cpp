@@ -62,7 +62,8 @@ std::vector<Channel> channels_of(const Film& film) {
     const bool is_in_files =
         !field.is_sum || film.keeps_sums || (field.layer == "samples" && !film.sums.error.empty());
     if (values.empty() || !is_in_files) return;
-    const std::size_t numbers = sizeof(Pixel) / sizeof(std::uint32_t);
+    constexpr std::size_t kWordSize = 4;
+    const std::size_t numbers = sizeof(Pixel) / kWordSize;
     const std::size_t words = numbers / std::max<std::size_t>(1, field.parts.size());
     for (std::size_t i = 0; i < numbers; ++i) {
       std::string name(field.layer);

@@ -180,8 +180,9 @@ struct ScatteredRays {
     const Triple<T> ahead = scaled(direction);
     const auto leaving = hits.surface.leaving(ahead, is_transmitted);
     const auto wanted = unpack(is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat));
-    const auto sure = unpack(leaving.leaves & leaving.is_sure), flats = unpack(has_flat),
-               transmitted = unpack(is_transmitted);
+    const auto sure = unpack(leaving.leaves & leaving.is_sure);
+    const auto flats = unpack(has_flat);
+    const auto transmitted = unpack(is_transmitted);
     const auto directions = unpack(ahead), flat_ones = unpack(scaled(flat)),
                throughputs = unpack(throughput), points = unpack(scattered_at),
                normals = unpack(normal);

@@ -10,8 +10,6 @@ constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChoose
 constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
 constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
 
-// Where no light would bring anything.
-const Lights::Light kNoLight{.kind = Lights::Kind::kNone};
 const Lights::Source kNoSource{.per_area = 1.0f};
 
 /// How likely each lobe is to be sampled, in proportion to what it reflects.
@@ -75,6 +73,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
   const Lights::Light* chosen[kCount];
   std::uint32_t indices[kCount];
   float pmfs[kCount];
+  static const Lights::Light no_light{.kind = Lights::Kind::kNone, .spot = {}};
   for (int k = 0; k < kCount; ++k) {
     // Twice 24 bits: enough for a probability of one in many millions.
     const LightTree::Sample sample =
@@ -82,7 +81,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
     const bool is_any = sample.source != kNoIndex;
     sources[k] = is_any ? &lights.source(sample.source) : &kNoSource;
     indices[k] = sources[k]->light;
-    chosen[k] = is_any ? &lights.light(indices[k]) : &kNoLight;
+    chosen[k] = is_any ? &lights.light(indices[k]) : &no_light;
     pmfs[k] = is_any ? sample.pmf : 1.0f;
   }
   const WordOf<T> kinds =
@@ -111,7 +110,8 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
         hits, place.position, hits.bsdf.eval_for_point_light(place.position), emission, pmf);
     add_light_sample<T>(hits, 0, is_a(Kind::kDirection), light, indices, place);
   }
-  if (any(is_a(Kind::kEnvironment))) {
+  const auto scatters = hits.bsdf.scatters();
+  if (const auto is_environment = is_a(Kind::kEnvironment); any(is_environment)) {
     const Environment& environment = *lights.environment();
     const Triple<T> towards = environment.sample<T>(hits.random(kLightPoint));
     const T light_pdf = environment.pdf(towards) * pmf;
@@ -119,10 +119,11 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
     const Triple<T> light = directional_light_contribution(
         hits, towards, hits.bsdf.eval(towards) * power_heuristic(light_pdf, bsdf_pdf),
         environment.radiance(towards), light_pdf);
-    const auto is_valid = is_a(Kind::kEnvironment) & hits.bsdf.scatters() & (light_pdf > kMinPdf);
+    const auto is_valid = scatters & is_environment & (light_pdf > kMinPdf);
     add_light_sample<T>(hits, 0, is_valid, light, indices, {towards, zero<T>(), place.primitive});
   }
-  if (!any(is_a(Kind::kArea))) return;
+  const auto is_area = is_a(Kind::kArea);
+  if (!any(is_area)) return;
   std::uint32_t patches[kCount];
   for (int k = 0; k < kCount; ++k) {
     // A lane without an area light samples one nevertheless, and nothing comes of it.
@@ -140,7 +141,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                               minimum(power_heuristic(light_pdf, bsdf_pdf), 1.0f - min_bsdf_weight),
                               spread<T>(1.0f));
   add_light_sample<T>(
-      hits, 0, is_a(Kind::kArea) & hits.bsdf.scatters() & (cosine > 0.0f),
+      hits, 0, is_area & scatters & (cosine > 0.0f),
       area_light_contribution(hits, to_light, point, emission * (mis_weight / area_pdf)), indices,
       point);
 }

@@ -123,7 +123,7 @@ RAYGATE_INLINE void store_half(const Triple<FloatLanes>& point, const IntLanes& 
                                FloatQuad* rows) {
   store({half<FloatQuad, kHalf>(point.x), half<FloatQuad, kHalf>(point.y),
          half<FloatQuad, kHalf>(point.z)},
-        half<IntQuad, kHalf>(word), rows + kHalf * kQuad);
+        half<IntQuad, kHalf>(word), rows + std::ptrdiff_t{kHalf} * kQuad);
 }
 RAYGATE_INLINE void store(const Triple<FloatLanes>& point, const IntLanes& word, FloatQuad* rows) {
   store_half<0>(point, word, rows);

@@ -9,14 +9,17 @@
 namespace raygate {
 namespace {
 
-const Choices<IntegratorKind> kIntegrators = {{"primary", IntegratorKind::kPrimary},
-                                              {"whitted", IntegratorKind::kWhitted},
-                                              {"path", IntegratorKind::kPath}};
-const Choices<ReconstructionFilter> kFilters = {
-    {"box", ReconstructionFilter::kBox},
-    {"tent", ReconstructionFilter::kTent},
-    {"gauss", ReconstructionFilter::kGauss},
-    {"blackman-harris", ReconstructionFilter::kBlackmanHarris}};
+Choices<IntegratorKind> integrator_choices() {
+  return {{"primary", IntegratorKind::kPrimary},
+          {"whitted", IntegratorKind::kWhitted},
+          {"path", IntegratorKind::kPath}};
+}
+Choices<ReconstructionFilter> filter_choices() {
+  return {{"box", ReconstructionFilter::kBox},
+          {"tent", ReconstructionFilter::kTent},
+          {"gauss", ReconstructionFilter::kGauss},
+          {"blackman-harris", ReconstructionFilter::kBlackmanHarris}};
+}
 
 /// "inf": the unit's point wherever it has one.
 float parse_point_error(const std::string& option, const std::string& text) {
@@ -50,7 +53,7 @@ void add_light_options(OptionTable& table, RenderOptions& options) {
   table.choice("--integrator", "NAME",
                "primary: camera rays alone; whitted: shadows, reflection, refraction; path: all "
                "global illumination ({})",
-               options.integrator, kIntegrators, kInExr | kInStats | kInPython);
+               options.integrator, integrator_choices(), kInExr | kInStats | kInPython);
   table.number("--spp", "N", "samples per pixel ({}; at most 1024 with --error)", options.samples,
                Range{1, 1 << 20}, kInExr | kInStats | kInPython);
   table.number("--error", "X",
@@ -68,15 +71,15 @@ void add_light_options(OptionTable& table, RenderOptions& options) {
               options.first_sample = range->first;
               options.end_sample = range->end;
             });
-  table.choice("--filter", "NAME", "pixel filter: box, tent, gauss or {}", options.filter, kFilters,
-               kInExr | kInPython);
+  table.choice("--filter", "NAME", "pixel filter: box, tent, gauss or {}", options.filter,
+               filter_choices(), kInExr | kInPython);
   table.add(
       "--depth,--max-depth", "N", "reflections and refractions in a row (4; path: 64)",
       [&options](const std::string& option, const std::string& text) {
         const Range range{0, 1000};
         const auto depth = parse_number<int>(text);
         if (!depth || !range.contains(*depth)) fail_value(option, text, range.text());
-        options.max_depth = *depth;
+        options.max_depth = depth;
       },
       [&options] { return std::to_string(options.depth()); }, kInExr | kInStats | kInPython);
   table.number("--threshold", "X", "whitted: ignore rays that weigh less ({})", options.threshold,

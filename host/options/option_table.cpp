@@ -135,7 +135,7 @@ std::string OptionTable::parse(const std::vector<std::string>& words, const std:
     } else if (place < line_->positionals.size()) {
       *line_->positionals[place++] = extra;
     } else {
-      throw InputError(extra + ": " + too_many);
+      throw InputError(std::string(extra).append(": ").append(too_many));
     }
   }
   for (const Row& row : rows_) {

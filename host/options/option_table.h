@@ -66,7 +66,8 @@ class OptionTable {
         [&target, range](const std::string& option, const std::string& text) {
           const std::optional<T> number = parse_number<T>(text);
           if (!number || !range.contains(*number)) fail_value(option, text, range.text());
-          target = *number;
+          const T valid = *number;
+          target = valid;
         },
         [&target] { return text_of(target); }, places);
   }

@@ -1,6 +1,7 @@
 #include "host/trace/hit_table.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -15,22 +16,22 @@ namespace {
 struct Column {
   std::string_view name;
   bool is_integer;
-  std::vector<std::string> fields;
+  std::array<std::string_view, 3> fields;  // the rest is empty
 };
 
 /// In the order of HitColumn.
-const Column kColumns[] = {{"ray", true, {"ray"}},
-                           {"hit", true, {"hit"}},
-                           {"triangle", true, {"triangle"}},
-                           {"object", true, {"object"}},
-                           {"material", true, {"material"}},
-                           {"t", false, {"t"}},
-                           {"point", false, {"x", "y", "z"}},
-                           {"uv", false, {"u", "v"}},
-                           {"normal", false, {"nx", "ny", "nz"}},
-                           {"doubts", true, {"doubts"}},
-                           {"unit-point", false, {"unit_x", "unit_y", "unit_z"}},
-                           {"unit-error", false, {"unit_error"}}};
+constexpr Column kColumns[] = {{"ray", true, {"ray"}},
+                               {"hit", true, {"hit"}},
+                               {"triangle", true, {"triangle"}},
+                               {"object", true, {"object"}},
+                               {"material", true, {"material"}},
+                               {"t", false, {"t"}},
+                               {"point", false, {"x", "y", "z"}},
+                               {"uv", false, {"u", "v"}},
+                               {"normal", false, {"nx", "ny", "nz"}},
+                               {"doubts", true, {"doubts"}},
+                               {"unit-point", false, {"unit_x", "unit_y", "unit_z"}},
+                               {"unit-error", false, {"unit_error"}}};
 
 /// Appends decimals and a comma (CSV), or a little-endian word of 64 bits (NPY).
 template <class T>
@@ -103,7 +104,8 @@ std::vector<std::pair<std::string, std::string>> HitTable::fields() const {
   std::vector<std::pair<std::string, std::string>> fields;
   for (const HitColumn column : columns_) {
     const Column& known = kColumns[static_cast<std::size_t>(column)];
-    for (const std::string& field : known.fields) {
+    for (const std::string_view field : known.fields) {
+      if (field.empty()) continue;
       fields.emplace_back(field, known.is_integer ? "<i8" : "<f8");
     }
   }
