@@ -39,10 +39,9 @@ std::string size_text(const RenderOptions& options) {
 void read_size(const std::string& option, const std::string& text, RenderOptions& options) {
   const std::size_t x = text.find('x');
   const auto width = parse_number<int>(text.substr(0, x));
-  const auto height = x == std::string::npos
-                          ? std::nullopt
-                          : parse_number<int>(std::string_view(text).substr(x + 1));
-  if (!width || !height || !kSideRange.contains(*width) || !kSideRange.contains(*height)) {
+  const auto height =
+      parse_number<int>(x == std::string::npos ? "" : std::string_view(text).substr(x + 1));
+  if (!kSideRange.contains(width.value_or(0)) || !kSideRange.contains(height.value_or(0))) {
     fail_value(
         option, text,
         "WIDTHxHEIGHT, each from 1 to " + std::to_string(kSideRange.high) + " pixels (640x480)");
