@@ -68,7 +68,7 @@ std::vector<Channel> channels_of(const Film& film) {
     for (std::size_t i = 0; i < numbers; ++i) {
       std::string name(field.layer);
       if (!field.parts.empty()) (name += name.empty() ? "" : ".") += field.parts[i / words];
-      if (words > 1) (name += ".") += std::to_string(i % words);
+      if (words > 1) (name += '.') += std::to_string(i % words);
       channels.push_back({name, kIsFloat ? Channel::Type::kFloat : Channel::Type::kUint,
                           reinterpret_cast<const std::uint32_t*>(values.data()) + i,
                           sizeof(Pixel)});
