@@ -18,8 +18,8 @@ namespace raygate {
 
 /// Cores of `Top`, each with a `Holder` (see CorePort), in step: they share one port to memory,
 /// which takes one request and gives one line a clock, in turn. Hardware that is broken is told by
-/// std::runtime_error: no line and no result for kPatience clocks, a ray that ends twice, a line
-/// that is not there, lines on their way that it does not tell of.
+/// std::runtime_error: no line and no result for kPatience clocks, a ray that ends twice, lines on
+/// their way that it does not tell of.
 template <class Top, template <class> class Holder = Model>
 class CoreModel : public CoreUnit {
  public:
@@ -37,7 +37,8 @@ class CoreModel : public CoreUnit {
   void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
              std::vector<CoreResult>& results) override {
     memory_.load(lines);
-    for (Core& core : cores_) core.invalidate();
+    lacking_ = 0;
+    for (Core& core : cores_) core.invalidate(lines.size());
     std::size_t sent = 0, ended = 0;
     unsigned quiet = 0;
     while (ended < rays.size()) {
@@ -48,6 +49,7 @@ class CoreModel : public CoreUnit {
         }
         if (core.take_result(!chance(stalls_.not_taken))) {
           results.push_back(core.result());
+          if (results.back().error == CoreResult::Error::kMemory) results.back().line = lacking_;
           ended += results.back().kind == CoreResult::Kind::kEnd;
           quiet = 0;
         }
@@ -99,16 +101,16 @@ class CoreModel : public CoreUnit {
       const bool served = memory_.ready() && !taken && core.is_reading();
       core.set_read_ready(served);
       if (!served) continue;
-      if (memory_.read(core.line(), std::uint64_t{number} << kCoreBit | core.tag())) {
-        broken("asks for line " + std::to_string(core.line()));
-      }
+      memory_.read(core.line(), std::uint64_t{number} << kCoreBit | core.tag());
       turn_ = (number + 1) % count;
       taken = true;
     }
     if (memory_.valid()) {
       Core& core = cores_[memory_.tag() >> kCoreBit];
       if (core.has_room()) {
-        core.put(memory_.line(), memory_.tag() & ((std::uint64_t{1} << kCoreBit) - 1));
+        core.put(memory_.line(), memory_.is_error(),
+                 memory_.tag() & ((std::uint64_t{1} << kCoreBit) - 1));
+        if (memory_.is_error()) lacking_ = memory_.number();
         memory_.pop();
       }
     }
@@ -120,7 +122,8 @@ class CoreModel : public CoreUnit {
   MemoryModel memory_;
   CoreStalls stalls_;
   std::mt19937_64 random_;
-  std::size_t turn_ = 0;  // of the core that asks first
+  std::uint32_t lacking_ = 0;  // a line that memory answered with an error
+  std::size_t turn_ = 0;       // of the core that asks first
 };
 
 }  // namespace raygate

@@ -36,6 +36,7 @@ CoreResult result_at(const Top& top) {
   result.t_error = top.result_t_error_o;
   std::memcpy(&result.point, &top.result_point_o, sizeof result.point);
   result.tests = top.result_tests_o;
+  result.error = static_cast<CoreResult::Error>(top.result_error_o);
   result.line = top.result_line_o;
   result.nodes = top.result_nodes_o;
   return result;
@@ -46,7 +47,7 @@ template <class Top, template <class> class Holder = Model>
 class CorePort {
  public:
   CorePort() {
-    model_->invalidate_i = 0;
+    model_->invalidate_i = model_->abort_i = 0;
     model_->ray_valid_i = 0;
     model_->result_ready_i = 0;
     model_->read_ready_i = 0;
@@ -58,8 +59,9 @@ class CorePort {
   [[nodiscard]] const CoreCounters& counters() const { return counters_; }
   [[nodiscard]] std::uint64_t clocks() const { return model_.clocks(); }
 
-  /// Empties the core's caches: a clock.
-  void invalidate() {
+  /// Empties the core's caches, for a memory of so many lines: a clock.
+  void invalidate(std::size_t lines) {
+    model_->lines_i = static_cast<std::uint32_t>(lines);
     model_->invalidate_i = 1;
     model_.clock();
     model_->invalidate_i = 0;
@@ -99,8 +101,9 @@ class CorePort {
   void set_read_ready(bool ready) { model_->read_ready_i = ready; }
   /// Whether a line can be put at the port.
   [[nodiscard]] bool has_room() const { return model_->line_valid_i == 0; }
-  void put(const MemoryLine& line, std::uint64_t tag) {
+  void put(const MemoryLine& line, bool is_error, std::uint64_t tag) {
     model_->line_valid_i = 1;
+    model_->line_error_i = is_error;
     model_->line_id_i = tag;
     std::memcpy(&model_->line_i, &line, sizeof line);
   }

@@ -36,10 +36,8 @@ class MemoryModel {
 
   /// Whether a request would be taken in this clock.
   [[nodiscard]] bool ready() const { return ready_; }
-  /// Takes a request. Lines beyond the last one are the caller's bug, or a broken core's: true if
-  /// so.
-  [[nodiscard]] bool read(std::uint32_t line, std::uint64_t tag) {
-    if (line >= lines_.size()) return true;
+  /// Takes a request. Lines beyond the last one come with an error.
+  void read(std::uint32_t line, std::uint64_t tag) {
     int latency = timing_.latency;
     if (!cached_.empty()) {
       std::uint32_t& held = cached_[line & (cached_.size() - 1)];
@@ -53,12 +51,14 @@ class MemoryModel {
       latency += static_cast<int>(random_() % static_cast<std::uint64_t>(timing_.disorder + 1));
     due_.push({now_ + static_cast<std::uint64_t>(latency), sent_++, line, tag});
     free_at_ = now_ + static_cast<std::uint64_t>(64 / timing_.bytes);
-    return false;
   }
 
   /// Whether a line is there in this clock.
   [[nodiscard]] bool valid() const { return !due_.empty() && due_.top().at <= now_; }
-  [[nodiscard]] const MemoryLine& line() const { return lines_[due_.top().line]; }
+  [[nodiscard]] std::uint32_t number() const { return due_.top().line; }
+  [[nodiscard]] bool is_error() const { return number() >= lines_.size(); }
+  /// Zeros where it is an error.
+  [[nodiscard]] MemoryLine line() const { return is_error() ? MemoryLine{} : lines_[number()]; }
   [[nodiscard]] std::uint64_t tag() const { return due_.top().tag; }
   void pop() { due_.pop(); }
 

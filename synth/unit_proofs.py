@@ -101,7 +101,7 @@ def stack_keeps_nodes() -> tuple[dict, bool]:
 def hits_keep_nearest() -> tuple[dict, bool]:
     """closest_hit keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
     wires = "found_q any_hit_q replace u_doubts.push_i u_doubts.data_i *.count_q u_points.read_q u_points.write_q"
-    memories = ("t_max 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 points 2 96 tests 2 16 "
+    memories = ("t_max 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 points 2 96 tests 2 28 "
                 "counts 2 10 u_points.words 2 2")
     return holds("hits_keep_nearest", "Bitwuzla", cores.used("closest_hit", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,

@@ -5,8 +5,8 @@
 // answered in any order, and their beats come mixed. base_i is the address of line 0.
 //
 // At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock of its last beat.
-// bus_error_o: a beat has come with an error, or RLAST where it is not its burst's last or not where it is; its line
-// goes on as it came. No output of AXI depends on an input in the same clock.
+// bus_error_o: a beat has come with an error, or RLAST where it is not its burst's last or not where it is, of line
+// error_number_o; that goes on with line_error_o. No output of AXI depends on an input in the same clock.
 //
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
 module axi_read_manager #(
@@ -28,6 +28,7 @@ module axi_read_manager #(
   input  logic                    line_ready_i,
   output logic [ReadIdWidth-1:0]  line_id_o,
   output logic [LineWidth-1:0]    line_o,
+  output logic                    line_error_o,  // it must not be believed
   // AXI4, read address
   output logic                    axi_arvalid_o,
   input  logic                    axi_arready_i,
@@ -44,7 +45,8 @@ module axi_read_manager #(
   input  logic [DataWidth-1:0]    axi_rdata_i,
   input  logic [1:0]              axi_rresp_i,
   input  logic                    axi_rlast_i,
-  output logic                    bus_error_o
+  output logic                    bus_error_o,
+  output logic [AddressWidth-1:0] error_number_o
 );
 
   localparam int unsigned Ids = 2 ** IdWidth;
@@ -63,6 +65,8 @@ module axi_read_manager #(
   logic some_free, load, request_fire, line_fire, beat_valid, beat_fire, beat_error, beat_last;
   logic [IdWidth-1:0] beat_id;
   logic [ReadIdWidth-1:0] read_ids[Ids];
+  logic [AddressWidth-1:0] numbers[Ids];
+  logic [Ids-1:0] errors_q;  // of beats that came
 
   rr_arbiter #(
     .Width(Ids)
@@ -89,6 +93,7 @@ module axi_read_manager #(
   always_ff @(posedge clk_i) begin
     if (request_fire) begin
       read_ids[id] <= read_id_i;
+      numbers[id]  <= read_line_i;
       axi_arid_o   <= id;
       axi_araddr_o <= {base_i[63:6] + 58'(read_line_i), 6'd0};
     end
@@ -136,6 +141,8 @@ module axi_read_manager #(
 
   always_ff @(posedge clk_i) begin
     if (request_fire) counts[id] <= '0;
+    if (request_fire) errors_q[id] <= 1'b0;
+    if (bus_error_o) errors_q[beat_id] <= 1'b1;
     if (beat_fire && !last) counts[beat_id] <= counts[beat_id] + 1'b1;
   end
 
@@ -144,6 +151,8 @@ module axi_read_manager #(
   assign line_id_o    = read_ids[beat_id];
   assign line_fire    = line_valid_o & line_ready_i;
   assign bus_error_o  = beat_fire & (beat_error | (beat_last != last));
+  assign line_error_o = errors_q[beat_id] | beat_error | ~beat_last;
+  assign error_number_o = numbers[beat_id];
 
   logic unused;  // EXOKAY is never answered
   assign unused = ^{axi_rresp_i[0], base_i[5:0]};

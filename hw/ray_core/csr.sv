@@ -4,30 +4,34 @@
 // stay. Binary32 vectors are three words, x first.
 //
 //   0x000  identity   ro   0x52470001
-//   0x004  command    wo   bit 0: make the rays of the rectangle; 1: memory has changed; 2: counters to zero
-//   0x008  status     ro   bit 0: the generator has rays to make; 1: rays are in the core, or lines
-//                          on their way to it
+//   0x004  command    wo   bit 0: make the rays of the rectangle; 1: memory has changed; 2: counters to zero;
+//                          3: give up all rays, generated and others: they end at once, with an error
+//   0x008  status     ro   bit 0: the generator has rays to make; 1: rays are in the core; 2: lines are on
+//                          their way to it
 //   0x00c  enable     rw   of interrupts, as in `flags`
 //   0x010  flags      w1c  bit 0: a doubt has left; 1: the last ray of a rectangle has ended; 2: memory
-//                          has answered with an error
+//                          has answered with an error; 3: a ray has ended with an error
 //                          An event that comes as its flag is lowered raises it again
 //   0x014  base       rw   two words: address of line 0, low word first; a multiple of 64
+//   0x01c  lines      rw   of memory, 28 bits; 0: 2**28. A ray that enters more nodes ends with an error
 //   0x020  corner     rw   the rectangle's first pixel: x in bits 15:0, y in 31:16
 //   0x024  size       rw   its width and height, likewise
+//   0x028  error line ro   the number of the line that raised flag 2
 //   0x030  eye        rw   where generated rays begin; 0x040 first, 0x050 right, 0x060 down: see ray_generator
 //   0x100  counters   ro   two words each, low word first: clocks with status bit 1 high, then those of
 //                          ray_core_pkg::event_e in their order. Of 48 bits, modulo 2**48; a high word is
 //                          that of the moment when a low word was read last
 //
-// So a picture is drawn by one write of `size` and one of `command`, where the camera stays. While status is not
-// 0, commands 0 and 1 and writes to 0x014 to 0x068 do nothing and are answered by SLVERR. A rectangle without
-// pixels is done at once.
+// So a picture is drawn by one write of `size` and one of `command`, where the camera stays. While status bits 1:0
+// are not 0, command 0 and writes to 0x014 to 0x068 do nothing and are answered by SLVERR; while bits 2:0 are not,
+// command 1 and writes to `base`, which are a command 1, too. A rectangle without pixels is done at once.
 //
 // One write and one read at a time; no output of AXI depends on an input in the same clock.
 // interrupt_o is high while a flag is that is enabled.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr #(
-  localparam int unsigned AddressWidth = 12
+  localparam int unsigned AddressWidth = 12,
+  localparam int unsigned LineNumberWidth = ray_core_pkg::AddressWidth
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -52,14 +56,20 @@ module csr #(
   // the core's side
   output logic                    start_o,       // this clock's commands
   output logic                    invalidate_o,
+  output logic                    abort_o,       // until no ray is left
+  output logic                    drawing_o,     // a rectangle's rays are on their way
   output logic [63:0]             base_o,
+  output logic [LineNumberWidth-1:0] lines_o,
   output logic [31:0]             corner_o,
   output logic [31:0]             size_o,
   output logic [4*96-1:0]         camera_o,      // eye lowest, then first, right, down
   input  logic                    camera_busy_i,
-  input  logic                    core_busy_i,
+  input  logic                    core_busy_i,   // has rays
+  input  logic                    outstanding_i,
   input  logic                    doubt_i,       // this clock's
+  input  logic                    ray_error_i,
   input  logic                    bus_error_i,
+  input  logic [LineNumberWidth-1:0] error_number_i,
   input  logic [ray_core_pkg::NumEvents-1:0] events_i,
   output logic                    interrupt_o
 );
@@ -67,7 +77,7 @@ module csr #(
   localparam logic [31:0] Identity = 32'h5247_0001;
   localparam int unsigned NumCounters = 1 + ray_core_pkg::NumEvents;
   localparam int unsigned CounterWidth = 48;
-  localparam int unsigned NumFlags = 3;
+  localparam int unsigned NumFlags = 4;
 
   // Word numbers
   localparam logic [9:0] WordIdentity = 10'h000;
@@ -76,7 +86,9 @@ module csr #(
   localparam logic [9:0] WordEnable = 10'h003;
   localparam logic [9:0] WordFlags = 10'h004;
   localparam logic [9:0] WordBase = 10'h005;
-  localparam logic [31:0] PlainWords = 32'h0777_7360;  // by number, those of plain registers
+  localparam logic [9:0] WordLines = 10'h007;
+  localparam logic [9:0] WordErrorLine = 10'h00a;
+  localparam logic [31:0] PlainWords = 32'h0777_73e0;  // by number, those of plain registers
   localparam logic [9:0] WordCounters = 10'h040;
 
   // ---- Writes: address and data are taken, each into a register; then the word is written
@@ -108,14 +120,16 @@ module csr #(
     if (write) axi_bresp_o <= {refused, 1'b0};
   end
 
-  logic command, plain, clear;
-  logic [2:0] commands;
-  assign commands     = (write && write_word_q == WordCommand) ? write_data_q[2:0] & mask[2:0] : '0;
+  logic command, plain, rebase, clear;
+  logic [3:0] commands;
+  assign commands     = (write && write_word_q == WordCommand) ? write_data_q[3:0] & mask[3:0] : '0;
   assign plain        = (write_word_q < 10'd32) && PlainWords[write_word_q[4:0]];
-  assign refused      = (camera_busy_i | core_busy_i) & (plain | (commands[1:0] != '0));
+  assign rebase       = (write_word_q == WordBase) | (write_word_q == WordBase + 10'd1);
+  assign refused      = ((camera_busy_i | core_busy_i) & (plain | (commands[1:0] != '0)))
+                      | (outstanding_i & (rebase | commands[1]));
   assign command      = write & ~refused;
   assign start_o      = command & commands[0];
-  assign invalidate_o = command & commands[1];
+  assign invalidate_o = command & (commands[1] | rebase);
   assign clear        = command & commands[2];
 
   // ---- Plain registers: base, corner, size and the camera's
@@ -124,7 +138,8 @@ module csr #(
 
   for (genvar n = 0; n < 32; n++) begin : gen_word
     // That can be written. Yosys 0.23 reads '1 in a conditional as 32'd1.
-    localparam logic [31:0] Bits = (n == 32'(WordBase)) ? 32'hFFFF_FFC0 : 32'hFFFF_FFFF;
+    localparam logic [31:0] Bits = (n == 32'(WordBase)) ? 32'hFFFF_FFC0
+                                 : (n == 32'(WordLines)) ? 32'h0FFF_FFFF : 32'hFFFF_FFFF;
     if (PlainWords[n]) begin : gen_plain
       logic [31:0] word_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -140,6 +155,7 @@ module csr #(
   end
 
   assign base_o   = words[32*5+:64];
+  assign lines_o  = words[32*7+:LineNumberWidth];
   assign corner_o = words[32*8+:32];
   assign size_o   = words[32*9+:32];
   for (genvar v = 0; v < 4; v++) begin : gen_vector
@@ -149,11 +165,12 @@ module csr #(
   // ---- Flags
 
   logic [NumFlags-1:0] enable_q, flags_q, raised, lowered;
-  logic drawing_q, done;  // a rectangle's rays are on their way
+  logic drawing_q, done, abort_q;
+  logic [LineNumberWidth-1:0] error_line_q;
 
   assign done    = drawing_q & ~camera_busy_i & ~core_busy_i;
-  assign raised  = {bus_error_i, done, doubt_i};
-  assign lowered = (write && write_word_q == WordFlags) ? write_data_q[2:0] & mask[2:0] : '0;
+  assign raised  = {ray_error_i, bus_error_i, done, doubt_i};
+  assign lowered = (write && write_word_q == WordFlags) ? write_data_q[3:0] & mask[3:0] : '0;
   assign interrupt_o = (enable_q & flags_q) != '0;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -161,14 +178,21 @@ module csr #(
       enable_q  <= '0;
       flags_q   <= '0;
       drawing_q <= 1'b0;
+      abort_q   <= 1'b0;
+      error_line_q <= '0;
     end else begin
       if (write && write_word_q == WordEnable) begin
-        enable_q <= (write_data_q[2:0] & mask[2:0]) | (enable_q & ~mask[2:0]);
+        enable_q <= (write_data_q[3:0] & mask[3:0]) | (enable_q & ~mask[3:0]);
       end
       flags_q   <= (flags_q & ~lowered) | raised;
       drawing_q <= start_o | camera_busy_i | (drawing_q & ~done);
+      if (bus_error_i && !flags_q[2]) error_line_q <= error_number_i;
+      abort_q <= (command & commands[3]) | (abort_q & (camera_busy_i | core_busy_i));
     end
   end
+
+  assign drawing_o = drawing_q;
+  assign abort_o   = abort_q;
 
   // ---- Counters
 
@@ -206,7 +230,8 @@ module csr #(
       if (read_word == WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
     end
     if (read_word == WordIdentity) value = Identity;
-    if (read_word == WordStatus) value = {30'd0, core_busy_i, camera_busy_i};
+    if (read_word == WordStatus) value = {29'd0, outstanding_i, core_busy_i, camera_busy_i};
+    if (read_word == WordErrorLine) value = 32'(error_line_q);
     if (read_word == WordEnable) value = 32'(enable_q);
     if (read_word == WordFlags) value = 32'(flags_q);
   end

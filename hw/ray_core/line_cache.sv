@@ -12,6 +12,8 @@
 // until then, may go. Lines leave in any order, one a clock, each with the ray that asked; those from memory
 // first, while hits wait in a queue and requests are looked up as before.
 //
+// A line that comes with an error goes to its targets, error_o, and is not kept.
+//
 // invalidate_i, while no line is outstanding, empties the cache.
 module line_cache #(
   parameter int unsigned Lines    = 256,  // a power of two, at least 16
@@ -41,11 +43,13 @@ module line_cache #(
   output logic                    fill_done_o,
   input  logic [EntryWidth-1:0]   fill_entry_i,
   input  logic [Width-1:0]        fill_line_i,
+  input  logic                    fill_error_i,
   // answers
   output logic                    valid_o,
   input  logic                    ready_i,  // else nothing leaves, and fill_i must be low
   output logic [RayWidth-1:0]     ray_o,
-  output logic [Width-1:0]        line_o
+  output logic [Width-1:0]        line_o,
+  output logic                    error_o
 );
 
   localparam int unsigned Ways = 8;
@@ -173,7 +177,7 @@ module line_cache #(
       draining_q <= 1'b0;
     end else begin
       if (arrive) begin
-        valid_q[fill_entry_i]   <= 1'b1;
+        valid_q[fill_entry_i]   <= ~fill_error_i;
         pending_q[fill_entry_i] <= 1'b0;
       end
       if (allocate) begin
@@ -218,5 +222,6 @@ module line_cache #(
   assign valid_o = (fill_i & somebody) | leaves;
   assign ray_o   = fill_i ? rays[current] : queued_ray;
   assign line_o  = fill_i ? fill_line_i : queued_line;
+  assign error_o = fill_i & fill_error_i;
 
 endmodule

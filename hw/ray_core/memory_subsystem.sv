@@ -6,6 +6,8 @@
 // A prefetched node (prefetch_i) is looked up in clocks without a request for a node; where too many of them wait,
 // it is forgotten. Its line may come when the last ray has long ended: memory must not change, nor the caches
 // be emptied, while outstanding_o.
+//
+// A line with an error is given to the rays that wait for it, and read again for the next; a node's has no children.
 module memory_subsystem #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
@@ -43,17 +45,21 @@ module memory_subsystem #(
   output logic                    line_ready_o,
   input  logic [ReadIdWidth-1:0]  line_id_i,
   input  logic [LineWidth-1:0]    line_i,
+  input  logic                    line_error_i,
   // lines
   input  logic                    tests_allowed_i,  // else no triangle leaves
   output logic                    node_valid_o,
   output logic [RayWidth-1:0]     node_ray_o,
   output logic [LineWidth-1:0]    node_o,
+  output logic                    node_error_o,
   output logic                    triangle_valid_o,
   output logic [RayWidth-1:0]     triangle_ray_o,
-  output logic [TriangleWidth-1:0] triangle_o
+  output logic [TriangleWidth-1:0] triangle_o,
+  output logic                    triangle_error_o
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
+  localparam int unsigned KindsWidth = ray_core_pkg::Children * ray_core_pkg::KindWidth;
   localparam int unsigned MissWidth = EntryWidth + AddressWidth;
 
   // ---- Requests
@@ -105,9 +111,9 @@ module memory_subsystem #(
 
   // ---- Caches
 
-  logic line_valid, line_done, fill, fill_triangle, node_done, triangle_done;
+  logic line_valid, line_error, line_done, fill, fill_triangle, node_done, triangle_done;
   logic [EntryWidth-1:0] fill_entry;
-  logic [LineWidth-1:0] line;
+  logic [LineWidth-1:0] line, node_line;
   logic [AddressWidth-1:0] node_number, triangle_number;
   logic [$clog2(NodeLines)-1:0] node_entry;
   logic [$clog2(TriangleLines)-1:0] triangle_entry;
@@ -115,17 +121,17 @@ module memory_subsystem #(
   logic node_miss_valid, node_miss_ready, triangle_miss_valid, triangle_miss_ready;
 
   fifo #(
-    .Width(ReadIdWidth + LineWidth),
+    .Width(1 + ReadIdWidth + LineWidth),
     .Depth(2)
   ) u_lines (
     .clk_i,
     .rst_ni,
     .push_i(line_valid_i & line_ready_o),
-    .data_i({line_id_i, line_i}),
+    .data_i({line_error_i, line_id_i, line_i}),
     .space_o(line_ready_o),
     .pop_i(line_done),
     .valid_o(line_valid),
-    .data_o({fill_triangle, fill_entry, line})
+    .data_o({line_error, fill_triangle, fill_entry, line})
   );
   assign prefetch_fire = prefetch_valid & ~node_valid & node_ready;
   assign fill          = line_valid & tests_allowed_i;
@@ -151,10 +157,12 @@ module memory_subsystem #(
     .fill_done_o(node_done),
     .fill_entry_i(fill_entry[$clog2(NodeLines)-1:0]),
     .fill_line_i(line),
+    .fill_error_i(line_error),
     .valid_o(node_valid_o),
     .ready_i(1'b1),
     .ray_o(node_ray_o),
-    .line_o(node_o)
+    .line_o(node_line),
+    .error_o(node_error_o)
   );
   line_cache #(
     .Lines(TriangleLines),
@@ -178,11 +186,19 @@ module memory_subsystem #(
     .fill_done_o(triangle_done),
     .fill_entry_i(fill_entry[$clog2(TriangleLines)-1:0]),
     .fill_line_i(line[TriangleWidth-1:0]),
+    .fill_error_i(line_error),
     .valid_o(triangle_valid_o),
     .ready_i(tests_allowed_i),
     .ray_o(triangle_ray_o),
-    .line_o(triangle_o)
+    .line_o(triangle_o),
+    .error_o(triangle_error_o)
   );
+
+  always_comb begin
+    node_o = node_line;
+    if (node_error_o) node_o[ray_core_pkg::NodeKinds+:KindsWidth] = '0;  // all absent
+  end
+
 
   assign node_miss     = {EntryWidth'(node_entry), node_number};
   assign triangle_miss = {EntryWidth'(triangle_entry), triangle_number};

@@ -19,6 +19,7 @@ module ray_context #(
   output logic [30:0]         start_t_max_o,
   output logic [ray_core_pkg::AddressWidth-1:0] start_line_o,
   output logic                start_any_hit_o,
+  output logic                start_scaled_o,  // its direction is
   input  logic                start_fire_i,
   // a ray has ended: its context is free
   input  logic                ending_i,
@@ -86,6 +87,7 @@ module ray_context #(
   assign start_t_max_o      = start.t_max;
   assign start_line_o       = start.start;
   assign start_any_hit_o    = start.any_hit;
+  assign start_scaled_o     = ray_core_pkg::is_scaled(start.direction);
   assign node_origin_o      = origins[node_ctx_i];
   assign node_inverse_o     = inverses[node_ctx_i];
   assign node_no_cull_o     = no_cull_q[node_ctx_i];

@@ -8,6 +8,7 @@
 //   triangle_test      set_up_unit: a triangle's record, seen from the ray's origin; hit_test_pipeline: hit,
 //                      miss or doubt, t, P
 //   closest_hit        each ray's nearest hit and t_max, and the doubts
+//   ray_errors         why a ray's hits must not be believed
 //   ray_retire         which rays have ended; results
 //
 // Rays and results: valid/ready. A ray begins at the inner node of line ray_start_i (the root's, as a
@@ -18,10 +19,11 @@
 //   ResultOverflow  subtrees for which the stack had no room: bit i of result_nodes_o is the inner node at
 //                line result_line_o + i. The ray must be sent there, too
 //   ResultEnd    the ray's last word: whether it has a sure hit, of which triangle, at which t (off by fewer
-//                than 2**result_t_error_o numbers), P as the pipeline has it, and how many tests there were
+//                than 2**result_t_error_o numbers), P as the pipeline has it, and how many tests there were. With a
+//                result_error_o its words say nothing: it was given up at once, see ray_core_pkg::error_e
 //
 // Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order,
-// valid/ready. Some are prefetched: outstanding_o may be high when the last ray has
+// valid/ready; with line_error_i, not to be believed: it is read again for the next ray. Some are prefetched: outstanding_o may be high when the last ray has
 // ended. Memory may change, and invalidate_i be high then, while no ray is here and outstanding_o is low.
 //
 // Throughput: a node and a triangle a clock, out of the caches; a line a clock of what they lack.
@@ -45,6 +47,8 @@ module ray_core #(
   input  logic                    rst_ni,
   input  logic                    invalidate_i,  // memory has changed: see above
   output logic                    outstanding_o,
+  input  logic                    abort_i,  // the rays that are here
+  input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
   // rays
   input  logic                    ray_valid_i,
   output logic                    ray_ready_o,
@@ -67,6 +71,7 @@ module ray_core #(
   output logic [TErrorWidth-1:0]  result_t_error_o,
   output logic [95:0]             result_point_o,
   output logic [TestsWidth-1:0]   result_tests_o,
+  output logic [2:0]              result_error_o,
   output logic [AddressWidth-1:0] result_line_o,
   output logic [NodesWidth-1:0]   result_nodes_o,
   // memory
@@ -78,6 +83,7 @@ module ray_core #(
   output logic                    line_ready_o,
   input  logic [ReadIdWidth-1:0]  line_id_i,
   input  logic [LineWidth-1:0]    line_i,
+  input  logic                    line_error_i,
   output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
 );
 
@@ -95,7 +101,7 @@ module ray_core #(
   ray_core_pkg::ray_t ray;
   logic [30:0] start_t_max;
   logic [AddressWidth-1:0] start_line;
-  logic start_any_hit;
+  logic start_any_hit, start_scaled;
 
   assign ray = {
     ray_origin_i,
@@ -123,6 +129,7 @@ module ray_core #(
     .start_t_max_o(start_t_max),
     .start_line_o(start_line),
     .start_any_hit_o(start_any_hit),
+    .start_scaled_o(start_scaled),
     .start_fire_i(start_fire),
     .ending_i(ending),
     .ending_ctx_i(ending_ctx),
@@ -145,13 +152,13 @@ module ray_core #(
   // ---- Traversal
 
   logic box_valid, traversal_ended, leaf_ended, leaf_counter_full, node, prefetch;
-  logic overflow_valid, overflow_fire;
+  logic overflow_valid, overflow_fire, cycle;
   logic [RayWidth-1:0] traversal_ray, leaf_ray, node_ray;
   logic [31:0] overflow_tag;
   logic [GroupWidth-1:0] box_group;
   logic [Children-1:0] box_inner, box_leaf;
   logic [30:0] traversal_t_max, leaf_t_max;
-  logic [Rays-1:0] leaf_pending, testing, traversing;
+  logic [Rays-1:0] leaf_pending, testing, traversing, failed;
   logic [AddressWidth-1:0] node_line, prefetch_line, overflow_line;
   logic [NodesWidth-1:0] overflow_nodes;
 
@@ -174,7 +181,9 @@ module ray_core #(
     .testing_i(testing),
     .t_max_ray_o(traversal_ray),
     .t_max_i(traversal_t_max),
-    .ended_i(traversal_ended),
+    .ended_i(traversal_ended | failed[traversal_ray]),
+    .cycle_o(cycle),
+    .lines_i,
     .traversing_o(traversing),
     .node_valid_o(node),
     .node_ray_o(node_ray),
@@ -203,7 +212,7 @@ module ray_core #(
     .box_leaf_i(box_leaf),
     .t_max_ray_o(leaf_ray),
     .t_max_i(leaf_t_max),
-    .ended_i(leaf_ended),
+    .ended_i(leaf_ended | failed[leaf_ray]),
     .counter_full_i(leaf_counter_full),
     .leaf_pending_o(leaf_pending),
     .triangle_valid_o(triangle_valid),
@@ -214,7 +223,7 @@ module ray_core #(
 
   // ---- Memory
 
-  logic node_here, triangle_here, tests_allowed;
+  logic node_here, node_error, triangle_here, triangle_error, tests_allowed;
   logic [LineWidth-1:0] node_words;
   logic [ray_core_pkg::TriangleWidth-1:0] triangle_words;
 
@@ -244,13 +253,16 @@ module ray_core #(
     .line_ready_o,
     .line_id_i,
     .line_i,
+    .line_error_i,
     .tests_allowed_i(tests_allowed),
     .node_valid_o(node_here),
     .node_ray_o(node_line_ray),
     .node_o(node_words),
+    .node_error_o(node_error),
     .triangle_valid_o(triangle_here),
     .triangle_ray_o(triangle_line_ray),
-    .triangle_o(triangle_words)
+    .triangle_o(triangle_words),
+    .triangle_error_o(triangle_error)
   );
 
   // ---- Boxes
@@ -298,6 +310,7 @@ module ray_core #(
     .triangle_i(triangle_words),
     .origin_i(triangle_origin),
     .skip_id_i(skip_id),
+    .error_i(triangle_error),
     .direction_ctx_o(set_ray),
     .direction_i(direction),
     .closed_o(over),
@@ -381,6 +394,30 @@ module ray_core #(
     .near_tie_o(near_tie)
   );
 
+  // ---- Errors
+
+  logic [2:0] ending_error;
+
+  ray_errors #(
+    .Rays(Rays)
+  ) u_errors (
+    .clk_i,
+    .rst_ni,
+    .abort_i,
+    .start_i(start_fire),
+    .start_ctx_i(start_ctx),
+    .start_scaled_i(start_scaled),
+    .node_i(node_here & node_error),
+    .node_ctx_i(node_line_ray),
+    .triangle_i(triangle_here & triangle_error),
+    .triangle_ctx_i(triangle_line_ray),
+    .cycle_i(cycle),
+    .cycle_ctx_i(traversal_ray),
+    .failed_o(failed),
+    .ending_ctx_i(ending_ctx),
+    .ending_error_o(ending_error)
+  );
+
   // ---- Results
 
   ray_retire #(
@@ -399,6 +436,7 @@ module ray_core #(
     .ending_t_i(end_t),
     .ending_t_error_i(end_t_error),
     .ending_tests_i(end_tests),
+    .ending_error_i(ending_error),
     .point_ctx_o(point_ctx),
     .point_i(end_point),
     .doubt_valid_i(doubt_valid),
@@ -420,6 +458,7 @@ module ray_core #(
     .result_t_error_o,
     .result_point_o,
     .result_tests_o,
+    .result_error_o,
     .result_line_o,
     .result_nodes_o
   );

@@ -5,7 +5,7 @@
 //   ray_core
 //   axi_read_manager  its memory port
 //
-// Rays of the user's (ray_*) come while the generator makes none. A generated ray has no t_max, skips no triangle,
+// Rays of the user's (ray_*) wait while a rectangle is drawn or rays are given up. A generated ray has no t_max, skips no triangle,
 // and begins at the root. The rest as in those modules.
 module ray_core_axi #(
   parameter int unsigned Rays  = 64,
@@ -80,6 +80,7 @@ module ray_core_axi #(
   output logic [TErrorWidth-1:0] result_t_error_o,
   output logic [95:0]            result_point_o,
   output logic [TestsWidth-1:0]  result_tests_o,
+  output logic [2:0]             result_error_o,
   output logic [AddressWidth-1:0] result_line_o,
   output logic [NodesWidth-1:0]  result_nodes_o
 );
@@ -92,8 +93,10 @@ module ray_core_axi #(
 
   // ---- Registers
 
-  logic start, invalidate, outstanding, camera_busy, bus_error, result_fire, is_doubt, ended;
+  logic start, invalidate, abort, drawing, outstanding, camera_busy, bus_error;
+  logic result_fire, is_doubt, ended;
   logic [63:0] base;
+  logic [AddressWidth-1:0] lines, error_number;
   logic [31:0] corner, size;
   logic [4*96-1:0] camera;
   logic [ray_core_pkg::NumEvents-1:0] events;
@@ -125,14 +128,20 @@ module ray_core_axi #(
     .axi_rresp_o(reg_rresp_o),
     .start_o(start),
     .invalidate_o(invalidate),
+    .abort_o(abort),
+    .drawing_o(drawing),
     .base_o(base),
+    .lines_o(lines),
     .corner_o(corner),
     .size_o(size),
     .camera_o(camera),
     .camera_busy_i(camera_busy),
-    .core_busy_i((in_flight_q != '0) | outstanding),
+    .core_busy_i(in_flight_q != '0),
+    .outstanding_i(outstanding),
     .doubt_i(is_doubt),
+    .ray_error_i(ended & (result_error_o != ray_core_pkg::ErrorNone)),
     .bus_error_i(bus_error),
+    .error_number_i(error_number),
     .events_i(events),
     .interrupt_o
   );
@@ -153,6 +162,7 @@ module ray_core_axi #(
     .right_i(camera[192 +: 96]),
     .down_i(camera[288 +: 96]),
     .start_i(start),
+    .stop_i(abort),
     .x_i(corner[15:0]),
     .y_i(corner[31:16]),
     .width_i(size[15:0]),
@@ -166,22 +176,26 @@ module ray_core_axi #(
 
   // ---- Rays: the camera's first
 
-  logic core_ready, core_valid, ray_fire;
-  assign core_valid   = camera_valid | (ray_valid_i & ~camera_busy);
+  logic
+    core_ready, core_valid, ray_fire, closed_q;  // to the user's; but one that waits goes in before
+  assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
-  assign ray_ready_o  = core_ready & ~camera_busy;
+  assign ray_ready_o  = core_ready & ~closed_q;
   assign ray_fire     = core_valid & core_ready;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) in_flight_q <= '0;
-    else begin
+    if (!rst_ni) begin
+      in_flight_q <= '0;
+      closed_q    <= 1'b0;
+    end else begin
+      if (!core_valid || core_ready) closed_q <= start | drawing | abort;
       in_flight_q <= in_flight_q + 32'(ray_fire) - 32'(ended);
     end
   end
 
   // ---- The core and its memory
 
-  logic read_valid, read_ready, line_valid, line_ready;
+  logic read_valid, read_ready, line_valid, line_ready, line_error;
   logic [AddressWidth-1:0] read_line;
   logic [ReadIdWidth-1:0] read_id, line_id;
   logic [ray_core_pkg::LineWidth-1:0] line;
@@ -198,6 +212,8 @@ module ray_core_axi #(
     .rst_ni,
     .invalidate_i(invalidate),
     .outstanding_o(outstanding),
+    .abort_i(abort),
+    .lines_i(lines),
     .ray_valid_i(core_valid),
     .ray_ready_o(core_ready),
     .ray_origin_i(camera_valid ? camera[0 +: 96] : ray_origin_i),
@@ -218,6 +234,7 @@ module ray_core_axi #(
     .result_t_error_o,
     .result_point_o,
     .result_tests_o,
+    .result_error_o,
     .result_line_o,
     .result_nodes_o,
     .read_valid_o(read_valid),
@@ -228,6 +245,7 @@ module ray_core_axi #(
     .line_ready_o(line_ready),
     .line_id_i(line_id),
     .line_i(line),
+    .line_error_i(line_error),
     .events_o(events)
   );
 
@@ -247,6 +265,7 @@ module ray_core_axi #(
     .line_ready_i(line_ready),
     .line_id_o(line_id),
     .line_o(line),
+    .line_error_o(line_error),
     .axi_arvalid_o(mem_arvalid_o),
     .axi_arready_i(mem_arready_i),
     .axi_arid_o(mem_arid_o),
@@ -261,7 +280,8 @@ module ray_core_axi #(
     .axi_rdata_i(mem_rdata_i),
     .axi_rresp_i(mem_rresp_i),
     .axi_rlast_i(mem_rlast_i),
-    .bus_error_o(bus_error)
+    .bus_error_o(bus_error),
+    .error_number_o(error_number)
   );
 
 endmodule

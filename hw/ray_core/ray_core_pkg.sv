@@ -91,7 +91,25 @@ package ray_core_pkg;
   } result_e;
 
   localparam int unsigned NodesWidth = 7 * Children;  // of an overflow: bit i: the node at line + i
-  localparam int unsigned TestsWidth = 16;
+  localparam int unsigned TestsWidth = AddressWidth;  // a ray tests each triangle line once
+
+  // Why a ray's hits must not be believed
+  typedef enum logic [2:0] {
+    ErrorNone      = 3'd0,
+    ErrorMemory    = 3'd1,  // a line for it came with an error
+    ErrorCycle     = 3'd2,  // it meets a node again: see traversal
+    ErrorDirection = 3'd3,  // its direction is not scaled
+    ErrorAbort     = 3'd4   // the user gave it up
+  } error_e;
+
+  // Whether the largest component of a direction is in [1, 2).
+  function automatic logic is_scaled(logic [95:0] direction);
+    is_scaled = (direction[30:23] == 8'd127) || (direction[62:55] == 8'd127)
+             || (direction[94:87] == 8'd127);
+    for (int unsigned k = 0; k < 3; k++) begin
+      if (direction[32*k+23+:8] > 8'd127) is_scaled = 1'b0;
+    end
+  endfunction
 
   // ---- Events of a clock, for counters
 

@@ -3,11 +3,11 @@
 // The direction through pixel (x, y) is (first + y down) + x right, binary32, each operation rounded to nearest:
 // first goes through the pixel (0, 0), right and down lead from a pixel to the next. It is then scaled by a
 // power of two, so that the largest component is in [1, 2); a component that becomes smaller than
-// 2**-126 is zero. Vectors are three words, x lowest; directions that are not finite or zero are the user's
-// mistake. Host: host/intersect/core/pixel_grid.h, bit for bit.
+// 2**-126 is zero. What cannot be scaled, zero or not finite, stays so: the core refuses it. Vectors are three words,
+// x lowest. Host: host/intersect/core/pixel_grid.h, bit for bit.
 //
-// start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. Throughput a ray a
-// clock.
+// start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. stop_i: no pixel is begun
+// any more. Throughput a ray a clock.
 module ray_generator #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
@@ -20,6 +20,7 @@ module ray_generator #(
   input  logic [95:0] down_i,
   // the rectangle
   input  logic        start_i,
+  input  logic        stop_i,
   input  logic [15:0] x_i,
   input  logic [15:0] y_i,
   input  logic [15:0] width_i,
@@ -47,7 +48,7 @@ module ray_generator #(
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) counting_q <= 1'b0;
     else if (start_i && !busy_o) counting_q <= (width_i != '0) & (height_i != '0);
-    else if (go && last) counting_q <= 1'b0;
+    else if (stop_i || (go && last)) counting_q <= 1'b0;
   end
   always_ff @(posedge clk_i) begin
     if (start_i && !busy_o) begin
@@ -140,7 +141,7 @@ module ray_generator #(
 
   // ---- Scale: exponents alone
 
-  logic [7:0] largest;
+  logic [7:0] largest, unit;
   logic [95:0] scaled;
 
   always_comb begin
@@ -149,11 +150,12 @@ module ray_generator #(
       if (direction[32*k+23+:8] > largest) largest = direction[32*k+23+:8];
     end
   end
+  assign unit = (largest == 8'd255) ? 8'd255 : 8'd127;
   for (genvar k = 0; k < 3; k++) begin : gen_scaled
     logic [7:0] below;  // so many orders below the largest
     assign below = largest - direction[32*k+23 +: 8];
     assign scaled[32*k +: 32] = ((direction[32*k+23 +: 8] == '0) | (below > 8'd126))
-        ? {direction[32*k+31], 31'd0} : {direction[32*k+31], 8'd127 - below, direction[32*k +: 23]};
+        ? {direction[32*k+31], 31'd0} : {direction[32*k+31], unit - below, direction[32*k +: 23]};
   end
 
   // ---- Rays on their direction, and those that wait

@@ -27,6 +27,7 @@ module ray_retire #(
   input  logic [31:0]            ending_t_i,
   input  logic [TErrorWidth-1:0] ending_t_error_i,
   input  logic [TestsWidth-1:0]  ending_tests_i,
+  input  logic [2:0]             ending_error_i,
   // the P of a context's last ray, in the same clock
   output logic [RayWidth-1:0]    point_ctx_o,
   input  logic [95:0]            point_i,
@@ -51,13 +52,14 @@ module ray_retire #(
   output logic [TErrorWidth-1:0] result_t_error_o,
   output logic [95:0]            result_point_o,
   output logic [TestsWidth-1:0]  result_tests_o,
+  output logic [2:0]             result_error_o,
   output logic [AddressWidth-1:0] result_line_o,
   output logic [NodesWidth-1:0]  result_nodes_o
 );
 
   localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
   localparam int unsigned Depth = PointDelay + 3;  // for an end a clock
-  localparam int unsigned EndWidth = 32 + 1 + 32 + 32 + TErrorWidth + TestsWidth;
+  localparam int unsigned EndWidth = 32 + 1 + 32 + 32 + TErrorWidth + TestsWidth + 3;
 
   // ---- The end of a ray
 
@@ -92,6 +94,7 @@ module ray_retire #(
   logic [31:0] end_tag, end_triangle, end_t;
   logic [TErrorWidth-1:0] end_t_error;
   logic [TestsWidth-1:0] end_tests;
+  logic [2:0] end_error;
   logic end_found;
 
   fifo #(
@@ -102,13 +105,13 @@ module ray_retire #(
     .rst_ni,
     .push_i(ending_o),
     .data_i({ending_tag_i, ending_found_i, ending_triangle_i, ending_t_i, ending_t_error_i,
-             ending_tests_i}),
+             ending_tests_i, ending_error_i}),
     .space_o(space),
     .pop_i(end_fire),
     .valid_o(unused_valid),
     .data_o(end_words)
   );
-  assign {end_tag, end_found, end_triangle, end_t, end_t_error, end_tests} = end_words;
+  assign {end_tag, end_found, end_triangle, end_t, end_t_error, end_tests, end_error} = end_words;
 
   delay_line #(
     .Width(RayWidth),
@@ -163,6 +166,7 @@ module ray_retire #(
       result_t_error_o  <= end_t_error;
       result_point_o    <= end_point;
       result_tests_o    <= end_tests;
+      result_error_o    <= end_error;
       result_line_o     <= overflow_line_i;
       result_nodes_o    <= overflow_nodes_i;
     end

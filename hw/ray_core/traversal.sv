@@ -5,6 +5,9 @@
 // beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for. Rays without
 // tests in flight come first: what they ask for is needed as far as anybody knows.
 //
+// A tree's ray enters each node once. One that is about to enter more than lines_i nodes meets a node again: its
+// stack is dropped, cycle_o says so.
+//
 // Where a stack has no room for a group, the group leaves as an overflow: the host sends the ray there. Overflows
 // are few; while one waits, no node is asked for, so Rays words are room enough.
 //
@@ -41,6 +44,8 @@ module traversal #(
   output logic [RayWidth-1:0]     t_max_ray_o,
   input  logic [30:0]             t_max_i,     // of t_max_ray_o, in the same clock
   input  logic                    ended_i,     // of t_max_ray_o: it needs nothing any more
+  output logic                    cycle_o,     // t_max_ray_o meets a node again
+  input  logic [AddressWidth-1:0] lines_i,     // of memory; 0: 2**AddressWidth
   output logic [Rays-1:0]         traversing_o,  // waits for a node, or has some on its stack
   // nodes asked for; as many as there are rays at most
   output logic                    node_valid_o,
@@ -72,6 +77,7 @@ module traversal #(
 
   logic [GroupWidth-1:0] groups[Rays*Depth];
   logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
+  logic [AddressWidth-1:0] entered[Rays];  // nodes
   logic [Rays-1:0] busy_q;     // waits for a node
   logic [Rays-1:0] waiting_q;  // levels is not 0
 
@@ -166,8 +172,9 @@ module traversal #(
   end
 
   assign remaining = mask & (mask - 1'b1);
-  assign go        = picked_q & (open != '0);
-  assign left      = (open == '0) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
+  assign cycle_o   = picked_q & (open != '0) & (entered[ray_q] == lines_i);
+  assign go        = picked_q & (open != '0) & ~cycle_o;
+  assign left      = ~go ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
 
   assign start_fire_o = start_valid_i & ~go & ~overflow_valid_o;
 
@@ -238,6 +245,8 @@ module traversal #(
   end
   always_ff @(posedge clk_i) begin
     if (start_fire_o) levels[start_ray_i] <= '0;
+    if (start_fire_o) entered[start_ray_i] <= AddressWidth'(1);
+    if (go) entered[ray_q] <= entered[ray_q] + 1'b1;
     if (picked_q) levels[ray_q] <= left;
     if (push) levels[box_ray_i] <= box_level + 1'b1;
   end

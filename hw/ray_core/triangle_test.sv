@@ -21,6 +21,7 @@ module triangle_test #(
   input  logic [TriangleWidth-1:0]   triangle_i,  // a triangle line
   input  logic [95:0]                origin_i,
   input  logic [31:0]                skip_id_i,   // a triangle that counts for nothing
+  input  logic                       error_i,     // nor does this one: its line came with an error
   output logic [RayWidth-1:0]        direction_ctx_o,
   input  logic [95:0]                direction_i,
   output logic                       closed_o,
@@ -64,7 +65,7 @@ module triangle_test #(
   ) u_sideband_set_up (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({ctx_i, index, index == skip_id_i}),
+    .data_i({ctx_i, index, error_i | (index == skip_id_i)}),
     .data_o({direction_ctx_o, set_triangle, set_skipped})
   );
 

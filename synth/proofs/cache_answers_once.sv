@@ -1,5 +1,5 @@
 // The cache of lines, whatever is asked for and in whichever order memory answers, from reset and for ever: a request
-// that is demand and taken is answered once, with its ray, by the line of its number in memory; it waits in the queue of hits, or is
+// that is demand and taken is answered once, with its ray, by the line of its number in memory, or by its error; it waits in the queue of hits, or is
 // enlisted for a entry whose line is on its way, and that line does not go before it is answered. No line is asked for
 // while it is here or on its way.
 // opened_line_cache is line_cache of two sets and two waiters with its registers and memories as outputs. Of memory is said
@@ -21,6 +21,7 @@ module cache_answers_once #(
   input logic             fill,
   input logic [3:0]       fill_entry,
   input logic [Width-1:0] fill_line,
+  input logic             fill_error,
   input logic             ready,
   input logic             choose  // the request taken now is the one that is watched
 );
@@ -33,7 +34,7 @@ module cache_answers_once #(
   (* anyconst *) logic [AddressWidth-1:0] number;  // of a line, and what it holds
   (* anyconst *) logic [Width-1:0] content;
 
-  logic taken, miss, fill_done, answer, answer_ray;
+  logic taken, miss, fill_done, answer, answer_ray, answer_error;
   logic [3:0] miss_entry;
   logic [AddressWidth-1:0] miss_number;
   logic [Width-1:0] answer_line;
@@ -64,10 +65,12 @@ module cache_answers_once #(
     .fill_done_o(fill_done),
     .fill_entry_i(fill_entry),
     .fill_line_i(fill_line),
+    .fill_error_i(fill_error),
     .valid_o(answer),
     .ready_i(ready),
     .ray_o(answer_ray),
     .line_o(answer_line),
+    .error_o(answer_error),
     .valid_q(line_valid),
     .pending_q(pending),
     .free_q(free),
@@ -116,7 +119,7 @@ module cache_answers_once #(
   always_comb begin
     if (reset_n) begin
       assume (!fill || (ready && (draining ? fill_entry == entry_q : pending[fill_entry])));
-      assume (!fill || !comes || fill_line == content);
+      assume (!fill || !comes || fill_error || fill_line == content);
       assume (!invalidate || (pending == '0 && !draining));
     end else begin
       assume (!fill && !invalidate && !valid && !ready);
@@ -171,7 +174,10 @@ module cache_answers_once #(
 
   always_comb begin
     if (reset_n) begin
-      if (state != Nowhere && answered) assert (answer && answer_ray == w_ray && answer_line == content);
+      if (state != Nowhere && answered) begin
+        assert (answer && answer_ray == w_ray);
+        assert (answer_error ? state == Pending && fill_error : answer_line == content);
+      end
       if (answer) assert (outstanding != '0 && ready);
       assert (outstanding == count + 5'(!free[0]) + 5'(!free[1]));
       // Its line does not go without it

@@ -1,5 +1,5 @@
 // A ray's stack, whatever box_unit says, whichever rays wait, from reset and for ever: a node that was pushed is
-// asked for, once, by the line that its group gives, unless it was beyond the ray's t_max, or the ray had ended, in
+// asked for, once, by the line that its group gives, unless it was beyond the ray's t_max, or the ray had ended or met a node again, in
 // a clock in which its stack was looked at; until then the ray counts as traversing. Of groups for which there is room; others leave
 // as rests. No more nodes wait than there are rays.
 // opened_traversal is traversal of two rays, with stacks of two groups, with its registers and memories as outputs.
@@ -36,9 +36,10 @@ module stack_keeps_nodes #(
   always_ff @(posedge clk) reset_n <= 1'b1;
 
   (* anyseq *) logic [AddressWidth-1:0] start_line;
+  (* anyconst *) logic [AddressWidth-1:0] lines;
   (* anyseq *) logic [GroupWidth-1:0] box_group;
 
-  logic start_fire, node, node_ray, overflow;
+  logic start_fire, node, node_ray, overflow, cycle;
   logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
   logic [Rays-1:0] traversing, busy_q, waiting_q;
@@ -67,6 +68,8 @@ module stack_keeps_nodes #(
     .t_max_ray_o(t_max_ray),
     .t_max_i(t_max),
     .ended_i(ended),
+    .cycle_o(cycle),
+    .lines_i(lines),
     .traversing_o(traversing),
     .node_valid_o(node),
     .node_ray_o(node_ray),
@@ -161,7 +164,7 @@ module stack_keeps_nodes #(
 
   always_ff @(posedge clk) begin
     dropped <= picked_q && t_max_ray == w_ray
-               && (ended || ray_core_pkg::is_beyond(
+               && (ended || cycle || ray_core_pkg::is_beyond(
                      w_group[Children*EntryWidth+:ExponentWidth], enter_of(w_group, w_entry), t_max));
     if (!reset_n) begin
       watching <= 1'b0;

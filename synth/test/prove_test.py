@@ -28,6 +28,7 @@ LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
 
 CACHE = [("some_free & ~(arrive & fill_entry_i == entry)", "some_free"),
          ("<= follow & head[TargetWidth]", "<= follow"),
+         ("<= ~fill_error_i;", "<= 1'b1;"),
          (".requests_i(~pending)", ".requests_i({Ways{1'b1}})")]
 
 

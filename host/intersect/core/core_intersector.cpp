@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <string>
 
+#include "host/base/input_error.h"
 #include "host/base/stopwatch.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 
@@ -17,6 +19,14 @@ CoreRay core_ray(const Ray& ray, const RayQuery& query, std::uint32_t number) {
   core.any_hit = !query.any_hit_before.empty() && query.any_hit_before[number] >= core.t_max;
   core.no_cull = !query.culling;
   return core;
+}
+
+/// For a ray whose end has an error: the memory that the core reads is not that of a tree.
+[[noreturn]] void throw_broken_memory(const CoreResult& end) {
+  if (end.error == CoreResult::Error::kMemory) {
+    throw InputError("ray core's memory: no line " + std::to_string(end.line));
+  }
+  throw InputError("ray core's memory: a node is below itself");
 }
 
 }  // namespace
@@ -51,6 +61,7 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
     core_->trace(image_->lines(), sent_, results_);
     sent_.clear();
     for (const CoreResult& result : results_) {
+      if (result.error != CoreResult::Error::kNone) throw_broken_memory(result);
       const Ray& ray = rays[result.tag];
       if (!query.work.empty()) {
         query.work[result.tag].tests += result.kind == CoreResult::Kind::kEnd ? result.tests : 0;

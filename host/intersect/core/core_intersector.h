@@ -12,7 +12,8 @@
 namespace raygate {
 
 /// Exact arithmetic resolves what the core leaves open. P is computed once for each nearest hit,
-/// from a record that the host makes, so that it has the bits of the other intersectors'.
+/// from a record that the host makes, so that it has the bits of the other intersectors'. Throws
+/// InputError where the core reads a line that memory lacks, or a node that is below itself.
 class CoreIntersector : public Intersector {
  public:
   /// `image`, of `bvh`, is what the core reads. The tree must outlive this. Intersectors of one

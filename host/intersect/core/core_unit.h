@@ -36,15 +36,25 @@ struct CoreResult {
     kRest = 2,  ///< inner nodes for which the stack had no room: a walk must begin at each
   };
 
+  enum class Error : std::uint8_t {
+    kNone = 0,
+    kMemory = 1,     ///< memory answered a read of a line with an error
+    kCycle = 2,      ///< the ray met a node twice: it is below itself
+    kDirection = 3,  ///< its direction is not scaled
+    kAbort = 4,      ///< the user of the core gave it up
+  };
+
   Kind kind = Kind::kEnd;
   bool found = false;     ///< kEnd: whether there is a sure hit; the next three are its
   std::uint32_t tag = 0;  ///< the ray's
   std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt
   float t = 0.0f;                                 ///< kEnd: off by fewer than 2^t_error numbers
   std::uint32_t t_error = 0;
-  glm::vec3 point{0.0f};    ///< kEnd: P in the core's own bits, relative to the origin
-  std::uint32_t tests = 0;  ///< kEnd: triangles tested
-  std::uint32_t line = 0;   ///< kRest: of the node that is bit 0 of `nodes`
+  glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
+  std::uint32_t tests = 0;     ///< kEnd: triangles tested
+  Error error = Error::kNone;  ///< kEnd: if not kNone, the ray was given up: nothing else holds
+  /// kRest: of the node that is bit 0 of `nodes`. kEnd, kMemory: one that memory lacks.
+  std::uint32_t line = 0;
   std::uint64_t nodes = 0;  ///< kRest: bit i: the node at line + i
 };
 
@@ -75,8 +85,8 @@ struct CoreCounters {
 ///
 /// Promises: the ray's nearest hit, in exact arithmetic, is the sure hit of its end, or a triangle
 /// of its doubts, or below a node of its rests; with any_hit the first that is found may be in its
-/// place. What is a doubt may differ between cores, and for a core that waits for memory from run
-/// to run.
+/// place. A ray whose end has an error has no hit that counts. What is a doubt may differ between
+/// cores, and for a core that waits for memory from run to run.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;

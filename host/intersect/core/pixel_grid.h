@@ -16,7 +16,7 @@ struct PixelGrid {
   glm::vec3 down{0.0f};   ///< from a row to the next
 
   /// Through pixel (x, y): the largest component is in [1, 2), and what became smaller than 2^-126
-  /// is zero. It means nothing where the sum is zero or not finite.
+  /// is zero. A sum that is zero or not finite stays so.
   [[nodiscard]] glm::vec3 direction(std::uint16_t x, std::uint16_t y) const;
 };
 
@@ -26,12 +26,13 @@ inline glm::vec3 PixelGrid::direction(std::uint16_t x, std::uint16_t y) const {
   way = way + static_cast<float>(x) * right;
   const auto field = [&](int k) { return std::bit_cast<std::uint32_t>(way[k]) >> 23 & 0xFF; };
   const std::uint32_t largest = std::max({field(0), field(1), field(2)});
+  const std::uint32_t unit = largest == 255 ? 255 : 127;
   for (int k = 0; k < 3; ++k) {
     const auto word = std::bit_cast<std::uint32_t>(way[k]);
     const std::uint32_t below = largest - field(k);
     const bool zero = field(k) == 0 || below > 126;
     way[k] = std::bit_cast<float>((word & 0x80000000u) |
-                                  (zero ? 0u : (127 - below) << 23 | (word & 0x7FFFFF)));
+                                  (zero ? 0u : (unit - below) << 23 | (word & 0x7FFFFF)));
   }
   return way;
 }

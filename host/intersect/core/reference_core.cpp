@@ -95,8 +95,22 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
 
   std::vector<StackEntry> stack;
   std::uint32_t line = ray.start;
-  for (;;) {
+  std::size_t entered = 0;
+  CoreResult end{.tag = ray.tag};
+  const auto is_read = [&](std::uint32_t number) {
+    if (number < lines.size()) return true;
+    end.error = CoreResult::Error::kMemory;
+    end.line = number;
+    ended = true;
+    return false;
+  };
+  if (!is_usable(ray.ray.direction) || !is_scaled(ray.ray.direction)) {
+    end.error = CoreResult::Error::kDirection;
+    ended = true;
+  }
+  while (is_read(line)) {
     ++counters_.nodes;
+    ++entered;
     const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.no_cull};
     const BoxGroup group = enter_boxes(NodeLine(lines[line]), box_ray);
     // Leaves first, then what is inside: as the core does.
@@ -109,8 +123,9 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
         continue;
       }
       if (ended || is_beyond(group, entry, nearest.limit())) continue;
-      for (std::uint32_t k = 0; k < entry.count; ++k) {
-        test(TriangleLine(lines[group.base + entry.offset + k]));
+      for (std::uint32_t k = 0; k < entry.count && end.error == CoreResult::Error::kNone; ++k) {
+        const std::uint32_t triangle = group.base + entry.offset + k;
+        if (is_read(triangle)) test(TriangleLine(lines[triangle]));
       }
     }
     if (inside.group.size != 0) {
@@ -132,6 +147,10 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     };
     while (!stack.empty() && is_done(stack.back())) stack.pop_back();
     if (stack.empty()) break;
+    if (entered == lines.size()) {
+      end.error = CoreResult::Error::kCycle;
+      break;
+    }
     StackEntry& top = stack.back();
     line = top.group.base + top.group.entry[static_cast<std::size_t>(top.next++)].offset;
     // A group that has given its last node makes room.
@@ -140,14 +159,13 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
   ++counters_.rays;
   counters_.triangles += tests;
   counters_.lines = counters_.nodes + counters_.triangles;
-  results.push_back({.kind = CoreResult::Kind::kEnd,
-                     .found = nearest.found,
-                     .tag = ray.tag,
-                     .triangle = nearest.triangle,
-                     .t = std::bit_cast<float>(nearest.t_word),
-                     .t_error = nearest.t_error,
-                     .point = point,
-                     .tests = tests});
+  end.found = nearest.found;
+  end.triangle = nearest.triangle;
+  end.t = std::bit_cast<float>(nearest.t_word);
+  end.t_error = nearest.t_error;
+  end.point = point;
+  end.tests = tests;
+  results.push_back(end);
 }
 
 }  // namespace raygate

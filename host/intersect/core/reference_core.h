@@ -10,7 +10,7 @@ namespace raygate {
 
 /// Boxes, records and tests have the bits of the hardware's. The order of its tests is that of a
 /// core which waits for each; so the hardware, which does not, may test more, and leave other
-/// doubts.
+/// doubts. Lines beyond those that trace() is given come with an error.
 class ReferenceCore : public CoreUnit {
  public:
   /// What hears of each test: where its ray begins, and its triangle.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "Vaxi_read_manager_128.h"
@@ -50,6 +51,7 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
   const unsigned beat_words = sizeof model->axi_rdata_i / 4, beats = 16 / beat_words;
   std::array<Burst, kIds> bursts;
   std::map<std::uint64_t, std::uint32_t> waiting;  // lines by tag
+  std::set<std::uint32_t> failing_lines;
   std::uint64_t next_tag = 0, address = 0;
   std::uint32_t line = 0;  // the one asked for last, and its address
   unsigned answering = 0, given = 0, mixed = 0, full = 0, failing = 0, failed = 0, last_id = 0;
@@ -104,12 +106,16 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
       address = (model->base_i & ~std::uint64_t{63}) + 64 * std::uint64_t{line};
     }
     failing += answered && fails;
+    if (answered && fails) failing_lines.insert(bursts[answering].line);
     failed += model->bus_error_o;
+    if (model->bus_error_o != 0) ASSERT_TRUE(failing_lines.contains(model->error_number_o));
     ASSERT_LE(failed, failing);
     if ((model->line_valid_o & model->line_ready_i) != 0) {
       const auto tag = waiting.find(model->line_id_o);
       ASSERT_NE(tag, waiting.end()) << "a tag that waits";
+      ASSERT_EQ(model->line_error_o, failing_lines.contains(tag->second));
       for (unsigned n = 0; n < 16; ++n) ASSERT_EQ(model->line_o[n], word_of(tag->second, n));
+      failing_lines.erase(tag->second);
       waiting.erase(tag);
       ++given;
     }

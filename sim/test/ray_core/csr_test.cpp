@@ -16,9 +16,9 @@ constexpr unsigned kEvents = 10;  // ray_core_pkg::NumEvents
 
 /// Whether word `n` is a plain register, and which of its bits can be written.
 bool is_plain(unsigned n) {
-  return n == 5 || n == 6 || n == 8 || n == 9 || (n >= 12 && n < 27 && n % 4 != 3);
+  return (n >= 5 && n <= 7) || n == 8 || n == 9 || (n >= 12 && n < 27 && n % 4 != 3);
 }
-std::uint32_t bits_of(unsigned n) { return n == 5 ? ~63u : ~0u; }
+std::uint32_t bits_of(unsigned n) { return n == 5 ? ~63u : n == 7 ? 0x0FFF'FFFFu : ~0u; }
 
 class CsrTest : public testing::Test {
  protected:
@@ -26,6 +26,7 @@ class CsrTest : public testing::Test {
     model_->axi_awvalid_i = model_->axi_wvalid_i = model_->axi_bready_i = 0;
     model_->axi_arvalid_i = model_->axi_rready_i = 0;
     model_->camera_busy_i = model_->core_busy_i = model_->doubt_i = model_->bus_error_i = 0;
+    model_->outstanding_i = model_->ray_error_i = model_->error_number_i = 0;
     model_->events_i = 0;
     model_.reset();
   }
@@ -107,6 +108,7 @@ TEST_F(CsrTest, PlainRegistersKeepTheirBytes) {
     ASSERT_EQ(read(4 * seen), words[seen]);
   }
   EXPECT_EQ(model_->base_o, std::uint64_t{words[6]} << 32 | words[5]);
+  EXPECT_EQ(model_->lines_o, words[7]);
   EXPECT_EQ(model_->corner_o, words[8]);
   EXPECT_EQ(model_->size_o, words[9]);
   for (unsigned v = 0; v < 4; ++v) {
@@ -145,6 +147,56 @@ TEST_F(CsrTest, CommandsWhileBusyAreRefused) {
   model_->core_busy_i = 0;
   EXPECT_EQ(write(0x004, 1), 0u);
   EXPECT_EQ(started_, 1);
+}
+
+/// Caches are emptied for another memory, and not while lines of the one that was are on their way.
+TEST_F(CsrTest, AChangedBaseEmptiesTheCaches) {
+  for (const std::uint32_t address : {0x014u, 0x018u}) {
+    invalidated_ = 0;
+    EXPECT_EQ(write(address, 0x1000), 0u);
+    EXPECT_EQ(invalidated_, 1);
+    model_->outstanding_i = 1;
+    EXPECT_EQ(write(address, 0x2000), 2u);
+    EXPECT_EQ(write(0x004, 2), 2u);
+    EXPECT_EQ(write(0x004, 1), 0u) << "rays do not wait";
+    EXPECT_EQ(write(0x020, 5), 0u);
+    EXPECT_EQ(read(0x008), 4u);
+    model_->outstanding_i = 0;
+    EXPECT_EQ(invalidated_, 1);
+    EXPECT_EQ(read(address), 0x1000u);
+  }
+}
+
+/// A command to give up rays is taken while there are some, and holds until there is none.
+TEST_F(CsrTest, RaysAreGivenUpUntilNoneIsLeft) {
+  model_->camera_busy_i = 1;
+  EXPECT_EQ(write(0x004, 8), 0u);
+  for (int n = 0; n < 10; ++n) {
+    EXPECT_EQ(model_->abort_o, 1);
+    if (n == 5) model_->core_busy_i = 1;
+    if (n == 7) model_->camera_busy_i = 0;
+    clock();
+  }
+  model_->core_busy_i = 0;
+  clock();
+  EXPECT_EQ(model_->abort_o, 0);
+  EXPECT_EQ(write(0x004, 9, 14), 0u) << "not that byte";
+  EXPECT_EQ(model_->abort_o, 0);
+}
+
+/// The line that failed first is kept until its flag is lowered.
+TEST_F(CsrTest, TheFirstLineThatFailedIsTold) {
+  EXPECT_EQ(read(0x028), 0u);
+  for (const std::uint32_t line : {0x0ABC'DEF1u, 7u}) {
+    model_->error_number_i = line;
+    model_->bus_error_i = 1;
+    clock();
+    model_->error_number_i = 99;
+    clock();
+    model_->bus_error_i = 0;
+    EXPECT_EQ(read(0x028), line);
+    write(0x010, 4);
+  }
 }
 
 /// A rectangle without pixels, which makes no camera busy, is done.
@@ -223,15 +275,20 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
   std::array<std::uint64_t, kEvents + 1> counts{};
-  std::uint32_t enable = 0, flags = 0, expected = 0, address_here = 0, data_here = 0, strobes = 0;
-  bool drawing = false, written = false, answered = false, has_address = false, has_data = false;
+  std::uint32_t enable = 0, flags = 0, error_line = 0, expected = 0, address_here = 0,
+                data_here = 0, strobes = 0;
+  bool drawing = false, aborting = false, written = false, answered = false, has_address = false,
+       has_data = false;
   unsigned response = 0, refusals = 0;
   unsigned writes = 0, reads = 0;
   const auto value = [&](unsigned word) -> std::uint32_t {
     if (word == 0) return 0x52470001;
-    if (word == 2) return model_->core_busy_i << 1 | model_->camera_busy_i;
+    if (word == 2) {
+      return model_->outstanding_i << 2 | model_->core_busy_i << 1 | model_->camera_busy_i;
+    }
     if (word == 3) return enable;
     if (word == 4) return flags;
+    if (word == 10) return error_line;
     if (word >= 5 && word < 27) return words[word];
     if (word >= 64 && word < 64 + 2 * counts.size()) {
       return static_cast<std::uint32_t>(counts[(word - 64) / 2] >> (word % 2 == 0 ? 0 : 32));
@@ -262,6 +319,9 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     if (random_() % 16 == 0) model_->core_busy_i = random_() % 2;
     model_->doubt_i = random_() % 16 == 0;
     model_->bus_error_i = random_() % 16 == 0;
+    model_->error_number_i = random_() % (1u << 28);
+    model_->ray_error_i = random_() % 16 == 0;
+    if (random_() % 16 == 0) model_->outstanding_i = random_() % 2;
     model_->events_i = random_() & ((1u << kEvents) - 1);
     model_.eval();
     ASSERT_EQ(model_->axi_bvalid_o, written);
@@ -276,6 +336,9 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
       ASSERT_EQ(model_->axi_rdata_o, expected);
     }
     ASSERT_EQ(model_->base_o, std::uint64_t{words[6]} << 32 | words[5]);
+    ASSERT_EQ(model_->lines_o, words[7]);
+    ASSERT_EQ(model_->abort_o, aborting);
+    ASSERT_EQ(model_->drawing_o, drawing);
     ASSERT_EQ(model_->corner_o, words[8]);
     ASSERT_EQ(model_->size_o, words[9]);
     for (unsigned n = 0; n < 12; ++n) {
@@ -294,13 +357,18 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     for (unsigned b = 0; b < 4; ++b) mask |= (strobes >> b & 1) * (0xFFu << 8 * b);
     const std::uint32_t data = data_here & mask;
     const bool busy = (model_->camera_busy_i | model_->core_busy_i) != 0;
-    const bool refused = busy && (is_plain(word) || (word == 1 && (data & 3) != 0));
+    const bool base = word == 5 || word == 6;
+    const bool refused = (busy && (is_plain(word) || (word == 1 && (data & 3) != 0))) ||
+                         (model_->outstanding_i != 0 && (base || (word == 1 && (data & 2) != 0)));
     const bool starts = word == 1 && (data & 1) != 0 && !refused;
     ASSERT_EQ(model_->start_o, starts);
-    ASSERT_EQ(model_->invalidate_o, word == 1 && (data & 2) != 0 && !refused);
-    if (word == 3) enable = (data | (enable & ~mask)) & 7;
+    ASSERT_EQ(model_->invalidate_o, (base || (word == 1 && (data & 2) != 0)) && !refused);
+    if (word == 3) enable = (data | (enable & ~mask)) & 15;
+    if (model_->bus_error_i != 0 && (flags & 4) == 0) error_line = model_->error_number_i;
+    aborting = (word == 1 && (data & 8) != 0 && !refused) || (aborting && busy);
     if (word == 4) flags &= ~data;
-    flags |= model_->doubt_i | (drawing && !busy ? 2u : 0u) | (model_->bus_error_i != 0 ? 4u : 0u);
+    flags |= model_->doubt_i | (drawing && !busy ? 2u : 0u) | (model_->bus_error_i != 0 ? 4u : 0u) |
+             (model_->ray_error_i != 0 ? 8u : 0u);
     drawing = starts || model_->camera_busy_i != 0 || (drawing && busy);
     if (is_plain(word) && !refused) words[word] = (data & bits_of(word)) | (words[word] & ~mask);
     counts[0] += model_->core_busy_i;

@@ -1,5 +1,6 @@
 // line_cache before a memory that answers in any order, with random pauses: each request that is
-// wanted gets its line, once; no line is asked for while it is on its way.
+// wanted gets its line, once, or its error, which is not kept; no line is asked for while it is on
+// its way.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -22,6 +23,7 @@ class LineCacheTest : public testing::Test {
   struct Miss {
     unsigned place;
     std::uint32_t line;
+    bool fails = false;
   };
 
   LineCacheTest() {
@@ -58,12 +60,13 @@ class LineCacheTest : public testing::Test {
     model_->fill_i = filling_ && model_->ready_i != 0;
     model_->fill_entry_i = fill_.place;
     model_->fill_line_i = content(fill_.line);
+    model_->fill_error_i = fill_.fails;
     model_.eval();
     const bool taken = (model_->valid_i & model_->ready_o) != 0;
     if ((model_->miss_valid_o & model_->miss_ready_i) != 0) {
       ASSERT_TRUE(taken);
       ASSERT_EQ(model_->miss_number_o, model_->line_number_i);
-      const Miss miss{model_->miss_entry_o, model_->miss_number_o};
+      const Miss miss{model_->miss_entry_o, model_->miss_number_o, random_() % 256 < fails_of_256_};
       ASSERT_EQ(miss.place / kWays, miss.line % (kLines / kWays)) << "a place of its set";
       for (const Miss& other : asked_) {
         ASSERT_NE(other.line, miss.line);
@@ -80,6 +83,8 @@ class LineCacheTest : public testing::Test {
       ASSERT_EQ(model_->ready_i, 1);
       const auto request = waiting_.find({model_->ray_o, model_->line_o});
       ASSERT_NE(request, waiting_.end()) << "a line that the ray asked for";
+      ASSERT_EQ(model_->error_o, filling_ && fill_.fails);
+      errors_ += model_->error_o;
       if (--request->second == 0) waiting_.erase(request);
       ++answers_;
     }
@@ -102,7 +107,7 @@ class LineCacheTest : public testing::Test {
   Miss fill_{};
   bool filling_ = false;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> waiting_;  // requests by ray and content
-  unsigned part_ = 0, requests_ = 0, answers_ = 0, misses_ = 0;
+  unsigned fails_of_256_ = 0, errors_ = 0, part_ = 0, requests_ = 0, answers_ = 0, misses_ = 0;
 };
 
 TEST_F(LineCacheTest, EveryRequestGetsItsLineOnce) {
@@ -115,6 +120,29 @@ TEST_F(LineCacheTest, EveryRequestGetsItsLineOnce) {
   drain();
   EXPECT_GT(requests_, 20'000u);
   EXPECT_LT(misses_, requests_ * 3 / 4);
+}
+
+/// A line that came with an error is read again; one without is not.
+TEST_F(LineCacheTest, ErrorsAreNotKept) {
+  fails_of_256_ = 64;
+  for (; part_ < 20; ++part_) {
+    for (int i = 0; i < 1'000; ++i) clock(6, 64, part_ % 2 == 0);
+  }
+  drain();
+  EXPECT_GT(errors_, 20u);
+  EXPECT_LT(errors_, requests_ / 2);
+  fails_of_256_ = 256;
+  const unsigned before = misses_;
+  model_->invalidate_i = 1;
+  model_.clock();
+  model_->invalidate_i = 0;
+  for (int round = 1; round <= 20; ++round) {
+    model_->valid_i = model_->demand_i = 1;
+    model_->line_number_i = 5;
+    const unsigned answered = answers_;
+    while (answers_ == answered) clock(0, 1);
+    ASSERT_EQ(misses_ - before, round);
+  }
 }
 
 TEST_F(LineCacheTest, LinesOnTheirWayAreReadOnce) {

@@ -20,7 +20,7 @@ namespace raygate {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261122;
-constexpr std::uint64_t kBase = 0x9234'5678'8000'0000;
+constexpr std::uint64_t kBase = 0x9234'5678'8000'0000, kOtherBase = 0x0000'0001'4000'0000;
 
 class RayCoreAxiTest : public testing::Test {
  protected:
@@ -30,6 +30,7 @@ class RayCoreAxiTest : public testing::Test {
     model_->reg_wstrb_i = 15;
     model_->mem_arready_i = model_->mem_rvalid_i = 0;
     model_->mem_rresp_i = 0;
+    model_->mem_rlast_i = 0;
     model_->ray_valid_i = model_->result_ready_i = 0;
     model_.reset();
   }
@@ -42,18 +43,22 @@ class RayCoreAxiTest : public testing::Test {
       model_->mem_rid_i = beats_.front().id;
       model_->mem_rdata_i = beats_.front().data;
       model_->mem_rlast_i = beats_.front().last;
+      model_->mem_rresp_i = beats_.front().fails ? 3 : 0;
       model_->mem_rvalid_i = 1;
       beats_.pop_front();
     }
     model_.eval();
     if ((model_->mem_arvalid_o & model_->mem_arready_i) != 0) {
-      const std::uint64_t line = (model_->mem_araddr_o - kBase) / 64;
-      ASSERT_LT(line, image_.lines().size());
+      const bool is_other = model_->mem_araddr_o < kBase;
+      const std::uint64_t line = (model_->mem_araddr_o - (is_other ? kOtherBase : kBase)) / 64;
+      const MemoryImage& image = is_other ? other_image_ : image_;
+      ASSERT_LT(line, image.lines().size());
       ASSERT_EQ(model_->mem_arlen_o, 7);
       for (unsigned beat = 0; beat < 8; ++beat) {
-        const auto& words = image_.lines()[line].words;
-        beats_.push_back({model_->mem_arid_o,
-                          std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat], beat == 7});
+        const auto& words = image.lines()[line].words;
+        const std::uint64_t data = std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat];
+        const bool fails = line == failing_line_ && beat == 2;
+        beats_.push_back({model_->mem_arid_o, fails ? 0 : data, beat == 7, fails});
       }
     }
     const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
@@ -94,18 +99,30 @@ class RayCoreAxiTest : public testing::Test {
     return data;
   }
 
+  void look();
+  void draw(std::uint32_t side);
+  static CoreResult reference(const MemoryImage& image, std::uint32_t pixel);
+
+  static constexpr glm::vec3 kEye{0.25f, 0.3f, 2.5f};
+  static constexpr PixelGrid kGrid{glm::vec3(-0.6f, 0.5f, -1.0f), glm::vec3(0.05f, 0.001f, 0.0f),
+                                   glm::vec3(0.0f, -0.05f, 0.002f)};
+
   struct Beat {
     std::uint32_t id;
     std::uint64_t data;
-    bool last;
+    bool last, fails;
   };
 
   Bvh bvh_{test::scene_of(test::bodies())};
   MemoryImage image_{bvh_};
+  Bvh other_bvh_{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
+  MemoryImage other_image_{other_bvh_};
+  std::uint64_t failing_line_ = ~std::uint64_t{0};  // answered with DECERR
   std::mt19937 random_{kSeed};
   Model<Vray_core_axi> model_;
   std::deque<Beat> beats_;
   std::vector<CoreResult> results_;
+  std::map<std::uint32_t, CoreResult> ends_;  // by pixel
 };
 
 TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
@@ -132,8 +149,8 @@ TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
       ASSERT_LT(n, 200'000);
       clock();
     }
+    for (int n = 0; read(0x008) != 0; ++n) ASSERT_LT(n, 1'000);
     EXPECT_TRUE(beats_.empty()) << "memory may change";
-    EXPECT_EQ(read(0x008), 0u);
     EXPECT_EQ(read(0x108), kWidth * kHeight) << "rays";
     EXPECT_GT(read(0x100), kWidth * kHeight) << "clocks";
 
@@ -263,24 +280,160 @@ TEST_F(RayCoreAxiTest, ACommandWhileRaysAreInTheCoreIsRefused) {
   EXPECT_EQ(write(0x004, 1), 0u);
 }
 
-/// Memory that fails is told of.
-TEST_F(RayCoreAxiTest, AnErrorOfMemoryRaisesItsFlag) {
+/// Where a camera stands that looks at the middle of things, through pixels of 0.03.
+void RayCoreAxiTest::look() {
   write(0x014, static_cast<std::uint32_t>(kBase));
   write(0x018, static_cast<std::uint32_t>(kBase >> 32));
-  write(0x020, 0u);
-  write(0x030, glm::vec3(0.0f, 0.0f, 2.5f));
-  write(0x040, glm::vec3(0.0f, 0.0f, -1.0f));
-  write(0x050, glm::vec3(0.01f, 0.0f, 0.0f));
-  write(0x060, glm::vec3(0.0f, 0.01f, 0.0f));
-  write(0x00C, 4);
-  model_->mem_rresp_i = 2;
-  write(0x024, 1u << 16 | 1u);
-  write(0x004, 1);
+  write(0x030, kEye);
+  write(0x040, kGrid.first);
+  write(0x050, kGrid.right);
+  write(0x060, kGrid.down);
+}
+
+/// Draws `side` x `side` pixels; what each pixel's end says.
+void RayCoreAxiTest::draw(std::uint32_t side) {
+  results_.clear();
+  ends_.clear();
+  write(0x00C, 2);
+  write(0x010, 15);
+  write(0x024, side << 16 | side);
+  ASSERT_EQ(write(0x004, 1), 0u);
   for (int n = 0; model_->interrupt_o == 0; ++n) {
-    ASSERT_LT(n, 10'000);
+    ASSERT_LT(n, 100'000);
     clock();
   }
-  EXPECT_EQ(read(0x010) & 4, 4u);
+  while ((read(0x008) & 4) != 0) clock();  // lines that were read ahead
+  for (const CoreResult& result : results_) {
+    if (result.kind == CoreResult::Kind::kEnd) ends_[result.tag] = result;
+  }
+  ASSERT_EQ(ends_.size(), side * side);
+}
+
+/// What the reference says of the same pixel.
+CoreResult RayCoreAxiTest::reference(const MemoryImage& image, std::uint32_t pixel) {
+  const CoreRay ray{.ray = {kEye, kGrid.direction(static_cast<std::uint16_t>(pixel),
+                                                  static_cast<std::uint16_t>(pixel >> 16))}};
+  std::vector<CoreResult> results;
+  ReferenceCore().trace(image.lines(), {&ray, 1}, results);
+  return results.back();
+}
+
+/// A line that memory fails to give is told of, by its number and by the ends of the rays that
+/// needed it, and is read again by those that come later.
+TEST_F(RayCoreAxiTest, AnErrorOfMemoryStaysOne) {
+  look();
+  write(0x00C, 4);
+  for (failing_line_ = 0; failing_line_ < 8; ++failing_line_) {
+    const std::uint64_t line = failing_line_;
+    draw(20);
+    std::size_t errors = 0;
+    for (const auto& [pixel, end] : ends_) {
+      errors += end.error == CoreResult::Error::kMemory;
+      if (end.error != CoreResult::Error::kNone) continue;
+      ASSERT_EQ(end.found, reference(image_, pixel).found) << pixel;
+    }
+    EXPECT_EQ(read(0x010) >> 2, errors != 0 ? 3u : 0u) << "its flags";
+    if (line == 0) EXPECT_EQ(errors, ends_.size()) << "the root";
+    if (errors != 0) EXPECT_EQ(read(0x028), line);
+    failing_line_ = ~std::uint64_t{0};
+    draw(20);
+    for (const auto& [pixel, end] : ends_) {
+      ASSERT_EQ(end.error, CoreResult::Error::kNone);
+      ASSERT_EQ(end.found, reference(image_, pixel).found) << pixel;
+    }
+    failing_line_ = line;
+    write(0x004, 2);  // the caches are empty again
+  }
+}
+
+/// Lines of the memory that was there before are lines no more.
+TEST_F(RayCoreAxiTest, AChangedBaseIsAnotherMemory) {
+  look();
+  draw(30);
+  write(0x014, static_cast<std::uint32_t>(kOtherBase));
+  write(0x018, static_cast<std::uint32_t>(kOtherBase >> 32));
+  draw(30);
+  std::size_t found = 0;
+  for (const auto& [pixel, end] : ends_) {
+    const CoreResult expected = reference(other_image_, pixel);
+    ASSERT_EQ(end.found, expected.found) << pixel;
+    if (end.found) ASSERT_EQ(end.t, expected.t) << pixel;
+    found += end.found;
+  }
+  EXPECT_GT(found, 100u);
+  EXPECT_LT(found, ends_.size());
+}
+
+/// A rectangle is done when its own rays have ended, whatever rays come after them.
+TEST_F(RayCoreAxiTest, ARectangleIsDoneWithItsOwnRays) {
+  look();
+  write(0x00C, 2);
+  write(0x024, 10u << 16 | 10u);
+  write(0x004, 1);
+  test::Random random;
+  const std::vector<Ray> rays = test::some_rays(test::bodies(), random, 1'000);
+  std::size_t sent = 0, ended = 0, seen = 0;
+  for (int n = 0; model_->interrupt_o == 0; ++n) {
+    ASSERT_LT(n, 20'000) << "other rays keep it waiting";
+    if (model_->ray_valid_i == 0) {
+      put_ray(*model_, {.ray = rays[sent % rays.size()], .tag = 0x8000'0000});
+      ++sent;
+    }
+    clock();
+  }
+  for (; seen < results_.size(); ++seen) {
+    ended += results_[seen].kind == CoreResult::Kind::kEnd && results_[seen].tag < 0x8000'0000;
+  }
+  EXPECT_EQ(ended, 100u);
+  const std::size_t before = results_.size();
+  for (int n = 0; n < 2'000; ++n) clock();
+  EXPECT_GT(results_.size(), before) << "they go on";
+}
+
+/// A picture that is given up ends within some clocks, and the next one is whole.
+TEST_F(RayCoreAxiTest, RaysAreGivenUp) {
+  look();
+  for (int round = 0; round < 5; ++round) {
+    results_.clear();
+    write(0x00C, 2);
+    write(0x010, 15);
+    write(0x024, 0xFFFF'FFFF);
+    write(0x004, 1);
+    for (int n = 0; n < 500 + 97 * round; ++n) clock();
+    EXPECT_EQ(write(0x004, 8), 0u);
+    for (int n = 0; model_->interrupt_o == 0; ++n) {
+      ASSERT_LT(n, 2'000);
+      clock();
+    }
+    std::size_t given_up = 0, traced = 0;
+    for (const CoreResult& result : results_) {
+      if (result.kind != CoreResult::Kind::kEnd) continue;
+      given_up += result.error == CoreResult::Error::kAbort;
+      traced += result.error == CoreResult::Error::kNone;
+    }
+    EXPECT_GT(given_up, 10u);
+    EXPECT_GT(traced, 10u);
+    EXPECT_EQ(read(0x010) >> 3, 1u);
+    draw(20);
+    for (const auto& [pixel, end] : ends_) {
+      ASSERT_EQ(end.error, CoreResult::Error::kNone);
+      ASSERT_EQ(end.found, reference(image_, pixel).found) << pixel;
+    }
+  }
+}
+
+/// A node that is its own child: as many nodes as memory has lines, and the ray has an error.
+TEST_F(RayCoreAxiTest, NodesAreLimitedByTheLinesOfMemory) {
+  look();
+  write(0x01C, 0xF000'0002u);  // two lines
+  EXPECT_EQ(read(0x01C), 2u);
+  draw(10);
+  std::size_t cycles = 0;
+  for (const auto& [pixel, end] : ends_) cycles += end.error == CoreResult::Error::kCycle;
+  EXPECT_GT(cycles, 20u);
+  write(0x01C, static_cast<std::uint32_t>(image_.lines().size()));
+  draw(10);
+  for (const auto& [pixel, end] : ends_) ASSERT_EQ(end.error, CoreResult::Error::kNone);
 }
 
 }  // namespace

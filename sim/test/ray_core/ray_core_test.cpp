@@ -1,10 +1,13 @@
 // The ray core in simulation finds what CpuIntersector finds, whatever makes it wait.
-// Tests: ray_core, ray_alloc, traversal, primitive_fetch, memory_subsystem, triangle_test
-// Tests: closest_hit, ray_context, box_pipeline, ray_retire, rr_arbiter
+// Tests: ray_core, ray_alloc, ray_errors, traversal, primitive_fetch, memory_subsystem
+// Tests: triangle_test, closest_hit, ray_context, box_pipeline, ray_retire, rr_arbiter
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <map>
 
 #include "Vray_core_small.h"
 #include "host/intersect/check_intersector.h"
@@ -221,6 +224,130 @@ TEST_F(RayCoreTest, EventsAreCounted) {
     EXPECT_GT(counters.misses, counters.hits);
     EXPECT_GT(counters.waits, counters.lines / 4);
     EXPECT_LT(counters.waits, 4 * counters.lines);
+  }
+}
+
+TEST_F(RayCoreTest, EveryTestIsCounted) {
+  const std::vector<Corners> mesh = test::sphere(6);
+  ASSERT_GT(mesh.size(), std::size_t{1} << 16);
+  const Bvh bvh(test::scene_of(mesh));
+  const MemoryImage image(bvh);
+  const CoreRay ray{.ray = {glm::vec3(3, 0, 0), glm::vec3(1, 0, 0)}, .no_cull = true};
+  std::vector<CoreResult> results;
+  core(Arith::kBehavioural, {.latency = 1})->trace(image.lines(), {&ray, 1}, results);
+  EXPECT_EQ(results.back().tests, mesh.size());
+}
+
+/// The errors of rays' ends by tag, of `unit` before a memory of these lines.
+std::map<std::uint32_t, CoreResult> ends_of(CoreUnit& unit, std::span<const MemoryLine> lines,
+                                            const std::vector<CoreRay>& rays) {
+  std::vector<CoreResult> results;
+  unit.trace(lines, rays, results);
+  std::map<std::uint32_t, CoreResult> ends;
+  for (const CoreResult& result : results) {
+    if (result.kind == CoreResult::Kind::kEnd) ends[result.tag] = result;
+  }
+  return ends;
+}
+
+std::vector<CoreRay> numbered(const std::vector<Ray>& rays) {
+  std::vector<CoreRay> sent;
+  for (const Ray& ray : rays)
+    sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
+  return sent;
+}
+
+/// Its own child, and that child's: rays that enter it would go round for ever.
+TEST_F(RayCoreTest, ANodeBelowItselfIsAnError) {
+  NodeLine node(image_->lines()[MemoryImage::kRoot]);
+  node.base = MemoryImage::kRoot;
+  for (NodeLine::Child& child : node.child) child.kind = NodeLine::kAbsent;
+  node.child[0] = {NodeLine::kInner, {0, 0, 0}, {255, 255, 255}};
+  const std::vector<MemoryLine> lines(40, node.line());
+  const std::vector<CoreRay> rays = numbered(some_rays(bodies(), random_, 300));
+  ReferenceCore reference;
+  CoreModel<Vray_core_small> small({.latency = 3});
+  const auto expected = ends_of(reference, lines, rays);
+  const std::unique_ptr<CoreUnit> large = core(Arith::kBehavioural);
+  for (CoreUnit* unit : {static_cast<CoreUnit*>(&small), large.get()}) {
+    std::size_t cycles = 0;
+    const std::uint64_t nodes = reference.counters().nodes;
+    for (const auto& [tag, end] : ends_of(*unit, lines, rays)) {
+      ASSERT_EQ(end.error, expected.at(tag).error) << tag;
+      cycles += end.error == CoreResult::Error::kCycle;
+    }
+    EXPECT_GT(cycles, rays.size() / 2);
+    EXPECT_EQ(unit->counters().nodes, nodes);
+  }
+}
+
+/// Rays that need a line that memory lacks have an error, all others their hits; and what was an
+/// error is none when memory has the line.
+TEST_F(RayCoreTest, LinesThatMemoryLacksAreErrors) {
+  const std::vector<CoreRay> rays = numbered(some_rays(bodies(), random_, 2'000));
+  const std::span<const MemoryLine> lines = image_->lines();
+  ReferenceCore reference;
+  const auto whole = ends_of(reference, lines, rays);
+  const std::unique_ptr<CoreUnit> unit = core(Arith::kBehavioural);
+  for (const std::size_t part : {2, 3, 4}) {
+    const auto some = lines.first(lines.size() * part / 5);
+    const auto expected = ends_of(reference, some, rays);
+    std::size_t errors = 0, found = 0;
+    for (const auto& [tag, end] : ends_of(*unit, some, rays)) {
+      if (!expected.at(tag).found && expected.at(tag).error == CoreResult::Error::kNone) {
+        ASSERT_EQ(end.error, CoreResult::Error::kNone) << tag;
+      }
+      if (end.error != CoreResult::Error::kNone) {
+        ASSERT_EQ(end.error, CoreResult::Error::kMemory) << tag;
+        ASSERT_GE(end.line, some.size());
+        ASSERT_LT(end.line, lines.size());
+        ++errors;
+        continue;
+      }
+      ASSERT_EQ(end.found, whole.at(tag).found) << tag;
+      found += end.found;
+    }
+    EXPECT_GT(errors, 100u);
+    EXPECT_GT(found, 50u);
+    for (const auto& [tag, end] : ends_of(*unit, lines, rays)) {
+      ASSERT_EQ(end.error, CoreResult::Error::kNone) << tag;
+    }
+  }
+}
+
+TEST_F(RayCoreTest, DirectionsThatAreNotScaledAreErrors) {
+  std::vector<CoreRay> rays = numbered(some_rays(bodies(), random_, 700));
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (CoreRay& ray : rays) {
+    glm::vec3& direction = ray.ray.direction;
+    switch (ray.tag % 7) {
+      case 1:
+        direction *= 2.0f;
+        break;
+      case 2:
+        direction *= 0.5f;
+        break;
+      case 3:
+        direction = glm::vec3(0.0f);
+        break;
+      case 4:
+        direction[static_cast<int>(ray.tag / 7 % 3)] = kInfinity;
+        break;
+      case 5:
+        direction[static_cast<int>(ray.tag / 7 % 3)] = std::nanf("");
+        break;
+      default:
+        break;
+    }
+  }
+  ReferenceCore reference;
+  const auto expected = ends_of(reference, image_->lines(), rays);
+  const auto ends = ends_of(*core(Arith::kBehavioural), image_->lines(), rays);
+  for (const CoreRay& ray : rays) {
+    const bool scaled = ray.tag % 7 == 0 || ray.tag % 7 == 6;
+    ASSERT_EQ(ends.at(ray.tag).error,
+              scaled ? CoreResult::Error::kNone : CoreResult::Error::kDirection);
+    ASSERT_EQ(ends.at(ray.tag).error, expected.at(ray.tag).error);
   }
 }
 

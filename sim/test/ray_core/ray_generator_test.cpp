@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -27,10 +28,10 @@ TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   Model<TypeParam> model;
   std::mt19937 random(kSeed);
-  model->start_i = 0;
+  model->start_i = model->stop_i = 0;
   model->ready_i = 0;
   model.reset();
-  long rays = 0, zeros = 0;
+  long rays = 0, zeros = 0, infinities = 0;
   for (int frame = 0; frame < 60; ++frame) {
     // Ordinary pictures, and some of all sizes of numbers.
     std::uniform_real_distribution<float> number(-1.0f, 1.0f);
@@ -48,6 +49,7 @@ TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
       if (frame % 6 == 0) vector->z *= 0x1p-122f;
       if (frame % 12 == 0) vector->y *= 0x1p20f;
     }
+    if (frame == 9) grid.first.x = std::numeric_limits<float>::infinity();
     const bool far = frame % 4 == 0;
     const unsigned x = far ? 65'000 + random() % 500 : random() % 3;
     const unsigned y = frame % 8 == 1 ? 0 : random() % 25'000;
@@ -84,6 +86,7 @@ TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
           ASSERT_EQ(model->direction_o[k], std::bit_cast<std::uint32_t>(expected[k]))
               << "frame " << frame << ", pixel " << column << ", " << row;
           zeros += expected[k] == 0.0f;
+          infinities += std::isinf(expected[k]);
         }
         ++given;
       }
@@ -99,12 +102,13 @@ TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
   }
   EXPECT_GT(rays, 5'000);
   EXPECT_GT(zeros, 10);
+  EXPECT_GT(infinities, 0) << "refused by the core, so not to be scaled";
 }
 
 /// A ray in every clock, where it is taken.
 TYPED_TEST(RayGeneratorTest, GivesARayAClock) {
   Model<TypeParam> model;
-  model->start_i = 0;
+  model->start_i = model->stop_i = 0;
   model->ready_i = 1;
   model.reset();
   const PixelGrid grid{{-1.0f, 1.0f, -2.0f}, {0.01f, 0.0f, 0.0f}, {0.0f, -0.01f, 0.0f}};

@@ -11,8 +11,10 @@ module bench;
     .clk_i(clk), .rst_ni(reset_n), .axi_awvalid_i(1'b0), .axi_awready_o(), .axi_awaddr_i(12'd0), .axi_wvalid_i(1'b0),
     .axi_wready_o(), .axi_wdata_i(32'd0), .axi_wstrb_i(4'd0), .axi_bvalid_o(), .axi_bready_i(1'b1), .axi_bresp_o(),
     .axi_arvalid_i(arvalid), .axi_arready_o(), .axi_araddr_i(address), .axi_rvalid_o(), .axi_rready_i(1'b1),
-    .axi_rdata_o(data), .axi_rresp_o(), .start_o(), .invalidate_o(), .base_o(base), .corner_o(), .size_o(),
-    .camera_o(), .camera_busy_i(1'b0), .core_busy_i(busy), .doubt_i(1'b0), .bus_error_i(1'b0), .events_i(10'd0),
+    .axi_rdata_o(data), .axi_rresp_o(), .start_o(), .invalidate_o(), .abort_o(), .drawing_o(),
+    .base_o(base), .lines_o(), .corner_o(), .size_o(),
+    .camera_o(), .camera_busy_i(1'b0), .core_busy_i(busy), .outstanding_i(1'b0), .doubt_i(1'b0),
+    .ray_error_i(1'b0), .bus_error_i(1'b0), .error_number_i(28'd0), .events_i(10'd0),
     .interrupt_o()
   );
 

@@ -9,8 +9,8 @@ module bench;
   line_cache dut (
     .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .valid_i(valid), .ready_o(), .demand_i(1'b1), .ray_i(6'd0),
     .line_number_i(line), .miss_valid_o(miss), .miss_ready_i(ready), .miss_entry_o(entry), .miss_number_o(),
-    .fill_i(1'b0), .fill_done_o(), .fill_entry_i(8'd0), .fill_line_i(512'd0), .valid_o(), .ready_i(1'b1), .ray_o(),
-    .line_o()
+    .fill_i(1'b0), .fill_done_o(), .fill_entry_i(8'd0), .fill_line_i(512'd0), .fill_error_i(1'b0), .valid_o(),
+    .ready_i(1'b1), .ray_o(), .line_o(), .error_o()
   );
 
   initial begin

@@ -54,7 +54,8 @@ module ray_contexts #(
   logic result_found;
   logic [4:0] result_t_error;
   logic [95:0] result_point;
-  logic [15:0] result_tests;
+  logic [27:0] result_tests;
+  logic [2:0] result_error;
   logic [27:0] result_line;
   logic [48:0] result_nodes;
   assign found = tag[0];
@@ -75,6 +76,7 @@ module ray_contexts #(
     .ending_t_i(t),
     .ending_t_error_i('0),
     .ending_tests_i('0),
+    .ending_error_i('0),
     .point_ctx_o(point_ctx),
     .point_i(point),
     .doubt_valid_i,
@@ -96,6 +98,7 @@ module ray_contexts #(
     .result_t_error_o(result_t_error),
     .result_point_o(result_point),
     .result_tests_o(result_tests),
+    .result_error_o(result_error),
     .result_line_o(result_line),
     .result_nodes_o(result_nodes)
   );

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "host/base/input_error.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
@@ -81,6 +84,44 @@ TEST_F(CoreIntersectorTest, WithoutCullingEveryTriangleIsTested) {
   check(rays, {.culling = false, .work = work}, 8);
   EXPECT_EQ(counters_.triangles, rays.size() * mesh_.size());
   for (const RayWork& ray : work) EXPECT_EQ(ray.tests, mesh_.size());
+}
+
+/// A core before a memory that lacks its last line, or whose root is below itself.
+class BrokenMemory : public ReferenceCore {
+ public:
+  explicit BrokenMemory(bool cyclic) : cyclic_(cyclic) {}
+
+  void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+             std::vector<CoreResult>& results) override {
+    std::vector<MemoryLine> broken(lines.begin(), lines.end() - 1);
+    if (cyclic_) {
+      NodeLine root(lines[MemoryImage::kRoot]);
+      root.base = MemoryImage::kRoot;
+      root.child[0].kind = NodeLine::kInner;
+      broken.front() = root.line();
+    }
+    ReferenceCore::trace(broken, rays, results);
+  }
+
+ private:
+  bool cyclic_;
+};
+
+TEST_F(CoreIntersectorTest, ErrorsOfTheCoreAreInputErrors) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 100);
+  std::vector<NearestHit> hits(rays.size());
+  const auto said = [&](bool cyclic) {
+    CoreIntersector intersector(bvh_, image_, std::make_unique<BrokenMemory>(cyclic));
+    try {
+      intersector.intersect(rays, {.culling = false}, hits);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(said(false),
+            "ray core's memory: no line " + std::to_string(image_->lines().size() - 1));
+  EXPECT_EQ(said(true), "ray core's memory: a node is below itself");
 }
 
 TEST(MemoryImage, OfNothingIsANodeWithoutChildren) {
