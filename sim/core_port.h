@@ -130,7 +130,7 @@ class CorePort {
     counters_.misses += events >> 4 & 1;
     counters_.doubts += events >> 5 & 1;
     counters_.near_ties += events >> 6 & 1;
-    counters_.rests += events >> 7 & 1;
+    counters_.overflows += events >> 7 & 1;
     counters_.lines += events >> 8 & 1;
     counters_.waits += events >> 9 & 1;
     nodes_in_span_ += events >> 1 & 1;

@@ -67,7 +67,7 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
         query.work[result.tag].tests += result.kind == CoreResult::Kind::kEnd ? result.tests : 0;
         query.work[result.tag].doubts += result.kind == CoreResult::Kind::kDoubt;
       }
-      if (result.kind != CoreResult::Kind::kRest) {
+      if (result.kind != CoreResult::Kind::kOverflow) {
         resolve(ray, query, result, hits[result.tag]);
         continue;
       }

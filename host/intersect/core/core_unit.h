@@ -32,8 +32,8 @@ struct CoreResult {
   enum class Kind : std::uint8_t {
     kEnd = 0,  ///< of the walk; with the nearest sure hit, if there is one
     kDoubt =
-        1,      ///< a triangle that may be hit, nearer than the sure hit: exact arithmetic must say
-    kRest = 2,  ///< inner nodes for which the stack had no room: a walk must begin at each
+        1,  ///< a triangle that may be hit, nearer than the sure hit: exact arithmetic must say
+    kOverflow = 2,  ///< inner nodes for which the stack had no room: a walk must begin at each
   };
 
   enum class Error : std::uint8_t {
@@ -53,9 +53,9 @@ struct CoreResult {
   glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
   Error error = Error::kNone;  ///< kEnd: if not kNone, the ray was given up: nothing else holds
-  /// kRest: of the node that is bit 0 of `nodes`. kEnd, kMemory: one that memory lacks.
+  /// kOverflow: of the node that is bit 0 of `nodes`. kEnd, kMemory: one that memory lacks.
   std::uint32_t line = 0;
-  std::uint64_t nodes = 0;  ///< kRest: bit i: the node at line + i
+  std::uint64_t nodes = 0;  ///< kOverflow: bit i: the node at line + i
 };
 
 /// What a core has done since it was made. Clocks are 0 where nothing is simulated.
@@ -67,7 +67,7 @@ struct CoreCounters {
   std::uint64_t triangles = 0;                     ///< triangle lines that the set-up unit took
   std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< of tests
   std::uint64_t near_ties = 0;                     ///< sure hits that leave as doubts
-  std::uint64_t rests = 0;                         ///< words of kind kRest
+  std::uint64_t overflows = 0;                     ///< words of kind kOverflow
   std::uint64_t lines = 0;                         ///< read from memory
   std::uint64_t waits = 0;  ///< clocks in which memory did not take what was asked for
   /// Clocks of the busier of both units in each span of kSpan clocks: rays that keep boxes busy and
@@ -84,9 +84,9 @@ struct CoreCounters {
 /// Walks rays through a memory image.
 ///
 /// Promises: the ray's nearest hit, in exact arithmetic, is the sure hit of its end, or a triangle
-/// of its doubts, or below a node of its rests; with any_hit the first that is found may be in its
-/// place. A ray whose end has an error has no hit that counts. What is a doubt may differ between
-/// cores, and for a core that waits for memory from run to run.
+/// of its doubts, or below a node of its overflows; with any_hit the first that is found may be in
+/// its place. A ray whose end has an error has no hit that counts. What is a doubt may differ
+/// between cores, and for a core that waits for memory from run to run.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;

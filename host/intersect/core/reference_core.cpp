@@ -132,12 +132,14 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
       if (static_cast<int>(stack.size()) < stack_depth_) {
         stack.push_back(inside);
       } else {
-        CoreResult rest{.kind = CoreResult::Kind::kRest, .tag = ray.tag, .line = group.base};
+        CoreResult overflow{
+            .kind = CoreResult::Kind::kOverflow, .tag = ray.tag, .line = group.base};
         for (int n = 0; n < inside.group.size; ++n) {
-          rest.nodes |= std::uint64_t{1} << inside.group.entry[static_cast<std::size_t>(n)].offset;
+          overflow.nodes |= std::uint64_t{1}
+                            << inside.group.entry[static_cast<std::size_t>(n)].offset;
         }
-        results.push_back(rest);
-        ++counters_.rests;
+        results.push_back(overflow);
+        ++counters_.overflows;
       }
     }
     const auto is_done = [&](const StackEntry& top) {

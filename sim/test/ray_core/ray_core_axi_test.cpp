@@ -163,7 +163,7 @@ TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
       ASSERT_LT(x, kWidth);
       ASSERT_LT(y, kHeight);
       const std::size_t pixel = y * kWidth + x;
-      ASSERT_NE(result.kind, CoreResult::Kind::kRest);
+      ASSERT_NE(result.kind, CoreResult::Kind::kOverflow);
       ASSERT_EQ(ends[pixel], 0) << "its end is its last";
       if (result.kind == CoreResult::Kind::kDoubt) {
         doubts[pixel].push_back(result.triangle);

@@ -217,7 +217,7 @@ TEST_F(RayCoreTest, EventsAreCounted) {
     EXPECT_EQ(counters.rays, number(CoreResult::Kind::kEnd));
     EXPECT_EQ(counters.triangles, tests);
     EXPECT_EQ(counters.triangles, counters.hits + counters.misses + counters.doubts);
-    EXPECT_EQ(counters.rests, number(CoreResult::Kind::kRest));
+    EXPECT_EQ(counters.overflows, number(CoreResult::Kind::kOverflow));
     EXPECT_GE(number(CoreResult::Kind::kDoubt), counters.near_ties);
     EXPECT_GE(counters.doubts + counters.near_ties, number(CoreResult::Kind::kDoubt));
     EXPECT_GT(counters.nodes, counters.rays);
@@ -356,7 +356,7 @@ TEST_F(RayCoreTest, AShortStackCostsWalksAndNoHits) {
   check(rays, {},
         std::make_unique<CoreModel<Vray_core_small>>(MemoryTiming{.latency = 3},
                                                      CoreStalls{.not_taken = 64}));
-  EXPECT_GT(counters_.rests, 100u);
+  EXPECT_GT(counters_.overflows, 100u);
   EXPECT_GT(counters_.rays, rays.size());
 }
 
