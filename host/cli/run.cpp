@@ -20,7 +20,7 @@
 #include "host/cli/resume.h"
 #include "host/film/environment_file.h"
 #include "host/film/merge.h"
-#include "host/light/neighbor_clearance.h"
+#include "host/light/prepared_scene.h"
 #include "host/options/version.h"
 #include "host/ranks/ranks.h"
 #include "host/render/renderer.h"
@@ -114,14 +114,14 @@ class Run {
     const Clock::time_point tree_start = Clock::now();
     const Bvh bvh(scene_, options_.threads);
     report_.tree_seconds = seconds_since(tree_start);
-    const NeighborClearances clearances(bvh);
+    const PreparedScene prepared(scene_, bvh);
     image_ = make_memory_image(options_, options_.core_files, bvh);
     if (options_.core_files.pixel) {
       write_wave(bvh, cameras.light(1, scene_));
     } else if (options_.output.frames > 0) {
-      render_animation(clearances, cameras);
+      render_animation(prepared, cameras);
     } else {
-      render_picture(clearances, cameras, 1, ranks_, start_);
+      render_picture(prepared, cameras, 1, ranks_, start_);
       if (!options_.quiet && ranks_.index() == 0) print(to_text(report_), console_);
     }
   }
@@ -157,13 +157,13 @@ class Run {
   }
 
   /// One picture after the other, each by the rank that is free; a line for each.
-  void render_animation(const NeighborClearances& clearances, const CameraSequence& cameras) {
+  void render_animation(const PreparedScene& prepared, const CameraSequence& cameras) {
     const int frames = options_.output.frames;
     JobQueue jobs(ranks_, frames);
     while (const auto job = jobs.next()) {
       const int frame = *job + 1;
       Ranks alone;
-      const bool is_new = render_picture(clearances, cameras, frame, alone, Clock::now());
+      const bool is_new = render_picture(prepared, cameras, frame, alone, Clock::now());
       if (options_.quiet) continue;
       print("frame " + std::to_string(frame) + " of " + std::to_string(frames) + ": " +
                 (is_new ? format_duration(report_.total_seconds) + ", wrote " +
@@ -177,8 +177,8 @@ class Run {
 
   /// Renders a picture, numbered from 1, and writes it with the report completed; false if it is a
   /// frame whose files are there.
-  bool render_picture(const NeighborClearances& clearances, const CameraSequence& cameras,
-                      int number, Ranks& ranks, Clock::time_point start) {
+  bool render_picture(const PreparedScene& prepared, const CameraSequence& cameras, int number,
+                      Ranks& ranks, Clock::time_point start) {
     const Camera& camera = cameras.light(number, scene_);
     const OutputOptions& outputs = outputs_of(number);
     const ExrMetadata metadata = make_metadata(cameras, camera);
@@ -200,7 +200,7 @@ class Run {
     render_options.channels = outputs.needed_channels();
     // What a rank that dies has not sent is there to resume from.
     if (ranks.count() > 1) render_options.channels.sums = true;
-    Film film = render_monitored(clearances, camera, render_options, outputs, metadata);
+    Film film = render_monitored(prepared, camera, render_options, outputs, metadata);
     ranks.leave();
     if (ranks.index() != 0) return true;
     film.keeps_sums = outputs.needed_channels().sums;
@@ -218,7 +218,7 @@ class Run {
   }
 
   /// Renders with a progress bar and checkpoints. Throws Interrupted when a signal comes.
-  Film render_monitored(const NeighborClearances& clearances, const Camera& camera,
+  Film render_monitored(const PreparedScene& prepared, const Camera& camera,
                         const RenderOptions& options, const OutputOptions& outputs,
                         const ExrMetadata& metadata) {
     const bool has_ranks = options.ranks->count() > 1, is_first = options.ranks->index() == 0;
@@ -247,8 +247,8 @@ class Run {
       std::_Exit(run_guarded([&]() -> int { checkpointer.end_interrupted(film); }, 1));
     };
     RenderStats& stats = report_.render;
-    Film film = render(scene_, clearances, camera, options,
-                       make_intersector_factory(options_, clearances.bvh(), options.skips, image_),
+    Film film = render(prepared, camera, options,
+                       make_intersector_factory(options_, prepared.bvh, options.skips, image_),
                        stats, monitor);
     bar.erase();
     if (stats.cancelled) {

@@ -28,12 +28,11 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
 
 }  // namespace
 
-Integrator::Integrator(IntegratorKind kind, const Scene& scene,
-                       const NeighborClearances& clearances, const Lights& lights,
+Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
                        const Skips& skips, const IntegratorOptions& options)
     : kind_(kind),
-      shading_{.scene = scene,
-               .bvh = clearances.bvh(),
+      shading_{.scene = prepared.scene,
+               .bvh = prepared.bvh,
                .lights = lights,
                .ambient =
                    kind == IntegratorKind::kPath ? lights.background() : glm::vec3(options.ambient),
@@ -42,10 +41,10 @@ Integrator::Integrator(IntegratorKind kind, const Scene& scene,
                .single_sample = options.single_sample,
                .skips_weightless = skips.weightless,
                .path = options.path},
-      spawner_(clearances),
+      spawner_(prepared.clearances),
       skips_(skips),
       point_error_(options.point_error),
-      materials_(material_parameters(scene)) {
+      materials_(prepared.materials) {
   const bool is_whitted = kind == IntegratorKind::kWhitted, is_path = kind == IntegratorKind::kPath;
   block_.light_samples_per_hit = is_whitted ? lights.count() : is_path ? 1 : 0;
   block_.scattered_per_hit = is_whitted ? 2 : is_path ? 1 : 0;

@@ -12,6 +12,7 @@
 #include "host/light/integrator_options.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
+#include "host/light/prepared_scene.h"
 #include "host/light/ray_batch.h"
 #include "host/light/shade.h"
 #include "host/light/spawn_ray.h"
@@ -26,8 +27,8 @@ namespace raygate {
 class Integrator {
  public:
   /// The references must outlive this.
-  Integrator(IntegratorKind kind, const Scene& scene, const NeighborClearances& clearances,
-             const Lights& lights, const Skips& skips, const IntegratorOptions& options);
+  Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
+             const Skips& skips, const IntegratorOptions& options);
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
@@ -67,7 +68,7 @@ class Integrator {
   float point_error_;
   std::uint64_t point_doubts_ = 0;
   std::size_t block_size_;
-  std::vector<MaterialParameters> materials_;  // of the materials
+  std::span<const MaterialParameters> materials_;
   const MaterialParameters transparent_ = MaterialParameters::transparent();
   HitBlock block_;
   std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in their order

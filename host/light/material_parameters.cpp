@@ -73,8 +73,4 @@ MaterialParameters::MaterialParameters(const Material& material) {
   if (model == 10) kind |= kShadowCatcher;
 }
 
-std::vector<MaterialParameters> material_parameters(const Scene& scene) {
-  return {scene.materials.begin(), scene.materials.end()};
-}
-
 }  // namespace raygate

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "host/scene/scene.h"
 
@@ -59,8 +58,5 @@ struct MaterialParameters {
  private:
   void set(const Material& material, const MetallicRoughness& shares);
 };
-
-/// Of all materials of a scene, in its order.
-[[nodiscard]] std::vector<MaterialParameters> material_parameters(const Scene& scene);
 
 }  // namespace raygate

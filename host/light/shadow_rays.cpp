@@ -50,15 +50,14 @@ struct Aim {
 
 }  // namespace
 
-ShadowRays::ShadowRays(const Scene& scene, const NeighborClearances& clearances,
-                       const Lights& lights, Intersector& intersector, const Skips& skips,
-                       bool through_refraction)
-    : scene_(scene),
-      materials_(material_parameters(scene)),
-      bvh_(clearances.bvh()),
+ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
+                       Intersector& intersector, const Skips& skips, bool through_refraction)
+    : scene_(prepared.scene),
+      materials_(prepared.materials),
+      bvh_(prepared.bvh),
       lights_(lights),
       intersector_(intersector),
-      spawner_(clearances),
+      spawner_(prepared.clearances),
       culling_(skips.culling),
       through_refraction_(through_refraction),
       any_clear_(std::ranges::any_of(materials_, [](const MaterialParameters& material) {

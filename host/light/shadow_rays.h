@@ -11,6 +11,7 @@
 #include "host/light/integrator_options.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
+#include "host/light/prepared_scene.h"
 #include "host/light/spawn_ray.h"
 
 namespace raygate {
@@ -41,8 +42,8 @@ struct ShadowRay {
 class ShadowRays {
  public:
   /// `through_refraction`: glass that bends light casts the shadow of one that does not.
-  ShadowRays(const Scene& scene, const NeighborClearances& clearances, const Lights& lights,
-             Intersector& intersector, const Skips& skips, bool through_refraction);
+  ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
+             const Skips& skips, bool through_refraction);
 
   /// Called for each ray that was traced with what its search took, by its shadow ray's index.
   using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
@@ -70,7 +71,7 @@ class ShadowRays {
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 
   const Scene& scene_;
-  std::vector<MaterialParameters> materials_;  // of the materials
+  std::span<const MaterialParameters> materials_;
   const Bvh& bvh_;
   const Lights& lights_;
   Intersector& intersector_;

@@ -28,7 +28,7 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/light/default_lights.h"
-#include "host/light/neighbor_clearance.h"
+#include "host/light/prepared_scene.h"
 #include "host/options/light_options.h"
 #include "host/python/float_reference.h"
 #include "host/render/renderer.h"
@@ -244,8 +244,8 @@ class PythonScene {
     {
       const nb::gil_scoped_release release;
       RenderStats stats;
-      *film = render(scene_, *clearances_, camera, options, intersectors(keywords.uses_model),
-                     stats, {.progress = [](double) { return keep_going(); }});
+      *film = render(*prepared_, camera, options, intersectors(keywords.uses_model), stats,
+                     {.progress = [](double) { return keep_going(); }});
     }
     scene_.lights = lights;
     scene_.background = background;
@@ -265,7 +265,7 @@ class PythonScene {
   /// The tree, when the scene is there.
   void build(int threads) {
     bvh_ = std::make_unique<Bvh>(scene_, threads);
-    clearances_ = std::make_unique<NeighborClearances>(*bvh_);
+    prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
   }
 
   [[nodiscard]] IntersectorFactory intersectors(bool uses_model) const {
@@ -306,7 +306,7 @@ class PythonScene {
   std::optional<SceneFile> file_;
   Scene scene_;
   std::unique_ptr<Bvh> bvh_;
-  std::unique_ptr<NeighborClearances> clearances_;
+  std::unique_ptr<PreparedScene> prepared_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "host/film/reconstruction_filter.h"
 #include "host/light/lights.h"
-#include "host/light/neighbor_clearance.h"
+#include "host/light/prepared_scene.h"
 #include "host/light/sampler.h"
 #include "host/render/render_options.h"
 #include "host/scene/camera.h"
@@ -14,18 +14,17 @@
 namespace raygate {
 
 struct RenderJob {
-  const Scene& scene;
-  const Bvh& bvh;
+  const PreparedScene& prepared;
   const Camera& camera;
   const RenderOptions& options;
   const Lights& lights;
-  const NeighborClearances& clearances;
   glm::dvec3 ambient;  ///< as IntegratorOptions has it
 
   /// What a triangle, or kNone, sends out as a light.
   [[nodiscard]] glm::vec3 emission_of(std::uint32_t primitive) const {
     if (primitive == NearestHit::kNone) return glm::vec3(0.0f);
-    return scene.materials[face_at(scene, bvh.face_of(primitive)).material].emission;
+    const Triangle& face = face_at(prepared.scene, prepared.bvh.face_of(primitive));
+    return prepared.scene.materials[face.material].emission;
   }
 };
 

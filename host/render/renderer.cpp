@@ -7,7 +7,6 @@
 
 #include "host/base/stopwatch.h"
 #include "host/light/lights.h"
-#include "host/light/neighbor_clearance.h"
 #include "host/ranks/ranks.h"
 #include "host/render/coordinator.h"
 #include "host/render/emitter_edges.h"
@@ -28,14 +27,14 @@ Film empty_film(const RenderOptions& options) {
 
 }  // namespace
 
-Film render(const Scene& scene, const NeighborClearances& clearances, const Camera& camera,
-            const RenderOptions& options, const IntersectorFactory& make_intersector,
-            RenderStats& stats, const RenderMonitor& monitor) {
+Film render(const PreparedScene& prepared, const Camera& camera, const RenderOptions& options,
+            const IntersectorFactory& make_intersector, RenderStats& stats,
+            const RenderMonitor& monitor) {
   assert(options.width > 0 && options.height > 0 && options.threads > 0 && options.samples > 0);
   Stopwatch wall;
   const double busy = processor_seconds();
   stats = {};
-  const Bvh& bvh = clearances.bvh();
+  const Bvh& bvh = prepared.bvh;
   Film film = empty_film(options);
   auto first_intersector = make_intersector();
   const int end = options.end_sample > 0 ? options.end_sample : options.samples;
@@ -50,19 +49,14 @@ Film render(const Scene& scene, const NeighborClearances& clearances, const Came
     add_sums(film, options.error > 0.0);
   }
   const bool is_path = options.integrator == IntegratorKind::kPath;
-  const Lights lights(scene, bvh, is_path ? options.path.lights : LightSampling::kNone);
+  const Lights lights(prepared.scene, bvh, is_path ? options.path.lights : LightSampling::kNone);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lights
   // have no edges.
   std::vector<EmitterEdge> emitter_edges;
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
     emitter_edges.assign(film.color.size(), EmitterEdge::kUnknown);
   }
-  const RenderJob job{scene,
-                      bvh,
-                      camera,
-                      options,
-                      lights,
-                      clearances,
+  const RenderJob job{prepared, camera, options, lights,
                       options.ambient ? glm::dvec3(*options.ambient)
                       : is_path       ? glm::dvec3(0.0)
                                       : lights.ambient()};

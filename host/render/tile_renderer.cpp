@@ -32,9 +32,9 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
       intersector_(intersector),
       film_(film),
       emitter_edges_(emitter_edges),
-      integrator_(job.options.integrator, job.scene, job.clearances, job.lights, job.options.skips,
+      integrator_(job.options.integrator, job.prepared, job.lights, job.options.skips,
                   integrator_options(job)),
-      shadow_rays_(job.scene, job.clearances, job.lights, intersector, job.options.skips,
+      shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
 
@@ -72,7 +72,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   edge_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
   if (job_.options.skips.empty_tiles && !integrator_.sees_environment() &&
-      !may_see_anything(job_.bvh, job_.camera, film_, tile, margin)) {
+      !may_see_anything(job_.prepared.bvh, job_.camera, film_, tile, margin)) {
     output_.radiance.assign(samples_, integrator_.background());
     stats_.skipped.empty_tile_rays += samples_;
     stats_.shade_seconds += watch.lap();
@@ -192,7 +192,7 @@ void TileRenderer::record_first_hits() {
     first_hits_[i].origin = batch_.rays[i].origin;
     first_hits_[i].point =
         is_point_doubt(hit, job_.options.point_error)
-            ? precise_hit(batch_.rays[i], job_.bvh.corners_of(hit.primitive)).point
+            ? precise_hit(batch_.rays[i], job_.prepared.bvh.corners_of(hit.primitive)).point
             : hit.point;
   }
 }
@@ -255,17 +255,18 @@ void TileRenderer::update_errors() {
 void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
   const FirstHit& first_hit = first_hits_[sample];
   if (first_hit.primitive == NearestHit::kNone) return;
-  const std::uint32_t triangle = job_.bvh.triangle_of(first_hit.primitive);
+  const std::uint32_t triangle = job_.prepared.bvh.triangle_of(first_hit.primitive);
   const glm::dvec3 origin(first_hit.origin), point(first_hit.point);
   const glm::dvec3 from_eye = origin - glm::dvec3(job_.camera.eye()) + point;
   film_.depth[pixel] = static_cast<float>(job_.camera.depth(from_eye));
   film_.normal[pixel] = output_.first_surface[sample].normal;
   film_.primitive[pixel] = triangle;
   if (!film_.position.empty()) {
-    film_.position[pixel] = glm::vec3(job_.scene.origin + origin + point);
+    film_.position[pixel] = glm::vec3(job_.prepared.scene.origin + origin + point);
   }
   if (!film_.object.empty())
-    film_.object[pixel] = object_at(job_.scene, job_.bvh.face_of(first_hit.primitive));
+    film_.object[pixel] =
+        object_at(job_.prepared.scene, job_.prepared.bvh.face_of(first_hit.primitive));
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

@@ -48,7 +48,7 @@ class Set {
     cameras_ = std::make_unique<CameraSequence>(options_, scene_);
     camera_ = cameras_->light(1, scene_);
     bvh_ = std::make_unique<Bvh>(scene_);
-    clearances_ = std::make_unique<NeighborClearances>(*bvh_);
+    prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
   }
 
   [[nodiscard]] std::string name() const { return options_.scene.stem().string(); }
@@ -64,7 +64,7 @@ class Set {
                                 .integrator = IntegratorKind::kPath,
                                 .max_depth = options_.render.depth(),
                                 .path = techniques};
-    return render(scene_, *clearances_, *camera_, options,
+    return render(*prepared_, *camera_, options,
                   make_intersector_factory(options_, *bvh_, options_.render.skips), stats);
   }
 
@@ -82,7 +82,7 @@ class Set {
   std::unique_ptr<CameraSequence> cameras_;
   std::optional<Camera> camera_;
   std::unique_ptr<Bvh> bvh_;
-  std::unique_ptr<NeighborClearances> clearances_;
+  std::unique_ptr<PreparedScene> prepared_;
 };
 
 /// Over pixels and colours, scene-linear.

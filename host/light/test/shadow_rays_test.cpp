@@ -32,7 +32,7 @@ class ShadowRaysTest : public testing::Test {
  protected:
   /// Points on surfaces that are hit from `eye`, each with all lights in front of it.
   void add_questions(const glm::vec3& eye, int count) {
-    RaySpawner spawner(clearances_);
+    RaySpawner spawner(prepared_.clearances);
     std::vector<Ray> rays;
     for (int i = 0; i < count; ++i) {
       rays.push_back({eye, scaled_direction(glm::dvec3(random_.point()) - 1e-9)});
@@ -100,7 +100,7 @@ class ShadowRaysTest : public testing::Test {
 
   Scene scene_ = obstacles();
   Bvh bvh_{scene_};
-  NeighborClearances clearances_{bvh_};
+  PreparedScene prepared_{scene_, bvh_};
   Lights lights_{scene_, bvh_};
   std::unique_ptr<Intersector> intersector_ = pipeline_intersector(bvh_);
   Random random_;
@@ -112,7 +112,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
     add_questions(eye, 2000);
   }
   std::vector<ShadowRay> nearest = questions_;
-  ShadowRays(scene_, clearances_, lights_, *intersector_, {}, true).resolve(questions_);
+  ShadowRays(prepared_, lights_, *intersector_, {}, true).resolve(questions_);
   int dark = 0, lit = 0, different = 0;
   for (const ShadowRay& answer : questions_) {
     const bool blocked = is_blocked(answer);
@@ -129,7 +129,7 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   // Without the first-occluder skip: the same, to the last one.
   Skips skips;
   skips.first_occluder = false;
-  ShadowRays(scene_, clearances_, lights_, *intersector_, skips, true).resolve(nearest);
+  ShadowRays(prepared_, lights_, *intersector_, skips, true).resolve(nearest);
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     ASSERT_EQ(nearest[i].radiance, questions_[i].radiance) << i;
   }

@@ -43,11 +43,11 @@ IntersectorFactory cpu(const Bvh& bvh) {
 void with_seeds(const Scene& scene, const Camera& camera, RenderOptions options,
                 const std::function<void(const Film&)>& each) {
   const Bvh bvh(scene);
-  const NeighborClearances clearances(bvh);
+  const PreparedScene prepared(scene, bvh);
   for (int seed = 0; seed < seeds(); ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
     RenderStats stats;
-    each(render(scene, clearances, camera, options, cpu(bvh), stats));
+    each(render(prepared, camera, options, cpu(bvh), stats));
   }
 }
 

@@ -50,7 +50,7 @@ RenderOptions options(int samples, ReconstructionFilter filter = ReconstructionF
 
 std::vector<EmitterEdge> marks(const Panel& panel, ReconstructionFilter filter, std::size_t& rays) {
   const Bvh bvh(panel.scene);
-  const NeighborClearances clearances(bvh);
+  const PreparedScene prepared(panel.scene, bvh);
   const Lights lights(panel.scene, bvh);
   const RenderOptions asked = options(4, filter);
   CpuIntersector intersector(bvh);
@@ -58,8 +58,8 @@ std::vector<EmitterEdge> marks(const Panel& panel, ReconstructionFilter filter, 
   film.width = film.height = kSide;
   film.window = {0, 0, kSide, kSide};
   std::vector<EmitterEdge> found(std::size_t{kSide} * kSide);
-  rays = find_emitter_edges({panel.scene, bvh, panel.camera, asked, lights, clearances, {}},
-                            intersector, film, film.window, found, {});
+  rays = find_emitter_edges({prepared, panel.camera, asked, lights, {}}, intersector, film,
+                            film.window, found, {});
   return found;
 }
 
