@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <numbers>
 
-#include "host/light/lights.h"
-
 namespace raygate {
 namespace {
 

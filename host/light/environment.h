@@ -13,6 +13,10 @@
 
 namespace raygate {
 
+[[nodiscard]] inline double mean(const glm::dvec3& colour) {
+  return (colour.x + colour.y + colour.z) / 3.0;
+}
+
 /// An EnvironmentMap, ready for use. Directions are unit vectors away from the scene; T is float or
 /// FloatLanes.
 ///

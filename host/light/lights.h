@@ -19,10 +19,6 @@
 
 namespace raygate {
 
-[[nodiscard]] inline double mean(const glm::dvec3& colour) {
-  return (colour.x + colour.y + colour.z) / 3.0;
-}
-
 /// A float that is no infinity.
 [[nodiscard]] inline float finite_float(double x) {
   return static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
