@@ -34,7 +34,7 @@ struct Report {
 /// --verbose all there is to say. Every line is ended.
 [[nodiscard]] std::string to_text(const Report& report);
 
-/// The same and some more as a JSON object, for --stats. host/README.md lists the keys.
+/// The same and some more as a JSON object, for --stats. statistics.md lists the keys.
 [[nodiscard]] std::string to_json(const Report& report);
 
 }  // namespace raygate

@@ -1,5 +1,5 @@
 // raygate's C++ interface: triangles and rays in, exact hits out. The only header that is
-// installed; host/README.md explains how to use it.
+// installed; host/trace/README.md explains how to use it.
 #pragma once
 
 #include <array>

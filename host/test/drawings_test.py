@@ -1,14 +1,21 @@
-"""The drawings of host/README.md against the includes of the code.
+"""The drawings of host/README.md and its rooms' pages against the includes of the code; and no circle among those.
 
 A drawing is a mermaid graph. Its nodes are rooms (folders of host/, or `sim`) or, with a path as
 their label, sources: `a["intersect/intersector"]`. An arrow says that one includes the other. Every arrow
-must be such an include, and where all nodes are rooms, every include must be an arrow or follow
+(`a --> b & c` is two) must be such an include, and where all nodes are rooms, every include must be an arrow or follow
 from several.
 """
 
 import pathlib
 import re
 import unittest
+
+# Sources that may include each other, a .h and a .cpp of one name counted as one, and why.
+CIRCLES = {
+    "bvh/bvh bvh/sah_builder": "a tree's constructor calls its builder, which makes the tree's nodes",
+    "light/neighbor_clearance light/neighbor_clearance_search": "one class; its search is compiled for each kind of vectors",
+    "sim/array_model sim/rtl_burst_unit": "the Verilated array and the unit that it is, which names the array's stalls",
+}
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = re.compile(r'^#include "((?:host|sim)/[^"]+)"', re.MULTILINE)
@@ -35,12 +42,14 @@ def includes() -> dict[str, set[str]]:
 
 def drawings() -> list[tuple[dict[str, str], list[tuple[str, str]]]]:
     """Of each graph: names of nodes and the sources that they stand for, and the arrows."""
-    text = (ROOT / "host/README.md").read_text()
+    pages = [ROOT / "host/README.md", *sorted(ROOT.glob("host/*/README.md"))]
+    text = "".join(page.read_text() for page in pages)
     graphs = []
     for graph in re.findall(r"```mermaid\ngraph[^\n]*\n(.*?)```", text, re.DOTALL):
         labels = dict(re.findall(r'(\w+)\["`?([\w/.]+)', graph))
         bare = re.sub(r'\["[^"]*"\]', "", graph)
-        arrows = re.findall(r"^\s*(\w+)\s*-->(?:\|[^|]*\|)?\s*(\w+)\s*$", bare, re.MULTILINE)
+        arrows = [(a, b) for a, targets in re.findall(r"^\s*(\w+) --> ([\w &]+)$", bare, re.MULTILINE)
+                  for b in targets.split(" & ")]
         graphs.append((labels, arrows))
     return graphs
 
@@ -54,6 +63,13 @@ def reachable(arrows: set[tuple[str, str]], start: str) -> set[str]:
                 found.add(b)
                 todo.append(b)
     return found
+
+
+def circles(arrows: set[tuple[str, str]]) -> set[str]:
+    """Groups of nodes that are reached from each other, their names in order."""
+    arrows = {(a, b) for a, b in arrows if a != b}
+    reached = {node: reachable(arrows, node) for arrow in arrows for node in arrow}
+    return {" ".join(sorted(b for b in reached[a] if a in reached[b])) for a in reached if a in reached[a]}
 
 
 def stem(path: str) -> str:
@@ -115,6 +131,16 @@ class Drawings(unittest.TestCase):
             for a, b in sorted(pairs):
                 if a != b and {a, b} <= set(labels.values()) and (b, a) not in drawn:
                     self.assertIn(b, reachable(drawn, a), f"{a} includes {b}, which is not drawn")
+
+    def test_no_circle_among_folders(self) -> None:
+        """Rooms and the folders in them, of host/ and sim/, through headers and sources alike."""
+        self.assertEqual(circles({("a/", "b/"), ("b/", "c/"), ("c/", "a/"), ("c/", "d/")}), {"a/ b/ c/"})
+        self.assertEqual(circles({(folder(a), folder(b)) for a, targets in self.includes.items() for b in targets}), set())
+
+    def test_no_circle_among_sources(self) -> None:
+        """A header and its source are one; CIRCLES has those that stay, and no others."""
+        pairs = {(stem(a), stem(b)) for a, targets in self.includes.items() for b in targets}
+        self.assertEqual(circles(pairs), set(CIRCLES))
 
 
 if __name__ == "__main__":
