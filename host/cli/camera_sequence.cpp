@@ -35,37 +35,22 @@ double aspect_of(const Options& options) {
 
 }  // namespace
 
-CameraSequence::CameraSequence(const Options& options, Scene& scene)
+CameraSequence::CameraSequence(const Options& options, const Scene& scene)
     : options_(options),
       given_(options.camera.camera   ? options.camera.camera
              : options.camera.angles ? std::nullopt
                                      : scene.camera),
       view_(given_ && !options.camera.ground.value_or(false) ? View{}
                                                              : chosen_view(options, scene)) {
-  bool has_preview_lights = false;
-  const std::vector<PointLight> lights = scene.lights;
-  const glm::vec3 background = scene.background;
   for (int number = 1; number <= std::max(1, options.output.frames); ++number) {
-    Frame& frame =
-        frames_.emplace_back(Camera::look_at(setting(scene, number), aspect_of(options)));
-    if (given_) {
-      add_default_lights(scene, frame.camera);
-    } else {
-      has_preview_lights = add_preview_lights(scene, frame.camera);
-    }
-    frame.lights = std::exchange(scene.lights, lights);
-    frame.background = std::exchange(scene.background, background);
+    const Camera camera = Camera::look_at(setting(scene, number), aspect_of(options));
+    frames_.push_back(
+        {camera, given_ ? default_lights(scene, camera) : preview_lights(scene, camera)});
   }
-  const bool is_first_look = has_preview_lights && view_.elevation > 0.0 && !is_interior(scene);
+  const bool is_first_look =
+      !given_ && frames_.back().lights && view_.elevation > 0.0 && !is_interior(scene);
   has_ground_ = options.camera.ground.value_or(is_first_look);
   if (!given_) text_ = view_text(scene);
-}
-
-const Camera& CameraSequence::light(int number, Scene& scene) const {
-  const Frame& frame = frames_[static_cast<std::size_t>(number - 1)];
-  scene.lights = frame.lights;
-  scene.background = frame.background;
-  return frame.camera;
 }
 
 CameraSetting CameraSequence::setting(const Scene& scene, int number) const {

@@ -1,6 +1,7 @@
 // From where the pictures of a run are taken, and by which light.
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "host/cli/options.h"
+#include "host/light/camera_lights.h"
 #include "host/scene/camera.h"
 #include "host/scene/scene.h"
 #include "host/scene/view.h"
@@ -19,12 +21,18 @@ namespace raygate {
 /// ground.
 class CameraSequence {
  public:
-  /// Of a scene as the file has it, which is left as it is. `options` must outlive this. Throws
+  /// Of a scene as the file has it. `options` must outlive this. Throws
   /// InputError as Camera::look_at and frame_scene.
-  CameraSequence(const Options& options, Scene& scene);
+  CameraSequence(const Options& options, const Scene& scene);
 
-  /// Gives `scene`, the same one, the light of frame `number`, from 1; returns its camera.
-  const Camera& light(int number, Scene& scene) const;
+  struct Frame {
+    Camera camera;
+    std::optional<CameraLights> lights;  ///< that go with it, in place of the scene's
+  };
+  /// Of picture `number`, from 1.
+  [[nodiscard]] const Frame& frame(int number) const {
+    return frames_[static_cast<std::size_t>(number - 1)];
+  }
 
   /// A ground catches the shadows of a first look, from above, or where --ground says so.
   [[nodiscard]] bool has_ground() const { return has_ground_; }
@@ -37,12 +45,6 @@ class CameraSequence {
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> options() const;
 
  private:
-  struct Frame {
-    Camera camera;
-    std::vector<PointLight> lights;
-    glm::vec3 background{0.0f};
-  };
-
   [[nodiscard]] CameraSetting setting(const Scene& scene, int number) const;
   [[nodiscard]] std::string view_text(const Scene& scene) const;
 

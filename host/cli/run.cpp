@@ -117,7 +117,7 @@ class Run {
     const PreparedScene prepared(scene_, bvh);
     image_ = make_memory_image(options_, options_.core_files, bvh);
     if (options_.core_files.pixel) {
-      write_wave(bvh, cameras.light(1, scene_));
+      write_wave(bvh, cameras.frame(1).camera);
     } else if (options_.output.frames > 0) {
       render_animation(prepared, cameras);
     } else {
@@ -179,7 +179,7 @@ class Run {
   /// frame whose files are there.
   bool render_picture(const PreparedScene& prepared, const CameraSequence& cameras, int number,
                       Ranks& ranks, Clock::time_point start) {
-    const Camera& camera = cameras.light(number, scene_);
+    const auto& [camera, lights] = cameras.frame(number);
     const OutputOptions& outputs = outputs_of(number);
     const ExrMetadata metadata = make_metadata(cameras, camera);
     std::optional<Film> unfinished;
@@ -194,6 +194,7 @@ class Run {
     }
     RenderOptions render_options = options_.render;
     render_options.threads = options_.threads;
+    render_options.lights = lights;
     render_options.ranks = &ranks;
     render_options.unfinished = unfinished ? &*unfinished : nullptr;
     render_options.exposure = options_.output.display.exposure;

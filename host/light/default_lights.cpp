@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 
 #include "host/exact/exact.h"
 #include "host/light/lights.h"
@@ -12,9 +13,9 @@ namespace raygate {
 namespace {
 
 /// Lights stand still while the camera is looked through: they are found from it.
-class DefaultLights {
+class LightPlaces {
  public:
-  DefaultLights(const Scene& scene, const Camera& camera) : camera_(camera) {
+  LightPlaces(const Scene& scene, const Camera& camera) : camera_(camera) {
     const auto [low, high] = position_bounds(scene);
     const glm::dvec3 eye(camera.eye());
     middle_ = 0.5 * (low + high);
@@ -79,25 +80,24 @@ constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 
 }  // namespace
 
-void add_default_lights(Scene& scene, const Camera& camera) {
-  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || !has_no_light(scene)) return;
-  scene.lights.push_back(DefaultLights(scene, camera).key());
-  scene.background = kDimSky;
+std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera) {
+  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || !has_no_light(scene)) return {};
+  return CameraLights{{LightPlaces(scene, camera).key()}, kDimSky};
 }
 
-bool add_preview_lights(Scene& scene, const Camera& camera) {
+std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera) {
   if (is_empty(scene) || !scene.lights.empty() || !scene.directional_lights.empty() ||
       scene.environment) {
-    return false;
+    return {};
   }
-  const DefaultLights lights(scene, camera);
+  const LightPlaces places(scene, camera);
   // Labels and the like that glow are no lights: not a hundredth of what the key light does.
   constexpr double kGlow = 0.01;
-  if (emitted(scene) > kGlow * lights.size() * lights.size()) return false;
-  scene.lights.push_back(lights.key());
-  if (!lights.is_inside()) scene.lights.push_back(lights.fill());
-  if (scene.background == glm::vec3(0.0f)) scene.background = kDimSky;
-  return true;
+  if (emitted(scene) > kGlow * places.size() * places.size()) return {};
+  CameraLights lights{{places.key()}, scene.background};
+  if (!places.is_inside()) lights.points.push_back(places.fill());
+  if (lights.background == glm::vec3(0.0f)) lights.background = kDimSky;
+  return lights;
 }
 
 }  // namespace raygate

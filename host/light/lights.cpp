@@ -70,13 +70,13 @@ glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lig
 }
 
 /// A power of two about as long as the scene, its lights included.
-double unit_of(const Scene& scene) {
+double unit_of(const Scene& scene, const std::vector<PointLight>& lights) {
   float size = 0.0f;
   if (!is_empty(scene)) {
     const Bounds3 box = position_bounds(scene);
     size = static_cast<float>(std::max(largest(box.low), largest(box.high)));
   }
-  for (const PointLight& light : scene.lights) size = std::max(size, largest(light.position));
+  for (const PointLight& light : lights) size = std::max(size, largest(light.position));
   constexpr int kMostExponent = 126;  // the inverse is a float, too
   return size > 0.0f ? std::ldexp(1.0, std::clamp(std::ilogb(size), -kMostExponent, kMostExponent))
                      : 1.0;
@@ -141,11 +141,14 @@ LightBounds placeless(const LightBounds& source, double scene_radius) {
 
 }  // namespace
 
-Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice)
-    : scene_(scene), bvh_(bvh) {
-  const double unit = unit_of(scene);
+Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice,
+               const std::optional<CameraLights>& camera_lights)
+    : scene_(scene),
+      bvh_(bvh),
+      own_(camera_lights.value_or(CameraLights{scene.lights, scene.background})) {
+  const double unit = unit_of(scene, own_.points);
   per_unit_ = static_cast<float>(1.0 / unit);
-  for (const PointLight& light : scene.lights) {
+  for (const PointLight& light : own_.points) {
     Light& record = lights_.emplace_back();
     record.emission = finite_floats(light.intensity / unit / unit);
     record.position = light.position;
@@ -159,7 +162,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice)
     record.kind = Kind::kArea;
     record.emission = finite_floats(light.radiance);
     if (!scene.environment) {
-      const double ratio = mean(glm::dvec3(scene.background)) / mean(light.radiance);
+      const double ratio = mean(glm::dvec3(own_.background)) / mean(light.radiance);
       record.sky = static_cast<float>(std::min(ratio, 0.5));
     }
     record.area = finite_float(light.area() / unit / unit);
@@ -269,7 +272,7 @@ void Lights::add_sources(LightSampling choice, double unit) {
     sources.push_back(source);
     sources_.push_back({number, patch, area > 0.0 ? finite_float(unit * unit / area) : 0.0f});
   };
-  for (const PointLight& light : scene_.lights) {
+  for (const PointLight& light : own_.points) {
     add(raygate::light_bounds(light, unit));
     ++number;
   }

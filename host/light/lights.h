@@ -11,6 +11,7 @@
 
 #include "host/base/lane_math.h"
 #include "host/bvh/bvh.h"
+#include "host/light/camera_lights.h"
 #include "host/light/environment.h"
 #include "host/light/integrator_options.h"
 #include "host/light/light_tree.h"
@@ -90,10 +91,11 @@ struct LightPoint {
 class Lights {
  public:
   /// The references must outlive this. Without a `choice` there are no sources, and none of what
-  /// they are chosen by.
-  Lights(const Scene& scene, const Bvh& bvh, LightSampling choice = LightSampling::kTree);
+  /// they are chosen by. `camera_lights` take the place of the scene's.
+  Lights(const Scene& scene, const Bvh& bvh, LightSampling choice = LightSampling::kTree,
+         const std::optional<CameraLights>& camera_lights = {});
 
-  [[nodiscard]] std::span<const PointLight> points() const { return scene_.lights; }
+  [[nodiscard]] std::span<const PointLight> points() const { return own_.points; }
   [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
   [[nodiscard]] std::span<const DirectionalLight> directions() const {
     return scene_.directional_lights;
@@ -104,7 +106,7 @@ class Lights {
   }
   /// Of an environment the mean.
   [[nodiscard]] glm::vec3 background() const {
-    return environment_ ? glm::vec3(environment_->mean_radiance()) : scene_.background;
+    return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
   }
   /// Radiance from all sides that may stand for light that goes from surface to surface: the
   /// background's or, where that is black, what the lights' flux would come to after many
@@ -205,6 +207,7 @@ class Lights {
 
   const Scene& scene_;
   const Bvh& bvh_;
+  CameraLights own_;
   std::optional<Environment> environment_;
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;

@@ -10,8 +10,7 @@
 
 namespace raygate {
 
-/// For all threads to read, and for any camera and lights: the scene's lights may change later, its
-/// triangles and materials may not.
+/// For all threads to read, and for any camera and its lights.
 struct PreparedScene {
   /// The references must outlive this. `tree` is the scene's.
   PreparedScene(const Scene& loaded, const Bvh& tree)

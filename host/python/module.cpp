@@ -215,7 +215,7 @@ class PythonScene {
 
   /// The film's channels by name. `settings`: options and their values as text.
   nb::dict render_film(const std::optional<Three>& eye, const std::optional<Three>& target,
-                       const std::optional<Three>& up, const Settings& settings) {
+                       const std::optional<Three>& up, const Settings& settings) const {
     RenderOptions options;
     options.channels = {.position = true, .albedo = true, .object = true};
     std::optional<double> fov;
@@ -232,14 +232,8 @@ class PythonScene {
       throw InputError("width, height: expected at most " + std::to_string(kMaxPixels) + " pixels");
     }
     const Camera camera = camera_of(eye, target, up, fov, static_cast<double>(width) / height);
-    // A light for a dark scene depends on the camera: it is there for this picture alone.
-    const auto lights = scene_.lights;
-    const glm::vec3 background = scene_.background;
-    if (eye || given_camera()) {
-      add_default_lights(scene_, camera);
-    } else {
-      add_preview_lights(scene_, camera);
-    }
+    options.lights =
+        eye || given_camera() ? default_lights(scene_, camera) : preview_lights(scene_, camera);
     const auto film = std::make_shared<Film>();
     {
       const nb::gil_scoped_release release;
@@ -247,8 +241,6 @@ class PythonScene {
       *film = render(*prepared_, camera, options, intersectors(keywords.uses_model), stats,
                      {.progress = [](double) { return keep_going(); }});
     }
-    scene_.lights = lights;
-    scene_.background = background;
     const auto h = static_cast<std::size_t>(height), w = static_cast<std::size_t>(width);
     nb::dict channels;
     channels["color"] = array_of<float>(film, film->color.data(), {h, w, 4});

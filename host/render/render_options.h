@@ -8,6 +8,7 @@
 #include "host/film/film.h"
 #include "host/film/reconstruction_filter.h"
 #include "host/intersect/intersector.h"
+#include "host/light/camera_lights.h"
 #include "host/light/integrator_options.h"
 
 namespace raygate {
@@ -41,11 +42,12 @@ struct RenderOptions {
   std::uint64_t seed = 0;                                               ///< of everything random
   ExtraChannels channels{};  ///< besides colour, depth, normal and primitive
   IntegratorKind integrator = IntegratorKind::kWhitted;
-  std::optional<int> max_depth{};   ///< reflections and refractions in a row; none: see depth()
-  double threshold = 1.0 / 256.0;   ///< Whitted: rays that count for less are not traced
-  std::optional<double> ambient{};  ///< Whitted: radiance; none: see Lights::ambient
-  PathOptions path{};               ///< path
-  Skips skips{};                    ///< the film does not depend on them
+  std::optional<int> max_depth{};  ///< reflections and refractions in a row; none: see depth()
+  double threshold = 1.0 / 256.0;  ///< Whitted: rays that count for less are not traced
+  std::optional<CameraLights> lights{};  ///< in place of the scene's
+  std::optional<double> ambient{};       ///< Whitted: radiance; none: see Lights::ambient
+  PathOptions path{};                    ///< path
+  Skips skips{};                         ///< the film does not depend on them
   /// The unit's P is used where it is off by no more of the distance than that, in all else the
   /// host's: 0 for the host's alone; the largest float for the unit's wherever it has one.
   float point_error = kPointError;

@@ -49,7 +49,8 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
     add_sums(film, options.error > 0.0);
   }
   const bool is_path = options.integrator == IntegratorKind::kPath;
-  const Lights lights(prepared.scene, bvh, is_path ? options.path.lights : LightSampling::kNone);
+  const Lights lights(prepared.scene, bvh, is_path ? options.path.lights : LightSampling::kNone,
+                      options.lights);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lights
   // have no edges.
   std::vector<EmitterEdge> emitter_edges;

@@ -15,7 +15,7 @@ class Camera;
 /// The prepared scene is for renders to share, one after the other or at once.
 /// The film is the same, bit for bit, for every intersector, number of threads and skip, and a
 /// window's is that part of the whole one's. An exception of an intersector ends the render and is
-/// thrown on. Scenes without any light are black, but for kPrimary: see add_default_lights.
+/// thrown on. Scenes without any light are black, but for kPrimary: see default_lights.
 [[nodiscard]] Film render(const PreparedScene& prepared, const Camera& camera,
                           const RenderOptions& options, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const RenderMonitor& monitor = {});

@@ -23,6 +23,7 @@
 #include "host/lab/timing.h"
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/lab/variants/variant_hit_tester.h"
+#include "host/light/camera_lights.h"
 #include "host/light/default_lights.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
@@ -86,10 +87,12 @@ bool same_picture(const Film& a, const Film& b) {
 struct LitScene {
   Scene scene;
   Bvh bvh;
+  std::optional<CameraLights> lights;
 
-  explicit LitScene(const std::filesystem::path& file) : scene(load_obj(file)), bvh(scene) {
-    add_default_lights(scene, front_camera(scene, 4.0 / 3.0));
-  }
+  explicit LitScene(const std::filesystem::path& file)
+      : scene(load_obj(file)),
+        bvh(scene),
+        lights(default_lights(scene, front_camera(scene, 4.0 / 3.0))) {}
 
   /// The whole scene in view.
   [[nodiscard]] Camera camera(int width, int height) const {
@@ -143,6 +146,7 @@ class TimedRun {
                                         [](const auto& kind) { return std::string(kind.first); })
                           ->second,
         .max_depth = run_.depth,
+        .lights = stage_.lights,
         .point_error = run_.point_error < 0.0 ? std::numeric_limits<float>::max()
                                               : static_cast<float>(run_.point_error)};
     const Film film = render(stage_.scene, stage_.bvh, camera_, options,

@@ -46,7 +46,6 @@ class Set {
     scene_ = options_.scene_file ? load_scene(*options_.scene_file) : load_scene(options_.scene);
     if (options_.scene_file) add_lights(*options_.scene_file, scene_);
     cameras_ = std::make_unique<CameraSequence>(options_, scene_);
-    camera_ = cameras_->light(1, scene_);
     bvh_ = std::make_unique<Bvh>(scene_);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
   }
@@ -55,6 +54,7 @@ class Set {
 
   [[nodiscard]] Film film(const PathOptions& techniques, int samples, int seed,
                           RenderStats& stats) const {
+    const CameraSequence::Frame& frame = cameras_->frame(1);
     const RenderOptions options{.width = plan_.side,
                                 .height = plan_.side,
                                 .window = {},
@@ -63,8 +63,9 @@ class Set {
                                 .seed = static_cast<std::uint64_t>(seed),
                                 .integrator = IntegratorKind::kPath,
                                 .max_depth = options_.render.depth(),
+                                .lights = frame.lights,
                                 .path = techniques};
-    return render(*prepared_, *camera_, options,
+    return render(*prepared_, frame.camera, options,
                   make_intersector_factory(options_, *bvh_, options_.render.skips), stats);
   }
 
@@ -80,7 +81,6 @@ class Set {
   Options options_;
   Scene scene_;
   std::unique_ptr<CameraSequence> cameras_;
-  std::optional<Camera> camera_;
   std::unique_ptr<Bvh> bvh_;
   std::unique_ptr<PreparedScene> prepared_;
 };

@@ -22,56 +22,52 @@ Camera camera_from(const glm::dvec3& eye) {
   return Camera::look_at(eye, glm::dvec3(0.0), {0, 1, 0}, 35.0, 1.0);
 }
 
-TEST(AddDefaultLights, AddsOneLightAboveTheCameraAndASky) {
-  Scene scene = square(matte(glm::vec3(0.5f)));
-  add_default_lights(scene, camera_from({0, 0, 5}));
-  ASSERT_EQ(scene.lights.size(), 1u);
-  EXPECT_LT(scene.lights[0].position.x, 0.0f);
-  EXPECT_GT(scene.lights[0].position.y, 0.0f);
-  EXPECT_GT(scene.lights[0].position.z, 0.0f);
-  EXPECT_NE(scene.background, glm::vec3(0.0f));
+TEST(DefaultLights, AreOneLightAboveTheCameraAndASky) {
+  const auto lights = default_lights(square(matte(glm::vec3(0.5f))), camera_from({0, 0, 5}));
+  ASSERT_TRUE(lights && lights->points.size() == 1);
+  EXPECT_LT(lights->points[0].position.x, 0.0f);
+  EXPECT_GT(lights->points[0].position.y, 0.0f);
+  EXPECT_GT(lights->points[0].position.z, 0.0f);
+  EXPECT_NE(lights->background, glm::vec3(0.0f));
 }
 
-TEST(AddDefaultLights, LeavesWhatIsNotDarkAlone) {
-  Scene lit = square(emitter(glm::vec3(1.0f)));
-  add_default_lights(lit, camera_from({0, 0, 5}));
-  add_preview_lights(lit, camera_from({0, 0, 5}));
-  EXPECT_TRUE(lit.lights.empty());
-  EXPECT_EQ(lit.background, glm::vec3(0.0f));
+TEST(DefaultLights, AreNoneWhereItIsNotDark) {
+  const Scene lit = square(emitter(glm::vec3(1.0f)));
+  EXPECT_FALSE(default_lights(lit, camera_from({0, 0, 5})));
+  EXPECT_FALSE(preview_lights(lit, camera_from({0, 0, 5})));
   Scene outdoors = square(matte(glm::vec3(0.5f)));
   outdoors.background = kBlue;
-  add_default_lights(outdoors, camera_from({0, 0, 5}));
-  EXPECT_TRUE(outdoors.lights.empty());
+  EXPECT_FALSE(default_lights(outdoors, camera_from({0, 0, 5})));
 }
 
-TEST(AddPreviewLights, AddsTwoLightsAndKeepsTheBackground) {
+TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   scene.background = kBlue;
-  add_preview_lights(scene, camera_from({0, 0, -5}));
-  ASSERT_EQ(scene.lights.size(), 2u);
-  EXPECT_EQ(scene.background, kBlue);
+  const auto lights = preview_lights(scene, camera_from({0, 0, -5}));
+  ASSERT_TRUE(lights && lights->points.size() == 2);
+  EXPECT_EQ(lights->background, kBlue);
   // Seen from behind, left is +x; the lights are on the camera's side.
-  EXPECT_GT(scene.lights[0].position.x, 0.0f);
-  EXPECT_LT(scene.lights[1].position.x, 0.0f);
-  for (const PointLight& light : scene.lights) EXPECT_LT(light.position.z, 0.0f);
-  EXPECT_GT(scene.lights[0].intensity.x, scene.lights[1].intensity.x);
+  EXPECT_GT(lights->points[0].position.x, 0.0f);
+  EXPECT_LT(lights->points[1].position.x, 0.0f);
+  for (const PointLight& light : lights->points) EXPECT_LT(light.position.z, 0.0f);
+  EXPECT_GT(lights->points[0].intensity.x, lights->points[1].intensity.x);
 }
 
-TEST(AddPreviewLights, TakesALabelThatGlowsForNoLight) {
+TEST(PreviewLights, TakeALabelThatGlowsForNoLight) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   add(scene, rectangle({0, 0, 0.1f}, {0.1f, 0, 0}, {0, 0.1f, 0}), emitter(glm::vec3(1.0f)));
-  add_default_lights(scene, camera_from({0, 0, 5}));
-  EXPECT_TRUE(scene.lights.empty()) << "who gives a camera gives the light";
-  add_preview_lights(scene, camera_from({0, 0, 5}));
-  EXPECT_EQ(scene.lights.size(), 2u);
+  EXPECT_FALSE(default_lights(scene, camera_from({0, 0, 5})))
+      << "who gives a camera gives the light";
+  const auto lights = preview_lights(scene, camera_from({0, 0, 5}));
+  EXPECT_TRUE(lights && lights->points.size() == 2);
 }
 
-TEST(AddPreviewLights, StandsAtACameraWithinTheScene) {
+TEST(PreviewLights, StandAtACameraWithinTheScene) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   add(scene, rectangle({-1, -1, 4}, {2, 0, 0}, {0, 2, 0}), matte(glm::vec3(0.5f)));
-  add_preview_lights(scene, camera_from({0, 0, 2}));
-  ASSERT_EQ(scene.lights.size(), 1u);
-  EXPECT_EQ(scene.lights[0].position, glm::vec3(0, 0, 2));
+  const auto lights = preview_lights(scene, camera_from({0, 0, 2}));
+  ASSERT_TRUE(lights && lights->points.size() == 1);
+  EXPECT_EQ(lights->points[0].position, glm::vec3(0, 0, 2));
 }
 
 }  // namespace

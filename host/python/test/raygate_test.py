@@ -1,7 +1,9 @@
 """The Python module as its users have it: installed by `pip install .`."""
 
 import pathlib
+import signal
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -121,6 +123,37 @@ class Render(unittest.TestCase):
         again = scene.render(40, 30, spp=1, engine="model", threads=1)
         for name, channel in picture.items():
             self.assertEqual(channel.tobytes(), again[name].tobytes(), name)
+
+    def test_a_picture_that_was_interrupted_leaves_no_light(self):
+        scene = raygate.Scene(SCENES / "teapot.obj")
+        before = scene.render(16, 16, spp=1)["color"]
+        raised = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                scene.render(2000, 2000, spp=64, eye=[9, 9, 9])
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, raised)
+        np.testing.assert_array_equal(scene.render(16, 16, spp=1)["color"], before)
+
+    def test_threads_render_by_their_own_lights(self):
+        scene = raygate.Scene(SCENES / "teapot.obj")
+        eyes = [[9, 9, 9], [-9, 9, -9]]
+        alone = [scene.render(32, 32, spp=4, eye=eye)["color"] for eye in eyes]
+        wrong = []
+
+        def render(k):
+            for _ in range(20):
+                if (scene.render(32, 32, spp=4, eye=eyes[k], threads=1)["color"] != alone[k]).any():
+                    wrong.append(k)
+
+        threads = [threading.Thread(target=render, args=[k]) for k in (0, 1)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
 
     def test_says_what_is_wrong(self):
         with self.assertRaisesRegex(raygate.InputError, "none.obj: cannot read"):

@@ -16,16 +16,16 @@ namespace raygate::test {
 
 /// Draws a few pixels of a scene by its first view, if it has up to 100,000 triangles; aborts where
 /// a pixel is no colour. Throws InputError: a scene too large for float.
-inline void draw(Scene scene) {
+inline void draw(const Scene& scene) {
   if (triangle_count(scene) > 100'000) return;
   const glm::dvec3 up = scene.up.value_or(glm::dvec3(0.0, 1.0, 0.0));
   const Camera camera =
       Camera::look_at(frame_scene(scene, 1.0, Camera::kDefaultFov, default_view(scene, up)), 1.0);
-  add_default_lights(scene, camera);
   const Bvh bvh(scene);
   RenderOptions options;
   options.width = options.height = 4;
   options.samples = 2;
+  options.lights = default_lights(scene, camera);
   options.integrator = IntegratorKind::kPath;
   RenderStats stats;
   const Film film = render(

@@ -131,8 +131,9 @@ TEST(Surface, SizeDoesNotMatter) {
                   glm::vec3(0, 0, 4) * scale),
         mirror(0.5f));
     const Camera camera = camera_at(glm::dvec3(0.5, 0.7, 4) * double(scale), glm::dvec3(0), 40.0);
-    add_default_lights(scene, camera);
-    return film_of(scene, camera, light(integrator, 24, 24, 2));
+    RenderOptions options = light(integrator, 24, 24, 2);
+    options.lights = default_lights(scene, camera);
+    return film_of(scene, camera, options);
   };
   for (const IntegratorKind integrator : {kWhitted, kPath}) {
     const Film plain = picture(1.0f, integrator);
