@@ -2,6 +2,9 @@
 
 #include <cfenv>
 #include <stdexcept>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 namespace raygate {
 namespace {
@@ -24,6 +27,25 @@ bool keeps_subnormals() {
 }
 
 }  // namespace
+
+// Not inline: no compiler moves arithmetic across these.
+#if defined(__SSE2__)
+IeeeFloats::IeeeFloats() : before_(_mm_getcsr()), rounding_(std::fegetround()) {
+  if (rounding_ != FE_TONEAREST) std::fesetround(FE_TONEAREST);
+  constexpr unsigned kDefault = 0x1F80;  // after reset, as the processor's manual has it
+  _mm_setcsr(kDefault);
+}
+IeeeFloats::~IeeeFloats() {
+  if (rounding_ != FE_TONEAREST) std::fesetround(rounding_);
+  _mm_setcsr(before_);
+}
+#else
+IeeeFloats::IeeeFloats() {
+  std::fegetenv(&before_);
+  std::fesetenv(FE_DFL_ENV);
+}
+IeeeFloats::~IeeeFloats() { std::fesetenv(&before_); }
+#endif
 
 void require_ieee_floats() {
   if (std::fegetround() != FE_TONEAREST) {

@@ -1,6 +1,7 @@
 // Checks for IEEE 754 arithmetic, each operation rounded to nearest, on which exactness rests.
 #pragma once
 
+#include <cfenv>
 #include <cfloat>
 #include <limits>
 
@@ -23,6 +24,27 @@ static_assert(FLT_EVAL_METHOD == 0, "exact arithmetic: expected floats to be com
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
 
 namespace raygate {
+
+/// IEEE 754's arithmetic on this thread for as long as this lives, and on threads that it starts
+/// meanwhile: rounding to nearest, subnormals kept, no traps, whatever another library has set.
+/// Then the thread's state is what it was, flags included.
+class IeeeFloats {
+ public:
+  IeeeFloats();
+  ~IeeeFloats();
+  IeeeFloats(const IeeeFloats&) = delete;
+  IeeeFloats& operator=(const IeeeFloats&) = delete;
+
+ private:
+#if defined(__SSE2__)
+  // Of x87 the rounding mode, which decides how the C library reads numbers. Its other state would
+  // cost a microsecond, and nothing here computes by it.
+  unsigned before_;  // MXCSR
+  int rounding_;
+#else
+  std::fenv_t before_;
+#endif
+};
 
 /// Throws std::runtime_error, one line, where this thread's arithmetic is not that: another
 /// rounding mode, subnormals flushed to zero (as programs linked with -ffast-math do to others), or

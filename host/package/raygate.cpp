@@ -70,6 +70,10 @@ std::span<const Tracer::Triangle> checked(std::span<const Tracer::Triangle> tria
 }  // namespace
 
 struct Tracer::Tree {
+  static std::unique_ptr<const Tree> of(std::span<const Triangle> triangles, int threads) {
+    const IeeeFloats guard;
+    return std::make_unique<const Tree>(triangles, threads);
+  }
   Tree(std::span<const Triangle> triangles, int threads)
       : bvh(scene_of(checked(triangles)), threads) {}
 
@@ -92,12 +96,13 @@ struct Tracer::Tree {
 };
 
 Tracer::Tracer(std::span<const Triangle> triangles, int threads)
-    : tree_(std::make_unique<const Tree>(triangles, threads)) {}
+    : tree_(Tree::of(triangles, threads)) {}
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 
 void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
+  const IeeeFloats guard;
   require_room(rays.size(), hits.size());
   const RayTable block = block_of(rays);
   const std::vector<NearestHit> found = tree_->find(block, false);
@@ -105,6 +110,7 @@ void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
 }
 
 void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) const {
+  const IeeeFloats guard;
   require_room(rays.size(), is_hit.size());
   const std::vector<NearestHit> found = tree_->find(block_of(rays), true);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -113,6 +119,7 @@ void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) cons
 }
 
 std::vector<Tracer::Hit> Tracer::all(const Ray& ray) const {
+  const IeeeFloats guard;
   const RayTable block = block_of({&ray, 1});
   std::vector<NearestHit> found;
   RayWork work;

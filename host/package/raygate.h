@@ -16,7 +16,8 @@ namespace raygate {
 /// order, is decided exactly on the floats that are given: a ray through an edge or a corner of a
 /// closed mesh hits exactly one of the triangles that meet there, none leaks through. Of two hits
 /// that are equally far the lower triangle comes first. All questions may be asked by several
-/// threads at once.
+/// threads at once, in whatever rounding mode: each call sets IEEE 754's arithmetic and leaves the
+/// thread's as it was.
 class Tracer {
  public:
   using Point = std::array<float, 3>;
@@ -36,8 +37,8 @@ class Tracer {
 
   /// Builds the tree, on so many threads. Coordinates are finite and of magnitude at most 2^126;
   /// triangles without area are allowed, and never hit. Throws std::invalid_argument where they
-  /// are not, and std::runtime_error where this machine's arithmetic is not IEEE 754's (after
-  /// -ffast-math in another part of the program, say). The triangles are not needed afterwards.
+  /// are not, and std::runtime_error where this machine's arithmetic is not IEEE 754's. The
+  /// triangles are not needed afterwards.
   explicit Tracer(std::span<const Triangle> triangles, int threads = 1);
   ~Tracer();
   Tracer(Tracer&&) noexcept;

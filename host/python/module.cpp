@@ -301,13 +301,26 @@ class PythonScene {
   std::unique_ptr<PreparedScene> prepared_;
 };
 
+/// IeeeFloats as a context of Python's `with`.
+struct FloatsContext {
+  std::optional<IeeeFloats> floats;
+};
+
 }  // namespace
 }  // namespace raygate
 
 NB_MODULE(_raygate, m) {
   using namespace nb::literals;
   using raygate::PythonScene;
-  raygate::require_ieee_floats();
+  {
+    const raygate::IeeeFloats floats;
+    raygate::require_ieee_floats();
+  }
+  using raygate::FloatsContext;
+  nb::class_<FloatsContext>(m, "IeeeFloats")
+      .def(nb::init<>())
+      .def("__enter__", [](FloatsContext& context) { context.floats.emplace(); })
+      .def("__exit__", [](FloatsContext& context, const nb::args&) { context.floats.reset(); });
   nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
   raygate::add_float_reference(m);
   nb::class_<PythonScene>(m, "Scene")

@@ -5,10 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <random>
+#include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 #include "host/exact/test/rational_oracle.h"
 
@@ -91,6 +99,71 @@ TEST(Tracer, SaysWhatRationalsSay) {
   }
   EXPECT_GT(hit_rays, 500u);
   EXPECT_GT(limited, 50u);
+}
+
+/// All that a Tracer on two threads says of triangles and rays.
+std::vector<double> answers(std::span<const Tracer::Triangle> triangles,
+                            std::span<const Tracer::Ray> rays) {
+  const Tracer tracer(triangles, 2);
+  std::vector<Tracer::Hit> hits(rays.size());
+  std::vector<std::uint8_t> is_hit(rays.size());
+  tracer.nearest(rays, hits);
+  tracer.any(rays, is_hit);
+  for (const Tracer::Ray& ray : rays) {
+    const std::vector<Tracer::Hit> all = tracer.all(ray);
+    hits.insert(hits.end(), all.begin(), all.end());
+  }
+  std::vector<double> said(is_hit.begin(), is_hit.end());
+  for (const Tracer::Hit& hit : hits) {
+    said.insert(said.end(), {static_cast<double>(hit.triangle), hit.t, hit.u, hit.v});
+  }
+  return said;
+}
+
+// What other libraries do to a thread's arithmetic changes no answer, and is there again
+// afterwards.
+TEST(Tracer, AnswersInAnyStateOfTheThread) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> any(-1.0f, 1.0f);
+  for (const float size : {1.0f, 1e-40f}) {  // of the second, coordinates are subnormal
+    const auto point = [&](float scale) {
+      return Point{scale * any(random), scale * any(random), scale * any(random)};
+    };
+    std::vector<Tracer::Triangle> triangles(6000);  // enough for two threads to build the tree
+    for (Tracer::Triangle& t : triangles) {
+      const Point a = point(size);
+      t = {a, point(size), point(size)};
+      for (int k = 0; k < 3; ++k) {
+        t[1][k] = a[k] + 0.1f * t[1][k];
+        t[2][k] = a[k] + 0.1f * t[2][k];
+      }
+    }
+    std::vector<Tracer::Ray> rays(2000);
+    for (Tracer::Ray& ray : rays) ray = {point(size), point(1.0f)};
+    const std::vector<double> expected = answers(triangles, rays);
+    ASSERT_GT(std::accumulate(expected.begin(), expected.begin() + 2000, 0.0), 500.0);
+    for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+      std::fesetround(mode);
+      const bool same = answers(triangles, rays) == expected;
+      EXPECT_EQ(std::fegetround(), mode);
+      std::fesetround(FE_TONEAREST);
+      EXPECT_TRUE(same) << "rounding mode " << mode << ", size " << size;
+    }
+#if defined(__SSE2__)
+    const unsigned before = _mm_getcsr();
+    for (const unsigned flags : {0x8000u /* FTZ */, 0x0040u /* DAZ */}) {
+      _mm_setcsr(before | flags);
+      const bool same = answers(triangles, rays) == expected;
+      EXPECT_EQ(_mm_getcsr(), before | flags);
+      _mm_setcsr(before);
+      EXPECT_TRUE(same) << "flags " << flags << ", size " << size;
+    }
+    _mm_setcsr(before & ~0x1F80u & ~0x3Fu);  // every exception traps
+    const bool same = answers(triangles, rays) == expected;
+    _mm_setcsr(before);
+    EXPECT_TRUE(same) << "with traps, size " << size;
+#endif
+  }
 }
 
 TEST(Tracer, SaysWhatItCannotUse) {

@@ -19,6 +19,7 @@ import numpy as np
 
 from . import _raygate
 from . import float, results  # from here on `float` is the module, not Python's class
+from ._arithmetic import in_ieee_floats
 from ._raygate import InputError
 
 __all__ = ["InputError", "Scene", "float", "results"]
@@ -27,6 +28,7 @@ __all__ = ["InputError", "Scene", "float", "results"]
 class Scene:
     """Triangles, materials, lights: an OBJ, glTF, PLY or STL file, or a scene file (JSON)."""
 
+    @in_ieee_floats
     def __init__(self, file, *, strict=False, smooth=None, threads=None):
         """Reads `file` and builds its tree. InputError, a ValueError, says with file and line what
         cannot be used. `strict`: refuse faces without area. `smooth`: degrees at which faces
@@ -36,6 +38,7 @@ class Scene:
                                      _settings(smooth=smooth, threads=threads))
 
     @classmethod
+    @in_ieee_floats
     def of_triangles(cls, corners, *, threads=None):
         """A scene of grey triangles: corners of shape (N, 3, 3), float32 or float64. Triangles
         without area are refused: leave them out, no ray hits them."""
@@ -75,6 +78,7 @@ class Scene:
         """The point that binary32 positions are relative to."""
         return np.array(self._scene.origin)
 
+    @in_ieee_floats
     def trace(self, origins, directions, limits=None, *, hits="nearest", columns=None,
               engine="cpu", threads=None):
         """What rays hit: a structured array with a field for each answer.
@@ -96,6 +100,7 @@ class Scene:
                                          _settings(hits=hits, engine=engine, threads=threads))
         return rows.view(np.dtype([tuple(field) for field in fields]))
 
+    @in_ieee_floats
     def render(self, width=None, height=None, *, eye=None, target=None, up=None, **options):
         """A picture: a dictionary of arrays of `height` rows, the top one first.
 

@@ -24,6 +24,7 @@ import typing
 import numpy as np
 
 from . import _raygate
+from ._arithmetic import in_ieee_floats
 from ._raygate import InputError
 
 ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")
@@ -75,6 +76,7 @@ class Result(typing.NamedTuple):
     flags: np.ndarray  #: uint8: see Flags
 
 
+@in_ieee_floats
 def fp_add(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a + b. `rounding` is one of ROUNDINGS; `tininess`, "before" or "after" rounding, is when a
     result counts as subnormal, which changes the flag UNDERFLOW alone. `cores`: the program
@@ -82,21 +84,25 @@ def fp_add(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cor
     return _run("+", a, b, format, rounding, tininess, cores)
 
 
+@in_ieee_floats
 def fp_subtract(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a - b, as fp_add."""
     return _run("-", a, b, format, rounding, tininess, cores)
 
 
+@in_ieee_floats
 def fp_multiply(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a * b, as fp_add."""
     return _run("*", a, b, format, rounding, tininess, cores)
 
 
+@in_ieee_floats
 def fp_divide(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
     """a / b, as fp_add."""
     return _run("/", a, b, format, rounding, tininess, cores)
 
 
+@in_ieee_floats
 def fp_compare(a, b, relation, format=BINARY32, cores=None):
     """Whether a `relation` b, one of RELATIONS, as an array of bool. "==" is quiet, the others
     signal INVALID for any NaN."""
@@ -104,12 +110,14 @@ def fp_compare(a, b, relation, format=BINARY32, cores=None):
     return _run(relation, a, b, format, "nearest-even", "after", cores)
 
 
+@in_ieee_floats
 def round_to(x, format, rounding="nearest-even", tininess="after"):
     """Floats rounded to the format: floats, and the flags of it."""
     bits, flags = encode(x, format, rounding, tininess)
     return Result(_held(decode(bits, format), np.asarray(x).dtype, format), flags)
 
 
+@in_ieee_floats
 def encode(x, format, rounding="nearest-even", tininess="after"):
     """As round_to, but the format's words, uint32."""
     x = np.asarray(x)
@@ -123,6 +131,7 @@ def encode(x, format, rounding="nearest-even", tininess="after"):
     return Result(bits.reshape(x.shape)[()], flags.reshape(x.shape)[()])
 
 
+@in_ieee_floats
 def decode(bits, format):
     """The numbers, float64, that words of the format stand for."""
     bits = _words(np.asarray(bits), format)

@@ -1,6 +1,8 @@
 """The Python module as its users have it: installed by `pip install .`."""
 
+import ctypes
 import pathlib
+import platform
 import signal
 import tempfile
 import threading
@@ -9,6 +11,7 @@ import unittest
 import numpy as np
 
 import raygate
+import raygate.float
 
 SCENES = pathlib.Path(__file__).parents[3] / "scenes"
 
@@ -166,6 +169,69 @@ class Render(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, next(iter(wrong))) as caught:
                 scene.render(**{"width": 10, "height": 10, **wrong})
             self.assertNotIn("\n", str(caught.exception))
+
+
+@unittest.skipUnless(platform.machine() == "x86_64", "MXCSR is x86's")
+class StateOfTheThread(unittest.TestCase):
+    """What other modules do to the arithmetic changes nothing, and is there again afterwards."""
+
+    TRAPS = 0x1F80  # masked where 1
+    CHANGES = [(0x0800, 0x4000),  # rounding upward
+               (0, 0x8000), (0, 0x0040)]  # subnormal results, and operands, count as 0
+    libm = ctypes.CDLL(None)
+
+    def state(self):
+        """fenv_t: its first word has x87's control word, the last one is MXCSR."""
+        words = np.zeros(8, np.uint32)
+        self.libm.fegetenv(words.ctypes)
+        return words
+
+    def expect_the_same(self, answers):
+        usual = self.state()
+        expected = answers()
+        states = []
+        for control, mxcsr in self.CHANGES:
+            states.append(usual.copy())
+            states[-1][[0, 7]] |= np.uint32([control, mxcsr])
+        states.append(usual.copy())
+        states[-1][7] &= ~np.uint32(self.TRAPS | 0x3F)
+        for state in states:
+            self.libm.fesetenv(state.ctypes)
+            try:
+                found, left = answers(), self.state()
+            finally:
+                self.libm.fesetenv(usual.ctypes)
+            self.assertTrue(found == expected, hex(state[7]))
+            np.testing.assert_array_equal(left, state)
+
+    def test_changes_no_hit(self):
+        random = np.random.default_rng(5)
+        corners = (random.normal(size=(5000, 1, 3)) + 0.2 * random.normal(size=(5000, 3, 3))) * 1e-40
+        origins, directions = random.normal(size=(2, 3000, 3))
+        origins *= 1e-40
+
+        def answers():
+            scene = raygate.Scene.of_triangles(corners, threads=2)
+            return scene.trace(origins, directions, threads=2).tobytes()
+
+        self.expect_the_same(answers)
+
+    def test_changes_no_picture(self):
+        def answers():
+            scene = raygate.Scene(SCENES / "teapot.obj", smooth=33.3)
+            return scene.render(16, 16, spp=2, fov=37.1, threads=2)["color"].tobytes()
+
+        self.expect_the_same(answers)
+
+    def test_changes_no_float(self):
+        numbers = np.random.default_rng(6).integers(0, 0x7F800000, 1000, np.uint32).view(np.float32)
+
+        def answers():
+            result = raygate.float.fp_multiply(numbers, numbers[::-1])
+            narrow = raygate.float.round_to(numbers, raygate.float.BINARY16)
+            return [array.tobytes() for array in (*result, *narrow)]
+
+        self.expect_the_same(answers)
 
 
 if __name__ == "__main__":
