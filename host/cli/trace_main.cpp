@@ -1,8 +1,15 @@
 // The program `trace`: a table of rays in, a table of their exact hits out.
 #include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "host/base/input_error.h"
@@ -25,8 +32,9 @@ constexpr const char* kAbout = R"(Usage: ./trace SCENE RAYS [options]
 
 Says what rays hit in a scene (OBJ, glTF, PLY, STL), exactly: which triangle,
 where, and whether binary32 had left it open. RAYS is a CSV table or a NumPy
-array (float32 or float64), or - for standard input, of any length. Its columns
-are the origin, the direction and, where wanted, a limit:
+array (float32 or float64), or - for standard input, of any length. Its columns,
+between commas, semicolons or spaces, are the origin, the direction and, where
+wanted, a limit:
 
   OX,OY,OZ,DX,DY,DZ[,LIMIT]        hits P = O + t D have 0 < t < LIMIT
 
@@ -104,13 +112,18 @@ TraceOptions parse(const std::vector<std::string>& words) {
 class Table {
  public:
   Table(const TraceOptions& options, const HitTable& answers) : answers_(answers) {
-    if (!options.is_to_standard_output()) file_.emplace(options.output);
+    if (options.is_to_standard_output()) {
+      std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a word
+    } else {
+      file_.emplace(options.output);
+    }
     if (file_ && file_->is_stream() && options.format() == TableFormat::kNpy) {
       throw InputError(options.output.string() + ": found a stream, expected a file for NPY");
     }
     write(answers.header(0));
   }
   void write(std::string_view bytes) {
+    const std::lock_guard lock(mutex_);
     if (file_) {
       file_->append(bytes);
     } else {
@@ -124,11 +137,40 @@ class Table {
     if (format == TableFormat::kNpy) file_->replace_start(answers_.header(rows));
     file_->commit();
   }
+  /// For the last thread of a program that ends: there is no file, and nothing is written any more.
+  void abandon() {
+    mutex_.lock();
+    file_.reset();
+  }
 
  private:
   const HitTable& answers_;
+  std::mutex mutex_;
   std::optional<AtomicFile> file_;
 };
+
+[[noreturn]] void end_interrupted(const TraceOptions& options) {
+  throw Interrupted(interruption(), options.is_to_standard_output() ? "the table is not whole"
+                                                                    : "no file was changed");
+}
+
+/// Ends the program when the threads, deep in a search or waiting for rays, have not stopped half a
+/// second after a signal.
+void watch(const std::stop_token& is_over, const TraceOptions& options, Table& table) {
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any never;
+  const auto is_over_after = [&](std::chrono::milliseconds time) {
+    never.wait_for(lock, is_over, time, [] { return false; });
+    return is_over.stop_requested();
+  };
+  while (interruption() == 0) {
+    if (is_over_after(std::chrono::milliseconds(50))) return;
+  }
+  if (is_over_after(std::chrono::milliseconds(500))) return;
+  if (!options.is_to_standard_output()) table.abandon();
+  std::_Exit(run_guarded([&]() -> int { end_interrupted(options); }, 1));
+}
 
 std::string summary(const TraceOptions& options, const TraceCounts& counts, double seconds) {
   std::string text = format_count(counts.rays, "ray") + ", " + format_count(counts.hits, "hit") +
@@ -168,15 +210,14 @@ int run(const TraceOptions& options) {
   const HitTable answers(scene, bvh, options.columns, options.format());
   Table table(options, answers);
   note_interruptions();
+  std::jthread watcher(watch, std::cref(options), std::ref(table));
   const auto start = std::chrono::steady_clock::now();
   const TraceCounts counts =
       trace([&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits,
             bvh, answers, make_intersector_factory(options.engine, bvh), options.engine.threads,
             [&](std::string_view rows) { table.write(rows); }, [] { return interruption() == 0; });
-  if (interruption() != 0) {
-    throw Interrupted(interruption(), options.is_to_standard_output() ? "the table is not whole"
-                                                                      : "no file was changed");
-  }
+  watcher = {};
+  if (interruption() != 0) end_interrupted(options);
   table.finish(counts.rows, options.format());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   if (!options.quiet) print(summary(options, counts, took.count()), stderr);

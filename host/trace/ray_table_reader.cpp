@@ -78,6 +78,11 @@ std::optional<double> number_of(std::string_view text) {
   return value;
 }
 
+bool begins_as_number(std::string_view text) {
+  return text.empty() ||
+         std::string_view("0123456789+-.").find(text.front()) != std::string_view::npos;
+}
+
 /// As an error message shows it: not too long, and of one line.
 std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 40;
@@ -135,18 +140,23 @@ class RayTableReader::CsvSource : public RayTableReader::Source {
   /// 0 for a header.
   int split(std::string_view line, double (&numbers)[kMostNumbers]) {
     std::string_view wrong;
-    int count = 0, right = 0;
+    int count = 0;
+    bool is_header = !std::exchange(past_header_, true);
+    const char* const separators = line.find(',') != std::string_view::npos   ? ","
+                                   : line.find(';') != std::string_view::npos ? ";"
+                                                                              : " \t";
+    const bool is_spaced = *separators == ' ';
     for (std::size_t start = 0; start <= line.size(); ++count) {
-      const std::size_t comma = std::min(line.find(',', start), line.size());
-      const std::string_view field = trimmed(line.substr(start, comma - start));
-      start = comma + 1;
+      if (is_spaced) start = line.find_first_not_of(separators, start);
+      const std::size_t end = std::min(line.find_first_of(separators, start), line.size());
+      const std::string_view field = trimmed(line.substr(start, end - start));
+      start = end + 1;
       const std::optional<double> number = number_of(field);
-      right += number.has_value();
+      is_header = is_header && !number && !begins_as_number(field);
       if (!number && wrong.data() == nullptr) wrong = field;
       if (number && count < kMostNumbers) numbers[count] = *number;
     }
-    const bool is_first = !std::exchange(past_header_, true);
-    if (is_first && right == 0) return 0;
+    if (is_header) return 0;
     if (wrong.data() != nullptr) fail("found " + shown(wrong) + ", expected a number");
     if (count != 6 && count != 7) {
       fail("found " + std::to_string(count) + (count == 1 ? " number" : " numbers") +

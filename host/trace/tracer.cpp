@@ -11,18 +11,30 @@
 namespace raygate {
 namespace {
 
-/// What one thread works with.
+constexpr std::size_t kManyRows = std::size_t{1} << 20;  // bytes
+
+/// What one thread works with: a block of rays, and their rows until they are written.
 struct Desk {
   std::unique_ptr<Intersector> intersector;  ///< none where all hits are asked for
   RayTable block;
+  std::size_t next = 0;  ///< the first ray without rows
   std::vector<NearestHit> nearest;
   std::vector<RayWork> work;
   std::vector<RayHit> found;
   std::string rows;
+  TraceCounts counts;  ///< of these rows
+
+  void write_found(const HitTable& answers) {
+    answers.append(block, found, rows);
+    counts.rows += found.size();
+    counts.hits += static_cast<std::uint64_t>(std::ranges::count_if(
+        found, [](const RayHit& ray) { return ray.hit.primitive != NearestHit::kNone; }));
+    found.clear();
+  }
 };
 
 /// One row for each ray: its nearest hit, or some hit.
-void find_one(Desk& desk, Hits asked) {
+void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   const std::size_t count = desk.block.rays.size();
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
@@ -32,13 +44,18 @@ void find_one(Desk& desk, Hits asked) {
   for (std::uint32_t i = 0; i < count; ++i) {
     desk.found.push_back({i, desk.nearest[i], desk.work[i].doubts});
   }
+  desk.write_found(answers);
+  desk.next = count;
 }
 
-void find_all(Desk& desk, const Bvh& bvh) {
-  for (std::uint32_t i = 0; i < desk.block.rays.size(); ++i) {
+/// A row for each hit, up to the ray whose rows are many: a block's may be more than memory holds.
+void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
+  for (; desk.next < desk.block.rays.size() && desk.rows.size() < kManyRows; ++desk.next) {
     RayWork work;
-    all_hits(bvh, desk.block.rays[i], desk.block.limits[i], desk.nearest, work);
-    for (const NearestHit& hit : desk.nearest) desk.found.push_back({i, hit, work.doubts});
+    all_hits(bvh, desk.block.rays[desk.next], desk.block.limits[desk.next], desk.nearest, work);
+    const auto ray = static_cast<std::uint32_t>(desk.next);
+    for (const NearestHit& hit : desk.nearest) desk.found.push_back({ray, hit, work.doubts});
+    desk.write_found(answers);
   }
 }
 
@@ -51,32 +68,32 @@ TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTab
   constexpr std::size_t kBlock = std::size_t{1} << 14;
   TraceCounts counts;
   std::vector<Desk> desks(threads);
+  std::size_t first = 0, busy = 0;  // desks [first, busy) have rows to find or to write
   while (keep_going()) {
-    std::size_t busy = 0;
-    while (busy < desks.size() && read(kBlock, desks[busy].block)) ++busy;
-    if (busy == 0) break;
-    for_each_on_threads(static_cast<int>(threads), busy, [&](std::size_t i) {
-      Desk& desk = desks[i];
-      desk.found.clear();
-      desk.rows.clear();
+    if (first == busy) {
+      first = busy = 0;
+      while (busy < desks.size() && read(kBlock, desks[busy].block)) desks[busy++].next = 0;
+      if (busy == 0) break;
+    }
+    for_each_on_threads(static_cast<int>(threads), busy - first, [&](std::size_t i) {
+      Desk& desk = desks[first + i];
       if (asked == Hits::kAll) {
-        find_all(desk, bvh);
+        find_all(desk, bvh, answers);
       } else {
         if (!desk.intersector) desk.intersector = make_intersector();
-        find_one(desk, asked);
+        find_one(desk, asked, answers);
       }
-      answers.append(desk.block, desk.found, desk.rows);
     });
-    for (std::size_t i = 0; i < busy; ++i) {
-      const Desk& desk = desks[i];
+    for (; first < busy; ++first) {
+      Desk& desk = desks[first];
       write(desk.rows);
+      desk.rows.clear();
+      counts.rows += desk.counts.rows;
+      counts.hits += desk.counts.hits;
+      desk.counts = {};
+      if (desk.next < desk.block.rays.size()) break;
       counts.rays += desk.block.rays.size();
-      counts.rows += desk.found.size();
       counts.rounded += desk.block.rounded;
-      counts.hits +=
-          static_cast<std::uint64_t>(std::ranges::count_if(desk.found, [](const RayHit& found) {
-            return found.hit.primitive != NearestHit::kNone;
-          }));
     }
   }
   return counts;

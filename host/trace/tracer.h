@@ -22,7 +22,8 @@ struct TraceCounts {
 using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
 /// Reads all rays and gives the rows to `write`, block by block in the order of the rays. At most
-/// `threads` blocks are in memory at a time. What `read` and `write` throw ends it. `keep_going` is
+/// `threads` blocks are in memory at a time, and a megabyte of rows of each besides those of one
+/// ray. What `read` and `write` throw ends it. `keep_going` is
 /// asked between blocks.
 [[nodiscard]] TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh,
                                 const HitTable& answers, const IntersectorFactory& make_intersector,

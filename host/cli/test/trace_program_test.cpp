@@ -1,9 +1,16 @@
 // The program `trace` as its users run it.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <sstream>
+#include <thread>
 
 #include "host/cli/test/program.h"
 
@@ -41,6 +48,13 @@ TEST_F(TraceRays, SaysWhatIsNearest) {
             "1,0,-1,-1,inf,nan,nan,nan,nan,nan,nan,nan,nan,0\n"
             "2,0,-1,-1,inf,nan,nan,nan,nan,nan,nan,nan,nan,0\n");
   EXPECT_EQ(outcome.err.substr(0, 15), "3 rays, 1 hit, ");
+}
+
+// As `echo "0.5 0.25 1 0 0 -2" | ./trace sheets.obj -` does.
+TEST_F(TraceRays, ReadsRowsBetweenSpaces) {
+  folder_.write("spaced.txt", "0.5 0.25 1 0 0 -2\n");
+  EXPECT_EQ(trace({"sheets.obj", "spaced.txt", "--columns", "triangle,t"}).out,
+            "triangle,t\n0,0.5\n");
 }
 
 TEST_F(TraceRays, SaysTheSameByEveryEngine) {
@@ -94,6 +108,56 @@ TEST_F(TraceRays, LeavesTexturesAlone) {
       trace({"textured.obj", "rays.csv", "-q", "--hits", "all", "--columns", "ray,triangle"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "ray,triangle\n0,0\n0,1\n");
+  EXPECT_EQ(outcome.err, "");
+}
+
+/// More than a pipe holds, and more than is read at a time.
+std::string many_rays() {
+  std::string rays;
+  for (int i = 0; i < 20000; ++i) rays += "0.5,0.25,1,0,0,-2\n";
+  return rays;
+}
+
+/// As one that waits for rays, or is deep in a search: nothing that it asks between blocks.
+TEST_F(TraceRays, EndsSoonAfterASignal) {
+  folder_.write("warned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
+  ASSERT_EQ(::mkfifo((folder_.path() / "rays").c_str(), 0600), 0);
+  for (const std::string output : {"-", "hits.csv"}) {
+    std::jthread patience;
+    std::atomic<bool> has_ended = false;
+    const Outcome outcome = run_program(
+        {.arguments = {"warned.obj", "rays", "-o", output},
+         .folder = folder_.path(),
+         .when_said = {{"warning", [&](int process) {
+                          const int rays = ::open((folder_.path() / "rays").c_str(), O_WRONLY);
+                          const std::string some = many_rays();
+                          EXPECT_EQ(::write(rays, some.data(), some.size()), ssize_t(some.size()));
+                          std::this_thread::sleep_for(std::chrono::milliseconds(300));
+                          ::kill(process, SIGTERM);
+                          patience = std::jthread([&has_ended, rays] {
+                            for (int i = 0; i < 100 && !has_ended; ++i) {
+                              std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                            }
+                            EXPECT_TRUE(has_ended) << "5 seconds after the signal";
+                            ::close(rays);
+                          });
+                        }}}});
+    has_ended = true;
+    EXPECT_EQ(outcome.status, 128 + SIGTERM);
+    EXPECT_NE(outcome.err.find("error: interrupted; "), std::string::npos) << outcome.err;
+    EXPECT_EQ(folder_.list(),
+              (std::vector<std::string>{"rays", "rays.csv", "sheets.obj", "warned.obj"}));
+  }
+}
+
+TEST_F(TraceRays, EndsQuietlyWithItsReader) {
+  folder_.write("many.csv", many_rays());
+  const Outcome outcome = run_program(
+      {.arguments = {"-c", RAYGATE_PROGRAM " sheets.obj many.csv --threads 1 | head -n 1"},
+       .folder = folder_.path(),
+       .program = "/bin/sh"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1);
   EXPECT_EQ(outcome.err, "");
 }
 

@@ -96,6 +96,18 @@ TEST_F(Table, OfText) {
 
 TEST_F(Table, OfTextWithoutAHeader) { EXPECT_EQ(read_all("1,2,3,4,5,6\n").rays.size(), 1u); }
 
+TEST_F(Table, OfTextWithOtherSeparators) {
+  for (const char* const row :
+       {"278 273  800 0 0 -1\n", "278;273; 800;0;0;-1\n", "\t278\t273\t800\t0\t0\t-1\r\n",
+        "a b c d e f\n278 273 800 0 0 -1"}) {
+    const RayTable rays = read_all(row);
+    ASSERT_EQ(rays.rays.size(), 1u) << row;
+    EXPECT_EQ(rays.rays[0].origin, glm::vec3(278.0f, 273.0f, 800.0f));
+    EXPECT_EQ(rays.rays[0].direction, glm::vec3(0.0f, 0.0f, -1.0f));
+  }
+  EXPECT_EQ(read_all("0 1 5 0 0 -1 2.5").limits.at(0), 2.5f);
+}
+
 TEST_F(Table, OfNoRays) {
   EXPECT_EQ(read_all("").rays.size(), 0u);
   EXPECT_EQ(read_all("ox,oy,oz,dx,dy,dz").rays.size(), 0u);
@@ -108,6 +120,10 @@ TEST_F(Table, SaysWhichLineIsWrong) {
   EXPECT_EQ(refusal("1,2,3,4,5,6\n1,2,3,4,5,6,7,8\n"), ":2: found 8 numbers" + wanted);
   EXPECT_EQ(refusal("\n\n1,2,x,4,5,6\n"), ":3: found 'x', expected a number");
   EXPECT_EQ(refusal("a,b\nc,d\n"), ":2: found 'c', expected a number");
+  EXPECT_EQ(refusal("0,5;1,0;5,0;0,0;0,0;-1,0\n"), ":1: found '5;1', expected a number");
+  EXPECT_EQ(refusal("1.f 2.f 3.f 4.f 5.f 6.f\n"), ":1: found '1.f', expected a number");
+  EXPECT_EQ(refusal(",,,,,\n"), ":1: found '', expected a number");
+  EXPECT_EQ(refusal("1 2 3 4 5\n"), ":1: found 5 numbers" + wanted);
   EXPECT_EQ(refusal("1,2,3,4,5,6,\n"), ":1: found '', expected a number");
   EXPECT_EQ(refusal("1,2,3,4,5,1e999\n"), ":1: found '1e999', expected a number");
   EXPECT_EQ(refusal("1,2,nan,4,5,6\n"),
