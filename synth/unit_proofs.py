@@ -17,6 +17,14 @@ def fifo_keeps_order(depth: int, reserve: int) -> tuple[dict, bool]:
                  prepared=f"fifo {{{parameters}}} *_q {{words {depth} 2}}", name=f"fifo_{depth}")
 
 
+def ram_fifo_keeps_order(depth: int, reserve: int) -> tuple[dict, bool]:
+    """The same of a FIFO in a memory with a clock."""
+    return holds("ram_fifo_keeps_order", "Bitwuzla", [catalogue.HW / "common" / f"{name}.sv" for name in ("ram", "ram_fifo")],
+                 "open.tcl", (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6,
+                 prepared=f"ram_fifo {{Width 2 Depth {depth} Reserve {reserve}}} {{write_q read_q count_q}} "
+                 f"{{u_words.words {depth} 2}}", name=f"ram_fifo_{depth}")
+
+
 def nearest_is_kept(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     """nearest_hit keeps the nearest hit, by induction."""
     return holds("nearest_hit_keeps_nearest", "Bitwuzla", cores.files("hit_test"), steps=1, reach=5,
@@ -91,8 +99,8 @@ def contexts_answer_once() -> tuple[dict, bool]:
 
 def stack_keeps_nodes() -> tuple[dict, bool]:
     """What a ray's stack holds is asked for once, or beyond, by induction: of two rays and two levels."""
-    wires = "busy_q waiting_q picked_q ray_q asked_q started_q asking_ray_q chosen_q mask_q remaining_q"
-    memories = "levels 2 2 groups 4 184 " + " ".join(
+    wires = "busy_q waiting_q picked_q ray_q asked_q started_q asking_ray_q chosen_q mask_q remaining_q group"
+    memories = "levels 2 2 u_groups.words 4 184 " + " ".join(
         f"gen_level[{d}].nexts 2 19 gen_level[{d}].exponents 2 9" for d in range(2))
     return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=14, prepared=f"traversal {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
@@ -101,7 +109,7 @@ def stack_keeps_nodes() -> tuple[dict, bool]:
 def hits_keep_nearest() -> tuple[dict, bool]:
     """closest_hit keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
     wires = "found_q any_hit_q replace u_doubts.push_i u_doubts.data_i *.count_q u_points.read_q u_points.write_q"
-    memories = ("t_max 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 points 2 96 tests 2 28 "
+    memories = ("t_max 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 u_kept.words 2 96 tests 2 28 "
                 "counts 2 10 u_points.words 2 2")
     return holds("hits_keep_nearest", "Bitwuzla", cores.used("closest_hit", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,
@@ -110,17 +118,18 @@ def hits_keep_nearest() -> tuple[dict, bool]:
 
 def leaves_are_asked_for() -> tuple[dict, bool]:
     """primitive_fetch asks for the triangles of each group in order, or they are beyond, by induction: of two rays."""
-    wires = "valid_q ray_q group_q mask_q number_q u_groups.count_q u_groups.valid_o u_groups.read_q u_groups.write_q"
+    wires = "valid_q ray_q group_q mask_q number_q u_groups.count_q u_groups.valid_o u_groups.data_o u_groups.read_q u_groups.write_q"
     return holds("leaves_are_asked_for", "Bitwuzla", cores.used("primitive_fetch", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=8,
-                 prepared=f"primitive_fetch {{Rays 2}} {{{wires}}} {{u_groups.words 2 192}}")
+                 steps=1, reach=10,
+                 prepared=f"primitive_fetch {{Rays 2}} {{{wires}}} {{u_groups.u_words.words 2 192}}")
 
 
 def cache_answers_once() -> tuple[dict, bool]:
     """line_cache answers each request once, by its line, by induction: of two sets, and two that may wait."""
     wires = ("valid_q pending_q free_q follows_q draining_q current_q target current somebody leaves entry room "
-             "u_hits.count_q u_hits.valid_o u_hits.read_q u_hits.write_q")
-    memories = "words 16 2 tags 2 216 heads 16 2 nexts 2 1 rays 2 1 u_hits.words 16 3"
+             "u_hits.count_q u_hits.valid_o u_hits.data_o u_hits.read_q u_hits.write_q request_q demand_q ray_q set tag set_tags done "
+             "hit_q hit_ray_q hit_line")
+    memories = "u_lines.words 16 2 u_tags.words 2 216 heads 16 2 nexts 2 1 rays 2 1 u_hits.u_words.words 16 3"
     return holds("cache_answers_once", "Bitwuzla", cores.used("line_cache", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=10, prepared="line_cache {Lines 16 Targets 2 RayWidth 1 Width 2} "
                  f"{{{wires}}} {{{memories}}}")
@@ -173,6 +182,9 @@ ALL = [
     *(Proof(f"unit.fifo_{depth}", f"a FIFO of {depth} words, {reserve} kept back: order, counts, stability",
             "Bitwuzla", functools.partial(fifo_keeps_order, depth, reserve))
       for depth, reserve in ((2, 0), (4, 0), (5, 2), (20, 0), (24, 0), (36, 33), (48, 45))),
+    *(Proof(f"unit.ram_fifo_{depth}", f"a FIFO of {depth} words in a memory with a clock: order, counts, stability",
+            "Bitwuzla", functools.partial(ram_fifo_keeps_order, depth, reserve))
+      for depth, reserve in ((2, 0), (5, 2), (16, 1), (25, 0))),
     *(Proof(f"unit.nearest.{name}", "a burst's nearest hit is kept, and near ties reported",
             "Bitwuzla", functools.partial(nearest_is_kept, name, exp, frac))
       for name, (exp, frac, *_) in float_proofs.FORMATS.items()),

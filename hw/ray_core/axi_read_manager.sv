@@ -4,7 +4,7 @@
 // crosses 4 KiB. Each burst in flight has an AXI ID of its own, which stands for the line's id: so bursts may be
 // answered in any order, and their beats come mixed. base_i is the address of line 0.
 //
-// At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock of its last beat.
+// At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock after that of its last beat.
 // bus_error_o: a beat has come with an error, or RLAST where it is not its burst's last or not where it is, of line
 // error_number_o; that goes on with line_error_o. No output of AXI depends on an input in the same clock.
 //
@@ -62,7 +62,8 @@ module axi_read_manager #(
 
   logic [Ids-1:0] free_q;
   logic [IdWidth-1:0] id;
-  logic some_free, load, request_fire, line_fire, beat_valid, beat_fire, beat_error, beat_last;
+  logic some_free, load, request_fire, line_load;
+  logic beat_valid, beat_fire, beat_error, beat_last, last;
   logic [IdWidth-1:0] beat_id;
   logic [ReadIdWidth-1:0] read_ids[Ids];
   logic [AddressWidth-1:0] numbers[Ids];
@@ -86,7 +87,7 @@ module axi_read_manager #(
       axi_arvalid_o <= 1'b0;
     end else begin
       if (request_fire) free_q[id] <= 1'b0;
-      if (line_fire) free_q[beat_id] <= 1'b1;
+      if (beat_fire && last) free_q[beat_id] <= 1'b1;
       if (load) axi_arvalid_o <= request_fire;
     end
   end
@@ -103,9 +104,9 @@ module axi_read_manager #(
   assign axi_arburst_o = BurstIncrement;
   assign axi_arprot_o  = 3'b000;  // data, secure, unprivileged
 
-  // ---- Beats: all but a line's last one wait for it
+  // ---- Beats: all but a line's last one wait for it, each in a memory of its own
 
-  logic [DataWidth-1:0] beat;
+  logic [DataWidth-1:0] beat, last_beat_q;
 
   fifo #(
     .Width(2 + IdWidth + DataWidth),
@@ -122,21 +123,21 @@ module axi_read_manager #(
   );
 
   logic [BeatWidth-1:0] counts[Ids];  // beats that have come; 0 when the ID is given
-  logic last;
-
-  if (Beats <= 1) begin : gen_whole
-    assign last   = 1'b1;
-    assign line_o = beat;
-  end else begin : gen_beats
-    assign last = counts[beat_id] == BeatWidth'(Beats - 1);
-    assign line_o[LineWidth-1 -: DataWidth] = beat;
-    for (genvar b = 0; b < Beats - 1; b++) begin : gen_beat
-      logic [DataWidth-1:0] parts[Ids];
-      always_ff @(posedge clk_i) begin
-        if (beat_fire && counts[beat_id] == BeatWidth'(b)) parts[beat_id] <= beat;
-      end
-      assign line_o[DataWidth*b+:DataWidth] = parts[beat_id];
-    end
+  assign last = counts[beat_id] == BeatWidth'(Beats - 1);
+  assign line_o[LineWidth-1-:DataWidth] = last_beat_q;
+  for (genvar b = 0; b < Beats - 1; b++) begin : gen_beat
+    ram #(
+      .Width(DataWidth),
+      .Depth(Ids)
+    ) u_part (
+      .clk_i,
+      .write_i(beat_fire & counts[beat_id] == BeatWidth'(b)),
+      .write_address_i(beat_id),
+      .data_i(beat),
+      .read_i(beat_fire & last),
+      .read_address_i(beat_id),
+      .data_o(line_o[DataWidth*b+:DataWidth])
+    );
   end
 
   always_ff @(posedge clk_i) begin
@@ -146,13 +147,22 @@ module axi_read_manager #(
     if (beat_fire && !last) counts[beat_id] <= counts[beat_id] + 1'b1;
   end
 
-  assign beat_fire    = beat_valid & (~last | line_ready_i);
-  assign line_valid_o = beat_valid & last;
-  assign line_id_o    = read_ids[beat_id];
-  assign line_fire    = line_valid_o & line_ready_i;
-  assign bus_error_o  = beat_fire & (beat_error | (beat_last != last));
-  assign line_error_o = errors_q[beat_id] | beat_error | ~beat_last;
+  assign line_load      = ~line_valid_o | line_ready_i;
+  assign beat_fire      = beat_valid & (~last | line_load);
+  assign bus_error_o    = beat_fire & (beat_error | (beat_last != last));
   assign error_number_o = numbers[beat_id];
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) line_valid_o <= 1'b0;
+    else if (line_load) line_valid_o <= beat_fire & last;
+  end
+  always_ff @(posedge clk_i) begin
+    if (beat_fire && last) begin
+      line_id_o    <= read_ids[beat_id];
+      line_error_o <= errors_q[beat_id] | bus_error_o;
+      last_beat_q  <= beat;
+    end
+  end
 
   logic unused;  // EXOKAY is never answered
   assign unused = ^{axi_rresp_i[0], base_i[5:0]};

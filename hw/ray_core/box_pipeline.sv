@@ -1,4 +1,5 @@
-// Box pipeline: box_unit with a valid and the ray's context beside it.
+// Box pipeline: box_unit with a valid and the ray's context beside it. Origin, inverse and no_cull_i come a clock after
+// the node.
 // Latency: ray_core_pkg::BoxLatency clocks. Takes a node and a ray in each clock; never stalls.
 module box_pipeline #(
   parameter int unsigned Rays  = 64,

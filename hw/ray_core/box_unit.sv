@@ -11,7 +11,8 @@
 //   enter       largest near plane, smallest far plane                      42 adders, 49 comparators
 //   sort        near first; the group                                       see child_sort, sort7
 //
-// No valid: what belongs to a node is the user's to carry along.
+// No valid: what belongs to a node is the user's to carry along. Of its ray t_max_i comes with the node, the rest a
+// clock later, out of a memory.
 //
 // In:  node_i       a node line, see ray_core_pkg
 //      origin_i     O, binary32; word x lowest, here and below
@@ -72,16 +73,11 @@ module box_unit #(
   // ---- Take
 
   logic [ray_core_pkg::LineWidth-1:0] node_q;
-  logic [95:0] origin_q, inverse_q;
   logic [30:0] t_max_q;
-  logic no_cull_q;
 
   always_ff @(posedge clk_i) begin
-    node_q    <= node_i;
-    origin_q  <= origin_i;
-    inverse_q <= inverse_i;
-    t_max_q   <= t_max_i;
-    no_cull_q <= no_cull_i;
+    node_q  <= node_i;
+    t_max_q <= t_max_i;
   end
 
   // What goes along: all but the origins.
@@ -99,7 +95,7 @@ module box_unit #(
   ) u_sideband_subtract (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({node_q[ray_core_pkg::LineWidth-1:96], inverse_q, t_max_q, no_cull_q}),
+    .data_i({node_q[ray_core_pkg::LineWidth-1:96], inverse_i, t_max_q, no_cull_i}),
     .data_o({sub_node, sub_inverse, sub_t_max, sub_no_cull})
   );
 
@@ -114,7 +110,7 @@ module box_unit #(
   ) u_subtract (
     .clk_i,
     .a_i(node_q[ray_core_pkg::NodeOrigin +: 96]),
-    .b_i(origin_q),
+    .b_i(origin_i),
     .sum_o(distance)
   );
 

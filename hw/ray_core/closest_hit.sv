@@ -64,7 +64,7 @@ module closest_hit #(
   output logic [31:0]                end_t_o,
   output logic [TErrorWidth-1:0]     end_t_error_o,
   output logic [TestsWidth-1:0]      end_tests_o,
-  // the P of a ray's last hit that was kept, in the same clock
+  // the P of a ray's last hit that was kept, in the clock after
   input  logic [RayWidth-1:0]        point_ray_i,
   output logic [95:0]                point_o,
   // this clock's, for counters
@@ -78,7 +78,6 @@ module closest_hit #(
   logic [31:0] nearest_t[Rays];
   logic [TErrorWidth-1:0] nearest_error[Rays];
   logic [31:0] nearest_triangle[Rays];
-  logic [95:0] points[Rays];
   logic [TestsWidth-1:0] tests[Rays];
   logic [CountWidth-1:0] counts[Rays];  // tests on their way
   logic [Rays-1:0] found_q, any_hit_q;
@@ -139,7 +138,7 @@ module closest_hit #(
 
   // ---- Doubts
 
-  fifo #(
+  ram_fifo #(
     .Width(32 + 32),
     .Depth(InFlight + 16),
     .Reserve(InFlight)
@@ -173,7 +172,18 @@ module closest_hit #(
     .data_o({point_ray, point_kept})
   );
 
-  always_ff @(posedge clk_i) if (point_valid_i && point_kept) points[point_ray] <= point_i;
+  ram #(
+    .Width(96),
+    .Depth(Rays)
+  ) u_kept (
+    .clk_i,
+    .write_i(point_valid_i & point_kept),
+    .write_address_i(point_ray),
+    .data_i(point_i),
+    .read_i(1'b1),
+    .read_address_i(point_ray_i),
+    .data_o(point_o)
+  );
 
   // ---- Tests on their way
 
@@ -207,6 +217,5 @@ module closest_hit #(
   assign end_t_o        = nearest_t[end_ray_i];
   assign end_t_error_o  = nearest_error[end_ray_i];
   assign end_tests_o    = tests[end_ray_i];
-  assign point_o        = points[point_ray_i];
 
 endmodule

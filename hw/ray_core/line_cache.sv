@@ -5,8 +5,12 @@
 // miss. Where all ways of a set wait for other lines, the request waits. The victim of a set is the next way after
 // the one that was used last.
 //
+//   ask      a request is taken; the tags of its set are read
+//   look up  they are compared: a hit's line is read, a miss asks memory
+//   queue    hits wait for a clock in which no line comes from memory
+//
 // A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken; where its
-// set has no way for it, it is taken and forgotten.
+// set has no way for it, or memory takes no request, it is forgotten. outstanding_o: one is being looked up.
 //
 // A line from memory goes to all targets, one a clock, the latest first; then fill_done_o, and the line, offered
 // until then, may go. Lines leave in any order, one a clock, each with the ray that asked; those from memory
@@ -14,7 +18,7 @@
 //
 // A line that comes with an error goes to its targets, error_o, and is not kept.
 //
-// invalidate_i, while no line is outstanding, empties the cache.
+// invalidate_i, while no request and no line is on its way, empties the cache.
 module line_cache #(
   parameter int unsigned Lines    = 256,  // a power of two, at least 16
   parameter int unsigned Targets  = 64,   // requests that may wait for lines, at least 2
@@ -33,6 +37,7 @@ module line_cache #(
   input  logic                    demand_i,
   input  logic [RayWidth-1:0]     ray_i,
   input  logic [AddressWidth-1:0] line_number_i,
+  output logic                    outstanding_o,
   // misses
   output logic                    miss_valid_o,
   input  logic                    miss_ready_i,
@@ -62,24 +67,55 @@ module line_cache #(
     $error("line_cache: expected Lines to be a power of two, at least 16");
   end
 
-  logic [Width-1:0] words[Lines];  // by entry, {set, way}
   logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way
-  logic [Ways*TagWidth-1:0] tags[Sets];  // the other bits of its number
   logic [Sets*WayWidth-1:0] victims_q;  // of each set the way after the one that was used last
+
+  // ---- Ask: not for tags that are being written
+
+  logic ask, request_q, demand_q, done;  // the request looked up leaves
+  logic allocate;
+  logic [RayWidth-1:0] ray_q;
+  logic [SetWidth-1:0] set;
+  logic [TagWidth-1:0] tag;
+  logic [Ways*TagWidth-1:0] set_tags, new_tags;  // the other bits of numbers, by way
+
+  assign ready_o = (~request_q | done) & ~(allocate & line_number_i[SetWidth-1:0] == set);
+  assign ask     = valid_i & ready_o;
+  assign outstanding_o = request_q & ~demand_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) request_q <= 1'b0;
+    else request_q <= ask | (request_q & ~done);
+  end
+  always_ff @(posedge clk_i) begin
+    if (ask) begin
+      demand_q   <= demand_i;
+      ray_q      <= ray_i;
+      {tag, set} <= line_number_i;
+    end
+  end
+
+  ram #(
+    .Width(Ways * TagWidth),
+    .Depth(Sets)
+  ) u_tags (
+    .clk_i,
+    .write_i(allocate),
+    .write_address_i(set),
+    .data_i(new_tags),
+    .read_i(ask),
+    .read_address_i(line_number_i[SetWidth-1:0]),
+    .data_o(set_tags)
+  );
 
   // ---- Look up
 
-  logic [SetWidth-1:0] set;
-  logic [TagWidth-1:0] tag;
-  logic [Ways*TagWidth-1:0] set_tags, new_tags;
   logic [Ways-1:0] pending, hits, follows;
   logic [WayWidth-1:0] way, victim_way;
   logic [EntryWidth-1:0] entry;
-  logic hit, follow, some_way, allocate;
+  logic hit, follow, some_way;
 
-  assign {tag, set} = line_number_i;
-  assign set_tags   = tags[set];
-  assign pending    = pending_q[Ways*set +: Ways];
+  assign pending = pending_q[Ways*set+:Ways];
 
   for (genvar w = 0; w < Ways; w++) begin : gen_way
     logic same;
@@ -112,9 +148,8 @@ module line_cache #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) victims_q <= '0;
-    else if (valid_i && ready_o) victims_q[WayWidth*set+:WayWidth] <= way + 1'b1;
+    else if (request_q && done) victims_q[WayWidth*set+:WayWidth] <= way + 1'b1;
   end
-  always_ff @(posedge clk_i) if (allocate) tags[set] <= new_tags;
 
   // ---- Targets: lists of requests that wait, one for each entry
 
@@ -138,25 +173,25 @@ module line_cache #(
   );
 
   always_comb begin
-    if (hit) ready_o = room | ~demand_i;
-    else if (follow) ready_o = ~demand_i | (some_free & ~(arrive & fill_entry_i == entry));
-    else if (some_way) ready_o = miss_ready_i & (some_free | ~demand_i);
-    else ready_o = ~demand_i;
+    if (hit) done = room;
+    else if (follow) done = some_free & ~(arrive & fill_entry_i == entry);
+    else done = some_way & miss_ready_i & some_free;
+    if (!demand_q) done = 1'b1;
   end
 
-  assign miss_valid_o  = valid_i & ~hit & ~follow & some_way & (some_free | ~demand_i);
+  assign miss_valid_o  = request_q & ~hit & ~follow & some_way & (some_free | ~demand_q);
   assign miss_entry_o  = entry;
-  assign miss_number_o = line_number_i;
+  assign miss_number_o = {tag, set};
   assign allocate      = miss_valid_o & miss_ready_i;
-  assign add_target    = valid_i & ready_o & demand_i & ~hit;
+  assign add_target    = request_q & done & demand_q & ~hit;
   assign head          = heads[entry];
 
   always_ff @(posedge clk_i) begin
     if (add_target) begin
-      rays[target]  <= ray_i;
+      rays[target]  <= ray_q;
       nexts[target] <= head[TargetWidth-1:0];
     end
-    if (add_target || allocate) heads[entry] <= {demand_i, target};
+    if (add_target || allocate) heads[entry] <= {demand_q, target};
   end
 
   // ---- A line comes, and goes to all its targets
@@ -195,23 +230,43 @@ module line_cache #(
   end
   always_ff @(posedge clk_i) begin
     if (fill_i) current_q <= nexts[current];
-    if (arrive) words[fill_entry_i] <= fill_line_i;
   end
 
   // ---- Hits wait for a clock in which no line comes from memory
 
-  logic queued, leaves;
-  logic [RayWidth-1:0] queued_ray;
-  logic [Width-1:0] queued_line;
+  logic read_hit, hit_q, queued, leaves;
+  logic [RayWidth-1:0] hit_ray_q, queued_ray;
+  logic [Width-1:0] hit_line, queued_line;
 
-  fifo #(
+  assign read_hit = request_q & demand_q & hit & room;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) hit_q <= 1'b0;
+    else hit_q <= read_hit;
+  end
+  always_ff @(posedge clk_i) hit_ray_q <= ray_q;
+
+  ram #(
+    .Width(Width),
+    .Depth(Lines)
+  ) u_lines (
+    .clk_i,
+    .write_i(arrive),
+    .write_address_i(fill_entry_i),
+    .data_i(fill_line_i),
+    .read_i(read_hit),
+    .read_address_i(entry),
+    .data_o(hit_line)
+  );
+  ram_fifo #(
     .Width(RayWidth + Width),
-    .Depth(16)
+    .Depth(16),
+    .Reserve(1)
   ) u_hits (
     .clk_i,
     .rst_ni,
-    .push_i(valid_i & demand_i & hit & room),
-    .data_i({ray_i, words[entry]}),
+    .push_i(hit_q),
+    .data_i({hit_ray_q, hit_line}),
     .space_o(room),
     .pop_i(leaves),
     .valid_o(queued),

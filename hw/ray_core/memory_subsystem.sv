@@ -69,7 +69,7 @@ module memory_subsystem #(
   logic prefetch_valid, prefetch_fire, prefetch_space;
   logic [AddressWidth-1:0] prefetch_line;
 
-  fifo #(
+  ram_fifo #(
     .Width(RequestWidth),
     .Depth(Rays)
   ) u_nodes (
@@ -118,6 +118,7 @@ module memory_subsystem #(
   logic [$clog2(NodeLines)-1:0] node_entry;
   logic [$clog2(TriangleLines)-1:0] triangle_entry;
   logic [MissWidth-1:0] node_miss, triangle_miss;
+  logic node_looking, unused_looking;
   logic node_miss_valid, node_miss_ready, triangle_miss_valid, triangle_miss_ready;
 
   fifo #(
@@ -149,6 +150,7 @@ module memory_subsystem #(
     .demand_i(node_valid),
     .ray_i(node[RequestWidth-1 -: RayWidth]),
     .line_number_i(node_valid ? node[AddressWidth-1:0] : prefetch_line),
+    .outstanding_o(node_looking),
     .miss_valid_o(node_miss_valid),
     .miss_ready_i(node_miss_ready),
     .miss_entry_o(node_entry),
@@ -178,6 +180,7 @@ module memory_subsystem #(
     .demand_i(1'b1),
     .ray_i(triangle[RequestWidth-1 -: RayWidth]),
     .line_number_i(triangle[AddressWidth-1:0]),
+    .outstanding_o(unused_looking),
     .miss_valid_o(triangle_miss_valid),
     .miss_ready_i(triangle_miss_ready),
     .miss_entry_o(triangle_entry),
@@ -215,7 +218,7 @@ module memory_subsystem #(
   assign triangle_miss_ready = out_ready & ~(node_miss_valid & node_miss_ready);
   assign ask                 = out_ready & (node_miss_valid | triangle_miss_valid);
   assign line_done           = fill & (fill_triangle ? triangle_done : node_done);
-  assign outstanding_o       = (lines_q != '0) | prefetch_valid;
+  assign outstanding_o       = (lines_q != '0) | prefetch_valid | node_looking;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

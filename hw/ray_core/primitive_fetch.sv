@@ -41,7 +41,7 @@ module primitive_fetch #(
 
   assign push = box_valid_i & (box_leaf_i != '0);
 
-  fifo #(
+  ram_fifo #(
     .Width(RayWidth + GroupWidth + Children),
     .Depth(Rays)
   ) u_groups (

@@ -89,7 +89,7 @@ module ray_alloc #(
 
   logic inverse_valid, unused_valid, unused_space;
 
-  fifo #(
+  ram_fifo #(
     .Width(Width),
     .Depth(Depth)
   ) u_rays (

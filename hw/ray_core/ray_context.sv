@@ -1,7 +1,7 @@
 // Contexts of the rays in flight: origin, direction, reciprocals, tag and flags of each.
 //
-// A ray is in its context from the clock after start_fire_i until the context is another's. What is read of a
-// context is there in the same clock.
+// A ray is in its context from the clock after start_fire_i until the context is another's. What a node, a triangle or
+// a test needs is there in the clock after it was asked for, tags in the same.
 module ray_context #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Arith = arith_pkg::Structural,
@@ -66,34 +66,55 @@ module ray_context #(
     .start_fire_i
   );
 
-  logic [95:0] origins[Rays];
-  logic [95:0] directions[Rays];
-  logic [95:0] inverses[Rays];
-  logic [31:0] skip_ids[Rays];
   logic [31:0] tags[Rays];
-  logic [Rays-1:0] no_cull_q;
 
   always_ff @(posedge clk_i) begin
     if (start_fire_i) begin
-      origins[start_ctx_o]    <= start.origin;
-      directions[start_ctx_o] <= start.direction;
-      inverses[start_ctx_o]   <= inverse;
-      skip_ids[start_ctx_o]   <= start.skip_id;
-      tags[start_ctx_o]       <= start.tag;
-      no_cull_q[start_ctx_o]  <= start.no_cull;
+      tags[start_ctx_o] <= start.tag;
     end
   end
+
+  ram #(
+    .Width(96 + 96 + 1),
+    .Depth(Rays)
+  ) u_node (
+    .clk_i,
+    .write_i(start_fire_i),
+    .write_address_i(start_ctx_o),
+    .data_i({start.origin, inverse, start.no_cull}),
+    .read_i(1'b1),
+    .read_address_i(node_ctx_i),
+    .data_o({node_origin_o, node_inverse_o, node_no_cull_o})
+  );
+  ram #(
+    .Width(96 + 32),
+    .Depth(Rays)
+  ) u_triangle (
+    .clk_i,
+    .write_i(start_fire_i),
+    .write_address_i(start_ctx_o),
+    .data_i({start.origin, start.skip_id}),
+    .read_i(1'b1),
+    .read_address_i(triangle_ctx_i),
+    .data_o({triangle_origin_o, triangle_skip_id_o})
+  );
+  ram #(
+    .Width(96),
+    .Depth(Rays)
+  ) u_direction (
+    .clk_i,
+    .write_i(start_fire_i),
+    .write_address_i(start_ctx_o),
+    .data_i(start.direction),
+    .read_i(1'b1),
+    .read_address_i(direction_ctx_i),
+    .data_o(direction_o)
+  );
 
   assign start_t_max_o      = start.t_max;
   assign start_line_o       = start.start;
   assign start_any_hit_o    = start.any_hit;
   assign start_scaled_o     = ray_core_pkg::is_scaled(start.direction);
-  assign node_origin_o      = origins[node_ctx_i];
-  assign node_inverse_o     = inverses[node_ctx_i];
-  assign node_no_cull_o     = no_cull_q[node_ctx_i];
-  assign triangle_origin_o  = origins[triangle_ctx_i];
-  assign triangle_skip_id_o = skip_ids[triangle_ctx_i];
-  assign direction_o        = directions[direction_ctx_i];
   assign box_tag_o          = tags[box_ctx_i];
   assign result_tag_o       = tags[result_ctx_i];
   assign ending_tag_o       = tags[ending_ctx_i];

@@ -341,7 +341,7 @@ module ray_core #(
   localparam int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
                                    + hit_test_pkg::divide_latency(
     23
-  ) + 6;
+  ) + 7;
 
   closest_hit #(
     .Rays(Rays),

@@ -160,12 +160,12 @@ module ray_generator #(
 
   // ---- Rays on their direction, and those that wait
 
-  logic [Latency-1:0] valid_q;
+  logic [Latency:0] valid_q;  // the last: those that came into the queue
   logic [31:0] pixel;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
-    else valid_q <= {valid_q[Latency-2:0], go};
+    else valid_q <= {valid_q[Latency-1:0], go};
   end
   delay_line #(
     .Width(32),
@@ -176,7 +176,7 @@ module ray_generator #(
     .data_i({y_q, x_q}),
     .data_o(pixel)
   );
-  fifo #(
+  ram_fifo #(
     .Width(96 + 32),
     .Depth(2 * Latency),
     .Reserve(Latency)

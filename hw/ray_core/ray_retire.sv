@@ -28,7 +28,7 @@ module ray_retire #(
   input  logic [TErrorWidth-1:0] ending_t_error_i,
   input  logic [TestsWidth-1:0]  ending_tests_i,
   input  logic [2:0]             ending_error_i,
-  // the P of a context's last ray, in the same clock
+  // the P of a context's last ray, in the clock after
   output logic [RayWidth-1:0]    point_ctx_o,
   input  logic [95:0]            point_i,
   // doubts and overflows
@@ -58,7 +58,7 @@ module ray_retire #(
 );
 
   localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
-  localparam int unsigned Depth = PointDelay + 3;  // for an end a clock
+  localparam int unsigned Depth = PointDelay + 4;  // for an end a clock
   localparam int unsigned EndWidth = 32 + 1 + 32 + 32 + TErrorWidth + TestsWidth + 3;
 
   // ---- The end of a ray
@@ -87,7 +87,7 @@ module ray_retire #(
 
   // ---- What is known of it, and P: as many points at most as there are ends
 
-  logic [PointDelay-1:0] pointing_q;
+  logic [PointDelay:0] pointing_q;
   logic end_valid, end_fire, unused_valid, unused_space;
   logic [EndWidth-1:0] end_words;
   logic [95:0] end_point;
@@ -97,7 +97,7 @@ module ray_retire #(
   logic [2:0] end_error;
   logic end_found;
 
-  fifo #(
+  ram_fifo #(
     .Width(EndWidth),
     .Depth(Depth)
   ) u_ends (
@@ -124,15 +124,15 @@ module ray_retire #(
   );
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) pointing_q <= '0;
-    else pointing_q <= {pointing_q[PointDelay-2:0], ending_o};
+    else pointing_q <= {pointing_q[PointDelay-1:0], ending_o};
   end
-  fifo #(
+  ram_fifo #(
     .Width(96),
     .Depth(Depth)
   ) u_points (
     .clk_i,
     .rst_ni,
-    .push_i(pointing_q[PointDelay-1]),
+    .push_i(pointing_q[PointDelay]),
     .data_i(point_i),
     .space_o(unused_space),
     .pop_i(end_fire),

@@ -9,7 +9,8 @@
 // stack is dropped, cycle_o says so.
 //
 // Where a stack has no room for a group, the group leaves as an overflow: the host sends the ray there. Overflows
-// are few; while one waits, no node is asked for, so Rays words are room enough.
+// are few; from two clocks after one has come until it has left no node is asked for: room for two more than there are
+// rays is enough.
 //
 //   pick    a ray
 //   choose  its group; or, where it has none, a ray that starts (start_*) asks for its first node
@@ -75,7 +76,6 @@ module traversal #(
     $error("traversal: expected a Depth of 1 or more");
   end
 
-  logic [GroupWidth-1:0] groups[Rays*Depth];
   logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
   logic [AddressWidth-1:0] entered[Rays];  // nodes
   logic [Rays-1:0] busy_q;     // waits for a node
@@ -204,7 +204,6 @@ module traversal #(
     start_line_q <= start_line_i;
   end
 
-  assign group = groups[stack_address(asking_ray_q, chosen_q)];
   assign {unused_enter, offset} = nearest(group, mask_q);
   assign {remaining_enter, prefetch_offset} = nearest(group, remaining_q);
   assign node_valid_o = asked_q | started_q;
@@ -224,9 +223,18 @@ module traversal #(
   assign push      = box_valid_i & (box_inner_i != '0) & room;
   assign {box_enter, unused_box_offset} = nearest(box_group_i, box_inner_i);
 
-  always_ff @(posedge clk_i) begin
-    if (push) groups[stack_address(box_ray_i, box_level)] <= box_group_i;
-  end
+  ram #(
+    .Width(GroupWidth),
+    .Depth(Rays * Depth)
+  ) u_groups (
+    .clk_i,
+    .write_i(push),
+    .write_address_i(stack_address(box_ray_i, box_level)),
+    .data_i(box_group_i),
+    .read_i(go),
+    .read_address_i(stack_address(ray_q, chosen)),
+    .data_o(group)
+  );
 
   // ---- State; a ray is picked, starts, or hears of a node, never two of these at once
 
@@ -263,9 +271,9 @@ module traversal #(
     end
   end
 
-  fifo #(
+  ram_fifo #(
     .Width(32 + AddressWidth + NodesWidth),
-    .Depth(Rays)
+    .Depth(Rays + 2)
   ) u_overflows (
     .clk_i,
     .rst_ni,

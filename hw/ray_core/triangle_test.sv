@@ -1,7 +1,7 @@
 // Triangle pipeline: set_up_unit's record of a triangle, then hit_test_pipeline's verdict on it; one a clock.
 //
 // Nothing that comes in is stalled; an output is there for the clock that says so. The ray is given by its context:
-// its origin when the triangle comes, its direction when direction_ctx_o asks for it, in the same clock.
+// origin_i and skip_id_i in the clock after the triangle came, its direction in that after direction_ctx_o asked for it.
 //
 // Every test is a burst of its own. closed_o: one is over, of ctx_o and triangle_o: a doubt_o, a sure hit
 // (found_o), or a miss. A hit's P is there later, point_valid_o, in the order of the hits: up to
@@ -42,11 +42,19 @@ module triangle_test #(
 
   logic [hit_test_pkg::RecordWords*32-1:0] set_record;
   logic [PlaneErrorWidth-1:0] set_normal_error, set_distance_error;
-  logic [set_up_pkg::Latency-1:0] setting_q;
-  logic [31:0] index, set_triangle;
-  logic set_skipped;
+  logic [set_up_pkg::Latency:0] setting_q;
+  logic [TriangleWidth-1:0] triangle_q;
+  logic [RayWidth-1:0] ctx_q, set_ctx_q;
+  logic [31:0] index, early_triangle, set_triangle_q;
+  logic error_q, early_skipped, set_skipped_q;
 
-  assign index = triangle_i[ray_core_pkg::TriangleIndex+:32];
+  always_ff @(posedge clk_i) begin
+    triangle_q <= triangle_i;
+    ctx_q      <= ctx_i;
+    error_q    <= error_i;
+  end
+
+  assign index = triangle_q[ray_core_pkg::TriangleIndex+:32];
 
   set_up_unit #(
     .Arith(Arith),
@@ -54,24 +62,27 @@ module triangle_test #(
   ) u_set_up (
     .clk_i,
     .origin_i,
-    .corners_i(triangle_i[ray_core_pkg::TriangleCorners +: 9*32]),
+    .corners_i(triangle_q[ray_core_pkg::TriangleCorners +: 9*32]),
     .record_o(set_record),
     .normal_error_o(set_normal_error),
     .distance_error_o(set_distance_error)
   );
   delay_line #(
     .Width(RayWidth + 32 + 1),
-    .Depth(set_up_pkg::Latency)
+    .Depth(set_up_pkg::Latency - 1)
   ) u_sideband_set_up (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({ctx_i, index, error_i | (index == skip_id_i)}),
-    .data_o({direction_ctx_o, set_triangle, set_skipped})
+    .data_i({ctx_q, index, error_q | (index == skip_id_i)}),
+    .data_o({direction_ctx_o, early_triangle, early_skipped})
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) setting_q <= '0;
-    else setting_q <= {setting_q[set_up_pkg::Latency-2:0], valid_i};
+    else setting_q <= {setting_q[set_up_pkg::Latency-1:0], valid_i};
+  end
+  always_ff @(posedge clk_i) begin
+    {set_ctx_q, set_triangle_q, set_skipped_q} <= {direction_ctx_o, early_triangle, early_skipped};
   end
 
   // ---- Test
@@ -91,11 +102,11 @@ module triangle_test #(
   ) u_tests (
     .clk_i,
     .rst_ni,
-    .valid_i(setting_q[set_up_pkg::Latency-1]),
+    .valid_i(setting_q[set_up_pkg::Latency]),
     .ready_o(unused_ready),  // always, as results are always taken
     .first_i(1'b1),
     .last_i(1'b1),
-    .tag_i({set_normal_error, set_distance_error, set_skipped, direction_ctx_o, set_triangle}),
+    .tag_i({set_normal_error, set_distance_error, set_skipped_q, set_ctx_q, set_triangle_q}),
     .direction_i,
     .record_i(set_record),
     .valid_o(word_valid),

@@ -12,6 +12,18 @@ bind fifo fifo_checks #(
   .pop_i,
   .valid_o
 );
+bind ram_fifo fifo_checks #(
+  .Depth(Depth),
+  .Reserve(Reserve),
+  .Late(1'b1)
+) u_fifo_checks (
+  .clk_i,
+  .rst_ni,
+  .push_i,
+  .space_o,
+  .pop_i,
+  .valid_o
+);
 bind hit_test_pipeline stream_checks #(
   .Width($bits({first_i, last_i, tag_i, direction_i, record_i}))
 ) u_input_checks (

@@ -1,7 +1,8 @@
 // A FIFO's user pushes only where a word is free and pops only where there is one; the FIFO counts right.
 module fifo_checks #(
   parameter int unsigned Depth   = 2,
-  parameter int unsigned Reserve = 0
+  parameter int unsigned Reserve = 0,
+  parameter bit          Late    = 1'b0  // a word is there a clock after it was counted
 ) (
   input logic clk_i,
   input logic rst_ni,
@@ -14,7 +15,12 @@ module fifo_checks #(
   localparam int unsigned CountWidth = $clog2(Depth + 1);
 
   logic [CountWidth-1:0] count_q;
+  logic late_q;
 
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) late_q <= 1'b0;
+    else late_q <= Late && push_i;
+  end
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) count_q <= '0;
     else count_q <= count_q + CountWidth'(push_i) - CountWidth'(pop_i);
@@ -24,7 +30,7 @@ module fifo_checks #(
     if (rst_ni) begin
       a_no_overflow : assert (!push_i || count_q != CountWidth'(Depth));
       a_no_underflow : assert (!pop_i || valid_o);
-      a_valid : assert (valid_o == (count_q != '0));
+      a_valid : assert (valid_o == (count_q != CountWidth'(late_q)));
       a_space : assert (space_o == (count_q < CountWidth'(Depth - Reserve)));
     end
   end

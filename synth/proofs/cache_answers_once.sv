@@ -1,6 +1,6 @@
 // The cache of lines, whatever is asked for and in whichever order memory answers, from reset and for ever: a request
-// that is demand and taken is answered once, with its ray, by the line of its number in memory, or by its error; it waits in the queue of hits, or is
-// enlisted for a entry whose line is on its way, and that line does not go before it is answered. No line is asked for
+// that is demand and taken is looked up, once, and answered once, with its ray, by the line of its number in memory, or by its error; it waits in the queue of hits, or is
+// enlisted for an entry whose line is on its way, and that line does not go before it is answered. No line is asked for
 // while it is here or on its way.
 // opened_line_cache is line_cache of two sets and two waiters with its registers and memories as outputs. Of memory is said
 // what the line `number` holds; which one that is, is free.
@@ -34,7 +34,11 @@ module cache_answers_once #(
   (* anyconst *) logic [AddressWidth-1:0] number;  // of a line, and what it holds
   (* anyconst *) logic [Width-1:0] content;
 
-  logic taken, miss, fill_done, answer, answer_ray, answer_error;
+  logic taken, request_q, demand_q, ray_q, done, set, hit_q, hit_ray, looking;
+  logic [TagWidth-1:0] tag;
+  logic [Ways*TagWidth-1:0] set_tags;
+  logic [Width-1:0] hit_line;
+  logic miss, fill_done, answer, answer_ray, answer_error;
   logic [3:0] miss_entry;
   logic [AddressWidth-1:0] miss_number;
   logic [Width-1:0] answer_line;
@@ -47,6 +51,7 @@ module cache_answers_once #(
   logic [Lines*TagWidth-1:0] tags;
   logic [Lines*2-1:0] heads;
   logic [Depth*(1+Width)-1:0] queue;
+  logic [Width:0] queued_word;
 
   opened_line_cache dut (
     .clk_i(clk),
@@ -57,6 +62,7 @@ module cache_answers_once #(
     .demand_i(demand),
     .ray_i(ray),
     .line_number_i(line_number),
+    .outstanding_o(looking),
     .miss_valid_o(miss),
     .miss_ready_i(miss_ready),
     .miss_entry_o(miss_entry),
@@ -85,20 +91,33 @@ module cache_answers_once #(
     .room(room),
     .\u_hits.count_q (count),
     .\u_hits.valid_o (queued),
+    .\u_hits.data_o (queued_word),
     .\u_hits.read_q (read_q),
     .\u_hits.write_q (write_q),
-    .words(words),
-    .tags(tags),
+    .request_q(request_q),
+    .demand_q(demand_q),
+    .ray_q(ray_q),
+    .set(set),
+    .tag(tag),
+    .set_tags(set_tags),
+    .done(done),
+    .hit_q(hit_q),
+    .hit_ray_q(hit_ray),
+    .hit_line(hit_line),
+    .u_lines_words(words),
+    .u_tags_words(tags),
     .heads(heads),
     .nexts(nexts),
     .rays(rays),
-    .u_hits_words(queue)
+    .u_hits_u_words_words(queue)
   );
 
-  logic request, asked, adds_target, hits;  // this clock's
-  assign request     = valid && taken && demand;
+  logic [AddressWidth-1:0] looked_up;
+  logic request, asked, adds_target, hits;  // this clock's: a request is looked up to its end
+  assign looked_up   = {tag, set};
+  assign request     = request_q && done && demand_q;
   assign asked       = miss && miss_ready;
-  assign hits        = line_valid[entry] && tags[TagWidth*entry+:TagWidth] == line_number[AddressWidth-1:1];
+  assign hits        = line_valid[entry] && tags[TagWidth*entry+:TagWidth] == tag;
   assign adds_target = request && !hits;
 
   // ---- Which places wait for the line `number`; whether the line that comes is that one
@@ -120,7 +139,7 @@ module cache_answers_once #(
     if (reset_n) begin
       assume (!fill || (ready && (draining ? fill_entry == entry_q : pending[fill_entry])));
       assume (!fill || !comes || fill_error || fill_line == content);
-      assume (!invalidate || (pending == '0 && !draining));
+      assume (!invalidate || (pending == '0 && !draining && !request_q));
     end else begin
       assume (!fill && !invalidate && !valid && !ready);
     end
@@ -138,7 +157,7 @@ module cache_answers_once #(
 
   // ---- The watched request
 
-  localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Pending = 2'd2;
+  localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Pending = 2'd2, LookedUp = 2'd3;
   logic [1:0] state;
   logic w_ray, w_target, answered;
   logic [3:0] w_index, w_entry;
@@ -146,21 +165,26 @@ module cache_answers_once #(
   initial state = Nowhere;
 
   assign w_entry  = w_target ? entry_1 : entry_0;
-  assign answered = state == Queued ? leaves && ahead == '0 : fill && somebody && current == w_target;
+  assign answered = state == Queued ? leaves && ahead == '0
+                  : state == Pending && fill && somebody && current == w_target;
 
   always_ff @(posedge clk) begin
     if (!reset_n) begin
       state <= Nowhere;
       outstanding <= '0;
     end else begin
-      outstanding <= outstanding + 5'(request) - 5'(answer);
+      outstanding <= outstanding + 5'(valid && taken && demand) - 5'(answer);
       if (state == Nowhere) begin
-        if (request && choose && line_number == number) begin
-          state <= hits ? Queued : Pending;
+        if (valid && taken && demand && choose && line_number == number) begin
+          state <= LookedUp;
           w_ray <= ray;
+        end
+      end else if (state == LookedUp) begin
+        if (request) begin
+          state <= hits ? Queued : Pending;
           w_target <= target;
-          w_index <= write_q;
-          ahead <= count - 5'(leaves);
+          w_index <= write_q + 4'(hit_q);
+          ahead <= count + 5'(hit_q) - 5'(leaves);
         end
       end else if (answered) begin
         state <= Nowhere;
@@ -179,21 +203,23 @@ module cache_answers_once #(
         assert (answer_error ? state == Pending && fill_error : answer_line == content);
       end
       if (answer) assert (outstanding != '0 && ready);
-      assert (outstanding == count + 5'(!free[0]) + 5'(!free[1]));
+      assert (outstanding == count + 5'(hit_q) + 5'(request_q && demand_q) + 5'(!free[0]) + 5'(!free[1]));
       // Its line does not go without it
       if (state == Pending && fill_done && fill_entry == w_entry
           && (draining ? coming[w_target] : !coming[w_target])) assert (answered);
       if (state == Pending) assert (pending[w_entry] || coming[w_target]);
       if (asked) begin
-        assert (!pending[miss_entry] && miss_number == line_number && miss_entry[3] == line_number[0]);
+        assert (!pending[miss_entry] && miss_number == looked_up && miss_entry[3] == set);
       end
       for (int unsigned p = 0; p < Lines; p++) begin
-        if (asked && (line_valid[p] || pending[p]) && (p >= Ways) == line_number[0]) begin
-          assert (tags[TagWidth*p+:TagWidth] != line_number[AddressWidth-1:1]);
+        if (asked && (line_valid[p] || pending[p]) && (p >= Ways) == set) begin
+          assert (tags[TagWidth*p+:TagWidth] != tag);
         end
       end
 
-      assert (state != 2'd3);
+      // The request that is looked up, and its set's tags
+      if (request_q) assert (set_tags == tags[Ways*TagWidth*set+:Ways*TagWidth]);
+      if (state == LookedUp) assert (request_q && demand_q && looked_up == number && ray_q == w_ray);
 
       // Invariants: a line is in one entry, that of `number` is its content
       assert ((line_valid & pending) == '0);
@@ -227,10 +253,18 @@ module cache_answers_once #(
                 && (draining_target ? entry_1 : entry_0) == entry_q);
       end
       // The queue of hits
-      assert (count <= 5'(Depth) && queued == (count != '0) && room == (count < 5'(Depth)) && write_q == read_q + count[3:0]);
+      assert (count <= 5'(Depth) && room == (count < 5'(Depth - 1)) && write_q == read_q + count[3:0] - 4'(queued));
+      assert (!hit_q || count < 5'(Depth));
+      if (count > 5'd1) assert (queued);
+      if (queued) assert (count != '0);
       if (state == Queued) begin
-        assert (ahead < count && w_index == read_q + ahead[3:0]);
-        assert (queue[(1+Width)*w_index+:1+Width] == {w_ray, content});
+        if (ahead == count) assert (hit_q && w_index == write_q && {hit_ray, hit_line} == {w_ray, content});
+        else if (ahead == '0 && queued) assert (queued_word == {w_ray, content});
+        else begin
+          assert (ahead < count && w_index == read_q + ahead[3:0] - 4'(queued));
+          assert (queue[(1+Width)*w_index+:1+Width] == {w_ray, content});
+        end
+        assert (ahead <= count);
       end
       if (state == Pending) begin
         assert (!free[w_target] && rays[w_target] == w_ray);

@@ -17,7 +17,7 @@ module contexts_answer_once #(
 );
 
   localparam int unsigned Divide = hit_test_pkg::divide_latency(23);
-  localparam int unsigned Delay = Divide + 4;
+  localparam int unsigned Delay = Divide + 5;
   localparam int unsigned InDepth = Divide + 3;
   localparam int unsigned EndDepth = Delay + 3;
   localparam int unsigned InCountWidth = $clog2(InDepth + 1);
@@ -107,8 +107,13 @@ module contexts_answer_once #(
       assert (free_q == ~used && active_q == used);
       assert (TotalWidth'(rays_count) == TotalWidth'(inverses_count) + ones(32'(dividing_q)));
       assert (TotalWidth'(ends_count) == TotalWidth'(points_count) + ones(32'(pointing_q)));
-      assert (rays_valid == (rays_count != '0) && inverses_valid == (inverses_count != '0));
-      assert (ends_valid == (ends_count != '0) && points_valid == (points_count != '0));
+      assert (inverses_valid == (inverses_count != '0));
+      // In memories a word is there a clock later; one alone may be that of the clock before
+      if (rays_count != InCountWidth'(dividing_q[0])) assert (rays_valid);
+      if (ends_count != EndCountWidth'(pointing_q[0])) assert (ends_valid);
+      if (rays_valid) assert (rays_count != '0);
+      if (ends_valid) assert (ends_count != '0);
+      if (points_valid) assert (points_count != '0);
       assert (rays_space == (rays_count < InCountWidth'(InDepth)));
       assert (ends_space == (ends_count < EndCountWidth'(EndDepth)));
     end

@@ -53,7 +53,8 @@ module hits_keep_nearest #(
   logic [31:0] result_tag, end_triangle, end_t;
   logic [TErrorWidth-1:0] end_t_error;
   logic [TestsWidth-1:0] end_tests;
-  logic [95:0] end_point;
+  logic [95:0] end_point, read_point;  // read_point: of the ray of the clock before
+  logic read_before;
   logic replace, push, doubts_space, doubts_valid, points_read, points_write;
   logic [63:0] pushed;
   logic [4:0] doubts;
@@ -123,7 +124,7 @@ module hits_keep_nearest #(
     .nearest_t(nearest_t),
     .nearest_error(nearest_error),
     .nearest_triangle(nearest_triangle),
-    .points(points),
+    .u_kept_words(points),
     .tests(tests),
     .counts(counts),
     .u_points_words(points_words)
@@ -239,6 +240,12 @@ module hits_keep_nearest #(
     end
   end
 
+  always_ff @(posedge clk) begin
+    read_point <= points[96*point_ray+:96];
+    read_before <= reset_n;
+  end
+  initial read_before = 1'b0;
+
   // ---- Claims
 
   logic [1:0] behind;  // the word of the queue of hits that is behind the watched one's, or in front of it
@@ -265,8 +272,8 @@ module hits_keep_nearest #(
       end
       assert (end_found == found_q[end_ray] && end_t == nearest_t[32*end_ray+:32]
               && end_triangle == nearest_triangle[32*end_ray+:32]
-              && end_t_error == nearest_error[TErrorWidth*end_ray+:TErrorWidth]
-              && end_point == points[96*point_ray+:96]);
+              && end_t_error == nearest_error[TErrorWidth*end_ray+:TErrorWidth]);
+      if (read_before) assert (end_point == read_point);
       // The user's t_max holds until a hit is kept
       if (loaded[0]) assert (found_q[0] ? t_max_words[30:0] < user_0 : t_max_words[30:0] == user_0);
       if (loaded[1]) assert (found_q[1] ? t_max_words[61:31] < user_1 : t_max_words[61:31] == user_1);
@@ -291,7 +298,7 @@ module hits_keep_nearest #(
 
       // Invariants
       assert (flying <= 3'(InFlight) && points_count <= 2'(InFlight));
-      assert (tests_allowed == (doubts < 5'(Depth - InFlight)) && doubt_valid == (doubts != '0));
+      assert (tests_allowed == (doubts < 5'(Depth - InFlight)) && (!doubt_valid || doubts != '0));
       assert ((points_write == points_read) == (points_count != 2'd1));
       if (!loaded[0]) assert (flight_0 == '0);
       if (!loaded[1]) assert (flight_1 == '0);

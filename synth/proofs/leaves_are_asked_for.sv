@@ -42,6 +42,7 @@ module leaves_are_asked_for #(
   logic [CountWidth-1:0] number_q;
   logic [1:0] count;
   logic [Rays*WordWidth-1:0] words;
+  logic [WordWidth-1:0] head;
 
   opened_primitive_fetch dut (
     .clk_i(clk),
@@ -66,9 +67,10 @@ module leaves_are_asked_for #(
     .number_q(number_q),
     .\u_groups.count_q (count),
     .\u_groups.valid_o (queued),
+    .\u_groups.data_o (head),
     .\u_groups.read_q (read_q),
     .\u_groups.write_q (write_q),
-    .u_groups_words(words)
+    .u_groups_u_words_words(words)
   );
 
   // ---- Entries of a group
@@ -123,7 +125,8 @@ module leaves_are_asked_for #(
 
   localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Walked = 2'd2;
   logic [1:0] state;
-  logic w_ray, w_place, given, w_beyond;
+  logic w_ray, w_place, w_head, given, w_beyond;  // w_head: its group is at the queue's output
+  logic load, read;
   logic [GroupWidth-1:0] w_group;
   logic [Children-1:0] w_mask;
   logic [2:0] w_leaf;
@@ -131,6 +134,8 @@ module leaves_are_asked_for #(
   logic [TotalWidth-1:0] asked, asked_next, rank;
   initial state = Nowhere;
 
+  assign load       = queued && (!valid_q || leaves);
+  assign read       = count != 2'(queued) && (!queued || load);
   assign rank       = triangles_of(w_group, w_mask & ((Children'(1) << w_leaf) - 1'b1)) + TotalWidth'(w_number);
   assign given      = state == Walked && triangle && ready;
   assign asked_next = asked + TotalWidth'(given);
@@ -150,10 +155,12 @@ module leaves_are_asked_for #(
           w_leaf <= which;
           w_number <= number;
           w_place <= write_q;
+          w_head <= 1'b0;
           asked <= '0;
         end
       end else if (state == Queued) begin
-        if (queued && read_q == w_place && (!valid_q || leaves)) state <= Walked;
+        if (read && read_q == w_place) w_head <= 1'b1;
+        if (load && w_head) state <= Walked;
       end else begin
         asked <= asked_next;
         if (leaves) state <= Nowhere;
@@ -164,9 +171,9 @@ module leaves_are_asked_for #(
   // ---- Claims
 
   logic [WordWidth-1:0] first, second, w_word;  // of the queue
-  assign first  = read_q ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];
-  assign second = read_q ? words[WordWidth-1:0] : words[2*WordWidth-1:WordWidth];
-  assign w_word = w_place ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];
+  assign second = read_q ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];
+  assign first  = queued ? head : second;
+  assign w_word = w_head ? head : w_place ? words[2*WordWidth-1:WordWidth] : words[WordWidth-1:0];
 
   always_comb begin
     if (reset_n) begin
@@ -184,8 +191,10 @@ module leaves_are_asked_for #(
       if (state == Walked && leaves && asked_next <= rank) assert (w_beyond);
 
       // Invariants
-      assert (queued == (count != '0) && count <= 2'd2);
-      assert ((read_q == write_q) == (count != 2'd1));
+      assert (count <= 2'd2);
+      if (queued) assert (count != '0);
+      if (count == 2'd2) assert (queued);
+      assert ((read_q == write_q) == (count == 2'(queued)));
       if (valid_q) assert (leaf_pending[ray_q] && mask_q != '0);
       if (count != '0) assert (leaf_pending[first[WordWidth-1]] && (!valid_q || first[WordWidth-1] != ray_q));
       if (count == 2'd2) assert (!valid_q && leaf_pending[second[WordWidth-1]] && first[WordWidth-1] != second[WordWidth-1]);
@@ -199,7 +208,7 @@ module leaves_are_asked_for #(
       end
       if (state == Queued) begin
         assert (asked == '0 && w_word == {w_ray, w_group, w_mask});
-        assert (count == 2'd2 || (count == 2'd1 && read_q == w_place));
+        assert (w_head ? queued : count != 2'(queued) && read_q == w_place);
       end
       if (state == Walked) begin
         assert (valid_q && ray_q == w_ray && group_q == w_group);

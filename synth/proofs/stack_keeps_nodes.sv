@@ -50,6 +50,7 @@ module stack_keeps_nodes #(
   logic [Rays*NextWidth-1:0] nexts_0, nexts_1;
   logic [Rays*ExponentWidth-1:0] exponents_0, exponents_1;
   logic [Rays*Depth*GroupWidth-1:0] groups;
+  logic [GroupWidth-1:0] group_q;  // of the level that is asked
 
   opened_traversal dut (
     .clk_i(clk),
@@ -87,7 +88,8 @@ module stack_keeps_nodes #(
     .mask_q(mask_q),
     .remaining_q(remaining_q),
     .levels(levels),
-    .groups(groups),
+    .group(group_q),
+    .u_groups_words(groups),
     .\gen_level[0]_nexts (nexts_0),
     .\gen_level[1]_nexts (nexts_1),
     .\gen_level[0]_exponents (exponents_0),
@@ -214,6 +216,7 @@ module stack_keeps_nodes #(
       if (started_q) assert (levels[2*asking_ray_q+:2] == 2'd0);
       if (watching && (present || asked)) begin
         assert (kept == w_group && w_entry < 3'd7 && is_sorted(w_group));
+        if (asking) assert (group_q == w_group);
         if (asking) assert (remaining_q == (mask_q & (mask_q - 1'b1)) && mask_q == next_mask);
         assert (w_exponent == w_group[Children*EntryWidth+:ExponentWidth]);
         if (!asking) assert (w_next <= enter_of(w_group, w_entry));

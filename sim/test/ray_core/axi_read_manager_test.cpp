@@ -108,7 +108,9 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
     failing += answered && fails;
     if (answered && fails) failing_lines.insert(bursts[answering].line);
     failed += model->bus_error_o;
-    if (model->bus_error_o != 0) ASSERT_TRUE(failing_lines.contains(model->error_number_o));
+    if (model->bus_error_o != 0) {
+      ASSERT_TRUE(failing_lines.contains(model->error_number_o));
+    }
     ASSERT_LE(failed, failing);
     if ((model->line_valid_o & model->line_ready_i) != 0) {
       const auto tag = waiting.find(model->line_id_o);

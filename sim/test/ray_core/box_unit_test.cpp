@@ -33,15 +33,17 @@ TYPED_TEST(BoxUnitTest, EqualsItsReference) {
   Model<TypeParam> model;
   std::deque<BoxCase> taken;  // the latest first
   int entered = 0;
+  BoxRay before;  // of the node before: its origin comes a clock later
   for (int clock = 0; clock < 50'000; ++clock) {
     const BoxCase box = cases.next();
     const BoxRay ray = box.read();
     const MemoryLine line = box.node.line();
     std::memcpy(&model->node_i, &line, sizeof line);
-    std::memcpy(&model->origin_i, &ray.origin, sizeof ray.origin);
-    std::memcpy(&model->inverse_i, &ray.inverse, sizeof ray.inverse);
+    std::memcpy(&model->origin_i, &before.origin, sizeof ray.origin);
+    std::memcpy(&model->inverse_i, &before.inverse, sizeof ray.inverse);
     model->t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
-    model->no_cull_i = ray.no_cull;
+    model->no_cull_i = before.no_cull;
+    before = ray;
     taken.push_front(box);
     model.clock();
     if (taken.size() < kLatency) continue;

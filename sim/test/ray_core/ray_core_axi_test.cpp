@@ -333,8 +333,12 @@ TEST_F(RayCoreAxiTest, AnErrorOfMemoryStaysOne) {
       ASSERT_EQ(end.found, reference(image_, pixel).found) << pixel;
     }
     EXPECT_EQ(read(0x010) >> 2, errors != 0 ? 3u : 0u) << "its flags";
-    if (line == 0) EXPECT_EQ(errors, ends_.size()) << "the root";
-    if (errors != 0) EXPECT_EQ(read(0x028), line);
+    if (line == 0) {
+      EXPECT_EQ(errors, ends_.size()) << "the root";
+    }
+    if (errors != 0) {
+      EXPECT_EQ(read(0x028), line);
+    }
     failing_line_ = ~std::uint64_t{0};
     draw(20);
     for (const auto& [pixel, end] : ends_) {
@@ -357,7 +361,9 @@ TEST_F(RayCoreAxiTest, AChangedBaseIsAnotherMemory) {
   for (const auto& [pixel, end] : ends_) {
     const CoreResult expected = reference(other_image_, pixel);
     ASSERT_EQ(end.found, expected.found) << pixel;
-    if (end.found) ASSERT_EQ(end.t, expected.t) << pixel;
+    if (end.found) {
+      ASSERT_EQ(end.t, expected.t) << pixel;
+    }
     found += end.found;
   }
   EXPECT_GT(found, 100u);

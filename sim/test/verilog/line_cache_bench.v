@@ -8,7 +8,7 @@ module bench;
 
   line_cache dut (
     .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .valid_i(valid), .ready_o(), .demand_i(1'b1), .ray_i(6'd0),
-    .line_number_i(line), .miss_valid_o(miss), .miss_ready_i(ready), .miss_entry_o(entry), .miss_number_o(),
+    .line_number_i(line), .outstanding_o(), .miss_valid_o(miss), .miss_ready_i(ready), .miss_entry_o(entry), .miss_number_o(),
     .fill_i(1'b0), .fill_done_o(), .fill_entry_i(8'd0), .fill_line_i(512'd0), .fill_error_i(1'b0), .valid_o(),
     .ready_i(1'b1), .ray_o(), .line_o(), .error_o()
   );
@@ -19,11 +19,11 @@ module bench;
     ready = 1;
     for (set = 0; set < 32; set = set + 1) begin
       line = set;
+      #1 clk = 1;  // its tags are read
+      #1 clk = 0;
       #1 if (miss !== 1'b1 || ^entry === 1'bx || entry[7:3] !== set) failures = failures + 1;
       cases = cases + 1;
       $display("set %0d: found entry %b", set, entry);
-      #1 clk = 1;
-      #1 clk = 0;
     end
     $display("%0d cases, %0d failures", cases, failures);
   end

@@ -1,0 +1,120 @@
+// ray_core with four-state values, as it wakes up and after resets in mid-run: nothing that it says is unknown, and rays hit
+// what they should. Its memory has two nodes and three triangles across the x axis.
+module bench;
+  reg clk = 0, reset_n = 0, ray = 0, result_ready = 0, read_ready = 0, line_valid = 0;
+  reg [95:0] origin = 0;
+  reg [31:0] skip = 0, tag = 0;
+  reg [4:0] line_id = 0;
+  reg [511:0] line = 0;
+  wire ray_ready, result, found, read, line_ready, outstanding;
+  wire [1:0] kind;
+  wire [31:0] result_tag, triangle, t;
+  wire [4:0] t_error, read_id;
+  wire [95:0] point;
+  wire [27:0] tests, result_line, read_line;
+  wire [2:0] error;
+  wire [48:0] nodes;
+  wire [9:0] events;
+
+  ray_core dut (
+    .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .outstanding_o(outstanding), .abort_i(1'b0), .lines_i(28'd5),
+    .ray_valid_i(ray), .ray_ready_o(ray_ready), .ray_origin_i(origin), .ray_direction_i({64'd0, 32'h3f800000}),
+    .ray_t_max_i(31'h7f800000), .ray_skip_id_i(skip), .ray_start_i(28'd0), .ray_any_hit_i(1'b0),
+    .ray_no_cull_i(1'b0), .ray_tag_i(tag), .result_valid_o(result), .result_ready_i(result_ready),
+    .result_kind_o(kind), .result_tag_o(result_tag), .result_found_o(found), .result_triangle_o(triangle),
+    .result_t_o(t), .result_t_error_o(t_error), .result_point_o(point), .result_tests_o(tests),
+    .result_error_o(error), .result_line_o(result_line), .result_nodes_o(nodes), .read_valid_o(read),
+    .read_ready_i(read_ready), .read_line_o(read_line), .read_id_o(read_id), .line_valid_i(line_valid),
+    .line_ready_o(line_ready), .line_id_i(line_id), .line_i(line), .line_error_i(1'b0), .events_o(events)
+  );
+
+  // A node on a grid of 1/32 from zero on, and its first two children: {high, low} of each, words of z, y, x.
+  function [511:0] node(input [27:0] base, input [7:0] kinds, input [47:0] box_0, input [47:0] box_1);
+    node = {240'd0, box_1, box_0, 20'd0, kinds, base, 24'h7a7a7a, 96'd0};
+  endfunction
+
+  // A right angle at (x, from, from), its legs of the length to - from.
+  function [511:0] across(input [31:0] index, input [31:0] x, input [31:0] from, input [31:0] to);
+    across = {192'd0, index, to, from, x, from, to, x, from, from, x};
+  endfunction
+
+  reg [511:0] lines[0:4];
+  reg [32:0] asked[0:63];  // {line, id}
+  integer first, last;     // of those that are to be answered
+
+  task known(input value, input is_known);
+    if (value !== 1'b0 && !is_known) failures = failures + 1;
+  endtask
+
+  integer round, seed = 1, sent, ended, cases = 0, failures = 0, clocks, most;
+  reg [31:0] want, want_t;
+  reg take_ray, take_line, take_read;
+
+  task tick;
+    begin
+      result_ready = $random(seed);
+      read_ready = $random(seed);
+      if (!ray && sent < 24 && $random(seed) % 2 == 0) begin
+        ray = 1;
+        tag = sent;
+        skip = sent % 4 == 3 ? 11 : 99;
+        origin = {sent % 4 == 1 ? 64'h40900000_40900000 : sent % 4 == 2 ? 64'h40f00000_40f00000
+                  : 64'h3f800000_3f800000, 32'hbf800000};
+        sent = sent + 1;
+      end
+      if (!line_valid && first != last && $random(seed) % 4 == 0) begin
+        line_valid = 1;
+        {line, line_id} = {lines[asked[first][7:5]], asked[first][4:0]};
+        first = (first + 1) % 64;
+      end
+      #1;
+      known(1'b1, ^{ray_ready, result, read, line_ready, outstanding, events} !== 1'bx);
+      known(read, ^{read_line, read_id} !== 1'bx);
+      known(result, ^{kind, result_tag} !== 1'bx);
+      if (read && read_line > 4) failures = failures + 1;
+      if (result && result_ready) begin
+        known(kind == 0, ^{found, tests, error} !== 1'bx);
+        known(kind == 0 && found, ^{triangle, t, t_error, point} !== 1'bx);
+        if (kind != 0) failures = failures + 1;
+        want   = result_tag % 4 == 0 ? 11 : result_tag % 4 == 1 ? 12 : 10;
+        want_t = result_tag % 4 == 0 ? 32'h40400000 : result_tag % 4 == 1 ? 32'h40c00000 : 32'h40800000;
+        if (found !== (result_tag % 4 != 2) || error !== 0 || (found && (triangle !== want || t !== want_t))) begin
+          failures = failures + 1;
+          $display("ray %0d: found %b %0d %h %0d", result_tag, found, triangle, t, error);
+        end
+        ended = ended + 1;
+        cases = cases + 1;
+      end
+      take_ray  = ray & ray_ready;
+      take_line = line_valid & line_ready;
+      take_read = read & read_ready;
+      if (take_read) begin
+        asked[last] = {read_line, read_id};
+        last = (last + 1) % 64;
+      end
+      #1 clk = 1;
+      #1 clk = 0;
+      if (take_ray) ray = 0;
+      if (take_line) line_valid = 0;
+    end
+  endtask
+
+  initial begin
+    lines[0] = node(1, 8'h18, 48'hffffff_000000, 48'h808060_000060);
+    lines[1] = node(3, 8'h02, 48'he0e0a0_000040, 48'd0);
+    lines[2] = across(10, 32'h40400000, 32'd0, 32'h40800000);
+    lines[3] = across(11, 32'h40000000, 32'd0, 32'h40800000);
+    lines[4] = across(12, 32'h40a00000, 32'h40800000, 32'h40e00000);
+    for (round = 0; round < 6; round = round + 1) begin
+      reset_n = 0;
+      {ray, line_valid} = 0;
+      {sent, ended, first, last} = 0;
+      #1 reset_n = 1;
+      most = round % 2 == 0 ? 100 + 40 * round : 3000;  // every other round ends in the middle
+      for (clocks = 0; clocks < most && ended < 24; clocks = clocks + 1) tick;
+      if (round % 2 == 1 && ended != 24) failures = failures + 1;
+      if (round % 2 == 0) cases = cases - ended;
+    end
+    $display("%0d cases, %0d failures", cases, failures);
+  end
+endmodule
