@@ -125,7 +125,7 @@ module axi_read_manager #(
   logic [BeatWidth-1:0] counts[Ids];  // beats that have come; 0 when the ID is given
   assign last = counts[beat_id] == BeatWidth'(Beats - 1);
   assign line_o[LineWidth-1-:DataWidth] = last_beat_q;
-  for (genvar b = 0; b < Beats - 1; b++) begin : gen_beat
+  for (genvar b = 0; b + 1 < Beats; b++) begin : gen_beat
     ram #(
       .Width(DataWidth),
       .Depth(Ids)

@@ -14,6 +14,8 @@ from synth import cores  # noqa: E402
 
 REFUSED = {
     "fifo": ["Depth=1", "Reserve=2"],
+    "ram": ["Depth=1"],
+    "ram_fifo": ["Depth=1", "Reserve=64"],
     "rr_arbiter": ["Width=1"],
     "line_cache": ["Lines=8", "Lines=48", "Targets=1"],
     "axi_read_manager": ["DataWidth=16", "DataWidth=96", "DataWidth=1024"],
