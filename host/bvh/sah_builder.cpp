@@ -217,12 +217,24 @@ class SahBuilder {
     waiting_.push_back({0, tree.size(), 0, 0, 0});
   }
 
-  /// What each thread does.
+  /// What each thread does. What one throws ends the others, too.
   void work() {
+    try {
+      cut_runs();
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      has_failed_ = true;
+      changed_.notify_all();
+      throw;
+    }
+  }
+
+ private:
+  void cut_runs() {
     std::unique_lock lock(mutex_);
     for (;;) {
-      changed_.wait(lock, [&] { return !waiting_.empty() || busy_ == 0; });
-      if (waiting_.empty()) return;
+      changed_.wait(lock, [&] { return has_failed_ || !waiting_.empty() || busy_ == 0; });
+      if (has_failed_ || waiting_.empty()) return;
       const Run run = waiting_.back();
       waiting_.pop_back();
       ++busy_;
@@ -240,7 +252,6 @@ class SahBuilder {
     }
   }
 
- private:
   void split(const Run& run, Run (&sides)[2]) {
     if (run.size() == 1) {
       tree_.nodes[run.parent].child[run.side] = tree_.size() + run.begin;
@@ -275,6 +286,7 @@ class SahBuilder {
   std::condition_variable changed_;
   std::vector<Run> waiting_;
   int busy_ = 0;
+  bool has_failed_ = false;
 };
 
 }  // namespace

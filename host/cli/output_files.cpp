@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 
 #include "host/base/input_error.h"
 #include "host/cli/process.h"
@@ -15,6 +16,12 @@ namespace {
 /// Whether nothing has been rendered, or nothing but misses.
 bool is_empty(const Film& film) {
   return std::ranges::all_of(film.color, [](const glm::vec4& color) { return color.a == 0.0f; });
+}
+
+/// The files that are written while there is no end: no statistics.
+std::vector<std::filesystem::path> pictures_of(OutputOptions outputs) {
+  outputs.stats.reset();
+  return outputs.paths();
 }
 
 std::string going_on(const OutputOptions& outputs) {
@@ -58,7 +65,7 @@ std::string listed(const std::vector<std::filesystem::path>& paths) {
   return listed(names, ", ");
 }
 
-void Checkpointer::save_urgently(const Film& film) {
+void Checkpointer::save_urgently(const Film* film) {
   if (!outputs_.exr) return;
   OutputOptions film_alone = outputs_;
   film_alone.png.reset();
@@ -74,17 +81,18 @@ void Checkpointer::end_interrupted(const Film& film) const {
     throw Interrupted(signal, "no file was changed");
   }
   write(film, outputs_);
-  OutputOptions pictures = outputs_;
-  pictures.stats.reset();
   const bool goes_on = (film.keeps_sums || all_.frames > 0) && outputs_.exr;
-  throw Interrupted(signal, "wrote what there was: " + listed(pictures.paths()) +
+  throw Interrupted(signal, "wrote what there was: " + listed(pictures_of(outputs_)) +
                                 (goes_on ? "; " + going_on(all_) : ""));
 }
 
-void Checkpointer::save(const Film& film, const OutputOptions& outputs) {
+void Checkpointer::save(const Film* film, const OutputOptions& outputs) {
   std::string trouble;
   try {
-    write(film, outputs);
+    if (film == nullptr) throw std::bad_alloc();
+    write(*film, outputs);
+  } catch (const std::bad_alloc&) {
+    trouble = listed(pictures_of(outputs)) + ": cannot write: out of memory";
   } catch (const std::exception& error) {
     trouble = error.what();
   }

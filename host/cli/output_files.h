@@ -38,17 +38,17 @@ class Checkpointer {
                int threads, ProgressBar& bar)
       : outputs_(outputs), all_(all), metadata_(metadata), threads_(threads), bar_(bar) {}
 
-  /// What goes wrong is said once and tried again.
-  void save(const Film& film) { save(film, outputs_); }
+  /// What goes wrong is said once and tried again. nullptr: there was no memory for a film.
+  void save(const Film* film) { save(film, outputs_); }
 
   /// What a rank that has died has not brought down, without pictures that nothing goes on from.
-  void save_urgently(const Film& film);
+  void save_urgently(const Film* film);
 
   /// Writes what had been rendered when a signal came, if that is anything, and throws Interrupted.
   [[noreturn]] void end_interrupted(const Film& film) const;
 
  private:
-  void save(const Film& film, const OutputOptions& outputs);
+  void save(const Film* film, const OutputOptions& outputs);
   void write(const Film& film, const OutputOptions& outputs) const;
 
   const OutputOptions &outputs_, &all_;

@@ -99,7 +99,13 @@ FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
   std::error_code ignored;
   if (!std::filesystem::exists(*outputs.exr, ignored)) return {};
   const std::string name = outputs.exr->string();
-  const ExrSummary found = read_summary(*outputs.exr);
+  ExrSummary found;
+  try {
+    found = read_summary(*outputs.exr);
+    (void)read_exr(*outputs.exr, found.channels);
+  } catch (const InputError& error) {
+    return {.damage = error.what()};
+  }
   const bool has_sums = std::ranges::find(found.channels, "sums.R.0") != found.channels.end();
   const auto difference = different_picture(found.metadata, metadata);
   if (has_sums && (found.metadata.partial || difference)) {
@@ -111,11 +117,14 @@ FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
   if (found.channels != channels_of_file(outputs.needed_channels(), options.render.error > 0.0)) {
     throw InputError(name + ": found other channels, expected those of this run");
   }
-  return {std::ranges::all_of(outputs.paths(),
-                              [&](const std::filesystem::path& path) {
-                                return std::filesystem::exists(path, ignored);
-                              }),
-          std::nullopt};
+  for (const std::filesystem::path& path : outputs.paths()) {
+    if (!std::filesystem::exists(path, ignored)) return {};
+    if (path == outputs.exr) continue;
+    const bool is_whole = path == outputs.stats ? std::filesystem::file_size(path, ignored) > 0
+                                                : is_whole_png(path);
+    if (!is_whole) return {.damage = path.string() + ": damaged"};
+  }
+  return {.is_finished = true};
 }
 
 }  // namespace raygate

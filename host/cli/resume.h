@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "host/cli/options.h"
 #include "host/film/exr.h"
@@ -19,11 +20,12 @@ namespace raygate {
 /// What --resume finds of one frame of an animation.
 struct FoundFrame {
   bool is_finished = false;        ///< all its files are there
-  std::optional<Film> unfinished;  ///< if not, and there is something to resume
+  std::optional<Film> unfinished{};  ///< if not, and there is something to resume
+  std::string damage{};              ///< else, where a file is damaged: which, and what is wrong
 };
 
-/// Looks at the files of a frame, `outputs`. One that was broken off without sums counts as none.
-/// Throws InputError as read_unfinished does.
+/// Looks at all bytes of a frame's files, `outputs`. One that was broken off without sums, and one
+/// with a file that is damaged, count as none. Throws InputError as read_unfinished does.
 [[nodiscard]] FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
                                     const ExrMetadata& metadata);
 

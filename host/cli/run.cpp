@@ -25,6 +25,7 @@
 #include "host/ranks/ranks.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
+#include "host/scene/digest.h"
 #include "host/scene/instances.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
@@ -101,6 +102,7 @@ class Run {
     scene_ = load(options_);
     report_.load_seconds = seconds_since(start_);
     report_.triangles = triangle_count(scene_);
+    scene_digest_ = digest_of(scene_);
     if (ranks_.index() == 0) print_warnings(scene_);
     require_inputs_kept();
 
@@ -145,6 +147,13 @@ class Run {
     inputs.push_back(options_.scene);
     for (const OutputOptions& outputs : outputs_) require_distinct(outputs.paths(), inputs);
     require_distinct(options_.core_files.paths(), inputs);
+    // A film may take the place of the one that it goes on from; nothing else may.
+    if (options_.resume.empty()) return;
+    OutputOptions besides = options_.output;
+    besides.exr.reset();
+    const std::vector<std::filesystem::path> resumed = {options_.resume};
+    require_distinct(besides.paths(), resumed);
+    require_distinct(options_.core_files.paths(), resumed);
   }
 
   void write_wave(const Bvh& bvh, const Camera& camera) const {
@@ -189,6 +198,7 @@ class Run {
       } else {
         FoundFrame found = find_frame(options_, outputs, metadata);
         if (found.is_finished) return false;
+        if (!found.damage.empty()) print_warning(found.damage + "; the frame is rendered again");
         unfinished = std::move(found.unfinished);
       }
     }
@@ -200,7 +210,8 @@ class Run {
     render_options.exposure = options_.output.display.exposure;
     render_options.channels = outputs.needed_channels();
     // What a rank that dies has not sent is there to resume from.
-    if (ranks.count() > 1) render_options.channels.sums = true;
+    // So is what a resumed render has reached when it is interrupted again.
+    if (ranks.count() > 1 || unfinished) render_options.channels.sums = true;
     Film film = render_monitored(prepared, camera, render_options, outputs, metadata);
     ranks.leave();
     if (ranks.index() != 0) return true;
@@ -234,13 +245,13 @@ class Run {
       return interruption() == 0;
     };
     if (outputs.save_seconds > 0.0) {
-      monitor.snapshot = [&](const Film& film) { checkpointer.save(film); };
+      monitor.snapshot = [&](const Film* film) { checkpointer.save(film); };
       monitor.snapshot_seconds = outputs.save_seconds;
     }
     if (has_ranks) {
       note_warnings();
       monitor.is_urgent = take_warning;
-      monitor.urgent_snapshot = [&](const Film& film) { checkpointer.save_urgently(film); };
+      monitor.urgent_snapshot = [&](const Film* film) { checkpointer.save_urgently(film); };
     }
     // The threads are deep in a search and will not stop soon: end without them.
     monitor.abandon = [&](const Film& film) {
@@ -283,6 +294,7 @@ class Run {
         .options = cameras.options(),
         .world_to_camera = world_to_camera,
         .screen_window_width = static_cast<float>(height * render.width / render.height)};
+    metadata.options.emplace_back(kSceneAttribute, scene_digest_);
     if (render.end_sample > 0) set_samples(metadata, {render.first_sample, render.end_sample});
     return metadata;
   }
@@ -297,6 +309,7 @@ class Run {
   std::vector<OutputOptions> outputs_;  // of each picture
   std::FILE* console_ = stdout;
   Scene scene_;
+  std::string scene_digest_;  // of the files, without default lights and ground
   std::shared_ptr<const MemoryImage> image_;  // of a ray core
   Report report_;
 };

@@ -29,6 +29,17 @@ struct Target {
   std::optional<mode_t> permissions;  ///< of the file that is there
 };
 
+/// Where a chain of symbolic links ends, there or not.
+fs::path end_of_links(fs::path name) {
+  constexpr int kMostLinks = 40;  // as Linux follows; of a circle stat() has told
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(name, error); ++i) {
+    name = name.parent_path() / fs::read_symlink(name, error);
+    if (error) break;
+  }
+  return name;
+}
+
 Target inspect(const fs::path& name) {
   Target target;
   struct stat status {};
@@ -38,7 +49,7 @@ Target inspect(const fs::path& name) {
                                   is_standard_output(name));
   if (!target.is_stream) {  // a stream's name may lead to what has no path, as /dev/stdout does
     std::error_code error;
-    target.path = fs::weakly_canonical(name, error);
+    target.path = fs::weakly_canonical(end_of_links(name), error);
     if (error) fail(name, error.value());
   }
   if (!is_there) return target;
@@ -70,6 +81,16 @@ std::pair<fs::path, int> create_beside(const fs::path& target, const fs::path& n
     if (fd >= 0) return {std::move(path), fd};
     if (errno != EEXIST) fail(name, errno);
   }
+}
+
+/// Brings a new name in the target's folder to the disk, too; 0, or the error. Not every folder may
+/// be opened, and not every file system can: they do so when they like.
+int sync_folder_of(const fs::path& target) {
+  const int folder = ::open(target.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return 0;
+  const int error = ::fsync(folder) != 0 && errno != EINVAL && errno != EROFS ? errno : 0;
+  ::close(folder);
+  return error;
 }
 
 /// 0, or the error that stopped the writing.
@@ -142,6 +163,7 @@ void AtomicFile::commit() {
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(name_, errno);
   temporary_.clear();
+  fail_if(sync_folder_of(target_));
 }
 
 bool is_standard_output(const fs::path& file) {

@@ -15,7 +15,9 @@ namespace raygate {
 /// the target, at whatever moment and whatever fails, finds the old file or the new one, whole;
 /// and several files can be made ready before the first one is replaced.
 ///
-/// Symbolic links are followed; an old file's permissions are kept. A device, a pipe or standard
+/// Symbolic links are followed, to what is not there yet as well; an old file's permissions are
+/// kept. Its other names (hard links) keep the old file: a file that is replaced in one step is
+/// another one. A device, a pipe or standard
 /// output (/dev/stdout) has nothing to keep whole: the bytes go there at once, or fail where no
 /// process has the pipe open. All errors are InputError, "path: cannot write: reason".
 class AtomicFile {
@@ -34,7 +36,7 @@ class AtomicFile {
   void replace_start(std::string_view bytes);
   /// Brings all of it to the disk; nothing can be added then.
   void finish();
-  /// Makes the target the new file, finished. At most once.
+  /// Makes the target the new file, finished, and brings its name to the disk. At most once.
   void commit();
   /// Whether it goes to a device, a pipe or standard output.
   [[nodiscard]] bool is_stream() const { return temporary_.empty(); }

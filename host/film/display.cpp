@@ -1,13 +1,19 @@
 #include "host/film/display.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <new>
 #include <stdexcept>
+#include <string_view>
 
 #include "host/base/elementary.h"
+#include "host/base/file_bytes.h"
+#include "host/base/input_error.h"
 #include "host/base/srgb.h"
 
 namespace raygate {
@@ -23,7 +29,7 @@ class PngWriter {
         info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
     if (info_ == nullptr) {
       png_destroy_write_struct(&png_, nullptr);
-      throw std::runtime_error("libpng: out of memory");
+      throw std::bad_alloc();
     }
     png_set_write_fn(png_, &bytes, append, nullptr);
   }
@@ -59,6 +65,7 @@ class PngWriter {
     static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<char*>(data), size);
   }
   [[noreturn]] static void throw_error(png_structp, png_const_charp message) {
+    if (std::strstr(message, "emory") != nullptr) throw std::bad_alloc();
     throw std::runtime_error(std::string("libpng: ") + message);
   }
   static void ignore_warning(png_structp, png_const_charp) {}
@@ -107,6 +114,31 @@ std::string encode_png(const Image8& picture) {
   }
   writer.finish();
   return bytes;
+}
+
+bool is_whole_png(const std::filesystem::path& file) {
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  constexpr std::size_t kAround = 12;  // a chunk's length, type and checksum
+  std::string contents;
+  try {
+    contents = read_file(file);
+  } catch (const InputError&) {
+    return false;
+  }
+  std::string_view bytes = contents;
+  if (!bytes.starts_with(kSignature)) return false;
+  bytes.remove_prefix(kSignature.size());
+  while (bytes.size() >= kAround) {
+    const std::size_t length = number_at<std::uint32_t>(bytes.data(), true);
+    if (length > bytes.size() - kAround) return false;
+    const std::string_view checked = bytes.substr(4, 4 + length);
+    const auto* const first = reinterpret_cast<const Bytef*>(checked.data());
+    const auto sum = number_at<std::uint32_t>(checked.data() + checked.size(), true);
+    if (crc32_z(0, first, checked.size()) != sum) return false;
+    bytes.remove_prefix(kAround + length);
+    if (checked.starts_with("IEND")) return bytes.empty();
+  }
+  return false;
 }
 
 }  // namespace raygate

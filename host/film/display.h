@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,5 +50,9 @@ struct DisplayOptions {
 /// the frame, its place is in the oFFs chunk; the texts are tEXt chunks. Equal pictures give equal
 /// bytes. Throws std::runtime_error if libpng fails.
 [[nodiscard]] std::string encode_png(const Image8& picture);
+
+/// Whether this is a PNG file that nothing has damaged: its chunks follow each other up to IEND, the
+/// last, and each has its checksum (PNG, Third Edition, 5.3 to 5.6). What they say is not read.
+[[nodiscard]] bool is_whole_png(const std::filesystem::path& file);
 
 }  // namespace raygate

@@ -186,6 +186,9 @@ void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, S
     map.width = picture.width;
     map.height = picture.height;
     map.texels = std::move(picture.pixels);
+  } else if (std::filesystem::is_regular_file(setting.file) && !is_exr(setting.file)) {
+    throw InputError(setting.file.string() +
+                     ": found a file of another kind, expected OpenEXR or Radiance HDR");
   } else {
     const std::string names[] = {"R", "G", "B"};
     const ChannelPicture picture = read_exr(setting.file, names);

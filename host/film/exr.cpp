@@ -10,13 +10,17 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfTestFile.h>
 #include <ImfThreading.h>
+#include <ImfVersion.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstddef>
+#include <cstring>
 #include <exception>
 #include <fstream>
+#include <new>
 #include <system_error>
 
 #include "host/base/input_error.h"
@@ -85,18 +89,17 @@ constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
 
 void require_exr(const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& why) {
+    throw InputError(file.string() + ": cannot read: " + why);
+  };
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (error) throw InputError(file.string() + ": cannot read: " + error.message());
-  if (std::filesystem::is_directory(status)) {
-    throw InputError(file.string() + ": cannot read: it is a folder");
-  }
-  if (!std::ifstream(file).good()) {
-    throw InputError(file.string() + ": cannot read: Permission denied");
-  }
-  if (!Imf::isOpenExrFile(file.c_str())) {
-    throw InputError(file.string() + ": not an OpenEXR file");
-  }
+  if (error) fail(error.message());
+  if (std::filesystem::is_directory(status)) fail("it is a folder");
+  if (!std::filesystem::is_regular_file(status)) fail("it is a device, a pipe or a socket");
+  errno = 0;
+  if (!std::ifstream(file).good()) fail(std::generic_category().message(errno));
+  if (!is_exr(file)) throw InputError(file.string() + ": not an OpenEXR file");
 }
 
 /// "R, G, B, Z".
@@ -224,9 +227,42 @@ ExrMetadata metadata_of(const Imf::Header& header) {
   return metadata;
 }
 
+/// Whether the file that `bytes` are holds all numbers of `film`, bit by bit.
+bool holds_film(const std::string& bytes, const Film& film, int helpers) {
+  constexpr int kRows = 64;  // at a time
+  Imf::StdISStream stream;
+  stream.str(bytes);
+  Imf::InputFile file(stream, helpers);
+  const std::vector<Channel> channels = channels_of(film);
+  const auto width = static_cast<std::size_t>(film.window.width());
+  std::vector<std::uint32_t> numbers(channels.size() * width * kRows);
+  PixelRect block = film.window;
+  for (; block.y0 < film.window.y1; block.y0 = block.y1) {
+    block.y1 = std::min(block.y0 + kRows, film.window.y1);
+    const std::size_t count = width * static_cast<std::size_t>(block.height());
+    Imf::FrameBuffer slices;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      slices.insert(channels[k].name,
+                    slice_of(type_of(channels[k]), &numbers[k * count], sizeof numbers[0], block));
+    }
+    file.setFrameBuffer(slices);
+    file.readPixels(block.y0, block.y1 - 1);
+    const std::size_t first = film.index_of(block.x0, block.y0);
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const char* at = static_cast<const char*>(channels[k].first) + first * channels[k].stride;
+      for (std::size_t i = 0; i < count; ++i, at += channels[k].stride) {
+        if (std::memcmp(at, &numbers[k * count + i], sizeof numbers[0]) != 0) return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
-// The library compresses on its own threads; the bytes do not depend on how many there are.
+// The library compresses on its own threads; the bytes do not depend on how many there are. Where a
+// thread has no memory left, it drops a block in silence, and so may the stream: hence the look at
+// what was written.
 std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
   const int helpers = threads > 1 ? threads : 0;
   try {
@@ -240,7 +276,15 @@ std::string encode_exr(const Film& film, const ExrMetadata& metadata, int thread
     file.setFrameBuffer(slices_of(film));
     file.writePixels(film.window.height());
   }  // the destructor completes the file
-  return stream.str();
+  std::string bytes = stream.str();
+  if (!holds_film(bytes, film, helpers)) throw std::bad_alloc();
+  return bytes;
+}
+
+bool is_exr(const std::filesystem::path& file) {
+  char magic[4] = {};
+  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
+  return Imf::isImfMagic(magic);
 }
 
 ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::string> names) {

@@ -46,8 +46,9 @@ inline constexpr const char* kPartial = "not finished when it was saved";
 ///   tests doubts   uint    counts
 ///   samples error  uint, float    how many samples, and the error that is left (FilmSums)
 /// The display window is the frame, the data window the film's window within it. Equal arguments
-/// give equal bytes, whatever the number of threads. Throws std::runtime_error if the library
-/// fails.
+/// give equal bytes, whatever the number of threads. They are read back: std::bad_alloc where they do
+/// not hold every bit of the film, as the library does not always say that it had no memory left;
+/// another std::exception where it says so.
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
                                      int threads = 1);
 
@@ -58,6 +59,9 @@ struct ChannelPicture {
   std::vector<std::string> names;
   std::vector<std::vector<double>> channels;  ///< names[i]'s numbers, row by row from the top
 };
+
+/// Whether the file begins as OpenEXR files do.
+[[nodiscard]] bool is_exr(const std::filesystem::path& file);
 
 /// Reads the channels `names` of a scan-line or tiled file's first part. Throws InputError: what
 /// cannot be read or is not OpenEXR, is damaged, lacks a channel, or is larger than 2^26 pixels.

@@ -182,7 +182,9 @@ std::optional<std::string> different_picture(const ExrMetadata& found,
     for (const auto& [name, ignored] : *side) {
       std::string a = value(here, name);
       const std::string b = value(there, name);
-      if (a != b) return a.append(", expected ").append(b);
+      if (a == b) continue;
+      if (name == kSceneAttribute) return "another geometry, material or light, expected those";
+      return a.append(", expected ").append(b);
     }
   }
   return std::nullopt;

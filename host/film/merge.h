@@ -22,13 +22,16 @@ struct SampleRange {
 /// The attribute of a file that does not have all of "spp".
 inline constexpr const char* kSamplesAttribute = "samples";
 
+/// The attribute of the digest of all geometry, materials and lights that were read (host/scene/digest.h).
+inline constexpr const char* kSceneAttribute = "sceneDigest";
+
 /// What a film file says that it holds: that attribute, or all of "spp".
 [[nodiscard]] SampleRange samples_of(const ExrMetadata& metadata);
 /// The attribute says so from now on; it is not there where that is all of "spp".
 void set_samples(ExrMetadata& metadata, const SampleRange& range);
 
 /// In what two files are not of the same picture, whatever samples and pixels of it they have:
-/// "spp 8, expected spp 16", or nothing.
+/// "spp 8, expected spp 16", or "another geometry, material or light"; or nothing.
 [[nodiscard]] std::optional<std::string> different_picture(const ExrMetadata& found,
                                                            const ExrMetadata& expected);
 

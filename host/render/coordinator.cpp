@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -53,7 +54,7 @@ class Coordinator : public TileWorkers {
     }
     threads_.clear();
     if (error_) {
-      if (remote_ && monitor_.urgent_snapshot) monitor_.urgent_snapshot(film_);
+      if (remote_ && monitor_.urgent_snapshot) monitor_.urgent_snapshot(&film_);
       std::rethrow_exception(error_);
     }
     stats_.cancelled = !queue_.all_ended();
@@ -112,7 +113,7 @@ class Coordinator : public TileWorkers {
       if (stopped_) {
         if (!stopped_at_) stopped_at_ = Clock::now();
         if (monitor_.abandon && !error_ && Clock::now() - *stopped_at_ > grace_) {
-          show(lock, monitor_.abandon);
+          monitor_.abandon(film_);  // under the lock: nobody changes it any more
         }
         return;
       }
@@ -139,10 +140,14 @@ class Coordinator : public TileWorkers {
   }
 
   /// Gives a copy of the film away, while the threads go on.
-  void show(std::unique_lock<std::mutex>& lock, const std::function<void(const Film&)>& take) {
-    const Film film = film_;
+  void show(std::unique_lock<std::mutex>& lock, const std::function<void(const Film*)>& take) {
+    std::optional<Film> film;
+    try {
+      film = film_;
+    } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): the render needs none
+    }
     lock.unlock();
-    take(film);
+    take(film ? &*film : nullptr);
   }
 
   /// Looks at the film now and then, if that tells.

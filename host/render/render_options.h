@@ -63,13 +63,14 @@ struct RenderOptions {
 struct RenderMonitor {
   /// Takes the fraction done, in [0, 1], now and then; false stops the render.
   std::function<bool(double)> progress{};
-  /// Takes a copy of the film so far every so many seconds; the other threads go on.
-  std::function<void(const Film&)> snapshot{};
+  /// Takes a copy of the film so far every so many seconds, while the threads go on; nullptr where
+  /// there is no memory for a copy.
+  std::function<void(const Film*)> snapshot{};
   double snapshot_seconds = 10.0;
   /// With other ranks: asked now and then whether one of them may have died, and what takes the
   /// film if so.
   std::function<bool()> is_urgent{};
-  std::function<void(const Film&)> urgent_snapshot{};
+  std::function<void(const Film*)> urgent_snapshot{};
   /// Takes the film when the threads, deep in a search, have not stopped half a second after they
   /// were told to; at once where there are other ranks, as a launcher that ends them ends this one,
   /// too, in a second. Must end the process.

@@ -55,6 +55,7 @@ class Texture {
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }  ///< row by row
 
  private:
   template <class TexelValue>

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 #include "host/bvh/sah_builder.h"
 #include "host/bvh/test/walk_bvh.h"
@@ -108,6 +110,16 @@ bool same_bytes(const Bvh& a, const Bvh& b) {
     if (a.triangle_of(primitive) != b.triangle_of(primitive)) return false;
   }
   return std::memcmp(a.nodes().data(), b.nodes().data(), a.nodes().size_bytes()) == 0;
+}
+
+TEST(Bvh, WhatOneThreadThrowsEndsAll) {
+  Random random;
+  const Scene scene = test::scene_of(soup(random, 20000));
+  const UsingVectors put_back(vectors_in_use());
+  ASSERT_EQ(::setenv("RAYGATE_VECTORS", "foo", 1), 0);
+  detail::vectors_in_use = -1;  // as in a process that has not settled them yet
+  EXPECT_THROW(Bvh(scene, 2), std::runtime_error);
+  ::unsetenv("RAYGATE_VECTORS");
 }
 
 TEST(Bvh, IsTheSameWhateverTheThreadsAndVectors) {

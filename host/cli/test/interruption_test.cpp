@@ -114,15 +114,25 @@ TEST_F(Render, AFailedSaveIsTriedAgain) {
   EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
 }
 
-/// With as many threads as there are to be had, the same picture.
+/// With as many threads as there are to be had, the same picture. The program is in a folder that
+/// its user may not enter, as where all of this is below root's home.
 TEST_F(Render, ThreadsThatCannotStartAreDoneWithout) {
-  (void)render({kCornell, "--size", "64x48", "--engine", "cpu", "--spp", "4", "-o", "a"});
+  const fs::path home = folder_.path() / "home";
+  fs::create_directory(home);
+  fs::copy_file(RAYGATE_PROGRAM, home / "render");
+  fs::permissions(home, fs::perms::owner_all);
+  for (const char* name : {"cornell.obj", "cornell.mtl", "cornell.json"}) {
+    fs::copy_file(fs::path(RAYGATE_SCENES) / name, folder_.path() / name);
+  }
+  (void)render({"cornell.obj", "--size", "64x48", "--engine", "cpu", "--spp", "4", "-o", "a"});
   fs::permissions(folder_.path(), fs::perms::all);
-  const Outcome outcome = run_program({.arguments = {kCornell, "--size", "64x48", "--engine", "cpu",
-                                                     "--spp", "4", "--threads", "4", "-o", "b"},
-                                       .folder = folder_.path(),
-                                       .without_rights = true,
-                                       .most_threads = 1});
+  const Outcome outcome =
+      run_program({.arguments = {"cornell.obj", "--size", "64x48", "--engine", "cpu", "--spp", "4",
+                                 "--threads", "4", "-o", "b"},
+                   .folder = folder_.path(),
+                   .without_rights = true,
+                   .most_threads = 1,
+                   .program = home / "render"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   expect_same_pictures("a", "b");
 }

@@ -127,6 +127,32 @@ TEST_F(Parts, GoOnWhereTheyWere) {
   expect_same_pictures("more", "whole");
 }
 
+/// A picture that goes on and is interrupted again keeps what it went on from, whether or not the
+/// one that is asked for has sums.
+TEST_F(Parts, KeepTheirSumsWhenInterruptedAgain) {
+  const std::vector<std::string> picture = {
+      kCornell, "--size", "200x150", "--spp", "4000", "--integrator", "path", "--threads", "2",
+      "--engine", "cpu"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = picture;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  ASSERT_EQ(run_program({.arguments = with({"--samples", "0:4", "-o", "a.exr"}),
+                         .folder = folder_.path()})
+                .status,
+            0);
+  for (const char* from : {"a.exr", "b.exr"}) {
+    const Outcome outcome = run_program({.arguments = with({"--resume", from, "-o", "b.exr"}),
+                                         .folder = folder_.path(),
+                                         .terminal = true,
+                                         .signal_when_busy = SIGINT});
+    EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
+    EXPECT_NE(outcome.err.find("--resume b.exr goes on from there"), std::string::npos)
+        << outcome.err;
+  }
+}
+
 TEST_F(Parts, SurviveBeingKilled) {
   expect_to_survive({"--size", "200x150", "--spp", "48", "--channels", "sums"});
 }
@@ -222,6 +248,30 @@ TEST_F(Parts, FinishedFramesOfAnAnimationAreKept) {
   }
 }
 
+/// Cut, changed or emptied files of frames are told of and made again.
+TEST_F(Parts, DamagedFramesAreRenderedAgain) {
+  const std::vector<std::string> all = {"-o", "a", "--resume", "a.exr", "--frames", "2", "--spp", "1"};
+  make({"-o", "a", "--frames", "2", "--spp", "1"});
+  const std::string exr = folder_.read("a-0001.exr"), png = folder_.read("a-0001.png");
+  const auto expect_made_again = [&](const char* name, const std::string& damaged) {
+    folder_.write(name, damaged);
+    const Outcome outcome = part(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("warning: "s + name + ": "), 0u) << outcome.err;
+    EXPECT_NE(outcome.err.find("; the frame is rendered again\n"), std::string::npos);
+    EXPECT_NE(outcome.out.find("frame 2 of 2: kept"), std::string::npos) << outcome.out;
+    EXPECT_TRUE(folder_.read("a-0001.exr") == exr && folder_.read("a-0001.png") == png);
+  };
+  std::string flipped = exr;
+  flipped[exr.size() - exr.size() / 4] ^= 1;
+  expect_made_again("a-0001.exr", flipped);
+  expect_made_again("a-0001.exr", exr.substr(0, exr.size() - 1));
+  expect_made_again("a-0001.exr", exr.substr(0, 100));
+  expect_made_again("a-0001.exr", "");
+  expect_made_again("a-0001.png", "");
+  expect_made_again("a-0001.png", png.substr(0, png.size() / 2));
+}
+
 TEST_F(Parts, FramesOfAnotherAnimationAreRefused) {
   make({"-o", "a.exr", "--spp", "1", "--frames", "2"});
   const std::string before = folder_.read("a-0002.exr");
@@ -240,6 +290,43 @@ TEST_F(Parts, FramesOfAnotherAnimationAreRefused) {
                  "--resume: expected a.exr with --frames, the animation's own name, got 'b.exr'");
   expect_refused(part({"--frames", "2", "-o", "a.png", "--resume", "a.exr"}),
                  "--resume: expected an EXR among the outputs of --frames");
+}
+
+/// The same options of a scene that somebody has edited make another picture.
+TEST_F(Parts, OfAnEditedSceneAreRefused) {
+  const auto write_scene = [&](const char* height, const char* colour) {
+    folder_.write("s.obj", "mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 "s + height +
+                               "\nusemtl m\nf 1 2 3\n");
+    folder_.write("s.mtl", "newmtl m\nKd "s + colour + "\n");
+  };
+  const auto render_part = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"s.obj", "--engine", "cpu", "--size", "20x15", "--spp",
+                                          "4", "--camera", "0.3,0.3,3,0.3,0.3,0,30"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program({.arguments = arguments, .folder = folder_.path()});
+  };
+  const std::string line = ".exr: found another geometry, material or light, expected those";
+  write_scene("0", "0.5 0.5 0.5");
+  ASSERT_EQ(render_part({"--samples", "0:2", "-o", "a.exr"}).status, 0);
+  for (const auto& [height, colour] : {std::pair{"0.01", "0.5 0.5 0.5"}, {"0", "0.5 0.5 0.6"}}) {
+    write_scene(height, colour);
+    ASSERT_EQ(render_part({"--samples", "2:4", "-o", "b.exr"}).status, 0);
+    expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}), "b" + line + " as in a.exr");
+    expect_refused(render_part({"--resume", "a.exr", "-o", "c"}),
+                   "a" + line + " as this run has it");
+  }
+}
+
+TEST_F(Parts, NothingButAFilmReplacesWhatTheyGoOnFrom) {
+  make({"-o", "a.exr", "--samples", "0:5"});
+  const std::string before = folder_.read("a.exr");
+  fs::create_symlink("a.exr", folder_.path() / "b.json");
+  expect_refused(part({"--resume", "a.exr", "-o", "c", "--stats", "a.exr"}),
+                 "a.exr: would overwrite a.exr");
+  expect_refused(part({"--resume", "a.exr", "-o", "c", "--stats", "b.json"}),
+                 "b.json: would overwrite a.exr");
+  EXPECT_EQ(folder_.read("a.exr"), before);
+  make({"-o", "a.exr", "--resume", "a.exr"});
 }
 
 TEST_F(Parts, OfDifferentPicturesAreRefused) {

@@ -52,6 +52,8 @@ Channel make_terminal() {
   }
   argv.push_back(nullptr);
   const int in = ::open("/dev/null", O_RDONLY);
+  // Opened while we may: who is not root need not reach the folder.
+  const int code = ::open(program.c_str(), O_RDONLY | O_CLOEXEC);
   bool ready = ::chdir(invocation.folder.c_str()) == 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
                ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0;
   if (invocation.file_size_limit > 0) {
@@ -69,7 +71,10 @@ Channel make_terminal() {
     const rlimit limit{threads, threads};
     ready = ready && ::setrlimit(RLIMIT_NPROC, &limit) == 0;
   }
-  if (ready) ::execv(program.c_str(), argv.data());
+  for (const std::string& setting : invocation.environment) {
+    ready = ready && ::putenv(const_cast<char*>(setting.c_str())) == 0;
+  }
+  if (ready) ::fexecve(code, argv.data(), environ);
   ::_exit(127);
 }
 

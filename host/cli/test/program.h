@@ -23,6 +23,7 @@ struct Invocation {
   bool without_rights = false;  ///< as a user who is not root
   int most_threads = 0;         ///< that its user may have, its first one counted; 0: no limit
   std::string program{};        ///< another one than that under test
+  std::vector<std::string> environment{};  ///< "NAME=value", besides ours
 };
 
 /// What came of it.

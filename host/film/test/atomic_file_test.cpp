@@ -106,6 +106,28 @@ TEST_F(AtomicFileTest, FollowsSymbolicLinks) {
   EXPECT_EQ(read(folder_ / "file"), "new");
 }
 
+TEST_F(AtomicFileTest, FollowsSymbolicLinksToWhatIsNotThereYet) {
+  fs::create_directory(folder_ / "disk");
+  fs::create_symlink("second", folder_ / "first");
+  fs::create_symlink("disk/file", folder_ / "second");
+  require_writable(folder_ / "first");
+  replace_file(folder_ / "first", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "first"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "second"));
+  EXPECT_EQ(read(folder_ / "disk" / "file"), "new");
+  fs::create_symlink("round", folder_ / "round");
+  EXPECT_EQ(message_of(folder_ / "round", "x"), (folder_ / "round").string() +
+            ": cannot write: Too many levels of symbolic links");
+}
+
+TEST_F(AtomicFileTest, OtherNamesOfAnOldFileKeepIt) {
+  replace_file(folder_ / "file", "old");
+  fs::create_hard_link(folder_ / "file", folder_ / "other");
+  replace_file(folder_ / "file", "new");
+  EXPECT_EQ(read(folder_ / "file"), "new");
+  EXPECT_EQ(read(folder_ / "other"), "old");
+}
+
 TEST_F(AtomicFileTest, BareNameGoesToTheCurrentFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder_);

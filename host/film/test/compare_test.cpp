@@ -2,6 +2,7 @@
 #include "host/film/compare.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <fstream>
@@ -177,6 +178,9 @@ TEST_F(ExrFile, BadFilesAreRefusedInOneLine) {
             "none.exr: cannot read: No such file or directory");
   std::filesystem::create_directory(folder_.path() / "d.exr");
   EXPECT_EQ(error_of(folder_.path() / "d.exr"), "d.exr: cannot read: it is a folder");
+  ASSERT_EQ(::mkfifo((folder_.path() / "p.exr").c_str(), 0600), 0);
+  EXPECT_EQ(error_of(folder_.path() / "p.exr"),
+            "p.exr: cannot read: it is a device, a pipe or a socket");
   EXPECT_EQ(error_of(folder_.write("t.exr", "text")), "t.exr: not an OpenEXR file");
   EXPECT_EQ(error_of(folder_.write("e.exr", "")), "e.exr: not an OpenEXR file");
   const std::string bytes = encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}), {});

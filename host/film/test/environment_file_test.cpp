@@ -99,6 +99,14 @@ TEST_F(EnvironmentFile, LieAsTheSceneDoes) {
   EXPECT_NEAR(glm::length(scene.environment->ahead - glm::dvec3(0, 1, 0)), 0.0, 1e-12);
   EXPECT_THROW(load_environment({folder_.path() / "none.exr", 0.0, 1.0}, {0, 1, 0}, scene),
                InputError);
+  const auto png = folder_.write("sky.png", "\x89PNG\r\n\x1a\n");
+  try {
+    load_environment({png, 0.0, 1.0}, {0, 1, 0}, scene);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), png.string() + ": found a file of another kind, expected OpenEXR or " +
+                                "Radiance HDR");
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include "host/base/test/temp_folder.h"
 #include "host/film/display.h"
 
 namespace raygate {
@@ -54,6 +55,22 @@ void expect_all_codes_kept(const Image8& picture) {
       ASSERT_EQ(decoded.pixels[3 * i + k], picture.pixels[i][k])
           << "pixel " << i << " channel " << k;
     }
+  }
+}
+
+TEST(Png, IsWholeOnlyAsItWasWritten) {
+  const TempFolder folder;
+  Image8 picture = sample(9, 7, {2, 1, 9, 7});
+  picture.texts.emplace_back("Comment", "of a test");
+  const std::string bytes = encode_png(picture);
+  EXPECT_TRUE(is_whole_png(folder.write("a.png", bytes)));
+  EXPECT_FALSE(is_whole_png(folder.write("a.png", bytes + "x")));
+  EXPECT_FALSE(is_whole_png(folder.path() / "none.png"));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    EXPECT_FALSE(is_whole_png(folder.write("a.png", bytes.substr(0, i)))) << i << " bytes";
+    std::string flipped = bytes;
+    flipped[i] = static_cast<char>(flipped[i] ^ 1 << i % 8);
+    EXPECT_FALSE(is_whole_png(folder.write("a.png", flipped))) << "byte " << i;
   }
 }
 

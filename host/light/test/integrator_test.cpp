@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <optional>
 
 #include "host/base/vectors.h"
@@ -10,6 +12,8 @@
 #include "host/intersect/unit/plane_unit.h"
 #include "host/intersect/unit/serial_hit_tester.h"
 #include "host/light/test/light_scenes.h"
+
+static thread_local bool refuse_large = false;  // memory, to this thread
 
 namespace raygate {
 namespace {
@@ -281,10 +285,11 @@ TEST(Snapshots, AreTakenOnTheWay) {
   RenderMonitor monitor;
   int snapshots = 0;
   float seen = 0.0f;
-  monitor.snapshot = [&](const Film& film) {
+  monitor.snapshot = [&](const Film* film) {
     ++snapshots;
-    EXPECT_EQ(film.color.size(), 1200u);
-    seen = std::max(seen, film.color[600].r);
+    ASSERT_NE(film, nullptr);
+    EXPECT_EQ(film->color.size(), 1200u);
+    seen = std::max(seen, film->color[600].r);
   };
   monitor.snapshot_seconds = 0.0;
   const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
@@ -295,5 +300,39 @@ TEST(Snapshots, AreTakenOnTheWay) {
   EXPECT_GT(seen, 0.0f);
 }
 
+// A copy that there is no memory for is told of, and the render goes on.
+TEST(Snapshots, WithoutMemoryForACopyTheRenderGoesOn) {
+  const Scene scene = everything();
+  const RenderOptions options = light(IntegratorKind::kPath, 40, 30, 100);
+  RenderMonitor monitor;
+  int missing = 0;
+  monitor.progress = [&](double fraction) {
+    refuse_large = fraction < 1.0;  // the copy follows, on this thread
+    return true;
+  };
+  monitor.snapshot = [&](const Film* film) {
+    refuse_large = false;
+    missing += film == nullptr;
+  };
+  monitor.snapshot_seconds = 0.0;
+  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
+  RenderStats stats;
+  const Bvh bvh(scene);
+  const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), stats, monitor);
+  refuse_large = false;
+  EXPECT_GT(missing, 0);
+  EXPECT_FALSE(stats.cancelled);
+  EXPECT_GT(film.color[600].r, 0.0f);
+}
+
 }  // namespace
 }  // namespace raygate
+
+// Without memory for a film, where a test says so.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  void* const memory = refuse_large && size > 4000 ? nullptr : std::malloc(size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

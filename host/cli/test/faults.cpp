@@ -1,0 +1,124 @@
+// A library to be preloaded (LD_PRELOAD) into a program: the system then fails where it is told to.
+//
+//   RAYGATE_FAULT=KIND:N    call number N of that kind, counted from main() on, fails; KIND:N+: all
+//                           from there on. KIND is memory (malloc and the like: ENOMEM), write
+//                           (ENOSPC), sync (fsync: EIO) or rename (EIO).
+//   RAYGATE_FAULT_COUNT=FILE    at the end, how many calls of each kind there were: four numbers
+//
+// As SQLite's tests do it ("How SQLite Is Tested", section 3).
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+extern "C" {
+// glibc's own, whoever stands before them.
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+}
+
+namespace {
+
+enum Kind { kMemory, kWrite, kSync, kRename, kKinds };
+constexpr std::array<const char*, kKinds> kNames = {"memory", "write", "sync", "rename"};
+
+std::array<std::atomic<long>, kKinds> calls;
+std::atomic<bool> counts = false;
+int failing_kind = -1;
+long first_failing = 0;
+bool fails_on = false;  // all that follow, too
+
+/// Whether this call of that kind fails; sets errno.
+bool fails(Kind kind, int error) {
+  if (!counts) return false;
+  const long call = ++calls[kind];
+  if (kind != failing_kind || (fails_on ? call < first_failing : call != first_failing)) {
+    return false;
+  }
+  errno = error;
+  return true;
+}
+
+void read_wish() {
+  const char* const wish = std::getenv("RAYGATE_FAULT");
+  if (wish == nullptr) return;
+  const std::size_t length = std::strcspn(wish, ":");
+  for (int kind = 0; kind < kKinds; ++kind) {
+    const char* const name = kNames[static_cast<std::size_t>(kind)];
+    if (std::strlen(name) == length && std::strncmp(wish, name, length) == 0) failing_kind = kind;
+  }
+  char* end = nullptr;
+  if (wish[length] == ':') first_failing = std::strtol(wish + length + 1, &end, 10);
+  fails_on = end != nullptr && *end == '+';
+  if (failing_kind < 0 || first_failing < 1) std::abort();
+}
+
+void write_counts() {
+  counts = false;
+  const char* const file = std::getenv("RAYGATE_FAULT_COUNT");
+  if (file == nullptr) return;
+  std::FILE* const out = std::fopen(file, "w");
+  if (out == nullptr) std::abort();
+  for (const auto& count : calls) std::fprintf(out, "%ld ", count.load());
+  std::fclose(out);
+}
+
+using Main = int (*)(int, char**, char**);
+Main real_main = nullptr;
+
+int counted_main(int argc, char** argv, char** environment) {
+  read_wish();
+  std::atexit(write_counts);
+  counts = true;
+  return real_main(argc, argv, environment);
+}
+
+}  // namespace
+
+// What stands before the functions of the C library has their names and no others.
+extern "C" {
+
+int __libc_start_main(Main main, int argc, char** argv, void (*init)(), void (*fini)(),
+                      void (*rtld_fini)(), void* stack_end) {
+  real_main = main;
+  const auto start = reinterpret_cast<decltype(&__libc_start_main)>(
+      ::dlsym(RTLD_NEXT, "__libc_start_main"));
+  return start(counted_main, argc, argv, init, fini, rtld_fini, stack_end);
+}
+
+void* malloc(std::size_t size) {
+  return fails(kMemory, ENOMEM) ? nullptr : __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  return fails(kMemory, ENOMEM) ? nullptr : __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  return fails(kMemory, ENOMEM) ? nullptr : __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  return fails(kMemory, ENOMEM) ? nullptr : __libc_memalign(alignment, size);
+}
+int posix_memalign(void** result, std::size_t alignment, std::size_t size) {
+  if (fails(kMemory, ENOMEM)) return ENOMEM;
+  *result = __libc_memalign(alignment, size);
+  return *result == nullptr ? ENOMEM : 0;
+}
+ssize_t write(int file, const void* bytes, std::size_t count) {
+  return fails(kWrite, ENOSPC) ? -1 : ::syscall(SYS_write, file, bytes, count);
+}
+int fsync(int file) {
+  return fails(kSync, EIO) ? -1 : static_cast<int>(::syscall(SYS_fsync, file));
+}
+int rename(const char* from, const char* to) noexcept {
+  return fails(kRename, EIO) ? -1 : static_cast<int>(::syscall(SYS_rename, from, to));
+}
+}

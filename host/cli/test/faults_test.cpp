@@ -1,0 +1,145 @@
+// Each allocation, write, sync and rename of a run fails, one run for each: what a file held it
+// holds, or what it was to hold; one line says what went wrong, and the exit status too. A dozen of
+// each kind; RAYGATE_FAULTS=N takes N, and 0 all of them (`make test LONG=faults`).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <sstream>
+
+#include "host/cli/test/render_run.h"
+
+namespace raygate {
+namespace {
+
+/// Which calls of so many are to fail: all, or some in all parts of the run.
+std::vector<long> chosen(long calls, std::mt19937& random) {
+  const char* const text = std::getenv("RAYGATE_FAULTS");
+  const long wanted = text == nullptr ? 12 : std::atol(text);
+  std::vector<long> some;
+  if (wanted <= 0 || wanted >= calls) {
+    for (long call = 1; call <= calls; ++call) some.push_back(call);
+    return some;
+  }
+  for (long i = 0; i < wanted; ++i) {
+    const long first = calls * i / wanted, next = calls * (i + 1) / wanted;
+    some.push_back(std::uniform_int_distribution<long>(first + 1, next)(random));
+  }
+  return some;
+}
+
+class Faults : public Render {
+ protected:
+  /// A run that should replace these files, from a folder with `inputs`.
+  struct Job {
+    std::vector<std::string> arguments;
+    std::vector<std::string> outputs;
+    std::string program{};
+  };
+
+  /// The inputs of all runs.
+  void SetUp() override {
+    const std::vector<std::string> picture = small_picture();
+    const auto make = [&](const char* samples, const char* name) {
+      std::vector<std::string> arguments = picture;
+      arguments.insert(arguments.end(), {"--samples", samples, "-o", name});
+      ASSERT_EQ(run_program({.arguments = arguments, .folder = folder_.path()}).status, 0);
+    };
+    make("0:2", "a.exr");
+    make("2:4", "b.exr");
+  }
+
+  static std::vector<std::string> small_picture() {
+    return {kCornell,   "--engine", "cpu",          "--size", "24x18", "--spp",     "4",
+            "--crop",   "4,2,20,16", "--integrator", "path",   "--threads", "2",    "--quiet"};
+  }
+
+  Outcome run(const Job& job, const std::string& fault) const {
+    return run_program({.arguments = job.arguments,
+                        .folder = folder_.path(),
+                        .program = job.program,
+                        .environment = {"LD_PRELOAD=" RAYGATE_FAULTS_LIBRARY,
+                                        fault.empty() ? "RAYGATE_FAULT_COUNT=counts"
+                                                      : "RAYGATE_FAULT=" + fault}});
+  }
+
+  void survive(const Job& job) {
+    const Outcome good = run(job, "");
+    ASSERT_EQ(good.status, 0) << good.err;
+    std::vector<std::string> made;
+    for (const std::string& name : job.outputs) made.push_back(folder_.read(name));
+    std::istringstream counts(folder_.read("counts"));
+    const std::vector<std::string> before = folder_.list();
+    std::mt19937 random(20261123);
+    for (const char* kind : {"memory", "write", "sync", "rename"}) {
+      long calls = 0;
+      ASSERT_TRUE(counts >> calls);
+      ASSERT_GT(calls, 0) << kind;
+      int runs = 0, refused = 0;
+      for (const long call : chosen(calls, random)) {
+        for (const char* on : {"", "+"}) {
+          SCOPED_TRACE(kind + ":"s + std::to_string(call) + on);
+          for (const std::string& name : job.outputs) folder_.write(name, "old " + name);
+          const Outcome outcome = run(job, kind + ":"s + std::to_string(call) + on);
+          ++runs;
+          refused += outcome.status != 0;
+          check(job, outcome, made);
+          EXPECT_EQ(folder_.list(), before);
+        }
+      }
+      std::printf("%s: of %ld calls, in %d runs: %d refused, %d made the picture\n", kind, calls,
+                  runs, refused, runs - refused);
+    }
+  }
+
+  void check(const Job& job, const Outcome& outcome, const std::vector<std::string>& made) const {
+    EXPECT_EQ(outcome.signal, 0) << outcome.err;
+    std::istringstream lines(outcome.err);
+    int errors = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("warning: ")) continue;
+      EXPECT_TRUE(line.starts_with("error: ")) << line;
+      ++errors;
+    }
+    EXPECT_EQ(errors, outcome.status == 0 ? 0 : 1) << outcome.err;
+    EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << outcome.status << outcome.err;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const std::string bytes = folder_.read(job.outputs[i]);
+      if (job.outputs[i] == "stats.json") {  // its times are never the same
+        const bool is_old = bytes == "old stats.json";
+        EXPECT_TRUE(is_old ? outcome.status != 0 : json::accept(bytes)) << bytes;
+        continue;
+      }
+      const bool is_old = outcome.status != 0 && bytes == "old " + job.outputs[i];
+      EXPECT_TRUE(is_old || bytes == made[i]) << job.outputs[i] << ", " << bytes.size() << " bytes";
+    }
+  }
+};
+
+TEST_F(Faults, OfARender) {
+  std::vector<std::string> arguments = small_picture();
+  arguments.insert(arguments.end(), {"-o", "c", "--stats", "stats.json"});
+  survive({arguments, {"c.exr", "c.png", "stats.json"}});
+}
+
+/// Whose tree two threads build.
+TEST_F(Faults, OfALargerScene) {
+  survive({{RAYGATE_SCENES "/teapot.obj", "--engine", "cpu", "--size", "8x6", "--threads", "2",
+            "--quiet", "--integrator", "primary", "-o", "c"},
+           {"c.exr", "c.png"}});
+}
+
+TEST_F(Faults, OfAResume) {
+  std::vector<std::string> arguments = small_picture();
+  arguments.insert(arguments.end(), {"--resume", "a.exr", "-o", "c", "--channels", "sums"});
+  survive({arguments, {"c.exr", "c.png"}});
+}
+
+TEST_F(Faults, OfAMerge) {
+  survive({{"a.exr", "b.exr", "-o", "c"}, {"c.exr", "c.png"}, RAYGATE_MERGE});
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,117 @@
+#include "host/scene/digest.h"
+
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace raygate {
+namespace {
+
+/// Takes values one after the other. Eight bytes are one step, each of which can be undone but
+/// changes all that follows: Steele and others' mixing function (SplitMix64, OOPSLA 2014).
+class Digest {
+ public:
+  [[nodiscard]] std::uint64_t value() const { return state_; }
+
+  void word(std::uint64_t bits) {
+    state_ = (state_ ^ bits) + 0x9e3779b97f4a7c15u;
+    state_ = (state_ ^ (state_ >> 30)) * 0xbf58476d1ce4e5b9u;
+    state_ = (state_ ^ (state_ >> 27)) * 0x94d049bb133111ebu;
+    state_ ^= state_ >> 31;
+  }
+  void bytes(const void* first, std::size_t count) {
+    word(count);
+    const char* at = static_cast<const char*>(first);
+    for (; count > 0;) {
+      std::uint64_t bits = 0;
+      const std::size_t step = std::min(count, sizeof bits);
+      std::memcpy(&bits, at, step);
+      word(bits);
+      at += step;
+      count -= step;
+    }
+  }
+
+  // Only what is without gaps between its members, whose bytes may be anything, goes in by its
+  // bytes; floats have two zeros, which may draw two pictures.
+  template <class T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void add(T value) {
+    bytes(&value, sizeof value);
+  }
+  void add(const std::string& text) { bytes(text.data(), text.size()); }
+  template <glm::length_t kSize, class T>
+  void add(const glm::vec<kSize, T>& vector) {
+    bytes(&vector, sizeof vector);
+  }
+  template <class T>
+  void add(const std::optional<T>& value) {
+    word(value.has_value());
+    if (value) add(*value);
+  }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    if constexpr (kIsPacked<T>) {
+      bytes(values.data(), values.size() * sizeof(T));
+    } else {
+      word(values.size());
+      for (const T& value : values) add(value);
+    }
+  }
+  template <class... Values>
+    requires(sizeof...(Values) > 1)
+  void add(const Values&... values) {
+    (add(values), ...);
+  }
+
+  void add(const TextureMapping& m) { add(m.scale, m.offset, m.clamp); }
+  void add(const MaterialMap& m) { add(m.mapping, m.texture); }
+  void add(const MetallicRoughness& m) { add(m.metallic, m.roughness, m.transmission, m.map); }
+  void add(const Material& m) {
+    add(m.diffuse, m.specular, m.emission, m.transmittance, m.shininess, m.refraction_index,
+        m.opacity, m.illumination_model, m.diffuse_mapping, m.diffuse_texture);
+    add(m.metallic_roughness, m.normal_map, m.normal_scale, m.opacity_map, m.opacity_cutoff);
+  }
+  void add(const Texture& t) { add(t.width(), t.height(), t.texels()); }
+  void add(const Mesh& m) { add(m.positions, m.triangles); }
+  void add(const SpotCone& c) { add(c.axis, c.inner, c.outer); }
+  void add(const PointLight& l) { add(l.position, l.intensity, l.spot); }
+  void add(const DirectionalLight& l) { add(l.direction, l.irradiance); }
+  void add(const EnvironmentMap& e) {
+    add(e.width, e.height, e.texels, e.strength, e.up, e.ahead);
+  }
+  void add(const Instance& i) {
+    bytes(i.rows, sizeof i.rows);
+    add(i.mesh, i.object);
+  }
+
+ private:
+  template <class T>
+  static constexpr bool kIsPacked =
+      std::same_as<T, glm::vec2> || std::same_as<T, glm::vec3> || std::same_as<T, Triangle> ||
+      std::same_as<T, Texture::Texel>;
+  static_assert(std::has_unique_object_representations_v<Triangle> && sizeof(glm::vec3) == 12);
+
+  std::uint64_t state_ = 0;
+};
+
+}  // namespace
+
+std::string digest_of(const Scene& scene) {
+  Digest digest;
+  digest.add(scene.positions, scene.normals, scene.texcoords, scene.triangles, scene.meshes,
+             scene.instances, scene.materials, scene.textures, scene.objects);
+  digest.add(scene.lights, scene.directional_lights, scene.background, scene.environment,
+             scene.origin);
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(digest.value()));
+  return text;
+}
+
+}  // namespace raygate

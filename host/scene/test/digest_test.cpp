@@ -1,0 +1,88 @@
+// Each thing that a picture may depend on changes a scene's digest.
+#include "host/scene/digest.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "host/scene/test/instanced_scene.h"
+
+namespace raygate {
+namespace {
+
+Scene sample() {
+  test::Random random;
+  Scene scene = test::instanced_scene(random, 3);
+  scene.materials.resize(2);
+  scene.materials[1].metallic_roughness = MetallicRoughness{};
+  scene.textures.emplace_back(2, 1, std::vector<Texture::Texel>{{1, 2, 3}, {4, 5, 6}});
+  scene.lights.push_back({.spot = SpotCone{}});
+  scene.directional_lights.emplace_back();
+  scene.environment = EnvironmentMap{.width = 1, .height = 1, .texels = {glm::vec3(1)}};
+  return scene;
+}
+
+TEST(Digest, IsTheSameOfEqualScenes) {
+  Scene scene = sample();
+  EXPECT_EQ(digest_of(scene), digest_of(sample()));
+  EXPECT_EQ(digest_of(scene).find_first_not_of("0123456789abcdef"), std::string::npos);
+  EXPECT_EQ(digest_of(scene).size(), 16u);
+  // What no pixel depends on.
+  scene.warnings.emplace_back("a.obj:1: said");
+  scene.files.emplace_back("a.obj");
+  scene.materials[0].name = "another";
+  scene.camera = CameraSetting{};
+  EXPECT_EQ(digest_of(scene), digest_of(sample()));
+}
+
+TEST(Digest, IsAnotherOfScenesThatDiffer) {
+  const std::vector<std::function<void(Scene&)>> changes = {
+      [](Scene&) {},
+      [](Scene& s) { s.positions[0].x += 1; },
+      [](Scene& s) { s.positions[0].x = s.positions[0].x == 0.0f ? -0.0f : 1e-45f; },
+      [](Scene& s) { s.positions.emplace_back(0.0f); },
+      [](Scene& s) { s.normals[0] = -s.normals[0]; },
+      [](Scene& s) { s.texcoords.emplace_back(0.0f); },
+      [](Scene& s) { std::swap(s.triangles[0].vertices[0], s.triangles[0].vertices[1]); },
+      [](Scene& s) { s.triangles[0].material = 1; },
+      [](Scene& s) { s.meshes[0].positions[0].y += 1; },
+      [](Scene& s) { s.meshes[0].triangles.pop_back(); },
+      [](Scene& s) { s.instances[0].rows[2][3] += 1e-9; },
+      [](Scene& s) { s.instances[0].mesh ^= 1; },
+      [](Scene& s) { s.instances[0].object += 1; },
+      [](Scene& s) { s.materials[0].diffuse.g = 0.5f; },
+      [](Scene& s) { s.materials[0].illumination_model = 1; },
+      [](Scene& s) { s.materials[0].diffuse_texture = 0; },
+      [](Scene& s) { s.materials[0].diffuse_mapping.clamp = true; },
+      [](Scene& s) { s.materials[0].normal_scale = 2.0f; },
+      [](Scene& s) { s.materials[0].opacity_map.texture = 0; },
+      [](Scene& s) { s.materials[1].metallic_roughness->roughness = 0.5f; },
+      [](Scene& s) { s.materials[1].metallic_roughness->map.texture = 0; },
+      [](Scene& s) { s.materials[1].metallic_roughness.reset(); },
+      [](Scene& s) { s.textures[0] = Texture(2, 1, {{1, 2, 3}, {4, 5, 7}}); },
+      [](Scene& s) { s.textures[0] = Texture(1, 2, {{1, 2, 3}, {4, 5, 6}}); },
+      [](Scene& s) { s.objects.emplace_back("more"); },
+      [](Scene& s) { s.lights[0].intensity.r = 1.0; },
+      [](Scene& s) { s.lights[0].spot->outer = 44.0; },
+      [](Scene& s) { s.lights[0].spot.reset(); },
+      [](Scene& s) { s.directional_lights[0].irradiance.b = 1.0f; },
+      [](Scene& s) { s.background.r = 0.25f; },
+      [](Scene& s) { s.environment->texels[0].r = 2.0f; },
+      [](Scene& s) { s.environment->strength = 2.0f; },
+      [](Scene& s) { s.environment->ahead.x = 0.5; },
+      [](Scene& s) { s.environment.reset(); },
+      [](Scene& s) { s.origin.z = 1e-12; },
+  };
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    Scene scene = sample();
+    changes[i](scene);
+    EXPECT_TRUE(seen.insert(digest_of(scene)).second) << "change " << i;
+  }
+}
+
+}  // namespace
+}  // namespace raygate
