@@ -57,13 +57,16 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 frames: verilate ## measure: the paper's frame at 10 MHz: clocks, frames per second, bytes read
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj
 
-# Long runs of single tests: ten million tests of the pipelined unit; ranks that are killed; the intervals of --error.
+# Long runs of single tests: ten million tests of the pipelined unit; renders and ranks that are killed; each allocation,
+# write, sync and rename failing in turn; the intervals of --error.
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
+LONG_kills = RAYGATE_KILLS=$(or $(KILLS),100) build/run_test --gtest_filter='*SurviveBeingKilled'
+LONG_faults = RAYGATE_FAULTS=0 build/faults_test
 LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='KilledRanks.*'
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: ## test: build and run all tests; long runs: make test LONG=unit | LONG=ranks KILLS=20 | LONG=error SEEDS=1000
+test: ## test: build and run all tests; long runs: make test LONG=unit | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=error SEEDS=1000
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, ranks or error))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, kills, ranks, faults or error))
 	$(call build,test,$(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))))
 	@$(LONG_$(LONG))
 else

@@ -15,6 +15,7 @@ namespace raygate {
 namespace {
 
 constexpr int kUserError = 2;
+constexpr const char* kOutOfMemory = "out of memory; a smaller picture needs less";
 constexpr int kSignalBase = 128;  // as shells report a death by signal
 
 int why_output_failed = 0;  // errno of a failed print; 0: none failed
@@ -22,6 +23,17 @@ std::atomic<int> noted_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
 
 std::atomic<bool> noted_warning = false;
+
+/// Given back when memory runs out for the first time, so that there is some to end with: for the
+/// line that says so, and for destructors that allocate, as those of JSON values do.
+constexpr std::size_t kReserve = std::size_t{1} << 20;
+std::atomic<void*> reserve = nullptr;
+
+void give_reserve_back() {
+  void* const memory = reserve.exchange(nullptr);
+  if (memory == nullptr) throw std::bad_alloc();
+  ::operator delete(memory);
+}
 
 void note(int signal) { noted_signal = signal; }
 void note_warning(int /*signal*/) { noted_warning = true; }
@@ -96,7 +108,7 @@ Ending ending_of(const std::exception_ptr& error, int internal_error) {
   } catch (const Interrupted& interrupted) {
     return {kSignalBase + interrupted.signal(), interrupted.what()};
   } catch (const std::bad_alloc&) {
-    return {kUserError, "out of memory; a smaller picture needs less"};
+    return {kUserError, kOutOfMemory};
   } catch (const RankFailure& trouble) {
     return {trouble.status(), trouble.what()};
   } catch (const std::exception& fault) {
@@ -110,13 +122,21 @@ int run_guarded(const std::function<int()>& program, int internal_error) {
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {
+    reserve = ::operator new(kReserve);
+    std::set_new_handler(give_reserve_back);
     const int status = program();
     flush_standard_output();
     return status;
   } catch (...) {
-    const Ending ending = ending_of(std::current_exception(), internal_error);
-    std::fprintf(stderr, "error: %s\n", printable(ending.line).c_str());
-    return ending.status;
+    const std::exception_ptr error = std::current_exception();
+    try {
+      const Ending ending = ending_of(error, internal_error);
+      std::fprintf(stderr, "error: %s\n", printable(ending.line).c_str());
+      return ending.status;
+    } catch (const std::bad_alloc&) {  // no memory for the line itself
+      std::fprintf(stderr, "error: %s\n", kOutOfMemory);
+      return kUserError;
+    }
   }
 }
 

@@ -120,8 +120,8 @@ FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
   for (const std::filesystem::path& path : outputs.paths()) {
     if (!std::filesystem::exists(path, ignored)) return {};
     if (path == outputs.exr) continue;
-    const bool is_whole = path == outputs.stats ? std::filesystem::file_size(path, ignored) > 0
-                                                : is_whole_png(path);
+    const bool is_whole =
+        path == outputs.stats ? std::filesystem::file_size(path, ignored) > 0 : is_whole_png(path);
     if (!is_whole) return {.damage = path.string() + ": damaged"};
   }
   return {.is_finished = true};

@@ -19,7 +19,7 @@ namespace raygate {
 
 /// What --resume finds of one frame of an animation.
 struct FoundFrame {
-  bool is_finished = false;        ///< all its files are there
+  bool is_finished = false;          ///< all its files are there
   std::optional<Film> unfinished{};  ///< if not, and there is something to resume
   std::string damage{};              ///< else, where a file is damaged: which, and what is wrong
 };

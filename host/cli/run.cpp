@@ -309,7 +309,7 @@ class Run {
   std::vector<OutputOptions> outputs_;  // of each picture
   std::FILE* console_ = stdout;
   Scene scene_;
-  std::string scene_digest_;  // of the files, without default lights and ground
+  std::string scene_digest_;                  // of the files, without default lights and ground
   std::shared_ptr<const MemoryImage> image_;  // of a ray core
   Report report_;
 };

@@ -86,7 +86,8 @@ std::pair<fs::path, int> create_beside(const fs::path& target, const fs::path& n
 /// Brings a new name in the target's folder to the disk, too; 0, or the error. Not every folder may
 /// be opened, and not every file system can: they do so when they like.
 int sync_folder_of(const fs::path& target) {
-  const int folder = ::open(target.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const fs::path parent = target.has_parent_path() ? target.parent_path() : ".";
+  const int folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return 0;
   const int error = ::fsync(folder) != 0 && errno != EINVAL && errno != EROFS ? errno : 0;
   ::close(folder);

@@ -51,8 +51,8 @@ struct DisplayOptions {
 /// bytes. Throws std::runtime_error if libpng fails.
 [[nodiscard]] std::string encode_png(const Image8& picture);
 
-/// Whether this is a PNG file that nothing has damaged: its chunks follow each other up to IEND, the
-/// last, and each has its checksum (PNG, Third Edition, 5.3 to 5.6). What they say is not read.
+/// Whether this is a PNG file that nothing has damaged: its chunks follow each other up to IEND,
+/// the last, and each has its checksum (PNG, Third Edition, 5.3 to 5.6). What they say is not read.
 [[nodiscard]] bool is_whole_png(const std::filesystem::path& file);
 
 }  // namespace raygate

@@ -1,5 +1,6 @@
 #include "host/film/exr.h"
 
+#include <IexBaseExc.h>
 #include <ImathBox.h>
 #include <ImathMatrix.h>
 #include <ImfChannelList.h>
@@ -22,8 +23,11 @@
 #include <fstream>
 #include <new>
 #include <system_error>
+#include <utility>
 
+#include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/base/threads.h"
 
 namespace raygate {
 namespace {
@@ -63,8 +67,8 @@ Imath::M44f to_imath(const glm::mat4& m) {
   return result;
 }
 
-Imf::Header make_header(const Film& film, const ExrMetadata& metadata) {
-  const PixelRect& window = film.window;
+/// Of a file with these rows of the film.
+Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const PixelRect& window) {
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
                      Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}));
   header.screenWindowWidth() = metadata.screen_window_width;
@@ -141,6 +145,7 @@ std::vector<double> read_channel(Imf::InputFile& file, const std::string& name, 
 template <class Read>
 auto with_file(const std::filesystem::path& path, const Read& read) {
   require_exr(path);
+  (void)Imf::globalThreadCount();  // makes the library's threads, none, where failing does no harm
   try {
     Imf::InputFile file(path.c_str(), 0);
     const Imath::Box2i& data = file.header().dataWindow();
@@ -227,18 +232,18 @@ ExrMetadata metadata_of(const Imf::Header& header) {
   return metadata;
 }
 
-/// Whether the file that `bytes` are holds all numbers of `film`, bit by bit.
-bool holds_film(const std::string& bytes, const Film& film, int helpers) {
+/// Whether the file that `bytes` are holds these rows of `film`, bit by bit.
+bool holds_rows(const std::string& bytes, const Film& film, const PixelRect& window) {
   constexpr int kRows = 64;  // at a time
   Imf::StdISStream stream;
   stream.str(bytes);
-  Imf::InputFile file(stream, helpers);
+  Imf::InputFile file(stream, 0);
   const std::vector<Channel> channels = channels_of(film);
-  const auto width = static_cast<std::size_t>(film.window.width());
+  const auto width = static_cast<std::size_t>(window.width());
   std::vector<std::uint32_t> numbers(channels.size() * width * kRows);
-  PixelRect block = film.window;
-  for (; block.y0 < film.window.y1; block.y0 = block.y1) {
-    block.y1 = std::min(block.y0 + kRows, film.window.y1);
+  PixelRect block = window;
+  for (; block.y0 < window.y1; block.y0 = block.y1) {
+    block.y1 = std::min(block.y0 + kRows, window.y1);
     const std::size_t count = width * static_cast<std::size_t>(block.height());
     Imf::FrameBuffer slices;
     for (std::size_t k = 0; k < channels.size(); ++k) {
@@ -258,26 +263,67 @@ bool holds_film(const std::string& bytes, const Film& film, int helpers) {
   return true;
 }
 
+/// A file of these rows of the film; of none, up to where its rows begin.
+std::string encode_rows(const Film& film, const ExrMetadata& metadata, const PixelRect& window,
+                        bool has_pixels = true) {
+  try {
+    (void)Imf::globalThreadCount();  // as in with_file()
+    Imf::StdOSStream stream;
+    {
+      Imf::OutputFile file(stream, make_header(film, metadata, window), 0);
+      file.setFrameBuffer(slices_of(film));
+      if (has_pixels) file.writePixels(window.height());
+    }  // the destructor completes the file
+    std::string bytes = stream.str();
+    // Without memory, the library may leave a block out in silence, and so may the stream.
+    if (!has_pixels || holds_rows(bytes, film, window)) return bytes;
+  } catch (const Iex::BaseExc&) {  // NOLINT(bugprone-empty-catch): no file is in it to fail
+  }
+  throw std::bad_alloc();
+}
+
+constexpr int kBlockRows = 16;  // which ZIP compresses together
+constexpr std::size_t kOffsetBytes = 8;
+
+int blocks_of(const PixelRect& window) { return (window.height() + kBlockRows - 1) / kBlockRows; }
+
 }  // namespace
 
-// The library compresses on its own threads; the bytes do not depend on how many there are. Where a
-// thread has no memory left, it drops a block in silence, and so may the stream: hence the look at
-// what was written.
+// The library's threads wait for ever for a block that had no memory, so it is given none: ours
+// make files of some blocks each, and one file is put together of their blocks (a header, the
+// offset of each block, the blocks: "OpenEXR File Layout"). What a block is does not depend on its
+// file.
 std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
-  const int helpers = threads > 1 ? threads : 0;
-  try {
-    if (helpers > Imf::globalThreadCount()) Imf::setGlobalThreadCount(helpers);
-  } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
-    // Threads that cannot be started are done without.
+  constexpr int kPerThread = 4;  // so that they end together
+  const int blocks = blocks_of(film.window);
+  const int rows = kBlockRows * std::max(1, blocks / (kPerThread * threads));
+  const int count = (film.window.height() + rows - 1) / rows;
+  if (threads == 1 || count == 1) return encode_rows(film, metadata, film.window);
+  const auto window = [&](std::size_t part) {
+    PixelRect rect = film.window;
+    rect.y0 += static_cast<int>(part) * rows;
+    rect.y1 = std::min(rect.y0 + rows, film.window.y1);
+    return rect;
+  };
+  std::vector<std::string> parts(static_cast<std::size_t>(count));
+  for_each_on_threads(threads, parts.size(), [&](std::size_t part) {
+    parts[part] = encode_rows(film, metadata, window(part));
+  });
+  std::string bytes = encode_rows(film, metadata, film.window, false);
+  // All headers are of one length.
+  const std::size_t header = bytes.size() - kOffsetBytes * static_cast<std::size_t>(blocks);
+  std::size_t entry = header;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const std::string file = std::exchange(parts[part], {});
+    const auto there = static_cast<std::size_t>(blocks_of(window(part)));
+    const std::size_t first = header + kOffsetBytes * there;
+    for (std::size_t i = 0; i < there; ++i, entry += kOffsetBytes) {
+      const std::uint64_t offset =
+          number_at<std::uint64_t>(&file[header + kOffsetBytes * i]) - first + bytes.size();
+      std::memcpy(&bytes[entry], &offset, sizeof offset);
+    }
+    bytes.append(file, first);
   }
-  Imf::StdOSStream stream;
-  {
-    Imf::OutputFile file(stream, make_header(film, metadata), helpers);
-    file.setFrameBuffer(slices_of(film));
-    file.writePixels(film.window.height());
-  }  // the destructor completes the file
-  std::string bytes = stream.str();
-  if (!holds_film(bytes, film, helpers)) throw std::bad_alloc();
   return bytes;
 }
 

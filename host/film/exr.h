@@ -46,9 +46,9 @@ inline constexpr const char* kPartial = "not finished when it was saved";
 ///   tests doubts   uint    counts
 ///   samples error  uint, float    how many samples, and the error that is left (FilmSums)
 /// The display window is the frame, the data window the film's window within it. Equal arguments
-/// give equal bytes, whatever the number of threads. They are read back: std::bad_alloc where they do
-/// not hold every bit of the film, as the library does not always say that it had no memory left;
-/// another std::exception where it says so.
+/// give equal bytes, whatever the number of threads. They are read back, as the library does not
+/// always say that it had no memory left. Throws std::bad_alloc where they do not hold every bit of
+/// the film.
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
                                      int threads = 1);
 

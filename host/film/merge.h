@@ -22,7 +22,8 @@ struct SampleRange {
 /// The attribute of a file that does not have all of "spp".
 inline constexpr const char* kSamplesAttribute = "samples";
 
-/// The attribute of the digest of all geometry, materials and lights that were read (host/scene/digest.h).
+/// The attribute of the digest of all geometry, materials and lights that were read
+/// (host/scene/digest.h).
 inline constexpr const char* kSceneAttribute = "sceneDigest";
 
 /// What a film file says that it holds: that attribute, or all of "spp".

@@ -1,6 +1,7 @@
 #include "host/options/option_table.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 
 #include "host/base/input_error.h"
@@ -158,7 +159,8 @@ void OptionTable::set(const std::string& name, const std::string& text) const {
 }
 
 std::string OptionTable::typed(const std::string& name) const {
-  const CLI::results_t& results = line_->app.get_option("--" + name)->results();
+  // CLI11's own search promises to throw nothing, and takes memory.
+  const CLI::results_t& results = std::ranges::find(rows_, name, &Row::name)->option->results();
   return results.empty() ? "" : results.back();
 }
 

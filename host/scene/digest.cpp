@@ -41,10 +41,8 @@ class Digest {
   // Only what is without gaps between its members, whose bytes may be anything, goes in by its
   // bytes; floats have two zeros, which may draw two pictures.
   template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void add(T value) {
-    bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void add(T value) { bytes(&value, sizeof value); }
   void add(const std::string& text) { bytes(text.data(), text.size()); }
   template <glm::length_t kSize, class T>
   void add(const glm::vec<kSize, T>& vector) {
@@ -65,10 +63,7 @@ class Digest {
     }
   }
   template <class... Values>
-    requires(sizeof...(Values) > 1)
-  void add(const Values&... values) {
-    (add(values), ...);
-  }
+  requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
   void add(const TextureMapping& m) { add(m.scale, m.offset, m.clamp); }
   void add(const MaterialMap& m) { add(m.mapping, m.texture); }
@@ -83,9 +78,7 @@ class Digest {
   void add(const SpotCone& c) { add(c.axis, c.inner, c.outer); }
   void add(const PointLight& l) { add(l.position, l.intensity, l.spot); }
   void add(const DirectionalLight& l) { add(l.direction, l.irradiance); }
-  void add(const EnvironmentMap& e) {
-    add(e.width, e.height, e.texels, e.strength, e.up, e.ahead);
-  }
+  void add(const EnvironmentMap& e) { add(e.width, e.height, e.texels, e.strength, e.up, e.ahead); }
   void add(const Instance& i) {
     bytes(i.rows, sizeof i.rows);
     add(i.mesh, i.object);
@@ -93,9 +86,8 @@ class Digest {
 
  private:
   template <class T>
-  static constexpr bool kIsPacked =
-      std::same_as<T, glm::vec2> || std::same_as<T, glm::vec3> || std::same_as<T, Triangle> ||
-      std::same_as<T, Texture::Texel>;
+  static constexpr bool kIsPacked = std::same_as<T, glm::vec2> || std::same_as<T, glm::vec3> ||
+                                    std::same_as<T, Triangle> || std::same_as<T, Texture::Texel>;
   static_assert(std::has_unique_object_representations_v<Triangle> && sizeof(glm::vec3) == 12);
 
   std::uint64_t state_ = 0;

@@ -1,9 +1,11 @@
 // A library to be preloaded (LD_PRELOAD) into a program: the system then fails where it is told to.
 //
-//   RAYGATE_FAULT=KIND:N    call number N of that kind, counted from main() on, fails; KIND:N+: all
-//                           from there on. KIND is memory (malloc and the like: ENOMEM), write
-//                           (ENOSPC), sync (fsync: EIO) or rename (EIO).
-//   RAYGATE_FAULT_COUNT=FILE    at the end, how many calls of each kind there were: four numbers
+//   RAYGATE_FAULT=KIND:N    call number N of that kind, counted from main() on, fails. KIND is
+//   memory
+//                           (malloc and the like: ENOMEM), large (those of 4 KiB and more, and all
+//                           of them from there on), write (ENOSPC), sync (fsync: EIO) or rename
+//                           (EIO).
+//   RAYGATE_FAULT_COUNT=FILE    at the end, how many calls of each kind there were, in that order
 //
 // As SQLite's tests do it ("How SQLite Is Tested", section 3).
 #include <dlfcn.h>
@@ -28,24 +30,29 @@ void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 namespace {
 
-enum Kind { kMemory, kWrite, kSync, kRename, kKinds };
-constexpr std::array<const char*, kKinds> kNames = {"memory", "write", "sync", "rename"};
+enum Kind { kMemory, kLarge, kWrite, kSync, kRename, kKinds };
+constexpr std::array<const char*, kKinds> kNames = {"memory", "large", "write", "sync", "rename"};
+constexpr std::size_t kLargeBytes = 4096;
 
 std::array<std::atomic<long>, kKinds> calls;
 std::atomic<bool> counts = false;
 int failing_kind = -1;
 long first_failing = 0;
-bool fails_on = false;  // all that follow, too
 
 /// Whether this call of that kind fails; sets errno.
 bool fails(Kind kind, int error) {
   if (!counts) return false;
   const long call = ++calls[kind];
-  if (kind != failing_kind || (fails_on ? call < first_failing : call != first_failing)) {
+  if (kind != failing_kind || call < first_failing || (call > first_failing && kind != kLarge)) {
     return false;
   }
   errno = error;
   return true;
+}
+
+bool no_memory(std::size_t size) {
+  const bool is_large = size >= kLargeBytes && fails(kLarge, ENOMEM);
+  return fails(kMemory, ENOMEM) || is_large;
 }
 
 void read_wish() {
@@ -56,9 +63,7 @@ void read_wish() {
     const char* const name = kNames[static_cast<std::size_t>(kind)];
     if (std::strlen(name) == length && std::strncmp(wish, name, length) == 0) failing_kind = kind;
   }
-  char* end = nullptr;
-  if (wish[length] == ':') first_failing = std::strtol(wish + length + 1, &end, 10);
-  fails_on = end != nullptr && *end == '+';
+  if (wish[length] == ':') first_failing = std::strtol(wish + length + 1, nullptr, 10);
   if (failing_kind < 0 || first_failing < 1) std::abort();
 }
 
@@ -90,25 +95,23 @@ extern "C" {
 int __libc_start_main(Main main, int argc, char** argv, void (*init)(), void (*fini)(),
                       void (*rtld_fini)(), void* stack_end) {
   real_main = main;
-  const auto start = reinterpret_cast<decltype(&__libc_start_main)>(
-      ::dlsym(RTLD_NEXT, "__libc_start_main"));
+  const auto start =
+      reinterpret_cast<decltype(&__libc_start_main)>(::dlsym(RTLD_NEXT, "__libc_start_main"));
   return start(counted_main, argc, argv, init, fini, rtld_fini, stack_end);
 }
 
-void* malloc(std::size_t size) {
-  return fails(kMemory, ENOMEM) ? nullptr : __libc_malloc(size);
-}
+void* malloc(std::size_t size) { return no_memory(size) ? nullptr : __libc_malloc(size); }
 void* calloc(std::size_t count, std::size_t size) {
-  return fails(kMemory, ENOMEM) ? nullptr : __libc_calloc(count, size);
+  return no_memory(count * size) ? nullptr : __libc_calloc(count, size);
 }
 void* realloc(void* old, std::size_t size) {
-  return fails(kMemory, ENOMEM) ? nullptr : __libc_realloc(old, size);
+  return no_memory(size) ? nullptr : __libc_realloc(old, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  return fails(kMemory, ENOMEM) ? nullptr : __libc_memalign(alignment, size);
+  return no_memory(size) ? nullptr : __libc_memalign(alignment, size);
 }
 int posix_memalign(void** result, std::size_t alignment, std::size_t size) {
-  if (fails(kMemory, ENOMEM)) return ENOMEM;
+  if (no_memory(size)) return ENOMEM;
   *result = __libc_memalign(alignment, size);
   return *result == nullptr ? ENOMEM : 0;
 }

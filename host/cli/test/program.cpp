@@ -61,6 +61,12 @@ Channel make_terminal() {
     const rlimit limit{bytes, bytes};
     ready = ready && ::setrlimit(RLIMIT_FSIZE, &limit) == 0;
   }
+  ::alarm(invocation.most_seconds);
+  if (invocation.memory_limit > 0) {
+    const auto bytes = static_cast<rlim_t>(invocation.memory_limit);
+    const rlimit limit{bytes, bytes};
+    ready = ready && ::setrlimit(RLIMIT_AS, &limit) == 0;
+  }
   if (!invocation.out_file.empty()) {
     const int file = ::open(invocation.out_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     ready = ready && ::dup2(file, STDOUT_FILENO) >= 0;

@@ -20,6 +20,8 @@ struct Invocation {
   std::vector<std::pair<std::string, std::function<void(int)>>> when_said{};
   std::string out_file{};       ///< standard output goes there instead
   long file_size_limit = 0;     ///< bytes that a file may grow to; 0: no limit
+  unsigned most_seconds = 0;    ///< then SIGALRM; 0: no limit
+  long memory_limit = 0;        ///< bytes of address space; 0: no limit
   bool without_rights = false;  ///< as a user who is not root
   int most_threads = 0;         ///< that its user may have, its first one counted; 0: no limit
   std::string program{};        ///< another one than that under test

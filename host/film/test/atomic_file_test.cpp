@@ -116,8 +116,8 @@ TEST_F(AtomicFileTest, FollowsSymbolicLinksToWhatIsNotThereYet) {
   EXPECT_TRUE(fs::is_symlink(folder_ / "second"));
   EXPECT_EQ(read(folder_ / "disk" / "file"), "new");
   fs::create_symlink("round", folder_ / "round");
-  EXPECT_EQ(message_of(folder_ / "round", "x"), (folder_ / "round").string() +
-            ": cannot write: Too many levels of symbolic links");
+  EXPECT_EQ(message_of(folder_ / "round", "x"),
+            (folder_ / "round").string() + ": cannot write: Too many levels of symbolic links");
 }
 
 TEST_F(AtomicFileTest, OtherNamesOfAnOldFileKeepIt) {

@@ -62,8 +62,12 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
       [](Scene& s) { s.materials[1].metallic_roughness->roughness = 0.5f; },
       [](Scene& s) { s.materials[1].metallic_roughness->map.texture = 0; },
       [](Scene& s) { s.materials[1].metallic_roughness.reset(); },
-      [](Scene& s) { s.textures[0] = Texture(2, 1, {{1, 2, 3}, {4, 5, 7}}); },
-      [](Scene& s) { s.textures[0] = Texture(1, 2, {{1, 2, 3}, {4, 5, 6}}); },
+      [](Scene& s) {
+        s.textures[0] = Texture(2, 1, {{1, 2, 3}, {4, 5, 7}});
+      },
+      [](Scene& s) {
+        s.textures[0] = Texture(1, 2, {{1, 2, 3}, {4, 5, 6}});
+      },
       [](Scene& s) { s.objects.emplace_back("more"); },
       [](Scene& s) { s.lights[0].intensity.r = 1.0; },
       [](Scene& s) { s.lights[0].spot->outer = 44.0; },
