@@ -103,17 +103,20 @@ FUZZ_SECONDS ?= 60
 FUZZ_LENGTH = $(if $(FUZZ_FILES),-runs=$(FUZZ_FILES) -seed=1,-max_total_time=$(FUZZ_SECONDS))
 FUZZ_LIMITS := -max_len=1048576 -rss_limit_mb=2048 -artifact_prefix=build/fuzz/
 FUZZ_SCENES := obj json ply stl gltf glb
+FUZZ_FILMS := hdr exr
 fuzz: ## test: libFuzzer on the readers and exact arithmetic: make fuzz [FUZZ_SECONDS=60 | FUZZ_FILES=5000]
 	@$(SETUP) fuzz
 	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYGATE_FUZZ=ON
-	@cmake --build build/fuzz -j $(JOBS) --target $(FUZZ_SCENES:=_fuzz) hdr_fuzz rays_fuzz exact_fuzz
+	@cmake --build build/fuzz -j $(JOBS) --target $(FUZZ_SCENES:=_fuzz) $(FUZZ_FILMS:=_fuzz) rays_fuzz exact_fuzz
 	@mkdir -p build/fuzz/obj && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/obj
 	@for kind in $(FUZZ_SCENES); do \
 	  mkdir -p build/fuzz/$$kind && cp -n host/render/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
 	  build/fuzz/$${kind}_fuzz $(FUZZ_LENGTH) $(FUZZ_LIMITS) build/fuzz/$$kind || exit 1; \
 	done
-	@mkdir -p build/fuzz/hdr && cp -n host/film/fuzz/seeds/*.hdr build/fuzz/hdr
-	@build/fuzz/hdr_fuzz $(FUZZ_LENGTH) $(FUZZ_LIMITS) build/fuzz/hdr
+	@for kind in $(FUZZ_FILMS); do \
+	  mkdir -p build/fuzz/$$kind && cp -n host/film/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
+	  build/fuzz/$${kind}_fuzz $(FUZZ_LENGTH) $(FUZZ_LIMITS) build/fuzz/$$kind || exit 1; \
+	done
 	@mkdir -p build/fuzz/rays && cp -n host/trace/fuzz/rays/* build/fuzz/rays
 	@build/fuzz/rays_fuzz $(FUZZ_LENGTH) -rss_limit_mb=512 -malloc_limit_mb=16 \
 	  -artifact_prefix=build/fuzz/ build/fuzz/rays

@@ -141,13 +141,29 @@ class Coordinator : public TileWorkers {
 
   /// Gives a copy of the film away, while the threads go on.
   void show(std::unique_lock<std::mutex>& lock, const std::function<void(const Film*)>& take) {
+    lock.unlock();
     std::optional<Film> film;
     try {
-      film = film_;
+      film = copy_of_film();
     } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): the render needs none
     }
-    lock.unlock();
     take(film ? &*film : nullptr);
+  }
+
+  /// Tile by tile: a thread waits for the copy of one at most.
+  Film copy_of_film() {
+    Film copy;
+    copy.width = film_.width;
+    copy.height = film_.height;
+    copy.window = film_.window;
+    copy.keeps_sums = film_.keeps_sums;
+    for_each_field([](const FilmField&, const auto& from, auto& to) { to.resize(from.size()); },
+                   film_, copy);
+    for (int i = 0; i < tiles_.count; ++i) {
+      const std::scoped_lock lock(mutex_);
+      set_region(copy, tiles_[i], region_bytes(film_, tiles_[i]));
+    }
+    return copy;
   }
 
   /// Looks at the film now and then, if that tells.

@@ -214,15 +214,19 @@ void flatten_instances(Scene& scene) {
   scene.meshes.clear();
 }
 
-void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file) {
-  if (scene.instances.empty()) return;
+void require_numbers(const Scene& scene, const std::filesystem::path& file) {
   const std::uint64_t triangles = triangle_count(scene);
   if (triangles + scene.instances.size() >= (std::uint64_t{1} << 31) - 1) {
     throw InputError(file.string() + ": found " + std::to_string(triangles) +
                      " triangles with all instances, expected fewer than 2^31");
   }
+}
+
+void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file) {
+  if (scene.instances.empty()) return;
+  require_numbers(scene, file);
   flatten_emitters(scene);
-  const bool is_many = triangles - scene.triangles.size() > kFlattenLimit;
+  const bool is_many = triangle_count(scene) - scene.triangles.size() > kFlattenLimit;
   if (mode == InstanceMode::kFlatten || (mode == InstanceMode::kAutomatic && !is_many)) {
     flatten_instances(scene);
   }

@@ -233,6 +233,31 @@ TEST_F(BadInput, SceneFiles) {
                  "scene\\.json: found no none\\.obj, [^\n]+ `python3 make_scene\\.py none\\.obj`");
 }
 
+/// More triangles than there are numbers: told before anybody looks at them all.
+TEST_F(BadInput, TooManyInstances) {
+  constexpr int kSide = 300, kPlaces = 12100;
+  std::string model, places;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      model += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+      if (x == 0 || y == 0) continue;
+      const int a = y * kSide + x + 1;  // its number; of its neighbours, those before it
+      for (const int b : {a - kSide - 1, a - 1}) {
+        model += "f " + std::to_string(a) + " " + std::to_string(b) + " " +
+                 std::to_string(b == a - 1 ? a - kSide - 1 : a - kSide) + "\n";
+      }
+    }
+  }
+  for (int i = 0; i < kPlaces; ++i) places += (i == 0 ? "[" : ",\n[") + std::to_string(i) + ",0,0]";
+  folder_.write("model.obj", model);
+  folder_.write("scene.obj", kGoodScene);
+  folder_.write("scene.json",
+                R"({"instances": [{"model": "model.obj", "places": [)" + places + "]}]}");
+  expect_refused(render({"scene.obj"}),
+                 "scene\\.obj: found 2163504202 triangles with all instances, expected fewer than "
+                 "2\\^31");
+}
+
 /// Numbers so large that differences, products or the camera's distance leave float's range.
 TEST_F(BadInput, VectorsThatNoMachineHas) {
   folder_.write("scene.obj", kGoodScene);

@@ -1,9 +1,12 @@
 #include "host/scene/io/json_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <unordered_set>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
@@ -75,11 +78,10 @@ class TreeBuilder {
   bool end_object() { return open_.pop_back(), true; }
   bool end_array() { return open_.pop_back(), true; }
   bool key(std::string& name) {
-    std::vector<std::string>& keys = open_.back()->keys;
-    if (std::ranges::find(keys, name) != keys.end()) {
+    if (!seen_[open_.size()].insert(name).second) {
       throw InputError(file_, line_, "key " + in_quotes(name) + " is there twice");
     }
-    keys.push_back(name);
+    open_.back()->keys.push_back(name);
     return true;
   }
   bool parse_error(std::size_t, const std::string& last_token,
@@ -101,15 +103,19 @@ class TreeBuilder {
     return node;
   }
   bool open(Kind kind) {
-    if (open_.size() == 64) throw InputError(file_, line_, "more than 64 levels, expected fewer");
+    if (open_.size() == kLevels)
+      throw InputError(file_, line_, "more than 64 levels, expected fewer");
     open_.push_back(&add(kind));
+    seen_[open_.size()].clear();
     return true;
   }
 
   const std::string& file_;
   const std::size_t& line_;
   JsonNode& root_;
+  static constexpr std::size_t kLevels = 64;
   std::vector<JsonNode*> open_;  // from the root down to where values are added
+  std::array<std::unordered_set<std::string>, kLevels + 1> seen_;  // keys of the objects in it
 };
 
 /// "[1, 2]", "'text'", "an object": for messages.

@@ -110,6 +110,10 @@ TEST_F(ReadSceneFile, WhatIsNoJson) {
   EXPECT_TRUE(error("{\"obj\": \"\xFF\"}").starts_with("s.json:1: not JSON: "));
   EXPECT_TRUE(error(std::string(100, '[')).starts_with("s.json:1: more than 64 levels"));
   EXPECT_EQ(error("{\n\"obj\": \"a\",\n\"obj\": \"b\"}"), "s.json:3: key 'obj' is there twice");
+  // In no time that grows with the square of their number.
+  std::string many;
+  for (int i = 0; i < 100000; ++i) many += "\"" + std::to_string(i) + "\": 0,\n";
+  EXPECT_EQ(error("{\n" + many + "\"99999\": 1}"), "s.json:100002: key '99999' is there twice");
 }
 
 TEST_F(ReadSceneFile, ValuesOfTheWrongKind) {
