@@ -112,7 +112,7 @@ TEST_F(ReadSceneFile, WhatIsNoJson) {
   EXPECT_EQ(error("{\n\"obj\": \"a\",\n\"obj\": \"b\"}"), "s.json:3: key 'obj' is there twice");
   // In no time that grows with the square of their number.
   std::string many;
-  for (int i = 0; i < 100000; ++i) many += "\"" + std::to_string(i) + "\": 0,\n";
+  for (int i = 0; i < 100000; ++i) many.append("\"").append(std::to_string(i)).append("\": 0,\n");
   EXPECT_EQ(error("{\n" + many + "\"99999\": 1}"), "s.json:100002: key '99999' is there twice");
 }
 
