@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "host/base/counts.h"
 #include "host/base/input_error.h"
 
 namespace raygate {
@@ -58,7 +59,7 @@ void add(std::vector<std::array<ExactAccumulator, N>>& sums,
 }
 
 void add(std::vector<std::uint32_t>& counts, const std::vector<std::uint32_t>& more) {
-  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += more[i];
+  for (std::size_t i = 0; i < counts.size(); ++i) add_count(counts[i], more[i]);
 }
 
 /// Adds the samples that follow those of `film`, whose means are not those of its sums after that.

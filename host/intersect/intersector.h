@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 
+#include "host/base/counts.h"
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/intersect/intersect_counters.h"
@@ -21,7 +22,8 @@ struct NearestHit {
 
   std::uint32_t primitive = kNone;  ///< index of the tree's primitive; kNone: nothing is hit
   glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, in the unit's bits
-  /// Relative error bound of P's coordinates; +infinity where the unit gives no usable P. The same
+  /// Error bound of P's coordinates, of each of itself, besides 2^-46 of the largest, for what
+  /// underflows; +infinity where the unit gives no usable P. The same
   /// bits from every intersector.
   float point_error = std::numeric_limits<float>::infinity();
   Interval t{};  ///< holds the exact t
@@ -37,8 +39,8 @@ struct RayWork {
   std::uint32_t tests = 0, doubts = 0;
 
   RayWork& operator+=(const RayWork& other) {
-    tests += other.tests;
-    doubts += other.doubts;
+    add_count(tests, other.tests);
+    add_count(doubts, other.doubts);
     return *this;
   }
 };

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "host/base/counts.h"
 #include "host/base/stopwatch.h"
 #include "host/film/film.h"
 #include "host/render/tile_frustum.h"
@@ -198,8 +199,7 @@ void TileRenderer::record_first_hits() {
 }
 
 void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
-  first_hits_[sample].work.tests += work.tests;
-  first_hits_[sample].work.doubts += work.doubts;
+  first_hits_[sample].work += work;
 }
 
 void TileRenderer::write() {
@@ -209,6 +209,10 @@ void TileRenderer::write() {
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     const PixelSamples& pixel = pixels_[p];
     const std::size_t at = pixel.index;
+    const auto count = [&](const RayWork& work) {
+      if (!film_.tests.empty()) add_count(film_.tests[at], work.tests);
+      if (!film_.doubts.empty()) add_count(film_.doubts[at], work.doubts);
+    };
     if (pixel.first == 0) write_channels(at, i);
     std::array<ExactAccumulator, 4> color{};
     std::array<ExactAccumulator, 3> albedo{};
@@ -222,15 +226,10 @@ void TileRenderer::write() {
         albedo[k].add(output_.first_surface[i].albedo[k]);
       }
       color[3].add(first_hit.primitive == NearestHit::kNone ? 0.0 : 1.0);
-      if (!film_.tests.empty()) film_.tests[at] += first_hit.work.tests;
-      if (!film_.doubts.empty()) film_.doubts[at] += first_hit.work.doubts;
+      count(first_hit.work);
     }
     for (int k = 0; k < 3; ++k) color[k] += edge_emission_[p][k];
-    if (is_counting_) {
-      const RayWork& work = edge_work_[place_in_tile(pixel)];
-      if (!film_.tests.empty()) film_.tests[at] += work.tests;
-      if (!film_.doubts.empty()) film_.doubts[at] += work.doubts;
-    }
+    if (is_counting_) count(edge_work_[place_in_tile(pixel)]);
     const int samples = pixel.end - job_.options.first_sample;
     if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
     if (!kept.color.empty()) kept.color[at] = color;

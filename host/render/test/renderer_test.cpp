@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <thread>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/plane_unit.h"
 #include "host/intersect/unit/serial_hit_tester.h"
 #include "host/intersect/unit/unit_intersector.h"
@@ -244,6 +246,34 @@ TEST(Renderer, AnIntersectorsExceptionReachesTheCaller) {
   };
   EXPECT_THROW((void)render(scene, bvh, kCamera, size(64, 64, 3), broken, stats),
                std::runtime_error);
+}
+
+/// As if each ray had been tested against three billion polygons.
+class Counting : public CpuIntersector {
+ public:
+  using CpuIntersector::CpuIntersector;
+  void intersect(std::span<const Ray> rays, const RayQuery& query,
+                 std::span<NearestHit> hits) override {
+    CpuIntersector::intersect(rays, query, hits);
+    for (RayWork& work : query.work) work = {.tests = 3'000'000'000u, .doubts = 1000};
+  }
+};
+
+TEST(Renderer, CountsStayAtTheLargestNumber) {
+  const Scene scene = sphere_in_box();
+  const Bvh bvh(scene);
+  RenderOptions options = size(9, 9);
+  options.samples = 3;
+  options.channels.tests = options.channels.doubts = true;
+  RenderStats stats;
+  const Film film = render(
+      scene, bvh, kCamera, options, [&] { return std::make_unique<Counting>(bvh); }, stats);
+  ASSERT_EQ(film.doubts.size(), 81u);
+  for (const std::uint32_t tests : film.tests) EXPECT_EQ(tests, 4294967295u);
+  for (const std::uint32_t doubts : film.doubts) {
+    EXPECT_GE(doubts, 3000u);
+    EXPECT_EQ(doubts % 1000, 0u);
+  }
 }
 
 }  // namespace
