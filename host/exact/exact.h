@@ -90,6 +90,15 @@ struct PreciseHit {
 /// The t of a hit: for triangles that hits_triangle says are hit. high <= low (1 + 2^-34).
 [[nodiscard]] Interval hit_distance(const Ray& ray, const Corners& triangle);
 
+/// Where a hit lies on its triangle: P = (1 - u - v) A + u B + v C. Each of u and v is off by at
+/// most 2^-34; none of the three weights is negative, nor -0.
+struct Barycentric {
+  double u, v;
+};
+
+/// For triangles that hits_triangle says are hit.
+[[nodiscard]] Barycentric barycentric(const Ray& ray, const Corners& triangle);
+
 /// t and P of a hit, from the corners, whatever the angle: each word is off by at most half the
 /// distance of floats around it and 2^-10 of that.
 [[nodiscard]] PreciseHit precise_hit(const Ray& ray, const Corners& triangle);

@@ -16,7 +16,9 @@
 // division, at most (48.5 * 2^g + 3.2) u / (1 - r). A coordinate of P has one rounding more, of d
 // I_k: (48.5 * 2^g + 4.3) u / (1 - r) of t I_k < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which is
 // so up to g = 12. A product d I_k that underflows is 2^-150 off, which is less than 2^-48 of d
-// where d is at least 2^-102; nothing overflows where d, t < 2^104.
+// where d is at least 2^-102; nothing overflows where d, t < 2^104. So it is 2^-48 t off in P, and
+// a coordinate that underflows 2^-150, less than 2^-47 t where t is at least 2^-103. Those two are
+// not small next to a coordinate that is: they are together less than 2^-46 of the largest.
 
 namespace raygate {
 

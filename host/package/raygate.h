@@ -1,5 +1,6 @@
 // raygate's C++ interface: triangles and rays in, exact hits out. The only header that is
-// installed; host/trace/README.md explains how to use it.
+// installed; host/trace/README.md explains how to use it, host/EMBEDDING.md what it promises about
+// threads, signals, memory, exceptions and fork.
 #pragma once
 
 #include <array>
@@ -13,11 +14,11 @@
 namespace raygate {
 
 /// Triangles in a tree of boxes, and what rays hit of them. Which triangles are hit, and in which
-/// order, is decided exactly on the floats that are given: a ray through an edge or a corner of a
-/// closed mesh hits exactly one of the triangles that meet there, none leaks through. Of two hits
-/// that are equally far the lower triangle comes first. All questions may be asked by several
-/// threads at once, in whatever rounding mode: each call sets IEEE 754's arithmetic and leaves the
-/// thread's as it was.
+/// order, is decided exactly on the floats that are given (but for what underflows, see below): a
+/// ray through an edge or a corner of a closed mesh hits exactly one of the triangles that meet
+/// there, none leaks through. Of two hits that are equally far the lower triangle comes first. All
+/// questions may be asked by several threads at once, in whatever rounding mode: each call sets
+/// IEEE 754's arithmetic and leaves the thread's as it was.
 class Tracer {
  public:
   using Point = std::array<float, 3>;
@@ -32,7 +33,8 @@ class Tracer {
   struct Hit {
     std::uint32_t triangle = kNone;                      ///< its index; kNone: nothing is hit
     double t = std::numeric_limits<double>::infinity();  ///< off by at most 2^-33 of itself
-    double u = 0.0, v = 0.0;  ///< P = (1 - u - v) A + u B + v C, none of the three negative
+    /// P = (1 - u - v) A + u B + v C, each off by at most 2^-34, none of the three negative.
+    double u = 0.0, v = 0.0;
   };
 
   /// Builds the tree, on so many threads. Coordinates are finite and of magnitude at most 2^126;
@@ -46,7 +48,11 @@ class Tracer {
 
   // Each of these throws std::invalid_argument, "ray 3: found ..., expected ...", at a ray that is
   // not finite, begins farther away than 2^126, or has a limit that is not above 0.
-  // A component of a direction below 2^-149 of the largest one counts as 0.
+  //
+  // A ray is traced with its direction times a power of two that brings the largest component into
+  // [1, 2), and its limit divided by that. What is below 2^-126 then is rounded to a multiple of
+  // 2^-149, a limit to 2^-149 at least. Nothing else is rounded: no component of 2^-126 of the
+  // largest one or more, no limit that lies 2^-125 or more away.
 
   /// hits[i] becomes the nearest hit of rays[i]; as many hits as rays.
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;

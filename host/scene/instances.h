@@ -87,7 +87,8 @@ void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3&
 /// `part.origin`.
 std::uint32_t add_mesh(Scene& scene, Scene&& part);
 
-/// A copy of a mesh whose triangles run the other way round; its number. For mirrored instances.
+/// A copy of a mesh whose triangles run the other way round, their corners C, B, A; its number. For
+/// mirrored instances, whose fronts stay the fronts.
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh);
 
 /// Makes the triangles of a part into a mesh of a scene, and adds instances of it.

@@ -28,7 +28,7 @@ enum class HitColumn {
   kNormal,     ///< nx, ny, nz: (B - A) x (C - A) by its length; not turned towards the ray
   kDoubts,     ///< tests of this ray that binary32 left open: the engine's, resolved exactly
   kUnitPoint,  ///< unit_x, unit_y, unit_z: P with the bits of the hit-test unit
-  kUnitError,  ///< unit_error: relative error bound of each coordinate of P - O in it
+  kUnitError,  ///< unit_error: its error bound, as NearestHit::point_error
 };
 
 /// Which hits of a ray are asked for.
@@ -48,7 +48,7 @@ enum class Hits {
 /// Where on its triangle a ray hits.
 struct HitPoint {
   double t;     ///< the middle of its interval: off by at most 2^-33 of itself
-  double u, v;  ///< P = (1 - u - v) A + u B + v C; none of the three is negative, nor -0
+  double u, v;  ///< as Barycentric
 };
 
 /// The triangle must be hit.

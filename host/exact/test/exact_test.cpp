@@ -116,6 +116,40 @@ TEST(Exact, RoundedWordsKeepTheirPromise) {
 
 // Which of two triangles is nearer, among them copies of one in another order of its vertices, and
 // others that share a vertex the ray is aimed at or differ from it by an ulp.
+void expect_barycentric(const Ray& ray, const Corners& t) {
+  const Oracle oracle(ray, t);
+  mpq_class weights[3], sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    weights[k] = dot(oracle.direction, cross(oracle.v[(k + 1) % 3], oracle.v[(k + 2) % 3]));
+    sum += weights[k];
+  }
+  const Barycentric place = barycentric(ray, t);
+  ASSERT_TRUE(place.u >= 0.0 && place.v >= 0.0 && 1.0 - place.u - place.v >= 0.0);
+  const mpq_class bound(0x1p-34);
+  ASSERT_LE(abs(mpq_class(place.u) - weights[1] / sum), bound) << place.u;
+  ASSERT_LE(abs(mpq_class(place.v) - weights[2] / sum), bound) << place.v;
+}
+
+TEST(Exact, BarycentricsKeepTheirPromise) {
+  Random random;
+  int hits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto [ray, t] = hard_case(random);
+    if (!hits_triangle(ray, t)) continue;
+    ++hits;
+    expect_barycentric(ray, t);
+  }
+  EXPECT_GT(hits, 1000);
+  // Far away for its size: weights in double are all rounding.
+  for (const float s : {1e-10f, 1e-16f, 1e-30f}) {
+    const Corners t = {glm::vec3(-s, -s, 0), glm::vec3(2 * s, -s, -s / 2),
+                       glm::vec3(-s, 3 * s, s / 4)};
+    const Ray ray = {glm::vec3(0.75f, 1, 0.5f), glm::vec3(-0.75f, -1, -0.5f)};
+    ASSERT_TRUE(hits_triangle(ray, t));
+    expect_barycentric(ray, t);
+  }
+}
+
 TEST(Exact, OrdersHitsAsRationalsDo) {
   Random random;
   int compared = 0, equal = 0;

@@ -166,6 +166,36 @@ TEST(Tracer, AnswersInAnyStateOfTheThread) {
   }
 }
 
+// A ray along an edge that is 2^-126 high at the triangle, and the floats next to that.
+TEST(Tracer, RoundsWhatUnderflowsAndNothingElse) {
+  const float edge = 0x1p-126f;
+  const Tracer::Triangle triangle = {{{1, edge, -1}, {1, 1, 0}, {1, edge, 1}}};
+  const Tracer tracer({&triangle, 1});
+  for (const int exponent : {-20, 0, 27, 100}) {
+    const auto triangle_at = [&](float height, float limit = INFINITY) {
+      const Tracer::Ray ray{{0, 0, 0}, {std::ldexp(1.0f, exponent), height, 0}, limit};
+      Tracer::Hit hit;
+      tracer.nearest({&ray, 1}, {&hit, 1});
+      return hit.triangle;
+    };
+    const auto truth = [&](float height) {
+      const Tracer::Ray ray{{0, 0, 0}, {std::ldexp(1.0f, exponent), height, 0}};
+      return oracle(ray, triangle).hit() ? 0 : Tracer::kNone;
+    };
+    const float along = std::ldexp(edge, exponent);
+    const float above = std::nextafter(along, 1.0f);
+    EXPECT_NE(truth(above), truth(0.0f));
+    EXPECT_EQ(triangle_at(above), truth(above)) << exponent;
+    EXPECT_EQ(triangle_at(along), truth(along)) << exponent;
+    // The float below that is half of 2^-149 away where it is no subnormal, and rounded to even: up.
+    const float below = std::nextafter(along, 0.0f);
+    EXPECT_EQ(triangle_at(below), truth(exponent > 0 ? along : below)) << exponent;
+    const float end = std::ldexp(1.0f, -exponent);  // t of the hit
+    EXPECT_EQ(triangle_at(above, end), Tracer::kNone);
+    EXPECT_EQ(triangle_at(above, std::nextafter(end, INFINITY)), 0u);
+  }
+}
+
 TEST(Tracer, SaysWhatItCannotUse) {
   const auto refusal = [](const auto& what) -> std::string {
     try {

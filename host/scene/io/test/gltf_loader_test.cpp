@@ -123,6 +123,11 @@ TEST_F(LoadGltf, AMirroredNodeKeepsItsFront) {
                                        corner(scene, 0, 2) - corner(scene, 0, 0));
   EXPECT_GT(normal.z, 0.0);
   EXPECT_EQ(scene.normals[scene.triangles[0].normals[0]], glm::vec3(0, 0, 1));
+  const Scene file = load(square_json(R"([{"mesh": 0}])"));
+  for (int k = 0; k < 3; ++k) {  // its corners are the file's, the last one first
+    const glm::dvec3 mirrored = corner(scene, 0, k) * glm::dvec3(-1, 1, 1);
+    EXPECT_EQ(mirrored, corner(file, 0, 2 - k)) << k;
+  }
   const Scene inside_out = load(square_json(R"([{"mesh": 0, "scale": [-1, -1, -1]}])"));
   EXPECT_EQ(inside_out.normals[inside_out.triangles[0].normals[0]], glm::vec3(0, 0, -1));
 }
