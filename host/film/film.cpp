@@ -1,8 +1,10 @@
 #include "host/film/film.h"
 
-#include <cassert>
 #include <cstring>
+#include <string>
 #include <type_traits>
+
+#include "host/base/input_error.h"
 
 namespace raygate {
 namespace {
@@ -99,12 +101,21 @@ std::string region_bytes(const Film& film, const PixelRect& rect) {
 }
 
 void set_region(Film& film, const PixelRect& rect, std::string_view bytes) {
+  const PixelRect& window = film.window;
+  if (rect.x0 < window.x0 || rect.y0 < window.y0 || rect.x1 > window.x1 || rect.y1 > window.y1 ||
+      rect.x0 > rect.x1) {
+    throw InputError("pixels of another process: found some beyond the window");
+  }
+  std::size_t expected = 0;
+  for_each_row(film, rect, [&](const auto*, std::size_t size) { expected += size; });
+  if (bytes.size() != expected) {
+    throw InputError("pixels of another process: found " + std::to_string(bytes.size()) +
+                     " bytes, expected " + std::to_string(expected));
+  }
   for_each_row(film, rect, [&](auto* row, std::size_t size) {
-    assert(bytes.size() >= size);
     std::memcpy(static_cast<void*>(row), bytes.data(), size);
     bytes.remove_prefix(size);
   });
-  assert(bytes.empty());
 }
 
 }  // namespace raygate

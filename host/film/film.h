@@ -145,7 +145,8 @@ struct Channel {
 
 /// The numbers of `rect`, a part of the film's window, as bytes: for another process or film.
 [[nodiscard]] std::string region_bytes(const Film& film, const PixelRect& rect);
-/// Writes bytes that region_bytes() gave for the same window and arrays into `film`.
+/// Writes bytes that region_bytes() gave for the same window and arrays into `film`. Throws
+/// InputError where they are not as many, or `rect` is not within the window.
 void set_region(Film& film, const PixelRect& rect, std::string_view bytes);
 
 }  // namespace raygate

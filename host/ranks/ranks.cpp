@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "host/base/input_error.h"
+
 namespace raygate {
 namespace {
 
@@ -25,6 +27,12 @@ int number_in(std::initializer_list<const char*> names) {
 }
 
 }  // namespace
+
+void throw_short_message(std::size_t found, std::size_t expected) {
+  throw InputError("message of another rank: found " + std::to_string(found) +
+                   " bytes, expected at least " + std::to_string(expected) +
+                   "; is it the same program everywhere?");
+}
 
 void run_rank(Ranks& ranks, const std::function<void()>& work,
               const std::function<Ending(std::exception_ptr)>& ending) {

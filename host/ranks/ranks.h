@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <functional>
@@ -36,7 +37,9 @@ struct Message {
   std::string bytes;
 };
 
-/// The bytes of a value, and back. Ranks are the same program on like machines.
+/// The bytes of a value, and back from those that a message begins with. Ranks are the same program
+/// on like machines: throws InputError where there are fewer bytes than that.
+[[noreturn]] void throw_short_message(std::size_t found, std::size_t expected);
 template <class T>
 [[nodiscard]] std::string bytes_of(const T& value) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -45,8 +48,9 @@ template <class T>
 template <class T>
 [[nodiscard]] T value_of(const std::string& bytes) {
   static_assert(std::is_trivially_copyable_v<T>);
+  if (bytes.size() < sizeof(T)) throw_short_message(bytes.size(), sizeof(T));
   T value{};
-  std::memcpy(&value, bytes.data(), std::min(bytes.size(), sizeof value));
+  std::memcpy(&value, bytes.data(), sizeof value);
   return value;
 }
 
@@ -60,9 +64,7 @@ struct Ending {
 class RankFailure : public std::runtime_error {
  public:
   explicit RankFailure(const Message& message)
-      : std::runtime_error("rank " + std::to_string(message.from) + ": " +
-                           message.bytes.substr(sizeof(int))),
-        status_(value_of<int>(message.bytes)) {}
+      : RankFailure(message, value_of<int>(message.bytes)) {}
   /// The bytes of a message about it.
   [[nodiscard]] static std::string message_of(const Ending& ending) {
     return bytes_of(ending.status) + ending.line;
@@ -70,6 +72,11 @@ class RankFailure : public std::runtime_error {
   [[nodiscard]] int status() const { return status_; }
 
  private:
+  RankFailure(const Message& message, int status)
+      : std::runtime_error("rank " + std::to_string(message.from) + ": " +
+                           message.bytes.substr(sizeof status)),
+        status_(status) {}
+
   int status_;
 };
 

@@ -3,8 +3,9 @@
 #include <time.h>
 
 #include <algorithm>
-#include <cassert>
+#include <string>
 
+#include "host/base/input_error.h"
 #include "host/film/film.h"
 
 namespace raygate {
@@ -61,6 +62,11 @@ void RemoteWorkers::take(const Message& message, TileQueue& queue) {
     most_room_ += room;
   } else if (message.about == About::kTraced) {
     const auto tile = value_of<TileWork>(message.bytes);
+    if (tile.number < 0 || tile.number >= tiles_.count || tile.step < 1) {
+      throw InputError("rank " + std::to_string(message.from) + ": found samples of tile " +
+                       std::to_string(tile.number) + ", expected one of " +
+                       std::to_string(tiles_.count));
+    }
     set_region(film_, tile.rect, region_in(message.bytes));
     queue.end(tile.number);
     seconds_ += tile.seconds;

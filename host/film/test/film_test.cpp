@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "host/base/input_error.h"
 #include "host/film/test/sample_film.h"
 
 namespace raygate {
@@ -43,6 +44,18 @@ TEST(FilmRegion, BringsAllChannelsOfItsPixelsAndNoOthers) {
     }
   }
   EXPECT_EQ(inside, 35);
+}
+
+TEST(FilmRegion, RefusesOtherBytesAndOtherPixels) {
+  const Film source = make_sample_film(20, 18, {3, 5, 16, 14}, true);
+  Film target = source;
+  const std::string bytes = region_bytes(source, {4, 7, 9, 14});
+  EXPECT_THROW(set_region(target, {4, 7, 9, 13}, bytes), InputError);
+  EXPECT_THROW(set_region(target, {4, 7, 9, 14}, bytes.substr(1)), InputError);
+  EXPECT_THROW(set_region(target, {12, 7, 17, 14}, bytes), InputError);
+  EXPECT_THROW(set_region(target, {2, 7, 7, 14}, bytes), InputError);
+  EXPECT_THROW(set_region(target, {4, 8, 9, 15}, bytes), InputError);
+  EXPECT_EQ(region_bytes(target, target.window), region_bytes(source, source.window));
 }
 
 TEST(FilmRegion, HasEachNumberOnce) {

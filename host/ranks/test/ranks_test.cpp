@@ -135,5 +135,22 @@ TEST(Ranks, SeveralWithoutMpiAreRefused) {
   ::unsetenv("OMPI_COMM_WORLD_SIZE");
 }
 
+TEST(Ranks, ShortMessagesAreRefused) {
+  EXPECT_EQ(value_of<int>(bytes_of(7) + "and more"), 7);
+  const auto refusal = [](const auto& read) -> std::string {
+    try {
+      read();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "nothing refused";
+  };
+  const std::string line =
+      "message of another rank: found 3 bytes, expected at least 4; is it the same program "
+      "everywhere?";
+  EXPECT_EQ(refusal([] { (void)value_of<int>("abc"); }), line);
+  EXPECT_EQ(refusal([] { throw RankFailure({1, About::kFailure, "abc"}); }), line);
+}
+
 }  // namespace
 }  // namespace raygate
