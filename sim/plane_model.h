@@ -1,10 +1,10 @@
 // Drives a Verilated hit_test_unit: tests in, points out.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <stdexcept>
 
 #include "host/intersect/unit/plane_unit.h"
 #include "sim/model.h"
@@ -35,7 +35,7 @@ class PlaneModelOf final : public PlaneModel {
     unit_->valid_i = 1;  // whenever the unit is ready, the next test is there
     for (std::size_t i = 0; i < tests.size(); ++i) {
       const PlaneTest& test = tests[i];
-      assert(unit_->ready_o);
+      if (!unit_->ready_o) throw std::runtime_error("hit_test_unit: not ready for a test");
       for (int k = 0; k < 3; ++k) (*point)[k] = exchange(test.direction[k]);
       for (int k = 0; k < 3; ++k) exchange(test.normal[k]);
       exchange(test.d);

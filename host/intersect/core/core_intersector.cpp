@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <stdexcept>
 #include <string>
 
 #include "host/base/input_error.h"
@@ -62,6 +63,14 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
     sent_.clear();
     for (const CoreResult& result : results_) {
       if (result.error != CoreResult::Error::kNone) throw_broken_memory(result);
+      const bool has_triangle = result.kind == CoreResult::Kind::kDoubt ||
+                                (result.kind == CoreResult::Kind::kEnd && result.found);
+      if (result.tag >= rays.size() ||
+          (has_triangle && result.triangle >= bvh_.primitive_count())) {
+        throw std::runtime_error("ray core: found triangle " + std::to_string(result.triangle) +
+                                 " for ray " + std::to_string(result.tag) +
+                                 ", expected some that it was given");
+      }
       const Ray& ray = rays[result.tag];
       if (!query.work.empty()) {
         query.work[result.tag].tests += result.kind == CoreResult::Kind::kEnd ? result.tests : 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "host/intersect/unit/reference_burst_unit.h"
@@ -16,6 +18,19 @@ Interval around(const HitDistance& distance) {
   const std::uint32_t margin = 64u << distance.error;
   return {std::bit_cast<float>(bits - std::min(bits, margin)),
           std::bit_cast<float>(std::min(bits + margin, kInfinity))};
+}
+
+/// The bundle that a unit's word is about. Throws std::runtime_error where there is none, or it has
+/// no such lane or record: the unit is broken.
+template <class Word>
+const RayBundle& bundle_of(const Word& word, std::span<const RayBundle> batch) {
+  if (word.bundle >= batch.size() || word.lane >= kLanes ||
+      word.record >= batch[word.bundle].record_count) {
+    throw std::runtime_error("hit-test unit: found record " + std::to_string(word.record) +
+                             " of lane " + std::to_string(word.lane) + " of bundle " +
+                             std::to_string(word.bundle) + ", expected one that it was given");
+  }
+  return batch[word.bundle];
 }
 
 }  // namespace
@@ -40,7 +55,7 @@ void PipelineHitTester::finish(HitResults& results) {
   // A burst's near ties come before the hit that was kept, so that its sure hits are together.
   const auto take_reports = [&](auto belongs_here) {
     for (; report != found_.reports.end() && belongs_here(*report); ++report) {
-      const RayBundle& bundle = batch[report->bundle];
+      const RayBundle& bundle = bundle_of(*report, batch);
       const PolygonRecord& record = bundle.records[report->record];
       const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report->lane));
       const std::uint32_t tag = bundle.first_tag + report->record;
@@ -57,7 +72,7 @@ void PipelineHitTester::finish(HitResults& results) {
     take_reports([&](const TestReport& r) {
       return r.bundle != hit.bundle ? r.bundle < hit.bundle : r.lane <= hit.lane;
     });
-    const RayBundle& bundle = batch[hit.bundle];
+    const RayBundle& bundle = bundle_of(hit, batch);
     const float error = point_error(bundle.records[hit.record],
                                     bundle.lane_direction(static_cast<int>(hit.lane)), hit.t_error);
     results.hits.push_back({hit.bundle, hit.lane, bundle.first_tag + hit.record, hit.point, error,

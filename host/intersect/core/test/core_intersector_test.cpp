@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "host/base/input_error.h"
 #include "host/intersect/check_intersector.h"
@@ -147,6 +151,37 @@ TEST(MemoryImage, LinesHoldWhatTheyAreMadeOf) {
   EXPECT_EQ(NodeLine(node.line()).line().words, node.line().words);
   EXPECT_EQ(NodeLine(node.line()).child[6].high[0], 15);
   EXPECT_EQ(NodeLine(node.line()).base, 0x8000001u);
+}
+
+/// Says a word about the first ray that it is given.
+class WildCore : public CoreUnit {
+ public:
+  explicit WildCore(const CoreResult& word) : word_(word) {}
+  void trace(std::span<const MemoryLine>, std::span<const CoreRay>,
+             std::vector<CoreResult>& results) override {
+    results.push_back(word_);
+  }
+  [[nodiscard]] CoreCounters counters() const override { return {}; }
+
+ private:
+  CoreResult word_;
+};
+
+TEST_F(CoreIntersectorTest, RefusesWordsAboutWhatItDidNotGive) {
+  using Kind = CoreResult::Kind;
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 1);
+  const auto take = [&](const CoreResult& word) {
+    CoreIntersector intersector(bvh_, image_, std::make_unique<WildCore>(word));
+    std::vector<NearestHit> hits(1);
+    intersector.intersect(rays, {}, hits);
+  };
+  EXPECT_NO_THROW(take({.kind = Kind::kEnd, .tag = 0}));
+  EXPECT_THROW(take({.kind = Kind::kEnd, .tag = 1}), std::runtime_error);
+  for (const std::uint32_t triangle : {bvh_.primitive_count(), ~0u}) {
+    EXPECT_THROW(take({.kind = Kind::kDoubt, .triangle = triangle}), std::runtime_error);
+    EXPECT_THROW(take({.kind = Kind::kEnd, .found = true, .triangle = triangle}),
+                 std::runtime_error);
+  }
 }
 
 }  // namespace

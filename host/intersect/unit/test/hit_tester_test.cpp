@@ -3,10 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <tuple>
+#include <utility>
 
 #include "host/exact/test/meshes.h"
 #include "host/intersect/unit/pipeline_hit_tester.h"
@@ -223,6 +228,77 @@ TEST(SerialHitTester, ThePlaneOfTheOriginIsAMissAndAnEmptyRunNothing) {
   tester.run(batch, results);
   EXPECT_TRUE(results.hits.empty() && results.doubts.empty());
   EXPECT_EQ(tester.counters().misses, 1u);
+}
+
+/// Says a word of a batch, whatever that is about.
+class WildUnit : public BurstUnit {
+ public:
+  explicit WildUnit(BurstResults words) : words_(std::move(words)) {}
+  void run(std::span<const RayBundle>, BurstResults& results) override { results = words_; }
+  [[nodiscard]] BurstCounters counters() const override { return {}; }
+
+ private:
+  BurstResults words_;
+};
+
+TEST(PipelineHitTester, RefusesWordsAboutWhatItDidNotGive) {
+  Random random;
+  const Batch batch(random, 3);
+  const std::uint32_t records = batch.bundles[1].record_count;
+  const auto outcome = [&](const BurstResults& words) -> std::string {
+    PipelineHitTester tester(std::make_unique<WildUnit>(words));
+    HitResults results;
+    try {
+      tester.run(batch.bundles, results);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_EQ(outcome({{{1, 7, records - 1, 1.0f}}, {{1, 7, records - 1}}}), "taken");
+  for (const auto& [bundle, lane, record] :
+       {Key{3, 0, 0}, Key{1u << 31, 0, 0}, Key{1, 8, 0}, Key{1, 0, records}, Key{1, 0, ~0u}}) {
+    EXPECT_NE(outcome({{{bundle, lane, record, 1.0f}}, {}}), "taken");
+    EXPECT_NE(outcome({{}, {{bundle, lane, record}}}), "taken");
+  }
+  EXPECT_EQ(outcome({{{1, 8, 0, 1.0f}}, {}}),
+            "hit-test unit: found record 0 of lane 8 of bundle 1, expected one that it was given");
+}
+
+// Coordinates that underflow are off by more than the error of themselves, and by no more than it
+// says besides.
+TEST(PointError, HoldsWhereCoordinatesUnderflow) {
+  Random random;
+  int underflows = 0, hits = 0;
+  const auto expect_near = [&](const Ray& ray, const Corners& triangle) {
+    if (!hits_triangle(ray, triangle)) return;
+    const PolygonRecord record = make_record(ray.origin, triangle);
+    const UnitPoint unit = plane_point(record, ray.direction);
+    if (std::isinf(unit.error)) return;
+    ++hits;
+    const Interval t = hit_distance(ray, triangle);  // off by 2^-33 at most
+    const glm::dvec3 point = 0.5 * (t.low + t.high) * glm::dvec3(ray.direction);
+    const double of_itself = double{unit.error} + 0x1p-33, besides = 0x1p-46 * largest(point);
+    for (int k = 0; k < 3; ++k) {
+      const double off = std::abs(double{unit.point[k]} - point[k]);
+      underflows += off > of_itself * std::abs(point[k]);
+      ASSERT_LE(off, of_itself * std::abs(point[k]) + besides);
+    }
+  };
+  const Corners issue = {glm::vec3(1, -1, -1), glm::vec3(1, 3, -1), glm::vec3(1, -1, 3)};
+  expect_near({glm::vec3(0.0f), glm::vec3(1.9f, 0x1p-149f, 0)}, issue);
+  EXPECT_EQ(underflows, 1);
+  for (int i = 0; i < 100000; ++i) {
+    const float size = std::ldexp(1.0f, random.below(200) - 100);
+    Ray ray{.direction = {random.uniform(1, 2), 0, 0}};
+    for (int k = 1; k < 3; ++k) {
+      ray.direction[k] = std::ldexp(random.uniform(-1, 1), -random.below(150));
+    }
+    std::swap(ray.direction.x, ray.direction[random.below(3)]);
+    expect_near(ray, {random.point(size), random.point(size), random.point(size)});
+  }
+  EXPECT_GT(hits, 5000);
+  EXPECT_GT(underflows, 100);
 }
 
 }  // namespace
