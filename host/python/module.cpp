@@ -97,6 +97,18 @@ bool keep_going() {
   return true;
 }
 
+/// As Python has what the system gives it: bytes that are not UTF-8 become surrogates.
+nb::object text_of(const std::string& text) {
+  return nb::steal(
+      PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<Py_ssize_t>(text.size())));
+}
+
+nb::list texts_of(const std::vector<std::string>& texts) {
+  nb::list list;
+  for (const std::string& text : texts) list.append(text_of(text));
+  return list;
+}
+
 /// An array of what `owner` holds.
 template <class T>
 nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
@@ -111,12 +123,12 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
 /// A scene and the tree around it.
 class PythonScene {
  public:
-  PythonScene(const std::string& file, bool strict, const Settings& settings) {
+  PythonScene(const nb::bytes& file, bool strict, const Settings& settings) {
     std::optional<double> smooth;
     Keywords keywords;
     keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
     keywords.read(settings);
-    const std::filesystem::path path = file;
+    const std::filesystem::path path = std::string(file.c_str(), file.size());
     if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
     const LoadOptions options{.strict = strict, .keep_instances = true, .smooth = smooth};
@@ -161,9 +173,9 @@ class PythonScene {
   }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
-  [[nodiscard]] std::vector<std::string> material_names() const {
-    std::vector<std::string> names;
-    for (const Material& material : scene_.materials) names.push_back(material.name);
+  [[nodiscard]] nb::list material_names() const {
+    nb::list names;
+    for (const Material& material : scene_.materials) names.append(text_of(material.name));
     return names;
   }
 
@@ -321,16 +333,26 @@ NB_MODULE(_raygate, m) {
       .def(nb::init<>())
       .def("__enter__", [](FloatsContext& context) { context.floats.emplace(); })
       .def("__exit__", [](FloatsContext& context, const nb::args&) { context.floats.reset(); });
-  nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
+  static const nb::object input_error =
+      nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
+  nb::register_exception_translator([](const std::exception_ptr& error, void*) {
+    try {
+      std::rethrow_exception(error);
+    } catch (const raygate::InputError& unusable) {
+      PyErr_SetObject(input_error.ptr(), raygate::text_of(unusable.what()).ptr());
+    }
+  });
   raygate::add_float_reference(m);
   nb::class_<PythonScene>(m, "Scene")
-      .def(nb::init<const std::string&, bool, const raygate::Settings&>())
+      .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())
       .def(nb::init<const raygate::Vectors3&, const raygate::Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
-      .def_prop_ro("objects", [](const PythonScene& s) { return s.scene().objects; })
+      .def_prop_ro("objects",
+                   [](const PythonScene& s) { return raygate::texts_of(s.scene().objects); })
       .def_prop_ro("materials", &PythonScene::material_names)
-      .def_prop_ro("warnings", [](const PythonScene& s) { return s.scene().warnings; })
+      .def_prop_ro("warnings",
+                   [](const PythonScene& s) { return raygate::texts_of(s.scene().warnings); })
       .def_prop_ro("origin",
                    [](const PythonScene& s) {
                      const glm::dvec3& o = s.scene().origin;

@@ -1,4 +1,5 @@
-"""host/FEATURES.md against the code: every test that it names exists, and every option of the programs has a row."""
+"""host/FEATURES.md and EMBEDDING.md against the code: every test that they name exists, and every option of the programs
+has a row."""
 
 import pathlib
 import re
@@ -19,11 +20,15 @@ class Features(unittest.TestCase):
         rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| ")]
         self.rows = [row for row in rows if row[0].strip() != "Feature"]
         self.assertGreater(len(self.rows), 30)
+        text = (HOST / "EMBEDDING.md").read_text()
+        rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| ")]
+        self.promises = [row for row in rows if row[1].strip() != "Promise"]
+        self.assertGreater(len(self.promises), 10)
 
     def test_every_test_exists(self) -> None:
         found = TESTS.findall(sources("**/test/*.cpp") + sources("**/test/*.py"))
         names = {f"{suite}.{name}" if suite else function for suite, name, function in found}
-        for feature, _, tests in self.rows:
+        for feature, _, tests in self.rows + self.promises:
             named = re.findall(r"`([\w.]+)`", tests)
             self.assertTrue(named, feature)
             for name in named:

@@ -34,8 +34,10 @@ class Scene:
         cannot be used. `strict`: refuse faces without area. `smooth`: degrees at which faces
         without normals may meet to be smooth. `threads`: one per processor if None, here as
         everywhere."""
-        self._scene = _raygate.Scene(os.fsdecode(file), bool(strict),
-                                     _settings(smooth=smooth, threads=threads))
+        name = os.fsencode(file)
+        if b"\0" in name:
+            raise InputError(f"file: found {file!r}, expected a name without a null byte")
+        self._scene = _raygate.Scene(name, bool(strict), _settings(smooth=smooth, threads=threads))
 
     @classmethod
     @in_ieee_floats

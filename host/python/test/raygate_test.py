@@ -1,8 +1,11 @@
 """The Python module as its users have it: installed by `pip install .`."""
 
+import concurrent.futures
 import ctypes
+import os
 import pathlib
 import platform
+import resource
 import signal
 import tempfile
 import threading
@@ -158,17 +161,83 @@ class Render(unittest.TestCase):
             thread.join()
         self.assertEqual(wrong, [])
 
+    def test_names_of_any_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(os.fsencode(folder), b"\xff.obj")
+            with open(file, "wb") as obj:
+                obj.write(b"o a\xfe\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n")
+            scene = raygate.Scene(file)
+        self.assertEqual(scene.objects[0], os.fsdecode(b"a\xfe"))
+        self.assertIn(os.fsdecode(b"\xff.obj"), scene.warnings[0])
+
     def test_says_what_is_wrong(self):
         with self.assertRaisesRegex(raygate.InputError, "none.obj: cannot read"):
             raygate.Scene("none.obj")
+        with self.assertRaisesRegex(raygate.InputError, "\udcff.obj: cannot read"):
+            raygate.Scene(b"\xff.obj")
+        with self.assertRaisesRegex(raygate.InputError, "without a null byte"):
+            raygate.Scene(f"{SCENES}/cornell.obj\0")
         scene = raygate.Scene(SCENES / "cornell.obj")
-        for wrong in ({"width": 0}, {"height": 2.5}, {"spp": 0}, {"seed": -1}, {"depth": -1},
+        for wrong in ({"width": 0}, {"height": 2.5}, {"spp": 0}, {"spp": 2 ** 31 - 1}, {"seed": -1}, {"depth": -1},
                       {"threads": 0}, {"eye": [1, 2]}, {"up": ["a", "b", "c"]}, {"fov": 180},
                       {"target": [[1, 2], [3]]}, {"integrator": "x"}, {"filter": "x"},
                       {"engine": "rtl"}):
             with self.assertRaisesRegex(ValueError, next(iter(wrong))) as caught:
                 scene.render(**{"width": 10, "height": 10, **wrong})
             self.assertNotIn("\n", str(caught.exception))
+
+
+def in_child(work):
+    """Whether `work`, in a child of this process, is true."""
+    child = os.fork()
+    if child == 0:
+        done = False
+        try:
+            done = work()
+        finally:
+            os._exit(0 if done else 1)
+    return os.waitpid(child, 0)[1] == 0
+
+
+class Embedding(unittest.TestCase):
+    def setUp(self):
+        self.scene = raygate.Scene(SCENES / "teapot.obj")
+        random = np.random.default_rng(7)
+        self.rays = random.normal(size=(20000, 3)) * 3, random.normal(size=(20000, 3))
+        self.hits = self.trace()
+
+    def trace(self):
+        return self.scene.trace(*self.rays, threads=2).tobytes()
+
+    def test_threads_trace_at_once(self):
+        with concurrent.futures.ThreadPoolExecutor(4) as threads:
+            for hits in threads.map(lambda _: self.trace(), range(20)):
+                self.assertTrue(hits == self.hits)
+
+    def test_other_threads_go_on(self):
+        turns = 0
+        with concurrent.futures.ThreadPoolExecutor(1) as other:
+            rendering = other.submit(self.scene.render, 300, 300, spp=16, threads=1)
+            while not rendering.done():
+                turns += 1
+        self.assertGreater(turns, 100)
+
+    def test_works_in_a_child(self):
+        self.assertTrue(in_child(lambda: self.trace() == self.hits))
+        self.assertTrue(in_child(lambda: raygate.Scene(SCENES / "teapot.obj").triangle_count > 0))
+
+    def test_no_memory(self):
+        def falls_short():
+            with open("/proc/self/statm") as sizes:
+                taken = int(sizes.read().split()[0]) * resource.getpagesize()
+            resource.setrlimit(resource.RLIMIT_AS, (taken + (512 << 20), resource.RLIM_INFINITY))
+            try:
+                self.scene.render(8000, 8000, spp=1, threads=1)
+            except MemoryError:
+                return self.trace() == self.hits
+            return False
+
+        self.assertTrue(in_child(falls_short))
 
 
 @unittest.skipUnless(platform.machine() == "x86_64", "MXCSR is x86's")
