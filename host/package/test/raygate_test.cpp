@@ -187,7 +187,8 @@ TEST(Tracer, RoundsWhatUnderflowsAndNothingElse) {
     EXPECT_NE(truth(above), truth(0.0f));
     EXPECT_EQ(triangle_at(above), truth(above)) << exponent;
     EXPECT_EQ(triangle_at(along), truth(along)) << exponent;
-    // The float below that is half of 2^-149 away where it is no subnormal, and rounded to even: up.
+    // The float below that is half of 2^-149 away where it is no subnormal, and rounded to even:
+    // up.
     const float below = std::nextafter(along, 0.0f);
     EXPECT_EQ(triangle_at(below), truth(exponent > 0 ? along : below)) << exponent;
     const float end = std::ldexp(1.0f, -exponent);  // t of the hit
