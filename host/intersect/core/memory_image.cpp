@@ -66,7 +66,6 @@ class ImageWriter {
     image_.lines_.resize(1);
     if (tree_.size() == 0) {
       image_.lines_[0] = NodeLine().line();
-      image_.node_count_ = 1;
       image_.depth_ = 1;
       return;
     }
@@ -161,7 +160,6 @@ class ImageWriter {
     }
     image_.lines_[number] = node.line();
     image_.lines_.resize(image_.lines_.size() + size);
-    image_.node_count_ += 1;
     image_.depth_ = std::max(image_.depth_, depth);
     std::uint32_t next = node.base;
     for (std::size_t i = 0; i < refs.size(); ++i) {

@@ -22,7 +22,6 @@ class MemoryImage {
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }
   /// The memory byte by byte, as --dump-image writes it: line n is at byte 64 n.
   [[nodiscard]] std::string_view bytes() const;
-  [[nodiscard]] std::size_t node_count() const { return node_count_; }
   /// Nodes on the longest way from the root to a leaf; 1 at least.
   [[nodiscard]] int depth() const { return depth_; }
 
@@ -30,7 +29,6 @@ class MemoryImage {
   friend class ImageWriter;
 
   std::vector<MemoryLine> lines_;
-  std::size_t node_count_ = 0;
   int depth_ = 0;
 };
 

@@ -70,7 +70,6 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
   };
   const auto test = [&](const TriangleLine& triangle) {
     ++tests;
-    if (listener_) listener_(ray.ray.origin, triangle.index);
     if (triangle.index == ray.skip_id) return;
     const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
     const UnitVerdict verdict = unit.verdict(set.record, ray.ray.direction);

@@ -1,9 +1,6 @@
 // Reference core: the ray core in C++ without clocks, one ray after the other.
 #pragma once
 
-#include <functional>
-#include <utility>
-
 #include "host/intersect/core/core_unit.h"
 
 namespace raygate {
@@ -13,12 +10,8 @@ namespace raygate {
 /// doubts. Lines beyond those that trace() is given come with an error.
 class ReferenceCore : public CoreUnit {
  public:
-  /// What hears of each test: where its ray begins, and its triangle.
-  using Listener = std::function<void(const glm::vec3& origin, std::uint32_t triangle)>;
-
   /// `stack_depth`: see ray_core.sv.
   explicit ReferenceCore(int stack_depth = kStackDepth) : stack_depth_(stack_depth) {}
-  explicit ReferenceCore(Listener listener) : listener_(std::move(listener)) {}
 
   void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
              std::vector<CoreResult>& results) override;
@@ -30,8 +23,7 @@ class ReferenceCore : public CoreUnit {
   void trace(std::span<const MemoryLine> lines, const CoreRay& ray,
              std::vector<CoreResult>& results);
 
-  int stack_depth_ = kStackDepth;
-  Listener listener_;
+  int stack_depth_;
   CoreCounters counters_;
 };
 

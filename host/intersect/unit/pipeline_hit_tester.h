@@ -20,9 +20,6 @@ class PipelineHitTester : public HitTester {
   [[nodiscard]] std::size_t enough_tests() const override { return unit_->enough_tests(); }
   [[nodiscard]] HitCounters counters() const override;
 
-  /// The unit's own counts, its stalls among them.
-  [[nodiscard]] BurstCounters unit_counters() const { return unit_->counters(); }
-
  private:
   std::unique_ptr<BurstUnit> unit_;
   BurstResults found_;  // kept from batch to batch

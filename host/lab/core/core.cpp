@@ -3,16 +3,13 @@
 // the run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
-#include "host/intersect/core/reference_core.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/lab/commands.h"
-#include "host/lab/core/record_cache.h"
 #include "host/lab/rays/rays.h"
 #include "host/lab/timing.h"
 #include "host/scene/io/scene_loader.h"
@@ -26,7 +23,7 @@ struct Options {
   std::vector<int> latencies = {1, 50, 200}, in_flight = {0}, cores = {1};
   std::vector<std::string> kinds = {"camera", "light", "scattered"};
   int size = 128, every = 1;
-  bool structural = false, records = false;
+  bool structural = false;
 };
 
 class CoreBench {
@@ -41,10 +38,6 @@ class CoreBench {
     for (const RaySet& set : ray_sets(scene, options_.size - options_.size % 128)) {
       if (std::ranges::find(options_.kinds, set.name) == options_.kinds.end()) continue;
       const RaySet chosen = every(set);
-      if (options_.records) {
-        count_records(bvh, image, chosen);
-        continue;
-      }
       for (const int latency : options_.latencies) {
         for (const int cores : options_.cores) {
           for (const int rays : options_.in_flight) {
@@ -66,28 +59,6 @@ class CoreBench {
       if (!set.t_max.empty()) some.t_max.push_back(set.t_max[i]);
     }
     return some;
-  }
-
-  /// How many tests would find their records in a cache, in the order of a core that has one ray.
-  void count_records(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image,
-                     const RaySet& set) {
-    std::array caches{RecordCache(16), RecordCache(64), RecordCache(256)};
-    CoreIntersector intersector(
-        bvh, image,
-        std::make_shared<ReferenceCore>([&](const glm::vec3& origin, std::uint32_t triangle) {
-          for (RecordCache& cache : caches) cache.use(origin, triangle);
-        }));
-    std::vector<NearestHit> hits(set.rays.size());
-    intersector.intersect(set.rays, set.query(0, set.rays.size()), hits);
-    Row row = {{"table", "records"},
-               {"scene", name_},
-               {"rays", set.name},
-               {"tests_per_ray",
-                static_cast<double>(caches[0].uses()) / static_cast<double>(set.rays.size())}};
-    for (const RecordCache& cache : caches) {
-      row["of_" + std::to_string(cache.records()) + "_percent"] = cache.hits_percent();
-    }
-    results_.add(row);
   }
 
   [[nodiscard]] std::unique_ptr<CoreUnit> make_core(const MemoryTiming& timing,
@@ -155,8 +126,6 @@ void add_core(CLI::App& lab, Outcome& outcome) {
   app->add_option("--every", options->every, "of the rays only each so-manieth")
       ->check(CLI::Range(1, 1024));
   app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
-  app->add_flag("--records", options->records,
-                "instead: tests whose records a cache of them would hold; no clocks");
   app->callback([options, &outcome] {
     if (options->structural && std::ranges::max(options->in_flight) > kTableRays) {
       throw CLI::ValidationError("--in-flight", "expected at most 64 with --structural");

@@ -26,7 +26,6 @@ def part(name: str, scenes: tuple, *words: object, every: int = 1) -> Callable[[
 
 PARTS = {"scenes": part("scenes", ALL),
          "wide": part("wide", ALL, "--latency", 200, "--in-flight", 128),
-         "records": part("records", ALL, "--records"),
          "in-flight": part("in-flight", FEW, *SCATTERED, "--in-flight", *(2 ** power for power in range(9)), every=4),
          "cores": part("cores", FEW, *SCATTERED, "--latency", 50, "--cores", 1, 2, 4, 8, every=2)}
 
