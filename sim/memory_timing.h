@@ -1,4 +1,4 @@
-// How long the memory behind a simulated ray core takes.
+// Memory timing: latency and bandwidth of the memory behind a simulated ray core.
 #pragma once
 
 #include <cstdint>

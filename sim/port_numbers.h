@@ -1,4 +1,4 @@
-// How numbers lie in the ports of Verilated models.
+// Port numbers: the layout of numbers in the ports of Verilated models.
 #pragma once
 
 #include <bit>

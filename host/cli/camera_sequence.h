@@ -1,4 +1,4 @@
-// From where the pictures of a run are taken, and by which light.
+// Camera sequence: the cameras of a picture or an animation, and the lights that go with them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How far the render is.
+// Progress bar of a render.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// A picture that was begun earlier, for this run to go on from.
+// Resuming: an unfinished picture or animation on disk, checked and read.
 #pragma once
 
 #include <filesystem>

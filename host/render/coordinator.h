@@ -1,4 +1,4 @@
-// Who renders: rank 0, or the only process, as coordinator; the other ranks as its workers.
+// Coordinator: rank 0, or the only process, hands out tiles; the other ranks are its workers.
 #pragma once
 
 #include <memory>

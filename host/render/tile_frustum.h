@@ -1,4 +1,4 @@
-// Parts of a picture in which there is nothing to see.
+// Tile frustum: whether any box of the tree is within what a tile of the picture sees.
 #pragma once
 
 #include "host/bvh/bvh.h"

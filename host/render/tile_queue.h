@@ -1,4 +1,4 @@
-// Which tile is traced next, and by which rank.
+// Tile queue: which tile is traced next, and by which rank.
 #pragma once
 
 #include <algorithm>

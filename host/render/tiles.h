@@ -1,4 +1,4 @@
-// How a picture is cut up: tiles of pixels, passes of samples.
+// Tiles: the cut of a picture into tiles of pixels and passes of samples.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How wrong a variant's hit tests are, for the camera's rays of a picture.
+// Decision audit: counts the wrong decisions of a variant's hit tests on a picture's camera rays.
 #pragma once
 
 #include "host/bvh/bvh.h"

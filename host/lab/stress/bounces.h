@@ -1,4 +1,4 @@
-// Rays that bounce about in a concave corner.
+// Bounces: rays reflected again and again in a concave corner, shot by shot.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What is put under stress: the engines, cheaper arithmetic, and other people's tests.
+// Subjects of the stress test: the engines, cheaper arithmetic, and other people's tests.
 #pragma once
 
 #include <cstdint>

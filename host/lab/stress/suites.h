@@ -1,4 +1,4 @@
-// What is shot at: one generator of hard cases for each way in which a hit test goes wrong.
+// Suites: generators of hard cases, one for each way in which a hit test goes wrong.
 #pragma once
 
 #include <functional>

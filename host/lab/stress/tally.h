@@ -1,4 +1,4 @@
-// How wrong a subject is: counts, and errors in units of the last place.
+// Tally: counts of wrong decisions of a subject, and its errors in units of the last place.
 #pragma once
 
 #include <array>

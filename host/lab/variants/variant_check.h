@@ -1,4 +1,4 @@
-// Whether the C++ twin of a variant is the hardware, bit for bit.
+// Variant check: compares a variant's reference model with its hardware, bit by bit.
 #pragma once
 
 #include <cstdint>
