@@ -10,39 +10,76 @@
 
 namespace raygate {
 
+/// Fields of a packed struct at a port of Verilator's, the struct's last field first.
+template <class Port>
+class PortFields {
+ public:
+  explicit PortFields(Port& port) : port_(port) {}
+
+  /// Writes the next field of `width` bits, 32 at most, into bits that are 0.
+  void put(std::uint32_t value, unsigned width = 32) {
+    const std::uint64_t two = std::uint64_t{value} << at_ % 32;
+    port_[at_ / 32] |= static_cast<std::uint32_t>(two);
+    if (two >> 32 != 0) port_[at_ / 32 + 1] |= static_cast<std::uint32_t>(two >> 32);
+    at_ += width;
+  }
+  void put(const glm::vec3& vector) {
+    for (int k = 0; k < 3; ++k) put(std::bit_cast<std::uint32_t>(vector[k]));
+  }
+
+  /// Reads the next field.
+  std::uint32_t take(unsigned width = 32) {
+    std::uint64_t two = port_[at_ / 32];
+    if (at_ % 32 + width > 32) two |= std::uint64_t{port_[at_ / 32 + 1]} << 32;
+    two >>= at_ % 32;
+    at_ += width;
+    return static_cast<std::uint32_t>(two & ((std::uint64_t{1} << width) - 1));
+  }
+  float take_float() { return std::bit_cast<float>(take()); }
+
+ private:
+  Port& port_;
+  unsigned at_ = 0;
+};
+
 /// Offers a ray at the ray port of `top`, a class that Verilator made of ray_core or ray_core_axi.
 template <class Top>
 void put_ray(Top& top, const CoreRay& ray) {
-  std::memcpy(&top.ray_origin_i, &ray.ray.origin, sizeof ray.ray.origin);
-  std::memcpy(&top.ray_direction_i, &ray.ray.direction, sizeof ray.ray.direction);
-  top.ray_t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
-  top.ray_skip_id_i = ray.skip_id;
-  top.ray_start_i = ray.start;
-  top.ray_any_hit_i = ray.any_hit;
-  top.ray_no_cull_i = ray.no_cull;
-  top.ray_tag_i = ray.tag;
+  std::memset(&top.ray_i, 0, sizeof top.ray_i);
+  PortFields fields(top.ray_i);  // ray_core_pkg::ray_t
+  fields.put(ray.tag);
+  fields.put(ray.no_cull, 1);
+  fields.put(ray.any_hit, 1);
+  fields.put(ray.start, 28);
+  fields.put(ray.skip_id);
+  fields.put(std::bit_cast<std::uint32_t>(ray.t_max), 31);
+  fields.put(ray.ray.direction);
+  fields.put(ray.ray.origin);
   top.ray_valid_i = 1;
 }
 
 /// The word at the result port of `top`.
 template <class Top>
 CoreResult result_at(const Top& top) {
+  PortFields fields(top.result_o);  // ray_core_pkg::result_t
   CoreResult result;
-  result.kind = static_cast<CoreResult::Kind>(top.result_kind_o);
-  result.found = top.result_found_o != 0;
-  result.tag = top.result_tag_o;
-  result.triangle = top.result_triangle_o;
-  result.t = std::bit_cast<float>(top.result_t_o);
-  result.t_error = top.result_t_error_o;
-  std::memcpy(&result.point, &top.result_point_o, sizeof result.point);
-  result.tests = top.result_tests_o;
-  result.error = static_cast<CoreResult::Error>(top.result_error_o);
-  result.line = top.result_line_o;
-  result.nodes = top.result_nodes_o;
+  result.nodes = fields.take();
+  result.nodes |= std::uint64_t{fields.take(17)} << 32;
+  result.line = fields.take(28);
+  result.error = static_cast<CoreResult::Error>(fields.take(3));
+  result.tests = fields.take(28);
+  for (int k = 0; k < 3; ++k) result.point[k] = fields.take_float();
+  result.t_error = fields.take(5);
+  result.t = fields.take_float();
+  result.triangle = fields.take();
+  result.found = fields.take(1) != 0;
+  result.tag = fields.take();
+  result.kind = static_cast<CoreResult::Kind>(fields.take(2));
   return result;
 }
 
-/// The core `Top` (a class that Verilator made), held by a `Holder`: Model, or WaveModel for waves.
+/// The core `Top` (a class that Verilator made of ray_core or ray_cores), held by a `Holder`:
+/// Model, or WaveModel for waves.
 template <class Top, template <class> class Holder = Model>
 class CorePort {
  public:
@@ -84,7 +121,7 @@ class CorePort {
   bool take_result(bool ready) {
     model_->result_ready_i = ready;
     const bool taken = ready && model_->result_valid_o != 0;
-    if (taken && model_->result_kind_o == static_cast<unsigned>(CoreResult::Kind::kEnd)) --rays_;
+    if (taken && result().kind == CoreResult::Kind::kEnd) --rays_;
     return taken;
   }
   [[nodiscard]] bool has_result() const { return model_->result_valid_o != 0; }
@@ -120,9 +157,17 @@ class CorePort {
   }
 
  private:
-  /// ray_core_pkg::event_e.
+  static constexpr unsigned kEvents = 10;  // ray_core_pkg::NumEvents
+
+  /// ray_core_pkg::event_e; of several cores one after the other.
   void count() {
-    const unsigned events = model_->events_o;
+    for (unsigned events = model_->events_o; events != 0; events >>= kEvents) count(events);
+    if (model_.clocks() % CoreCounters::kSpan == 0) {
+      counters_.busier += std::max(nodes_in_span_, triangles_in_span_);
+      nodes_in_span_ = triangles_in_span_ = 0;
+    }
+  }
+  void count(unsigned events) {
     counters_.rays += events & 1;
     counters_.nodes += events >> 1 & 1;
     counters_.triangles += events >> 2 & 1;
@@ -135,10 +180,6 @@ class CorePort {
     counters_.waits += events >> 9 & 1;
     nodes_in_span_ += events >> 1 & 1;
     triangles_in_span_ += events >> 2 & 1;
-    if (model_.clocks() % CoreCounters::kSpan == 0) {
-      counters_.busier += std::max(nodes_in_span_, triangles_in_span_);
-      nodes_in_span_ = triangles_in_span_ = 0;
-    }
   }
 
   Holder<Top> model_;

@@ -11,16 +11,16 @@
 //   ray_errors         why a ray's hits must not be believed
 //   ray_retire         which rays have ended; results
 //
-// Rays and results: valid/ready. A ray begins at the inner node of line ray_start_i (the root's, as a
-// rule). Its direction is scaled: the largest component is in [1, 2). Hits at t >= ray_t_max_i, in exact
-// arithmetic, and on triangle ray_skip_id_i do not count. With ray_any_hit_i it ends at its first sure hit,
-// with ray_no_cull_i it enters all boxes. Words about rays come mixed, and rays end in any order; by tag:
+// Rays and results: valid/ready. A ray begins at the inner node of line `start` (the root's, as a
+// rule). Its direction is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact
+// arithmetic, and on triangle `skip_id` do not count. With `any_hit` it ends at its first sure hit,
+// with `no_cull` it enters all boxes. Words about rays come mixed, and rays end in any order; by tag:
 //   ResultDoubt  a triangle that may be hit, and be the nearest: exact arithmetic must say
-//   ResultOverflow  subtrees for which the stack had no room: bit i of result_nodes_o is the inner node at
-//                line result_line_o + i. The ray must be sent there, too
+//   ResultOverflow  subtrees for which the stack had no room: bit i of `nodes` is the inner node at
+//                line `line` + i. The ray must be sent there, too
 //   ResultEnd    the ray's last word: whether it has a sure hit, of which triangle, at which t (off by fewer
-//                than 2**result_t_error_o numbers), P as the pipeline has it, and how many tests there were. With a
-//                result_error_o its words say nothing: it was given up at once, see ray_core_pkg::error_e
+//                than 2**t_error numbers), P as the pipeline has it, and how many tests there were. With a
+//                error its words say nothing: it was given up at once, see ray_core_pkg::error_e
 //
 // Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order,
 // valid/ready; with line_error_i, not to be believed: it is read again for the next ray. Some are prefetched: outstanding_o may be high when the last ray has
@@ -38,10 +38,7 @@ module ray_core #(
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned ReadIdWidth = 1 + $clog2(
       NodeLines > TriangleLines ? NodeLines : TriangleLines),
-  localparam int unsigned LineWidth = ray_core_pkg::LineWidth,
-  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
-  localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
-  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth
+  localparam int unsigned LineWidth = ray_core_pkg::LineWidth
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -52,28 +49,11 @@ module ray_core #(
   // rays
   input  logic                    ray_valid_i,
   output logic                    ray_ready_o,
-  input  logic [95:0]             ray_origin_i,  // binary32, x lowest
-  input  logic [95:0]             ray_direction_i,
-  input  logic [30:0]             ray_t_max_i,  // positive, without its sign; infinity for none
-  input  logic [31:0]             ray_skip_id_i,
-  input  logic [AddressWidth-1:0] ray_start_i,
-  input  logic                    ray_any_hit_i,
-  input  logic                    ray_no_cull_i,
-  input  logic [31:0]             ray_tag_i,
+  input  ray_core_pkg::ray_t        ray_i,
   // results
   output logic                    result_valid_o,
   input  logic                    result_ready_i,
-  output ray_core_pkg::result_e   result_kind_o,
-  output logic [31:0]             result_tag_o,
-  output logic                    result_found_o,
-  output logic [31:0]             result_triangle_o,
-  output logic [31:0]             result_t_o,
-  output logic [TErrorWidth-1:0]  result_t_error_o,
-  output logic [95:0]             result_point_o,
-  output logic [TestsWidth-1:0]   result_tests_o,
-  output logic [2:0]              result_error_o,
-  output logic [AddressWidth-1:0] result_line_o,
-  output logic [NodesWidth-1:0]   result_nodes_o,
+  output ray_core_pkg::result_t    result_o,
   // memory
   output logic                    read_valid_o,
   input  logic                    read_ready_i,
@@ -91,6 +71,10 @@ module ray_core #(
   localparam int unsigned Children = ray_core_pkg::Children;
   localparam int unsigned PlaneErrorWidth = set_up_pkg::PlaneErrorWidth;
 
+  if (ray_core_pkg::TErrorWidth != set_up_pkg::TErrorExponentWidth) begin : gen_check
+    $error("ray_core: TErrorWidth of ray_core_pkg is not set_up_pkg's");
+  end
+
   // ---- Contexts
 
   logic start_valid, start_fire, ending, node_no_cull;
@@ -98,21 +82,9 @@ module ray_core #(
     start_ctx, ending_ctx, node_line_ray, box_ray, triangle_line_ray, set_ray, result_ray;
   logic [31:0] ending_tag, box_tag, result_tag, skip_id;
   logic [95:0] node_origin, node_inverse, triangle_origin, direction;
-  ray_core_pkg::ray_t ray;
   logic [30:0] start_t_max;
   logic [AddressWidth-1:0] start_line;
   logic start_any_hit, start_scaled;
-
-  assign ray = {
-    ray_origin_i,
-    ray_direction_i,
-    ray_t_max_i,
-    ray_skip_id_i,
-    ray_start_i,
-    ray_any_hit_i,
-    ray_no_cull_i,
-    ray_tag_i
-  };
 
   ray_context #(
     .Rays(Rays),
@@ -123,7 +95,7 @@ module ray_core #(
     .rst_ni,
     .valid_i(ray_valid_i),
     .ready_o(ray_ready_o),
-    .ray_i(ray),
+    .ray_i,
     .start_valid_o(start_valid),
     .start_ctx_o(start_ctx),
     .start_t_max_o(start_t_max),
@@ -160,7 +132,7 @@ module ray_core #(
   logic [30:0] traversal_t_max, leaf_t_max;
   logic [Rays-1:0] leaf_pending, testing, traversing, failed;
   logic [AddressWidth-1:0] node_line, prefetch_line, overflow_line;
-  logic [NodesWidth-1:0] overflow_nodes;
+  logic [ray_core_pkg::NodesWidth-1:0] overflow_nodes;
 
   traversal #(
     .Rays(Rays),
@@ -331,8 +303,8 @@ module ray_core #(
 
   logic near_tie, doubt_valid, doubt_fire;
   logic [31:0] doubt_tag, doubt_triangle, end_triangle, end_t;
-  logic [TErrorWidth-1:0] end_t_error;
-  logic [TestsWidth-1:0] end_tests;
+  logic [ray_core_pkg::TErrorWidth-1:0] end_t_error;
+  logic [ray_core_pkg::TestsWidth-1:0] end_tests;
   logic end_found;
   logic [RayWidth-1:0] point_ctx;
   logic [95:0] end_point;
@@ -450,17 +422,7 @@ module ray_core #(
     .overflow_fire_o(overflow_fire),
     .result_valid_o,
     .result_ready_i,
-    .result_kind_o,
-    .result_tag_o,
-    .result_found_o,
-    .result_triangle_o,
-    .result_t_o,
-    .result_t_error_o,
-    .result_point_o,
-    .result_tests_o,
-    .result_error_o,
-    .result_line_o,
-    .result_nodes_o
+    .result_o
   );
 
   // ---- Events

@@ -17,10 +17,7 @@ module ray_core_axi #(
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RegisterAddressWidth = 12,
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
-  localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
-  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
@@ -61,28 +58,11 @@ module ray_core_axi #(
   // rays
   input  logic                   ray_valid_i,
   output logic                   ray_ready_o,
-  input  logic [95:0]            ray_origin_i,
-  input  logic [95:0]            ray_direction_i,
-  input  logic [30:0]            ray_t_max_i,
-  input  logic [31:0]            ray_skip_id_i,
-  input  logic [AddressWidth-1:0] ray_start_i,
-  input  logic                   ray_any_hit_i,
-  input  logic                   ray_no_cull_i,
-  input  logic [31:0]            ray_tag_i,
+  input  ray_core_pkg::ray_t       ray_i,
   // results
   output logic                   result_valid_o,
   input  logic                   result_ready_i,
-  output ray_core_pkg::result_e  result_kind_o,
-  output logic [31:0]            result_tag_o,
-  output logic                   result_found_o,
-  output logic [31:0]            result_triangle_o,
-  output logic [31:0]            result_t_o,
-  output logic [TErrorWidth-1:0] result_t_error_o,
-  output logic [95:0]            result_point_o,
-  output logic [TestsWidth-1:0]  result_tests_o,
-  output logic [2:0]             result_error_o,
-  output logic [AddressWidth-1:0] result_line_o,
-  output logic [NodesWidth-1:0]  result_nodes_o
+  output ray_core_pkg::result_t   result_o
 );
 
   localparam int unsigned ReadIdWidth = 1 + $clog2(
@@ -103,8 +83,8 @@ module ray_core_axi #(
   logic [31:0] in_flight_q;  // rays ray_fire whose end has not been given
 
   assign result_fire = result_valid_o & result_ready_i;
-  assign is_doubt    = result_fire & (result_kind_o == ray_core_pkg::ResultDoubt);
-  assign ended       = result_fire & (result_kind_o == ray_core_pkg::ResultEnd);
+  assign is_doubt    = result_fire & (result_o.kind == ray_core_pkg::ResultDoubt);
+  assign ended       = result_fire & (result_o.kind == ray_core_pkg::ResultEnd);
 
   csr u_csr (
     .clk_i,
@@ -139,7 +119,7 @@ module ray_core_axi #(
     .core_busy_i(in_flight_q != '0),
     .outstanding_i(outstanding),
     .doubt_i(is_doubt),
-    .ray_error_i(ended & (result_error_o != ray_core_pkg::ErrorNone)),
+    .ray_error_i(ended & (result_o.error != ray_core_pkg::ErrorNone)),
     .bus_error_i(bus_error),
     .error_number_i(error_number),
     .events_i(events),
@@ -176,10 +156,14 @@ module ray_core_axi #(
 
   // ---- Rays: the camera's first
 
-  logic
-    core_ready, core_valid, ray_fire, closed_q;  // to the user's; but one that waits goes in before
+  ray_core_pkg::ray_t generated;
+  logic core_ready, core_valid, ray_fire;
+  logic closed_q;  // to the user's; but one that waits goes in before
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
+  assign generated = {
+    camera[0+:96], camera_direction, Infinity, NoTriangle, AddressWidth'(0), 2'b00, pixel
+  };
   assign ray_ready_o  = core_ready & ~closed_q;
   assign ray_fire     = core_valid & core_ready;
 
@@ -216,27 +200,10 @@ module ray_core_axi #(
     .lines_i(lines),
     .ray_valid_i(core_valid),
     .ray_ready_o(core_ready),
-    .ray_origin_i(camera_valid ? camera[0 +: 96] : ray_origin_i),
-    .ray_direction_i(camera_valid ? camera_direction : ray_direction_i),
-    .ray_t_max_i(camera_valid ? Infinity : ray_t_max_i),
-    .ray_skip_id_i(camera_valid ? NoTriangle : ray_skip_id_i),
-    .ray_start_i(camera_valid ? '0 : ray_start_i),
-    .ray_any_hit_i(~camera_valid & ray_any_hit_i),
-    .ray_no_cull_i(~camera_valid & ray_no_cull_i),
-    .ray_tag_i(camera_valid ? pixel : ray_tag_i),
+    .ray_i(camera_valid ? generated : ray_i),
     .result_valid_o,
     .result_ready_i,
-    .result_kind_o,
-    .result_tag_o,
-    .result_found_o,
-    .result_triangle_o,
-    .result_t_o,
-    .result_t_error_o,
-    .result_point_o,
-    .result_tests_o,
-    .result_error_o,
-    .result_line_o,
-    .result_nodes_o,
+    .result_o,
     .read_valid_o(read_valid),
     .read_ready_i(read_ready),
     .read_line_o(read_line),

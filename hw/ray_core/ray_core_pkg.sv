@@ -111,6 +111,22 @@ package ray_core_pkg;
     end
   endfunction
 
+  localparam int unsigned TErrorWidth = 5;  // set_up_pkg::TErrorExponentWidth
+
+  typedef struct packed {
+    logic [1:0]              kind;      // result_e
+    logic [31:0]             tag;
+    logic                    found;     // ResultEnd: a sure hit, and so on to tests
+    logic [31:0]             triangle;  // ResultDoubt: that one
+    logic [31:0]             t;
+    logic [TErrorWidth-1:0]  t_error;
+    logic [95:0]             point;
+    logic [TestsWidth-1:0]   tests;
+    logic [2:0]              error;     // ResultEnd: error_e
+    logic [AddressWidth-1:0] line;      // ResultOverflow, with nodes
+    logic [NodesWidth-1:0]   nodes;
+  } result_t;
+
   // ---- Events of a clock, for counters
 
   typedef enum logic [3:0] {

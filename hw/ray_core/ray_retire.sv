@@ -11,7 +11,7 @@ module ray_retire #(
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
   localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
-  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth
+  localparam int unsigned TErrorWidth = ray_core_pkg::TErrorWidth
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
@@ -44,17 +44,7 @@ module ray_retire #(
   // results
   output logic                   result_valid_o,
   input  logic                   result_ready_i,
-  output ray_core_pkg::result_e  result_kind_o,
-  output logic [31:0]            result_tag_o,
-  output logic                   result_found_o,
-  output logic [31:0]            result_triangle_o,
-  output logic [31:0]            result_t_o,
-  output logic [TErrorWidth-1:0] result_t_error_o,
-  output logic [95:0]            result_point_o,
-  output logic [TestsWidth-1:0]  result_tests_o,
-  output logic [2:0]             result_error_o,
-  output logic [AddressWidth-1:0] result_line_o,
-  output logic [NodesWidth-1:0]  result_nodes_o
+  output ray_core_pkg::result_t  result_o
 );
 
   localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
@@ -155,20 +145,20 @@ module ray_retire #(
   end
   always_ff @(posedge clk_i) begin
     if (load) begin
-      result_kind_o     <= doubt_valid_i ? ray_core_pkg::ResultDoubt
+      result_o.kind     <= doubt_valid_i ? ray_core_pkg::ResultDoubt
                          : overflow_valid_i ? ray_core_pkg::ResultOverflow
                          : ray_core_pkg::ResultEnd;
-      result_tag_o      <= doubt_valid_i ? doubt_tag_i
+      result_o.tag      <= doubt_valid_i ? doubt_tag_i
                          : overflow_valid_i ? overflow_tag_i : end_tag;
-      result_found_o    <= end_found & ~doubt_valid_i & ~overflow_valid_i;
-      result_triangle_o <= doubt_valid_i ? doubt_triangle_i : end_triangle;
-      result_t_o        <= end_t;
-      result_t_error_o  <= end_t_error;
-      result_point_o    <= end_point;
-      result_tests_o    <= end_tests;
-      result_error_o    <= end_error;
-      result_line_o     <= overflow_line_i;
-      result_nodes_o    <= overflow_nodes_i;
+      result_o.found    <= end_found & ~doubt_valid_i & ~overflow_valid_i;
+      result_o.triangle <= doubt_valid_i ? doubt_triangle_i : end_triangle;
+      result_o.t        <= end_t;
+      result_o.t_error  <= end_t_error;
+      result_o.point    <= end_point;
+      result_o.tests    <= end_tests;
+      result_o.error    <= end_error;
+      result_o.line     <= overflow_line_i;
+      result_o.nodes    <= overflow_nodes_i;
     end
   end
 

@@ -110,13 +110,11 @@ bind ray_core stream_checks #(
   .data ({read_line_o, read_id_o})
 );
 bind ray_core stream_checks #(
-  .Width($bits({result_kind_o, result_tag_o, result_found_o, result_triangle_o, result_t_o,
-                result_t_error_o, result_point_o, result_tests_o, result_error_o, result_line_o, result_nodes_o}))
+  .Width($bits(result_o))
 ) u_result_checks (
   .clk_i,
   .rst_ni,
   .valid(result_valid_o),
   .ready(result_ready_i),
-  .data ({result_kind_o, result_tag_o, result_found_o, result_triangle_o, result_t_o,
-                result_t_error_o, result_point_o, result_tests_o, result_error_o, result_line_o, result_nodes_o})
+  .data (result_o)
 );

@@ -1,5 +1,5 @@
-// Arrays of 2,048 bits and more stay memories, whose ports become the design's: nobody here has SRAM to map
-// them to. Smaller ones become registers.
+// Arrays of more than 2,048 bits stay memories, with the registers at their read ports. Their ports become the
+// design's: nobody here has SRAM to map them to. Smaller ones become registers.
 (* techmap_celltype = "$mem_v2" *)
 module keep_large_memory #(
   parameter MEMID = "",
@@ -36,15 +36,17 @@ module keep_large_memory #(
   input  [WR_PORTS*WIDTH-1:0] WR_DATA
 );
 
-  wire _TECHMAP_FAIL_ = SIZE * WIDTH < 2048;
+  wire _TECHMAP_FAIL_ = SIZE * WIDTH <= 2048;
 
   kept_memory #(
     .BITS(SIZE * WIDTH),
+    .READ_ENABLE(RD_PORTS),
     .READ_ADDRESS(RD_PORTS * ABITS),
     .READ_DATA(RD_PORTS * WIDTH),
     .WRITE_ENABLE(WR_PORTS * WIDTH),
     .WRITE_ADDRESS(WR_PORTS * ABITS)
   ) _TECHMAP_REPLACE_ (
+    .read_enable_i  (RD_EN),
     .read_address_i (RD_ADDR),
     .read_data_o    (RD_DATA),
     .write_enable_i (WR_EN),

@@ -18,12 +18,11 @@ module bench;
 
   ray_core dut (
     .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .outstanding_o(outstanding), .abort_i(1'b0), .lines_i(28'd5),
-    .ray_valid_i(ray), .ray_ready_o(ray_ready), .ray_origin_i(origin), .ray_direction_i({64'd0, 32'h3f800000}),
-    .ray_t_max_i(31'h7f800000), .ray_skip_id_i(skip), .ray_start_i(28'd0), .ray_any_hit_i(1'b0),
-    .ray_no_cull_i(1'b0), .ray_tag_i(tag), .result_valid_o(result), .result_ready_i(result_ready),
-    .result_kind_o(kind), .result_tag_o(result_tag), .result_found_o(found), .result_triangle_o(triangle),
-    .result_t_o(t), .result_t_error_o(t_error), .result_point_o(point), .result_tests_o(tests),
-    .result_error_o(error), .result_line_o(result_line), .result_nodes_o(nodes), .read_valid_o(read),
+    .ray_valid_i(ray), .ray_ready_o(ray_ready),
+    .ray_i({origin, 64'd0, 32'h3f800000, 31'h7f800000, skip, 28'd0, 2'd0, tag}), .result_valid_o(result),
+    .result_ready_i(result_ready),
+    .result_o({kind, result_tag, found, triangle, t, t_error, point, tests, error, result_line, nodes}),
+    .read_valid_o(read),
     .read_ready_i(read_ready), .read_line_o(read_line), .read_id_o(read_id), .line_valid_i(line_valid),
     .line_ready_o(line_ready), .line_id_i(line_id), .line_i(line), .line_error_i(1'b0), .events_o(events)
   );

@@ -50,15 +50,9 @@ module ray_contexts #(
   logic found;
   logic [CtxWidth-1:0] point_ctx;
   logic doubt_fire, overflow_fire;
-  logic [31:0] result_tag, result_triangle, result_t;
-  logic result_found;
-  logic [4:0] result_t_error;
-  logic [95:0] result_point;
-  logic [27:0] result_tests;
-  logic [2:0] result_error;
-  logic [27:0] result_line;
-  logic [48:0] result_nodes;
+  ray_core_pkg::result_t result;
   assign found = tag[0];
+  assign result_kind_o = result.kind;
 
   ray_retire #(
     .Rays(Rays)
@@ -90,17 +84,7 @@ module ray_contexts #(
     .overflow_fire_o(overflow_fire),
     .result_valid_o,
     .result_ready_i,
-    .result_kind_o,
-    .result_tag_o(result_tag),
-    .result_found_o(result_found),
-    .result_triangle_o(result_triangle),
-    .result_t_o(result_t),
-    .result_t_error_o(result_t_error),
-    .result_point_o(result_point),
-    .result_tests_o(result_tests),
-    .result_error_o(result_error),
-    .result_line_o(result_line),
-    .result_nodes_o(result_nodes)
+    .result_o(result)
   );
 
 endmodule
