@@ -10,6 +10,7 @@
 #include <map>
 
 #include "Vray_core_small.h"
+#include "Vray_cores_small.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
@@ -74,6 +75,31 @@ TEST_F(RayCoreTest, CoresShareAMemory) {
   EXPECT_GT(clocks(narrow, {.cores = 3}), 0.45 * alone) << "there is contention";
   EXPECT_GT(counters_.waits, counters_.lines);
   EXPECT_GT(clocks({}, {.rays = 1}), 10.0 * one) << "rays wait for each other";
+}
+
+/// Two cores in RTL behind their arbiter: the same hits, in about the clocks of two cores that
+/// CoreModel joins.
+TEST_F(RayCoreTest, CoresInHardwareShareAMemory) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 500);
+  const auto clocks = [&](std::unique_ptr<CoreUnit> unit) {
+    check(rays, {}, std::move(unit));
+    EXPECT_GE(counters_.rays, rays.size());
+    return static_cast<double>(counters_.clocks);
+  };
+  for (const MemoryTiming& timing :
+       {MemoryTiming{}, MemoryTiming{.bytes = 2}, MemoryTiming{.disorder = 100, .not_taken = 64}}) {
+    const CoreStalls stalls{.not_taken = timing.not_taken};
+    const auto joined = [&](int cores) {
+      return std::make_unique<CoreModel<Vray_core_small>>(timing, stalls, CoreSet{.cores = cores});
+    };
+    const double one = clocks(joined(1)), two = clocks(joined(2));
+    const double in_hardware =
+        clocks(std::make_unique<CoreModel<Vray_cores_small>>(timing, stalls));
+    EXPECT_NEAR(in_hardware / two, 1.0, 0.1) << one;
+    if (timing.bytes == 64) {
+      EXPECT_LT(in_hardware, 0.6 * one);
+    }
+  }
 }
 
 TEST_F(RayCoreTest, ArithmeticsGiveTheSame) {
