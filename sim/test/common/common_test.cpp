@@ -100,7 +100,8 @@ TEST_F(CommonTest, StreamsLeaveInTurn) {
   model_->stream_valid_i = 0;
   for (int clock = 0; clock < 50'000; ++clock) {
     for (unsigned n = 0; n < 3; ++n) {
-      if (random_() % 8 < 1 + clock / 5'000 % 7) model_->stream_valid_i |= 1u << n;
+      if (random_() % 8 < 1u + static_cast<unsigned>(clock) / 5'000 % 7)
+        model_->stream_valid_i |= 1u << n;
       model_->stream_data_i[n] = n << 24 | next[n];
     }
     model_->joined_ready_i = random_() % 2;
