@@ -57,7 +57,12 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
     if (!is_scaled(rays[i].direction)) throw_unscaled(rays[i]);
     sent_.push_back(core_ray(rays[i], query, i));
   }
-  while (!sent_.empty()) {
+  // Each walk that had no room goes on at least a level below its start.
+  for (int level = 0; !sent_.empty(); ++level) {
+    if (level > Bvh::kMaxDepth) {
+      throw std::runtime_error("ray core: found subtrees without room again and again, expected " +
+                               std::to_string(Bvh::kMaxDepth) + " levels at most");
+    }
     results_.clear();
     core_->trace(image_->lines(), sent_, results_);
     sent_.clear();

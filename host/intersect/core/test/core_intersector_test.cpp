@@ -177,6 +177,7 @@ TEST_F(CoreIntersectorTest, RefusesWordsAboutWhatItDidNotGive) {
   };
   EXPECT_NO_THROW(take({.kind = Kind::kEnd, .tag = 0}));
   EXPECT_THROW(take({.kind = Kind::kEnd, .tag = 1}), std::runtime_error);
+  EXPECT_THROW(take({.kind = Kind::kOverflow, .nodes = 1}), std::runtime_error) << "for ever";
   for (const std::uint32_t triangle : {bvh_.primitive_count(), ~0u}) {
     EXPECT_THROW(take({.kind = Kind::kDoubt, .triangle = triangle}), std::runtime_error);
     EXPECT_THROW(take({.kind = Kind::kEnd, .found = true, .triangle = triangle}),
