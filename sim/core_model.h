@@ -55,8 +55,11 @@ class CoreModel : public CoreUnit {
         }
       }
       if (serve_memory()) quiet = 0;
-      if (++quiet > kPatience)
-        broken("nothing asked for and nothing told for " + std::to_string(kPatience) + " clocks");
+      if (++quiet > kPatience) {
+        broken("nothing asked for and nothing told for " + std::to_string(kPatience) +
+               " clocks; of " + std::to_string(sent) + " rays " + std::to_string(sent - ended) +
+               " have not ended");
+      }
       for (Core& core : cores_) core.clock();
     }
     for (Core& core : cores_) core.take_result(false);
@@ -69,6 +72,22 @@ class CoreModel : public CoreUnit {
     for (const Core& core : cores_) {
       if (core.rays() != 0 || core.is_offering() || core.has_result()) broken("a ray ended twice");
     }
+  }
+
+  /// Traces for so many clocks and resets the cores in mid-run: what they said is forgotten.
+  void abandon(std::span<const MemoryLine> lines, std::span<const CoreRay> rays, unsigned clocks) {
+    memory_.load(lines);
+    for (Core& core : cores_) core.invalidate(lines.size());
+    for (std::size_t sent = 0; clocks != 0; --clocks) {
+      for (Core& core : cores_) {
+        if (sent < rays.size() && !core.is_offering()) core.offer(rays[sent++]);
+        core.take_result(!chance(stalls_.not_taken));
+      }
+      serve_memory();
+      for (Core& core : cores_) core.clock();
+    }
+    for (Core& core : cores_) core.reset();
+    while (!memory_.is_idle()) memory_.pop();
   }
 
   [[nodiscard]] CoreCounters counters() const override {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -42,6 +43,26 @@ class PortFields {
   unsigned at_ = 0;
 };
 
+/// A result's record of eight words at the ports of ray_core_axi: hw/ray_core/registers.md.
+inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
+  CoreResult result;
+  result.kind = static_cast<CoreResult::Kind>(words[0] & 3);
+  result.found = (words[0] >> 2 & 1) != 0;
+  result.error = static_cast<CoreResult::Error>(words[0] >> 3 & 7);
+  result.t_error = words[0] >> 6 & 31;
+  result.tag = words[1];
+  result.tests = words[7];
+  if (result.kind == CoreResult::Kind::kOverflow) {
+    result.line = words[2];
+    result.nodes = std::uint64_t{words[4]} << 32 | words[3];
+    return result;
+  }
+  result.triangle = words[2];
+  result.t = std::bit_cast<float>(words[3]);
+  for (int k = 0; k < 3; ++k) result.point[k] = std::bit_cast<float>(words[4 + k]);
+  return result;
+}
+
 /// Offers a ray at the ray port of `top`, a class that Verilator made of ray_core or ray_core_axi.
 template <class Top>
 void put_ray(Top& top, const CoreRay& ray) {
@@ -58,7 +79,7 @@ void put_ray(Top& top, const CoreRay& ray) {
   top.ray_valid_i = 1;
 }
 
-/// The word at the result port of `top`.
+/// The word at the result port of `top`, of ray_core or ray_cores.
 template <class Top>
 CoreResult result_at(const Top& top) {
   PortFields fields(top.result_o);  // ray_core_pkg::result_t
@@ -95,6 +116,13 @@ class CorePort {
   Holder<Top>& model() { return model_; }
   [[nodiscard]] const CoreCounters& counters() const { return counters_; }
   [[nodiscard]] std::uint64_t clocks() const { return model_.clocks(); }
+
+  /// A reset in mid-run: whatever was on its way is gone.
+  void reset() {
+    model_->ray_valid_i = model_->line_valid_i = 0;
+    model_.reset();
+    rays_ = 0;
+  }
 
   /// Empties the core's caches, for a memory of so many lines: a clock.
   void invalidate(std::size_t lines) {

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "host/base/input_error.h"
+#include "sim/simulation.h"
 
 namespace raygate {
 namespace {
@@ -85,6 +86,8 @@ void* make_model_of(const ModelFile& file) {
 }
 
 }  // namespace
+
+bool has_simulation() { return true; }
 
 void* load_model(const ModelFile& file) {
   static std::mutex mutex;

@@ -49,6 +49,8 @@ void run(const Options& options) {
   BusTest<7> test;
   std::transform(kWords.begin(), kWords.end(), test.words.begin(),
                  [](float value) { return std::bit_cast<std::uint32_t>(value); });
+  std::printf("I = (%.9g, %.9g, %.9g), N = (%.9g, %.9g, %.9g), d = %.9g: the words 1 to 7\n",
+              kWords[0], kWords[1], kWords[2], kWords[3], kWords[4], kWords[5], kWords[6]);
   std::printf("edge  in  I-1      I-2      I-3      N        d        accum.   divisor  out\n");
   const auto* inside = unit->rootp;
   const auto results = raygate::stream_tests(unit, std::vector{test}, [&] {

@@ -28,7 +28,7 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     design = chosen.design(given)
     cells = design.top == "adder"
     flows = (("cells", "kept", "default", "fast") if cells else
-             ("blocks",) if design.clock and design.folder == "ray_core" else
+             ("blocks",) if design.clock and design.folder in ("exact", "ray_core") else
              ("small", "parts") if design.clock else ("area", "small", "fast"))
     plan = dict.fromkeys(targets.names, catalogue.PLACED)
     for library in catalogue.LIBRARIES:

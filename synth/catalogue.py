@@ -60,6 +60,13 @@ class Library:
     install: str
     driver: str = "INVX4"  # drives every input
     load_pf: float = 0.1  # hangs on every output
+    # Of a memory of up to 512 words: from the clock edge that takes an address to its word. OpenRAM's macro
+    # sky130_sram_2kbyte_1rw1r_32x512_8 in ngspice, tt, 25 C, 1.8 V: reading begins with the clock's fall, 0.80 ns after its
+    # rise at the soonest, and takes 2.67; a cycle takes 5.62; set-up times are negative (char.json of
+    # github.com/Jordanplus/arvinsa-rtl-gds). The older libraries: by the ratio of the paper's unit in both, 66.75 and 41.71
+    # to 48.29 ns. OpenRAM's own 0.35 um at 5 V, 16 words of 2 bits: 1.77 ns from the fall, a cycle of 6.56
+    # (compiler/tests/21_ngspice_delay_test.py of github.com/VLSIDA/OpenRAM).
+    access_ns: float = 0.0
 
     @property
     def liberty(self) -> pathlib.Path:
@@ -176,10 +183,11 @@ class Fpga:
 
 
 LIBRARIES = [
-    Library("osu035", "OSU 0.35 um", "sudo apt-get install qflow-tech-osu035"),
-    Library("osu018", "OSU 0.18 um", "sudo apt-get install qflow-tech-osu018"),
+    Library("osu035", "OSU 0.35 um", "sudo apt-get install qflow-tech-osu035", access_ns=4.8),
+    Library("osu018", "OSU 0.18 um", "sudo apt-get install qflow-tech-osu018", access_ns=3.0),
     # As many gate inputs on an output as in the older two.
-    Characterised("sky130", "SkyWater 130 nm", package.INSTALL, driver=f"{cells.PREFIX}inv_4", load_pf=0.02),
+    Characterised("sky130", "SkyWater 130 nm", package.INSTALL, driver=f"{cells.PREFIX}inv_4", load_pf=0.02,
+                  access_ns=3.47),
 ]
 
 
@@ -207,7 +215,7 @@ FLOWS = {
     "faster": "fast, restructured twice",
     "parts": "fast, each float core on its own, then joined",
     "modules": "fast, each larger module on its own, so that a layout shows which cells are whose",
-    "blocks": "parts, each module of hw/ray_core on its own, too; memories left out and stated in bits",
+    "blocks": "parts, each module of the unit's folder on its own, too; memories left out and stated in bits",
 }
 
 
@@ -237,7 +245,8 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
            look_ahead: bool | None = None, **parameters: object) -> Design:
     """A design of hw/ by its module's name; unknown modules raise FileNotFoundError.
 
-    `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL.
+    `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL,
+    but for carry-select groups of an `adder` alone, which ripple, as ADDERS and all pages have it.
     """
     found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists()]
     if not found:
@@ -250,14 +259,16 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
         text["Adder"] = str(adder_kinds()[adder])
     if widths:
         text["GroupWidths"] = group_widths(widths)
+    if look_ahead is None and top == "adder" and adder in ("uniform", "graded"):
+        look_ahead = False
     if look_ahead is not None:
         text["LookAhead"] = f"1'b{look_ahead:d}"
     if not name:
         words = [top, adder, "_".join(map(str, widths or [])),
-                 {None: "", True: "look_ahead", False: "ripple_groups"}[look_ahead],
+                 {None: "", True: "look_ahead", False: "" if top == "adder" else "ripple_groups"}[look_ahead],
                  *(f"{key}{value}" for key, value in parameters.items())]
         name = "-".join(word for word in words if word)
-    clocked = folder in ("hit_test", "ray_core") and " clk_i," in (HW / folder / f"{top}.sv").read_text()
+    clocked = folder in ("exact", "hit_test", "ray_core") and " clk_i," in (HW / folder / f"{top}.sv").read_text()
     return Design(name, top, folder, tuple(text.items()), clock="clk_i" if clocked else "")
 
 
@@ -317,6 +328,7 @@ def report_rows() -> list[Row]:
     rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
              Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
              Row("units", design("hit_test_pipeline"), parts),
+             Row("exact unit", design("exact_unit"), {"osu035": ("blocks",)}),
              Row("ray core", design("ray_core"), {"osu035": ("blocks",)})]
     return rows
 

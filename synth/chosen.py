@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--adder", help="ripple, uniform, graded, prefix or tool")
     parser.add_argument("--width", type=whole(1, 4080), help="bits of an adder or a multiplier")
     parser.add_argument("--groups", type=whole_numbers, help="carry-select groups, least significant first: 4,5,7,...")
-    parser.add_argument("--look-ahead", type=whole(0, 1), help="1: groups add by carry look-ahead, 0: by ripple carry")
+    parser.add_argument("--look-ahead", type=whole(0, 1), help="1: groups add by carry look-ahead, 0: by ripple carry, as those of an adder do if not given")
     parser.add_argument("--exp-width", type=whole(2, 15), help="exponent bits of a float core")
     parser.add_argument("--frac-width", type=whole(1, 112), help="fraction bits of a float core")
 

@@ -7,6 +7,8 @@ hw/fp does not pass Verilator. A mark is `<!-- KIND -->`, its text ends at `<!--
   modules   the modules of the page's folder: what each is, its latency, and where `make synth` measures it area
             and time, measured again where they have changed
   fpga      the units that `make fpga` has placed; where none are, the old text stays
+
+The registers' package and header are made of their page, see `synth.registers`.
 """
 
 import dataclasses
@@ -16,7 +18,7 @@ import re
 import subprocess
 import sys
 
-from synth import catalogue, cores, fpga, measure, store, tables, tools, waveform
+from synth import catalogue, cores, fpga, measure, registers, store, tables, tools, waveform
 
 DIAGRAMS = cores.HW / "diagrams"
 MARK = re.compile(r"<!-- (?!end)(\w+) -->\n(.*?)<!-- end -->", re.S)
@@ -24,7 +26,7 @@ COLUMNS = ["module", "what it is", "latency", "mm2", "ns", "MHz"]
 # Design of the catalogue -> the flow that is shown.
 SHOWN = {"adder-graded": "fast", "booth-graded-ripple-groups": "fast", "fp-multiplier": "fast",
          "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
-         "hit_test_pipeline": "parts"}
+         "hit_test_pipeline": "parts", "exact_unit": "blocks"}
 
 
 def pages() -> list[pathlib.Path]:
@@ -116,6 +118,8 @@ def write() -> None:
     """Fills the text and draws the diagrams."""
     from synth import diagram  # by graphviz
 
+    for file, text in registers.made(registers.PAGE.read_text()).items():
+        file.write_text(text)
     figures, fpgas = measured_figures(), fpga.table()
     for page in pages():
         page.write_text(filled(page, page.read_text(), figures, fpgas))
@@ -135,10 +139,10 @@ def write() -> None:
 def check() -> list[str]:
     """What is out of date."""
     lines = []
-    for page in pages():
-        text = page.read_text()
-        lines += difflib.unified_diff(text.splitlines(), filled(page, text).splitlines(),
-                                      str(page.relative_to(tools.ROOT)), "the sources", n=0, lineterm="")
+    made = registers.made(registers.PAGE.read_text())
+    for file, new in [*made.items(), *((page, filled(page, page.read_text())) for page in pages())]:
+        lines += difflib.unified_diff(file.read_text().splitlines(), new.splitlines(),
+                                      str(file.relative_to(tools.ROOT)), "the sources", n=0, lineterm="")
     for file in DIAGRAMS.glob("*.json"):
         if file.with_suffix(".svg").read_text() != waveform.render(file):
             lines.append(f"{file.with_suffix('.svg')}: is not what WaveDrom makes of {file.name}")

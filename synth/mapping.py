@@ -105,13 +105,14 @@ def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Pa
     """
     return tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], log, {
         "LIBERTY": str(liberty or library.liberty), "NETLIST": str(netlist), "TOP": design.top,
-        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}", "CLOCK": clock or design.clock,
+        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}", "ACCESS": f"{library.access_ns}", "CLOCK": clock or design.clock,
         "ENDS": f"{ends:d}", "SPEF": str(spef or "")})
 
 
 def blocks(design: Design) -> list[str]:
-    """The modules that flow `blocks` maps on their own: those of the design's folder, and the units below it."""
-    return [file.stem for file in design.sources() if file.stem != design.top and not file.stem.endswith("_pkg")
+    """The modules that flow `blocks` maps on their own: those of the design's folder, and the units below it. What only
+    joins them, a subsystem, is the top's."""
+    return [file.stem for file in design.sources() if file.stem != design.top and not file.stem.endswith(("_pkg", "_subsystem"))
             and (file.parent.name == design.folder or file.stem == "hit_test_pipeline")]
 
 

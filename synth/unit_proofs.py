@@ -99,17 +99,20 @@ def contexts_answer_once() -> tuple[dict, bool]:
 
 def stack_keeps_nodes() -> tuple[dict, bool]:
     """What a ray's stack holds is asked for once, or beyond, by induction: of two rays and two levels."""
-    wires = "busy_q waiting_q picked_q ray_q asked_q started_q asking_ray_q chosen_q mask_q remaining_q group"
-    memories = "levels 2 2 u_groups.words 4 184 " + " ".join(
-        f"gen_level[{d}].nexts 2 19 gen_level[{d}].exponents 2 9" for d in range(2))
+    wires = ("busy_q waiting_q ready_q picked_q ray_q choosing_q choosing_ray_q level_q t_max_q "
+             "ended_q asked_q asking_ray_q asked_level_q mask_q remaining_q next_valid_q next_started_q next_ray_q "
+             "next_level_q next_remaining_q next_enter_q base_q offset_q group *.next_q")
+    memories = "levels 2 2 u_groups.words 4 224 " + " ".join(f"gen_level[{d}].nexts 2 26" for d in range(2))
     return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=14, prepared=f"traversal {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
+                 steps=1, reach=18, prepared=f"traversal {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
 
 
 def hits_keep_nearest() -> tuple[dict, bool]:
     """closest_hit keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
-    wires = "found_q any_hit_q replace u_doubts.push_i u_doubts.data_i *.count_q u_points.read_q u_points.write_q"
-    memories = ("t_max 2 31 nearest_t 2 32 nearest_error 2 5 nearest_triangle 2 32 u_kept.words 2 96 tests 2 28 "
+    wires = ("found_q any_hit_q is_over_q is_hit_q is_sure_q is_vague_q ray_q tag_q triangle_q t_q t_error_q low_q high_q "
+             "old_found_q old_t_max_q old_low_q old_triangle_q replace u_doubts.push_i u_doubts.data_i *.count_q "
+             "u_points.read_q u_points.write_q")
+    memories = ("t_max 2 31 nearest_t 2 32 nearest_low 2 32 nearest_error 2 5 nearest_triangle 2 32 u_kept.words 2 96 tests 2 28 "
                 "counts 2 10 u_points.words 2 2")
     return holds("hits_keep_nearest", "Bitwuzla", cores.used("closest_hit", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,
@@ -121,7 +124,7 @@ def leaves_are_asked_for() -> tuple[dict, bool]:
     wires = "valid_q ray_q group_q mask_q number_q u_groups.count_q u_groups.valid_o u_groups.data_o u_groups.read_q u_groups.write_q"
     return holds("leaves_are_asked_for", "Bitwuzla", cores.used("primitive_fetch", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=10,
-                 prepared=f"primitive_fetch {{Rays 2}} {{{wires}}} {{u_groups.u_words.words 2 192}}")
+                 prepared=f"primitive_fetch {{Rays 2}} {{{wires}}} {{u_groups.u_words.words 2 232}}")
 
 
 def cache_answers_once() -> tuple[dict, bool]:
@@ -133,6 +136,36 @@ def cache_answers_once() -> tuple[dict, bool]:
     return holds("cache_answers_once", "Bitwuzla", cores.used("line_cache", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=10, prepared="line_cache {Lines 16 Targets 2 RayWidth 1 Width 2} "
                  f"{{{wires}}} {{{memories}}}")
+
+
+def _watched(cell: str, *checks: str) -> dict:
+    """The sources of a proof of a port of hw/ray_core, with modules of sim/checks."""
+    watching = [cores.HW.parent / "sim" / "checks" / f"{name}.sv" for name in (*checks, "stream_checks")]
+    return {"sources": [*cores.used(cell, cores.files("ray_core")), *watching],
+            "beside": tuple(file.stem for file in watching)}
+
+
+def csr_keeps_protocol() -> tuple[dict, bool]:
+    """The registers' port keeps AXI4-Lite, and its plain registers are read as written, by induction."""
+    return holds("csr_keeps_protocol", "Bitwuzla", prepare="open.tcl", steps=2, reach=8, **_watched("csr", "axi_lite_checks"),
+                 prepared="csr {} {words address_q data_q write_word_q strobes_q write_data_q}")
+
+
+def reader_gives_lines() -> tuple[dict, bool]:
+    """axi_read_manager keeps AXI4 and gives each read its line, by induction: of two IDs, two beats a line."""
+    wires = "free_q id beat_fire beat_id last errors_q u_beats.count_q u_beats.read_q u_beats.write_q"
+    memories = "read_ids 2 2 counts 2 1 u_beats.words 2 259 gen_beat[0].u_part.words 2 256"
+    return holds("reader_gives_lines", "Bitwuzla", prepare="open.tcl", steps=2, reach=12,
+                 **_watched("axi_read_manager", "axi_read_checks"),
+                 prepared=f"axi_read_manager {{DataWidth 256 IdWidth 1 ReadIdWidth 2}} {{{wires}}} {{{memories}}}")
+
+
+def exact_accumulator_sums(width: int, products: int) -> tuple[dict, bool]:
+    """exact_accumulator adds without rounding and is sure only where it may be, by induction."""
+    return holds("exact_accumulator_sums", "Bitwuzla", cores.used("exact_accumulator", cores.files("exact")), "open.tcl",
+                 (("DigitWidth", width), ("Products", products)), steps=1, reach=6,
+                 prepared=f"exact_accumulator {{DigitWidth {width} Products {products}}} {{sum_q}}",
+                 name=f"exact_accumulator_{width}")
 
 
 def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
@@ -221,11 +254,17 @@ ALL = [
           "Bitwuzla", leaves_are_asked_for),
     Proof("unit.cache", "a request for a line is answered once, by that line, in whichever order memory answers",
           "Bitwuzla", cache_answers_once, False),
+    Proof("unit.csr", "the registers' port keeps AXI4-Lite; a register is read as it was written", "Bitwuzla", csr_keeps_protocol),
+    Proof("unit.reader", "the memory port keeps AXI4; each read is given its line, once, in any order of beats", "Bitwuzla",
+          reader_gives_lines, False),
     Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
-          functools.partial(of_ray_core, "sort7_sorts", "sort7", 2)),
+          functools.partial(of_ray_core, "sort7_sorts", "sort7", 3)),
     Proof("unit.arbiter", "the first request from a place on is picked", "Bitwuzla",
           functools.partial(of_ray_core, "arbiter_is_fair", "rr_arbiter")),
+    *(Proof(f"unit.exact_accumulator_{width}", f"sums of {products} products of {width} bits a column, without rounding, and sure only where it may be",
+            "Bitwuzla", functools.partial(exact_accumulator_sums, width, products), width < 48)
+      for width, products in ((24, 72), (48, 36))),
     Proof("unit.plane_offset", "ways on a node's grid are products, cut off", "Bitwuzla",
-          functools.partial(of_ray_core, "plane_offset_multiplies", "plane_offset")),
+          functools.partial(of_ray_core, "plane_offset_multiplies", "plane_offset", 2)),
     Proof("unit.array", "an array is its lanes, and its counters are their sums", "Bitwuzla", array),
 ]

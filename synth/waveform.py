@@ -88,7 +88,9 @@ def render(source: pathlib.Path) -> str:
     """The SVG of WaveDrom's source in a file."""
     import wavedrom  # installed for tests and for synthesis alone
 
-    return wavedrom.render(source.read_text()).tostring() + "\n"
+    # It measures words in Helvetica: the fonts that stand in for that are up to a third wider.
+    drawn = wavedrom.render(source.read_text()).tostring()
+    return drawn.replace("text{font-size:11pt;", "text{font-size:8pt;") + "\n"
 
 
 def draw(trace: pathlib.Path, save_file: pathlib.Path, out: pathlib.Path) -> None:

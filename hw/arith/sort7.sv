@@ -1,5 +1,5 @@
 // Sorts seven unsigned words, the smallest lowest: 16 comparators in six steps.
-// Latency: 1 clock, a register half way.
+// Latency: 2 clocks, a register behind every two steps but the last.
 //
 // Source: Batcher's network for eight, less one input.
 module sort7 #(
@@ -46,10 +46,13 @@ module sort7 #(
 
   assign gen_step[0].unsorted = words_i;
   assign gen_step[1].unsorted = gen_step[0].ordered;
-  assign gen_step[2].unsorted = gen_step[1].ordered;
-  always_ff @(posedge clk_i) gen_step[3].unsorted <= gen_step[2].ordered;
-  assign gen_step[4].unsorted = gen_step[3].ordered;
+  assign gen_step[3].unsorted = gen_step[2].ordered;
   assign gen_step[5].unsorted = gen_step[4].ordered;
   assign sorted_o = gen_step[5].ordered;
+
+  always_ff @(posedge clk_i) begin
+    gen_step[2].unsorted <= gen_step[1].ordered;
+    gen_step[4].unsorted <= gen_step[3].ordered;
+  end
 
 endmodule

@@ -7,8 +7,8 @@
 //   multiply    a_k = D_k / I_k                                             3 multipliers
 //   align       a_k and the grid's step s_k in units of 2**(E - 22),        see slab_setup
 //               room r_k for errors
-//   step        q s_k for the planes of all boxes                           42 multipliers, 8 x 33, see slab_test
-//   enter       largest near plane, smallest far plane                      42 adders, 49 comparators
+//   step        a_k -+ r_k +- q s_k for the planes of all boxes             42 products, 8 x 33, see plane_offset
+//   enter       largest near plane, smallest far plane                      49 comparators, see slab_test
 //   sort        near first; the group                                       see child_sort, sort7
 //
 // No valid: what belongs to a node is the user's to carry along. Of its ray t_max_i comes with the node, the rest a
@@ -53,20 +53,27 @@ module box_unit #(
   input  logic [95:0]                         inverse_i,
   input  logic [30:0]                         t_max_i,
   input  logic                                no_cull_i,
-  output logic [ray_core_pkg::GroupWidth-1:0] group_o,
+  output ray_core_pkg::group_t                group_o,
   output logic [ray_core_pkg::Children-1:0]   inner_o,
   output logic [ray_core_pkg::Children-1:0]   leaf_o
 );
 
   localparam int unsigned Children = ray_core_pkg::Children;
-  localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
   localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
   localparam int unsigned StepWidth = ray_core_pkg::StepWidth;
   localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth;
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
 
-  if (ray_core_pkg::BoxLatency
-      != 7 + hit_test_pkg::AdderLatency + hit_test_pkg::MultiplierLatency) begin : gen_check
+  // Clocks of the stages
+  localparam int unsigned Subtract = hit_test_pkg::AdderLatency;
+  localparam int unsigned Scale = 3;
+  localparam int unsigned Multiply = hit_test_pkg::MultiplierLatency;
+  localparam int unsigned Align = 2;
+  localparam int unsigned Slab = 4;
+  localparam int unsigned Sort = 4;
+
+  if (ray_core_pkg::BoxLatency != 1 + Subtract + Scale + Multiply + Align + Slab + Sort)
+  begin : gen_check
     $error("box_unit: ray_core_pkg::BoxLatency is not the number of its stages");
   end
 
@@ -80,28 +87,33 @@ module box_unit #(
     t_max_q <= t_max_i;
   end
 
-  // What goes along: all but the origins.
-  localparam int unsigned SidebandWidth = ray_core_pkg::LineWidth - 96;
-  localparam int unsigned NodeBase = ray_core_pkg::NodeBase - 96;
-  localparam int unsigned ChildrenWidth = SidebandWidth - NodeBase;  // base, kinds and boxes
-  logic [SidebandWidth-1:0] sub_node;
-  logic [95:0] sub_inverse;
-  logic [30:0] sub_t_max;
-  logic sub_no_cull;
+  // What goes along: base, kinds and boxes, and of the ray what the planes need
+  localparam int unsigned Base = ray_core_pkg::NodeBase;
+  localparam int unsigned ChildrenWidth = ray_core_pkg::LineWidth - Base;
+  localparam int unsigned Kinds = ray_core_pkg::NodeKinds - Base;
+  localparam int unsigned NodeBoxes = ray_core_pkg::NodeBoxes - Base;
 
-  delay_line #(
-    .Width(SidebandWidth + 96 + 31 + 1),
-    .Depth(hit_test_pkg::AdderLatency)
-  ) u_sideband_subtract (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i({node_q[ray_core_pkg::LineWidth-1:96], inverse_i, t_max_q, no_cull_i}),
-    .data_o({sub_node, sub_inverse, sub_t_max, sub_no_cull})
-  );
+  typedef struct packed {
+    logic [ChildrenWidth-1:0] children;
+    logic [30:0]              t_max;
+    logic                     no_cull;
+  } sideband_t;
+  typedef struct packed {
+    logic [8:0]  exponent;
+    logic [95:0] inverse;
+    logic [32:0] caps;
+    logic [2:0]  is_capped;
+    logic [2:0]  is_open;
+  } scale_t;
+
+  sideband_t taken, subtracted, scaled, multiplied;
+
+  assign taken = {node_q[ray_core_pkg::LineWidth-1:Base], t_max_q, no_cull_i};
 
   // ---- Subtract
 
-  logic [95:0] distance;
+  logic [95:0] distance, inverse;
+  logic [23:0] cells;
 
   vec_add #(
     .Subtract(1'b1),
@@ -113,88 +125,75 @@ module box_unit #(
     .b_i(origin_i),
     .sum_o(distance)
   );
+  delay_line #(
+    .Width($bits(taken) + 96 + 24),
+    .Depth(Subtract)
+  ) u_sideband_subtract (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({taken, inverse_i, node_q[ray_core_pkg::NodeExponents +: 24]}),
+    .data_o({subtracted, inverse, cells})
+  );
 
   // ---- Scale
 
-  localparam int unsigned NodeExponents = ray_core_pkg::NodeExponents - 96;  // in what goes along
-
-  logic [8:0] scale_exponent;
-  logic [32:0] caps;
-  logic [95:0] capped_inverse;
-  logic [2:0] capped, open;
+  scale_t scale, scale_q, multiplied_scale;
+  logic [95:0] scaled_distance;
 
   ray_scale u_scale (
+    .clk_i,
     .distances_i({distance[94:87], distance[62:55], distance[30:23]}),
-    .inverse_i(sub_inverse),
-    .cells_i(sub_node[NodeExponents +: 24]),
-    .t_max_i(sub_t_max[30:23]),
-    .exponent_o(scale_exponent),
-    .inverse_o(capped_inverse),
-    .caps_o(caps),
-    .is_capped_o(capped),
-    .is_open_o(open)
+    .inverse_i(inverse),
+    .cells_i(cells),
+    .t_max_i(subtracted.t_max[30:23]),
+    .exponent_o(scale.exponent),
+    .inverse_o(scale.inverse),
+    .caps_o(scale.caps),
+    .is_capped_o(scale.is_capped),
+    .is_open_o(scale.is_open)
   );
-
-  logic [95:0] scaled_distance_q, scaled_inverse_q;
-  logic [ChildrenWidth-1:0] scaled_node_q;
-  logic [32:0] scaled_caps_q;
-  logic [30:0] scaled_t_max_q;
-  logic [2:0] scaled_capped_q, scaled_open_q;
-  logic [8:0] scaled_exponent_q;
-  logic scaled_no_cull_q;
-
-  always_ff @(posedge clk_i) begin
-    scaled_distance_q <= distance;
-    scaled_inverse_q  <= capped_inverse;
-    scaled_node_q     <= sub_node[SidebandWidth-1:NodeBase];
-    scaled_caps_q     <= caps;
-    scaled_t_max_q    <= sub_t_max;
-    scaled_capped_q   <= capped;
-    scaled_open_q     <= open;
-    scaled_exponent_q <= scale_exponent;
-    scaled_no_cull_q  <= sub_no_cull;
-  end
+  delay_line #(
+    .Width($bits(taken) + 96),
+    .Depth(Scale)
+  ) u_sideband_scale (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({subtracted, distance}),
+    .data_o({scaled, scaled_distance})
+  );
+  always_ff @(posedge clk_i) scale_q <= scale;
 
   // ---- Multiply
 
-  logic [95:0] product, mul_inverse;
-  logic [ChildrenWidth-1:0] mul_node;
-  logic [32:0] mul_caps;
-  logic [30:0] mul_t_max;
-  logic [2:0] mul_capped, mul_open;
-  logic [8:0] mul_exponent;
-  logic mul_no_cull;
+  logic [95:0] product;
 
   vec_mul #(
     .Arith(Arith),
     .Adder(Adder)
   ) u_multiply (
     .clk_i,
-    .a_i(scaled_distance_q),
-    .b_i(scaled_inverse_q),
+    .a_i(scaled_distance),
+    .b_i(scale_q.inverse),
     .product_o(product)
   );
   delay_line #(
-    .Width(ChildrenWidth + 96 + 33 + 31 + 3 + 3 + 9 + 1),
-    .Depth(hit_test_pkg::MultiplierLatency)
+    .Width($bits(taken) + $bits(scale)),
+    .Depth(Multiply)
   ) u_sideband_multiply (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({scaled_node_q, scaled_inverse_q, scaled_caps_q, scaled_t_max_q, scaled_capped_q,
-             scaled_open_q, scaled_exponent_q, scaled_no_cull_q}),
-    .data_o({mul_node, mul_inverse, mul_caps, mul_t_max, mul_capped, mul_open, mul_exponent,
-             mul_no_cull})
+    .data_i({scaled, scale_q}),
+    .data_o({multiplied, multiplied_scale})
   );
 
   // ---- Align
 
-  logic [3*PlaneWidth-1:0] near_q, far_q;  // a_k -+ r_k
+  logic [3*PlaneWidth-1:0] near_q, far_q, step_near_q, step_far_q;  // a_k -+ r_k
   logic [3*StepWidth-1:0] step_q;
-  logic [2:0] back_q;
-  logic [UnitBits:0] t_max_units_q;
-  logic [ChildrenWidth-1:0] aligned_node_q;
-  logic [8:0] aligned_exponent_q;
-  logic aligned_no_cull_q;
+  logic [2:0] back, aligned_back, stepped_back;
+  logic [8:0] aligned_exponent, sorted_exponent;
+  logic [ChildrenWidth-1:0] children;
+  logic aligned_no_cull;
 
   for (genvar k = 0; k < 3; k++) begin : gen_align
     logic [PlaneWidth-1:0] near, far;
@@ -204,64 +203,89 @@ module box_unit #(
       .Arith(Arith),
       .Adder(Adder)
     ) u_axis (
+      .clk_i,
       .product_i(product[32*k +: 32]),
-      .inverse_i(mul_inverse[32*k +: 31]),
-      .exponent_i(mul_exponent),
-      .cap_i(mul_caps[11*k +: 11]),
-      .is_capped_i(mul_capped[k]),
-      .is_open_i(mul_open[k]),
+      .inverse_i(multiplied_scale.inverse[32*k +: 31]),
+      .exponent_i(multiplied_scale.exponent),
+      .cap_i(multiplied_scale.caps[11*k +: 11]),
+      .is_capped_i(multiplied_scale.is_capped[k]),
+      .is_open_i(multiplied_scale.is_open[k]),
       .near_o(near),
       .far_o(far),
       .step_o(step)
     );
+    assign back[k] = multiplied_scale.inverse[32*k+31];
 
     always_ff @(posedge clk_i) begin
       near_q[PlaneWidth*k +: PlaneWidth] <= near;
       far_q[PlaneWidth*k +: PlaneWidth]  <= far;
       step_q[StepWidth*k +: StepWidth]   <= step;
-      back_q[k]                          <= mul_inverse[32*k+31];
     end
+  end
+  always_ff @(posedge clk_i) begin
+    step_near_q  <= near_q;
+    step_far_q   <= far_q;
+    stepped_back <= aligned_back;
   end
 
   logic signed [10:0] t_max_amount;
-  logic [UnitBits:0] t_max_units;
-  assign t_max_amount = $signed({2'b0, mul_exponent}) + 11'sd1 - $signed({3'b0, mul_t_max[30:23]});
-  assign t_max_units  = (t_max_amount > 11'sd24) ? (UnitBits + 1)'(1)
-                      : (UnitBits + 1)'({1'b1, mul_t_max[22:0]} >> t_max_amount[4:0])
-                        + (UnitBits + 1)'(1);
+  logic [UnitBits:0] t_max_shifted_q, t_max_units_q, entered_t_max;
+  logic t_max_whole_q;
+  assign t_max_amount = $signed(
+    {2'b0, multiplied_scale.exponent}
+  ) + 11'sd1 - $signed(
+    {3'b0, multiplied.t_max[30:23]}
+  );
 
   always_ff @(posedge clk_i) begin
-    t_max_units_q      <= (t_max_amount <= 11'sd1) ? Whole : t_max_units;
-    aligned_node_q     <= mul_node;
-    aligned_exponent_q <= mul_exponent;
-    aligned_no_cull_q  <= mul_no_cull;
+    t_max_shifted_q <= (t_max_amount > 11'sd24) ? '0
+                     : (UnitBits + 1)'({1'b1, multiplied.t_max[22:0]} >> t_max_amount[4:0]);
+    t_max_whole_q   <= t_max_amount <= 11'sd1;
+    t_max_units_q   <= t_max_whole_q ? Whole : t_max_shifted_q + (UnitBits + 1)'(1);
   end
+
+  delay_line #(
+    .Width(ChildrenWidth + 1 + 9 + 3),
+    .Depth(Align)
+  ) u_sideband_align (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({multiplied.children, multiplied.no_cull, multiplied_scale.exponent, back}),
+    .data_o({children, aligned_no_cull, aligned_exponent, aligned_back})
+  );
 
   // ---- Step and enter: a key for each child, {left out, enter}
 
-  localparam int unsigned NodeBoxes = ray_core_pkg::NodeBoxes - ray_core_pkg::NodeBase;
   localparam int unsigned BoxWidth = ray_core_pkg::BoxWidth;
-  localparam int unsigned Kinds = ray_core_pkg::NodeKinds - ray_core_pkg::NodeBase;
+  localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
   localparam int unsigned KeyWidth = UnitBits + 2;
 
-  logic [3*PlaneWidth-1:0] step_near_q, step_far_q;
-  logic [2:0] step_back_q;
-  logic [UnitBits:0] step_t_max_q;
-  logic [NodeBoxes-1:0] step_node_q, keys_node_q;  // base and kinds
-  logic [8:0] step_exponent_q, keys_exponent_q;
-  logic step_no_cull_q;
   logic [Children*KeyWidth-1:0] keys;
+  logic [NodeBoxes-1:0] stepped_node, sorted_node;  // base and kinds
+  logic [8:0] stepped_exponent;
+  logic stepped_no_cull;
 
+  delay_line #(
+    .Width(UnitBits + 1),
+    .Depth(Slab - 2)
+  ) u_t_max (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(t_max_units_q),
+    .data_o(entered_t_max)
+  );
+  delay_line #(
+    .Width(NodeBoxes + 9 + 1),
+    .Depth(Slab - 1)
+  ) u_sideband_step (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({children[NodeBoxes-1:0], aligned_exponent, aligned_no_cull}),
+    .data_o({stepped_node, stepped_exponent, stepped_no_cull})
+  );
   always_ff @(posedge clk_i) begin
-    step_near_q     <= near_q;
-    step_far_q      <= far_q;
-    step_back_q     <= back_q;
-    step_t_max_q    <= t_max_units_q;
-    step_node_q     <= aligned_node_q[NodeBoxes-1:0];
-    step_exponent_q <= aligned_exponent_q;
-    step_no_cull_q  <= aligned_no_cull_q;
-    keys_node_q     <= step_node_q;
-    keys_exponent_q <= step_exponent_q;
+    sorted_node     <= stepped_node;
+    sorted_exponent <= stepped_exponent;
   end
 
   for (genvar i = 0; i < Children; i++) begin : gen_child
@@ -270,15 +294,15 @@ module box_unit #(
       .Adder(Adder)
     ) u_child (
       .clk_i,
-      .box_i(aligned_node_q[NodeBoxes+BoxWidth*i +: BoxWidth]),
-      .back_i(back_q),
+      .box_i(children[NodeBoxes+BoxWidth*i +: BoxWidth]),
+      .back_i(aligned_back),
       .step_i(step_q),
       .near_i(step_near_q),
       .far_i(step_far_q),
-      .next_back_i(step_back_q),
-      .t_max_i(step_t_max_q),
-      .kind_i(step_node_q[Kinds+KindWidth*i +: KindWidth]),
-      .no_cull_i(step_no_cull_q),
+      .next_back_i(stepped_back),
+      .t_max_i(entered_t_max),
+      .kind_i(stepped_node[Kinds+KindWidth*i +: KindWidth]),
+      .no_cull_i(stepped_no_cull),
       .key_o(keys[KeyWidth*i +: KeyWidth])
     );
   end
@@ -290,9 +314,9 @@ module box_unit #(
   ) u_group (
     .clk_i,
     .keys_i(keys),
-    .kinds_i(keys_node_q[Kinds +: Children*KindWidth]),
-    .base_i(keys_node_q[0 +: ray_core_pkg::AddressWidth]),
-    .exponent_i(keys_exponent_q),
+    .kinds_i(sorted_node[Kinds +: Children*KindWidth]),
+    .base_i(sorted_node[0 +: ray_core_pkg::AddressWidth]),
+    .exponent_i(sorted_exponent),
     .group_o,
     .inner_o,
     .leaf_o

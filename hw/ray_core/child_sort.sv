@@ -1,5 +1,5 @@
 // Sort of a node's children: the group of those that the ray enters, near first.
-// Latency: 2 clocks, a register half way through the sort and one behind the group. keys_i are slab_test's.
+// Latency: 4 clocks: two registers in the sort, one behind it and one behind the group. keys_i are slab_test's.
 module child_sort #(
   parameter int unsigned Arith = arith_pkg::Structural,
   localparam int unsigned Children = ray_core_pkg::Children,
@@ -12,8 +12,8 @@ module child_sort #(
   input  logic [Children*KeyWidth-1:0]         keys_i,
   input  logic [Children*KindWidth-1:0]        kinds_i,
   input  logic [AddressWidth-1:0]              base_i,
-  input  logic [ray_core_pkg::ExponentWidth-1:0] exponent_i,
-  output logic [ray_core_pkg::GroupWidth-1:0]  group_o,
+  input  logic [8:0]                           exponent_i,  // E
+  output ray_core_pkg::group_t                 group_o,
   output logic [Children-1:0]                  inner_o,
   output logic [Children-1:0]                  leaf_o
 );
@@ -24,13 +24,16 @@ module child_sort #(
   localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
   localparam int unsigned NumberWidth = 3;
   localparam int unsigned WordWidth = KeyWidth + NumberWidth;
+  localparam int unsigned UnitsWidth = 12;  // of a distance that is kept
+  localparam int unsigned ZerosWidth = $clog2(UnitsWidth);
 
   // ---- Sort: {key, number of the child}
 
-  logic [Children*WordWidth-1:0] words, sorted;
-  logic [Children*KindWidth-1:0] kinds_q;
-  logic [AddressWidth-1:0] base_q;
-  logic [ray_core_pkg::ExponentWidth-1:0] exponent_q;
+  localparam int unsigned SortLatency = 3;
+  logic [Children*WordWidth-1:0] words, ordered, sorted;
+  logic [Children*KindWidth-1:0] kinds;
+  logic [AddressWidth-1:0] base;
+  logic [8:0] last_field;  // of numbers that begin with the highest bit of 12 below 2**E
 
   for (genvar i = 0; i < Children; i++) begin : gen_word
     assign words[WordWidth*i+:WordWidth] = {keys_i[KeyWidth*i+:KeyWidth], NumberWidth'(i)};
@@ -41,29 +44,43 @@ module child_sort #(
   ) u_sort (
     .clk_i,
     .words_i(words),
-    .sorted_o(sorted)
+    .sorted_o(ordered)
   );
-  always_ff @(posedge clk_i) begin
-    kinds_q    <= kinds_i;
-    base_q     <= base_i;
-    exponent_q <= exponent_i;
-  end
+  delay_line #(
+    .Width(Children * KindWidth + AddressWidth + 9),
+    .Depth(SortLatency)
+  ) u_sideband (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({kinds_i, base_i, exponent_i - 9'd1}),
+    .data_o({kinds, base, last_field})
+  );
 
   // ---- The children's first lines follow each other
 
-  logic [Children*OffsetWidth-1:0] offsets;
+  logic [Children*OffsetWidth-1:0] next_offsets, offsets;
 
   always_comb begin : lines
     logic [OffsetWidth-1:0] next;
     logic [KindWidth-1:0] kind;
     next = '0;
     for (int unsigned i = 0; i < Children; i++) begin
-      offsets[OffsetWidth*i +: OffsetWidth] = next;
-      kind = kinds_q[KindWidth*i +: KindWidth];
+      next_offsets[OffsetWidth*i +: OffsetWidth] = next;
+      kind = kinds_i[KindWidth*i +: KindWidth];
       next = next + ((kind == ray_core_pkg::KindInner) ? OffsetWidth'(1)
                                                        : OffsetWidth'(kind[CountWidth-1:0]));
     end
   end
+
+  delay_line #(
+    .Width(Children * OffsetWidth),
+    .Depth(SortLatency)
+  ) u_offsets (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(next_offsets),
+    .data_o(offsets)
+  );
 
   // ---- Entries
 
@@ -74,24 +91,40 @@ module child_sort #(
     logic [NumberWidth-1:0] number;
     logic [KeyWidth-1:0] key;
     logic [KindWidth-1:0] kind;
+    logic [UnitsWidth-1:0] distance, fraction;
+    logic [ZerosWidth-1:0] zeros;
+    logic [8:0] field;
     logic [EnterWidth-1:0] enter;
-    logic is_inner, left_out;
+    logic is_inner, left_out, is_zero;
     assign {key, number} = sorted[WordWidth*n +: WordWidth];
-    assign kind     = kinds_q[KindWidth*number +: KindWidth];
+    assign kind     = kinds[KindWidth*number +: KindWidth];
     assign is_inner = kind == ray_core_pkg::KindInner;
     assign left_out = key[KeyWidth-1];
     assign inner[n] = ~left_out & is_inner;
     assign leaf[n]  = ~left_out & ~is_inner;
-    assign enter    = key[UnitBits] ? '1 : key[UnitBits-1 -: EnterWidth];
+
+    // As an ordered word
+    leading_zero_counter #(
+      .Width(UnitsWidth)
+    ) u_zeros (
+      .a_i(distance),
+      .count_o(zeros),
+      .zero_o(is_zero)
+    );
+    assign distance    = key[UnitBits] ? '1 : key[UnitBits-1 -: UnitsWidth];
+    assign fraction = distance << zeros;
+    assign field    = last_field - 9'(zeros);
+    assign enter    = is_zero ? '0 : field[8] ? '1 : {field[7:0], fraction[UnitsWidth-2:0]};
     assign entries[EntryWidth*n +: EntryWidth] = {
         enter, offsets[OffsetWidth*number +: OffsetWidth],
         is_inner ? CountWidth'(0) : kind[CountWidth-1:0]};
     logic unused;  // what is less than an entry's unit
-    assign unused = ^key[UnitBits-EnterWidth-1:0];
+    assign unused = ^{key[UnitBits-UnitsWidth-1:0], fraction[UnitsWidth-1]};
   end
 
   always_ff @(posedge clk_i) begin
-    group_o <= {base_q, exponent_q, entries};
+    sorted  <= ordered;
+    group_o <= {base, entries};
     inner_o <= inner;
     leaf_o  <= leaf;
   end

@@ -6,13 +6,15 @@
 // hit's may be off by 2**t_error units (set_up_pkg). At first t_max is the user's, so that a hit that may be
 // beyond it is a doubt. A ray that wants any hit ends with its first sure one.
 //
-// A result is taken in each clock; a ray's tests are over when result_i has been high as often for it as test_i. P
-// comes later, in the order of the results that were hits, PointDelay clocks at most.
+// A result is taken in each clock, and compared in the next one; a ray's tests are over when as many results have been
+// compared as test_i was high. P comes later, in the order of the results that were hits, PointDelay clocks at most.
 module closest_hit #(
   parameter int unsigned Rays = 64,
-  parameter int unsigned InFlight = 64,  // tests that are on their way when tests_allowed_o falls
+  // Tests on their way when tests_allowed_o falls: from the clock in which a triangle line leaves memory to that in
+  // which its test is over, and one more
+  parameter int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
+                                  + hit_test_pkg::divide_latency(23) + 8,
   localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned PlaneErrorWidth = set_up_pkg::PlaneErrorWidth,
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
   localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth
 ) (
@@ -27,20 +29,10 @@ module closest_hit #(
   input  logic                       test_i,
   input  logic [RayWidth-1:0]        test_ray_i,
   output logic                       tests_allowed_o,  // room for the doubts of all on their way
-  // a test is over
-  input  logic                       result_i,
+  // a test is over, or P of an earlier one is there
   input  logic [RayWidth-1:0]        result_ray_i,
-  input  logic [31:0]                result_tag_i,      // the ray's, for doubts
-  input  logic [31:0]                result_triangle_i,
-  input  logic                       result_skipped_i,  // it counts for nothing
-  input  logic                       result_doubt_i,
-  input  logic                       result_hit_i,
-  input  logic [31:0]                result_t_i,
-  input  logic [hit_test_pkg::TErrorWidth-1:0] result_t_error_i,
-  input  logic [PlaneErrorWidth-1:0] result_normal_error_i,
-  input  logic [PlaneErrorWidth-1:0] result_distance_error_i,
-  input  logic                       point_valid_i,
-  input  logic [95:0]                point_i,
+  input  logic [31:0]                result_tag_i,  // the ray's, for doubts
+  input  ray_core_pkg::verdict_t     result_i,
   // t_max, by ray, in the same clock
   input  logic [RayWidth-1:0]        traversal_ray_i,
   output logic [30:0]                traversal_t_max_o,
@@ -53,17 +45,11 @@ module closest_hit #(
   output logic [30:0]                box_t_max_o,
   output logic [Rays-1:0]            testing_o,
   // doubts
-  output logic                       doubt_valid_o,
-  output logic [31:0]                doubt_tag_o,
-  output logic [31:0]                doubt_triangle_o,
+  output ray_core_pkg::doubt_t       doubt_o,
   input  logic                       doubt_fire_i,
   // the nearest hit of a ray, in the same clock
   input  logic [RayWidth-1:0]        end_ray_i,
-  output logic                       end_found_o,
-  output logic [31:0]                end_triangle_o,
-  output logic [31:0]                end_t_o,
-  output logic [TErrorWidth-1:0]     end_t_error_o,
-  output logic [TestsWidth-1:0]      end_tests_o,
+  output ray_core_pkg::hit_t         end_o,
   // the P of a ray's last hit that was kept, in the clock after
   input  logic [RayWidth-1:0]        point_ray_i,
   output logic [95:0]                point_o,
@@ -74,8 +60,13 @@ module closest_hit #(
   localparam int unsigned CountWidth = 10;
   localparam logic [31:0] Infinity = 32'h7f80_0000;
 
+  if (ray_core_pkg::TErrorWidth != TErrorWidth) begin : gen_check
+    $error("closest_hit: TErrorWidth of ray_core_pkg is not set_up_pkg's");
+  end
+
   logic [30:0] t_max[Rays];
   logic [31:0] nearest_t[Rays];
+  logic [31:0] nearest_low[Rays];  // the least that it may be
   logic [TErrorWidth-1:0] nearest_error[Rays];
   logic [31:0] nearest_triangle[Rays];
   logic [TestsWidth-1:0] tests[Rays];
@@ -89,29 +80,53 @@ module closest_hit #(
   assign leaf_counter_full_o = &counts[leaf_ray_i];
   assign box_t_max_o         = t_max[box_ray_i];
 
-  // ---- The result against the nearest so far
+  // ---- Read: the result, and the nearest so far
 
-  logic good, hit, doubt, replace, open, old_open;
-  logic [TErrorWidth-1:0] t_error;
-  logic [31:0] margin, old_margin, low, high, old_low, sum, old_t, old_t_max;
+  logic good, is_over_q, is_hit_q, is_sure_q, is_vague_q, replace, forward, old_found_q;
+  logic [RayWidth-1:0] ray_q;
+  logic [TErrorWidth-1:0] t_error, t_error_q;
+  logic [31:0] margin, sum, t_q, low_q, high_q, tag_q, triangle_q, old_low_q, old_triangle_q;
+  logic [30:0] old_t_max_q;
 
-  assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_t_error_i), result_normal_error_i);
+  assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_i.t_error), result_i.normal_error);
   assign t_error = set_up_pkg::t_error_exponent(
-      TErrorWidth'(result_t_error_i), result_normal_error_i, result_distance_error_i);
-  assign hit   = result_i & ~result_skipped_i & result_hit_i & good;
-  assign doubt = result_i & ~result_skipped_i & (result_doubt_i | (result_hit_i & ~good));
+      TErrorWidth'(result_i.t_error), result_i.normal_error, result_i.distance_error);
+  assign margin  = 32'd1 << t_error;
+  assign sum     = result_i.t + margin;
+  assign forward = replace & (ray_q == result_ray_i);  // the nearest so far is in the next stage
 
-  assign margin     = 32'd1 << t_error;
-  assign old_t      = nearest_t[result_ray_i];
-  assign old_margin = 32'd1 << nearest_error[result_ray_i];
-  assign old_t_max  = {1'b0, t_max[result_ray_i]};
-  assign low        = (result_t_i > margin) ? result_t_i - margin : '0;
-  assign sum        = result_t_i + margin;
-  assign high       = (sum < Infinity) ? sum : Infinity;
-  assign old_low    = (old_t > old_margin) ? old_t - old_margin : '0;
-  assign replace    = hit & (high < old_t_max);
-  assign old_open   = replace & found_q[result_ray_i] & (old_low <= high);
-  assign open       = hit & ~replace & (low <= old_t_max);
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      {is_over_q, is_hit_q, is_sure_q, is_vague_q} <= '0;
+    end else begin
+      is_over_q  <= result_i.valid;
+      is_hit_q   <= result_i.valid & result_i.found;
+      is_sure_q  <= result_i.valid & ~result_i.is_skipped & result_i.found & good;
+      is_vague_q <= result_i.valid & ~result_i.is_skipped
+                  & (result_i.doubt | (result_i.found & ~good));
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    ray_q          <= result_ray_i;
+    tag_q          <= result_tag_i;
+    triangle_q     <= result_i.triangle;
+    t_q            <= result_i.t;
+    t_error_q      <= t_error;
+    low_q          <= (result_i.t > margin) ? result_i.t - margin : '0;
+    high_q         <= (sum < Infinity) ? sum : Infinity;
+    old_found_q    <= forward | found_q[result_ray_i];
+    old_t_max_q    <= forward ? high_q[30:0] : t_max[result_ray_i];
+    old_low_q      <= forward ? low_q : nearest_low[result_ray_i];
+    old_triangle_q <= forward ? triangle_q : nearest_triangle[result_ray_i];
+  end
+
+  // ---- Compare
+
+  logic open, old_open;
+
+  assign replace    = is_sure_q & (high_q < {1'b0, old_t_max_q});
+  assign old_open   = replace & old_found_q & (old_low_q <= high_q);
+  assign open       = is_sure_q & ~replace & (low_q <= {1'b0, old_t_max_q});
   assign near_tie_o = old_open | open;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -123,16 +138,17 @@ module closest_hit #(
         found_q[load_ray_i]   <= 1'b0;
         any_hit_q[load_ray_i] <= load_any_hit_i;
       end
-      if (replace) found_q[result_ray_i] <= 1'b1;
+      if (replace) found_q[ray_q] <= 1'b1;
     end
   end
   always_ff @(posedge clk_i) begin
     if (load_i) t_max[load_ray_i] <= load_t_max_i;
     if (replace) begin
-      t_max[result_ray_i]            <= high[30:0];
-      nearest_t[result_ray_i]        <= result_t_i;
-      nearest_error[result_ray_i]    <= t_error;
-      nearest_triangle[result_ray_i] <= result_triangle_i;
+      t_max[ray_q]            <= high_q[30:0];
+      nearest_t[ray_q]        <= t_q;
+      nearest_low[ray_q]      <= low_q;
+      nearest_error[ray_q]    <= t_error_q;
+      nearest_triangle[ray_q] <= triangle_q;
     end
   end
 
@@ -145,12 +161,12 @@ module closest_hit #(
   ) u_doubts (
     .clk_i,
     .rst_ni,
-    .push_i(doubt | open | old_open),
-    .data_i({result_tag_i, old_open ? nearest_triangle[result_ray_i] : result_triangle_i}),
+    .push_i(is_vague_q | open | old_open),
+    .data_i({tag_q, old_open ? old_triangle_q : triangle_q}),
     .space_o(tests_allowed_o),
     .pop_i(doubt_fire_i),
-    .valid_o(doubt_valid_o),
-    .data_o({doubt_tag_o, doubt_triangle_o})
+    .valid_o(doubt_o.valid),
+    .data_o({doubt_o.tag, doubt_o.triangle})
   );
 
   // ---- P: of every hit in turn, kept if the hit was
@@ -164,10 +180,10 @@ module closest_hit #(
   ) u_points (
     .clk_i,
     .rst_ni,
-    .push_i(result_i & result_hit_i),
-    .data_i({result_ray_i, replace}),
+    .push_i(is_hit_q),
+    .data_i({ray_q, replace}),
     .space_o(unused_space),
-    .pop_i(point_valid_i),
+    .pop_i(result_i.point_valid),
     .valid_o(unused_point),
     .data_o({point_ray, point_kept})
   );
@@ -177,9 +193,9 @@ module closest_hit #(
     .Depth(Rays)
   ) u_kept (
     .clk_i,
-    .write_i(point_valid_i & point_kept),
+    .write_i(result_i.point_valid & point_kept),
     .write_address_i(point_ray),
-    .data_i(point_i),
+    .data_i(result_i.point),
     .read_i(1'b1),
     .read_address_i(point_ray_i),
     .data_o(point_o)
@@ -188,14 +204,14 @@ module closest_hit #(
   // ---- Tests on their way
 
   logic same;
-  assign same = test_i & result_i & (test_ray_i == result_ray_i);
+  assign same = test_i & is_over_q & (test_ray_i == ray_q);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       testing_o <= '0;
     end else begin
-      if (result_i && !same && counts[result_ray_i] == CountWidth'(1)) begin
-        testing_o[result_ray_i] <= 1'b0;
+      if (is_over_q && !same && counts[ray_q] == CountWidth'(1)) begin
+        testing_o[ray_q] <= 1'b0;
       end
       if (test_i) testing_o[test_ray_i] <= 1'b1;
     end
@@ -207,15 +223,15 @@ module closest_hit #(
     end
     if (test_i) tests[test_ray_i] <= tests[test_ray_i] + 1'b1;
     if (test_i && !same) counts[test_ray_i] <= counts[test_ray_i] + 1'b1;
-    if (result_i && !same) counts[result_ray_i] <= counts[result_ray_i] - 1'b1;
+    if (is_over_q && !same) counts[ray_q] <= counts[ray_q] - 1'b1;
   end
 
   // ---- The end
 
-  assign end_found_o    = found_q[end_ray_i];
-  assign end_triangle_o = nearest_triangle[end_ray_i];
-  assign end_t_o        = nearest_t[end_ray_i];
-  assign end_t_error_o  = nearest_error[end_ray_i];
-  assign end_tests_o    = tests[end_ray_i];
+  assign end_o.found    = found_q[end_ray_i];
+  assign end_o.triangle = nearest_triangle[end_ray_i];
+  assign end_o.t        = nearest_t[end_ray_i];
+  assign end_o.t_error  = nearest_error[end_ray_i];
+  assign end_o.tests    = tests[end_ray_i];
 
 endmodule

@@ -1,30 +1,6 @@
 // Control and status registers of the ray core, on AXI4-Lite: what to draw, from which memory, counters, flags.
 //
-// Words of 32 bits; reading elsewhere gives 0, writing elsewhere does nothing. Bytes that wstrb leaves out
-// stay. Binary32 vectors are three words, x first.
-//
-//   0x000  identity   ro   0x52470001
-//   0x004  command    wo   bit 0: make the rays of the rectangle; 1: memory has changed; 2: counters to zero;
-//                          3: give up all rays, generated and others: they end at once, with an error
-//   0x008  status     ro   bit 0: the generator has rays to make; 1: rays are in the core; 2: lines are on
-//                          their way to it
-//   0x00c  enable     rw   of interrupts, as in `flags`
-//   0x010  flags      w1c  bit 0: a doubt has left; 1: the last ray of a rectangle has ended; 2: memory
-//                          has answered with an error; 3: a ray has ended with an error
-//                          An event that comes as its flag is lowered raises it again
-//   0x014  base       rw   two words: address of line 0, low word first; a multiple of 64
-//   0x01c  lines      rw   of memory, 28 bits; 0: 2**28. A ray that enters more nodes ends with an error
-//   0x020  corner     rw   the rectangle's first pixel: x in bits 15:0, y in 31:16
-//   0x024  size       rw   its width and height, likewise
-//   0x028  error line ro   the number of the line that raised flag 2
-//   0x030  eye        rw   where generated rays begin; 0x040 first, 0x050 right, 0x060 down: see ray_generator
-//   0x100  counters   ro   two words each, low word first: clocks with status bit 1 high, then those of
-//                          ray_core_pkg::event_e in their order. Of 48 bits, modulo 2**48; a high word is
-//                          that of the moment when a low word was read last
-//
-// So a picture is drawn by one write of `size` and one of `command`, where the camera stays. While status bits 1:0
-// are not 0, command 0 and writes to 0x014 to 0x068 do nothing and are answered by SLVERR; while bits 2:0 are not,
-// command 1 and writes to `base`, which are a command 1, too. A rectangle without pixels is done at once.
+// Words, bits, and what is refused while the core is busy: registers.md, of which csr_pkg is made.
 //
 // One write and one read at a time; no output of AXI depends on an input in the same clock.
 // interrupt_o is high while a flag is that is enabled.
@@ -63,11 +39,18 @@ module csr #(
   output logic [31:0]             corner_o,
   output logic [31:0]             size_o,
   output logic [4*96-1:0]         camera_o,      // eye lowest, then first, right, down
+  output logic [63:0]             results_o,
+  output logic [31:0]             length_o,
+  output logic                    rewind_o,      // this clock's command
   input  logic                    camera_busy_i,
   input  logic                    core_busy_i,   // has rays
   input  logic                    outstanding_i,
+  input  logic                    writing_i,
+  input  logic [31:0]             written_i,
   input  logic                    doubt_i,       // this clock's
   input  logic                    ray_error_i,
+  input  logic                    full_i,
+  input  logic                    write_error_i,
   input  logic                    bus_error_i,
   input  logic [LineNumberWidth-1:0] error_number_i,
   input  logic [ray_core_pkg::NumEvents-1:0] events_i,
@@ -75,21 +58,12 @@ module csr #(
 );
 
   localparam logic [31:0] Identity = 32'h5247_0001;
-  localparam int unsigned NumCounters = 1 + ray_core_pkg::NumEvents;
   localparam int unsigned CounterWidth = 48;
-  localparam int unsigned NumFlags = 4;
+  localparam int unsigned NumFlags = csr_pkg::NumFlags;
 
-  // Word numbers
-  localparam logic [9:0] WordIdentity = 10'h000;
-  localparam logic [9:0] WordCommand = 10'h001;
-  localparam logic [9:0] WordStatus = 10'h002;
-  localparam logic [9:0] WordEnable = 10'h003;
-  localparam logic [9:0] WordFlags = 10'h004;
-  localparam logic [9:0] WordBase = 10'h005;
-  localparam logic [9:0] WordLines = 10'h007;
-  localparam logic [9:0] WordErrorLine = 10'h00a;
-  localparam logic [31:0] PlainWords = 32'h0777_73e0;  // by number, those of plain registers
-  localparam logic [9:0] WordCounters = 10'h040;
+  if (csr_pkg::NumCounters != 1 + ray_core_pkg::NumEvents) begin : gen_check
+    $error("csr: expected a counter of each event, and one of clocks");
+  end
 
   // ---- Writes: address and data are taken, each into a register; then the word is written
 
@@ -120,27 +94,32 @@ module csr #(
     if (write) axi_bresp_o <= {refused, 1'b0};
   end
 
-  logic command, plain, rebase, clear;
-  logic [3:0] commands;
-  assign commands     = (write && write_word_q == WordCommand) ? write_data_q[3:0] & mask[3:0] : '0;
-  assign plain        = (write_word_q < 10'd32) && PlainWords[write_word_q[4:0]];
-  assign rebase       = (write_word_q == WordBase) | (write_word_q == WordBase + 10'd1);
-  assign refused      = ((camera_busy_i | core_busy_i) & (plain | (commands[1:0] != '0)))
-                      | (outstanding_i & (rebase | commands[1]));
+  logic command, plain, rebase, empty, clear;
+  logic [csr_pkg::NumCommand-1:0] commands;
+  assign commands     = (write && write_word_q == csr_pkg::WordCommand)
+                      ? write_data_q[csr_pkg::NumCommand-1:0] & mask[csr_pkg::NumCommand-1:0] : '0;
+  assign plain        = (write_word_q < 10'd32)
+                      && (csr_pkg::PlainBits[32*write_word_q[4:0]+:32] != '0);
+  assign rebase       = (write_word_q == csr_pkg::WordBase)
+                      | (write_word_q == csr_pkg::WordBaseHigh);
+  assign refused      = ((camera_busy_i | core_busy_i)
+                         & (plain | commands[csr_pkg::CommandStart] | empty))
+                      | (outstanding_i & (rebase | empty))
+                      | (writing_i & commands[csr_pkg::CommandRewind]);
+  assign empty        = commands[csr_pkg::CommandInvalidate];
   assign command      = write & ~refused;
-  assign start_o      = command & commands[0];
-  assign invalidate_o = command & (commands[1] | rebase);
-  assign clear        = command & commands[2];
+  assign start_o      = command & commands[csr_pkg::CommandStart];
+  assign invalidate_o = command & (empty | rebase);
+  assign rewind_o     = command & commands[csr_pkg::CommandRewind];
+  assign clear        = command & commands[csr_pkg::CommandClear];
 
-  // ---- Plain registers: base, corner, size and the camera's
+  // ---- Plain registers
 
   logic [32*32-1:0] words;  // by word number
 
   for (genvar n = 0; n < 32; n++) begin : gen_word
-    // That can be written. Yosys 0.23 reads '1 in a conditional as 32'd1.
-    localparam logic [31:0] Bits = (n == 32'(WordBase)) ? 32'hFFFF_FFC0
-                                 : (n == 32'(WordLines)) ? 32'h0FFF_FFFF : 32'hFFFF_FFFF;
-    if (PlainWords[n]) begin : gen_plain
+    localparam logic [31:0] Bits = csr_pkg::PlainBits[32*n+:32];
+    if (Bits != '0) begin : gen_plain
       logic [31:0] word_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) word_q <= '0;
@@ -154,12 +133,14 @@ module csr #(
     end
   end
 
-  assign base_o   = words[32*5+:64];
-  assign lines_o  = words[32*7+:LineNumberWidth];
-  assign corner_o = words[32*8+:32];
-  assign size_o   = words[32*9+:32];
+  assign base_o   = words[32*32'(csr_pkg::WordBase)+:64];
+  assign lines_o  = words[32*32'(csr_pkg::WordLines)+:LineNumberWidth];
+  assign corner_o = words[32*32'(csr_pkg::WordCorner)+:32];
+  assign size_o   = words[32*32'(csr_pkg::WordSize)+:32];
+  assign results_o = words[32*32'(csr_pkg::WordResults)+:64];
+  assign length_o = words[32*32'(csr_pkg::WordLength)+:32];
   for (genvar v = 0; v < 4; v++) begin : gen_vector
-    assign camera_o[96*v+:96] = words[32*(12+4*v)+:96];
+    assign camera_o[96*v+:96] = words[32*(32'(csr_pkg::WordEye)+4*v)+:96];
   end
 
   // ---- Flags
@@ -169,8 +150,14 @@ module csr #(
   logic [LineNumberWidth-1:0] error_line_q;
 
   assign done    = drawing_q & ~camera_busy_i & ~core_busy_i;
-  assign raised  = {ray_error_i, bus_error_i, done, doubt_i};
-  assign lowered = (write && write_word_q == WordFlags) ? write_data_q[3:0] & mask[3:0] : '0;
+  assign raised[csr_pkg::FlagsDoubt]    = doubt_i;
+  assign raised[csr_pkg::FlagsDone]     = done;
+  assign raised[csr_pkg::FlagsBusError] = bus_error_i;
+  assign raised[csr_pkg::FlagsRayError] = ray_error_i;
+  assign raised[csr_pkg::FlagsFull]       = full_i;
+  assign raised[csr_pkg::FlagsWriteError] = write_error_i;
+  assign lowered = (write && write_word_q == csr_pkg::WordFlags)
+                 ? write_data_q[NumFlags-1:0] & mask[NumFlags-1:0] : '0;
   assign interrupt_o = (enable_q & flags_q) != '0;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -181,13 +168,15 @@ module csr #(
       abort_q   <= 1'b0;
       error_line_q <= '0;
     end else begin
-      if (write && write_word_q == WordEnable) begin
-        enable_q <= (write_data_q[3:0] & mask[3:0]) | (enable_q & ~mask[3:0]);
+      if (write && write_word_q == csr_pkg::WordEnable) begin
+        enable_q <= (write_data_q[NumFlags-1:0] & mask[NumFlags-1:0])
+                  | (enable_q & ~mask[NumFlags-1:0]);
       end
       flags_q   <= (flags_q & ~lowered) | raised;
       drawing_q <= start_o | camera_busy_i | (drawing_q & ~done);
-      if (bus_error_i && !flags_q[2]) error_line_q <= error_number_i;
-      abort_q <= (command & commands[3]) | (abort_q & (camera_busy_i | core_busy_i));
+      if (bus_error_i && !flags_q[csr_pkg::FlagsBusError]) error_line_q <= error_number_i;
+      abort_q <= (command & commands[csr_pkg::CommandAbort])
+               | (abort_q & (camera_busy_i | core_busy_i));
     end
   end
 
@@ -196,11 +185,11 @@ module csr #(
 
   // ---- Counters
 
-  logic [NumCounters*CounterWidth-1:0] counters;
-  logic [NumCounters-1:0] counted;
+  logic [csr_pkg::NumCounters*CounterWidth-1:0] counters;
+  logic [csr_pkg::NumCounters-1:0] counted;
 
   assign counted = {events_i, core_busy_i};
-  for (genvar n = 0; n < NumCounters; n++) begin : gen_counter
+  for (genvar n = 0; n < csr_pkg::NumCounters; n++) begin : gen_counter
     logic [CounterWidth-1:0] count_q;
     always_ff @(posedge clk_i or negedge rst_ni) begin
       if (!rst_ni) count_q <= '0;
@@ -214,26 +203,32 @@ module csr #(
   logic read;
   logic [31:0] value;
   logic [CounterWidth-33:0] high, high_q;
+  logic [csr_pkg::NumStatus-1:0] status;
 
   assign read          = axi_arvalid_i & axi_arready_o;
   assign axi_arready_o = ~axi_rvalid_o;
   assign axi_rresp_o   = 2'b00;
   assign read_word     = axi_araddr_i[AddressWidth-1:2];
+  assign status[csr_pkg::StatusGenerating] = camera_busy_i;
+  assign status[csr_pkg::StatusTracing]    = core_busy_i;
+  assign status[csr_pkg::StatusReading]    = outstanding_i;
+  assign status[csr_pkg::StatusWriting]    = writing_i;
 
   always_comb begin
     value = (read_word < 10'd32) ? words[32*read_word[4:0]+:32] : '0;
     high  = high_q;
-    for (int unsigned n = 0; n < NumCounters; n++) begin
-      if (read_word == WordCounters + 10'(2 * n)) begin
+    for (int unsigned n = 0; n < csr_pkg::NumCounters; n++) begin
+      if (read_word == csr_pkg::WordCounters + 10'(2 * n)) begin
         {high, value} = counters[CounterWidth*n+:CounterWidth];
       end
-      if (read_word == WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
+      if (read_word == csr_pkg::WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
     end
-    if (read_word == WordIdentity) value = Identity;
-    if (read_word == WordStatus) value = {29'd0, outstanding_i, core_busy_i, camera_busy_i};
-    if (read_word == WordErrorLine) value = 32'(error_line_q);
-    if (read_word == WordEnable) value = 32'(enable_q);
-    if (read_word == WordFlags) value = 32'(flags_q);
+    if (read_word == csr_pkg::WordIdentity) value = Identity;
+    if (read_word == csr_pkg::WordStatus) value = 32'(status);
+    if (read_word == csr_pkg::WordWritten) value = written_i;
+    if (read_word == csr_pkg::WordErrorLine) value = 32'(error_line_q);
+    if (read_word == csr_pkg::WordEnable) value = 32'(enable_q);
+    if (read_word == csr_pkg::WordFlags) value = 32'(flags_q);
   end
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

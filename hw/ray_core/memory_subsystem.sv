@@ -7,7 +7,7 @@
 // it is forgotten. Its line may come when the last ray has long ended: memory must not change, nor the caches
 // be emptied, while outstanding_o.
 //
-// A line with an error is given to the rays that wait for it, and read again for the next; a node's has no children.
+// A line with an error is given to the rays that wait for it, and read again for the next.
 module memory_subsystem #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
@@ -17,25 +17,21 @@ module memory_subsystem #(
   localparam int unsigned EntryWidth =
       $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
   localparam int unsigned ReadIdWidth = 1 + EntryWidth,
-  localparam int unsigned LineWidth = ray_core_pkg::LineWidth,
-  localparam int unsigned TriangleWidth = ray_core_pkg::TriangleWidth
+  localparam int unsigned LineWidth = ray_core_pkg::LineWidth
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    invalidate_i,  // the caches: memory has changed
   output logic                    outstanding_o,  // a line is on its way, or will be
   // nodes asked for: one for each ray at most
-  input  logic                    node_i,
-  input  logic [RayWidth-1:0]     node_ray_i,
-  input  logic [AddressWidth-1:0] node_line_i,
+  input  logic [RayWidth-1:0]     node_ctx_i,
+  input  ray_core_pkg::request_t  node_i,
   // a node that may be asked for soon: a prefetch
-  input  logic                    prefetch_i,
-  input  logic [AddressWidth-1:0] prefetch_line_i,
+  input  ray_core_pkg::request_t  prefetch_i,
   // triangles asked for
-  input  logic                    triangle_i,
+  input  logic [RayWidth-1:0]     triangle_ctx_i,
+  input  ray_core_pkg::request_t  triangle_i,
   output logic                    triangle_ready_o,
-  input  logic [RayWidth-1:0]     triangle_ray_i,
-  input  logic [AddressWidth-1:0] triangle_line_i,
   // memory
   output logic                    read_valid_o,
   input  logic                    read_ready_i,
@@ -48,18 +44,13 @@ module memory_subsystem #(
   input  logic                    line_error_i,
   // lines
   input  logic                    tests_allowed_i,  // else no triangle leaves
-  output logic                    node_valid_o,
-  output logic [RayWidth-1:0]     node_ray_o,
-  output logic [LineWidth-1:0]    node_o,
-  output logic                    node_error_o,
-  output logic                    triangle_valid_o,
-  output logic [RayWidth-1:0]     triangle_ray_o,
-  output logic [TriangleWidth-1:0] triangle_o,
-  output logic                    triangle_error_o
+  output logic [RayWidth-1:0]     node_ctx_o,
+  output ray_core_pkg::node_line_t node_o,
+  output logic [RayWidth-1:0]     triangle_ctx_o,
+  output ray_core_pkg::triangle_line_t triangle_o
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
-  localparam int unsigned KindsWidth = ray_core_pkg::Children * ray_core_pkg::KindWidth;
   localparam int unsigned MissWidth = EntryWidth + AddressWidth;
 
   // ---- Requests
@@ -75,8 +66,8 @@ module memory_subsystem #(
   ) u_nodes (
     .clk_i,
     .rst_ni,
-    .push_i(node_i),
-    .data_i({node_ray_i, node_line_i}),
+    .push_i(node_i.valid),
+    .data_i({node_ctx_i, node_i.line}),
     .space_o(unused_space),
     .pop_i(node_valid & node_ready),
     .valid_o(node_valid),
@@ -88,8 +79,8 @@ module memory_subsystem #(
   ) u_prefetches (
     .clk_i,
     .rst_ni,
-    .push_i(prefetch_i & prefetch_space),
-    .data_i(prefetch_line_i),
+    .push_i(prefetch_i.valid & prefetch_space),
+    .data_i(prefetch_i.line),
     .space_o(prefetch_space),
     .pop_i(prefetch_fire),
     .valid_o(prefetch_valid),
@@ -101,8 +92,8 @@ module memory_subsystem #(
   ) u_triangles (
     .clk_i,
     .rst_ni,
-    .push_i(triangle_i & triangle_ready_o),
-    .data_i({triangle_ray_i, triangle_line_i}),
+    .push_i(triangle_i.valid & triangle_ready_o),
+    .data_i({triangle_ctx_i, triangle_i.line}),
     .space_o(triangle_ready_o),
     .pop_i(triangle_valid & triangle_ready),
     .valid_o(triangle_valid),
@@ -113,7 +104,7 @@ module memory_subsystem #(
 
   logic line_valid, line_error, line_done, fill, fill_triangle, node_done, triangle_done;
   logic [EntryWidth-1:0] fill_entry;
-  logic [LineWidth-1:0] line, node_line;
+  logic [LineWidth-1:0] line;
   logic [AddressWidth-1:0] node_number, triangle_number;
   logic [$clog2(NodeLines)-1:0] node_entry;
   logic [$clog2(TriangleLines)-1:0] triangle_entry;
@@ -160,17 +151,17 @@ module memory_subsystem #(
     .fill_entry_i(fill_entry[$clog2(NodeLines)-1:0]),
     .fill_line_i(line),
     .fill_error_i(line_error),
-    .valid_o(node_valid_o),
+    .valid_o(node_o.valid),
     .ready_i(1'b1),
-    .ray_o(node_ray_o),
-    .line_o(node_line),
-    .error_o(node_error_o)
+    .ray_o(node_ctx_o),
+    .line_o(node_o.line),
+    .error_o(node_o.error)
   );
   line_cache #(
     .Lines(TriangleLines),
     .Targets(2 * Rays),
     .RayWidth(RayWidth),
-    .Width(TriangleWidth)
+    .Width(ray_core_pkg::TriangleWidth)
   ) u_triangle_cache (
     .clk_i,
     .rst_ni,
@@ -188,20 +179,14 @@ module memory_subsystem #(
     .fill_i(fill & fill_triangle),
     .fill_done_o(triangle_done),
     .fill_entry_i(fill_entry[$clog2(TriangleLines)-1:0]),
-    .fill_line_i(line[TriangleWidth-1:0]),
+    .fill_line_i(line[ray_core_pkg::TriangleWidth-1:0]),
     .fill_error_i(line_error),
-    .valid_o(triangle_valid_o),
+    .valid_o(triangle_o.valid),
     .ready_i(tests_allowed_i),
-    .ray_o(triangle_ray_o),
-    .line_o(triangle_o),
-    .error_o(triangle_error_o)
+    .ray_o(triangle_ctx_o),
+    .line_o(triangle_o.line),
+    .error_o(triangle_o.error)
   );
-
-  always_comb begin
-    node_o = node_line;
-    if (node_error_o) node_o[ray_core_pkg::NodeKinds+:KindsWidth] = '0;  // all absent
-  end
-
 
   assign node_miss     = {EntryWidth'(node_entry), node_number};
   assign triangle_miss = {EntryWidth'(triangle_entry), triangle_number};

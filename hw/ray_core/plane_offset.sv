@@ -1,51 +1,74 @@
-// Offset of a plane in a node's grid: offset_o = floor(q s / 256), for q of eight bits. Combinational.
+// A plane of a node's grid: plane_o = from_i + floor(q s / 256), or from_i - floor(q s / 256), for q of eight bits.
+// Latency: 1 clock from q_i and step_i, a register behind the product; from_i and back_i come a clock later, and plane_o
+// with them.
 //
-// Structural is a carry-save tree of s shifted, a row for each bit of q, and an adder; Behavioural is `*`.
+// Structural is a carry-save tree of s shifted, a row for each bit of q, a register for its two words, and one adder for
+// all: the difference is floor((256 from + 255 - q s) / 256). Behavioural is `*`.
 module plane_offset #(
   parameter int unsigned Width = 33,  // of s
+  parameter int unsigned PlaneWidth = 36,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
-  input  logic [7:0]       q_i,
-  input  logic [Width-1:0] step_i,
-  output logic [Width-1:0] offset_o
+  input  logic                  clk_i,
+  input  logic [7:0]            q_i,
+  input  logic [Width-1:0]      step_i,
+  input  logic [PlaneWidth-1:0] from_i,
+  input  logic                  back_i,  // minus
+  output logic [PlaneWidth-1:0] plane_o
 );
 
-  logic [Width+7:0] product;
+  localparam int unsigned SumWidth = PlaneWidth + 8;
 
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
-    assign product = (Width + 8)'(q_i) * (Width + 8)'(step_i);
+    logic [SumWidth-1:0] product_q;
+    logic unused;  // fractions of a unit
+    assign unused = ^product_q[7:0];
+
+    always_ff @(posedge clk_i) product_q <= SumWidth'(q_i) * SumWidth'(step_i);
+    assign plane_o = back_i ? from_i - product_q[SumWidth-1:8] : from_i + product_q[SumWidth-1:8];
   end else begin : gen_rows
-    logic [8*(Width+8)-1:0] rows;
-    logic [Width+7:0] sum, carry;
-    logic unused_carry;  // the product has Width + 8 bits
+    logic [8*SumWidth-1:0] rows;
+    logic [SumWidth-1:0] tree_sum, tree_carry, sum_q, carry_q, sum, carry, planes;
+    logic unused_carry, unused;
+    assign unused = ^planes[7:0];
 
     for (genvar b = 0; b < 8; b++) begin : gen_row
-      assign rows[(Width+8)*b+:Width+8] = q_i[b] ? (Width + 8)'(step_i) << b : '0;
+      assign rows[SumWidth*b+:SumWidth] = q_i[b] ? SumWidth'(step_i) << b : '0;
     end
     carry_save_tree #(
-      .Width(Width + 8),
+      .Width(SumWidth),
       .Rows(8)
     ) u_tree (
       .rows_i(rows),
+      .sum_o(tree_sum),
+      .carry_o(tree_carry)
+    );
+    always_ff @(posedge clk_i) begin
+      sum_q   <= tree_sum;
+      carry_q <= tree_carry;
+    end
+
+    carry_save_adder #(
+      .Width(SumWidth)
+    ) u_from (
+      .a_i({from_i, {8{back_i}}}),
+      .b_i(sum_q ^ {SumWidth{back_i}}),
+      .c_i(carry_q ^ {SumWidth{back_i}}),
       .sum_o(sum),
       .carry_o(carry)
     );
     adder #(
-      .Width(Width + 8),
+      .Width(SumWidth),
       .Adder(Adder)
     ) u_adder (
       .a_i(sum),
-      .b_i(carry),
-      .carry_i(1'b0),
-      .sum_o(product),
+      .b_i(carry | SumWidth'(back_i)),
+      .carry_i(back_i),
+      .sum_o(planes),
       .carry_o(unused_carry)
     );
+    assign plane_o = planes[SumWidth-1:8];
   end
-
-  assign offset_o = product[Width+7:8];
-
-  logic unused;  // fractions of a unit
-  assign unused = ^product[7:0];
 
 endmodule

@@ -13,7 +13,7 @@ module primitive_fetch #(
   input  logic                    rst_ni,
   input  logic                    box_valid_i,
   input  logic [RayWidth-1:0]     box_ray_i,
-  input  logic [GroupWidth-1:0]   box_group_i,
+  input  ray_core_pkg::group_t    box_group_i,
   input  logic [Children-1:0]     box_leaf_i,
   output logic [RayWidth-1:0]     t_max_ray_o,
   input  logic [30:0]             t_max_i,   // of t_max_ray_o, in the same clock
@@ -21,10 +21,9 @@ module primitive_fetch #(
   input  logic                    counter_full_i, // of t_max_ray_o: no more tests can be counted
   output logic [Rays-1:0]         leaf_pending_o,  // has a group here
   // triangles asked for
-  output logic                    triangle_valid_o,
-  input  logic                    triangle_ready_i,
   output logic [RayWidth-1:0]     triangle_ray_o,
-  output logic [AddressWidth-1:0] triangle_line_o
+  output ray_core_pkg::request_t  triangle_o,
+  input  logic                    triangle_ready_i
 );
 
   localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
@@ -36,7 +35,7 @@ module primitive_fetch #(
 
   logic push, queued, load, unused_space;
   logic [RayWidth-1:0] queued_ray;
-  logic [GroupWidth-1:0] queued_group;
+  ray_core_pkg::group_t queued_group, group_q;
   logic [Children-1:0] queued_leaf;
 
   assign push = box_valid_i & (box_leaf_i != '0);
@@ -59,7 +58,6 @@ module primitive_fetch #(
 
   logic valid_q;
   logic [RayWidth-1:0] ray_q;
-  logic [GroupWidth-1:0] group_q;
   logic [Children-1:0] mask_q, lowest, remaining;
   logic [CountWidth-1:0] number_q;  // of the triangle in its leaf
   logic [EntryWidth-1:0] entry;
@@ -71,20 +69,17 @@ module primitive_fetch #(
   always_comb begin
     entry = '0;
     for (int unsigned n = 0; n < Children; n++) begin
-      if (lowest[n]) entry = group_q[EntryWidth*n+:EntryWidth];
+      if (lowest[n]) entry = group_q.entries[EntryWidth*n+:EntryWidth];
     end
   end
 
   assign t_max_ray_o = ray_q;
-  assign beyond = ended_i | ray_core_pkg::is_beyond(
-      group_q[Children*EntryWidth +: ray_core_pkg::ExponentWidth],
-      entry[EntryWidth-1 -: EnterWidth], t_max_i);
-  assign triangle_valid_o = valid_q & ~beyond & ~counter_full_i;
+  assign beyond = ended_i | ray_core_pkg::is_beyond(entry[EntryWidth-1-:EnterWidth], t_max_i);
+  assign triangle_o.valid = valid_q & ~beyond & ~counter_full_i;
   assign triangle_ray_o   = ray_q;
-  assign triangle_line_o  = group_q[GroupWidth-1 -: AddressWidth]
-                          + AddressWidth'(entry[CountWidth +: OffsetWidth])
+  assign triangle_o.line  = group_q.base + AddressWidth'(entry[CountWidth +: OffsetWidth])
                           + AddressWidth'(number_q);
-  assign fire = triangle_valid_o & triangle_ready_i;
+  assign fire = triangle_o.valid & triangle_ready_i;
   assign last = number_q + 1'b1 == entry[CountWidth-1:0];
   assign done = valid_q & (beyond | (fire & last & (remaining == '0)));
   assign load = queued & (~valid_q | done);

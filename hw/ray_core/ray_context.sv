@@ -1,7 +1,7 @@
-// Contexts of the rays in flight: origin, direction, reciprocals, tag and flags of each.
+// Contexts of the rays in flight: origin, direction, reciprocals and flags of each.
 //
 // A ray is in its context from the clock after start_fire_i until the context is another's. What a node, a triangle or
-// a test needs is there in the clock after it was asked for, tags in the same.
+// a test needs is there in the clock after it was asked for.
 module ray_context #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Arith = arith_pkg::Structural,
@@ -14,32 +14,23 @@ module ray_context #(
   output logic                ready_o,
   input  ray_core_pkg::ray_t  ray_i,
   // a ray begins
-  output logic                start_valid_o,
   output logic [RayWidth-1:0] start_ctx_o,
-  output logic [30:0]         start_t_max_o,
-  output logic [ray_core_pkg::AddressWidth-1:0] start_line_o,
-  output logic                start_any_hit_o,
-  output logic                start_scaled_o,  // its direction is
+  output ray_core_pkg::start_t start_o,
   input  logic                start_fire_i,
   // a ray has ended: its context is free
   input  logic                ending_i,
   input  logic [RayWidth-1:0] ending_ctx_i,
-  output logic [31:0]         ending_tag_o,
-  // for the boxes of a node, and for what is found among them
+  // for the boxes of a node
   input  logic [RayWidth-1:0] node_ctx_i,
   output logic [95:0]         node_origin_o,
   output logic [95:0]         node_inverse_o,
   output logic                node_no_cull_o,
-  input  logic [RayWidth-1:0] box_ctx_i,
-  output logic [31:0]         box_tag_o,
-  // for a test: its triangle, then its ray, then its result
+  // for a test: its triangle, then its ray
   input  logic [RayWidth-1:0] triangle_ctx_i,
   output logic [95:0]         triangle_origin_o,
   output logic [31:0]         triangle_skip_id_o,
   input  logic [RayWidth-1:0] direction_ctx_i,
-  output logic [95:0]         direction_o,
-  input  logic [RayWidth-1:0] result_ctx_i,
-  output logic [31:0]         result_tag_o
+  output logic [95:0]         direction_o
 );
 
   ray_core_pkg::ray_t start;
@@ -59,20 +50,12 @@ module ray_context #(
     .ray_i,
     .free_valid_i(ending_i),
     .free_ctx_i(ending_ctx_i),
-    .start_valid_o,
+    .start_valid_o(start_o.valid),
     .start_ctx_o,
     .start_inverse_o(inverse),
     .start_ray_o(start),
     .start_fire_i
   );
-
-  logic [31:0] tags[Rays];
-
-  always_ff @(posedge clk_i) begin
-    if (start_fire_i) begin
-      tags[start_ctx_o] <= start.tag;
-    end
-  end
 
   ram #(
     .Width(96 + 96 + 1),
@@ -111,12 +94,10 @@ module ray_context #(
     .data_o(direction_o)
   );
 
-  assign start_t_max_o      = start.t_max;
-  assign start_line_o       = start.start;
-  assign start_any_hit_o    = start.any_hit;
-  assign start_scaled_o     = ray_core_pkg::is_scaled(start.direction);
-  assign box_tag_o          = tags[box_ctx_i];
-  assign result_tag_o       = tags[result_ctx_i];
-  assign ending_tag_o       = tags[ending_ctx_i];
+  assign start_o.tag       = start.tag;
+  assign start_o.t_max     = start.t_max;
+  assign start_o.line      = start.start;
+  assign start_o.any_hit   = start.any_hit;
+  assign start_o.is_scaled = ray_core_pkg::is_scaled(start.direction);
 
 endmodule

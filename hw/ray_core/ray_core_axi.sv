@@ -1,9 +1,10 @@
-// Ray core on AXI: registers by AXI4-Lite, the scene by AXI4, rays and results as valid/ready.
+// Ray core on AXI: registers by AXI4-Lite, the scene by AXI4, rays as valid/ready, results by AXI4 or AXI4-Stream.
 //
-//   csr               what to draw, counters, flags
-//   ray_generator     the rays of a rectangle; the tag of each is its pixel, {y, x}
+//   csr                what to draw, counters, flags
+//   ray_generator      the rays of a rectangle; the tag of each is its pixel, {y, x}
 //   ray_core
-//   axi_read_manager  its memory port
+//   axi_read_manager   its memory port
+//   axi_write_manager  results to memory, where register `length` is not 0; else they leave by the stream
 //
 // Rays of the user's (ray_*) wait while a rectangle is drawn or rays are given up. A generated ray has no t_max, skips no triangle,
 // and begins at the root. The rest as in those modules.
@@ -59,10 +60,27 @@ module ray_core_axi #(
   input  logic                   ray_valid_i,
   output logic                   ray_ready_o,
   input  ray_core_pkg::ray_t       ray_i,
-  // results
-  output logic                   result_valid_o,
-  input  logic                   result_ready_i,
-  output ray_core_pkg::result_t   result_o
+  // results to memory: AXI4, writes
+  output logic                   mem_awvalid_o,
+  input  logic                   mem_awready_i,
+  output logic [63:0]            mem_awaddr_o,
+  output logic [7:0]             mem_awlen_o,
+  output logic [2:0]             mem_awsize_o,
+  output logic [1:0]             mem_awburst_o,
+  output logic [2:0]             mem_awprot_o,
+  output logic                   mem_wvalid_o,
+  input  logic                   mem_wready_i,
+  output logic [DataWidth-1:0]   mem_wdata_o,
+  output logic [DataWidth/8-1:0] mem_wstrb_o,
+  output logic                   mem_wlast_o,
+  input  logic                   mem_bvalid_i,
+  output logic                   mem_bready_o,
+  input  logic [1:0]             mem_bresp_i,
+  // results: AXI4-Stream, a record a transfer, see registers.md
+  output logic                   stream_tvalid_o,
+  input  logic                   stream_tready_i,
+  output logic [255:0]           stream_tdata_o,
+  output logic                   stream_tlast_o
 );
 
   localparam int unsigned ReadIdWidth = 1 + $clog2(
@@ -74,7 +92,11 @@ module ray_core_axi #(
   // ---- Registers
 
   logic start, invalidate, abort, drawing, outstanding, camera_busy, bus_error;
-  logic result_fire, is_doubt, ended;
+  logic result_valid, result_ready, result_fire, is_doubt, ended;
+  ray_core_pkg::result_t result;
+  logic [63:0] results;
+  logic [31:0] length, written;
+  logic rewind, writing, full, write_error;
   logic [63:0] base;
   logic [AddressWidth-1:0] lines, error_number;
   logic [31:0] corner, size;
@@ -82,9 +104,9 @@ module ray_core_axi #(
   logic [ray_core_pkg::NumEvents-1:0] events;
   logic [31:0] in_flight_q;  // rays ray_fire whose end has not been given
 
-  assign result_fire = result_valid_o & result_ready_i;
-  assign is_doubt    = result_fire & (result_o.kind == ray_core_pkg::ResultDoubt);
-  assign ended       = result_fire & (result_o.kind == ray_core_pkg::ResultEnd);
+  assign result_fire = result_valid & result_ready;
+  assign is_doubt    = result_fire & (result.kind == ray_core_pkg::ResultDoubt);
+  assign ended       = result_fire & (result.kind == ray_core_pkg::ResultEnd);
 
   csr u_csr (
     .clk_i,
@@ -115,11 +137,18 @@ module ray_core_axi #(
     .corner_o(corner),
     .size_o(size),
     .camera_o(camera),
+    .results_o(results),
+    .length_o(length),
+    .rewind_o(rewind),
     .camera_busy_i(camera_busy),
-    .core_busy_i(in_flight_q != '0),
+    .core_busy_i(writing | (in_flight_q != '0)),
     .outstanding_i(outstanding),
+    .writing_i(writing),
+    .written_i(written),
     .doubt_i(is_doubt),
-    .ray_error_i(ended & (result_o.error != ray_core_pkg::ErrorNone)),
+    .ray_error_i(ended & (result.error != ray_core_pkg::ErrorNone)),
+    .full_i(full),
+    .write_error_i(write_error),
     .bus_error_i(bus_error),
     .error_number_i(error_number),
     .events_i(events),
@@ -201,9 +230,9 @@ module ray_core_axi #(
     .ray_valid_i(core_valid),
     .ray_ready_o(core_ready),
     .ray_i(camera_valid ? generated : ray_i),
-    .result_valid_o,
-    .result_ready_i,
-    .result_o,
+    .result_valid_o(result_valid),
+    .result_ready_i(result_ready),
+    .result_o(result),
     .read_valid_o(read_valid),
     .read_ready_i(read_ready),
     .read_line_o(read_line),
@@ -249,6 +278,57 @@ module ray_core_axi #(
     .axi_rlast_i(mem_rlast_i),
     .bus_error_o(bus_error),
     .error_number_o(error_number)
+  );
+
+  // ---- Results: a record each, to memory or by the stream
+
+  logic is_overflow, to_memory, record_ready;
+  logic [127:0] place;  // words 2 to 5
+  logic [255:0] record;
+
+  assign is_overflow = result.kind == ray_core_pkg::ResultOverflow;
+  assign place       = is_overflow ? 128'({result.nodes, 32'(result.line)})
+                     : {result.point[0+:64], result.t, result.triangle};
+  assign record = {
+    32'(result.tests), result.point[64+:32], place, result.tag,
+    32'({result.t_error, result.error, result.found, result.kind})
+  };
+  assign to_memory       = length != '0;
+  assign result_ready    = to_memory ? record_ready : stream_tready_i;
+  assign stream_tvalid_o = result_valid & ~to_memory;
+  assign stream_tdata_o  = record;
+  assign stream_tlast_o  = result.kind == ray_core_pkg::ResultEnd;
+
+  axi_write_manager #(
+    .DataWidth(DataWidth)
+  ) u_write_manager (
+    .clk_i,
+    .rst_ni,
+    .base_i(results),
+    .length_i(length),
+    .rewind_i(rewind),
+    .busy_o(writing),
+    .full_o(full),
+    .bus_error_o(write_error),
+    .written_o(written),
+    .record_valid_i(result_valid & to_memory),
+    .record_ready_o(record_ready),
+    .record_i(record),
+    .axi_awvalid_o(mem_awvalid_o),
+    .axi_awready_i(mem_awready_i),
+    .axi_awaddr_o(mem_awaddr_o),
+    .axi_awlen_o(mem_awlen_o),
+    .axi_awsize_o(mem_awsize_o),
+    .axi_awburst_o(mem_awburst_o),
+    .axi_awprot_o(mem_awprot_o),
+    .axi_wvalid_o(mem_wvalid_o),
+    .axi_wready_i(mem_wready_i),
+    .axi_wdata_o(mem_wdata_o),
+    .axi_wstrb_o(mem_wstrb_o),
+    .axi_wlast_o(mem_wlast_o),
+    .axi_bvalid_i(mem_bvalid_i),
+    .axi_bready_o(mem_bready_o),
+    .axi_bresp_i(mem_bresp_i)
   );
 
 endmodule

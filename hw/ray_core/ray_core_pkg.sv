@@ -37,31 +37,29 @@ package ray_core_pkg;
 
   // ---- What box_unit says of a node: a group of children
   //
-  // Children that the ray enters, near first: entry 0 is the nearest. An entry's `enter` is in units of
-  // 2**(exponent - 127 - EnterWidth) a t that is not above the one where the ray enters the box.
+  // Children that the ray enters, near first: entry 0 is the nearest. An entry's `enter` is a t that is not above the
+  // one where the ray enters the box: the upper bits of a binary32 number without its sign; all ones: any t above.
 
-  localparam int unsigned EnterWidth = 12;
+  localparam int unsigned EnterWidth = 19;
   localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
   localparam int unsigned CountWidth = 3;  // of a leaf's triangles; 0: an inner node
   // {enter, offset, count}
   localparam int unsigned EntryWidth = EnterWidth + OffsetWidth + CountWidth;
-  localparam int unsigned ExponentWidth = 9;
-  // {base, exponent, entries}
-  localparam int unsigned GroupWidth = AddressWidth + ExponentWidth + Children * EntryWidth;
+  localparam int unsigned GroupWidth = AddressWidth + Children * EntryWidth;
 
-  // Whether a child begins surely beyond the t_max, a binary32 number without its sign: the t_max in the
-  // entry's units, rounded down, is below `enter`.
-  function automatic logic is_beyond(logic [ExponentWidth-1:0] exponent,
-                                     logic [EnterWidth-1:0] enter, logic [30:0] t_max);
-    logic signed [10:0] amount;
-    amount    = $signed({2'b0, exponent}) + 11'sd11 - $signed({3'b0, t_max[30:23]});
-    is_beyond = (amount > 11'sd11)
-              && (amount > 11'sd23 ? enter != '0
-                                   : {12'b0, enter} > ({1'b1, t_max[22:0]} >> amount[4:0]));
+  typedef struct packed {
+    logic [AddressWidth-1:0]        base;
+    logic [Children*EntryWidth-1:0] entries;
+  } group_t;
+
+  // Whether a child begins surely beyond the t_max, a binary32 number without its sign: such numbers are ordered as
+  // their bits are.
+  function automatic logic is_beyond(logic [EnterWidth-1:0] enter, logic [30:0] t_max);
+    is_beyond = t_max < {enter, {31 - EnterWidth{1'b0}}};
   endfunction
 
   // From the clock edge that takes a node to the one after which its group is there, see box_unit.
-  localparam int unsigned BoxLatency = 12;
+  localparam int unsigned BoxLatency = 19;
 
   // ---- Numbers inside box_unit, in units of 2**(E - UnitBits): E is how far the ray may go in the node
 
@@ -86,7 +84,7 @@ package ray_core_pkg;
 
   typedef enum logic [1:0] {
     ResultEnd      = 2'd0,  // the ray's last word: the nearest sure hit, if there is one
-    ResultDoubt    = 2'd1,  // a triangle that the host must look at: hit or not, or how far
+    ResultDoubt    = 2'd1,  // a triangle that may be the nearest hit: exact arithmetic must say
     ResultOverflow = 2'd2  // subtrees for which the stack had no room: the host sends the ray there
   } result_e;
 
@@ -112,6 +110,8 @@ package ray_core_pkg;
   endfunction
 
   localparam int unsigned TErrorWidth = 5;  // set_up_pkg::TErrorExponentWidth
+  // hit_test_pkg::TErrorWidth and set_up_pkg::PlaneErrorWidth
+  localparam int unsigned VerdictErrorWidth = 4;
 
   typedef struct packed {
     logic [1:0]              kind;      // result_e
@@ -119,13 +119,90 @@ package ray_core_pkg;
     logic                    found;     // ResultEnd: a sure hit, and so on to tests
     logic [31:0]             triangle;  // ResultDoubt: that one
     logic [31:0]             t;
-    logic [TErrorWidth-1:0]  t_error;
+    logic [TErrorWidth-1:0]  t_error;   // t is off by fewer than 2**t_error numbers
     logic [95:0]             point;
     logic [TestsWidth-1:0]   tests;
     logic [2:0]              error;     // ResultEnd: error_e
     logic [AddressWidth-1:0] line;      // ResultOverflow, with nodes
     logic [NodesWidth-1:0]   nodes;
   } result_t;
+
+  // ---- Links between the parts of the core; beside each goes the number of a ray's context
+
+  typedef struct packed {  // a ray begins
+    logic                    valid;
+    logic [31:0]             tag;
+    logic [30:0]             t_max;
+    logic [AddressWidth-1:0] line;
+    logic                    any_hit;
+    logic                    is_scaled;
+  } start_t;
+
+  typedef struct packed {  // a line is asked for
+    logic                    valid;
+    logic [AddressWidth-1:0] line;
+  } request_t;
+
+  typedef struct packed {  // a node's line for a ray
+    logic                 valid;
+    logic                 error;
+    logic [LineWidth-1:0] line;
+  } node_line_t;
+
+  typedef struct packed {  // a triangle's
+    logic                     valid;
+    logic                     error;
+    logic [TriangleWidth-1:0] line;
+  } triangle_line_t;
+
+  typedef struct packed {  // which children of a node a ray enters
+    logic                valid;
+    group_t              group;
+    logic [Children-1:0] inner;  // entries that are nodes,
+    logic [Children-1:0] leaf;   // and leaves
+  } boxes_t;
+
+  // A test is over: a doubt, a sure hit (found) or a miss; and the P of an earlier hit, in their order
+  typedef struct packed {
+    logic                         valid;
+    logic                         is_skipped;  // it counts for nothing
+    logic                         doubt;
+    logic                         found;
+    logic [31:0]                  triangle;
+    logic [31:0]                  t;
+    logic [VerdictErrorWidth-1:0] t_error;  // beside the plane's, see set_up_pkg
+    logic [VerdictErrorWidth-1:0] normal_error;
+    logic [VerdictErrorWidth-1:0] distance_error;
+    logic                         point_valid;
+    logic [95:0]                  point;
+  } verdict_t;
+
+  typedef struct packed {  // a ray's nearest hit so far
+    logic                   found;
+    logic [31:0]            triangle;
+    logic [31:0]            t;
+    logic [TErrorWidth-1:0] t_error;
+    logic [TestsWidth-1:0]  tests;  // that it had
+  } hit_t;
+
+  typedef struct packed {  // what is known of a ray when it ends
+    logic [31:0] tag;
+    hit_t        hit;
+    logic [2:0]  error;
+  } end_t;
+
+  typedef struct packed {
+    logic        valid;
+    logic [31:0] tag;
+    logic [31:0] triangle;
+  } doubt_t;
+
+  typedef struct packed {
+    logic                    valid;
+    logic [31:0]             tag;
+    logic [AddressWidth-1:0] line;
+    logic [NodesWidth-1:0]   nodes;
+  } overflow_t;
 
   // ---- Events of a clock, for counters
 

@@ -7,11 +7,7 @@
 // A ray ends a clock at most, a result leaves a clock.
 module ray_retire #(
   parameter int unsigned Rays = 64,
-  localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
-  localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth,
-  localparam int unsigned TErrorWidth = ray_core_pkg::TErrorWidth
+  localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
@@ -21,25 +17,14 @@ module ray_retire #(
   // a ray ends, its context is free; what is known of it, in the same clock
   output logic                   ending_o,
   output logic [RayWidth-1:0]    ending_ctx_o,
-  input  logic [31:0]            ending_tag_i,
-  input  logic                   ending_found_i,
-  input  logic [31:0]            ending_triangle_i,
-  input  logic [31:0]            ending_t_i,
-  input  logic [TErrorWidth-1:0] ending_t_error_i,
-  input  logic [TestsWidth-1:0]  ending_tests_i,
-  input  logic [2:0]             ending_error_i,
+  input  ray_core_pkg::end_t     ending_i,
   // the P of a context's last ray, in the clock after
   output logic [RayWidth-1:0]    point_ctx_o,
   input  logic [95:0]            point_i,
   // doubts and overflows
-  input  logic                   doubt_valid_i,
-  input  logic [31:0]            doubt_tag_i,
-  input  logic [31:0]            doubt_triangle_i,
+  input  ray_core_pkg::doubt_t   doubt_i,
   output logic                   doubt_fire_o,
-  input  logic                   overflow_valid_i,
-  input  logic [31:0]            overflow_tag_i,
-  input  logic [AddressWidth-1:0] overflow_line_i,
-  input  logic [NodesWidth-1:0]  overflow_nodes_i,
+  input  ray_core_pkg::overflow_t overflow_i,
   output logic                   overflow_fire_o,
   // results
   output logic                   result_valid_o,
@@ -49,7 +34,6 @@ module ray_retire #(
 
   localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
   localparam int unsigned Depth = PointDelay + 4;  // for an end a clock
-  localparam int unsigned EndWidth = 32 + 1 + 32 + 32 + TErrorWidth + TestsWidth + 3;
 
   // ---- The end of a ray
 
@@ -79,29 +63,22 @@ module ray_retire #(
 
   logic [PointDelay:0] pointing_q;
   logic end_valid, end_fire, unused_valid, unused_space;
-  logic [EndWidth-1:0] end_words;
+  ray_core_pkg::end_t ended;
   logic [95:0] end_point;
-  logic [31:0] end_tag, end_triangle, end_t;
-  logic [TErrorWidth-1:0] end_t_error;
-  logic [TestsWidth-1:0] end_tests;
-  logic [2:0] end_error;
-  logic end_found;
 
   ram_fifo #(
-    .Width(EndWidth),
+    .Width($bits(ending_i)),
     .Depth(Depth)
   ) u_ends (
     .clk_i,
     .rst_ni,
     .push_i(ending_o),
-    .data_i({ending_tag_i, ending_found_i, ending_triangle_i, ending_t_i, ending_t_error_i,
-             ending_tests_i, ending_error_i}),
+    .data_i(ending_i),
     .space_o(space),
     .pop_i(end_fire),
     .valid_o(unused_valid),
-    .data_o(end_words)
+    .data_o(ended)
   );
-  assign {end_tag, end_found, end_triangle, end_t, end_t_error, end_tests, end_error} = end_words;
 
   delay_line #(
     .Width(RayWidth),
@@ -135,30 +112,30 @@ module ray_retire #(
   logic load;
 
   assign load            = ~result_valid_o | result_ready_i;
-  assign doubt_fire_o    = load & doubt_valid_i;
-  assign overflow_fire_o = load & overflow_valid_i & ~doubt_valid_i;
-  assign end_fire        = load & end_valid & ~doubt_valid_i & ~overflow_valid_i;
+  assign doubt_fire_o    = load & doubt_i.valid;
+  assign overflow_fire_o = load & overflow_i.valid & ~doubt_i.valid;
+  assign end_fire        = load & end_valid & ~doubt_i.valid & ~overflow_i.valid;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) result_valid_o <= 1'b0;
-    else if (load) result_valid_o <= doubt_valid_i | overflow_valid_i | end_valid;
+    else if (load) result_valid_o <= doubt_i.valid | overflow_i.valid | end_valid;
   end
   always_ff @(posedge clk_i) begin
     if (load) begin
-      result_o.kind     <= doubt_valid_i ? ray_core_pkg::ResultDoubt
-                         : overflow_valid_i ? ray_core_pkg::ResultOverflow
+      result_o.kind     <= doubt_i.valid ? ray_core_pkg::ResultDoubt
+                         : overflow_i.valid ? ray_core_pkg::ResultOverflow
                          : ray_core_pkg::ResultEnd;
-      result_o.tag      <= doubt_valid_i ? doubt_tag_i
-                         : overflow_valid_i ? overflow_tag_i : end_tag;
-      result_o.found    <= end_found & ~doubt_valid_i & ~overflow_valid_i;
-      result_o.triangle <= doubt_valid_i ? doubt_triangle_i : end_triangle;
-      result_o.t        <= end_t;
-      result_o.t_error  <= end_t_error;
+      result_o.tag      <= doubt_i.valid ? doubt_i.tag
+                         : overflow_i.valid ? overflow_i.tag : ended.tag;
+      result_o.found    <= ended.hit.found & ~doubt_i.valid & ~overflow_i.valid;
+      result_o.triangle <= doubt_i.valid ? doubt_i.triangle : ended.hit.triangle;
+      result_o.t        <= ended.hit.t;
+      result_o.t_error  <= ended.hit.t_error;
       result_o.point    <= end_point;
-      result_o.tests    <= end_tests;
-      result_o.error    <= end_error;
-      result_o.line     <= overflow_line_i;
-      result_o.nodes    <= overflow_nodes_i;
+      result_o.tests    <= ended.hit.tests;
+      result_o.error    <= ended.error;
+      result_o.line     <= overflow_i.line;
+      result_o.nodes    <= overflow_i.nodes;
     end
   end
 

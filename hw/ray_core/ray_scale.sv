@@ -1,5 +1,6 @@
 // Scale of a ray in a node: how far it may go there, 2**E, and a cap of 1 / I_k where planes are too far apart.
-// Combinational. Steps 1 and 3 of box_unit's header say why. An exponent is binary32's, with its bias.
+// Latency: 2 clocks, a register behind the reach along each axis and one behind E; inverse_i and cells_i come with the
+// rest. Steps 1 and 3 of box_unit's header say why. An exponent is binary32's, with its bias.
 //
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits an axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest
@@ -11,6 +12,7 @@
 //      is_capped_o  it is given
 //      is_open_o    it is not a binary32 number: the axis says nothing
 module ray_scale (
+  input  logic        clk_i,
   input  logic [23:0] distances_i,
   input  logic [95:0] inverse_i,
   input  logic [23:0] cells_i,
@@ -25,35 +27,62 @@ module ray_scale (
   localparam logic signed [10:0] NoExponent = 11'sd511;
   localparam logic signed [10:0] LeastExponent = 11'sd27;
 
-  logic signed [10:0] least, exponent;
-  logic [32:0] reaches;  // 11 bits an axis
+  function automatic logic signed [10:0] smaller(logic signed [10:0] a, logic signed [10:0] b);
+    smaller = (a < b) ? a : b;
+  endfunction
 
-  for (genvar k = 0; k < 3; k++) begin : gen_axis
-    logic [7:0] distance_field, inverse_field, cell_field;
-    logic signed [10:0] beyond, grid, reach, cap;
-    assign distance_field = distances_i[8*k +: 8];
-    assign inverse_field  = inverse_i[32*k+23 +: 8];
-    assign cell_field     = cells_i[8*k +: 8];
-    assign beyond = $signed({3'b0, distance_field}) + 11'sd1;
-    assign grid   = $signed({3'b0, cell_field}) + 11'sd8;
-    assign reach  = ((beyond > grid) ? beyond : grid) + $signed({3'b0, inverse_field}) - 11'sd125;
-    assign reaches[11*k +: 11] = (&inverse_field) ? NoExponent : reach;
+  // ---- Reach
 
-    assign cap = exponent - $signed({3'b0, cell_field}) + 11'sd129;
+  logic signed [10:0] t_max_q;
+  logic [95:0] reach_inverse_q, inverse_q;
+  logic [23:0] reach_cells_q;
+
+  for (genvar k = 0; k < 3; k++) begin : gen_reach
+    logic [7:0] inverse_field;
+    logic signed [10:0] beyond, grid, rest, reach_q;
+    assign inverse_field = inverse_i[32*k+23 +: 8];
+    assign beyond = $signed({3'b0, distances_i[8*k +: 8]}) + 11'sd1;
+    assign grid   = $signed({3'b0, cells_i[8*k +: 8]}) + 11'sd8;
+    assign rest   = $signed({3'b0, inverse_field}) - 11'sd125;
+
+    always_ff @(posedge clk_i) begin
+      reach_q <= (&inverse_field) ? NoExponent : ((beyond > grid) ? beyond : grid) + rest;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    t_max_q         <= (&t_max_i) ? NoExponent : $signed({3'b0, t_max_i}) + 11'sd1;
+    reach_inverse_q <= inverse_i;
+    reach_cells_q   <= cells_i;
+  end
+
+  // ---- E
+
+  logic signed [10:0] least, exponent_q;
+
+  assign least = smaller(
+    smaller(gen_reach[0].reach_q, gen_reach[1].reach_q), smaller(gen_reach[2].reach_q, t_max_q)
+  );
+
+  always_ff @(posedge clk_i) begin
+    exponent_q <= (least < LeastExponent) ? LeastExponent : least;
+    inverse_q  <= reach_inverse_q;
+  end
+  assign exponent_o = exponent_q[8:0];
+
+  // ---- Caps
+
+  for (genvar k = 0; k < 3; k++) begin : gen_cap
+    logic [7:0] inverse_field;
+    logic signed [10:0] rest_q, cap;
+    assign inverse_field = inverse_q[32*k+23+:8];
+    always_ff @(posedge clk_i) rest_q <= 11'sd129 - $signed({3'b0, reach_cells_q[8*k+:8]});
+
+    assign cap = exponent_q + rest_q;
     assign caps_o[11*k +: 11] = cap;
     assign is_capped_o[k] = (&inverse_field) | ($signed({3'b0, inverse_field}) >= cap);
     assign is_open_o[k] = is_capped_o[k] & (cap < 11'sd1 | cap > 11'sd254);
     assign inverse_o[32*k +: 32] =
-        is_capped_o[k] ? {inverse_i[32*k+31], cap[7:0], 23'd0} : inverse_i[32*k +: 32];
+        is_capped_o[k] ? {inverse_q[32*k+31], cap[7:0], 23'd0} : inverse_q[32*k +: 32];
   end
-
-  always_comb begin
-    least = (&t_max_i) ? NoExponent : $signed({3'b0, t_max_i}) + 11'sd1;
-    for (int unsigned k = 0; k < 3; k++) begin
-      if ($signed(reaches[11*k+:11]) < least) least = $signed(reaches[11*k+:11]);
-    end
-    exponent = (least < LeastExponent) ? LeastExponent : least;
-  end
-  assign exponent_o = exponent[8:0];
 
 endmodule

@@ -1,5 +1,5 @@
 // Slab set-up: the first planes of a node's grid along one axis as the ray meets them, and the distance between planes.
-// Combinational. All in units of 2**(E - 22); steps 2 to 4 of box_unit's header say why.
+// Latency: 1 clock, a register behind |a| and s. All in units of 2**(E - 22); steps 2 to 4 of box_unit's header say why.
 //
 // In:  product_i    a = D / I, binary32; any
 //      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap, with binary32's bias
@@ -11,6 +11,7 @@ module slab_setup #(
   localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
   localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth
 ) (
+  input  logic                  clk_i,
   input  logic [31:0]           product_i,
   input  logic [30:0]           inverse_i,
   input  logic [8:0]            exponent_i,
@@ -28,26 +29,29 @@ module slab_setup #(
 
   logic [7:0] product_field, inverse_field;
   logic signed [10:0] amount, step_amount;
-  logic [SizeWidth-1:0] size;
-  logic [StepWidth-1:0] step;
+  logic [SizeWidth-1:0] size_q;
+  logic [StepWidth-1:0] step_q;
   logic [PlaneWidth-1:0] a, room, near, far;
-  logic says_nothing;
+  logic says_nothing_q, is_negative_q, is_capped_q;
 
   assign product_field = product_i[23 +: 8];
   assign inverse_field = inverse_i[23 +: 8];
   assign amount        = $signed({2'b0, exponent_i}) + 11'sd11 - $signed({3'b0, product_field});
   assign step_amount   = $signed(cap_i) - $signed({3'b0, inverse_field});
-  assign size = (amount <= 11'sd0) ? SizeWidth'(1) << (SizeWidth - 1)
-              : (amount > 11'sd33) ? '0 : {1'b1, product_i[22:0], 10'b0} >> amount[5:0];
-  assign step = (step_amount > 11'sd32) ? '0
-              : {1'b1, inverse_i[22:0], 9'b0} >> step_amount[5:0];
-  assign says_nothing = is_open_i | (&product_field);
+  always_ff @(posedge clk_i) begin
+    size_q <= (amount <= 11'sd0) ? SizeWidth'(1) << (SizeWidth - 1)
+          : (amount > 11'sd33) ? '0 : {1'b1, product_i[22:0], 10'b0} >> amount[5:0];
+    step_q <= (step_amount > 11'sd32) ? '0 : {1'b1, inverse_i[22:0], 9'b0} >> step_amount[5:0];
+    says_nothing_q <= is_open_i | (&product_field);
+    is_negative_q  <= product_i[31];
+    is_capped_q    <= is_capped_i;
+  end
 
   // ---- r: a few bits, and 2**E for a ray that hardly moves along this axis
 
   logic [11:0] few;
-  assign few  = size[SizeWidth-1:22] + 12'(step[StepWidth-1:24]) + 12'd6;
-  assign room = PlaneWidth'(few) | (is_capped_i ? PlaneWidth'(1) << UnitBits : '0);
+  assign few  = size_q[SizeWidth-1:22] + 12'(step_q[StepWidth-1:24]) + 12'd6;
+  assign room = PlaneWidth'(few) | (is_capped_q ? PlaneWidth'(1) << UnitBits : '0);
 
   // ---- a -+ r
 
@@ -57,8 +61,8 @@ module slab_setup #(
     .Adder(Adder)
   ) u_sign (
     .a_i('0),
-    .b_i(PlaneWidth'(size)),
-    .subtract_i(product_i[31]),
+    .b_i(PlaneWidth'(size_q)),
+    .subtract_i(is_negative_q),
     .sum_o(a)
   );
   add_subtract #(
@@ -82,8 +86,8 @@ module slab_setup #(
     .sum_o(far)
   );
 
-  assign near_o = says_nothing ? -Far : near;
-  assign far_o  = says_nothing ? Far : far;
-  assign step_o = says_nothing ? '0 : step;
+  assign near_o = says_nothing_q ? -Far : near;
+  assign far_o  = says_nothing_q ? Far : far;
+  assign step_o = says_nothing_q ? '0 : step_q;
 
 endmodule

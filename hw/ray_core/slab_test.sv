@@ -1,9 +1,11 @@
 // Slab test: whether and where the ray enters the box of one child, from the planes of its three axes, x lowest.
-// Latency: 2 clocks, a register behind the planes' offsets and one behind the key.
+// Latency: 4 clocks, a register behind products, planes, the largest and smallest of them, and the key.
 //
-// In:  box_i        low x, y, z, high x, y, z: a byte each; kind_i: ray_core_pkg's
-//      back_i       along which axes the ray goes towards smaller q
-//      t_max_i      in units; no box is entered beyond it
+// In:  box_i        low x, y, z, high x, y, z: a byte each; step_i: s; back_i: along which axes the ray goes towards
+//                   smaller q
+//      near_i, far_i, next_back_i  in the next clock
+//      t_max_i      in units, two clocks later; no box is entered beyond it
+//      kind_i       ray_core_pkg's, three clocks later; no_cull_i, too
 // Out: key_o        {culled, enter}: enter in units, up to 2**22; 0 where no_cull_i
 module slab_test #(
   parameter int unsigned Arith = arith_pkg::Structural,
@@ -13,11 +15,9 @@ module slab_test #(
   localparam int unsigned UnitBits = ray_core_pkg::UnitBits
 ) (
   input  logic                               clk_i,
-  // in one clock
   input  logic [ray_core_pkg::BoxWidth-1:0]  box_i,
   input  logic [2:0]                         back_i,
   input  logic [3*StepWidth-1:0]             step_i,
-  // in the next one
   input  logic [3*PlaneWidth-1:0]            near_i,
   input  logic [3*PlaneWidth-1:0]            far_i,
   input  logic [2:0]                         next_back_i,
@@ -27,84 +27,78 @@ module slab_test #(
   output logic [UnitBits+1:0]                key_o
 );
 
-  // ---- Step: q s for both planes of each axis; then the planes
+  // ---- Planes, with the sign bit turned, so that they compare as unsigned
 
-  logic [3*PlaneWidth-1:0] near, far;  // with the sign bit turned, so that they compare as unsigned
+  logic [3*PlaneWidth-1:0] near_q, far_q;
   localparam logic [PlaneWidth-1:0] Zero = PlaneWidth'(1) << (PlaneWidth - 1);
 
   for (genvar k = 0; k < 3; k++) begin : gen_axis
-    logic [2*StepWidth-1:0] offsets;  // low, high
-    logic [StepWidth-1:0] near_q, far_q;
-    logic [PlaneWidth-1:0] near_plane, far_plane;
+    logic [PlaneWidth-1:0] near, far;
 
-    for (genvar n = 0; n < 2; n++) begin : gen_offset
-      plane_offset #(
-        .Width(StepWidth),
-        .Arith(Arith),
-        .Adder(Adder)
-      ) u_offset (
-        .q_i(box_i[24*n+8*k +: 8]),
-        .step_i(step_i[StepWidth*k +: StepWidth]),
-        .offset_o(offsets[StepWidth*n +: StepWidth])
-      );
-    end
-    always_ff @(posedge clk_i) begin
-      near_q <= back_i[k] ? offsets[StepWidth +: StepWidth] : offsets[0 +: StepWidth];
-      far_q  <= back_i[k] ? offsets[0 +: StepWidth] : offsets[StepWidth +: StepWidth];
-    end
-
-    add_subtract #(
-      .Width(PlaneWidth),
+    plane_offset #(
+      .Width(StepWidth),
+      .PlaneWidth(PlaneWidth),
       .Arith(Arith),
       .Adder(Adder)
     ) u_near (
-      .a_i(near_i[PlaneWidth*k +: PlaneWidth]),
-      .b_i(PlaneWidth'(near_q)),
-      .subtract_i(next_back_i[k]),
-      .sum_o(near_plane)
+      .clk_i,
+      .q_i(back_i[k] ? box_i[24+8*k +: 8] : box_i[8*k +: 8]),
+      .step_i(step_i[StepWidth*k +: StepWidth]),
+      .from_i(near_i[PlaneWidth*k +: PlaneWidth]),
+      .back_i(next_back_i[k]),
+      .plane_o(near)
     );
-    add_subtract #(
-      .Width(PlaneWidth),
+    plane_offset #(
+      .Width(StepWidth),
+      .PlaneWidth(PlaneWidth),
       .Arith(Arith),
       .Adder(Adder)
     ) u_far (
-      .a_i(far_i[PlaneWidth*k +: PlaneWidth]),
-      .b_i(PlaneWidth'(far_q)),
-      .subtract_i(next_back_i[k]),
-      .sum_o(far_plane)
+      .clk_i,
+      .q_i(back_i[k] ? box_i[8*k +: 8] : box_i[24+8*k +: 8]),
+      .step_i(step_i[StepWidth*k +: StepWidth]),
+      .from_i(far_i[PlaneWidth*k +: PlaneWidth]),
+      .back_i(next_back_i[k]),
+      .plane_o(far)
     );
-    assign near[PlaneWidth*k +: PlaneWidth] = near_plane ^ Zero;
-    assign far[PlaneWidth*k +: PlaneWidth]  = far_plane ^ Zero;
+    always_ff @(posedge clk_i) begin
+      near_q[PlaneWidth*k +: PlaneWidth] <= near ^ Zero;
+      far_q[PlaneWidth*k +: PlaneWidth]  <= far ^ Zero;
+    end
   end
 
-  // ---- Enter: the largest near plane, the smallest far one
+  // ---- Enter: the largest near plane; leave: the smallest far one
 
-  logic [PlaneWidth-1:0] enter, leave;
+  logic [PlaneWidth-1:0] enter, enter_q, complement, leave_q;
   logic left_before, unused_equal;
 
   max4 #(
     .Width(PlaneWidth),
     .Arith(Arith)
   ) u_enter (
-    .words_i({Zero, near}),
+    .words_i({Zero, near_q}),
     .max_o(enter)
   );
-  logic [PlaneWidth-1:0] complement;
   max4 #(
     .Width(PlaneWidth),
     .Arith(Arith)
   ) u_leave (
-    .words_i(~{PlaneWidth'(t_max_i) ^ Zero, far}),
+    .words_i(~{PlaneWidth'(t_max_i) ^ Zero, far_q}),
     .max_o(complement)
   );
-  assign leave = ~complement;
+  always_ff @(posedge clk_i) begin
+    enter_q <= enter;
+    leave_q <= ~complement;
+  end
+
+  // ---- The key
 
   comparator #(
     .Width(PlaneWidth),
     .Arith(Arith)
   ) u_entered (
-    .a_i(leave),
-    .b_i(enter),
+    .a_i(leave_q),
+    .b_i(enter_q),
     .less_o(left_before),
     .equal_o(unused_equal)
   );
@@ -113,10 +107,10 @@ module slab_test #(
   assign entered = (no_cull_i | ~left_before) & (kind_i != ray_core_pkg::KindAbsent);
 
   always_ff @(posedge clk_i) begin
-    key_o <= {~entered, (entered & ~no_cull_i) ? enter[UnitBits:0] : (UnitBits + 1)'(0)};
+    key_o <= {~entered, (entered & ~no_cull_i) ? enter_q[UnitBits:0] : (UnitBits + 1)'(0)};
   end
 
   logic unused;  // an enter within the t_max has no more bits
-  assign unused = ^enter[PlaneWidth-1:UnitBits+1];
+  assign unused = ^enter_q[PlaneWidth-1:UnitBits+1];
 
 endmodule

@@ -3,55 +3,46 @@
 // Nothing that comes in is stalled; an output is there for the clock that says so. The ray is given by its context:
 // origin_i and skip_id_i in the clock after the triangle came, its direction in that after direction_ctx_o asked for it.
 //
-// Every test is a burst of its own. closed_o: one is over, of ctx_o and triangle_o: a doubt_o, a sure hit
-// (found_o), or a miss. A hit's P is there later, point_valid_o, in the order of the hits: up to
+// Every test is a burst of its own. A hit's P is there later than its verdict, in the order of the hits: up to
 // divide_latency + 4 clocks after it.
 module triangle_test #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned TriangleWidth = ray_core_pkg::TriangleWidth,
   localparam int unsigned PlaneErrorWidth = set_up_pkg::PlaneErrorWidth
 ) (
   input  logic                       clk_i,
   input  logic                       rst_ni,
-  input  logic                       valid_i,
   input  logic [RayWidth-1:0]        ctx_i,
-  input  logic [TriangleWidth-1:0]   triangle_i,  // a triangle line
+  input  ray_core_pkg::triangle_line_t triangle_i,  // with an error it counts for nothing
   input  logic [95:0]                origin_i,
   input  logic [31:0]                skip_id_i,   // a triangle that counts for nothing
-  input  logic                       error_i,     // nor does this one: its line came with an error
   output logic [RayWidth-1:0]        direction_ctx_o,
   input  logic [95:0]                direction_i,
-  output logic                       closed_o,
   output logic [RayWidth-1:0]        ctx_o,
-  output logic [31:0]                triangle_o,
-  output logic                       is_skipped_o,
-  output logic                       doubt_o,
-  output logic                       found_o,
-  output logic [31:0]                t_o,  // off by t_error_o and the plane's: see set_up_pkg
-  output logic [hit_test_pkg::TErrorWidth-1:0] t_error_o,
-  output logic [PlaneErrorWidth-1:0] normal_error_o,
-  output logic [PlaneErrorWidth-1:0] distance_error_o,
-  output logic                       point_valid_o,
-  output logic [95:0]                point_o
+  output ray_core_pkg::verdict_t     verdict_o
 );
+
+  if (ray_core_pkg::VerdictErrorWidth != PlaneErrorWidth
+      || ray_core_pkg::VerdictErrorWidth != hit_test_pkg::TErrorWidth) begin : gen_check
+    $error("triangle_test: VerdictErrorWidth is not set_up_pkg's and hit_test_pkg's");
+  end
 
   // ---- Set up
 
   logic [hit_test_pkg::RecordWords*32-1:0] set_record;
   logic [PlaneErrorWidth-1:0] set_normal_error, set_distance_error;
   logic [set_up_pkg::Latency:0] setting_q;
-  logic [TriangleWidth-1:0] triangle_q;
+  logic [ray_core_pkg::TriangleWidth-1:0] triangle_q;
   logic [RayWidth-1:0] ctx_q, set_ctx_q;
   logic [31:0] index, early_triangle, set_triangle_q;
   logic error_q, early_skipped, set_skipped_q;
 
   always_ff @(posedge clk_i) begin
-    triangle_q <= triangle_i;
+    triangle_q <= triangle_i.line;
     ctx_q      <= ctx_i;
-    error_q    <= error_i;
+    error_q    <= triangle_i.error;
   end
 
   assign index = triangle_q[ray_core_pkg::TriangleIndex+:32];
@@ -79,7 +70,7 @@ module triangle_test #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) setting_q <= '0;
-    else setting_q <= {setting_q[set_up_pkg::Latency-1:0], valid_i};
+    else setting_q <= {setting_q[set_up_pkg::Latency-1:0], triangle_i.valid};
   end
   always_ff @(posedge clk_i) begin
     {set_ctx_q, set_triangle_q, set_skipped_q} <= {direction_ctx_o, early_triangle, early_skipped};
@@ -89,7 +80,7 @@ module triangle_test #(
 
   localparam int unsigned TagWidth = 2 * PlaneErrorWidth + 1 + RayWidth + 32;
 
-  logic unused_ready, word_valid, closed, point_valid;
+  logic unused_ready, word_valid, closed, found, point_valid;
   hit_test_pkg::report_e report;
   logic [TagWidth-1:0] report_tag, found_tag, tag;
   logic [hit_test_pkg::NumCounts-1:0] unused_events;
@@ -114,19 +105,21 @@ module triangle_test #(
     .report_o(report),
     .report_tag_o(report_tag),
     .closed_o(closed),
-    .found_o,
+    .found_o(found),
     .tag_o(found_tag),
-    .t_o,
-    .t_error_o,
+    .t_o(verdict_o.t),
+    .t_error_o(verdict_o.t_error),
     .point_valid_o(point_valid),
-    .point_o,
+    .point_o(verdict_o.point),
     .events_o(unused_events)
   );
 
-  assign closed_o      = word_valid & closed;
-  assign doubt_o       = report == hit_test_pkg::ReportDoubt;
-  assign point_valid_o = word_valid & point_valid;
-  assign tag           = found_o ? found_tag : report_tag;
-  assign {normal_error_o, distance_error_o, is_skipped_o, ctx_o, triangle_o} = tag;
+  assign verdict_o.valid       = word_valid & closed;
+  assign verdict_o.found       = found;
+  assign verdict_o.doubt       = report == hit_test_pkg::ReportDoubt;
+  assign verdict_o.point_valid = word_valid & point_valid;
+  assign tag                   = found ? found_tag : report_tag;
+  assign {verdict_o.normal_error, verdict_o.distance_error, verdict_o.is_skipped, ctx_o,
+          verdict_o.triangle} = tag;
 
 endmodule

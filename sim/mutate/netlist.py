@@ -18,8 +18,9 @@ from synth import cores
 MODES = ("inv", "const0", "const1")
 # Nobody reads such a wire.
 UNUSED = re.compile(r"-wire \S*\bunused_")
-# Memories whose ports have clocks of their own, or asynchronous reads an enable, are not written as Verilog.
-NOT_WRITTEN = re.compile(r"mem(rd|wr)\S* -port \S*CLK\b|memrd\S* -port \S*EN\b")
+# Memories whose ports have clocks of their own, or asynchronous reads an enable, are not written as Verilog; nor are tables
+# whose words come from elsewhere.
+NOT_WRITTEN = re.compile(r"mem(rd|wr)\S* -port \S*CLK\b|memrd\S* -port \S*EN\b|mem\.cc:\d+:emit")
 
 
 def yosys(script: str) -> None:

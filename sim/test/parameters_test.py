@@ -18,6 +18,7 @@ REFUSED = {
     "ram_fifo": ["Depth=1", "Reserve=64"],
     "rr_arbiter": ["Width=1"],
     "line_cache": ["Lines=8", "Lines=48", "Targets=1"],
+    "axi_write_manager": ["DataWidth=16", "DataWidth=96", "DataWidth=1024"],
     "axi_read_manager": ["DataWidth=16", "DataWidth=96", "DataWidth=1024"],
     "fp_divider_stages": ["QuotientBits=25", "FracWidth=55"],
     "traversal": ["Rays=1", "Depth=0"],

@@ -1,5 +1,6 @@
 # What every design is timed under, before and after layout. CLOCK: its port, or "" for a design without one;
-# DRIVER: the cell at its inputs; LOAD: pF at its outputs. The clock is the paper's, 10 MHz.
+# DRIVER: the cell at its inputs; LOAD: pF at its outputs; ACCESS: ns from the clock edge at which a kept memory
+# (kept_memories.v) takes an address to its word. The clock is the paper's, 10 MHz.
 if {$::env(CLOCK) ne ""} {
   create_clock -name clock -period 100 [get_ports $::env(CLOCK)]
 } else {
@@ -7,9 +8,11 @@ if {$::env(CLOCK) ne ""} {
 }
 set_driving_cell -lib_cell $::env(DRIVER) [all_inputs]
 foreach input [all_inputs] {
-  if {[get_property $input full_name] ne $::env(CLOCK)} { set_input_delay 0 -clock clock $input }
+  set name [get_property $input full_name]
+  set arrival [expr {[string match *read_data_o* $name] ? $::env(ACCESS) : 0}]
+  if {$name ne $::env(CLOCK)} { set_input_delay $arrival -clock clock $input }
   # Many registers hang on a reset: it gets buffers of its own, which synthesis does not make.
-  if {[get_property $input full_name] eq "rst_ni"} { set_false_path -from $input }
+  if {$name eq "rst_ni"} { set_false_path -from $input }
 }
 set_output_delay 0 -clock clock [all_outputs]
 set_load $::env(LOAD) [all_outputs]

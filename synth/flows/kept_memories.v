@@ -1,5 +1,5 @@
 // Arrays of more than 2,048 bits stay memories, with the registers at their read ports. Their ports become the
-// design's: nobody here has SRAM to map them to. Smaller ones become registers.
+// design's: nobody here has SRAM to map them to. Smaller ones become registers; tables that nothing writes, gates.
 (* techmap_celltype = "$mem_v2" *)
 module keep_large_memory #(
   parameter MEMID = "",
@@ -36,7 +36,7 @@ module keep_large_memory #(
   input  [WR_PORTS*WIDTH-1:0] WR_DATA
 );
 
-  wire _TECHMAP_FAIL_ = SIZE * WIDTH <= 2048;
+  wire _TECHMAP_FAIL_ = SIZE * WIDTH <= 2048 || WR_PORTS == 0;
 
   kept_memory #(
     .BITS(SIZE * WIDTH),

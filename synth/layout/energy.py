@@ -78,7 +78,7 @@ def _spent(design: Design, library: Library, nets: Netlist, farads: dict[str, fl
     (folder / "netlist.v").write_text(nets.verilog())
     tools.run(["sta", "-exit", HERE / "sdf.tcl"], folder / "sta.log", {
         "LIBERTY": str(library.liberty), "NETLIST": str(folder / "netlist.v"), "TOP": design.top,
-        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "CLOCK": "",
+        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "ACCESS": "0", "CLOCK": "",
         "LOAD": f"{library.load_pf}", "SPEF": str(spef or ""), "OUT": str(folder / "delays.sdf")})
     # Icarus takes the typical of three delays, and OpenSTA states the least and the most alone.
     delays = (folder / "delays.sdf").read_text()

@@ -18,16 +18,16 @@ module hits_keep_nearest #(
   input logic        test,
   input logic        test_ray,
   input logic        enter,  // a test goes into the pipeline, which holds InFlight
-  input logic        result,
-  input logic        result_ray,
-  input logic [31:0] result_triangle,
-  input logic        result_skipped,
-  input logic        result_doubt,
-  input logic        result_hit,
-  input logic [31:0] result_t,
-  input logic [3:0]  result_t_error,
-  input logic [3:0]  result_normal_error,
-  input logic [3:0]  result_distance_error,
+  input logic        read,  // a result comes; what the unit is given in this clock it compares in the next one
+  input logic        read_ray,
+  input logic [31:0] read_triangle,
+  input logic        read_skipped,
+  input logic        read_doubt,
+  input logic        read_hit,
+  input logic [31:0] read_t,
+  input logic [3:0]  read_t_error,
+  input logic [3:0]  read_normal_error,
+  input logic [3:0]  read_distance_error,
   input logic        point_valid,
   input logic        traversal_ray,
   input logic        leaf_ray,
@@ -56,11 +56,15 @@ module hits_keep_nearest #(
   logic [95:0] end_point, read_point;  // read_point: of the ray of the clock before
   logic read_before;
   logic replace, push, doubts_space, doubts_valid, points_read, points_write;
-  logic [63:0] pushed;
+  logic [63:0] pushed, doubt_word;
   logic [4:0] doubts;
   logic [1:0] points_count;
   logic [Rays*31-1:0] t_max_words;
-  logic [Rays*32-1:0] nearest_t, nearest_triangle;
+  logic [Rays*32-1:0] nearest_t, nearest_low, nearest_triangle;
+  logic over, over_hit, over_sure, over_vague, over_ray, old_found;
+  logic [31:0] over_tag, over_triangle, over_t, over_low, over_high, old_low, old_triangle;
+  logic [30:0] old_t_max;
+  logic [TErrorWidth-1:0] over_t_error;
   logic [Rays*TErrorWidth-1:0] nearest_error;
   logic [Rays*96-1:0] points;
   logic [Rays*10-1:0] counts;
@@ -77,19 +81,10 @@ module hits_keep_nearest #(
     .test_i(test),
     .test_ray_i(test_ray),
     .tests_allowed_o(tests_allowed),
-    .result_i(result),
-    .result_ray_i(result_ray),
-    .result_tag_i(result_tag),
-    .result_triangle_i(result_triangle),
-    .result_skipped_i(result_skipped),
-    .result_doubt_i(result_doubt),
-    .result_hit_i(result_hit),
-    .result_t_i(result_t),
-    .result_t_error_i(result_t_error),
-    .result_normal_error_i(result_normal_error),
-    .result_distance_error_i(result_distance_error),
-    .point_valid_i(point_valid),
-    .point_i(point),
+    .result_ray_i(read_ray),
+    .result_tag_i(read_ray ? tag_1 : tag_0),
+    .result_i({read, read_skipped, read_doubt, read_hit, read_triangle, read_t, read_t_error,
+               read_normal_error, read_distance_error, point_valid, point}),
     .traversal_ray_i(traversal_ray),
     .traversal_t_max_o(traversal_t_max),
     .traversal_ended_o(traversal_ended),
@@ -100,19 +95,30 @@ module hits_keep_nearest #(
     .box_ray_i(box_ray),
     .box_t_max_o(box_t_max),
     .testing_o(testing),
-    .doubt_valid_o(doubt_valid),
+    .doubt_o({doubt_valid, doubt_word}),
     .doubt_fire_i(doubt_fire),
     .end_ray_i(end_ray),
-    .end_found_o(end_found),
-    .end_triangle_o(end_triangle),
-    .end_t_o(end_t),
-    .end_t_error_o(end_t_error),
-    .end_tests_o(end_tests),
+    .end_o({end_found, end_triangle, end_t, end_t_error, end_tests}),
     .point_ray_i(point_ray),
     .point_o(end_point),
     .near_tie_o(near_tie),
     .found_q(found_q),
     .any_hit_q(any_hit_q),
+    .is_over_q(over),
+    .is_hit_q(over_hit),
+    .is_sure_q(over_sure),
+    .is_vague_q(over_vague),
+    .ray_q(over_ray),
+    .tag_q(over_tag),
+    .triangle_q(over_triangle),
+    .t_q(over_t),
+    .t_error_q(over_t_error),
+    .low_q(over_low),
+    .high_q(over_high),
+    .old_found_q(old_found),
+    .old_t_max_q(old_t_max),
+    .old_low_q(old_low),
+    .old_triangle_q(old_triangle),
     .replace(replace),
     .\u_doubts.push_i (push),
     .\u_doubts.data_i (pushed),
@@ -122,6 +128,7 @@ module hits_keep_nearest #(
     .\u_points.count_q (points_count),
     .t_max(t_max_words),
     .nearest_t(nearest_t),
+    .nearest_low(nearest_low),
     .nearest_error(nearest_error),
     .nearest_triangle(nearest_triangle),
     .u_kept_words(points),
@@ -129,6 +136,19 @@ module hits_keep_nearest #(
     .counts(counts),
     .u_points_words(points_words)
   );
+
+  // ---- The result that is compared: as it came
+  logic result, result_ray, result_skipped, result_doubt, result_hit;
+  logic [31:0] result_triangle, result_t;
+  logic [3:0] result_t_error, result_normal_error, result_distance_error;
+  always_ff @(posedge clk) begin
+    result <= reset_n && read;
+    {result_ray, result_skipped, result_doubt, result_hit} <= {read_ray, read_skipped, read_doubt, read_hit};
+    {result_triangle, result_t} <= {read_triangle, read_t};
+    {result_t_error, result_normal_error, result_distance_error}
+        <= {read_t_error, read_normal_error, read_distance_error};
+  end
+  initial result = 1'b0;
 
   // ---- What the user promises
 
@@ -174,13 +194,14 @@ module hits_keep_nearest #(
                         && !(test && test_ray == load_ray)));
       assume (!test || (loaded[test_ray] && test_ray == leaf_ray && !counter_full));
       assume (!enter || (tests_allowed && (flying < 3'(InFlight) || result)));
-      assume (!result || ((result_ray ? flight_1 : flight_0) != '0 && flying != '0));
-      assume (!(result_hit && result_doubt) && result_t <= Infinity);
+      assume (!read || ((read_ray ? flight_1 : flight_0) > 12'(result && result_ray == read_ray)
+                        && flying > 3'(result)));
+      assume (!(read_hit && read_doubt) && read_t <= Infinity);
       assume (!(result && result_hit) || points_count < 2'(InFlight) || point_valid);
       assume (!point_valid || points_count != '0);
       assume (!doubt_fire || doubt_valid);
     end else begin
-      assume (!load && !test && !enter && !result && !point_valid && !doubt_fire);
+      assume (!load && !test && !enter && !read && !point_valid && !doubt_fire);
     end
   end
 
@@ -297,6 +318,21 @@ module hits_keep_nearest #(
       assert ({1'b0, doubts} + 6'(flying) <= 6'(Depth));
 
       // Invariants
+      if (result) begin
+        assert ((result_ray ? flight_1 : flight_0) != '0 && flying != '0);
+        assert (!(result_hit && result_doubt) && result_t <= Infinity);
+        assert (over_ray == result_ray && over_triangle == result_triangle && over_t == result_t);
+        assert (over_tag == result_tag && over_t_error == t_error);
+        assert ($signed({2'b00, over_low}) == (low > 0 ? low : 34'sd0));
+        assert ($signed({2'b00, over_high}) == (high < $signed({2'b00, Infinity}) ? high : $signed({2'b00, Infinity})));
+        assert (old_found == found_q[result_ray] && old_t_max == result_t_max);
+        if (old_found) begin
+          assert (old_low == nearest_low[32*result_ray+:32]
+                  && old_triangle == nearest_triangle[32*result_ray+:32]);
+        end
+      end
+      assert (over == result && over_sure == sure && over_vague == vague && over_hit == (result && result_hit));
+      if (state == Kept) assert ($signed({2'b00, nearest_low[32*w_ray+:32]}) == (w_low > 0 ? w_low : 34'sd0));
       assert (flying <= 3'(InFlight) && points_count <= 2'(InFlight));
       assert (tests_allowed == (doubts < 5'(Depth - InFlight)) && (!doubt_valid || doubts != '0));
       assert ((points_write == points_read) == (points_count != 2'd1));

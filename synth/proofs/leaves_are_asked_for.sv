@@ -56,10 +56,9 @@ module leaves_are_asked_for #(
     .ended_i(ended),
     .counter_full_i(counter_full),
     .leaf_pending_o(leaf_pending),
-    .triangle_valid_o(triangle),
-    .triangle_ready_i(ready),
     .triangle_ray_o(triangle_ray),
-    .triangle_line_o(line),
+    .triangle_o({triangle, line}),
+    .triangle_ready_i(ready),
     .valid_q(valid_q),
     .ray_q(ray_q),
     .group_q(group_q),
@@ -116,8 +115,7 @@ module leaves_are_asked_for #(
       if (mask_q[n] && (mask_q & ((Children'(1) << n) - 1'b1)) == '0) nearest = 3'(n);
     end
   end
-  assign dropped = ended || ray_core_pkg::is_beyond(group_q[Children*EntryWidth+:ray_core_pkg::ExponentWidth],
-                                                    enter_of(group_q, nearest), t_max);
+  assign dropped = ended || ray_core_pkg::is_beyond(enter_of(group_q, nearest), t_max);
   assign leaves = valid_q && (dropped || (triangle && ready && (mask_q & (mask_q - 1'b1)) == '0
                                           && number_q + 1'b1 == count_of(group_q, nearest)));
 
@@ -139,8 +137,7 @@ module leaves_are_asked_for #(
   assign rank       = triangles_of(w_group, w_mask & ((Children'(1) << w_leaf) - 1'b1)) + TotalWidth'(w_number);
   assign given      = state == Walked && triangle && ready;
   assign asked_next = asked + TotalWidth'(given);
-  assign w_beyond   = ended || ray_core_pkg::is_beyond(w_group[Children*EntryWidth+:ray_core_pkg::ExponentWidth],
-                                                       enter_of(w_group, w_leaf), t_max);
+  assign w_beyond   = ended || ray_core_pkg::is_beyond(enter_of(w_group, w_leaf), t_max);
 
   always_ff @(posedge clk) begin
     if (!reset_n) begin

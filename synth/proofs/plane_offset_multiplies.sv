@@ -1,30 +1,46 @@
-// The offset to a plane of a node's grid is q s / 256, cut off: rows and adder give the product. Of steps of 8 bits; a tree is
-// that of 33, but for its width.
+// A plane of a node's grid is from +- q s / 256, the product cut off: rows and adder give what `*` does. Of steps of 8 bits; a
+// tree is that of 33, but for its width.
 module plane_offset_multiplies #(
-  localparam int unsigned Width = 8
+  localparam int unsigned Width = 8,
+  localparam int unsigned PlaneWidth = 11
 ) (
-  input logic [7:0]       q,
-  input logic [Width-1:0] step
+  input logic                  clk,
+  input logic [7:0]            q,
+  input logic [Width-1:0]      step,
+  input logic [PlaneWidth-1:0] from,
+  input logic                  back
 );
 
-  logic [Width-1:0] offset, expected;
+  logic full;  // a clock has gone by
+  initial full = 1'b0;
+  always_ff @(posedge clk) full <= 1'b1;
+
+  logic [PlaneWidth-1:0] plane, expected;
 
   plane_offset #(
-    .Width(Width)
+    .Width(Width),
+    .PlaneWidth(PlaneWidth)
   ) dut (
+    .clk_i(clk),
     .q_i(q),
     .step_i(step),
-    .offset_o(offset)
+    .from_i(from),
+    .back_i(back),
+    .plane_o(plane)
   );
   plane_offset #(
     .Width(Width),
+    .PlaneWidth(PlaneWidth),
     .Arith(arith_pkg::Behavioural)
   ) u_expected (
+    .clk_i(clk),
     .q_i(q),
     .step_i(step),
-    .offset_o(expected)
+    .from_i(from),
+    .back_i(back),
+    .plane_o(expected)
   );
 
-  always_comb assert (offset == expected);
+  always_comb if (full) assert (plane == expected);
 
 endmodule

@@ -1,5 +1,5 @@
 // The sorting network puts any seven words in order and loses none: each word is as often among what comes out as
-// among what went in, a clock earlier.
+// among what went in, two clocks earlier.
 module sort7_sorts #(
   localparam int unsigned Width = 4
 ) (
@@ -8,14 +8,14 @@ module sort7_sorts #(
   input logic [Width-1:0]   word  // any one of them, or none
 );
 
-  logic [7*Width-1:0] sorted, words_q;
-  logic [Width-1:0] word_q;
-  logic full;  // a clock has gone by
-  initial full = 1'b0;
+  logic [7*Width-1:0] sorted, words_1, words_q;
+  logic [Width-1:0] word_1, word_q;
+  logic begun, full;  // two clocks have gone by
+  initial {begun, full} = 2'b00;
   always_ff @(posedge clk) begin
-    full <= 1'b1;
-    words_q <= words;
-    word_q <= word;
+    {begun, full} <= {1'b1, begun};
+    {words_1, words_q} <= {words, words_1};
+    {word_1, word_q} <= {word, word_1};
   end
 
   sort7 #(

@@ -12,7 +12,6 @@ module stack_keeps_nodes #(
   localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth,
   localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth,
   localparam int unsigned CountWidth = ray_core_pkg::CountWidth,
-  localparam int unsigned ExponentWidth = ray_core_pkg::ExponentWidth,
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned NextWidth = Children + EnterWidth
 ) (
@@ -40,15 +39,24 @@ module stack_keeps_nodes #(
   (* anyseq *) logic [GroupWidth-1:0] box_group;
 
   logic start_fire, node, node_ray, overflow, cycle;
+  logic [32+AddressWidth+ray_core_pkg::NodesWidth-1:0] overflow_word;
   logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
   logic [Rays-1:0] traversing, busy_q, waiting_q;
-  logic picked_q, ray_q, asked_q, started_q, asking_ray_q;
-  logic [1:0] chosen_q;
-  logic [Children-1:0] mask_q, remaining_q;
+  // Of each stage whether it has a ray that was picked, or one that starts, and which
+  logic picked_q, ray_q, choosing_q, choosing_ray_q, asked_q, asking_ray_q;
+  logic next_valid_q, next_started_q, next_ray_q;
+  logic [Rays-1:0] ready_q;
+  logic ended_q;
+  logic [30:0] t_max_q;
+  logic [1:0] level_q, asked_level_q, next_level_q;
+  logic [Children-1:0] mask_q, remaining_q, next_remaining_q;
+  logic [EnterWidth-1:0] next_enter_q;
+  logic [AddressWidth-1:0] base_q;
+  logic [OffsetWidth-1:0] offset_q;
   logic [Rays*2-1:0] levels;
+  logic [NextWidth-1:0] next_q_0, next_q_1;
   logic [Rays*NextWidth-1:0] nexts_0, nexts_1;
-  logic [Rays*ExponentWidth-1:0] exponents_0, exponents_1;
   logic [Rays*Depth*GroupWidth-1:0] groups;
   logic [GroupWidth-1:0] group_q;  // of the level that is asked
 
@@ -72,28 +80,40 @@ module stack_keeps_nodes #(
     .cycle_o(cycle),
     .lines_i(lines),
     .traversing_o(traversing),
-    .node_valid_o(node),
     .node_ray_o(node_ray),
-    .node_line_o(node_line),
-    .overflow_valid_o(overflow),
+    .node_o({node, node_line}),
+    .overflow_o({overflow, overflow_word}),
     .overflow_fire_i(overflow_fire),
     .busy_q(busy_q),
     .waiting_q(waiting_q),
+    .ready_q(ready_q),
     .picked_q(picked_q),
     .ray_q(ray_q),
+    .choosing_q(choosing_q),
+    .choosing_ray_q(choosing_ray_q),
+    .level_q(level_q),
+    .t_max_q(t_max_q),
+    .ended_q(ended_q),
     .asked_q(asked_q),
-    .started_q(started_q),
     .asking_ray_q(asking_ray_q),
-    .chosen_q(chosen_q),
+    .asked_level_q(asked_level_q),
     .mask_q(mask_q),
     .remaining_q(remaining_q),
+    .next_valid_q(next_valid_q),
+    .next_started_q(next_started_q),
+    .next_ray_q(next_ray_q),
+    .next_level_q(next_level_q),
+    .next_remaining_q(next_remaining_q),
+    .next_enter_q(next_enter_q),
+    .base_q(base_q),
+    .offset_q(offset_q),
     .levels(levels),
     .group(group_q),
     .u_groups_words(groups),
     .\gen_level[0]_nexts (nexts_0),
     .\gen_level[1]_nexts (nexts_1),
-    .\gen_level[0]_exponents (exponents_0),
-    .\gen_level[1]_exponents (exponents_1)
+    .\gen_level[0].next_q (next_q_0),
+    .\gen_level[1].next_q (next_q_1)
   );
 
   // ---- Entries of a group
@@ -144,7 +164,6 @@ module stack_keeps_nodes #(
   logic asked, present, push_here;
   logic [Children-1:0] w_mask, next_mask;
   logic [EnterWidth-1:0] w_next;
-  logic [ExponentWidth-1:0] w_exponent;
   logic [GroupWidth-1:0] kept;
   initial watching = 1'b0;
   initial done = 1'b0;
@@ -153,21 +172,22 @@ module stack_keeps_nodes #(
   assign w_levels  = levels[2*w_ray+:2];
   assign {next_mask, w_next} = w_level ? nexts_1[NextWidth*w_ray+:NextWidth]
                                        : nexts_0[NextWidth*w_ray+:NextWidth];
-  assign w_exponent = w_level ? exponents_1[ExponentWidth*w_ray+:ExponentWidth]
-                              : exponents_0[ExponentWidth*w_ray+:ExponentWidth];
   assign kept = groups[GroupWidth*{w_ray, w_level}+:GroupWidth];
 
-  logic asking;  // its group's level is being asked
-  assign asking  = asked_q && asking_ray_q == w_ray && chosen_q == {1'b0, w_level};
-  assign w_mask  = asking ? remaining_q : next_mask;
-  assign present = w_levels > {1'b0, w_level} && w_mask[w_entry];
-  assign asked   = asking && mask_q[w_entry] && (mask_q & ((Children'(1) << w_entry) - 1'b1)) == '0;
+  logic asking, leaving;  // its group's level is being asked, and its node leaves
+  logic [Children-1:0] leaving_mask;
+  always_ff @(posedge clk) leaving_mask <= mask_q;
+  assign asking  = asked_q && asking_ray_q == w_ray && asked_level_q == {1'b0, w_level};
+  assign leaving = next_valid_q && next_ray_q == w_ray && next_level_q == {1'b0, w_level};
+  assign w_mask  = leaving ? next_remaining_q : next_mask;
+  assign present = asking ? mask_q[w_entry] : w_levels > {1'b0, w_level} && w_mask[w_entry];
+  assign asked   = leaving && leaving_mask[w_entry]
+                   && (leaving_mask & ((Children'(1) << w_entry) - 1'b1)) == '0;
   assign push_here = box && box_inner != '0 && box_ray == w_ray && box_level == {1'b0, w_level};
 
   always_ff @(posedge clk) begin
-    dropped <= picked_q && t_max_ray == w_ray
-               && (ended || cycle || ray_core_pkg::is_beyond(
-                     w_group[Children*EntryWidth+:ExponentWidth], enter_of(w_group, w_entry), t_max));
+    dropped <= choosing_q && choosing_ray_q == w_ray
+               && (ended_q || cycle || ray_core_pkg::is_beyond(enter_of(w_group, w_entry), t_max_q));
     if (!reset_n) begin
       watching <= 1'b0;
       done <= 1'b0;
@@ -201,25 +221,41 @@ module stack_keeps_nodes #(
 
       // Invariants
       for (int unsigned r = 0; r < Rays; r++) begin
-        assert (busy_q[r] == (wanted[r] || (picked_q && ray_q == 1'(r))
-                              || ((asked_q || started_q) && asking_ray_q == 1'(r))));
-        assert (!(wanted[r] && picked_q && ray_q == 1'(r)));
-        assert (!(wanted[r] && (asked_q || started_q) && asking_ray_q == 1'(r)));
+        assert (3'(busy_q[r]) == 3'(wanted[r]) + 3'(picked_q && ray_q == 1'(r))
+                                 + 3'(choosing_q && choosing_ray_q == 1'(r)) + 3'(asked_q && asking_ray_q == 1'(r))
+                                 + 3'((next_valid_q || next_started_q) && next_ray_q == 1'(r)));
+        if (ready_q[r] && !busy_q[r]) assert (waiting_q[r]);
         if (traversing[r]) begin
           assert (levels[2*r+:2] <= 2'd2);
           assert (waiting_q[r] == (levels[2*r+:2] != 2'd0));
         end
       end
-      assert (!(asked_q && started_q));
-      assert (!(picked_q && (asked_q || started_q) && asking_ray_q == ray_q));
+      assert (!(next_valid_q && next_started_q));
       if (picked_q) assert (waiting_q[ray_q]);
-      if (started_q) assert (levels[2*asking_ray_q+:2] == 2'd0);
+      if (choosing_q) begin
+        assert (waiting_q[choosing_ray_q] && level_q == levels[2*choosing_ray_q+:2]);
+        assert (next_q_0 == nexts_0[NextWidth*choosing_ray_q+:NextWidth]
+                && next_q_1 == nexts_1[NextWidth*choosing_ray_q+:NextWidth]);
+      end
+      if (asked_q) begin
+        assert (levels[2*asking_ray_q+:2] == asked_level_q + 2'(remaining_q != '0));
+        assert (remaining_q == (mask_q & (mask_q - 1'b1)));
+      end
+      if (next_valid_q) begin
+        assert (levels[2*next_ray_q+:2] == next_level_q + 2'(next_remaining_q != '0));
+        assert (next_remaining_q == (leaving_mask & (leaving_mask - 1'b1)));
+      end
+      if (next_started_q) assert (levels[2*next_ray_q+:2] == 2'd0);
       if (watching && (present || asked)) begin
         assert (kept == w_group && w_entry < 3'd7 && is_sorted(w_group));
         if (asking) assert (group_q == w_group);
-        if (asking) assert (remaining_q == (mask_q & (mask_q - 1'b1)) && mask_q == next_mask);
-        assert (w_exponent == w_group[Children*EntryWidth+:ExponentWidth]);
-        if (!asking) assert (w_next <= enter_of(w_group, w_entry));
+        if (asking) assert (mask_q == next_mask);
+        if (leaving) begin
+          assert (leaving_mask == next_mask);
+          if (asked) assert (base_q + AddressWidth'(offset_q) == line_of(w_group, w_entry));
+          if (next_remaining_q[w_entry]) assert (next_enter_q <= enter_of(w_group, w_entry));
+        end
+        assert (w_next <= enter_of(w_group, w_entry));
       end
 
       cover (watching && asked);

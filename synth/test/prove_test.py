@@ -14,16 +14,16 @@ LANES = [(".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])
          ("count_q + increment", "count_q | increment")]
 RESULTS = [(".data_o({report_o, closed_o, found_o", ".data_o({report_o, found_o, closed_o"),
            (".push_i(report != hit_test_pkg::ReportNone | closed", ".push_i(closed")]
-HITS = [("(low <= old_t_max)", "(low < old_t_max)"),
-        ("(old_low <= high)", "(old_low < high)"),
-        ("old_open ? nearest_triangle[result_ray_i] : result_triangle_i",
-         "open ? result_triangle_i : nearest_triangle[result_ray_i]"),
-        (".data_i({result_ray_i, replace})", ".data_i({result_ray_i, hit})"),
+HITS = [("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
+        ("(old_low_q <= high_q)", "(old_low_q < high_q)"),
+        ("old_open ? old_triangle_q : triangle_q", "open ? triangle_q : old_triangle_q"),
+        ("forward ? low_q : nearest_low", "is_over_q ? low_q : nearest_low"),
+        (".data_i({ray_q, replace})", ".data_i({ray_q, is_sure_q})"),
         ("if (test_i && !same) counts", "if (test_i) counts")]
 
 LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
           ("fire & last & (remaining == '0)", "fire & (remaining == '0)"),
-          ("triangle_valid_o & triangle_ready_i;", "triangle_valid_o;"),
+          ("triangle_o.valid & triangle_ready_i;", "triangle_o.valid;"),
           ("if (push) leaf_pending_o[box_ray_i] <= 1'b1;", "if (push && !done) leaf_pending_o[box_ray_i] <= 1'b1;")]
 
 CACHE = [("some_free & ~(arrive & fill_entry_i == entry)", "some_free"),

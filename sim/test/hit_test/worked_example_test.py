@@ -13,10 +13,15 @@ import unittest
 PROGRAM, SAVE_FILE = sys.argv[1:]
 
 
-def last_line(*options):
-    """What the program prints last."""
+def lines(*options):
+    """What the program prints."""
     return subprocess.run([PROGRAM, *options], check=True, capture_output=True,
-                          text=True).stdout.splitlines()[-1]
+                          text=True).stdout.splitlines()
+
+
+def last_line(*options):
+    """What it prints last."""
+    return lines(*options)[-1]
 
 
 class WorkedExample(unittest.TestCase):
@@ -26,6 +31,11 @@ class WorkedExample(unittest.TestCase):
         """The paper's words, and those that are rounded correctly."""
         self.assertRegex(last_line(), "^P = 3DC873FD 3E31C2A2 3DB0D093 .* 10 clocks ")
         self.assertRegex(last_line("--paper-divider"), "^P = 3DC873F8 3E31C2A0 3DB0D090 .* 10 clocks ")
+
+    def test_inputs_in_decimal(self):
+        """The numbers that go in, as the paper has them."""
+        self.assertEqual(lines()[0], "I = (3.3125, 5.875, 2.921875), N = (15.1875, 0.46875, 2.109375), "
+                         "d = 1.75: the words 1 to 7")
 
     def test_waveform(self):
         """Every signal of the save file is in the waveform, with its width."""

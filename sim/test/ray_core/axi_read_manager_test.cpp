@@ -58,6 +58,15 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
   bool fails = false;
   for (int clock = 0; clock < 60'000; ++clock) {
     const unsigned eager = 1 + clock / 4'000 % 7;  // of 8
+    if (clock % 5'000 == 4'999) {                  // a reset in mid-run
+      model->read_valid_i = model->axi_rvalid_i = 0;
+      model.reset();
+      bursts = {};
+      waiting.clear();
+      failing_lines.clear();
+      failing = failed;
+      ASSERT_EQ(model->line_valid_o | model->axi_arvalid_o, 0);
+    }
     if (model->read_valid_i == 0 && random() % 8 < 6) {
       model->read_valid_i = 1;
       model->base_i = std::uint64_t{random()} << 32 | random();  // bits below 64 do not count

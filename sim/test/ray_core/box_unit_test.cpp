@@ -2,6 +2,7 @@
 // Tests: slab_setup, slab_test, child_sort, ray_scale, plane_offset, add_subtract, max4, sort7
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <deque>
 
 #include "Vbox_unit_behavioural.h"
@@ -17,7 +18,7 @@ class BoxUnitTest : public testing::Test {};
 using Tops = testing::Types<Vbox_unit_behavioural, Vbox_unit_structural>;
 TYPED_TEST_SUITE(BoxUnitTest, Tops);
 
-constexpr std::size_t kLatency = 12;  // ray_core_pkg::BoxLatency
+constexpr std::size_t kLatency = 19;  // ray_core_pkg::BoxLatency
 
 /// Bits of a port.
 template <class Port>
@@ -25,6 +26,15 @@ std::uint32_t bits(const Port& port, unsigned first, unsigned width) {
   std::uint64_t two = port[first / 32];
   if (first % 32 + width > 32) two |= std::uint64_t{port[first / 32 + 1]} << 32;
   return static_cast<std::uint32_t>(two >> first % 32 & ((std::uint64_t{1} << width) - 1));
+}
+
+/// The number enter 2^(exponent - 127 - 12) as the unit gives it: the upper 19 bits of a binary32
+/// number's magnitude whose exponent has no end above, all ones where it would not do.
+std::uint32_t ordered_word(std::uint32_t enter, std::uint32_t exponent) {
+  if (enter == 0) return 0;
+  const auto top = static_cast<std::uint32_t>(std::bit_width(enter)) - 1;
+  const std::uint32_t field = exponent - 12 + top, fraction = (enter << (11 - top)) & 0x7FF;
+  return field > 255 ? 0x7FFFF : field << 11 | fraction;
 }
 
 TYPED_TEST(BoxUnitTest, EqualsItsReference) {
@@ -49,14 +59,15 @@ TYPED_TEST(BoxUnitTest, EqualsItsReference) {
     if (taken.size() < kLatency) continue;
     taken.resize(kLatency);
     const BoxGroup expected = enter_boxes(taken.back().node, taken.back().read());
-    BoxGroup group{
-        .base = bits(model->group_o, 156, 28), .exponent = bits(model->group_o, 147, 9), .size = 0};
+    BoxGroup group{.base = bits(model->group_o, 196, 28), .exponent = expected.exponent, .size = 0};
     ASSERT_EQ(model->inner_o & model->leaf_o, 0);
     for (unsigned n = 0; n < 7; ++n) {
       if (((model->inner_o | model->leaf_o) >> n & 1) == 0) continue;
       ASSERT_EQ(group.size, static_cast<int>(n)) << "no gaps";
-      const unsigned at = 21 * n;
-      group.entry[n] = {bits(model->group_o, at + 9, 12), bits(model->group_o, at + 3, 6),
+      const unsigned at = 28 * n;
+      ASSERT_EQ(bits(model->group_o, at + 9, 19),
+                ordered_word(expected.entry[n].enter, expected.exponent));
+      group.entry[n] = {expected.entry[n].enter, bits(model->group_o, at + 3, 6),
                         bits(model->group_o, at, 3)};
       ASSERT_EQ(model->inner_o >> n & 1, group.entry[n].count == 0);
       ++group.size;

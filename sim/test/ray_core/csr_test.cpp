@@ -16,9 +16,9 @@ constexpr unsigned kEvents = 10;  // ray_core_pkg::NumEvents
 
 /// Whether word `n` is a plain register, and which of its bits can be written.
 bool is_plain(unsigned n) {
-  return (n >= 5 && n <= 7) || n == 8 || n == 9 || (n >= 12 && n < 27 && n % 4 != 3);
+  return (n >= 5 && n <= 9) || (n >= 12 && n < 27 && n % 4 != 3) || (n >= 28 && n <= 30);
 }
-std::uint32_t bits_of(unsigned n) { return n == 5 ? ~63u : n == 7 ? 0x0FFF'FFFFu : ~0u; }
+std::uint32_t bits_of(unsigned n) { return n == 5 || n == 28 ? ~63u : n == 7 ? 0x0FFF'FFFFu : ~0u; }
 
 class CsrTest : public testing::Test {
  protected:
@@ -27,6 +27,7 @@ class CsrTest : public testing::Test {
     model_->axi_arvalid_i = model_->axi_rready_i = 0;
     model_->camera_busy_i = model_->core_busy_i = model_->doubt_i = model_->bus_error_i = 0;
     model_->outstanding_i = model_->ray_error_i = model_->error_number_i = 0;
+    model_->writing_i = model_->full_i = model_->write_error_i = model_->written_i = 0;
     model_->events_i = 0;
     model_.reset();
   }
@@ -96,7 +97,7 @@ TEST_F(CsrTest, PlainRegistersKeepTheirBytes) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
   for (int i = 0; i < 2'000; ++i) {
-    const unsigned n = 5 + random_() % 22, strobes = random_() % 16;
+    const unsigned n = 5 + random_() % 26, strobes = random_() % 16;
     const std::uint32_t data = random_() & bits_of(n);
     ASSERT_EQ(write(4 * n, data | (random_() & ~bits_of(n)), strobes), 0u);
     for (unsigned b = 0; b < 4; ++b) {
@@ -104,13 +105,15 @@ TEST_F(CsrTest, PlainRegistersKeepTheirBytes) {
       words[n] = (words[n] & ~(0xFFu << 8 * b)) | (data & 0xFFu << 8 * b);
     }
     write(0x800 + 4 * n, random_());  // nothing is there
-    const unsigned seen = 5 + random_() % 22;
+    const unsigned seen = 5 + random_() % 26;
     ASSERT_EQ(read(4 * seen), words[seen]);
   }
   EXPECT_EQ(model_->base_o, std::uint64_t{words[6]} << 32 | words[5]);
   EXPECT_EQ(model_->lines_o, words[7]);
   EXPECT_EQ(model_->corner_o, words[8]);
   EXPECT_EQ(model_->size_o, words[9]);
+  EXPECT_EQ(model_->results_o, std::uint64_t{words[29]} << 32 | words[28]);
+  EXPECT_EQ(model_->length_o, words[30]);
   for (unsigned v = 0; v < 4; ++v) {
     for (unsigned k = 0; k < 3; ++k) EXPECT_EQ(model_->camera_o[3 * v + k], words[12 + 4 * v + k]);
   }
@@ -284,12 +287,14 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
   const auto value = [&](unsigned word) -> std::uint32_t {
     if (word == 0) return 0x52470001;
     if (word == 2) {
-      return model_->outstanding_i << 2 | model_->core_busy_i << 1 | model_->camera_busy_i;
+      return model_->writing_i << 3 | model_->outstanding_i << 2 | model_->core_busy_i << 1 |
+             model_->camera_busy_i;
     }
     if (word == 3) return enable;
     if (word == 4) return flags;
     if (word == 10) return error_line;
-    if (word >= 5 && word < 27) return words[word];
+    if (word == 31) return model_->written_i;
+    if (word >= 5 && word < 31) return words[word];
     if (word >= 64 && word < 64 + 2 * counts.size()) {
       return static_cast<std::uint32_t>(counts[(word - 64) / 2] >> (word % 2 == 0 ? 0 : 32));
     }
@@ -300,6 +305,14 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     return 4 * (kind < 2 ? random_() % 32 : kind == 2 ? 64 + random_() % 32 : random_() % 1024);
   };
   for (int i = 0; i < 60'000; ++i) {
+    if (i % 5'000 == 4'999) {  // a reset in mid-run
+      model_->axi_awvalid_i = model_->axi_wvalid_i = model_->axi_arvalid_i = 0;
+      model_.reset();
+      words = {};
+      counts = {};
+      enable = flags = error_line = 0;
+      drawing = aborting = written = answered = has_address = has_data = false;
+    }
     if (model_->axi_awvalid_i == 0 && random_() % 4 != 0) {
       model_->axi_awaddr_i = address();
       model_->axi_awvalid_i = 1;
@@ -321,6 +334,10 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     model_->bus_error_i = random_() % 16 == 0;
     model_->error_number_i = random_() % (1u << 28);
     model_->ray_error_i = random_() % 16 == 0;
+    model_->full_i = random_() % 16 == 0;
+    model_->write_error_i = random_() % 16 == 0;
+    model_->written_i = random_();
+    if (random_() % 16 == 0) model_->writing_i = random_() % 2;
     if (random_() % 16 == 0) model_->outstanding_i = random_() % 2;
     model_->events_i = random_() & ((1u << kEvents) - 1);
     model_.eval();
@@ -341,6 +358,8 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     ASSERT_EQ(model_->drawing_o, drawing);
     ASSERT_EQ(model_->corner_o, words[8]);
     ASSERT_EQ(model_->size_o, words[9]);
+    ASSERT_EQ(model_->results_o, std::uint64_t{words[29]} << 32 | words[28]);
+    ASSERT_EQ(model_->length_o, words[30]);
     for (unsigned n = 0; n < 12; ++n) {
       ASSERT_EQ(model_->camera_o[n], words[12 + n / 3 * 4 + n % 3]);
     }
@@ -359,16 +378,19 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     const bool busy = (model_->camera_busy_i | model_->core_busy_i) != 0;
     const bool base = word == 5 || word == 6;
     const bool refused = (busy && (is_plain(word) || (word == 1 && (data & 3) != 0))) ||
-                         (model_->outstanding_i != 0 && (base || (word == 1 && (data & 2) != 0)));
+                         (model_->outstanding_i != 0 && (base || (word == 1 && (data & 2) != 0))) ||
+                         (model_->writing_i != 0 && word == 1 && (data & 16) != 0);
     const bool starts = word == 1 && (data & 1) != 0 && !refused;
     ASSERT_EQ(model_->start_o, starts);
+    ASSERT_EQ(model_->rewind_o, word == 1 && (data & 16) != 0 && !refused);
     ASSERT_EQ(model_->invalidate_o, (base || (word == 1 && (data & 2) != 0)) && !refused);
-    if (word == 3) enable = (data | (enable & ~mask)) & 15;
+    if (word == 3) enable = (data | (enable & ~mask)) & 63;
     if (model_->bus_error_i != 0 && (flags & 4) == 0) error_line = model_->error_number_i;
     aborting = (word == 1 && (data & 8) != 0 && !refused) || (aborting && busy);
     if (word == 4) flags &= ~data;
     flags |= model_->doubt_i | (drawing && !busy ? 2u : 0u) | (model_->bus_error_i != 0 ? 4u : 0u) |
-             (model_->ray_error_i != 0 ? 8u : 0u);
+             (model_->ray_error_i != 0 ? 8u : 0u) | (model_->full_i != 0 ? 16u : 0u) |
+             (model_->write_error_i != 0 ? 32u : 0u);
     drawing = starts || model_->camera_busy_i != 0 || (drawing && busy);
     if (is_plain(word) && !refused) words[word] = (data & bits_of(word)) | (words[word] & ~mask);
     counts[0] += model_->core_busy_i;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <deque>
 #include <map>
 #include <random>
@@ -14,13 +15,15 @@
 #include "host/intersect/core/pixel_grid.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
+#include "hw/ray_core/registers.h"
 #include "sim/core_port.h"
 
 namespace raygate {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261122;
-constexpr std::uint64_t kBase = 0x9234'5678'8000'0000, kOtherBase = 0x0000'0001'4000'0000;
+constexpr std::uint64_t kBase = 0x9234'5678'8000'0000, kOtherBase = 0x0000'0001'4000'0000,
+                        kResults = 0x0123'4567'89AB'CFC0;
 
 class RayCoreAxiTest : public testing::Test {
  protected:
@@ -31,14 +34,21 @@ class RayCoreAxiTest : public testing::Test {
     model_->mem_arready_i = model_->mem_rvalid_i = 0;
     model_->mem_rresp_i = 0;
     model_->mem_rlast_i = 0;
-    model_->ray_valid_i = model_->result_ready_i = 0;
+    model_->mem_awready_i = model_->mem_wready_i = model_->mem_bvalid_i = 0;
+    model_->mem_bresp_i = 0;
+    model_->ray_valid_i = model_->stream_tready_i = 0;
     model_.reset();
   }
 
   /// A clock of the whole: memory and results too.
   void clock() {
     model_->mem_arready_i = random_() % 4 != 0;
-    model_->result_ready_i = random_() % 4 != 0;
+    model_->stream_tready_i = random_() % 4 != 0;
+    model_->mem_awready_i = random_() % 4 != 0;
+    model_->mem_wready_i = random_() % 4 != 0;
+    if (model_->mem_bvalid_i == 0 && unanswered_ != 0 && random_() % 4 == 0) {
+      model_->mem_bvalid_i = 1;
+    }
     if (model_->mem_rvalid_i == 0 && !beats_.empty() && random_() % 4 != 0) {
       model_->mem_rid_i = beats_.front().id;
       model_->mem_rdata_i = beats_.front().data;
@@ -63,9 +73,27 @@ class RayCoreAxiTest : public testing::Test {
     }
     const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
     const bool ray_taken = (model_->ray_valid_i & model_->ray_ready_o) != 0;
-    if ((model_->result_valid_o & model_->result_ready_i) != 0)
-      results_.push_back(result_at(*model_));
+    if ((model_->stream_tvalid_o & model_->stream_tready_i) != 0) {
+      std::array<std::uint32_t, 8> record;
+      std::memcpy(record.data(), &model_->stream_tdata_o, sizeof record);
+      results_.push_back(result_of(record));
+      ASSERT_EQ(model_->stream_tlast_o, results_.back().kind == CoreResult::Kind::kEnd);
+    }
+    if ((model_->mem_awvalid_o & model_->mem_awready_i) != 0) {
+      ASSERT_EQ(model_->mem_awaddr_o, kResults + 32 * bursts_++);
+    }
+    if ((model_->mem_wvalid_o & model_->mem_wready_i) != 0) {
+      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o));
+      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o >> 32));
+    }
+    unanswered_ = std::min<std::size_t>(bursts_, written_.size() / 8) - answered_;
+    const bool answered = model_->mem_bvalid_i != 0;
     model_.clock();
+    if (answered) {
+      ++answered_;
+      --unanswered_;
+      model_->mem_bvalid_i = 0;
+    }
     if (beat_taken) model_->mem_rvalid_i = 0;
     if (ray_taken) model_->ray_valid_i = 0;
   }
@@ -99,6 +127,19 @@ class RayCoreAxiTest : public testing::Test {
     return data;
   }
 
+  /// Takes the records in memory for results; those that come later go to the buffer's beginning.
+  void collect() {
+    ASSERT_EQ(read(RAYGATE_WRITTEN), answered_);
+    for (std::size_t at = 0; at < 8 * answered_; at += 8) {
+      std::array<std::uint32_t, 8> record;
+      std::copy_n(written_.begin() + static_cast<std::ptrdiff_t>(at), 8, record.begin());
+      results_.push_back(result_of(record));
+    }
+    bursts_ = answered_ = 0;
+    written_.clear();
+    ASSERT_EQ(write(RAYGATE_COMMAND, RAYGATE_COMMAND_REWIND), 0u);
+  }
+
   void look();
   void draw(std::uint32_t side);
   static CoreResult reference(const MemoryImage& image, std::uint32_t pixel);
@@ -121,6 +162,8 @@ class RayCoreAxiTest : public testing::Test {
   std::mt19937 random_{kSeed};
   Model<Vray_core_axi> model_;
   std::deque<Beat> beats_;
+  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // records on their way to memory
+  std::vector<std::uint32_t> written_;
   std::vector<CoreResult> results_;
   std::map<std::uint32_t, CoreResult> ends_;  // by pixel
 };
@@ -142,13 +185,26 @@ TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
   write(0x00C, 2);
   for (int frame = 0; frame < 2; ++frame) {
     results_.clear();
-    write(0x010, 7);
+    write(0x010, 63);
     write(0x024, kHeight << 16 | kWidth);
+    // The second one to memory, through a buffer that is read and rewound when it is full.
+    write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
+    write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
+    write(RAYGATE_LENGTH, frame == 0 ? 0 : 100);
+    write(0x00C, RAYGATE_FLAGS_DONE | RAYGATE_FLAGS_FULL);
     write(0x004, 1 | 4);
-    for (int n = 0; model_->interrupt_o == 0; ++n) {
+    int rewound = 0;
+    for (int n = 0; (read(RAYGATE_FLAGS) & RAYGATE_FLAGS_DONE) == 0; ++n) {
       ASSERT_LT(n, 200'000);
-      clock();
+      if ((read(RAYGATE_FLAGS) & RAYGATE_FLAGS_FULL) == 0) continue;
+      ASSERT_EQ(answered_, 100u);
+      ASSERT_EQ(read(RAYGATE_STATUS) & RAYGATE_STATUS_WRITING, 0u);
+      collect();
+      write(RAYGATE_FLAGS, RAYGATE_FLAGS_FULL);
+      ++rewound;
     }
+    ASSERT_EQ(rewound > 10, frame == 1);
+    collect();
     for (int n = 0; read(0x008) != 0; ++n) ASSERT_LT(n, 1'000);
     EXPECT_TRUE(beats_.empty()) << "memory may change";
     EXPECT_EQ(read(0x108), kWidth * kHeight) << "rays";

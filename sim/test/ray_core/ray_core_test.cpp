@@ -1,6 +1,7 @@
 // The ray core in simulation finds what CpuIntersector finds, whatever makes it wait.
 // Tests: ray_core, ray_alloc, ray_errors, traversal, primitive_fetch, memory_subsystem
-// Tests: triangle_test, closest_hit, ray_context, box_pipeline, ray_retire, rr_arbiter
+// Tests: triangle_test, closest_hit, ray_context, ray_retire, rr_arbiter
+// Tests: traversal_subsystem, intersection_subsystem
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <map>
 
 #include "Vray_core_small.h"
+#include "Vray_cores_cached.h"
 #include "Vray_cores_small.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
@@ -99,6 +101,78 @@ TEST_F(RayCoreTest, CoresInHardwareShareAMemory) {
     if (timing.bytes == 64) {
       EXPECT_LT(in_hardware, 0.6 * one);
     }
+  }
+}
+
+/// Resets in mid-run, at any clock, of a core and of cores behind their arbiter: then the next rays
+/// hit what they should.
+TEST_F(RayCoreTest, ResetsInMidRunLeaveNothing) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 100);
+  std::vector<CoreRay> abandoned;
+  for (const Ray& ray : rays)
+    abandoned.push_back({.ray = ray, .no_cull = abandoned.size() % 8 == 0});
+  const MemoryTiming timing{.latency = 20, .disorder = 100, .not_taken = 64};
+  const auto run = [&](auto core) {
+    for (int resets = random_.below(4); resets >= 0; --resets) {
+      core->abandon(image_->lines(), abandoned, static_cast<unsigned>(1 + random_.below(1'500)));
+    }
+    check(rays, {}, std::move(core));
+  };
+  const CoreStalls stalls{.not_taken = 100};
+  for (int round = 0; round < 8; ++round) {
+    run(std::make_unique<CoreModel<Vray_core_small>>(timing, stalls));
+    run(std::make_unique<CoreModel<Vray_cores_small>>(timing, stalls));
+    run(std::make_unique<CoreModel<Vray_cores_cached>>(timing, stalls));
+  }
+}
+
+/// Scenes of other images, one after the other through the same core.
+TEST_F(RayCoreTest, ScenesFollowEachOther) {
+  const Bvh other{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
+  const MemoryImage image(other);
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 200);
+  CoreModel<Vray_core_small> core({});
+  std::size_t found[2]{}, compared = 0;
+  for (int turn = 0; turn < 6; ++turn) {
+    const MemoryImage& now = turn % 2 == 0 ? *image_ : image;
+    std::vector<CoreRay> sent;
+    for (const Ray& ray : rays)
+      sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
+    std::vector<CoreResult> results;
+    core.trace(now.lines(), sent, results);
+    std::map<std::uint32_t, std::vector<CoreResult>> words;
+    for (const CoreResult& result : results) words[result.tag].push_back(result);
+    for (const CoreRay& ray : sent) {
+      std::vector<CoreResult> expected;
+      ReferenceCore().trace(now.lines(), {&ray, 1}, expected);
+      if (expected.size() != 1 || words[ray.tag].size() != 1) continue;
+      ASSERT_EQ(words[ray.tag][0].found, expected[0].found);
+      if (expected[0].found) {
+        ASSERT_EQ(words[ray.tag][0].t, expected[0].t);
+      }
+      found[turn % 2] += expected[0].found;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 600u);
+  EXPECT_NE(found[0], found[1]);
+}
+
+/// A cache that the cores share: the same hits, some clocks later where memory is near; a narrow
+/// memory is waited for less.
+TEST_F(RayCoreTest, CoresShareACache) {
+  const std::vector<Ray> rays = some_rays(bodies(), random_, 300);
+  const auto clocks = [&](std::unique_ptr<CoreUnit> unit) {
+    check(rays, {}, std::move(unit));
+    return static_cast<double>(counters_.clocks);
+  };
+  for (const MemoryTiming& timing :
+       {MemoryTiming{}, MemoryTiming{.bytes = 2}, MemoryTiming{.disorder = 100, .not_taken = 64}}) {
+    const CoreStalls stalls{.not_taken = timing.not_taken};
+    const double without = clocks(std::make_unique<CoreModel<Vray_cores_small>>(timing, stalls));
+    const double with = clocks(std::make_unique<CoreModel<Vray_cores_cached>>(timing, stalls));
+    std::printf("clocks with a shared cache: %.2f of those without\n", with / without);
+    EXPECT_LT(with, (timing.bytes == 2 ? 0.7 : 1.15) * without);
   }
 }
 

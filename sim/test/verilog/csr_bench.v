@@ -14,6 +14,7 @@ module bench;
     .axi_rdata_o(data), .axi_rresp_o(), .start_o(), .invalidate_o(), .abort_o(), .drawing_o(),
     .base_o(base), .lines_o(), .corner_o(), .size_o(),
     .camera_o(), .camera_busy_i(1'b0), .core_busy_i(busy), .outstanding_i(1'b0), .doubt_i(1'b0),
+    .results_o(), .length_o(), .rewind_o(), .writing_i(1'b0), .written_i(32'd0), .full_i(1'b0), .write_error_i(1'b0),
     .ray_error_i(1'b0), .bus_error_i(1'b0), .error_number_i(28'd0), .events_i(10'd0),
     .interrupt_o()
   );

@@ -45,13 +45,11 @@ module ray_contexts #(
     .start_fire_i(started_o)
   );
 
-  (* anyseq *) logic [31:0] tag, triangle, t;
+  (* anyseq *) ray_core_pkg::end_t ended;
   (* anyseq *) logic [95:0] point;
-  logic found;
   logic [CtxWidth-1:0] point_ctx;
   logic doubt_fire, overflow_fire;
   ray_core_pkg::result_t result;
-  assign found = tag[0];
   assign result_kind_o = result.kind;
 
   ray_retire #(
@@ -64,23 +62,12 @@ module ray_contexts #(
     .busy_i,
     .ending_o,
     .ending_ctx_o,
-    .ending_tag_i(tag),
-    .ending_found_i(found),
-    .ending_triangle_i(triangle),
-    .ending_t_i(t),
-    .ending_t_error_i('0),
-    .ending_tests_i('0),
-    .ending_error_i('0),
+    .ending_i(ended),
     .point_ctx_o(point_ctx),
     .point_i(point),
-    .doubt_valid_i,
-    .doubt_tag_i('0),
-    .doubt_triangle_i('0),
+    .doubt_i({doubt_valid_i, 64'd0}),
     .doubt_fire_o(doubt_fire),
-    .overflow_valid_i,
-    .overflow_tag_i('0),
-    .overflow_line_i('0),
-    .overflow_nodes_i('0),
+    .overflow_i({overflow_valid_i, {32 + ray_core_pkg::AddressWidth + ray_core_pkg::NodesWidth{1'b0}}}),
     .overflow_fire_o(overflow_fire),
     .result_valid_o,
     .result_ready_i,

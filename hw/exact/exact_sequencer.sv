@@ -1,0 +1,219 @@
+// Sequencer of the exact unit: a program's instructions, and of each its steps, a product of two digits in each clock.
+//
+// Columns go upwards where a number is wanted, from column 0 to its last digit; downwards from the highest where a sign
+// is. In a column all pairs of digits, of each pair every term. An instruction with a fence begins when written_i is high.
+// stop_i: the sign that the instruction at stop_address_i is after is known; where its steps still go out the next
+// instruction follows. After Hit the program goes on with what the hit is compared with, before it is known whether
+// there is one: abort_i ends that.
+//
+// start_i: the digits' counts are there, but pair_digits_i, which has another clock; the first step goes out in the
+// clock after.
+module exact_sequencer #(
+  parameter int unsigned Digits = 6,  // of a difference, at most
+  localparam int unsigned CountWidth = exact_pkg::CountWidth,
+  localparam int unsigned NumberWidth = exact_pkg::NumberWidth,
+  localparam int unsigned AddressWidth = $clog2(exact_pkg::memory_depth(Digits))
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  // a request
+  input  logic                    begin_i,
+  input  logic                    hit_i,
+  input  logic [1:0]              against_i,
+  input  logic                    start_i,
+  input  logic [CountWidth-1:0]   coordinate_digits_i,
+  input  logic [CountWidth-1:0]   direction_digits_i,
+  input  logic [CountWidth-1:0]   pair_digits_i,
+  // what is known meanwhile
+  input  logic                    written_i,
+  input  logic                    stop_i,
+  input  logic [6:0]              stop_address_i,
+  output logic                    stopped_o,  // all steps on their way are of that instruction
+  input  logic                    abort_i,
+  // a step
+  output logic                    valid_o,
+  output exact_pkg::step_t        step_o,
+  output logic [6:0]              address_o,
+  output logic [CountWidth-1:0]   x_digit_o,
+  output logic [NumberWidth-1:0]  x_place_o,
+  output logic [NumberWidth-1:0]  y_place_o,
+  output logic [AddressWidth-1:0] x_address_o,
+  output logic [AddressWidth-1:0] y_address_o,
+  output logic [AddressWidth-1:0] result_address_o
+);
+
+  // ---- Fetch: the next instruction, and how far its digits go
+
+  exact_pkg::instruction_t fetched, instruction_q;
+  logic [6:0] next_q, next_d, address_q;
+  logic more_q, more_d, busy_q, advance, finishes;
+  logic [CountWidth-1:0] x_last_d, y_last_d, last_d, x_last_q, y_last_q, last_q;
+  logic [CountWidth-1:0] normal_digits, fraction_digits;
+
+  assign fetched = exact_program_pkg::instruction(next_q);
+  assign normal_digits = coordinate_digits_i << 1;
+  assign fraction_digits = normal_digits
+      + ((coordinate_digits_i > direction_digits_i) ? coordinate_digits_i : direction_digits_i);
+
+  always_comb begin
+    x_last_d = coordinate_digits_i - 1'b1;
+    y_last_d = '0;
+    last_d   = fraction_digits - 1'b1;
+    case (fetched.kind)
+      exact_pkg::KindCoordinate: last_d = coordinate_digits_i - 1'b1;
+      exact_pkg::KindRay: begin
+        x_last_d = direction_digits_i - 1'b1;
+        last_d   = direction_digits_i - 1'b1;
+      end
+      exact_pkg::KindPair: begin
+        x_last_d = pair_digits_i - 1'b1;
+        last_d   = pair_digits_i - 1'b1;
+      end
+      exact_pkg::KindCross: begin
+        y_last_d = coordinate_digits_i - 1'b1;
+        last_d   = normal_digits - 1'b1;
+      end
+      exact_pkg::KindPlane: y_last_d = normal_digits - 1'b1;
+      exact_pkg::KindEdge: begin
+        x_last_d = direction_digits_i - 1'b1;
+        y_last_d = normal_digits - 1'b1;
+      end
+      default: begin
+        x_last_d = fraction_digits - 1'b1;
+        y_last_d = pair_digits_i - 1'b1;
+        if (against_i == exact_pkg::AgainstOther) y_last_d = fraction_digits - 1'b1;
+      end
+    endcase
+  end
+
+  // What follows the instruction that is fetched.
+  assign finishes = (fetched.kind == exact_pkg::KindCompare)
+                  | (fetched.last & (against_i == exact_pkg::AgainstNothing));
+  assign next_d = !fetched.last ? next_q + 1'b1
+                : (against_i == exact_pkg::AgainstLimit) ? exact_program_pkg::LimitAfterHit
+                : exact_program_pkg::OrderAfterHit;
+  assign more_d = ~finishes;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      busy_q <= 1'b0;
+    end else if (abort_i) begin
+      busy_q <= 1'b0;
+    end else if (start_i | advance) begin
+      busy_q <= start_i | more_q;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (begin_i) begin
+      next_q <= hit_i ? exact_program_pkg::Hit
+              : (against_i == exact_pkg::AgainstLimit) ? exact_program_pkg::Limit
+              : exact_program_pkg::Order;
+    end else if (start_i | advance) begin
+      next_q        <= next_d;
+      more_q        <= more_d;
+      address_q     <= next_q;
+      instruction_q <= fetched;
+      x_last_q      <= x_last_d;
+      y_last_q      <= y_last_d;
+      last_q        <= last_d;
+    end
+  end
+
+  // ---- Steps: term, digits i of x and j of y, and those that the column began with
+
+  logic [1:0] term_q, terms_last;
+  logic [CountWidth-1:0] i_q, j_q, from_i_q, from_j_q, from_i_d, from_j_d, column_q;
+  logic beyond_q, beyond_d, first_q;
+  logic single, is_last_term, closes, ends, fire;
+
+  assign single = instruction_q.kind < exact_pkg::KindCross;
+  assign terms_last = single ? 2'd0
+                    : (instruction_q.kind == exact_pkg::KindPlane
+                       || instruction_q.kind == exact_pkg::KindEdge) ? 2'd2 : 2'd1;
+  assign is_last_term = term_q == terms_last;
+  assign closes = beyond_q | (is_last_term & (i_q == x_last_q || j_q == '0));
+  assign ends = instruction_q.decide ? from_i_q == '0 && from_j_q == '0 : column_q == last_q;
+  assign stopped_o = stop_i & busy_q & (stop_address_i == address_q);
+  assign fire = busy_q & ~(instruction_q.fence & first_q & ~written_i);
+  assign advance = stopped_o | (fire & closes & ends);
+
+  always_comb begin
+    from_i_d = from_i_q;
+    from_j_d = from_j_q;
+    beyond_d = beyond_q;
+    if (instruction_q.decide) begin
+      if (from_i_q != '0) from_i_d = from_i_q - 1'b1;
+      else from_j_d = from_j_q - 1'b1;
+    end else if (from_j_q != y_last_q) begin
+      from_j_d = from_j_q + 1'b1;
+    end else if (from_i_q != x_last_q) begin
+      from_i_d = from_i_q + 1'b1;
+    end else begin
+      beyond_d = 1'b1;  // no products: what was carried
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (start_i | advance) begin
+      term_q   <= '0;
+      i_q      <= fetched.decide ? x_last_d : '0;
+      j_q      <= fetched.decide ? y_last_d : '0;
+      from_i_q <= fetched.decide ? x_last_d : '0;
+      from_j_q <= fetched.decide ? y_last_d : '0;
+      column_q <= '0;
+      beyond_q <= 1'b0;
+      first_q  <= 1'b1;
+    end else if (fire) begin
+      first_q <= 1'b0;
+      term_q  <= is_last_term ? '0 : term_q + 1'b1;
+      if (closes) begin
+        term_q   <= '0;
+        i_q      <= from_i_d;
+        j_q      <= from_j_d;
+        from_i_q <= from_i_d;
+        from_j_q <= from_j_d;
+        column_q <= column_q + 1'b1;
+        beyond_q <= beyond_d;
+      end else if (is_last_term) begin
+        i_q <= i_q + 1'b1;
+        j_q <= j_q - 1'b1;
+      end
+    end
+  end
+
+  // ---- The step
+
+  function automatic logic [AddressWidth-1:0] first_digit(logic [NumberWidth-1:0] number);
+    first_digit = '0;
+    for (int unsigned n = 0; n < exact_pkg::Numbers; n++) begin
+      if (32'(number) == n) first_digit = AddressWidth'(exact_pkg::number_base(n, Digits));
+    end
+  endfunction
+
+  assign valid_o   = fire & ~stopped_o;
+  assign address_o = address_q;
+  assign x_digit_o = i_q;
+  assign x_place_o = (term_q == 2'd0) ? instruction_q.x0
+                   : (term_q == 2'd1) ? instruction_q.x1 : instruction_q.x2;
+  assign y_place_o = (term_q == 2'd0) ? instruction_q.y0
+                   : (term_q == 2'd1) ? instruction_q.y1 : instruction_q.y2;
+  assign x_address_o = first_digit(x_place_o) + AddressWidth'(i_q);
+  assign y_address_o = first_digit(y_place_o) + AddressWidth'(j_q);
+  assign result_address_o = first_digit(instruction_q.result) + AddressWidth'(column_q);
+
+  always_comb begin
+    step_o.kind   = instruction_q.kind;
+    step_o.down   = instruction_q.decide;
+    step_o.last   = instruction_q.last;
+    step_o.second = 32'(instruction_q.y0) == exact_pkg::SecondNormal;
+    step_o.result = instruction_q.result;
+    step_o.negate = terms_last == 2'd1 && term_q == 2'd1;
+    step_o.empty  = beyond_q;
+    step_o.first  = first_q;
+    step_o.opens  = beyond_q | (term_q == 2'd0 && i_q == from_i_q);
+    step_o.closes = closes;
+    step_o.ends   = ends;
+    step_o.low    = column_q == '0;
+  end
+
+endmodule

@@ -1,0 +1,360 @@
+// Exact unit: whether a ray hits a triangle, whether before its limit, which of two hits is nearer; never unsure.
+//
+// What host/exact says, ties included, from the binary32 words (or another format's) of the ray and the corners. With
+// A, B, C the corners minus the origin and N = (B - A) x (C - A):
+//
+//   hit    A . (B x C) is not 0, and I . (B x C), I . (C x A), I . (A x B) have its sign; the sign of one that is 0 is that
+//          of the first component of its cross product that is not (the ray tilted towards +x, less towards +y, then +z)
+//   order  the sign of t - limit or t - t', for t = D / S, D = A . N, S = I . N: that of D S' - D' S, by those of D and D'
+//
+// All are sums of products of floats, and so whole numbers in units that the exponents give: exact_exponents has the
+// units, exact_program_pkg the programs, exact_accumulator sums without rounding. Clocks, for digits of 48 bits, from the
+// request to the answer, at most: hit 70, limit 56, order 98, hit and order 155, where the exponents are at most 21 apart
+// (one digit holds a difference); 3,650 whatever the words.
+//
+// Coordinates are of magnitude 2**126 at most, the direction is not 0, all are finite; a limit is positive and finite. An
+// order is of hits: for others it is the sign of that formula. hit_i, against_i: what is asked. hit_o is high where it
+// was not asked; order_o is 0 then, and for what is not hit. One request at a time: ready_o is high between an answer
+// and the next request.
+module exact_unit #(
+  parameter int unsigned ExpWidth = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned DigitWidth = 48,  // even, more than FracWidth
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth
+) (
+  input  logic                               clk_i,
+  input  logic                               rst_ni,
+  input  logic                               valid_i,
+  output logic                               ready_o,
+  input  logic                               hit_i,
+  input  logic [1:0]                         against_i,  // exact_pkg::against_e
+  input  logic [exact_pkg::Floats*Width-1:0] floats_i,   // exact_pkg's places
+  output logic                               valid_o,
+  input  logic                               ready_i,
+  output logic                               hit_o,
+  output exact_pkg::sign_t                   order_o
+);
+
+  localparam int unsigned Significand = FracWidth + 1;
+  localparam int unsigned Digits = exact_pkg::difference_digits(ExpWidth, Significand, DigitWidth);
+  localparam int unsigned Depth = exact_pkg::memory_depth(Digits);
+  localparam int unsigned AddressWidth = $clog2(Depth);
+  localparam int unsigned CountWidth = exact_pkg::CountWidth;
+  localparam int unsigned NumberWidth = exact_pkg::NumberWidth;
+  localparam int unsigned MaxShift = exact_pkg::largest_gap(ExpWidth, Significand);
+  localparam int unsigned ShiftWidth = $clog2(MaxShift + 1);
+  localparam int unsigned PlaceBits = exact_pkg::PlaceWidth;
+
+  // ---- Request: the words, then their exponents
+
+  logic idle_q, done, asks_hit_q;
+  logic [1:0] against_q;
+  logic [2:0] starts_q;
+  logic [exact_pkg::Floats*Width-1:0] floats_q;
+
+  assign ready_o = idle_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      idle_q   <= 1'b1;
+      starts_q <= '0;
+    end else begin
+      idle_q   <= idle_q ? ~valid_i : valid_o & ready_i;
+      starts_q <= {starts_q[1:0], valid_i & idle_q};
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (idle_q) begin
+      asks_hit_q <= hit_i;
+      against_q  <= against_i;
+      floats_q   <= floats_i;
+    end
+  end
+
+  logic [ExpWidth-1:0] coordinate_exponent, direction_exponent;
+  logic [CountWidth-1:0] coordinate_digits, direction_digits, pair_digits;
+  logic [ShiftWidth-1:0] one_shift, limit_shift;
+
+  exact_exponents #(
+    .ExpWidth  (ExpWidth),
+    .FracWidth (FracWidth),
+    .DigitWidth(DigitWidth)
+  ) u_exponents (
+    .clk_i,
+    .floats_i             (floats_q),
+    .with_other_i         (against_q == exact_pkg::AgainstOther),
+    .coordinate_exponent_o(coordinate_exponent),
+    .direction_exponent_o (direction_exponent),
+    .coordinate_digits_o  (coordinate_digits),
+    .direction_digits_o   (direction_digits),
+    .one_shift_o          (one_shift),
+    .limit_shift_o        (limit_shift),
+    .pair_digits_o        (pair_digits)
+  );
+
+  // ---- Issue
+
+  logic [3:1] valid_q;  // of the steps in stages 1 to 3
+  exact_pkg::step_t step, step_1_q, step_2_q;
+  // verilator lint_off UNUSEDSIGNAL
+  // What only the sum asks for.
+  exact_pkg::step_t step_3_q;
+  // verilator lint_on UNUSEDSIGNAL
+  logic [6:0] address, address_1_q, address_2_q, address_3_q;
+  logic [AddressWidth-1:0] result, result_1_q, result_2_q, result_3_q, x_address, y_address;
+  logic [CountWidth-1:0] x_digit, x_digit_1_q;
+  logic [NumberWidth-1:0] x_place, y_place;
+  logic valid, stop, stopped;
+
+  exact_sequencer #(
+    .Digits(Digits)
+  ) u_sequencer (
+    .clk_i,
+    .rst_ni,
+    .begin_i            (starts_q[0]),
+    .hit_i              (asks_hit_q),
+    .against_i          (against_q),
+    .start_i            (starts_q[2]),
+    .coordinate_digits_i(coordinate_digits),
+    .direction_digits_i (direction_digits),
+    .pair_digits_i      (pair_digits),
+    .written_i          (valid_q == '0),
+    .stop_i             (stop),
+    .stop_address_i     (address_3_q),
+    .stopped_o          (stopped),
+    .abort_i            (done),
+    .valid_o            (valid),
+    .step_o             (step),
+    .address_o          (address),
+    .x_digit_o          (x_digit),
+    .x_place_o          (x_place),
+    .y_place_o          (y_place),
+    .x_address_o        (x_address),
+    .y_address_o        (y_address),
+    .result_address_o   (result)
+  );
+
+  function automatic logic [Width-1:0] word(logic [exact_pkg::Floats*Width-1:0] words,
+                                            logic [PlaceBits-1:0] place);
+    word = '0;
+    for (int unsigned k = 0; k < exact_pkg::Floats; k++) begin
+      if (32'(place) == k) word = words[Width*k+:Width];
+    end
+  endfunction
+
+  logic [Width-1:0] x_word_q, y_word_q;
+  logic one_q, limit_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      valid_q <= '0;
+    end else begin
+      valid_q <= (stopped | done) ? '0 : {valid_q[2:1], valid};
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    {step_3_q, step_2_q, step_1_q}          <= {step_2_q, step_1_q, step};
+    {address_3_q, address_2_q, address_1_q} <= {address_2_q, address_1_q, address};
+    {result_3_q, result_2_q, result_1_q}    <= {result_2_q, result_1_q, result};
+    x_digit_1_q <= x_digit;
+    x_word_q    <= word(floats_q, x_place);
+    y_word_q    <= word(floats_q, y_place);
+    one_q       <= 32'(x_place) == exact_pkg::PlaceOne;
+    limit_q     <= 32'(x_place) == exact_pkg::PlaceLimit;
+  end
+
+  // ---- Stage 1: digits of numbers and their product; digits of floats
+
+  logic write, write_negative, x_negative, y_negative, loads;
+  logic [DigitWidth-1:0] write_magnitude, x_magnitude, y_magnitude;
+
+  ram #(
+    .Width(1 + DigitWidth),
+    .Depth(Depth)
+  ) u_x (
+    .clk_i,
+    .write_i        (write),
+    .write_address_i(result_3_q),
+    .data_i         ({write_negative, write_magnitude}),
+    .read_i         (1'b1),
+    .read_address_i (x_address),
+    .data_o         ({x_negative, x_magnitude})
+  );
+
+  ram #(
+    .Width(1 + DigitWidth),
+    .Depth(Depth)
+  ) u_y (
+    .clk_i,
+    .write_i        (write),
+    .write_address_i(result_3_q),
+    .data_i         ({write_negative, write_magnitude}),
+    .read_i         (1'b1),
+    .read_address_i (y_address),
+    .data_o         ({y_negative, y_magnitude})
+  );
+
+  logic [2*DigitWidth-1:0] digits_product, product_q;
+  logic [DigitWidth-1:0] x_slice, y_slice, second_q;
+  logic [ShiftWidth-1:0] x_shift, y_shift, unit;
+  logic negate_q, subtract_q, flip_2_q, flip_3_q, loads_q;
+
+  multiplier #(
+    .Width(DigitWidth),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_multiplier (
+    .a_i      (x_magnitude),
+    .b_i      (y_magnitude),
+    .product_o(digits_product)
+  );
+
+  function automatic logic [ShiftWidth-1:0] exponent(logic [ExpWidth-1:0] field);
+    exponent = (field == '0) ? ShiftWidth'(1) : ShiftWidth'(field);
+  endfunction
+
+  function automatic logic [Significand-1:0] significand(logic [Width-2:0] float);
+    significand = {float[FracWidth+:ExpWidth] != '0, float[FracWidth-1:0]};
+  endfunction
+
+  assign loads = step_1_q.kind < exact_pkg::KindCross;
+  assign unit = (step_1_q.kind == exact_pkg::KindRay) ? ShiftWidth'(direction_exponent)
+                                                      : ShiftWidth'(coordinate_exponent);
+  assign x_shift = one_q ? one_shift : limit_q ? limit_shift
+                 : exponent(x_word_q[FracWidth+:ExpWidth]) - unit;
+  assign y_shift = exponent(y_word_q[FracWidth+:ExpWidth]) - unit;
+
+  exact_slice #(
+    .SignificandWidth(Significand),
+    .MaxShift        (MaxShift),
+    .DigitWidth      (DigitWidth)
+  ) u_x_slice (
+    .significand_i(one_q ? Significand'(1) : significand(x_word_q[Width-2:0])),
+    .shift_i      (x_shift),
+    .digit_i      (x_digit_1_q),
+    .digit_o      (x_slice)
+  );
+
+  exact_slice #(
+    .SignificandWidth(Significand),
+    .MaxShift        (MaxShift),
+    .DigitWidth      (DigitWidth)
+  ) u_y_slice (
+    .significand_i(significand(y_word_q[Width-2:0])),
+    .shift_i      (y_shift),
+    .digit_i      (x_digit_1_q),
+    .digit_o      (y_slice)
+  );
+
+  always_ff @(posedge clk_i) begin
+    product_q  <= step_1_q.empty ? '0 : loads ? (2 * DigitWidth)'(x_slice) : digits_product;
+    negate_q   <= ~loads & ~step_1_q.empty & (step_1_q.negate ^ x_negative ^ y_negative);
+    // x - y is x's sign times |x| - |y| or |x| + |y|.
+    second_q   <= y_slice;
+    loads_q    <= loads;
+    subtract_q <= x_word_q[Width-1] == y_word_q[Width-1];
+    flip_2_q   <= loads & x_word_q[Width-1];
+    flip_3_q   <= flip_2_q;
+  end
+
+  // ---- Stage 2: the sum
+
+  logic digit_negative, sum_negative, sum_zero, sure;
+  logic [DigitWidth-1:0] magnitude;
+
+  exact_accumulator #(
+    .DigitWidth(DigitWidth),
+    .Products  (6 * Digits),
+    .Arith     (Arith),
+    .Adder     (Adder)
+  ) u_accumulator (
+    .clk_i,
+    .opens_i          (step_2_q.opens),
+    .first_i          (step_2_q.first),
+    .down_i           (step_2_q.down),
+    .product_i        (product_q),
+    .negate_i         (negate_q),
+    .second_i         (second_q),
+    .with_second_i    (loads_q),
+    .subtract_second_i(subtract_q),
+    .negative_o       (digit_negative),
+    .magnitude_o      (magnitude),
+    .sum_negative_o   (sum_negative),
+    .sum_zero_o       (sum_zero),
+    .sure_o           (sure)
+  );
+
+  // ---- Stage 3: a digit is written; the sign of a number is that of its highest digit
+
+  logic [exact_pkg::Numbers-1:0] negative_q, nonzero_q;
+  logic write_nonzero;
+
+  assign write           = valid_q[3] & step_3_q.closes & ~step_3_q.down;
+  assign write_negative  = digit_negative ^ flip_3_q;
+  assign write_magnitude = magnitude;
+  assign write_nonzero   = magnitude != '0;
+
+  always_ff @(posedge clk_i) begin
+    if (write && (step_3_q.low || write_nonzero)) begin
+      negative_q[step_3_q.result] <= write_negative & write_nonzero;
+      nonzero_q[step_3_q.result]  <= write_nonzero;
+    end
+  end
+
+  // ---- Stage 3: a sign is known
+
+  logic decided_q, was_decided;
+  exact_pkg::sign_t sum_sign, tie_sign, sign, plane_q;
+
+  assign was_decided = decided_q & ~step_3_q.first;
+  assign stop = valid_q[3] & step_3_q.down & step_3_q.closes & ~was_decided
+              & (sure | step_3_q.ends);
+
+  always_ff @(posedge clk_i) begin
+    if (valid_q[3]) decided_q <= was_decided | stop;
+  end
+
+  // Of an edge that the ray meets, the first component of its normal.
+  always_comb begin
+    tie_sign = '0;
+    for (int unsigned k = 3; k > 0; k--) begin
+      if (step_3_q.second && nonzero_q[exact_pkg::SecondNormal+k-1]) begin
+        tie_sign = {negative_q[exact_pkg::SecondNormal+k-1], 1'b1};
+      end
+      if (!step_3_q.second && nonzero_q[exact_pkg::Normal+k-1]) begin
+        tie_sign = {negative_q[exact_pkg::Normal+k-1], 1'b1};
+      end
+    end
+  end
+  assign sum_sign = {sum_negative & ~sum_zero, ~sum_zero};
+  assign sign = (step_3_q.kind == exact_pkg::KindEdge && sum_zero) ? tie_sign : sum_sign;
+
+  // ---- The answer
+
+  logic misses, hits, compares, order_negative, order_nonzero;
+
+  assign misses = stop & ((step_3_q.kind == exact_pkg::KindPlane) ? sum_zero
+                          : (step_3_q.kind == exact_pkg::KindEdge) & (sign != plane_q));
+  assign hits = stop & ~misses & step_3_q.last & (against_q == exact_pkg::AgainstNothing);
+  assign compares = stop & (step_3_q.kind == exact_pkg::KindCompare);
+  assign done = misses | hits | compares;
+  assign order_nonzero = sign.nonzero & nonzero_q[exact_pkg::Distance]
+                       & nonzero_q[exact_pkg::OtherDistance];
+  assign order_negative = sign.negative ^ negative_q[exact_pkg::Distance]
+                        ^ negative_q[exact_pkg::OtherDistance];
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) valid_o <= 1'b0;
+    else valid_o <= done | (valid_o & ~ready_i);
+  end
+  always_ff @(posedge clk_i) begin
+    if (stop && step_3_q.kind == exact_pkg::KindPlane) plane_q <= sum_sign;
+    if (done) begin
+      hit_o   <= ~misses;
+      order_o <= compares ? {order_negative & order_nonzero, order_nonzero} : '0;
+    end
+  end
+
+endmodule

@@ -1,0 +1,110 @@
+// AXI4 write manager: records of 32 bytes to memory, one after the other, a burst each.
+//
+// Record n goes to base_i + 32 n, n from 0 on, while n is below length_i; those that come then wait until rewind_i,
+// after which n is 0 again. written_o: records whose writes have been answered. Writes are answered in their order: all
+// have the same AXI ID, which is not a port.
+//
+// Throughput: a record in as many clocks as its burst has beats, 256 / DataWidth, or one. Of a wider port a beat uses
+// the half that its address says. No output of AXI depends on an input in the same clock.
+// Source: AMBA AXI protocol specification, issue E (AXI4): A3.
+module axi_write_manager #(
+  parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two
+  localparam int unsigned RecordWidth = 256
+) (
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  input  logic [63:0]            base_i,  // bits below 64 do not count
+  input  logic [31:0]            length_i,  // records that there is room for
+  input  logic                   rewind_i,  // only while not busy_o
+  output logic                   busy_o,  // a record is on its way
+  output logic                   full_o,  // a record waits, and all others are in memory
+  output logic                   bus_error_o,  // this clock's answer
+  output logic [31:0]            written_o,
+  input  logic                   record_valid_i,
+  output logic                   record_ready_o,
+  input  logic [RecordWidth-1:0] record_i,
+  // AXI4, write address
+  output logic                   axi_awvalid_o,
+  input  logic                   axi_awready_i,
+  output logic [63:0]            axi_awaddr_o,
+  output logic [7:0]             axi_awlen_o,
+  output logic [2:0]             axi_awsize_o,
+  output logic [1:0]             axi_awburst_o,
+  output logic [2:0]             axi_awprot_o,
+  // AXI4, write data
+  output logic                   axi_wvalid_o,
+  input  logic                   axi_wready_i,
+  output logic [DataWidth-1:0]   axi_wdata_o,
+  output logic [DataWidth/8-1:0] axi_wstrb_o,
+  output logic                   axi_wlast_o,
+  // AXI4, write response
+  input  logic                   axi_bvalid_i,
+  output logic                   axi_bready_o,
+  input  logic [1:0]             axi_bresp_i
+);
+
+  localparam int unsigned BeatWidth = (DataWidth < RecordWidth) ? DataWidth : RecordWidth;
+  localparam int unsigned Beats = RecordWidth / BeatWidth;
+
+  if (DataWidth < 32 || DataWidth > 512 || 2 ** $clog2(DataWidth) != DataWidth) begin : gen_check
+    $error("axi_write_manager: expected a DataWidth of 32 to 512, a power of two");
+  end
+
+  logic [31:0] next_q, written_q;
+  logic [2:0] left_q;  // beats after the one that is offered
+  logic [RecordWidth-1:0] record_q;
+  logic fire, some_room, address_free, data_free;
+
+  assign busy_o         = next_q != written_q;
+  assign some_room      = next_q < length_i;
+  assign full_o         = record_valid_i & ~some_room & ~busy_o;
+  assign address_free   = ~axi_awvalid_o | axi_awready_i;
+  assign data_free      = ~axi_wvalid_o | (axi_wready_i & axi_wlast_o);
+  assign record_ready_o = some_room & address_free & data_free & ~rewind_i;
+  assign fire           = record_valid_i & record_ready_o;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      next_q        <= '0;
+      written_q     <= '0;
+      axi_awvalid_o <= 1'b0;
+      axi_wvalid_o  <= 1'b0;
+    end else begin
+      next_q        <= rewind_i ? '0 : next_q + 32'(fire);
+      written_q     <= rewind_i ? '0 : written_q + 32'(axi_bvalid_i);
+      axi_awvalid_o <= fire | ~address_free;
+      axi_wvalid_o  <= fire | ~data_free;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (fire) begin
+      axi_awaddr_o <= {base_i[63:6] + 58'(next_q[31:1]), next_q[0], 5'd0};
+      left_q       <= 3'(Beats - 1);
+      record_q     <= record_i;
+    end else if (axi_wready_i) begin
+      left_q   <= left_q - 1'b1;
+      record_q <= record_q >> BeatWidth;
+    end
+  end
+
+  assign axi_awlen_o   = 8'(Beats - 1);
+  assign axi_awsize_o  = 3'($clog2(BeatWidth / 8));
+  assign axi_awburst_o = 2'b01;  // INCR
+  assign axi_awprot_o  = 3'b000;  // data, secure, unprivileged
+  assign axi_wdata_o   = {DataWidth / BeatWidth{record_q[BeatWidth-1:0]}};
+  assign axi_wlast_o   = left_q == '0;
+  if (DataWidth > RecordWidth) begin : gen_half
+    logic upper_q;
+    always_ff @(posedge clk_i) if (fire) upper_q <= next_q[0];
+    assign axi_wstrb_o = {{32{upper_q}}, {32{~upper_q}}};
+  end else begin : gen_whole
+    assign axi_wstrb_o = '1;
+  end
+  assign axi_bready_o  = 1'b1;
+  assign bus_error_o   = axi_bvalid_i & axi_bresp_i[1];
+  assign written_o     = written_q;
+
+  logic unused;  // EXOKAY is never answered
+  assign unused = ^{axi_bresp_i[0], base_i[5:0]};
+
+endmodule

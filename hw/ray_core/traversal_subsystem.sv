@@ -1,0 +1,176 @@
+// Traversal: what the rays in flight have still to visit, and what is known of each.
+//
+//   traversal        the stacks, and which ray goes to its next node
+//   primitive_fetch  the triangles of the leaves that it enters
+//   closest_hit      its nearest hit and t_max, its doubts
+//   ray_errors       why its hits must not be believed
+module traversal_subsystem #(
+  parameter int unsigned Rays  = 64,
+  parameter int unsigned Depth = 8,
+  localparam int unsigned RayWidth = $clog2(Rays),
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    abort_i,
+  input  logic [AddressWidth-1:0] lines_i,  // of memory
+  // a ray begins
+  input  logic [RayWidth-1:0]     start_ctx_i,
+  input  ray_core_pkg::start_t    start_i,
+  output logic                    start_fire_o,
+  // what is found
+  input  logic [RayWidth-1:0]     box_ctx_i,
+  input  ray_core_pkg::boxes_t    boxes_i,
+  input  logic [RayWidth-1:0]     verdict_ctx_i,
+  input  ray_core_pkg::verdict_t  verdict_i,
+  // lines asked for
+  output logic [RayWidth-1:0]     node_ctx_o,
+  output ray_core_pkg::request_t  node_o,
+  output ray_core_pkg::request_t  prefetch_o,
+  output logic [RayWidth-1:0]     triangle_ctx_o,
+  output ray_core_pkg::request_t  triangle_o,
+  input  logic                    triangle_ready_i,
+  output logic                    tests_allowed_o,  // triangles may leave memory
+  // lines that come: the ray's t_max in the same clock, and whether they are errors
+  input  logic [RayWidth-1:0]     node_line_ctx_i,
+  input  logic                    node_error_i,
+  output logic [30:0]             t_max_o,
+  input  logic [RayWidth-1:0]     triangle_line_ctx_i,
+  input  logic                    triangle_error_i,
+  // results
+  output logic [Rays-1:0]         busy_o,  // rays that have something to be done
+  output ray_core_pkg::doubt_t    doubt_o,
+  input  logic                    doubt_fire_i,
+  output ray_core_pkg::overflow_t overflow_o,
+  input  logic                    overflow_fire_i,
+  output logic                    near_tie_o,
+  input  logic [RayWidth-1:0]     ending_ctx_i,
+  output ray_core_pkg::end_t      end_o,  // in the same clock
+  input  logic [RayWidth-1:0]     point_ctx_i,
+  output logic [95:0]             point_o  // in the next one
+);
+
+  logic [31:0] tags[Rays];
+
+  always_ff @(posedge clk_i) if (start_fire_o) tags[start_ctx_i] <= start_i.tag;
+
+  assign end_o.tag = tags[ending_ctx_i];
+
+  // ---- Nodes
+
+  logic [RayWidth-1:0] traversal_ray, leaf_ray, cycle_ray;
+  logic [30:0] traversal_t_max, leaf_t_max;
+  logic traversal_ended, leaf_ended, leaf_counter_full, cycle;
+  logic [Rays-1:0] leaf_pending, testing, traversing, failed;
+
+  traversal #(
+    .Rays(Rays),
+    .Depth(Depth)
+  ) u_traversal (
+    .clk_i,
+    .rst_ni,
+    .start_valid_i(start_i.valid),
+    .start_ray_i(start_ctx_i),
+    .start_line_i(start_i.line),
+    .start_fire_o,
+    .box_valid_i(boxes_i.valid),
+    .box_ray_i(box_ctx_i),
+    .box_tag_i(tags[box_ctx_i]),
+    .box_group_i(boxes_i.group),
+    .box_inner_i(boxes_i.inner),
+    .leaf_pending_i(leaf_pending),
+    .testing_i(testing),
+    .t_max_ray_o(traversal_ray),
+    .t_max_i(traversal_t_max),
+    .ended_i(traversal_ended | failed[traversal_ray]),
+    .cycle_o(cycle),
+    .cycle_ray_o(cycle_ray),
+    .lines_i,
+    .traversing_o(traversing),
+    .node_ray_o(node_ctx_o),
+    .node_o,
+    .prefetch_o,
+    .overflow_o,
+    .overflow_fire_i
+  );
+
+  assign busy_o = traversing | leaf_pending | testing;
+
+  // ---- Leaves
+
+  primitive_fetch #(
+    .Rays(Rays)
+  ) u_primitives (
+    .clk_i,
+    .rst_ni,
+    .box_valid_i(boxes_i.valid),
+    .box_ray_i(box_ctx_i),
+    .box_group_i(boxes_i.group),
+    .box_leaf_i(boxes_i.leaf),
+    .t_max_ray_o(leaf_ray),
+    .t_max_i(leaf_t_max),
+    .ended_i(leaf_ended | failed[leaf_ray]),
+    .counter_full_i(leaf_counter_full),
+    .leaf_pending_o(leaf_pending),
+    .triangle_ray_o(triangle_ctx_o),
+    .triangle_o,
+    .triangle_ready_i
+  );
+
+  // ---- Hits and errors
+
+  closest_hit #(
+    .Rays(Rays)
+  ) u_closest_hit (
+    .clk_i,
+    .rst_ni,
+    .load_i(start_fire_o),
+    .load_ray_i(start_ctx_i),
+    .load_t_max_i(start_i.t_max),
+    .load_any_hit_i(start_i.any_hit),
+    .test_i(triangle_o.valid & triangle_ready_i),
+    .test_ray_i(triangle_ctx_o),
+    .tests_allowed_o,
+    .result_ray_i(verdict_ctx_i),
+    .result_tag_i(tags[verdict_ctx_i]),
+    .result_i(verdict_i),
+    .traversal_ray_i(traversal_ray),
+    .traversal_t_max_o(traversal_t_max),
+    .traversal_ended_o(traversal_ended),
+    .leaf_ray_i(leaf_ray),
+    .leaf_t_max_o(leaf_t_max),
+    .leaf_ended_o(leaf_ended),
+    .leaf_counter_full_o(leaf_counter_full),
+    .box_ray_i(node_line_ctx_i),
+    .box_t_max_o(t_max_o),
+    .testing_o(testing),
+    .doubt_o,
+    .doubt_fire_i,
+    .end_ray_i(ending_ctx_i),
+    .end_o(end_o.hit),
+    .point_ray_i(point_ctx_i),
+    .point_o,
+    .near_tie_o
+  );
+
+  ray_errors #(
+    .Rays(Rays)
+  ) u_errors (
+    .clk_i,
+    .rst_ni,
+    .abort_i,
+    .start_i(start_fire_o),
+    .start_ctx_i,
+    .start_scaled_i(start_i.is_scaled),
+    .node_i(node_error_i),
+    .node_ctx_i(node_line_ctx_i),
+    .triangle_i(triangle_error_i),
+    .triangle_ctx_i(triangle_line_ctx_i),
+    .cycle_i(cycle),
+    .cycle_ctx_i(cycle_ray),
+    .failed_o(failed),
+    .ending_ctx_i,
+    .ending_error_o(end_o.error)
+  );
+
+endmodule

@@ -1,0 +1,77 @@
+// What AXI4 promises of a manager's writes: each channel's payload stays, with VALID, until READY; no VALID in reset;
+// bursts increment, are no wider than the port and stay within 4 KiB; WLAST is with the last of as many beats as AWLEN says;
+// an answer comes after its burst's address and last beat. Here all bursts have the same length and the same ID.
+//
+// Source: AMBA AXI protocol specification, issue E, A3.2 to A3.4.
+module axi_write_checks #(
+  parameter int unsigned DataWidth = 128
+) (
+  input logic                             clk_i,
+  input logic                             rst_ni,
+  input logic                             awvalid,
+  input logic                             awready,
+  input logic [63:0]                      awaddr,
+  input logic [7:0]                       awlen,
+  input logic [2:0]                       awsize,
+  input logic [1:0]                       awburst,
+  input logic [2:0]                       awprot,
+  input logic                             wvalid,
+  input logic                             wready,
+  input logic [DataWidth+DataWidth/8-1:0] w,  // WSTRB, WDATA
+  input logic                             wlast,
+  input logic                             bvalid,
+  input logic                             bready,
+  input logic [1:0]                       bresp
+);
+
+  stream_checks #(
+    .Width(80)
+  ) u_aw (
+    .clk_i,
+    .rst_ni,
+    .valid(awvalid),
+    .ready(awready),
+    .data ({awaddr, awlen, awsize, awburst, awprot})
+  );
+  stream_checks #(
+    .Width(DataWidth + DataWidth / 8 + 1)
+  ) u_w (
+    .clk_i,
+    .rst_ni,
+    .valid(wvalid),
+    .ready(wready),
+    .data ({w, wlast})
+  );
+  stream_checks #(
+    .Width(2)
+  ) u_b (
+    .clk_i,
+    .rst_ni,
+    .valid(bvalid & rst_ni),
+    .ready(bready),
+    .data (bresp)
+  );
+
+  logic [31:0] addresses_q, bursts_q;  // taken and not answered
+  logic [7:0] beat_q;  // of the burst that is being written
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) {addresses_q, bursts_q, beat_q} <= '0;
+    else begin
+      addresses_q <= addresses_q + 32'(awvalid && awready) - 32'(bvalid && bready);
+      bursts_q    <= bursts_q + 32'(wvalid && wready && wlast) - 32'(bvalid && bready);
+      if (wvalid && wready) beat_q <= wlast ? '0 : beat_q + 8'd1;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni && awvalid) begin
+      a_increments : assert (awburst == 2'b01);
+      a_fits_the_port : assert ((13'd8 << awsize) <= 13'(DataWidth));
+      a_within_4_kib : assert ({1'b0, awaddr[11:0]} + ((13'(awlen) + 13'd1) << awsize) <= 13'd4096);
+    end
+    if (rst_ni && wvalid) a_last_by_length : assert (wlast == (beat_q == awlen));
+    if (rst_ni && bvalid) a_was_asked : assert (addresses_q != 0 && bursts_q != 0);
+  end
+
+endmodule

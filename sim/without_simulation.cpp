@@ -1,0 +1,53 @@
+// The simulated units' place in programs without them: what asks for one is told how to get it.
+#include <string>
+
+#include "host/base/input_error.h"
+#include "sim/rtl_burst_unit.h"
+#include "sim/rtl_core.h"
+#include "sim/rtl_plane_unit.h"
+#include "sim/simulation.h"
+
+namespace raygate {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+  throw InputError(what +
+                   " is not in this program, which was built without Verilator; `make verilate` "
+                   "builds it in, and --engine cpu gives the same bytes");
+}
+
+constexpr const char* kUnit = "the simulated hit-test unit";
+
+}  // namespace
+
+// No such model is ever made.
+class BurstModel {};
+class PlaneModel {};
+
+bool has_simulation() { return false; }
+
+RtlBurstUnit::RtlBurstUnit(int /*lanes*/, Arith /*arith*/, const BurstStalls& /*stalls*/) {
+  fail(kUnit);
+}
+RtlBurstUnit::~RtlBurstUnit() = default;
+void RtlBurstUnit::run(std::span<const RayBundle> /*batch*/, BurstResults& /*results*/) {}
+void RtlBurstUnit::start(std::span<const RayBundle> /*batch*/) {}
+void RtlBurstUnit::finish(BurstResults& /*results*/) {}
+BurstCounters RtlBurstUnit::counters() const { return {}; }
+
+RtlPlaneUnit::RtlPlaneUnit(Arith /*arith*/) { fail(kUnit); }
+RtlPlaneUnit::~RtlPlaneUnit() = default;
+void RtlPlaneUnit::intersect(std::span<const PlaneTest> /*tests*/,
+                             std::span<glm::vec3> /*points*/) {}
+std::uint64_t RtlPlaneUnit::clocks() const { return 0; }
+
+std::unique_ptr<CoreUnit> make_rtl_core(Arith /*arith*/, const MemoryTiming& /*timing*/,
+                                        const CoreStalls& /*stalls*/, const CoreSet& /*set*/) {
+  fail("the simulated ray core");
+}
+std::unique_ptr<CoreUnit> make_core_wave(const std::filesystem::path& /*file*/,
+                                         const MemoryTiming& /*timing*/) {
+  fail("the simulated ray core that writes waveforms");
+}
+
+}  // namespace raygate

@@ -1,0 +1,100 @@
+// exact_accumulator, whatever terms come: what it holds is the exact sum of a column's terms and of what came into it (upwards
+// what the digits so far left over, downwards the sum above times 2**DigitWidth), which never outgrows it; a digit is that sum
+// modulo 2**DigitWidth, balanced; a sum that it calls sure is larger than all columns below can be together.
+// opened_exact_accumulator is exact_accumulator with its register as an output.
+module exact_accumulator_sums #(
+  parameter int unsigned DigitWidth = 48,
+  parameter int unsigned Products   = 36,
+  localparam int unsigned Width = 2 * DigitWidth + $clog2(Products) + 1,
+  localparam int unsigned Wide = 3 * DigitWidth + 20
+) (
+  input logic                    clk,
+  input logic                    opens,
+  input logic                    first,
+  input logic                    down,
+  input logic [2*DigitWidth-1:0] product,
+  input logic                    negate,
+  input logic [DigitWidth-1:0]   second,
+  input logic                    with_second,
+  input logic                    subtract_second
+);
+
+  logic negative, sum_negative, sum_zero, sure;
+  logic [DigitWidth-1:0] magnitude;
+  logic [Width-1:0] sum_q;
+
+  opened_exact_accumulator dut (
+    .clk_i            (clk),
+    .opens_i          (opens),
+    .first_i          (first),
+    .down_i           (down),
+    .product_i        (product),
+    .negate_i         (negate),
+    .second_i         (second),
+    .with_second_i    (with_second),
+    .subtract_second_i(subtract_second),
+    .negative_o       (negative),
+    .magnitude_o      (magnitude),
+    .sum_negative_o   (sum_negative),
+    .sum_zero_o       (sum_zero),
+    .sure_o           (sure),
+    .sum_q
+  );
+
+  // What the unit asks of it
+  logic begun, was_down;
+  logic [7:0] terms;  // of the column
+  initial {begun, was_down, terms} = '0;
+  always_ff @(posedge clk) begin
+    begun    <= 1'b1;
+    was_down <= down;
+    terms    <= opens ? 8'd1 : terms + 1'b1;
+  end
+  always_comb begin
+    assume (begun || first);
+    assume (!first || opens);
+    assume (first || down == was_down);
+    assume (opens || terms < Products);
+    assume (product >> (2 * DigitWidth - 2) == '0 || product << 2 == '0 && !product[2*DigitWidth-1]);
+    assume (!with_second || (!negate && product >> DigitWidth == '0));
+    assume (!(opens && !first && down && sure));  // it stops there
+  end
+
+  // The sum, with room for everything
+  logic signed [Wide-1:0] wide_product, wide_second, wide_magnitude, term, digit, left, over, above, sum, size;
+  assign wide_product   = Wide'(product);
+  assign wide_second    = Wide'(second);
+  assign wide_magnitude = Wide'(magnitude);
+  assign term  = with_second ? (subtract_second ? wide_product - wide_second : wide_product + wide_second)
+               : negate ? -wide_product : wide_product;
+  assign digit = negative ? -wide_magnitude : wide_magnitude;
+  assign left  = sum - digit;
+  assign over  = left >>> DigitWidth;
+  assign above = sum <<< DigitWidth;
+  assign size  = sum[Wide-1] ? -sum : sum;
+  initial sum = '0;
+  always_ff @(posedge clk) sum <= first ? term : !opens ? sum + term : down ? above + term : over + term;
+
+  // So large at most: the column's terms, and what came into it
+  localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);
+  logic [Wide-1:0] most, bound, tail;
+  assign most  = was_down ? Wide'(1) << (SureBit + DigitWidth) : Wide'(Products) << (DigitWidth - 1);
+  assign bound = most + (Wide'(terms) << (2 * DigitWidth - 2));
+  assign tail  = Wide'(Products) << (2 * DigitWidth - 2);
+
+  always_comb begin
+    if (begun) begin
+      assert (sum == $signed(sum_q));
+      assert ($unsigned(size) <= bound);
+      assert (terms != '0 && terms <= Products);
+      assert (sum_negative == sum[Wide-1] && sum_zero == (sum == '0));
+      assert (left[DigitWidth-1:0] == '0);
+      assert (!magnitude[DigitWidth-1] || magnitude << 1 == '0);
+      // Products 2**(2 DigitWidth - 2) of each column below, in its place: the sum of a geometric series
+      assert (!sure || $unsigned((size <<< DigitWidth) - size) >= tail);
+    end
+    cover (begun && sure && was_down);
+    cover (begun && !was_down && terms == 8'd3 && negative);
+  end
+
+endmodule
