@@ -19,7 +19,7 @@ from host.lab.rows import KEPT, ROOT
 
 REPORTS = ROOT / "build" / "reports"
 PUBLISHED = ROOT / "host" / "lab" / "results"
-TARGETS = ("stress", "bench", "peers", "speed", "core", "scaling")
+TARGETS = ("stress", "bench", "peers", "speed", "core", "scaling", "variant")
 
 
 def arguments() -> argparse.Namespace:
@@ -29,7 +29,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("target", choices=TARGETS)
     parser.add_argument("--only", default="", metavar="PART,PART", help="some of the target's parts")
     parser.add_argument("--quick", action="store_true", help="small pictures, few repeats")
-    parser.add_argument("--scenes", default="", metavar="'NAME NAME'", help="peers: some of the scenes")
+    parser.add_argument("--scenes", default="", metavar="'NAME NAME'", help="peers: some of the scenes; variant: one")
     parser.add_argument("--render", default=ROOT / "render", metavar="PROGRAM",
                         type=lambda name: pathlib.Path(name).resolve(), help="peers, speed: measure another ./render")
     parser.add_argument("--before", type=pathlib.Path, metavar="PROGRAM",
@@ -40,6 +40,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--launcher", default="", help="stress, bench: shares the steps among ranks, 'mpirun -n 4'")
     parser.add_argument("--base", type=pathlib.Path, metavar="OLD.jsonl",
                         help="bench: say what got slower or less accurate since these rows")
+    parser.add_argument("--variant", nargs="*", default=[], metavar="FRAC_WIDTH=15", help="variant: what is not as in binary32")
     parser.add_argument("--report-only", action="store_true", help="write the report of the last rows again")
     parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results too")
     return parser.parse_args()
@@ -47,10 +48,10 @@ def arguments() -> argparse.Namespace:
 
 def make_command(given: argparse.Namespace) -> str:
     """What makes the rows again."""
-    words = {"QUICK": int(given.quick), "ONLY": given.only, "SCENES": given.scenes, "TESTS": given.tests,
+    words = {"QUICK": int(given.quick), "ONLY": given.only, "SCENE" if given.target == "variant" else "SCENES": given.scenes, "TESTS": given.tests,
              "SEED": given.seed if given.seed != 1 else 0, "RENDER": given.render if given.render != ROOT / "render" else "",
              "BEFORE": given.before}
-    return " ".join(["make", given.target, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
+    return " ".join(["make", given.target, *given.variant, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
 
 
 def publish(name: str, folder: pathlib.Path, text: str) -> None:

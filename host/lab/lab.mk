@@ -1,6 +1,6 @@
 # What the lab measures: host/lab/README.md. Rows are kept in build/results/, reports written to build/reports/. An interrupted
 # run goes on when it is started again.
-.PHONY: stress bench peers speed core scaling claims
+.PHONY: stress bench variant peers speed core scaling claims
 
 comma := ,
 # $(call of,PARTS): those of PARTS that were asked for; all without ONLY.
@@ -30,6 +30,15 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 	@$(if $(MPIRUN),$(SETUP) mpi)
 	$(call build,bench,lab render scenes unit_bench $(if $(MPIRUN),share))
 	$(measure)
+
+variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER,$(if $($(word)),$(word)=$($(word))))
+variant: VARIANTS = $(CURDIR)/build/results/variant.json
+variant: SCENES = $(SCENE)
+variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix ROUNDING=toward-zero UNIT=serial QUOTIENT_BITS=12]
+	@$(SETUP) bench
+	@$(PYTHON) -B -m host.lab.targets.variant $(variant_words)
+	$(call build,bench,lab)
+	$(measure) --variant $(variant_words)
 
 peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 ONLY=pictures,gltf SCENES=cornell]
 	$(call build,peers,render compare scenes $(if $(call of,techniques),lab))

@@ -10,6 +10,7 @@ import json
 import sys
 
 from host.lab.rows import ROOT
+from synth import catalogue
 
 LIBRARY = "osu035"  # the paper's era
 FLOWS = ("parts", "fast", "small")  # the first that there is
@@ -29,9 +30,11 @@ class Cost:
 
 
 def _parameters(variant: dict) -> dict[str, int]:
+    kind = variant.get("adder", "")
+    adder = {"Arith": 1} if kind == catalogue.BEHAVIOURAL else {"Adder": catalogue.adder_kinds()[kind]} if kind else {}
     return {"ExpWidth": variant["exponent_bits"], "FracWidth": variant["digits"] - 1,
             "QuotientBits": variant["quotient_digits"],
-            "RoundingMode": ROUNDINGS.index(variant["rounding"])}
+            "RoundingMode": ROUNDINGS.index(variant["rounding"]), **adder}
 
 
 def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
@@ -40,7 +43,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
     file = ROOT / "build" / "synth" / "results.json"
     records = json.loads(file.read_text())["results"] if file.exists() else []
     if measure:
-        from synth import catalogue, measure as synth, tools
+        from synth import measure as synth, tools
         designs = {}
         for variant in variants:
             if variant["hardware"]:
@@ -91,14 +94,21 @@ def _find(records: list[dict], top: str, variant: dict, flow: str) -> dict | Non
                  and all(_number(record, name) == value for name, value in wanted.items())), None)
 
 
+def unit(records: list[dict], variant: dict) -> dict | None:
+    """The record of the variant's unit in its format, if synthesis has measured it."""
+    if variant["flush"] or variant["fused"]:
+        return None  # no such hardware
+    found = (_find(records, UNITS[variant["unit"]], variant, flow) for flow in FLOWS)
+    return next((record for record in found if record), None)
+
+
 def cost(records: list[dict], variant: dict) -> Cost | None:
     """The variant's cost; None where synthesis does not know its format or design."""
     if variant["flush"] or variant["fused"]:
-        return None  # no such hardware
-    for flow in FLOWS:
-        unit = _find(records, UNITS[variant["unit"]], variant, flow)
-        if unit:
-            return Cost(unit["area"], unit["delay_ns"])
+        return None
+    record = unit(records, variant)
+    if record:
+        return Cost(record["area"], record["delay_ns"])
     for flow in FLOWS if variant["unit"] == "serial" else ():
         cores = [_find(records, core, variant, flow) for core in CORES]
         if all(cores):

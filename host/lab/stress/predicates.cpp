@@ -1,12 +1,13 @@
 // What an exact decision costs: nanoseconds of a processor for each ray and triangle, by method and
-// suite. double and
-// __float128 are not exact. Compare the columns of one run.
+// suite. double and __float128 are not exact. Compare the columns of one run. And what it costs
+// that a call does not depend on the state of the thread's floating point.
 #include <gmpxx.h>
 
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
 #include "host/exact/exact.h"
+#include "host/exact/ieee_floats.h"
 #include "host/lab/commands.h"
 #include "host/lab/stress/oracle.h"
 #include "host/lab/stress/suites.h"
@@ -86,22 +87,30 @@ std::size_t count_with_oracle(const Cases& cases) {
   return sum;
 }
 
-/// The median of some repeats of ten milliseconds or more each, in nanoseconds a test.
-double time_of(const Method& method, const Cases& cases) {
+/// What a call takes, in nanoseconds: the median of some repeats of ten milliseconds or more each.
+template <class Call>
+double time_of(const Call& call) {
   std::vector<double> times;
   for (int i = 0; i < kRepeats; ++i) {
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     double seconds = 0.0;
-    std::size_t rounds = 0, hits = 0;
+    std::size_t rounds = 0;
     while (seconds < 0.01) {
-      hits += method.hits(cases);
+      call();
       ++rounds;
       seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     }
-    if (hits > rounds * cases.tests) throw std::logic_error("more hits than tests");
-    times.push_back(1e9 * seconds / static_cast<double>(rounds * cases.tests));
+    times.push_back(1e9 * seconds / static_cast<double>(rounds));
   }
   return median(times);
+}
+
+double guard_time() {
+  constexpr int kGuards = 1000;
+  return time_of([] {
+           for (int i = 0; i < kGuards; ++i) const IeeeFloats guard;
+         }) /
+         kGuards;
 }
 
 Row row_of(const Suite& suite) {
@@ -113,7 +122,12 @@ Row row_of(const Suite& suite) {
                             {"rationals_ns", count_with<plain<mpq_class>>},
                             {"oracle_ns", count_with_oracle}};
   Row row = {{"table", "predicates"}, {"suite", suite.name}};
-  for (const Method& method : methods) row[method.key] = time_of(method, cases);
+  for (const Method& method : methods) {
+    const double time = time_of([&] {
+      if (method.hits(cases) > cases.tests) throw std::logic_error("more hits than tests");
+    });
+    row[method.key] = time / static_cast<double>(cases.tests);
+  }
   row["raygate"] = cases.count(ours) == count_with_oracle(cases) ? "right" : "WRONG";
   return row;
 }
@@ -129,6 +143,7 @@ void add_predicates(CLI::App& lab, Outcome& outcome) {
       outcome.results.add(row_of(suite));
       if (outcome.results.rows().back()["raygate"] != "right") outcome.status = 1;
     }
+    outcome.results.add({{"table", "guard"}, {"ns", guard_time()}});
   });
 }
 

@@ -33,7 +33,7 @@ void nearest_by_t(std::span<const Shot> shots, Answers& answers) {
 Scene scene_of(const Mesh& mesh) {
   Scene scene;
   scene.materials.emplace_back();
-  scene.objects.emplace_back("mesh");
+  scene.objects.push_back("mesh");
   for (const Corners& corners : mesh.triangles) {
     Triangle triangle;
     for (int k = 0; k < 3; ++k) {

@@ -91,16 +91,20 @@ PARTS = {
     "energy": lambda given: [Step("energy", "of operations", measure=costs.energies)]}
 
 
-def finish(rows: list[dict]) -> list[dict]:
-    """With the variants, and FLIP of each picture that is compared with another: Andersson et al., "FLIP: a difference
-    evaluator for alternating images", 2020, its authors' own implementation (PyPI flip-evaluator), at its default of 67
-    pixels a degree."""
+def judge_pictures(rows: list[dict]) -> list[dict]:
+    """With FLIP of each picture that is compared with another: Andersson et al., "FLIP: a difference evaluator for
+    alternating images", 2020, its authors' own implementation (PyPI flip-evaluator), at its default of 67 pixels a degree."""
     for row in of(rows, "pictures"):
         if row.get("against"):
             error_map, row["flip"] = plots.flip(*(ROOT / f"{row[key]}.png" for key in ("against", "picture")))
             row["map"] = f"{row['picture']}-flip.png"
             plots.save_pixels(error_map, ROOT / row["map"])
-    return [rows[0], *variants(), *rows[1:]]
+    return rows
+
+
+def finish(rows: list[dict]) -> list[dict]:
+    """With the variants, and the pictures judged."""
+    return [rows[0], *variants(), *judge_pictures(rows)[1:]]
 
 
 def frames(rows: list[dict]) -> list[dict]:

@@ -15,7 +15,9 @@ from host.lab.steps import Step, difference, render
 SMALL = ("scenes/cornell.obj", "scenes/teapot.obj")
 LARGE = ("build/scenes/sphere.obj", "build/scenes/sphereflake.obj", "build/scenes/landscape.obj")
 PHASES = ("load", "tree", "render", "write", "total")
-HITS = ("nearest", "any", "all")
+# Questions to ./trace, by their names in the report.
+HITS = {"nearest": (), "any": (), "all": (),
+        "nearest, with u, v, the unit's P and its error": ("--columns", "ray,triangle,t,uv,unit-point,unit-error")}
 # Of `--no-skip`, but for divisions, of which the pipelined unit has no switch.
 SKIPS = ("culling", "records", "light-behind", "weightless", "empty-tiles", "first-occluder")
 # Without culling every ray is tested against every polygon: with more tests than these nobody can wait for the picture.
@@ -124,12 +126,12 @@ def trace_rates(program: pathlib.Path, scene: str, count: int) -> list[dict]:
     with tempfile.TemporaryDirectory() as folder:
         rays, hits = pathlib.Path(folder) / "rays.npy", pathlib.Path(folder) / "hits.npy"
         numpy.save(rays, rays_around(ROOT / scene, count))
-        for kind in HITS:
-            said = subprocess.run([program, scene, rays, "-o", hits, "--hits", kind], cwd=ROOT, check=True,
-                                  capture_output=True, text=True).stderr
+        for kind, columns in HITS.items():
+            command = [program, scene, rays, "-o", hits, "--hits", kind.split(",")[0], *columns]
+            said = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stderr
             rate = re.search(r"([\d,]+) rays/s", said)
             answers = numpy.load(hits, mmap_mode="r")
-            number = numpy.count_nonzero(answers["hit"]) if kind != "all" else len(answers)
+            number = numpy.count_nonzero(answers["hit"] == 1 if kind == "any" else answers["triangle"] >= 0)
             found.append({"table": "trace", "scene": scene, "kind": kind, "rays": count, "hits": int(number),
                           "rays_per_second": int(rate[1].replace(",", "")) if rate else 0})
     return found

@@ -66,7 +66,7 @@ bool matches(const Variant& variant, int exponent_bits, int digits, int rounding
 
 }  // namespace
 
-std::unique_ptr<BurstUnit> make_rtl_burst_unit(const Variant& variant) {
+std::unique_ptr<BurstUnit> make_rtl_burst_unit([[maybe_unused]] const Variant& variant) {
 #define RAYGATE_MODEL(top, ...)                                                                \
   if (matches(variant, __VA_ARGS__))                                                           \
     return std::make_unique<RtlBurstUnit>(std::make_unique<ArrayModel<top, 1, PackedNumbers>>( \
@@ -76,7 +76,7 @@ std::unique_ptr<BurstUnit> make_rtl_burst_unit(const Variant& variant) {
   return nullptr;
 }
 
-std::unique_ptr<PlaneUnit> make_rtl_plane_unit(const Variant& variant) {
+std::unique_ptr<PlaneUnit> make_rtl_plane_unit([[maybe_unused]] const Variant& variant) {
 #define RAYGATE_MODEL(top, ...)            \
   if (matches(variant, __VA_ARGS__))       \
     return std::make_unique<RtlPlaneUnit>( \

@@ -1,0 +1,45 @@
+"""The card of one variant: what its words mean, and its figures."""
+
+import unittest
+
+from host.lab.targets import variant
+
+
+class Words(unittest.TestCase):
+    def test_make_the_lines_of_the_table(self) -> None:
+        self.assertEqual(variant.table([]), [{"variant": "binary32"}, {"variant": "e8p24"}])
+        self.assertEqual(variant.table(["FRAC_WIDTH=15", "ADDER=prefix"]),
+                         [{"variant": "binary32"}, {"variant": "e8p16-prefix", "digits": 16, "adder": "prefix"}])
+        self.assertEqual(variant.table(["QUOTIENT_BITS=12", "ROUNDING=toward_zero", "EXP_WIDTH=6"]), [
+            {"variant": "binary32"}, {"variant": "serial", "unit": "serial"},
+            {"variant": "serial-e6p24-q12-toward-zero", "unit": "serial", "quotient_digits": 12, "rounding": "toward-zero",
+             "exponent_bits": 6}])
+
+    def test_doubts_are_ignored_where_no_bound_is_proven(self) -> None:
+        for words in (["ROUNDING=down"], ["FRAC_WIDTH=9"]):
+            self.assertIs(variant.table(words)[-1]["doubts"], False)
+        self.assertNotIn("doubts", variant.table(["FRAC_WIDTH=10"])[-1])
+
+    def test_what_cannot_be(self) -> None:
+        for word, said in {"FRAC_WIDTH=99": "expected 2 to 23", "FRAC_WIDTH=x": "expected 2 to 23", "WIDTH=3": "expected one of",
+                           "ROUNDING=odd": "expected nearest-even", "ADDER=fast": "expected ripple", "UNIT=": "pipeline"}.items():
+            with self.assertRaisesRegex(ValueError, f"^{word}: .*{said}"):
+                variant.table([word])
+        for words in (["EXP_WIDTH=3"], ["FRAC_WIDTH=9", "QUOTIENT_BITS=12"]):
+            with self.assertRaisesRegex(ValueError, "expected at most"):
+                variant.table(words)
+        with self.assertRaisesRegex(ValueError, "expected UNIT=serial"):
+            variant.table(["UNIT=pipeline", "QUOTIENT_BITS=12"])
+
+
+class Figures(unittest.TestCase):
+    def test_both_and_their_ratio(self) -> None:
+        usual = {"area": 2000.0, "wrong": 0.0, "decisions": {"wrong_rays": 0, "point_ulp": {"p50": 0.5}}}
+        mine = {"area": 500.0, "wrong": 12.0, "decisions": {"wrong_rays": 7, "point_ulp": {"p50": 64.0}}}
+        lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in variant.figures(usual, mine)}
+        self.assertEqual(lines, {"area, OSU 0.35 um units": ("2,000", "500", 0.25), "wrong tests a million": ("0.0", "12.0", None),
+                                 "wrong rays": ("0", "7", None), "P, ulp: median": ("0.5", "64", 128.0)})
+
+
+if __name__ == "__main__":
+    unittest.main()

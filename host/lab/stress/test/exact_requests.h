@@ -1,0 +1,107 @@
+// Requests for the exact unit, and what host/exact and integers say of them: of the stress suites,
+// and of any bits.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "host/intersect/core/reference_exact_unit.h"
+#include "host/lab/stress/oracle.h"
+#include "host/lab/stress/suites.h"
+
+namespace raygate::lab {
+
+struct ExactCase {
+  ExactRequest request;
+  bool hit = false;
+  int order = 0;
+};
+
+/// What host/exact says of a request.
+inline ExactCase case_of(const ExactRequest& request) {
+  using Against = ExactRequest::Against;
+  const bool hit = !request.asks_hit || hits_triangle(request.ray, request.triangle);
+  int order = 0;
+  if (hit && request.against == Against::kLimit) {
+    order = compare_hit_to_limit(request.ray, request.triangle, request.limit);
+  } else if (hit && request.against == Against::kOther) {
+    order = compare_hits(request.ray, request.triangle, request.other);
+  }
+  return {request, hit, order};
+}
+
+/// Makes cases shot by shot. Each triangle that a ray hits is compared with a limit near it and
+/// with the next that the ray hits (or itself, turned round), and asked for alone; some that it
+/// misses are asked for, too. Of every case a fourth has no suite: random bits, whose exponents are
+/// as far apart as they can be.
+class ExactCases {
+ public:
+  ExactCases(const Suite& suite, std::uint64_t seed) : generate_(suite.make()), random_(seed) {}
+
+  /// Throws std::logic_error where host/exact and the integers of find_truth differ.
+  std::vector<ExactCase> next() {
+    using Against = ExactRequest::Against;
+    std::vector<ExactCase> cases;
+    const Shot shot = generate_(random_);
+    const auto& triangles = shot.mesh->triangles;
+    const Truth truth = find_truth(shot);
+    for (std::size_t i = 0; i < shot.directions.size(); ++i) {
+      if (!is_usable(shot.directions[i])) continue;
+      ExactRequest request{.ray = {shot.origin, shot.directions[i]}};
+      const auto& order = truth.orders[i];
+      for (std::size_t k = 0; k < order.size() && k < 3; ++k) {
+        const Verdict& verdict = truth.verdicts[i * triangles.size() + order[k]];
+        request.triangle = triangles[order[k]];
+        request.asks_hit = random_.one_in(2);
+        request.against = Against::kLimit;
+        request.limit = static_cast<float>(verdict.t);
+        if (random_.one_in(2)) request.limit = std::nextafter(request.limit, 2.0f * request.limit);
+        if (random_.one_in(8)) request.limit *= 2.0f;
+        if (request.limit > 0.0f && std::isfinite(request.limit)) add(cases, request, true);
+        request.against = Against::kOther;
+        request.other = {request.triangle[1], request.triangle[2], request.triangle[0]};
+        if (k + 1 < order.size()) request.other = triangles[order[k + 1]];
+        add(cases, request, true);
+        if (k + 1 < order.size() && cases.back().order > 0) differ();
+      }
+      for (int n = 0; n < 2; ++n) {
+        const auto k = static_cast<std::size_t>(random_.below(static_cast<int>(triangles.size())));
+        request.triangle = triangles[k];
+        request.asks_hit = true;
+        request.against = Against::kNothing;
+        add(cases, request, truth.verdicts[i * triangles.size() + k].hit);
+      }
+      add_bits(cases);
+    }
+    return cases;
+  }
+
+ private:
+  [[noreturn]] static void differ() { throw std::logic_error("host/exact differs from integers"); }
+
+  static void add(std::vector<ExactCase>& cases, const ExactRequest& request, bool hit) {
+    cases.push_back(case_of(request));
+    if (cases.back().hit != hit) differ();
+  }
+
+  void add_bits(std::vector<ExactCase>& cases) {
+    const auto any = [&] {
+      const int exponent = random_.below(random_.one_in(2) ? 276 : 12) - 149;
+      return static_cast<float>(std::ldexp(random_.uniform(-1, 1), exponent));
+    };
+    const auto point = [&] { return glm::vec3(any(), any(), any()); };
+    ExactRequest request{.ray = {point(), point()}};
+    if (!is_usable(request.ray.direction)) return;
+    request.triangle = {point(), point(), point()};
+    request.other = {point(), point(), point()};
+    request.asks_hit = random_.one_in(2);
+    request.against =
+        request.asks_hit ? ExactRequest::Against::kNothing : ExactRequest::Against::kOther;
+    cases.push_back(case_of(request));
+  }
+
+  Generator generate_;
+  Random random_;
+};
+
+}  // namespace raygate::lab
