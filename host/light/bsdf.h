@@ -166,6 +166,7 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
   is_refracting_ = one < 0.0f;
   if ((kind & kEmits) != 0) {
     emission_ = gather<T>(materials, &Material::emission);
+    if ((kind & kInterpolates) != 0) emission_ = emission_ * surface.glow;
     unlit_ = colour * gather<T>(materials, &Material::unlit);
   }
   if ((kind & kMetallicRoughness) != 0) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "host/scene/scene.h"
@@ -12,6 +13,9 @@ namespace raygate {
 struct CameraLights {
   std::vector<PointLight> points;
   glm::vec3 background{0.0f};
+  /// What mirrors and light from all around show in place of the background, which the camera
+  /// sees; of the same mean radiance.
+  std::optional<EnvironmentMap> studio{};
 };
 
 }  // namespace raygate

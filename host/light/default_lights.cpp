@@ -1,13 +1,16 @@
 #include "host/light/default_lights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "host/exact/exact.h"
 #include "host/light/lights.h"
 #include "host/scene/bounds.h"
 #include "host/scene/camera.h"
+#include "host/scene/material_lookup.h"
 
 namespace raygate {
 namespace {
@@ -28,21 +31,23 @@ class LightPlaces {
 
   /// From the upper left of the camera, or from the camera.
   [[nodiscard]] PointLight key() const {
-    // In the middle of the scene a white wall that faces the light has radiance 0.8 from it.
     if (is_inside_) return light(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
+    // In the middle of the scene a white wall that faces the light has radiance 0.6 from it, and
+    // not much more in front: with fill and sky it stays below 1.
     const glm::dvec3 at = place(-0.8, 1.2);
-    return light(at, glm::length(at - middle_), 0.8);
+    return light(at, glm::length(at - middle_), 0.6);
   }
   /// From the right of the camera.
   [[nodiscard]] PointLight fill() const {
     const glm::dvec3 at = place(1.4, 0.3);
-    return light(at, glm::length(at - middle_), 0.25);
+    return light(at, glm::length(at - middle_), 0.2);
   }
 
  private:
   [[nodiscard]] glm::dvec3 place(double right, double up) const {
+    constexpr double kFar = 4.0;  // parts of the scene are nearly as far as its middle
     return middle_ +
-           size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
+           kFar * size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
   }
   [[nodiscard]] static PointLight light(const glm::dvec3& at, double distance, double radiance) {
     return {glm::vec3(at), glm::dvec3(radiance * std::numbers::pi * distance * distance)};
@@ -54,49 +59,104 @@ class LightPlaces {
   bool is_inside_;
 };
 
-/// Neither lights nor faces that emit.
-bool has_no_light(const Scene& scene) {
-  return scene.lights.empty() && scene.directional_lights.empty() && !scene.environment &&
-         std::ranges::none_of(scene.triangles, [&](const Triangle& face) {
-           return emits(scene.materials[face.material]);
-         });
+bool has_lights(const Scene& scene) {
+  return !scene.lights.empty() || !scene.directional_lights.empty() || scene.environment;
 }
 
-/// Radiance times area of all faces that emit.
-double emitted(const Scene& scene) {
+/// Whether some face emits in one colour: it is meant as a light.
+bool has_emitter(const Scene& scene) {
+  return std::ranges::any_of(scene.triangles, [&](const Triangle& face) {
+    const Material& material = scene.materials[face.material];
+    return emits(material) && material.emission_map.texture == kNoIndex;
+  });
+}
+
+/// Whether faces that emit light the scene. Labels, screens and the like that glow do not: they
+/// are no lights. `size` is the scene's diagonal.
+bool is_lit_by_emitters(const Scene& scene, double size) {
+  // Radiance times area, over the size's square: about a hundredth of what the key light does; and
+  // a sixth where a texture says what glows, which is made to be looked at.
+  constexpr double kGlow = 0.01, kPicture = 0.15;
+  std::vector<double> radiance;
+  for (const Material& material : scene.materials) {
+    const bool is_picture = material.emission_map.texture != kNoIndex;
+    radiance.push_back(mean(mean_emission(scene, material)) / (is_picture ? kPicture : kGlow));
+  }
   double sum = 0.0;
   for (const Triangle& face : scene.triangles) {
-    const Material& material = scene.materials[face.material];
-    if (!emits(material)) continue;
+    if (radiance[face.material] == 0.0) continue;
     const auto& [a, b, c] = face.vertices;
     sum +=
-        0.5 * mean(glm::dvec3(material.emission)) *
+        0.5 * radiance[face.material] *
         glm::length(triangle_normal({scene.positions[a], scene.positions[b], scene.positions[c]}));
   }
-  return sum;
+  return sum > size * size;
 }
 
 constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 
+/// A photographer's studio around the camera, for mirrors: dark below, soft boxes above, to the
+/// left and to the right of what is seen, and one behind it. Its mean is the dim sky's.
+EnvironmentMap studio(const Camera& camera, const glm::vec3& mean_radiance) {
+  struct Box {
+    double x, y, half_width, half_height, radiance;  // in the map, from 0 to 1
+  };
+  // The middle of the map is ahead of the camera; its edges are behind it.
+  constexpr Box kBoxes[] = {{0.5, 0.06, 0.5, 0.07, 6.0},
+                            {0.08, 0.34, 0.07, 0.13, 9.0},
+                            {0.86, 0.42, 0.035, 0.2, 6.0},
+                            {0.55, 0.3, 0.06, 0.05, 5.0}};
+  EnvironmentMap map;
+  map.width = 128;
+  map.height = 64;
+  map.up = camera.up();
+  map.ahead = camera.forward();
+  const auto edge = [](double distance) { return std::clamp(0.5 - distance * 24.0, 0.0, 1.0); };
+  glm::dvec3 sum(0.0);
+  double all = 0.0;
+  std::vector<double> levels;
+  for (int y = 0; y < map.height; ++y) {
+    const double v = (y + 0.5) / map.height, weight = sine_cosine(0.5 * v).sine;
+    for (int x = 0; x < map.width; ++x) {
+      const double u = (x + 0.5) / map.width;
+      double level = 0.35 + 0.9 * std::clamp(0.75 - v, 0.0, 0.75);
+      for (const Box& box : kBoxes) {
+        level += box.radiance * edge(std::abs(u - box.x) - box.half_width) *
+                 edge(std::abs(v - box.y) - box.half_height);
+      }
+      levels.push_back(level);
+      sum += weight * level;
+      all += weight;
+    }
+  }
+  for (const double level : levels) {
+    map.texels.emplace_back(glm::dvec3(mean_radiance) * level / (sum / all));
+  }
+  return map;
+}
+
 }  // namespace
 
 std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera) {
-  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || !has_no_light(scene)) return {};
-  return CameraLights{{LightPlaces(scene, camera).key()}, kDimSky};
-}
-
-std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera) {
-  if (is_empty(scene) || !scene.lights.empty() || !scene.directional_lights.empty() ||
-      scene.environment) {
+  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || has_lights(scene) ||
+      has_emitter(scene)) {
     return {};
   }
   const LightPlaces places(scene, camera);
-  // Labels and the like that glow are no lights: not a hundredth of what the key light does.
-  constexpr double kGlow = 0.01;
-  if (emitted(scene) > kGlow * places.size() * places.size()) return {};
-  CameraLights lights{{places.key()}, scene.background};
+  if (is_lit_by_emitters(scene, places.size())) return {};
+  CameraLights lights{{places.key()}, kDimSky, {}};
+  if (!places.is_inside()) lights.studio = studio(camera, kDimSky);
+  return lights;
+}
+
+std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera) {
+  if (is_empty(scene) || has_lights(scene)) return {};
+  const LightPlaces places(scene, camera);
+  if (is_lit_by_emitters(scene, places.size())) return {};
+  CameraLights lights{{places.key()}, scene.background, {}};
   if (!places.is_inside()) lights.points.push_back(places.fill());
   if (lights.background == glm::vec3(0.0f)) lights.background = kDimSky;
+  if (!places.is_inside()) lights.studio = studio(camera, lights.background);
   return lights;
 }
 

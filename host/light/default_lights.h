@@ -10,7 +10,8 @@ namespace raygate {
 
 class Camera;
 
-/// Light for a scene that has none (no lights, no face that emits, no background): one light to the
+/// Light for a scene that has none (no lights, no background, no face that emits but textures that
+/// hardly light anything): one light to the
 /// upper left of the camera, or at the camera where that stands within the scene, and a dim sky.
 /// Nothing for other scenes.
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera);

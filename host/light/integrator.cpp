@@ -34,8 +34,8 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
       shading_{.scene = prepared.scene,
                .bvh = prepared.bvh,
                .lights = lights,
-               .ambient =
-                   kind == IntegratorKind::kPath ? lights.background() : glm::vec3(options.ambient),
+               .ambient = kind == IntegratorKind::kPath ? lights.light_from_above()
+                                                        : glm::vec3(options.ambient),
                .max_depth = options.max_depth,
                .threshold = static_cast<float>(options.threshold),
                .single_sample = options.single_sample,
@@ -92,7 +92,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   const Scene& scene = shading_.scene;
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
-  const bool sees_surroundings = sees_environment();
+  const bool sees_surroundings = sees_environment(block_.batch->depth);
   escaped_.clear();
   first_.assign(kHitKinds + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
@@ -122,7 +122,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     const bool is_there =
         !material.has_mask || !is_masked_out(scene, shading_.bvh, block_.places[i]);
     block_.materials[i] = is_there ? &material : &transparent_;
-    kinds_[i] = block_.materials[i]->kind | weights_needed(block_.places[i]);
+    kinds_[i] = block_.materials[i]->kind | weights_needed(scene, block_.places[i]);
     ++first_[kinds_[i] + 1];
   }
   add_infinite_light(output);

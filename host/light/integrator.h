@@ -43,9 +43,11 @@ class Integrator {
   [[nodiscard]] glm::vec3 background() const {
     return kind_ == IntegratorKind::kPrimary ? glm::vec3(0.0f) : shading_.lights.background();
   }
-  /// Whether they see an environment instead.
-  [[nodiscard]] bool sees_environment() const {
-    return kind_ != IntegratorKind::kPrimary && shading_.lights.environment() != nullptr;
+  /// Whether they see an environment instead, at that depth.
+  [[nodiscard]] bool sees_environment(int depth) const {
+    const Lights& lights = shading_.lights;
+    return kind_ != IntegratorKind::kPrimary && lights.environment() != nullptr &&
+           (depth > 0 || !lights.has_studio());
   }
   /// Whether shadows are cast as if glass did not bend light.
   [[nodiscard]] bool shadows_through_refraction() const { return kind_ != IntegratorKind::kPath; }

@@ -11,6 +11,8 @@
 #include "host/exact/exact.h"
 #include "host/scene/bounds.h"
 #include "host/scene/camera.h"
+#include "host/scene/instances.h"
+#include "host/scene/material_lookup.h"
 
 namespace raygate {
 namespace {
@@ -121,6 +123,41 @@ LightBounds light_bounds(const PointLight& light, double unit) {
   return source;
 }
 
+/// Of the faces that catch shadows the normal, upwards; without any, upwards.
+glm::dvec3 floor_normal(const Scene& scene, const Bvh& bvh, const glm::dvec3& up) {
+  constexpr int kCatcher = 10;
+  if (std::ranges::find(scene.materials, kCatcher, &Material::illumination_model) ==
+      scene.materials.end()) {
+    return up;
+  }
+  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
+    const Triangle& face = face_at(scene, bvh.face_of(primitive));
+    if (scene.materials[face.material].illumination_model != kCatcher) continue;
+    const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(primitive)));
+    return glm::dot(normal, up) < 0.0 ? -normal : normal;
+  }
+  return up;
+}
+
+/// The radiance from all sides that lights a surface of that normal as much as the map does.
+glm::dvec3 mean_before(const EnvironmentMap& map, const glm::dvec3& normal) {
+  const glm::dvec3 right = glm::cross(map.ahead, map.up);
+  glm::dvec3 sum(0.0);
+  double all = 0.0;
+  for (int y = 0; y < map.height; ++y) {
+    const auto down = sine_cosine((y + 0.5) / (2.0 * map.height));
+    for (int x = 0; x < map.width; ++x) {
+      const auto turn = sine_cosine((x + 0.5) / map.width - 0.5);
+      const glm::dvec3 direction =
+          map.up * down.cosine + (map.ahead * turn.cosine + right * turn.sine) * down.sine;
+      const double weight = down.sine * std::max(glm::dot(direction, normal), 0.0);
+      sum += weight * glm::dvec3(map.texel(x, y));
+      all += weight;
+    }
+  }
+  return sum * (double{map.strength} / all);
+}
+
 double diagonal_of(const Scene& scene) {
   const auto [low, high] = position_bounds(scene);
   return glm::length(high - low);
@@ -145,7 +182,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice,
                const std::optional<CameraLights>& camera_lights)
     : scene_(scene),
       bvh_(bvh),
-      own_(camera_lights.value_or(CameraLights{scene.lights, scene.background})) {
+      own_(camera_lights.value_or(CameraLights{scene.lights, scene.background, {}})) {
   const double unit = unit_of(scene, own_.points);
   per_unit_ = static_cast<float>(1.0 / unit);
   for (const PointLight& light : own_.points) {
@@ -161,7 +198,8 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice,
     Light& record = lights_.emplace_back();
     record.kind = Kind::kArea;
     record.emission = finite_floats(light.radiance);
-    if (!scene.environment) {
+    record.is_textured = light.is_textured;
+    if (!scene.environment && !own_.studio) {
       const double ratio = mean(glm::dvec3(own_.background)) / mean(light.radiance);
       record.sky = static_cast<float>(std::min(ratio, 0.5));
     }
@@ -174,16 +212,34 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice,
     record.emission = light.irradiance;
     record.position = glm::vec3(-light.direction);
   }
-  if (scene.environment) {
-    environment_.emplace(*scene.environment, choice != LightSampling::kNone);
+  if (scene.environment || own_.studio) {
+    environment_.emplace(own_.studio ? *own_.studio : *scene.environment,
+                         choice != LightSampling::kNone);
     lights_.emplace_back().kind = Kind::kEnvironment;
   }
+  from_above_ = background();
+  if (own_.studio)
+    from_above_ = glm::vec3(mean_before(*own_.studio, floor_normal(scene, bvh, own_.studio->up)));
   if (choice != LightSampling::kNone) add_sources(choice, unit);
 }
 
 glm::dvec3 Lights::ambient() const {
   return background() != glm::vec3(0.0f) ? glm::dvec3(background())
                                          : guessed_ambient(scene_, areas_);
+}
+
+glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& point) const {
+  const Corners corners = bvh_.corners_of(primitive);
+  const glm::dvec3 normal = triangle_normal(corners);
+  glm::dvec3 weights;  // by the areas of the three triangles that the point makes with the sides
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 from(corners[(k + 1) % 3]), to(corners[(k + 2) % 3]);
+    weights[static_cast<int>(k)] =
+        std::max(glm::dot(glm::cross(to - from, glm::dvec3(point) - from), normal), 0.0);
+  }
+  weights /= weights.x + weights.y + weights.z;
+  const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
+  return scene_.materials[face.material].emission * emission_factor_at(scene_, face, weights);
 }
 
 /// The faces that emit, light by light.
@@ -194,7 +250,9 @@ void Lights::find_areas() {
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
       areas_.emplace_back();
-      areas_.back().radiance = glm::dvec3(scene_.materials[face.material].emission);
+      const Material& material = scene_.materials[face.material];
+      areas_.back().radiance = mean_emission(scene_, material);
+      areas_.back().is_textured = material.emission_map.texture != kNoIndex;
     }
     AreaLight& light = areas_[at->second];
     const Corners corners = bvh_.corners_of(primitive);

@@ -71,7 +71,8 @@ struct AreaLight {
   std::vector<std::uint32_t> primitives;
   std::vector<double> area_up_to;   ///< of the primitives so far, each included
   glm::vec3 low{0.0f}, high{0.0f};  ///< of the box around it
-  glm::dvec3 radiance{0.0};
+  glm::dvec3 radiance{0.0};         ///< in the mean
+  bool is_textured = false;
   bool is_flat = false;
   glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< of a flat one
 
@@ -104,6 +105,10 @@ class Lights {
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
   }
+  /// Whether that is none of the scene's, which the camera does not see.
+  [[nodiscard]] bool has_studio() const { return own_.studio.has_value(); }
+  /// The radiance from all sides that lights a floor as much as the background or the studio does.
+  [[nodiscard]] const glm::vec3& light_from_above() const { return from_above_; }
   /// Of an environment the mean.
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
@@ -130,8 +135,9 @@ class Lights {
     glm::vec3 emission{0.0f};
     glm::vec3 position{0.0f};  ///< of a point light; or the direction towards the light
     SpotFalloff spot;
-    float area = 0.0f;  ///< in square units
-    float sky = 0.0f;   ///< of an area light: the background's radiance over its own, at most 1/2
+    float area = 0.0f;         ///< in square units
+    bool is_textured = false;  ///< `emission` is the mean; radiance_at() has it at a point
+    float sky = 0.0f;  ///< of an area light: the background's radiance over its own, at most 1/2
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }
@@ -149,6 +155,20 @@ class Lights {
   [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
     return {spread<T>(glm::vec3(light.middle)), spread<T>(glm::vec3(light.middle_normal)),
             spread<WordOf<T>>(light.primitives[0])};
+  }
+
+  /// The radiance of area lights at points of them, one light and one point a lane. Of what is no
+  /// area light its emission.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE Triple<T> radiance_at(
+      const Light* const (&lights)[LanesOf<T>::kCount], const LightPoint<T>& at) const {
+    const Triple<T> emission = gather<T>(lights, &Light::emission);
+    if (!any(gather<T>(lights, &Light::is_textured))) return emission;
+    const auto plain = unpack(emission), points = unpack(at.position);
+    const auto primitives = unpack(at.primitive);
+    return gather<T>([&](int k) RAYGATE_BODY {
+      return lights[k]->is_textured ? textured_radiance(primitives[k], points[k]) : plain[k];
+    });
   }
 
   // For sampling one light at a time:
@@ -199,6 +219,7 @@ class Lights {
     bool is_triangle = true;
   };
 
+  [[nodiscard]] glm::vec3 textured_radiance(std::uint32_t primitive, const glm::vec3& point) const;
   void find_areas();
   void add_patches(const AreaLight& light, Light& record);
   void add_sources(LightSampling choice, double unit);
@@ -209,6 +230,7 @@ class Lights {
   const Bvh& bvh_;
   CameraLights own_;
   std::optional<Environment> environment_;
+  glm::vec3 from_above_{0.0f};
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
   std::vector<Patch> patches_;

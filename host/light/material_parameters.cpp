@@ -24,7 +24,8 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   transmission = std::clamp(shares.transmission, 0.0f, 1.0f);
   if (index == 1.0f) index = 1.5f;
   const float root = (index - 1.0f) / (index + 1.0f);
-  reflectance = root * root;
+  specular = std::clamp(shares.specular, 0.0f, 1.0f);
+  reflectance = specular * limited(root * root * shares.specular_color);
   const bool has_map = shares.map.texture != kNoIndex;
   refracts = transmission > 0.0f && (metallic < 1.0f || has_map);
   is_glass = is_fresnel = false;
@@ -53,6 +54,7 @@ MaterialParameters::MaterialParameters(const Material& material) {
   emission = material.emission;
   if (is_any(emission)) kind |= kEmits;
   if (material.diffuse_texture != kNoIndex) kind |= kInterpolates;
+  if (material.emission_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.normal_map.texture != kNoIndex) kind |= kInterpolates | kIsBumpy;
   has_mask = material.opacity_map.texture != kNoIndex;
   if (material.metallic_roughness) {

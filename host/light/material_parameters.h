@@ -39,8 +39,9 @@ struct MaterialParameters {
   bool mirror_is_traced = true;
   /// Of a metallic-roughness material, which has the textures' colours in all its shares:
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
-  float reflectance = 0.04f;  ///< of what is not metallic, straight on
-  HitKind kind = 0;           ///< without what depends on the triangle
+  float specular = 1.0f;         ///< of what is not metallic, at grazing angles
+  glm::vec3 reflectance{0.04f};  ///< and straight on
+  HitKind kind = 0;              ///< without what depends on the triangle
 
   bool has_mask =
       false;  ///< is_masked_out may say that it is not there: hits have transparent() then

@@ -16,12 +16,14 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
           at_most(at_least(x.z, 0.0f), 1.0f)};
 }
 
-/// For base colour c, metalness m, transmission t and r0, the reflectance straight on of the index
-/// of refraction; s is Schlick's Fresnel share of a cosine:
+/// For base colour c, metalness m, transmission t, specular weight w and r0, the reflectance
+/// straight on of the index of refraction, times w and the specular colour; s is Schlick's Fresnel
+/// share of a cosine:
 ///
 /// * Facets (Ggx) reflect f0 + (f90 - f0) s of what meets them: f0 = m c + (1 - m)(1 - t) r0 and
-///   f90 = 1 - (1 - m) t.
-/// * Under them is (1 - m)(1 - t) c (1 - r0)(1 - h(view))(1 - h(light)) / (1 - h's mean), diffuse:
+///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).
+/// * Under them is (1 - m)(1 - t) c (1 - r0's largest part)(1 - h(view))(1 - h(light)) / (1 - h's
+/// mean), diffuse:
 ///   what glTF 2.0 leaves to implementations. h is a little more than what rough facets reflect for
 ///   s (CoatAlbedo, below), so that both never add up to more than arrives; and both are the same
 ///   there and back.
@@ -78,14 +80,13 @@ struct MetallicRoughnessLobes {
     view_cosine = at_most(at_least(dot(surface.normal, view), 0x1p-20f), 1.0f);
     glass = (one - metallic) * gather<T>(materials, &Material::transmission);
     const T plastic = at_least((one - metallic) - glass, 0.0f);
-    const T reflectance = gather<T>(materials, &Material::reflectance),
-            coat = plastic * reflectance;
-    f0 = (tint * metallic + grey(coat)) * opacity;
-    f90 = (one - glass) * opacity;
+    const Triple<T> reflectance = gather<T>(materials, &Material::reflectance);
+    f0 = (tint * metallic + reflectance * plastic) * opacity;
+    f90 = ((one - glass) - plastic * (one - gather<T>(materials, &Material::specular))) * opacity;
     coat_albedo = CoatAlbedo(is_rough ? alpha : T{});
     const T share = coat_albedo.at(view_cosine);
     specular = schlick(share);
-    diffuse = tint * (plastic * (one - reflectance) * (one - share) * opacity);
+    diffuse = tint * (plastic * (one - largest(reflectance)) * (one - share) * opacity);
     const T index = gather<T>(materials, &Material::index);
     is_glass = glass > 0.0f;
     eta = choose(is_glass, choose(surface.outside, index, one / index), one);

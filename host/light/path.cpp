@@ -142,8 +142,9 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                               spread<T>(1.0f));
   add_light_sample<T>(
       hits, 0, is_area & scatters & (cosine > 0.0f),
-      area_light_contribution(hits, to_light, point, emission * (mis_weight / area_pdf)), indices,
-      point);
+      area_light_contribution(hits, to_light, point,
+                              lights.radiance_at<T>(chosen, point) * (mis_weight / area_pdf)),
+      indices, point);
 }
 
 /// Sends one ray on: a lobe of the BSDF is chosen by its probability, then a direction of it.

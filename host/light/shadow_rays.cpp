@@ -23,7 +23,7 @@ constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
                                const MaterialParameters& material, bool bent) {
   if (material.refracts && !bent) return glm::vec3(0.0f);
-  const HitKind kind = material.kind | weights_needed(place);
+  const HitKind kind = material.kind | weights_needed(scene, place);
   const SurfaceHit places[] = {place};
   const MaterialParameters* const materials[] = {&material};
   const Triple<float> through =

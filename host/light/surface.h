@@ -24,6 +24,12 @@ struct SurfaceHit {
                                      ///< none: it is for the host to find
   const Instance* instance = nullptr;  ///< whose triangle it is; none: it is the scene's own
 
+  /// Those of the vertices; none: they are white, or do not count.
+  [[nodiscard]] const std::vector<glm::vec3>* vertex_colors(const Scene& scene) const {
+    const auto& all = instance == nullptr ? scene.colors : scene.meshes[instance->mesh].colors;
+    return all.empty() || !scene.materials[face->material].has_vertex_colors ? nullptr : &all;
+  }
+
   /// A normal that the face names.
   [[nodiscard]] glm::vec3 normal(const Scene& scene, std::uint32_t index) const {
     const glm::vec3& own = scene.normals[index];
@@ -37,8 +43,10 @@ struct SurfaceHit {
 }
 
 /// Whether the weights of the vertices at the hit matter.
-[[nodiscard]] inline HitKind weights_needed(const SurfaceHit& place) {
-  return place.point == nullptr || has_normals(*place.face) ? kInterpolates : 0;
+[[nodiscard]] inline HitKind weights_needed(const Scene& scene, const SurfaceHit& place) {
+  return place.point == nullptr || has_normals(*place.face) || place.vertex_colors(scene) != nullptr
+             ? kInterpolates
+             : 0;
 }
 
 /// What shading needs to know of hits, one a lane. T is float or FloatLanes. In float, but for what
@@ -54,6 +62,7 @@ struct Surface {
   Triple<T> colour;  ///< Kd, times the texture
   /// What the texture of a metallic-roughness material multiplies; of other kinds nothing.
   T roughness, metallic;
+  Triple<T> glow;  ///< what the texture of emission multiplies; of kinds that interpolate and emit
   /// The ray comes from outside: from where the file's normals point or, without, from where the
   /// vertices run counter-clockwise.
   MaskOf<T> outside;
@@ -168,8 +177,16 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
                choose(is_number, at_least(weights.z, 0.0f), third)};
     const auto weight = unpack(weights);
     surface.colour = gather<T>([&](int k) RAYGATE_BODY {
-      return diffuse_at(scene, *places[k].face, glm::dvec3(weight[k]));
+      const glm::vec3 diffuse = diffuse_at(scene, *places[k].face, glm::dvec3(weight[k]));
+      const auto* const colors = places[k].vertex_colors(scene);
+      if (colors == nullptr) return diffuse;
+      return diffuse * vertex_color_at(*colors, *places[k].face, glm::dvec3(weight[k]));
     });
+    if ((kind & kEmits) != 0) {
+      surface.glow = gather<T>([&](int k) RAYGATE_BODY {
+        return emission_factor_at(scene, *places[k].face, glm::dvec3(weight[k]));
+      });
+    }
     if ((kind & kMetallicRoughness) != 0) {
       glm::vec2 factors[kCount];
       for (int k = 0; k < kCount; ++k) {

@@ -56,6 +56,11 @@ RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits
               ? Lights::middle<T>(area)
               : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
       const DirectionToLight<T> to_light(lights, hits.surface, point.position);
+      if (light.is_textured && !(shading.single_sample && area.is_flat)) {
+        const Lights::Light* same[Hits<T>::kCount];
+        std::ranges::fill(same, &light);
+        emission = lights.radiance_at<T>(same, point);
+      }
       add_light_sample<T>(
           hits, i, hits.bsdf.scatters(),
           area_light_contribution(hits, to_light, point, emission * spread<T>(light.area)), indices,

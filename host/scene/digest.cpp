@@ -67,14 +67,28 @@ class Digest {
 
   void add(const TextureMapping& m) { add(m.scale, m.offset, m.clamp); }
   void add(const MaterialMap& m) { add(m.mapping, m.texture); }
-  void add(const MetallicRoughness& m) { add(m.metallic, m.roughness, m.transmission, m.map); }
+  // What few materials have is left out where it is the default: files keep their digest.
+  void add(const MetallicRoughness& m) {
+    add(m.metallic, m.roughness, m.transmission, m.map);
+    if (m.specular != 1.0f || m.specular_color != glm::vec3(1.0f)) {
+      add(m.specular, m.specular_color);
+    }
+  }
   void add(const Material& m) {
     add(m.diffuse, m.specular, m.emission, m.transmittance, m.shininess, m.refraction_index,
         m.opacity, m.illumination_model, m.diffuse_mapping, m.diffuse_texture);
     add(m.metallic_roughness, m.normal_map, m.normal_scale, m.opacity_map, m.opacity_cutoff);
+    if (m.emission_map.texture != kNoIndex) add(m.emission_map);
+  }
+  void add(const NameList& names) {
+    word(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) add(names[i]);
   }
   void add(const Texture& t) { add(t.width(), t.height(), t.texels()); }
-  void add(const Mesh& m) { add(m.positions, m.triangles); }
+  void add(const Mesh& m) {
+    add(m.positions, m.triangles);
+    if (!m.colors.empty()) add(m.colors);
+  }
   void add(const SpotCone& c) { add(c.axis, c.inner, c.outer); }
   void add(const PointLight& l) { add(l.position, l.intensity, l.spot); }
   void add(const DirectionalLight& l) { add(l.direction, l.irradiance); }
@@ -101,6 +115,7 @@ std::string digest_of(const Scene& scene) {
              scene.instances, scene.materials, scene.textures, scene.objects);
   digest.add(scene.lights, scene.directional_lights, scene.background, scene.environment,
              scene.origin);
+  if (!scene.colors.empty()) digest.add(scene.colors);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(digest.value()));
   return text;

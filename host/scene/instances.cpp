@@ -30,17 +30,20 @@ void shift(std::array<std::uint32_t, 3>& indices, std::uint32_t by) {
 /// Drops positions of no triangle.
 void compact(Mesh& mesh) {
   std::vector<std::uint32_t> renumbered(mesh.positions.size(), kNoIndex);
-  std::vector<glm::vec3> kept;
+  std::vector<glm::vec3> kept, kept_colors;
+  mesh.colors.resize(mesh.colors.empty() ? 0 : mesh.positions.size(), glm::vec3(1.0f));
   for (Triangle& triangle : mesh.triangles) {
     for (std::uint32_t& vertex : triangle.vertices) {
       if (renumbered[vertex] == kNoIndex) {
         renumbered[vertex] = static_cast<std::uint32_t>(kept.size());
         kept.push_back(mesh.positions[vertex]);
+        if (!mesh.colors.empty()) kept_colors.push_back(mesh.colors[vertex]);
       }
       vertex = renumbered[vertex];
     }
   }
   mesh.positions = std::move(kept);
+  mesh.colors = std::move(kept_colors);
 }
 
 /// The range of Scene::normals that a mesh's triangles name; empty where they name none.
@@ -89,6 +92,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
     shift(material.diffuse_texture);
     shift(material.normal_map.texture);
     shift(material.opacity_map.texture);
+    shift(material.emission_map.texture);
     if (material.metallic_roughness) shift(material.metallic_roughness->map.texture);
   }
   const std::uint32_t materials = append(scene.materials, std::move(part.materials));
@@ -96,6 +100,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
   (void)append(scene.warnings, std::move(part.warnings));
   Mesh& mesh = scene.meshes.emplace_back();
   mesh.positions = std::move(part.positions);
+  mesh.colors = std::move(part.colors);
   mesh.triangles = std::move(part.triangles);
   for (Triangle& triangle : mesh.triangles) {
     shift(triangle.normals, normals);
@@ -168,6 +173,10 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
   for (const Instance& instance : instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    if (!mesh.colors.empty()) {
+      scene.colors.resize(first, glm::vec3(1.0f));
+      scene.colors.insert(scene.colors.end(), mesh.colors.begin(), mesh.colors.end());
+    }
     for (const glm::vec3& position : mesh.positions) {
       scene.positions.push_back(transform_point(instance.rows, position));
     }
@@ -219,6 +228,10 @@ void require_numbers(const Scene& scene, const std::filesystem::path& file) {
   if (triangles + scene.instances.size() >= (std::uint64_t{1} << 31) - 1) {
     throw InputError(file.string() + ": found " + std::to_string(triangles) +
                      " triangles with all instances, expected fewer than 2^31");
+  }
+  if (scene.objects.size() > kNoIndex) {
+    throw InputError(file.string() + ": found " + std::to_string(scene.objects.size()) +
+                     " objects with all instances, expected fewer than 2^32");
   }
 }
 

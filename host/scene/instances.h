@@ -120,8 +120,8 @@ enum class InstanceMode {
 };
 inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 
-/// Throws InputError, beginning with `file`, where there are about 2^31 triangles or more: not all
-/// would have a number. To be asked before anything looks at all of them.
+/// Throws InputError, beginning with `file`, where there are about 2^31 triangles or 2^32 objects
+/// or more: not all would have a number. To be asked before anything looks at all of them.
 void require_numbers(const Scene& scene, const std::filesystem::path& file);
 
 /// Flattens what is not to be kept, and in any case what emits: area lights are lists of triangles.

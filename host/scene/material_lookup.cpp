@@ -29,6 +29,16 @@ glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dv
                                 place_on(mapping, scene, triangle, weights), wrap_of(mapping));
 }
 
+glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& triangle,
+                          const glm::dvec3& weights) {
+  glm::dvec3 color(0.0);
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = triangle.vertices[static_cast<std::size_t>(k)];
+    color += weights[k] * (vertex < colors.size() ? glm::dvec3(colors[vertex]) : glm::dvec3(1.0));
+  }
+  return glm::vec3(color);
+}
+
 bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
   const MaterialMap& map = material.opacity_map;
@@ -66,6 +76,20 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
                           y * ((2.0 * codes.y - 1.0) * scale) + n * (2.0 * codes.z - 1.0);
   const double size = glm::length(bent);
   return size > 0.0 && std::isfinite(size) ? glm::vec3(bent / size) : normal;
+}
+
+glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,
+                             const glm::dvec3& weights) {
+  const MaterialMap& map = scene.materials[triangle.material].emission_map;
+  if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return glm::vec3(1.0f);
+  return scene.textures[map.texture].at(place_on(map.mapping, scene, triangle, weights),
+                                        wrap_of(map.mapping));
+}
+
+glm::dvec3 mean_emission(const Scene& scene, const Material& material) {
+  const glm::dvec3 emission(material.emission);
+  const std::uint32_t texture = material.emission_map.texture;
+  return texture == kNoIndex ? emission : emission * scene.textures[texture].mean_color();
 }
 
 glm::vec2 roughness_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {

@@ -14,6 +14,10 @@ namespace raygate {
 [[nodiscard]] glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle,
                                    const glm::dvec3& weights);
 
+/// The vertices' colours, one of Scene::colors or Mesh::colors, at that point.
+[[nodiscard]] glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors,
+                                        const Triangle& triangle, const glm::dvec3& weights);
+
 /// Whether the mask of the triangle's material hides that point. Never, where it has none or the
 /// face has no texture coordinates.
 [[nodiscard]] bool is_masked_out(const Scene& scene, const Triangle& triangle,
@@ -26,6 +30,14 @@ namespace raygate {
 [[nodiscard]] glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
                                       const std::array<glm::vec3, 3>& corners,
                                       const glm::dvec3& weights, const glm::vec3& normal);
+
+/// What the texture of emission multiplies at that point: a colour. 1 where there is none, or the
+/// face has no texture coordinates.
+[[nodiscard]] glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,
+                                           const glm::dvec3& weights);
+
+/// The radiance that a material emits, in the mean over its texture.
+[[nodiscard]] glm::dvec3 mean_emission(const Scene& scene, const Material& material);
 
 /// What the texture of a metallic-roughness material multiplies at that point: x roughness, y
 /// metallic. 1 where it has none, or the face has no texture coordinates.

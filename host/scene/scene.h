@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/scene/camera_setting.h"
+#include "host/scene/name_list.h"
 #include "host/scene/texture.h"
 
 namespace raygate {
@@ -42,6 +43,8 @@ struct MetallicRoughness {
   float transmission = 0.0f;  ///< in [0, 1]: so much of what is not metallic is (rough) glass
   MaterialMap map;            ///< times roughness (green code) and metallic (blue code)
   std::string metallic_file;  ///< where `map.file` has roughness alone: grey, put into one map
+  float specular = 1.0f;      ///< in [0, 1]: so much of what is not metallic reflects at all, and
+  glm::vec3 specular_color{1.0f};  ///< straight on in this colour: KHR_materials_specular
 };
 
 /// One material: of an MTL file, or what other files have in its terms. Colours are scene-linear
@@ -60,10 +63,12 @@ struct Material {
   TextureMapping diffuse_mapping;
   std::uint32_t diffuse_texture = kNoIndex;  ///< index into Scene::textures
   std::optional<MetallicRoughness> metallic_roughness;
-  MaterialMap normal_map;       ///< codes 0 .. 1 are -1 .. 1 along tangent, bitangent, normal
-  float normal_scale = 1.0f;    ///< of the first two
-  MaterialMap opacity_map;      ///< what is below opacity_cutoff there is not there
-  float opacity_cutoff = 0.5f;  ///< in [0, 1]
+  MaterialMap normal_map;         ///< codes 0 .. 1 are -1 .. 1 along tangent, bitangent, normal
+  float normal_scale = 1.0f;      ///< of the first two
+  MaterialMap emission_map;       ///< times the emission
+  MaterialMap opacity_map;        ///< what is below opacity_cutoff there is not there
+  float opacity_cutoff = 0.5f;    ///< in [0, 1]
+  bool has_vertex_colors = true;  ///< those of its vertices count
 };
 
 [[nodiscard]] inline bool emits(const Material& material) {
@@ -85,6 +90,7 @@ struct Triangle {
 struct Mesh {
   std::vector<glm::vec3> positions;  ///< each of some triangle
   std::vector<Triangle> triangles;  ///< `vertices` are of these positions, all else is as elsewhere
+  std::vector<glm::vec3> colors;    ///< as Scene::colors has them
 };
 
 /// A mesh in one of its places. instances.h has what it stands for.
@@ -150,14 +156,17 @@ struct EnvironmentSetting {
 /// after the other.
 struct Scene {
   std::vector<glm::vec3> positions;
+  /// Of the positions, in their order, scene-linear RGB: they multiply the diffuse colour. Beyond
+  /// its end, and where it is empty, they are white.
+  std::vector<glm::vec3> colors;
   std::vector<glm::vec3> normals;  ///< unit length, where a triangle uses them
   std::vector<glm::vec2> texcoords;
   std::vector<Triangle> triangles;
   std::vector<Mesh> meshes;
-  std::vector<Instance> instances;   ///< of meshes that are kept as such: see instances.h
-  std::vector<Material> materials;   ///< never empty; a default stands where the file names none
-  std::vector<Texture> textures;     ///< that materials of triangles name
-  std::vector<std::string> objects;  ///< never empty; "o" and "g" names of the file
+  std::vector<Instance> instances;  ///< of meshes that are kept as such: see instances.h
+  std::vector<Material> materials;  ///< never empty; a default stands where the file names none
+  std::vector<Texture> textures;    ///< that materials of triangles name
+  NameList objects;                 ///< never empty; "o" and "g" names of the file
   std::vector<PointLight> lights;
   std::vector<DirectionalLight> directional_lights;
   glm::vec3 background{0.0f};  ///< radiance from where no geometry is, scene-linear RGB

@@ -149,10 +149,13 @@ double Texture::min_code() const {
   return least / 255.0;
 }
 
-glm::dvec3 Texture::mean_codes() const {
+glm::dvec3 Texture::mean_color() const {
+  const auto& linear = linear_of_code();
   glm::dvec3 sum(0.0);
-  for (const Texel& codes : texels_) sum += glm::dvec3(codes[0], codes[1], codes[2]);
-  return sum / (255.0 * static_cast<double>(texels_.size()));
+  for (const auto& [red, green, blue] : texels_) {
+    sum += glm::dvec3(linear[red], linear[green], linear[blue]);
+  }
+  return sum / static_cast<double>(texels_.size());
 }
 
 /// Bilinear, of what `value` makes of a texel's codes.

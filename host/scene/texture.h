@@ -43,8 +43,8 @@ class Texture {
   /// The least of the red codes, from 0 to 1.
   [[nodiscard]] double min_code() const;
 
-  /// The mean of all texels' codes, from 0 to 1: for pictures whose codes are numbers, not colours.
-  [[nodiscard]] glm::dvec3 mean_codes() const;
+  /// The mean of all texels' scene-linear colours.
+  [[nodiscard]] glm::dvec3 mean_color() const;
 
   /// Scene-linear colour, between the four nearest texels' middles in proportion (bilinear). Not
   /// finite coordinates count as 0.

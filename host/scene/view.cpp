@@ -178,7 +178,7 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
   Material& material = scene.materials.emplace_back();
   material.name = "ground";
   material.illumination_model = 10;
-  scene.objects.emplace_back("ground");
+  scene.objects.push_back("ground");
 }
 
 }  // namespace raygate

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "host/light/environment.h"
 #include "host/light/test/light_scenes.h"
 #include "host/scene/camera.h"
 
@@ -22,13 +25,40 @@ Camera camera_from(const glm::dvec3& eye) {
   return Camera::look_at(eye, glm::dvec3(0.0), {0, 1, 0}, 35.0, 1.0);
 }
 
-TEST(DefaultLights, AreOneLightAboveTheCameraAndASky) {
+TEST(DefaultLights, AreOneLightAboveTheCameraAndAStudio) {
   const auto lights = default_lights(square(matte(glm::vec3(0.5f))), camera_from({0, 0, 5}));
   ASSERT_TRUE(lights && lights->points.size() == 1);
   EXPECT_LT(lights->points[0].position.x, 0.0f);
   EXPECT_GT(lights->points[0].position.y, 0.0f);
   EXPECT_GT(lights->points[0].position.z, 0.0f);
   EXPECT_NE(lights->background, glm::vec3(0.0f));
+  // What mirrors show of it is not one colour; its mean is what the camera sees.
+  ASSERT_TRUE(lights->studio);
+  const auto [least, most] = std::ranges::minmax(lights->studio->texels, {},
+                                                 [](const glm::vec3& texel) { return texel.g; });
+  EXPECT_GT(most.g, 10.0f * least.g);
+  const glm::dvec3 mean = Environment(*lights->studio, false).mean_radiance();
+  EXPECT_LT(glm::length(mean - glm::dvec3(lights->background)), 1e-3);
+}
+
+// Whatever faces the camera, and is white, is not clipped; by paths next to nothing is.
+TEST(DefaultLights, LeaveWhiteBelowOne) {
+  Scene scene;
+  add(scene, test::sphere(4), matte(glm::vec3(1.0f)));
+  for (const double side : {-3.0, 0.0, 3.0}) {
+    const Camera camera = camera_from({side, 1.5, 4});
+    for (const bool is_first_look : {false, true}) {
+      RenderOptions options = test::light(IntegratorKind::kWhitted, 32, 32, 1);
+      options.lights =
+          is_first_look ? preview_lights(scene, camera) : default_lights(scene, camera);
+      float most = 0.0f;
+      for (const glm::vec4& color : test::film_of(scene, camera, options).color) {
+        most = std::max({most, color.r, color.g, color.b});
+      }
+      EXPECT_LE(most, 1.0f);
+      EXPECT_GT(most, 0.7f);
+    }
+  }
 }
 
 TEST(DefaultLights, AreNoneWhereItIsNotDark) {
@@ -60,6 +90,20 @@ TEST(PreviewLights, TakeALabelThatGlowsForNoLight) {
       << "who gives a camera gives the light";
   const auto lights = preview_lights(scene, camera_from({0, 0, 5}));
   EXPECT_TRUE(lights && lights->points.size() == 2);
+}
+
+// A picture that glows faintly is no light; one that is bright is.
+TEST(DefaultLights, StayWherePicturesGlow) {
+  Scene scene = square(matte(glm::vec3(0.5f)));
+  Material screen = emitter(glm::vec3(1.0f));
+  screen.emission_map.texture = 0;
+  scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{10, 10, 10}});
+  add(scene, rectangle({-1, -1, 0.1f}, {2, 0, 0}, {0, 2, 0}), screen);
+  EXPECT_TRUE(default_lights(scene, camera_from({0, 0, 5})));
+  EXPECT_TRUE(preview_lights(scene, camera_from({0, 0, 5})));
+  scene.textures[0] = Texture(1, 1, {{255, 255, 255}});
+  EXPECT_FALSE(default_lights(scene, camera_from({0, 0, 5})));
+  EXPECT_FALSE(preview_lights(scene, camera_from({0, 0, 5})));
 }
 
 TEST(PreviewLights, StandAtACameraWithinTheScene) {

@@ -95,6 +95,24 @@ TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
   }
 }
 
+// KHR_materials_specular: without weight facets reflect nothing; its colour is that of what they
+// reflect straight on.
+TEST(MetallicRoughnessLobes, ReflectBySpecularWeightAndColor) {
+  Material material = facets(0.0f, 0.3f);
+  const Triple<float> plain = seen(material, 0.0).facets().f0;
+  material.metallic_roughness->specular_color = {1.0f, 0.5f, 0.0f};
+  const Triple<float> colored = seen(material, 0.0).facets().f0;
+  EXPECT_EQ(colored.x, plain.x);
+  EXPECT_EQ(colored.y, 0.5f * plain.x);
+  EXPECT_EQ(colored.z, 0.0f);
+  material.metallic_roughness->specular = 0.0f;
+  for (const double angle : {0.0, 1.4}) {
+    const Triple<float> none = seen(material, angle).glossy();
+    EXPECT_EQ(none.x, 0.0f);
+    EXPECT_EQ(none.z, 0.0f);
+  }
+}
+
 // The white furnace: of light from all sides no more comes back than was there. What facets hide
 // from each other is missing.
 TEST(MetallicRoughnessLobes, MakeNoEnergy) {

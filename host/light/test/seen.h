@@ -18,7 +18,7 @@ inline Bsdf<float> seen(const Material& material, double angle) {
   const SurfaceHit places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
   const MaterialParameters parameters(material);
   const MaterialParameters* const materials[] = {&parameters};
-  const HitKind kind = parameters.kind | weights_needed(places[0]);
+  const HitKind kind = parameters.kind | weights_needed(scene, places[0]);
   return {surface_at<float>(scene, bvh, kind, places), kind, materials};
 }
 

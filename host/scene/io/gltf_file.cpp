@@ -25,6 +25,9 @@ constexpr std::string_view kKnown[] = {"KHR_lights_punctual",     "KHR_materials
                                        "KHR_materials_clearcoat", "KHR_materials_volume",
                                        "KHR_materials_sheen",     "KHR_materials_variants"};
 
+constexpr std::string_view kCompressions[] = {"KHR_draco_mesh_compression",
+                                              "EXT_meshopt_compression", "KHR_meshopt_compression"};
+
 /// Files that are read beside the first one.
 struct Reading {
   std::vector<std::filesystem::path>* files;
@@ -119,16 +122,27 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
   } catch (const std::exception& thrown) {
     error = thrown.what();
   }
-  if (!is_read) fail("not a glTF 2.0 file that can be read: " + first_line(error));
+  if (!is_read) {
+    // The library may stumble over what only the extension explains.
+    for (const std::string_view extension : kCompressions) {
+      if (json.find(extension) != std::string_view::npos) fail_extension(std::string(extension));
+    }
+    fail("not a glTF 2.0 file that can be read: " + first_line(error));
+  }
   if (!model_.asset.version.starts_with("2.")) {
     fail("glTF version " + in_quotes(model_.asset.version) + ", expected 2.0");
   }
   for (const std::string& extension : model_.extensionsRequired) {
-    if (std::ranges::find(kKnown, extension) == std::end(kKnown)) {
-      fail("found the extension " + in_quotes(extension) +
-           ", which is not read; expected an export without it (as without compression)");
-    }
+    if (std::ranges::find(kKnown, extension) == std::end(kKnown)) fail_extension(extension);
   }
+}
+
+void GltfFile::fail_extension(const std::string& extension) const {
+  const bool is_compressed = std::ranges::find(kCompressions, extension) != std::end(kCompressions);
+  fail("found the extension " + in_quotes(extension) + ", which is not read; expected " +
+       (is_compressed ? "a file without compression: exported with Compression off, or as "
+                        "`npx @gltf-transform/cli copy in.glb out.glb` writes it"
+                      : "an export without it"));
 }
 
 void GltfFile::warn_once(const std::string& what, std::vector<std::string>& warnings) const {

@@ -54,6 +54,7 @@ class GltfFile {
   struct Component;
   struct Elements;
   [[nodiscard]] Elements elements(int accessor, const char* what) const;
+  [[noreturn]] void fail_extension(const std::string& extension) const;
   [[noreturn]] void fail_index(const char* what, int index, std::size_t count) const;
 
   std::string name_;

@@ -51,11 +51,17 @@ struct PlacedLight {
   std::optional<SpotCone> spot;
 };
 
+/// glTF 2.0, 3.7.2.1: what has no normals is flat.
+LoadOptions as_specified(LoadOptions options) {
+  options.smooth_if_unsaid = false;
+  return options;
+}
+
 class GltfReader {
  public:
   GltfReader(const std::filesystem::path& path, const LoadOptions& options)
       : file_(path),
-        options_(options),
+        options_(as_specified(options)),
         builder_(file_.name()),
         meshes_(file_, scene_, options.textures) {}
 
@@ -279,7 +285,7 @@ class GltfReader {
   }
 
   const GltfFile file_;
-  const LoadOptions& options_;
+  const LoadOptions options_;
   Scene scene_;
   MeshBuilder builder_;  // of meshes that stand in one place
   GltfMeshes meshes_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "host/base/srgb.h"
@@ -44,6 +45,17 @@ glm::vec2 pair_in(const tinygltf::Value& value, const char* key, const glm::vec2
   return pair;
 }
 
+/// Three numbers, none negative; 1 each where they are not there.
+glm::vec3 three_in(const tinygltf::Value& value, const char* key) {
+  std::vector<double> numbers;
+  if (!value.Has(key) || !value.Get(key).IsArray()) return glm::vec3(1.0f);
+  for (int k = 0; k < 3; ++k) {
+    const tinygltf::Value& number = value.Get(key).Get(k);
+    numbers.push_back(number.IsNumber() ? number.GetNumberAsDouble() : 1.0);
+  }
+  return colour_of(numbers, std::numeric_limits<float>::max());
+}
+
 }  // namespace
 
 std::uint32_t GltfMaterials::number_of(int material) {
@@ -80,6 +92,7 @@ int GltfMaterials::texcoord_set(int material) {
   look(pbr.baseColorTexture);
   look(pbr.metallicRoughnessTexture);
   look(from.normalTexture);
+  look(from.emissiveTexture);
   return set;
 }
 
@@ -106,16 +119,6 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
     file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
   }
   return result;
-}
-
-glm::dvec3 GltfMaterials::mean_codes(int texture) {
-  const int source = file_.at(file_.model().textures, texture, "texture").source;
-  auto found = means_.find(source);
-  if (found == means_.end()) {
-    const std::optional<Texture> decoded = picture(texture, Texture::Content::kColour);
-    found = means_.emplace(source, decoded ? decoded->mean_codes() : glm::dvec3(1.0)).first;
-  }
-  return found->second;
 }
 
 MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& extensions,
@@ -196,12 +199,15 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
   material.emission = from.emissiveFactor.size() == 3
                           ? colour_of(from.emissiveFactor) * static_cast<float>(strength)
                           : glm::vec3(0.0f);
-  if (from.emissiveTexture.index >= 0 && material.emission != glm::vec3(0.0f)) {
-    const glm::dvec3 mean = mean_codes(from.emissiveTexture.index);
-    for (int k = 0; k < 3; ++k) {
-      material.emission[k] *= static_cast<float>(srgb_to_linear(255.0 * mean[k]));
-    }
-    file_.warn_once("textures of emission count by their mean", scene_.warnings);
+  if (material.emission != glm::vec3(0.0f)) {
+    material.emission_map =
+        map_of(from.emissiveTexture.index, from.emissiveTexture.extensions, colour);
+  }
+  const char* const specular = "KHR_materials_specular";
+  shares.specular =
+      static_cast<float>(in_unit(number_in(from.extensions, specular, "specularFactor", 1.0)));
+  if (const auto found = from.extensions.find(specular); found != from.extensions.end()) {
+    shares.specular_color = three_in(found->second, "specularColorFactor");
   }
   shares.transmission = static_cast<float>(
       in_unit(number_in(from.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0)));

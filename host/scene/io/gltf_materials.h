@@ -13,8 +13,8 @@ namespace raygate {
 
 /// Turns materials into those of a scene, each once, with their textures.
 ///
-/// Their terms are glTF's own. Textures of emission count by their mean; of opacity without a mask
-/// they are masks of one half. KHR_materials_unlit has no shading (illum 0).
+/// Their terms are glTF's own. Textures of opacity without a mask are masks of one half.
+/// KHR_materials_unlit has no shading (illum 0).
 class GltfMaterials {
  public:
   /// Without `textures` none is decoded.
@@ -34,8 +34,6 @@ class GltfMaterials {
                      Texture::Content content);
   /// Decoded; nothing, and a warning, where there is none.
   std::optional<Texture> picture(int texture, Texture::Content content);
-  /// Of all its texels, from 0 to 1; of a picture that is missing 1.
-  glm::dvec3 mean_codes(int texture);
 
   const GltfFile& file_;
   Scene& scene_;
@@ -43,8 +41,7 @@ class GltfMaterials {
   std::map<int, std::uint32_t> numbers_;  // of materials
   /// In the scene; kNoIndex: there is none.
   std::map<std::pair<int, Texture::Content>, std::uint32_t> texture_of_image_;
-  std::map<int, glm::dvec3> means_;  // by image
-  std::int64_t texels_ = 0;          // that were decoded
+  std::int64_t texels_ = 0;  // that were decoded
 };
 
 }  // namespace raygate

@@ -57,11 +57,18 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
     return found == primitive.attributes.end() ? -1 : found->second;
   };
   const int position = attribute("POSITION"), normal = attribute("NORMAL");
+  const int color = attribute("COLOR_0");
   if (position < 0)
     return file_.warn_once("a primitive without positions is left out", scene_.warnings);
   const std::size_t vertices = file_.count(position);
   count(vertices);
   const std::vector<double> positions = file_.vectors(position, 3, "POSITION");
+  std::vector<double> colors;
+  if (color >= 0) {
+    colors = file_.vectors(color, 3, "COLOR_0");
+    if (colors.size() != positions.size()) file_.fail("not as many colours as positions");
+    to.colors_are_linear();
+  }
   const int set = materials_.texcoord_set(primitive.material);
   const int texcoord = set < 0 ? -1 : attribute("TEXCOORD_" + std::to_string(set));
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
@@ -79,6 +86,7 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
       file_.fail("a vertex is beyond the range of float");
     }
     to.add_position(at);
+    if (color >= 0) to.add_color({colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]});
   }
   if (normal >= 0) add_normals(normal, glm::dmat3(world), sign, vertices, to);
   if (texcoord >= 0) add_texcoords(texcoord, vertices, to);
@@ -100,7 +108,9 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
     }
     to.add_face(face, 0);
   }
-  to.assign_faces(first_face, to.face_count(), materials_.number_of(primitive.material), object);
+  const std::uint32_t material = materials_.number_of(primitive.material);
+  if (primitive.material < 0 && color >= 0) scene_.materials[material].diffuse = glm::vec3(1.0f);
+  to.assign_faces(first_face, to.face_count(), material, object);
 }
 
 void GltfMeshes::add_normals(int accessor, const glm::dmat3& world, double sign,

@@ -51,6 +51,7 @@ class TextureLoader {
       material.diffuse_texture = number_of(material.diffuse_map, Texture::Content::kColour);
     }
     load(material.normal_map, Texture::Content::kColour);
+    load(material.emission_map, Texture::Content::kColour);
     load(material.opacity_map, Texture::Content::kOpacity);
     if (material.opacity_map.texture != kNoIndex &&
         scene_.textures[material.opacity_map.texture].min_code() >= material.opacity_cutoff) {

@@ -4,11 +4,18 @@
 #include <cmath>
 
 #include "host/base/input_error.h"
+#include "host/base/srgb.h"
 #include "host/exact/exact_sign.h"
 #include "host/scene/io/ear_clipper.h"
 #include "host/scene/io/smooth_normals.h"
 
 namespace raygate {
+
+namespace {
+
+constexpr glm::vec3 kNoColor(-1.0f);
+
+}  // namespace
 
 // Counts what happens often, and says so once, with the first line where it did.
 class MeshBuilder::WarningCount {
@@ -46,6 +53,21 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
     origin[axis] = std::abs(steps) < 0x1p53 ? steps * step + 0.0 : centre[axis];
   }
   return origin;
+}
+
+void MeshBuilder::add_color(const glm::vec3& color) {
+  colors_.resize(positions_.size() - 1, kNoColor);
+  colors_.push_back(glm::max(color, glm::vec3(0.0f)));
+}
+
+glm::vec3 MeshBuilder::linear_color(std::size_t position, float white) const {
+  if (position >= colors_.size() || colors_[position] == kNoColor) return glm::vec3(1.0f);
+  glm::vec3 color = colors_[position];
+  if (has_linear_colors_) return color;
+  for (int k = 0; k < 3; ++k) {
+    color[k] = static_cast<float>(srgb_to_linear(255.0 * double{color[k]} / double{white}));
+  }
+  return color;
 }
 
 void MeshBuilder::add_normal(const glm::dvec3& normal) {
@@ -95,6 +117,8 @@ void MeshBuilder::append(MeshBuilder&& part) {
   };
   const std::size_t corners = corners_.size();
   for (Face& face : part.faces_) face.end += corners;
+  if (!part.colors_.empty()) colors_.resize(positions_.size(), kNoColor);
+  add(colors_, part.colors_);
   add(positions_, part.positions_);
   add(normals_, part.normals_);
   add(texcoords_, part.texcoords_);
@@ -133,10 +157,14 @@ void MeshBuilder::recentre(Scene& scene) {
   }
   scene.origin = box.is_empty() ? glm::dvec3(0.0) : origin_for_box(box.low, box.high);
   scene.positions.resize(used);
+  scene.colors.resize(colors_.empty() ? 0 : used);
+  const bool is_bytes = std::ranges::any_of(colors_, [](const glm::vec3& color) {
+    return glm::any(glm::greaterThan(color, glm::vec3(1.0f)));
+  });
   for (std::size_t i = 0; i < positions_.size(); ++i) {
-    if (new_index[i] != kNoIndex) {
-      scene.positions[new_index[i]] = glm::vec3(positions_[i] - scene.origin);
-    }
+    if (new_index[i] == kNoIndex) continue;
+    scene.positions[new_index[i]] = glm::vec3(positions_[i] - scene.origin);
+    if (!colors_.empty()) scene.colors[new_index[i]] = linear_color(i, is_bytes ? 255.0f : 1.0f);
   }
   for (Corner& corner : corners_) corner.position = new_index[corner.position];
 }
@@ -216,12 +244,18 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   }
   scene.normals = std::move(normals_);
   scene.texcoords = std::move(texcoords_);
-  if (options.smooth || !groups.empty()) add_smooth_normals(groups, options.smooth, scene);
+  if (options.smooth || !groups.empty()) {
+    add_smooth_normals(groups, options.smooth, scene);
+  } else if (options.smooth_if_unsaid && !is_smoothing_said_ && scene.normals.empty()) {
+    add_smooth_normals(groups, LoadOptions::kSmoothAngle, scene, FlatFaces::kStayFlat);
+  }
 }
 
 void MeshBuilder::build_plain(const LoadOptions& options, Scene& scene) {
   build(options, scene);
-  scene.materials.emplace_back().name = "default";
+  Material& material = scene.materials.emplace_back();
+  material.name = "default";
+  if (!scene.colors.empty()) material.diffuse = glm::vec3(1.0f);
   scene.objects = {"default"};
   scene.files = {file_name_};
 }

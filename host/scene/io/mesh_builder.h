@@ -27,6 +27,10 @@ class MeshBuilder {
   explicit MeshBuilder(std::string file_name) : file_name_(std::move(file_name)) {}
 
   void add_position(const glm::dvec3& position) { positions_.push_back(position); }
+  /// Gives the last position a colour: of sRGB codes from 0 to 1 or, where the file has one above
+  /// 1, to 255; or scene-linear.
+  void add_color(const glm::vec3& color);
+  void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   void add_normal(const glm::dvec3& normal);
 
@@ -62,6 +66,8 @@ class MeshBuilder {
     others_.expand(box.low);
     others_.expand(box.high);
   }
+  /// The file says what is smooth, if only that nothing is.
+  void smoothing_is_said() { is_smoothing_said_ = true; }
   /// No face with an area is no error.
   void allow_empty() { may_be_empty_ = true; }
 
@@ -86,15 +92,18 @@ class MeshBuilder {
                                       std::size_t line) const;
   void check_indices() const;
   void recentre(Scene& scene);
+  [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
   [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,
                                                        Scene& scene) const;
 
   std::string file_name_;
   Bounds3 others_;
-  bool may_be_empty_ = false;
+  bool may_be_empty_ = false, is_smoothing_said_ = false;
   Counts earlier_;
   std::vector<glm::dvec3> positions_;
+  std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
+  bool has_linear_colors_ = false;
   std::vector<glm::vec3> normals_;
   std::vector<glm::vec2> texcoords_;
   std::vector<Corner> corners_;

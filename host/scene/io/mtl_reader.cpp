@@ -51,8 +51,9 @@ constexpr std::array<TextureOption, 14> kTextureOptions{{{"-blendu", 1},
                                                          {"-cc", 1},
                                                          {"-colorspace", 1}}};
 
-/// Pictures: of colour, roughness, metalness, opacity and normals.
-constexpr std::array<std::string_view, 5> kMaps{"map_Kd", "map_Pr", "map_Pm", "map_d", "norm"};
+/// Pictures: of colour, emission, roughness, metalness, opacity and normals.
+constexpr std::array<std::string_view, 6> kMaps{"map_Kd", "map_Ke", "map_Pr",
+                                                "map_Pm", "map_d",  "norm"};
 
 std::string shortest(double number) {
   char text[32];
@@ -68,6 +69,9 @@ glm::vec3* colour_of(Material& material, glm::vec3& unused, std::string_view key
   if (keyword == "Tf") return &material.transmittance;
   return keyword == "Ka" ? &unused : nullptr;
 }
+
+/// Models of glass, of which an opacity of 1 says nothing.
+bool is_clear(int model) { return model == 4 || model == 6 || model == 7 || model == 9; }
 
 }  // namespace
 
@@ -86,6 +90,7 @@ std::optional<std::filesystem::path> find_file(const std::filesystem::path& fold
 std::vector<Material> MtlReader::read() {
   while (const auto statement = lines().next()) read_statement(*statement);
   finish_material();
+  settle_transparency();
   return std::move(materials_);
 }
 
@@ -111,10 +116,30 @@ void MtlReader::read_statement(std::string_view statement) {
   }
 }
 
+/// Tr is the transparency; MeshLab and others write the opacity. That is told by a comment that
+/// names MeshLab, or by a Tr 1, which would hide a surface altogether, in a file without a Tr 0.
+void MtlReader::settle_transparency() {
+  const auto any = [&](double tr) {
+    return std::ranges::find(transparencies_, tr, &Transparency::tr) != transparencies_.end();
+  };
+  const bool is_meshlab = lines().has("MeshLab") || lines().has("Meshlab");
+  if (transparencies_.empty() || !(is_meshlab || (any(1.0) && !any(0.0)))) return;
+  for (const auto& [material, line, tr] : transparencies_) {
+    materials_[material].opacity = static_cast<float>(tr);
+  }
+  lines().go_to(transparencies_.front().line);
+  warn("Tr is read as the opacity, as MeshLab writes it, in all of the file");
+}
+
 /// Any of the PBR statements makes a material metallic and rough. What they leave out is what
 /// exporters have that write them: no metal, and Ns = 1000 (1 - roughness)^2.
 void MtlReader::finish_material() {
   if (!is_kept_) return;
+  if (transparency_ && !has_opacity_ && !is_clear(material_.illumination_model)) {
+    transparencies_.push_back(*transparency_);
+  }
+  // A highlight that covers the half of all directions has no shape: exporters write Ns 0 for none.
+  if (material_.illumination_model == 2 && has_no_shine_) material_.specular = glm::vec3(0.0f);
   const bool has_maps = material_.metallic_roughness.has_value();  // begun by map_Pr or map_Pm
   if (has_maps || roughness_ || metallic_) {
     if (!has_maps) material_.metallic_roughness.emplace();
@@ -137,9 +162,10 @@ void MtlReader::begin_material(std::string_view name) {
   finish_material();
   material_ = {};
   roughness_ = metallic_ = std::nullopt;
+  transparency_ = std::nullopt;
   material_.name = name;
   in_material_ = true;
-  has_diffuse_ = has_opacity_ = false;
+  has_diffuse_ = has_emission_ = has_opacity_ = has_no_shine_ = false;
   is_kept_ = !name.empty() && names_.emplace(name).second;
   if (name.empty()) {
     warn("newmtl without a name: nothing can use this material, ignored");
@@ -173,6 +199,7 @@ void MtlReader::read_colour(std::string_view keyword, std::string_view words, gl
                  " numbers, expected red, green and blue, or one for all three");
   }
   has_diffuse_ = has_diffuse_ || keyword == "Kd";
+  has_emission_ = has_emission_ || keyword == "Ke";
   colour = {rgb[0], rgb[1], rgb[2]};
 }
 
@@ -202,6 +229,7 @@ void MtlReader::read_value(std::string_view keyword, std::string_view words) {
     material_.illumination_model = static_cast<int>(number);
   } else if (keyword == "Ns") {
     material_.shininess = static_cast<float>(number);
+    has_no_shine_ = number == 0.0;
   } else if (keyword == "Pr") {
     roughness_ = static_cast<float>(number);
   } else if (keyword == "Pm") {
@@ -213,6 +241,7 @@ void MtlReader::read_value(std::string_view keyword, std::string_view words) {
     has_opacity_ = true;
   } else if (!has_opacity_) {  // Tr
     material_.opacity = static_cast<float>(1.0 - number);
+    transparency_ = {materials_.size(), lines().line(), number};
   }
 }
 
@@ -252,6 +281,9 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
   if (keyword == "norm") {
     material_.normal_map = {file, mapping};
     material_.normal_scale = normal_scale;
+  } else if (keyword == "map_Ke") {
+    if (!has_emission_) material_.emission = glm::vec3(1.0f);  // as map_Kd without Kd
+    material_.emission_map = {file, mapping};
   } else if (keyword == "map_d") {
     material_.opacity_map = {file, mapping};
   } else if (keyword == "map_Kd") {

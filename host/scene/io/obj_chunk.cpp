@@ -62,6 +62,7 @@ void ObjChunk::read_statement(std::string_view statement) {
   if (keyword == "v") {
     const auto numbers = read_numbers(keyword, words);
     mesh_.add_position({numbers[0], numbers[1], numbers[2]});
+    if (numbers.size() >= 6) mesh_.add_color({numbers[3], numbers[4], numbers[5]});
   } else if (keyword == "vn") {
     const auto numbers = read_numbers(keyword, words);
     mesh_.add_normal({numbers[0], numbers[1], numbers[2]});

@@ -46,7 +46,7 @@ class ObjReader final : public StatementReader {
   void read(const LoadOptions& options) {
     read_statements(options);
     mesh_.build(options, scene_);
-    scene_.objects = objects_.names();
+    scene_.objects = NameList(objects_.names());
     scene_.files = {mtl_.files().begin(), mtl_.files().end()};
     scene_.files.emplace_back(lines().file_name());
     assign_materials();
@@ -135,6 +135,7 @@ class ObjReader final : public StatementReader {
   }
 
   void set_smoothing(std::string_view words) {
+    mesh_.smoothing_is_said();
     const std::string_view word = take_token_before_comment(words);
     const char* const end = word.data() + word.size();
     smoothing_group_ = 0;
@@ -150,6 +151,10 @@ class ObjReader final : public StatementReader {
   /// Names become materials at the end of the file, so that mtllib may come after usemtl.
   void assign_materials() {
     scene_.materials = mtl_.materials();
+    // Scanners write a texture and the same colours once more.
+    for (Material& material : scene_.materials) {
+      material.has_vertex_colors = material.diffuse_map.empty();
+    }
     std::uint32_t default_material = kNoIndex;
     std::vector<std::uint32_t> materials;
     const std::vector<std::string>& names = materials_.names();
@@ -165,7 +170,9 @@ class ObjReader final : public StatementReader {
       if (triangle.material != kNoIndex) continue;
       if (default_material == kNoIndex) {
         default_material = static_cast<std::uint32_t>(scene_.materials.size());
-        scene_.materials.emplace_back().name = "default";
+        Material& material = scene_.materials.emplace_back();
+        material.name = "default";
+        if (!scene_.colors.empty()) material.diffuse = glm::vec3(1.0f);
       }
       triangle.material = default_material;
     }

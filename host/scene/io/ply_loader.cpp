@@ -53,11 +53,10 @@ class PlyReader {
       if (element.name == "vertex" && !has_vertices) {
         read_vertices(element);
         has_vertices = true;
-        if (element.find("red")) {
-          scene.warnings.push_back(name_ + ": colours of vertices are not read");
-        }
       } else if (element.name == "face" && has_vertices) {
         read_faces(element);
+      } else if (element.name == "tristrips" && has_vertices) {
+        read_strips(element);
       } else if (!element.properties.empty()) {
         for (long long i = 0; i < element.count; ++i) {
           for (const Property& property : element.properties) skip(property);
@@ -193,47 +192,116 @@ class PlyReader {
   }
 
   void read_vertices(const Element& element) {
-    constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+    constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
+    constexpr int kColor = 6, kCount = 9;
     std::vector<int> place(element.properties.size(), -1);
     int found = 0;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < kCount; ++i) {
       const auto at = element.find(kNames[i]);
       if (!at || element.properties[*at].count_type) continue;
       place[*at] = i;
       found |= 1 << i;
     }
     if ((found & 7) != 7) fail("vertices without x, y and z");
-    has_normals_ = found == 63;
+    has_normals_ = (found & 070) == 070;
+    const bool has_colors = (found & 0700) == 0700;
     for (long long i = 0; i < element.count; ++i) {
-      double values[6] = {};
+      double values[kCount] = {};
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const Property& property = element.properties[p];
-        if (place[p] < 0 || (place[p] >= 3 && !has_normals_)) {
+        const int at = place[p];
+        if (at < 0 || (at >= kColor ? !has_colors : at >= 3 && !has_normals_)) {
           skip(property);
+        } else if (at >= kColor) {
+          values[at] = take(property.type, property.name) / largest_code(property.type);
         } else {
           values[place[p]] =
               place[p] < 3 ? take(property.type, property.name) : take_any(property.type);
         }
       }
       mesh_.add_position({values[0], values[1], values[2]});
+      if (has_colors) mesh_.add_color({values[kColor], values[kColor + 1], values[kColor + 2]});
       if (!has_normals_) continue;
       const glm::dvec3 normal(values[3], values[4], values[5]);
       mesh_.add_normal(is_finite(normal) ? normal : glm::dvec3(0.0));
     }
   }
 
-  void read_faces(const Element& element) {
+  /// What stands for 1 in a colour of that type.
+  [[nodiscard]] static double largest_code(NumberType type) {
+    return type == NumberType::kUint8 ? 255.0 : type == NumberType::kUint16 ? 65535.0 : 1.0;
+  }
+
+  /// Which property lists the vertices of a face or a strip.
+  [[nodiscard]] std::size_t index_list(const Element& element) const {
     auto list = element.find("vertex_indices");
     if (!list) list = element.find("vertex_index");
     if (!list || !element.properties[*list].count_type) {
-      fail("faces without a list vertex_indices");
+      fail("element " + element.name + " without a list vertex_indices");
     }
+    return *list;
+  }
+
+  /// From 1, as a face's corner has it.
+  [[nodiscard]] std::int32_t position_of(double index) const {
+    if (!(index >= 0.0 && index < 2147483647.0) || std::floor(index) != index) {
+      fail("a vertex index: expected a whole number from 0 to 2147483646");
+    }
+    return static_cast<std::int32_t>(index) + 1;
+  }
+
+  [[nodiscard]] FileCorner corner_of(std::int32_t position) const {
+    return {position, 0, has_normals_ ? position : 0};
+  }
+
+  /// Strips of triangles: each vertex makes one with the two before it, every second one turned
+  /// round; -1 begins another strip.
+  void read_strips(const Element& element) {
+    const std::size_t list = index_list(element);
+    for (long long i = 0; i < element.count; ++i) {
+      const std::size_t strip_line = line();
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const Property& property = element.properties[p];
+        if (p != list) {
+          skip(property);
+          continue;
+        }
+        std::int32_t before[2] = {};
+        bool is_odd = false;
+        int known = 0;
+        const long long count = take_count(property);
+        for (long long k = 0; k < count; ++k) {
+          const double index = take(property.type, "a vertex index");
+          if (index == -1.0) {
+            known = 0;
+            is_odd = false;
+            continue;
+          }
+          const std::int32_t position = position_of(index);
+          const bool is_flat =
+              position == before[0] || position == before[1] || before[0] == before[1];
+          if (known == 2 && !is_flat) {  // such only lead to where the strip goes on
+            const FileCorner corners[] = {corner_of(before[is_odd ? 1 : 0]),
+                                          corner_of(before[is_odd ? 0 : 1]), corner_of(position)};
+            mesh_.add_face(corners, strip_line);
+          }
+          if (known == 2) is_odd = !is_odd;
+          known = std::min(known + 1, 2);
+          before[0] = before[1];
+          before[1] = position;
+        }
+      }
+    }
+  }
+
+  void read_faces(const Element& element) {
+    const std::size_t list = index_list(element);
     std::vector<FileCorner> corners;
     for (long long i = 0; i < element.count; ++i) {
       const std::size_t face_line = line();
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const Property& property = element.properties[p];
-        if (p != *list) {
+        if (p != list) {
           skip(property);
           continue;
         }
@@ -241,11 +309,7 @@ class PlyReader {
         const long long count = take_count(property);
         for (long long k = 0; k < count; ++k) {
           const double index = take(property.type, "a vertex index");
-          if (!(index >= 0.0 && index < 2147483647.0) || std::floor(index) != index) {
-            fail("a vertex index: expected a whole number from 0 to 2147483646");
-          }
-          const auto position = static_cast<std::int32_t>(index) + 1;
-          corners.push_back({position, 0, has_normals_ ? position : 0});
+          corners.push_back(corner_of(position_of(index)));
         }
       }
       if (corners.size() < 3) {

@@ -204,15 +204,17 @@ Scene load_scene(const SceneFile& file, const LoadOptions& options) {
   Scene scene = load_scene(file.obj, kept);
   for (const InstanceSetting& setting : file.instances) {
     Scene model = load_scene(setting.model, flat);
-    const std::vector<std::string> objects = std::move(model.objects);
+    const NameList objects = std::move(model.objects);
     MeshInstancer instancer(scene, std::move(model));
+    std::size_t object = scene.objects.size();
+    scene.objects.append(objects, setting.transforms.size());
     for (const glm::dmat4& transform : setting.transforms) {
-      if (!instancer.add(transform, static_cast<std::uint32_t>(scene.objects.size()))) {
+      if (!instancer.add(transform, static_cast<std::uint32_t>(object))) {
         throw InputError(
             file.file.string(), setting.line,
             "an instance of " + setting.model.string() + " is beyond the range of float");
       }
-      scene.objects.insert(scene.objects.end(), objects.begin(), objects.end());
+      object += objects.size();
     }
   }
   if (!options.keep_instances) resolve_instances(scene, InstanceMode::kFlatten, file.file);

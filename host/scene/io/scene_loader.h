@@ -18,6 +18,10 @@ struct LoadOptions {
   /// Faces without normals are smooth over edges at which they are at most so far apart, in degrees
   /// from 0 to 180; none: as the file's smoothing groups say, where it can have any.
   std::optional<double> smooth = {};
+  /// Without `smooth`, of an OBJ, PLY or STL file that has no normals and says nothing of
+  /// smoothing: faces that bend are smooth as by kSmoothAngle.
+  bool smooth_if_unsaid = false;
+  static constexpr double kSmoothAngle = 30.0;
   int threads = 1;                    ///< that read an OBJ file; the scene does not depend on them
   std::size_t chunk_size = 1u << 18;  ///< least bytes of the file that are worth a thread
 };

@@ -33,6 +33,9 @@ class TextLines {
   void begin_after(std::size_t lines) { lines_taken_ = lines; }
   [[nodiscard]] std::size_t lines_taken() const { return lines_taken_; }
 
+  /// Whether the file has `text` anywhere, comments included.
+  [[nodiscard]] bool has(std::string_view text) const { return text_.find(text) != text_.npos; }
+
   /// Makes line() and all that names it that of a statement given earlier.
   void go_to(std::size_t line) { statement_line_ = line; }
   /// The line (from 1) on which the statement begins that next() gave last.

@@ -68,7 +68,7 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
       [](Scene& s) {
         s.textures[0] = Texture(1, 2, {{1, 2, 3}, {4, 5, 6}});
       },
-      [](Scene& s) { s.objects.emplace_back("more"); },
+      [](Scene& s) { s.objects.push_back("more"); },
       [](Scene& s) { s.lights[0].intensity.r = 1.0; },
       [](Scene& s) { s.lights[0].spot->outer = 44.0; },
       [](Scene& s) { s.lights[0].spot.reset(); },

@@ -27,7 +27,7 @@ TEST(Ground, LiesUnderTheSceneAndLooksUp) {
       Scene scene = tetrahedron(1.0f);
       add_ground(scene, up);
       ASSERT_EQ(scene.triangles.size(), 6u);
-      EXPECT_EQ(scene.objects.back(), "ground");
+      EXPECT_EQ(scene.objects[1], "ground");
       EXPECT_EQ(scene.materials[scene.triangles[5].material].illumination_model, 10);
       const double lowest = sign * (sign > 0 ? axis + 1 : axis + 2);
       for (const std::size_t face : {4u, 5u}) {

@@ -45,7 +45,7 @@ TEST_F(LoadGltf, ASquare) {
   EXPECT_EQ(corner(scene, 1, 2), glm::dvec3(0, 1, 0));
   EXPECT_EQ(scene.normals[scene.triangles[1].normals[2]], glm::vec3(0, 0, 1));
   EXPECT_EQ(scene.triangles[0].texcoords[0], kNoIndex) << "no texture asks for them";
-  EXPECT_EQ(scene.objects, std::vector<std::string>{"square"});
+  EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"square"});
   EXPECT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.up, glm::dvec3(0, 1, 0));
   EXPECT_FALSE(scene.camera);
@@ -82,7 +82,7 @@ TEST_F(LoadGltf, MeshesOfSeveralNodesAreKeptOnceIfAskedFor) {
   EXPECT_EQ(kept.meshes.size(), 2u) << "one is mirrored";
   const Scene written = load(json);
   EXPECT_TRUE(written.instances.empty());
-  EXPECT_EQ(written.objects, (std::vector<std::string>{"one", "two", "three"}));
+  EXPECT_EQ(written.objects.all(), (std::vector<std::string>{"one", "two", "three"}));
   ASSERT_EQ(written.triangles.size(), 6u);
   EXPECT_EQ(kept.origin, written.origin);
   std::size_t number = 0;
@@ -229,6 +229,10 @@ TEST_F(LoadGltf, Materials) {
       R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.3}}})");
   EXPECT_EQ(glass.metallic_roughness->transmission, 1.0f);
   EXPECT_EQ(glass.refraction_index, 1.3f);
+  const Material dull = material(
+      R"({"extensions": {"KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [1, 2, 0]}}})");
+  EXPECT_EQ(dull.metallic_roughness->specular, 0.5f);
+  EXPECT_EQ(dull.metallic_roughness->specular_color, glm::vec3(1, 2, 0));
 }
 
 /// A BMP of one row: red, then blue.
@@ -261,6 +265,20 @@ TEST_F(LoadGltf, TexturesAreRightSideUp) {
   EXPECT_EQ(left, glm::vec3(1, 0, 0));
 }
 
+TEST_F(LoadGltf, ColorsOfVertices) {
+  std::string json = square_json(kOneNode);
+  const std::string position = R"("POSITION": 0)";
+  ASSERT_NE(json.find(position), std::string::npos);
+  json.replace(json.find(position), position.size(), position + R"(, "COLOR_0": 0)");
+  const Scene scene = load(json);
+  ASSERT_EQ(scene.colors.size(), scene.positions.size());
+  for (std::size_t i = 0; i < scene.colors.size(); ++i) {
+    EXPECT_EQ(glm::dvec3(scene.colors[i]), glm::dvec3(scene.positions[i]) + scene.origin)
+        << "linear numbers";
+  }
+  EXPECT_EQ(scene.materials[0].diffuse, glm::vec3(1.0f));
+}
+
 /// A TGA of one row: red and opaque, then blue and clear.
 std::string half_clear() {
   std::string bytes(18, '\0');
@@ -277,6 +295,7 @@ TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
   std::string json = square_json(kOneNode,
                                  R"(, "materials": [{"alphaMode": "MASK", "alphaCutoff": 0.25,
            "normalTexture": {"index": 0, "scale": 0.5},
+           "emissiveTexture": {"index": 0}, "emissiveFactor": [1, 0.5, 0],
            "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5],
                                     "metallicRoughnessTexture": {"index": 0}}}],
          "textures": [{"source": 0}], "images": [{"bufferView": 4, "mimeType": "image/tga"}])",
@@ -291,6 +310,8 @@ TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
   EXPECT_EQ(material.diffuse_texture, 0u);
   EXPECT_EQ(material.normal_map.texture, 0u);
   EXPECT_EQ(material.normal_scale, 0.5f);
+  EXPECT_EQ(material.emission_map.texture, 0u);
+  EXPECT_EQ(material.emission, glm::vec3(1.0f, 0.5f, 0.0f)) << "times the texture";
   EXPECT_EQ(material.metallic_roughness->map.texture, 0u);
   EXPECT_EQ(material.opacity_map.texture, 1u);
   EXPECT_EQ(material.opacity_cutoff, 0.5f) << "of the texture alone";
@@ -311,6 +332,13 @@ TEST_F(LoadGltf, WhatIsRefused) {
   expect_error(square_json(R"([{"mesh": 0, "scale": [1e300, 1, 1]}])"), "a vertex is beyond");
   expect_error(square_json(kOneNode, R"(, "extensionsRequired": ["KHR_draco_mesh_compression"])"),
                "found the extension 'KHR_draco_mesh_compression', which is not read");
+  for (const char* extension : {"EXT_meshopt_compression", "KHR_draco_mesh_compression"}) {
+    const std::string used = std::string(R"(, "extensionsUsed": [")") + extension + "\"]";
+    std::string broken = square_json(kOneNode, used);
+    broken.replace(broken.find(R"("buffer": 0)"), 11, R"("buffre": 0)");
+    expect_error(broken, "found the extension '" + std::string(extension) +
+                             "', which is not read; expected a file without compression");
+  }
   expect_error(
       square_json(kOneNode, R"(, "extras": )" + std::string(100, '[') + std::string(100, ']')),
       "JSON of more than 64 levels");

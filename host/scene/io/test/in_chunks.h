@@ -34,7 +34,7 @@ inline std::string outcome(const std::filesystem::path& file, LoadOptions option
       out << t.material << " " << t.object << "\n";
     }
     for (const Material& material : scene.materials) out << material.name << "\n";
-    for (const std::string& object : scene.objects) out << object << "\n";
+    for (const std::string& object : scene.objects.all()) out << object << "\n";
     for (const auto& read : scene.files) out << read << "\n";
     for (const std::string& warning : scene.warnings) out << warning << "\n";
   } catch (const InputError& error) {

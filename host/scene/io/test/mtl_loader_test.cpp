@@ -88,6 +88,29 @@ TEST_F(LoadMtl, TransparencyIsTheOppositeOfOpacity) {
   EXPECT_EQ(material("newmtl a\nd 0.5\nTr 0.9\n").opacity, 0.5f);
 }
 
+TEST_F(LoadMtl, TrIsTheOpacityWhereItsWriterMeansThat) {
+  const auto opacity = [&](std::string_view mtl) { return load(mtl).materials.at(0).opacity; };
+  EXPECT_EQ(opacity("newmtl a\nTr 1.0\nillum 2\n"), 1.0f) << "else nothing were seen";
+  EXPECT_EQ(warning("newmtl a\nTr 1\n"),
+            "m.mtl:2: Tr is read as the opacity, as MeshLab writes it, in all of the file");
+  const Scene mixed = load("newmtl a\nTr 0.75\nnewmtl b\nTr 1\n");
+  EXPECT_EQ(mixed.materials[0].opacity, 0.75f);
+  EXPECT_EQ(mixed.materials[1].opacity, 1.0f);
+  const Scene both = load("newmtl a\nTr 0\nnewmtl b\nTr 1\n");
+  EXPECT_EQ(both.materials[0].opacity, 1.0f) << "a writer that means the transparency";
+  EXPECT_EQ(both.materials[1].opacity, 0.0f);
+  EXPECT_EQ(opacity("# Converted by Meshlab Group\nnewmtl a\nTr 0.25\n"), 0.25f);
+  EXPECT_EQ(opacity("newmtl a\nd 0.5\nTr 1\n"), 0.5f);
+  EXPECT_EQ(opacity("newmtl a\nTr 1\nillum 4\n"), 0.0f) << "clear glass";
+}
+
+TEST_F(LoadMtl, WithoutShineThereIsNoHighlight) {
+  EXPECT_EQ(material("newmtl a\nKs 1 1 1\nillum 2\nNs 0.0\n").specular, glm::vec3(0.0f));
+  EXPECT_EQ(material("newmtl a\nKs 1 1 1\nillum 3\nNs 0\n").specular, glm::vec3(1.0f))
+      << "a mirror";
+  EXPECT_EQ(material("newmtl a\nKs 1 1 1\nillum 2\n").specular, glm::vec3(1.0f));
+}
+
 TEST_F(LoadMtl, ATextureWithoutKdStandsAsItIs) {
   folder_.write("t.png", kPicture);
   EXPECT_EQ(material("newmtl a\nmap_Kd t.png\n").diffuse, glm::vec3(1));
@@ -135,8 +158,10 @@ TEST_F(LoadMtl, MapsOfRoughnessMetalnessOpacityAndNormals) {
   folder_.write("whole.tga", tga(1, 1, {{200, 200, 200}}));
   const Scene scene = load(
       "newmtl a\nmap_Pr rough.tga\nmap_Pm -s 2 metal.tga\nmap_d hole.tga\nnorm -bm 0.5 "
-      "rough.tga\n");
+      "rough.tga\nmap_Ke metal.tga\n");
   EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_EQ(scene.materials[0].emission, glm::vec3(1.0f)) << "as the texture has it";
+  EXPECT_EQ(scene.textures.at(scene.materials[0].emission_map.texture).texels().at(1)[0], 204);
   const Material& m = scene.materials[scene.triangles[0].material];
   ASSERT_TRUE(m.metallic_roughness);
   EXPECT_EQ(m.metallic_roughness->roughness, 1.0f);
@@ -144,8 +169,9 @@ TEST_F(LoadMtl, MapsOfRoughnessMetalnessOpacityAndNormals) {
   EXPECT_EQ(m.metallic_roughness->map.mapping.scale, glm::vec2(2, 1));
   const Texture& both = scene.textures.at(m.metallic_roughness->map.texture);
   EXPECT_EQ(both.width(), 2);
-  EXPECT_NEAR(both.mean_codes().g, 51 / 255.0, 1e-9);
-  EXPECT_NEAR(both.mean_codes().b, 153 / 255.0, 1e-9);
+  EXPECT_EQ(both.texels().at(0)[1], 51);
+  EXPECT_EQ(both.texels().at(0)[2], 102);
+  EXPECT_EQ(both.texels().at(1)[2], 204);
   EXPECT_EQ(m.normal_scale, 0.5f);
   EXPECT_NE(m.normal_map.texture, kNoIndex);
   ASSERT_NE(m.opacity_map.texture, kNoIndex);

@@ -4,6 +4,7 @@
 #include <clocale>
 
 #include "host/base/input_error.h"
+#include "host/base/srgb.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/in_chunks.h"
@@ -46,7 +47,7 @@ TEST(LoadObj, Triangle) {
   EXPECT_EQ(vertices_of(scene), kOneTriangle);
   EXPECT_EQ(scene.triangles[0].normals, (Indices{kNoIndex, kNoIndex, kNoIndex}));
   EXPECT_EQ(scene.triangles[0].texcoords, (Indices{kNoIndex, kNoIndex, kNoIndex}));
-  EXPECT_EQ(scene.objects, std::vector<std::string>{"default"});
+  EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"default"});
   ASSERT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.materials[0].name, "default");
   EXPECT_EQ(scene.origin, glm::dvec3(0));
@@ -85,7 +86,7 @@ TEST(LoadObj, LineEnds) {
     }
     const Scene scene = load(text);
     EXPECT_EQ(vertices_of(scene), kTwoTriangles);
-    EXPECT_EQ(scene.objects, std::vector<std::string>{"a"});
+    EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"a"});
     EXPECT_EQ(only_warning(scene),
               "scene.obj:6: material 'b' is defined nowhere, the default instead");
   }
@@ -154,6 +155,12 @@ TEST(LoadObj, WeightsAndColoursOfVertices) {
   const Scene coloured = load("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0 1\nf 1 2 3\n");
   EXPECT_EQ(coloured.positions, (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_TRUE(coloured.warnings.empty());
+  EXPECT_EQ(coloured.colors, (Positions{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(coloured.materials[0].diffuse, glm::vec3(1)) << "colours as they are";
+  const Scene bytes = load("v 0 0 0 255 0 51\nv 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n");
+  const auto fifth = static_cast<float>(srgb_to_linear(51));
+  EXPECT_EQ(bytes.colors, (Positions{{1, 0, fifth}, {1, 1, 1}, {0, 0, 0}}));
+  EXPECT_TRUE(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").colors.empty());
   const Scene weighted = load("v 0 0 0 1\nv 1 0 0 0.5\nv 0 1 0 0.5\nf 1 2 3\n");
   EXPECT_EQ(weighted.positions, (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_EQ(only_warning(weighted),
@@ -184,7 +191,7 @@ TEST(LoadObj, ObjectsAndGroups) {
       "f 1 2 3\no room\nf 1 2 3\ng  a  b \nf 1 2 3\nf 2 3 4\no\nf 1 2 3\ng\nf 1 2 3\no room\ng a "
       "b\n"
       "f 1 2 3\ng unused\n");
-  EXPECT_EQ(scene.objects, (std::vector<std::string>{"default", "room", "room/a b", "a b"}));
+  EXPECT_EQ(scene.objects.all(), (std::vector<std::string>{"default", "room", "room/a b", "a b"}));
   std::vector<std::uint32_t> objects;
   for (const Triangle& triangle : scene.triangles) objects.push_back(triangle.object);
   EXPECT_EQ(objects, (std::vector<std::uint32_t>{0, 1, 2, 2, 3, 0, 2}));

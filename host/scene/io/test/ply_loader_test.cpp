@@ -46,9 +46,39 @@ void expect_square(const Scene& scene) {
 TEST_F(LoadPly, Ascii) {
   const Scene scene = load(kAscii);
   expect_square(scene);
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_TRUE(scene.warnings[0].ends_with("colours of vertices are not read"));
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_TRUE(scene.colors.empty()) << "red alone is no colour";
   EXPECT_FALSE(scene.up);
+}
+
+TEST_F(LoadPly, ColorsOfVertices) {
+  const auto scene_of = [&](const std::string& type, const std::string& full) {
+    return load(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nproperty " +
+        type + " red\nproperty " + type + " green\nproperty " + type +
+        " blue\nproperty uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\n"
+        "end_header\n0 0 0 " +
+        full + " 0 0 255\n1 0 0 0 " + full + " 0 255\n1 1 0 0 0 " + full + " 255\n3 0 1 2\n");
+  };
+  for (const auto& [type, full] :
+       {std::pair{"uchar", "255"}, {"ushort", "65535"}, {"float", "1"}}) {
+    const Scene scene = scene_of(type, full);
+    EXPECT_EQ(scene.colors, (std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})) << type;
+    EXPECT_EQ(scene.materials[0].diffuse, glm::vec3(1.0f));
+  }
+}
+
+TEST_F(LoadPly, StripsOfTriangles) {
+  const Scene scene = load(
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+      "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n11 0 1 2 3 4 5 -1 0 1 2 2\n");
+  using Vertices = std::array<std::uint32_t, 3>;
+  std::vector<Vertices> found;
+  for (const Triangle& triangle : scene.triangles) found.push_back(triangle.vertices);
+  EXPECT_EQ(found, (std::vector<Vertices>{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 5}, {0, 1, 2}}));
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST_F(LoadPly, BinaryOfBothOrders) {
