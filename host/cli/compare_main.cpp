@@ -1,4 +1,4 @@
-// The program `compare`: how far an EXR picture is from a reference.
+// The program `compare`: how far a picture is from a reference.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,6 +15,7 @@
 #include "host/film/compare.h"
 #include "host/film/display.h"
 #include "host/film/false_color.h"
+#include "host/film/picture_file.h"
 #include "host/options/option_table.h"
 
 namespace raygate {
@@ -24,8 +25,10 @@ constexpr int kTooFar = 1;
 
 constexpr const char* kAbout = R"(Usage: ./compare PICTURE REFERENCE [options]
 
-Compares an OpenEXR picture with a reference, over the pixels that both hold.
+Compares a picture with a reference, over the pixels that both hold: OpenEXR, or
+PNG as the light that a display shows.
 
+  ./compare a.png b.png
   ./compare noisy.exr converged.exr --threshold rmse=0.02 --difference error.png
 )";
 
@@ -146,8 +149,8 @@ int compare_files(const CompareOptions& options) {
     require_writable(options.difference);
   }
   const std::vector<std::string> names = channel_names(options.channels);
-  const ChannelPicture picture = read_exr(options.picture, names);
-  const ChannelPicture reference = read_exr(options.reference, names);
+  const ChannelPicture picture = read_picture(options.picture, names);
+  const ChannelPicture reference = read_picture(options.reference, names);
   const Comparison comparison = compare(picture, reference);
   const std::vector<Measure> measures = measures_of(comparison);
   std::vector<std::string> exceeded;

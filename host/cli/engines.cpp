@@ -21,6 +21,7 @@
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_core.h"
 #include "sim/rtl_plane_unit.h"
+#include "sim/simulation.h"
 
 namespace raygate {
 namespace {
@@ -114,6 +115,7 @@ std::string to_string(Engine engine) { return name_of(engine_choices(), engine);
 std::string to_string(Arith arith) { return name_of(arith_choices(), arith); }
 
 void add_engine_options(OptionTable& table, EngineOptions& options) {
+  if (!has_simulation()) options.engine = Engine::kCpu;
   table.choice("--engine", "NAME",
                "rtl: simulated hardware; cpu: identical hits without simulation, much faster; "
                "model: its reference model; check: rtl and cpu, stopping where they differ ({})",

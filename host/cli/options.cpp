@@ -80,8 +80,8 @@ struct CommandLine {
               });
     add_camera_options(table, options.camera);
     table.number("--smooth", "DEGREES",
-                 "smooth shading over edges up to this angle, of faces without normals (as the "
-                 "OBJ's s says)",
+                 "smooth shading over edges up to this angle, of faces without normals (the OBJ's "
+                 "s, or 30; 0: facets)",
                  options.smooth, kSmoothRange, kInExr);
     table.number("--frames", "N",
                  "animation of N frames, NAME-0001 and on: along the scene file's path, or once "
@@ -143,6 +143,8 @@ void check_error(const OptionTable& table, RenderOptions& options) {
 /// What options ask of each other.
 void check(const OptionTable& table, Options& options, unsigned processors) {
   RenderOptions& render = options.render;
+  render.choose_integrator(options.environment.has_value(), !table.typed("integrator").empty(),
+                           !table.typed("spp").empty());
   name_outputs(table, options.scene, options.output);
   check_crop(table, render);
   if (!table.typed("camera").empty() && !table.typed("view").empty()) {
@@ -249,6 +251,11 @@ Options parse_options(int argc, const char* const* argv, unsigned processors) {
     if (line.scene.empty()) throw InputError("no scene given; try ./render scenes/cornell.obj");
     options.scene = line.scene;
     options.scene_file = find_scene_file(line);
+    std::error_code ignored;
+    options.is_bare_model =
+        !options.scene_file &&
+        !std::filesystem::exists(std::filesystem::path(line.scene).replace_extension(".json"),
+                                 ignored);
   }
   if (const auto& file = options.scene_file) {
     // Of two values of an option the later one counts.

@@ -33,6 +33,7 @@ struct Options : EngineOptions {
   bool quiet = false, verbose = false;
   bool strict = false;           ///< faces without area are refused
   std::optional<double> smooth;  ///< degrees, as LoadOptions has it
+  bool is_bare_model = false;    ///< there is no scene file, not even an ignored one
 
   [[nodiscard]] const std::filesystem::path& obj() const {
     return scene_file ? scene_file->obj : scene;

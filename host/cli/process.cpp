@@ -122,7 +122,8 @@ int run_guarded(const std::function<int()>& program, int internal_error) {
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    reserve = ::operator new(kReserve);
+    // Without one this goes on, too; a second call of this, which ends a run, may find no memory.
+    ::operator delete(reserve.exchange(::operator new(kReserve, std::nothrow)));
     std::set_new_handler(give_reserve_back);
     const int status = program();
     flush_standard_output();

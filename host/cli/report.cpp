@@ -135,18 +135,6 @@ std::string samples_line(const Report& report) {
                             " that --error did not need");
 }
 
-/// One line of all that --verbose lists.
-std::string skipped_line(const Report& report) {
-  double seconds = 0.0;
-  for (const Skipped& kind : skipped(report)) seconds += kind.seconds;
-  const SkipCounters& counts = report.render.skipped;
-  const std::uint64_t rays =
-      counts.lights_behind + counts.weightless + counts.dim + counts.empty_tile_rays;
-  return row("skipped", format_count(counts.culled_tests, "test") + ", " +
-                            format_count(rays, "ray") + ": about " + format_duration(seconds) +
-                            " (see --verbose)");
-}
-
 std::string skipped_table(const Report& report) {
   std::string text =
       "Work skipped because it cannot change the picture (and the time it would have taken):\n";
@@ -210,7 +198,9 @@ std::string to_text(const Report& report) {
                           : "") +
           ": " + rate(hit.tests, render.wall_seconds, "tests"));
   if (report.options.render.error > 0.0) text += samples_line(report);
-  text += skipped_line(report);
+  if (report.options.engine == Engine::kCheck) {
+    text += row("check", "rtl and cpu agreed on all " + format_count(render.rays) + " rays");
+  }
   std::string pictures;
   for (const auto& path : report.pictures) {
     pictures += (pictures.empty() ? "" : ", ") + path.string();

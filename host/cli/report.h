@@ -29,9 +29,8 @@ struct Report {
 /// Simulated clocks for each test that the unit did; 0 where nothing is simulated.
 [[nodiscard]] double clocks_per_test(const HitCounters& counters);
 
-/// The summary at the end of a run: five lines, one more for --error, for each legend and for a
-/// view, and with
-/// --verbose all there is to say. Every line is ended.
+/// The summary at the end of a run: four lines, one more for --engine check, for --error, for each
+/// legend and for a view, and with --verbose all there is to say. Every line is ended.
 [[nodiscard]] std::string to_text(const Report& report);
 
 /// The same and some more as a JSON object, for --stats. statistics.md lists the keys.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
 #include "host/cli/resume.h"
+#include "host/film/blank.h"
 #include "host/film/environment_file.h"
 #include "host/film/merge.h"
 #include "host/light/prepared_scene.h"
@@ -40,10 +42,38 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void print_warnings(const Scene& scene) {
-  std::set<std::string> printed;
+/// A warning without its place, names and numbers.
+std::string kind_of(const std::string& warning) {
+  const std::size_t colon = warning.find(": ");
+  std::string kind;
+  bool is_quoted = false;
+  for (std::size_t i = colon == std::string::npos ? 0 : colon; i < warning.size(); ++i) {
+    const char c = warning[i];
+    if (c == '\'') is_quoted = !is_quoted;
+    if (!is_quoted && !(c >= '0' && c <= '9')) kind += c;
+  }
+  return kind;
+}
+
+/// Each once; of those of one kind the first, and how many there are, or `all`.
+void print_warnings(const Scene& scene, bool all) {
+  std::set<std::string> seen;
+  std::map<std::string, int> more;  // of each kind
+  std::vector<const std::string*> first;
   for (const std::string& warning : scene.warnings) {
-    if (printed.insert(warning).second) print_warning(warning);
+    if (!seen.insert(warning).second) continue;
+    const auto [kind, is_new] = more.try_emplace(all ? warning : kind_of(warning), 0);
+    if (is_new) {
+      first.push_back(&warning);
+    } else {
+      ++kind->second;
+    }
+  }
+  for (const std::string* warning : first) {
+    const int count = more[all ? *warning : kind_of(*warning)];
+    print_warning(
+        *warning +
+        (count == 0 ? "" : " (and " + format_count(count) + " more such; --verbose lists them)"));
   }
 }
 
@@ -74,6 +104,7 @@ Scene load(const Options& options) {
   const LoadOptions load_options{.strict = options.strict,
                                  .keep_instances = true,
                                  .smooth = options.smooth,
+                                 .smooth_if_unsaid = options.is_bare_model,
                                  .threads = options.threads};
   Scene scene = options.scene_file ? load_scene(*options.scene_file, load_options)
                                    : load_scene(options.scene, load_options);
@@ -104,7 +135,7 @@ class Run {
     report_.load_seconds = seconds_since(start_);
     report_.triangles = triangle_count(scene_);
     scene_digest_ = digest_of(scene_);
-    if (ranks_.index() == 0) print_warnings(scene_);
+    if (ranks_.index() == 0) print_warnings(scene_, options_.verbose);
     require_inputs_kept();
 
     // Cameras and lights are found before there is a ground, which is not to be framed.
@@ -217,6 +248,8 @@ class Run {
     ranks.leave();
     if (ranks.index() != 0) return true;
     film.keeps_sums = outputs.needed_channels().sums;
+    const std::string blank = why_blank(film, outputs.display);
+    if (!blank.empty() && number == 1) print_warning(blank);
 
     // All files are staged before the first takes its name: a full disk changes none of them.
     const Clock::time_point write_start = Clock::now();

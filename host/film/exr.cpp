@@ -15,19 +15,18 @@
 #include <ImfVersion.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cstddef>
 #include <cstring>
 #include <exception>
 #include <fstream>
 #include <new>
-#include <system_error>
 #include <utility>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/base/threads.h"
+#include "host/film/exr_check.h"
 
 namespace raygate {
 namespace {
@@ -91,20 +90,6 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 
 std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
-
-void require_exr(const std::filesystem::path& file) {
-  const auto fail = [&](const std::string& why) {
-    throw InputError(file.string() + ": cannot read: " + why);
-  };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (error) fail(error.message());
-  if (std::filesystem::is_directory(status)) fail("it is a folder");
-  if (!std::filesystem::is_regular_file(status)) fail("it is a device, a pipe or a socket");
-  errno = 0;
-  if (!std::ifstream(file).good()) fail(std::generic_category().message(errno));
-  if (!is_exr(file)) throw InputError(file.string() + ": not an OpenEXR file");
-}
 
 /// "R, G, B, Z".
 std::string names_in(const Imf::ChannelList& channels) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 
 #include "host/base/input_error.h"
 #include "host/options/version.h"
@@ -54,6 +55,24 @@ std::string camel_case(const std::string& name) {
     text += name[i] != '-' ? name[i] : static_cast<char>(std::toupper(name[++i]));
   }
   return text;
+}
+
+/// Options as other programs call them, without dashes.
+constexpr std::pair<std::string_view, std::string_view> kForeignNames[] = {
+    {"width", "size"},         {"height", "size"},
+    {"resolution", "size"},    {"samples-per-pixel", "spp"},
+    {"envmap", "environment"}, {"hdri", "environment"},
+    {"jobs", "threads"}};
+
+/// "; did you mean --size?" of an unknown option, or nothing.
+std::string meant_option(const std::string& typed, const std::vector<std::string>& names) {
+  for (const auto& [foreign, ours] : kForeignNames) {
+    const std::string name = "--" + std::string(ours);
+    if (typed == "--" + std::string(foreign) && std::ranges::find(names, name) != names.end()) {
+      return "; did you mean " + name + "?";
+    }
+  }
+  return did_you_mean(typed, names);
 }
 
 }  // namespace
@@ -129,7 +148,7 @@ std::string OptionTable::parse(const std::vector<std::string>& words, const std:
         for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
       }
       throw InputError(extra + ": unknown option" +
-                       did_you_mean(split_at_equals(extra).first, names) + " (see --help)");
+                       meant_option(split_at_equals(extra).first, names) + " (see --help)");
     }
     if (line_->all_positionals != nullptr) {
       line_->all_positionals->push_back(extra);

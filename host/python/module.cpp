@@ -19,9 +19,12 @@
 
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
+#include "host/bvh/closest_point.h"
 #include "host/exact/exact_sign.h"
 #include "host/exact/ieee_floats.h"
+#include "host/film/display.h"
 #include "host/film/environment_file.h"
+#include "host/film/exr.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/pipeline_hit_tester.h"
 #include "host/intersect/unit/record_cache.h"
@@ -30,6 +33,7 @@
 #include "host/light/default_lights.h"
 #include "host/light/prepared_scene.h"
 #include "host/options/light_options.h"
+#include "host/options/version.h"
 #include "host/python/float_reference.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
@@ -120,6 +124,14 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
       nb::ndarray<nb::numpy, T>(const_cast<T*>(static_cast<const T*>(data)), shape, capsule));
 }
 
+nb::bytes bytes_of(const std::string& text) { return nb::bytes(text.data(), text.size()); }
+
+/// A film, to be encoded.
+struct PythonFilm {
+  std::shared_ptr<const Film> film;
+  ExrMetadata metadata;
+};
+
 /// A scene and the tree around it.
 class PythonScene {
  public:
@@ -146,7 +158,9 @@ class PythonScene {
   /// Triangles alone: their corners, one after the other. Refuses those without area, so that
   /// their numbers stay.
   PythonScene(const Vectors3& corners, const Settings& settings) {
+    std::optional<double> smooth;
     Keywords keywords;
+    keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
     keywords.read(settings);
     const Elements points("triangles", corners);
     const nb::gil_scoped_release release;
@@ -159,7 +173,7 @@ class PythonScene {
       }
       mesh.add_face(face, 0);
     }
-    mesh.build({}, scene_);
+    mesh.build({.smooth = smooth}, scene_);
     for (std::size_t i = 0; i + 2 < scene_.positions.size(); i += 3) {
       const glm::vec3* const p = &scene_.positions[i];
       if (collinear(p[0], p[1], p[2])) {
@@ -225,9 +239,28 @@ class PythonScene {
         answers.fields());
   }
 
-  /// The film's channels by name. `settings`: options and their values as text.
-  nb::dict render_film(const std::optional<Three>& eye, const std::optional<Three>& target,
-                       const std::optional<Three>& up, const Settings& settings) const {
+  /// A row for each point: triangle, distance, x, y, z.
+  [[nodiscard]] nb::object closest_points(const Vectors3& points) const {
+    const Elements from("points", points);
+    const std::size_t count = points.shape(0), width = 5;
+    auto rows = std::make_unique<std::vector<double>>();
+    rows->reserve(count * width);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % 1024 == 0) (void)keep_going();
+      const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
+      const glm::dvec3 at = found.point + scene_.origin;
+      const double triangle = bvh_->triangle_of(found.primitive);
+      rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
+    }
+    std::vector<double>* const kept = rows.release();
+    const nb::capsule capsule(
+        kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, double>(kept->data(), {count, width}, capsule));
+  }
+
+  /// The film's channels by name, and the film. `settings`: options and their values as text.
+  nb::object render_film(const std::optional<Three>& eye, const std::optional<Three>& target,
+                         const std::optional<Three>& up, const Settings& settings) const {
     RenderOptions options;
     options.channels = {.position = true, .albedo = true, .object = true};
     std::optional<double> fov;
@@ -238,6 +271,11 @@ class PythonScene {
     keywords.add_engine();
     add_light_options(keywords, options);
     keywords.read(settings);
+    const auto is_given = [&](const char* name) {
+      return std::ranges::any_of(settings, [&](const auto& word) { return word.first == name; });
+    };
+    options.choose_integrator(scene_.environment.has_value(), is_given("integrator"),
+                              is_given("spp"));
     options.threads = keywords.threads;
     const int width = options.width, height = options.height;
     if (std::int64_t{width} * height > kMaxPixels) {
@@ -262,7 +300,10 @@ class PythonScene {
     channels["albedo"] = array_of<float>(film, film->albedo.data(), {h, w, 3});
     channels["triangle"] = array_of<std::uint32_t>(film, film->primitive.data(), {h, w});
     channels["object"] = array_of<std::uint32_t>(film, film->object.data(), {h, w});
-    return channels;
+    ExrMetadata metadata;
+    metadata.software = kSoftware;
+    metadata.seed = options.seed;
+    return nb::make_tuple(channels, PythonFilm{film, std::move(metadata)});
   }
 
  private:
@@ -343,13 +384,24 @@ NB_MODULE(_raygate, m) {
     }
   });
   raygate::add_float_reference(m);
+  m.attr("software") = raygate::kSoftware;
+  using raygate::PythonFilm;
+  nb::class_<PythonFilm>(m, "Film")
+      .def("png",
+           [](const PythonFilm& f, double exposure) {
+             return raygate::bytes_of(
+                 raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure})));
+           })
+      .def("exr", [](const PythonFilm& f) {
+        return raygate::bytes_of(raygate::encode_exr(*f.film, f.metadata));
+      });
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())
       .def(nb::init<const raygate::Vectors3&, const raygate::Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects",
-                   [](const PythonScene& s) { return raygate::texts_of(s.scene().objects); })
+                   [](const PythonScene& s) { return raygate::texts_of(s.scene().objects.all()); })
       .def_prop_ro("materials", &PythonScene::material_names)
       .def_prop_ro("warnings",
                    [](const PythonScene& s) { return raygate::texts_of(s.scene().warnings); })
@@ -360,6 +412,7 @@ NB_MODULE(_raygate, m) {
                    })
       .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
+      .def("closest", &PythonScene::closest_points, "points"_a)
       .def("render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
            "settings"_a);
 }

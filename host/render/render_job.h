@@ -20,11 +20,13 @@ struct RenderJob {
   const Lights& lights;
   glm::dvec3 ambient;  ///< as IntegratorOptions has it
 
-  /// What a triangle, or kNone, sends out as a light.
+  /// What a triangle, or kNone, sends out as a light whose edges are worth more rays: it is one
+  /// colour.
   [[nodiscard]] glm::vec3 emission_of(std::uint32_t primitive) const {
     if (primitive == NearestHit::kNone) return glm::vec3(0.0f);
     const Triangle& face = face_at(prepared.scene, prepared.bvh.face_of(primitive));
-    return prepared.scene.materials[face.material].emission;
+    const Material& material = prepared.scene.materials[face.material];
+    return material.emission_map.texture == kNoIndex ? material.emission : glm::vec3(0.0f);
   }
 };
 

@@ -41,7 +41,7 @@ struct RenderOptions {
   ReconstructionFilter filter = ReconstructionFilter::kBlackmanHarris;  ///< of several samples
   std::uint64_t seed = 0;                                               ///< of everything random
   ExtraChannels channels{};  ///< besides colour, depth, normal and primitive
-  IntegratorKind integrator = IntegratorKind::kWhitted;
+  IntegratorKind integrator = IntegratorKind::kWhitted;  ///< see choose_integrator()
   std::optional<int> max_depth{};  ///< reflections and refractions in a row; none: see depth()
   double threshold = 1.0 / 256.0;  ///< Whitted: rays that count for less are not traced
   std::optional<CameraLights> lights{};  ///< in place of the scene's
@@ -51,6 +51,15 @@ struct RenderOptions {
   /// The unit's P is used where it is off by no more of the distance than that, in all else the
   /// host's: 0 for the host's alone; the largest float for the unit's wherever it has one.
   float point_error = kPointError;
+
+  /// What takes the place of defaults: light from all around needs paths, as whitted has neither
+  /// shadows nor shape of it; and paths need samples.
+  void choose_integrator(bool has_environment, bool integrator_is_given, bool samples_are_given) {
+    if (!has_environment || integrator_is_given) return;
+    integrator = IntegratorKind::kPath;
+    if (!samples_are_given) samples = kPathSamples;
+  }
+  static constexpr int kPathSamples = 16;
 
   /// By default 4 for Whitted, as in the paper; 64 for paths, which end by chance.
   [[nodiscard]] int depth() const {

@@ -72,7 +72,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   tile_ = tile;
   edge_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
-  if (job_.options.skips.empty_tiles && !integrator_.sees_environment() &&
+  if (job_.options.skips.empty_tiles && !integrator_.sees_environment(0) &&
       !may_see_anything(job_.prepared.bvh, job_.camera, film_, tile, margin)) {
     output_.radiance.assign(samples_, integrator_.background());
     stats_.skipped.empty_tile_rays += samples_;

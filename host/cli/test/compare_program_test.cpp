@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/cli/test/program.h"
+#include "host/film/display.h"
 #include "host/film/exr.h"
 #include "host/film/test/sample_film.h"
 
@@ -53,6 +54,26 @@ TEST_F(ComparePictures, SaysHowFarTheyAre) {
   EXPECT_NE(same.out.find("psnr          inf\nssim          1\ndiffering     0\n"),
             std::string::npos)
       << same.out;
+}
+
+TEST_F(ComparePictures, PngsAreReadAsTheLightThatTheyShow) {
+  const Image8 dark{20, 20, {0, 0, 20, 20}, std::vector<Rgb8>(400, {0, 0, 0}), {}};
+  Image8 dot = dark;
+  dot.pixels[30] = {0, 255, 0};
+  folder_.write("dark.png", encode_png(dark));
+  folder_.write("dot.png", encode_png(dot));
+  const json measures = json::parse(compare({"dot.png", "dark.png", "--json"}).out);
+  EXPECT_EQ(measures.at("pixels"), 400);
+  EXPECT_EQ(measures.at("differing"), 1);
+  EXPECT_EQ(measures.at("max"), 1.0);
+  EXPECT_DOUBLE_EQ(measures.at("mse").get<double>(), 1.0 / 1200);
+  expect_refused({"dark.png", "dot.png", "--channels", "Z"}, "dark.png: has no channel Z");
+  // The picture beside an EXR.
+  Film film = make_film(20, 20, {0, 0, 20, 20}, {});
+  for (glm::vec4& color : film.color) color = {0.5f, 0.25f, 0.125f, 1.0f};
+  folder_.write("a20.exr", encode_exr(film, {}));
+  folder_.write("a20.png", encode_png(to_display(film)));
+  EXPECT_EQ(compare({"a20.png", "a20.exr", "--threshold", "max=0.005"}).status, 0);
 }
 
 TEST_F(ComparePictures, ThresholdsDecideTheStatus) {

@@ -225,10 +225,24 @@ TEST(Options, OtherValuesThatAreImpossible) {
   }
 }
 
+TEST(Options, AnEnvironmentNeedsPaths) {
+  const RenderOptions plain = parse({"a.obj"}).render;
+  EXPECT_EQ(plain.integrator, IntegratorKind::kWhitted);
+  const RenderOptions lit = parse({"a.obj", "--environment", "sky.hdr"}).render;
+  EXPECT_EQ(lit.integrator, IntegratorKind::kPath);
+  EXPECT_EQ(lit.samples, 16);
+  EXPECT_EQ(parse({"a.obj", "--environment", "sky.hdr", "--spp", "2"}).render.samples, 2);
+  const RenderOptions asked =
+      parse({"a.obj", "--environment", "sky.hdr", "--integrator", "whitted"}).render;
+  EXPECT_EQ(asked.integrator, IntegratorKind::kWhitted);
+  EXPECT_EQ(asked.samples, plain.samples);
+}
+
 TEST(Options, MisspeltOnesAreAnsweredWithTheRightOnes) {
   const std::pair<const char*, const char*> options[] = {
-      {"--siz", "--size"},         {"--size2=5", "--size"},   {"--smaples", "--samples"},
-      {"--integ", "--integrator"}, {"--thread", "--threads"}, {"--max_depth", "--max-depth"}};
+      {"--siz", "--size"},         {"--size2=5", "--size"},    {"--smaples", "--samples"},
+      {"--integ", "--integrator"}, {"--thread", "--threads"},  {"--max_depth", "--max-depth"},
+      {"--width", "--size"},       {"--height=480", "--size"}, {"--hdri", "--environment"}};
   for (const auto& [typed, meant] : options) {
     expect_error({"a.obj", typed}, std::string(typed) + ": unknown option; did you mean " + meant);
   }

@@ -53,13 +53,15 @@ class Ranks : public Render {
   }
 
   Outcome on_ranks(int count, const Words& arguments,
-                   std::vector<std::pair<std::string, std::function<void(int)>>> when_said = {}) {
+                   std::vector<std::pair<std::string, std::function<void(int)>>> when_said = {},
+                   const Words& environment = {}) {
     return run_program({.arguments = Words{"--oversubscribe", "--bind-to", "none", "-n",
                                            std::to_string(count), RAYGATE_PROGRAM} +
                                      arguments,
                         .folder = folder_.path(),
                         .when_said = std::move(when_said),
-                        .program = RAYGATE_MPIRUN});
+                        .program = RAYGATE_MPIRUN,
+                        .environment = environment});
   }
   void alone(const Words& arguments) {
     const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
@@ -79,7 +81,7 @@ TEST_F(Ranks, ShareAPicture) {
     if (count == 1) continue;
     EXPECT_NE(outcome.out.find(std::to_string(count) + " ranks of 1 thread"), std::string::npos)
         << outcome.out;
-    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << "of rank 0 alone:\n" << outcome.out;
+    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 4) << "of rank 0 alone:\n" << outcome.out;
     EXPECT_NE(outcome.err.find("rendering: 100 %"), std::string::npos) << outcome.err;
   }
 }
@@ -246,6 +248,42 @@ class KilledRanks : public Ranks {
     expect_same_pictures("resumed", "whole");
   }
 };
+
+/// Each message of each rank is its last: the old film or more of it is there to go on from.
+TEST_F(KilledRanks, AtTheirMessages) {
+  const Words arguments = small() + Words{"--engine", "cpu"};
+  alone(arguments + Words{"--spp", "2", "--channels", "sums", "-o", "begun.exr"});
+  alone(arguments + Words{"--spp", "4", "-o", "whole"});
+  const std::string begun = folder_.read("begun.exr");
+  const Words more = arguments + Words{"--spp", "4", "--resume", "a.exr"};
+  const auto run = [&](const Words& fault) {
+    folder_.write("a.exr", begun);
+    return on_ranks(3, more + Words{"--channels", "sums", "-o", "a.exr"}, {},
+                    fault + Words{"LD_PRELOAD=" RAYGATE_FAULTS_LIBRARY});
+  };
+  EXPECT_EQ(run({"RAYGATE_FAULT_COUNT=messages"}).status, 0);
+  const int messages = std::stoi(folder_.read("messages"));
+  ASSERT_GT(messages, 6);
+  const char* const wanted = std::getenv("RAYGATE_KILLS");
+  const int step = wanted != nullptr ? 1 : messages / 3;  // all that rank 0 has, or some
+  int runs = 0, all_broken = 0;
+  for (int rank = 0; rank < 3; ++rank) {
+    int broken = 0;
+    for (int message = 1; message <= messages; message += step) {
+      SCOPED_TRACE("rank " + std::to_string(rank) + ", message " + std::to_string(message));
+      const Outcome outcome = run({"RAYGATE_FAULT_RANK=" + std::to_string(rank),
+                                   "RAYGATE_FAULT_MESSAGE=" + std::to_string(message)});
+      ++runs;
+      broken += outcome.status != 0;
+      alone(more + Words{"-o", "resumed"});
+      expect_same_pictures("resumed", "whole");
+    }
+    EXPECT_GT(broken, 0) << "of rank " << rank << " no message failed";
+    all_broken += broken;
+  }
+  std::printf("%d runs of 3 ranks, of %d messages at rank 0: %d broken off\n", runs, messages,
+              all_broken);
+}
 
 TEST_F(KilledRanks, OneOfThem) { kill_at_random(Who::kWorker, {}); }
 TEST_F(KilledRanks, Rank0) { kill_at_random(Who::kRank0, {"--save-every", "0.2"}); }

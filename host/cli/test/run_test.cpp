@@ -88,15 +88,15 @@ TEST_F(Render, StatisticsAreWholeDocumentedAndAgree) {
   EXPECT_NE(outcome.out.find("cornell.obj: "), std::string::npos);
   EXPECT_NE(outcome.out.find("60x50, engine rtl (pipeline, structural), 2 threads\n"),
             std::string::npos);
-  for (const char* row : {"\nrays ", "\ntests ", "\nskipped ", "\nwrote "}) {
+  for (const char* row : {"\nrays ", "\ntests ", "\nwrote "}) {
     EXPECT_NE(outcome.out.find(row), std::string::npos) << row;
   }
-  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << outcome.out;
+  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 4) << outcome.out;
 }
 
 TEST_F(Render, TheSummaryNamesNoUnitWhereNoneIsAtWork) {
   const Outcome brief = render({kCornell, "--size", "60x50", "--engine", "cpu"});
-  EXPECT_EQ(std::ranges::count(brief.out, '\n'), 5) << brief.out;
+  EXPECT_EQ(std::ranges::count(brief.out, '\n'), 4) << brief.out;
   EXPECT_EQ(brief.out.find("unit"), std::string::npos) << brief.out;
   EXPECT_NE(brief.out.find(" rays/s\n"), std::string::npos) << brief.out;
   EXPECT_NE(brief.out.find(" tests/s\n"), std::string::npos) << brief.out;
@@ -108,6 +108,33 @@ TEST_F(Render, TheSummaryNamesNoUnitWhereNoneIsAtWork) {
     EXPECT_NE(verbose.out.find(row), std::string::npos) << row;
   }
   EXPECT_EQ(verbose.out.find("unit"), std::string::npos) << verbose.out;
+}
+
+// `make cpu`.
+TEST_F(Render, WithoutVerilatorTheSimulatedUnitsAreNamed) {
+  const auto render_without = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {kCornell, "--size", "16x16"});
+    return run_program({.arguments = std::move(arguments),
+                        .folder = folder_.path(),
+                        .program = RAYGATE_WITHOUT_SIMULATION});
+  };
+  const Outcome plain = render_without({});
+  EXPECT_EQ(plain.status, 0) << plain.err;
+  EXPECT_NE(plain.out.find("engine cpu"), std::string::npos) << plain.out;
+  EXPECT_EQ(render_without({"--engine", "model"}).status, 0);
+  for (const char* unit : {"pipeline", "serial", "core"}) {
+    const Outcome outcome = render_without({"--engine", "rtl", "--unit", unit});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("which was built without Verilator; `make verilate`"),
+              std::string::npos)
+        << outcome.err;
+  }
+}
+
+TEST_F(Render, ACheckSaysThatTheEnginesAgreed) {
+  const Outcome outcome = render({kCornell, "--size", "16x16", "--engine", "check"});
+  EXPECT_NE(outcome.out.find("\ncheck    rtl and cpu agreed on all "), std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(Render, WarningsAreSaidOnce) {
@@ -127,6 +154,34 @@ TEST_F(Render, WarningsAreSaidOnce) {
     EXPECT_EQ(line.substr(0, 15), "warning: a.obj:") << line;
     EXPECT_EQ(lines.count(line), 1u) << line;
   }
+}
+
+TEST_F(Render, WarningsOfOneKindAreOne) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 1; i <= 12; ++i) text += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
+  folder_.write("a.obj", text + "l 1 2\n");
+  const char* const kUnknown = "material 'm1' is defined nowhere, the default instead";
+  const auto warnings = [&](const char* option) {
+    return render({"a.obj", "--size", "4x4", "--engine", "cpu", option}).err;
+  };
+  const std::string brief = warnings("--quiet");
+  EXPECT_EQ(std::count(brief.begin(), brief.end(), '\n'), 2) << brief;
+  EXPECT_NE(brief.find(kUnknown + std::string(" (and 11 more such; --verbose lists them)\n")),
+            std::string::npos)
+      << brief;
+  const std::string all = warnings("--verbose");
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 13) << all;
+}
+
+TEST_F(Render, SaysWhereNothingCanBeSeen) {
+  folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto warnings = [&](const char* camera) {
+    return render({"a.obj", "--size", "16x16", "--engine", "cpu", "--quiet", "--camera", camera})
+        .err;
+  };
+  EXPECT_EQ(warnings("0,0,5,0,0,9"),
+            "warning: the camera sees nothing of the scene; --view iso shows all of it\n");
+  EXPECT_EQ(warnings("0,0,5,0,0,0"), "");
 }
 
 TEST_F(Render, HelpAndVersionGoToStandardOutput) {

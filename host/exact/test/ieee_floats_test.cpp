@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cfenv>
-#include <cstdio>
-#include <ctime>
 #include <stdexcept>
 #if defined(__SSE__)
 #include <immintrin.h>
@@ -22,16 +20,6 @@ TEST(IeeeFloats, OtherRoundingIsRefused) {
     EXPECT_THROW(require_ieee_floats(), std::runtime_error);
     std::fesetround(FE_TONEAREST);
   }
-}
-
-// Of each call of the library: EMBEDDING.md names the figure.
-TEST(IeeeFloats, CostLittle) {
-  constexpr int kCalls = 1'000'000;
-  const std::clock_t start = std::clock();
-  for (int i = 0; i < kCalls; ++i) const IeeeFloats guard;
-  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / kCalls;
-  std::printf("IeeeFloats: %.0f ns a call\n", seconds * 1e9);
-  EXPECT_LT(seconds, 1e-6);
 }
 
 #if defined(__SSE__)

@@ -93,7 +93,7 @@ inline std::vector<Corners> sphere(int level, float radius = 1.0f,
 inline Scene scene_of(const std::vector<Corners>& triangles) {
   Scene scene;
   scene.materials.emplace_back();
-  scene.objects.emplace_back("mesh");
+  scene.objects.push_back("mesh");
   for (const Corners& corners : triangles) {
     Triangle triangle;
     for (int k = 0; k < 3; ++k) {

@@ -4,7 +4,10 @@
     scene = raygate.Scene("scenes/teapot.obj")
     hits = scene.trace(origins, directions)        # arrays of shape (N, 3)
     hits["triangle"], hits["t"]                    # -1 and inf where nothing is hit
-    picture = scene.render(640, 480)["color"]      # (480, 640, 4), scene-linear
+    scene.inside(points), scene.closest(points)    # of points of shape (N, 3)
+    picture = scene.render(640, 480)               # a notebook shows it
+    picture["color"]                               # (480, 640, 4), scene-linear
+    picture.save("teapot.png")
 
 Hits are exact: which triangle is nearest, and in which order several lie, is decided for the corners
 and rays as binary32 holds them relative to the scene's middle (Scene.origin).
@@ -22,18 +25,47 @@ from . import float, results  # from here on `float` is the module, not Python's
 from ._arithmetic import in_ieee_floats
 from ._raygate import InputError
 
-__all__ = ["InputError", "Scene", "float", "results"]
+__all__ = ["InputError", "Picture", "Scene", "float", "results"]
+__version__ = _raygate.software.split()[-1]
+
+
+class Picture(dict):
+    """What Scene.render gives: arrays by name. A notebook shows it as a PNG."""
+
+    def __init__(self, channels, film):
+        super().__init__(channels)
+        self._film = film
+
+    def save(self, file, exposure=0.0):
+        """Writes a PNG, `exposure` stops brighter, or an OpenEXR file, as the name ends."""
+        ending = os.path.splitext(os.fsdecode(file))[1].lower()
+        if ending not in (".png", ".exr"):
+            raise InputError(f"save: found {os.fsdecode(file)!r}, expected a name that ends in .png or .exr")
+        data = self._film.exr() if ending == ".exr" else self.png(exposure)
+        with open(file, "wb") as output:
+            output.write(data)
+
+    def png(self, exposure=0.0):
+        """The bytes of a PNG file."""
+        return self._film.png(exposure)
+
+    _repr_png_ = png
 
 
 class Scene:
-    """Triangles, materials, lights: an OBJ, glTF, PLY or STL file, or a scene file (JSON)."""
+    """Triangles, materials, lights: an OBJ, glTF, PLY or STL file, a scene file (JSON), or arrays
+    of vertices and faces."""
 
     @in_ieee_floats
-    def __init__(self, file, *, strict=False, smooth=None, threads=None):
-        """Reads `file` and builds its tree. InputError, a ValueError, says with file and line what
-        cannot be used. `strict`: refuse faces without area. `smooth`: degrees at which faces
-        without normals may meet to be smooth. `threads`: one per processor if None, here as
-        everywhere."""
+    def __init__(self, file, faces=None, *, strict=False, smooth=None, threads=None):
+        """Reads `file`, or takes vertices of shape (N, 3) and, as `faces`, the numbers of three
+        vertices in each row, shape (M, 3); and builds its tree. InputError, a ValueError, says with
+        file and line what cannot be used. `strict`: refuse faces without area, as arrays always do.
+        `smooth`: degrees at which faces without normals may meet to be smooth. `threads`: one per
+        processor if None, here as everywhere."""
+        if faces is not None or not isinstance(file, (str, bytes, os.PathLike)):
+            self._scene = _scene_of(_corners(file, faces), smooth, threads)
+            return
         name = os.fsencode(file)
         if b"\0" in name:
             raise InputError(f"file: found {file!r}, expected a name without a null byte")
@@ -44,16 +76,8 @@ class Scene:
     def of_triangles(cls, corners, *, threads=None):
         """A scene of grey triangles: corners of shape (N, 3, 3), float32 or float64. Triangles
         without area are refused: leave them out, no ray hits them."""
-        corners = _numbers("triangles", corners)
-        if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not 0 < len(corners) < 2 ** 29:
-            raise InputError(f"triangles: found an array of shape {corners.shape}, expected (N, 3, 3)")
-        wrong = ~(np.abs(corners) <= 2.0 ** 125).all(axis=(1, 2))
-        if wrong.any():
-            raise InputError(f"triangles: found inf, nan or a coordinate beyond 2^125 in triangle "
-                             f"{np.argmax(wrong)}, expected finite numbers")
         scene = cls.__new__(cls)
-        scene._scene = _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3),
-                                      _settings(threads=threads))
+        scene._scene = _scene_of(corners, None, threads)
         return scene
 
     @property
@@ -86,12 +110,12 @@ class Scene:
         """What rays hit: a structured array with a field for each answer.
 
         origins, directions: float32 or float64, shape (N, 3); read where they lie if they are in C
-        order. Hits P = origin + t direction have 0 < t < limit; limits has shape (N,).
+        order. One of them may be one vector, shape (3,), for all rays. Hits P = origin + t direction have 0 < t < limit; limits has shape (N,).
         hits: "nearest", a row for each ray; "any", whether there is a hit, sooner; "all", a row for
         each hit of each ray, near before far. columns: ray, hit, triangle, object, material, t,
         point (x, y, z), uv, normal (nx, ny, nz), doubts, unit-point, unit-error; what each means is
         in host/trace/README.md. engine: "cpu", or "model", the hit-test unit's reference model."""
-        origins, directions = _vectors("origins", origins), _vectors("directions", directions)
+        origins, directions = _rays(origins, directions)
         if limits is not None:
             limits = np.ascontiguousarray(_numbers("limits", limits))
             if limits.shape != (len(origins),):
@@ -104,20 +128,87 @@ class Scene:
 
     @in_ieee_floats
     def render(self, width=None, height=None, *, eye=None, target=None, up=None, **options):
-        """A picture: a dictionary of arrays of `height` rows, the top one first.
+        """A Picture: a dictionary of arrays of `height` rows, the top one first.
 
         "color" (scene-linear R, G, B, A, premultiplied), "depth", "normal", "point", "albedo",
         "triangle" and "object" (4294967295 where nothing is hit). The camera is the scene file's,
         or sees the whole scene. Other keywords are options of ./render, with its defaults: spp,
         integrator, fov, depth, seed, filter, threshold, ambient, threads; and engine, "cpu" or
         "model"."""
-        return self._scene.render(_point("eye", eye), _point("target", target), _point("up", up),
-                                  _settings(width=width, height=height, **options))
+        return Picture(*self._scene.render(_point("eye", eye), _point("target", target),
+                                           _point("up", up),
+                                           _settings(width=width, height=height, **options)))
+
+    def inside(self, points):
+        """Whether points, shape (N, 3), are inside of closed surfaces: an array of bool. A ray from
+        the point, whose hits are exact, does not leave as many surfaces as it enters; of what is open, or a
+        point on a surface, the answer has no meaning."""
+        points = _vectors("points", points)
+        direction = np.float32([0.36, 0.48, 0.8])  # as good as any
+        hits = self.trace(points, direction, hits="all", columns=["ray", "normal"])
+        along = hits["nx"] * direction[0] + hits["ny"] * direction[1] + hits["nz"] * direction[2]
+        leaves = np.bincount(hits["ray"].astype(np.int64), np.sign(along), minlength=len(points))
+        return leaves != 0
+
+    @in_ieee_floats
+    def closest(self, points):
+        """The nearest points of the surface to points, shape (N, 3): a structured array with the
+        fields triangle, distance, x, y and z, in double."""
+        points = _vectors("points", points)
+        wrong = ~(np.abs(points) <= 2.0 ** 100).all(axis=1)
+        if wrong.any():
+            raise InputError(f"points: found inf, nan or a coordinate beyond 2^100 in point "
+                             f"{np.argmax(wrong)}, expected finite numbers")
+        rows = np.empty(len(points), [("triangle", "<i8"), *((name, "<f8") for name in
+                                                             ("distance", "x", "y", "z"))])
+        numbers = self._scene.closest(points)
+        for k, name in enumerate(rows.dtype.names):
+            rows[name] = numbers[:, k]
+        return rows
 
 
 def _settings(**options):
     """Keywords as the options of ./render: names and text, without those that are None."""
     return [(name, str(value)) for name, value in options.items() if value is not None]
+
+
+def _scene_of(corners, smooth, threads):
+    """The C++ half of a scene of triangles, from their corners."""
+    corners = _numbers("triangles", corners)
+    if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not 0 < len(corners) < 2 ** 29:
+        raise InputError(f"triangles: found an array of shape {corners.shape}, expected (N, 3, 3)")
+    wrong = ~(np.abs(corners) <= 2.0 ** 125).all(axis=(1, 2))
+    if wrong.any():
+        raise InputError(f"triangles: found inf, nan or a coordinate beyond 2^125 in triangle "
+                         f"{np.argmax(wrong)}, expected finite numbers")
+    return _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3),
+                          _settings(smooth=smooth, threads=threads))
+
+
+def _corners(vertices, faces):
+    """Corners of triangles, shape (M, 3, 3)."""
+    vertices = _vectors("vertices", vertices)
+    if faces is None:
+        raise InputError("faces: found None, expected the numbers of three vertices in each row")
+    faces = np.asarray(faces)
+    if faces.ndim != 2 or faces.shape[1] != 3 or faces.dtype.kind not in "iu" or not len(faces):
+        raise InputError(f"faces: found an array of {faces.dtype} of shape {faces.shape}, expected "
+                         "whole numbers of shape (M, 3)")
+    wrong = ((faces < 0) | (faces >= len(vertices))).any(axis=1)
+    if wrong.any():
+        raise InputError(f"faces: found {faces[np.argmax(wrong)].tolist()} in face {np.argmax(wrong)}, "
+                         f"expected numbers from 0 to {len(vertices) - 1}")
+    return vertices[faces]
+
+
+def _rays(origins, directions):
+    """Origins and directions, as many of one as of the other."""
+    origins, directions = _numbers("origins", origins), _numbers("directions", directions)
+    if origins.ndim == 1 and directions.ndim == 2:
+        origins = np.broadcast_to(origins, directions.shape) if origins.shape == (3,) else origins
+    elif directions.ndim == 1 and origins.ndim == 2:
+        directions = np.broadcast_to(directions, origins.shape) if directions.shape == (3,) else directions
+    return _vectors("origins", origins), _vectors("directions", directions)
 
 
 def _point(name, value):

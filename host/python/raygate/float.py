@@ -1,13 +1,16 @@
 """IEEE 754 arithmetic in any small format, rounding mode and kind of tininess: value and flags.
 
     import numpy as np, raygate.float as rf
+    rf.fp_add(0.1, 0.2)                     # 0.30000001192092896, INEXACT: in binary32
+    rf.fp_divide(1, 3, rf.BINARY16).value   # 0.333251953125
     rf.fp_add(np.float32(1), np.float32(2 ** -24), rounding="up")   # 1.0000001, INEXACT
-    rf.fp_divide([1.0], [3.0], rf.Format(5, 10)).value              # 0.33325195, in binary16
-    rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flags   # OVERFLOW | INEXACT
+    rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flag_names  # OVERFLOW|INEXACT
 
-Operands are arrays of floats, which must be numbers of the format (round_to makes them so), or of
-unsigned integers, which are the format's words: sign, exponent, fraction. Results are of the kind
-of the operands. Arrays of different shapes are broadcast.
+Operands are Python's numbers or lists of them, which are rounded to nearest to the format, with a
+RoundingWarning; NumPy's arrays and scalars of floats or signed integers, which must be numbers of
+the format (round_to makes them so); or of unsigned integers, which are the format's words: sign,
+exponent, fraction. Results are of the kind of the operands. Arrays of different shapes are
+broadcast.
 
 What computes here is the reference that the simulated cores of hw/fp are compared with, bit by bit,
 by this repository's tests (sim/test/fp). With `cores`, the path of the program float_cores of this
@@ -20,6 +23,7 @@ import enum
 import os
 import subprocess
 import typing
+import warnings
 
 import numpy as np
 
@@ -69,11 +73,22 @@ class Flags(enum.IntFlag):
     INVALID = 16
 
 
+class RoundingWarning(UserWarning):
+    """A number of Python's is none of the format, and was rounded to one."""
+
+
 class Result(typing.NamedTuple):
     """What an operation gives."""
 
     value: np.ndarray
-    flags: np.ndarray  #: uint8: see Flags
+    flags: np.ndarray  #: of one result Flags; of several uint8, their bits
+
+    @property
+    def flag_names(self):
+        """The flags in words, "OVERFLOW|INEXACT": a str, or an array of them."""
+        names = np.array(["|".join(flag.name for flag in reversed(Flags) if bits & flag)
+                          for bits in range(32)])
+        return names[np.asarray(self.flags)]
 
 
 @in_ieee_floats
@@ -111,16 +126,17 @@ def fp_compare(a, b, relation, format=BINARY32, cores=None):
 
 
 @in_ieee_floats
-def round_to(x, format, rounding="nearest-even", tininess="after"):
-    """Floats rounded to the format: floats, and the flags of it."""
+def round_to(x, format=BINARY32, rounding="nearest-even", tininess="after"):
+    """Numbers rounded to the format: floats, and the flags of it."""
+    x = _numbers(x)
     bits, flags = encode(x, format, rounding, tininess)
-    return Result(_held(decode(bits, format), np.asarray(x).dtype, format), flags)
+    return Result(_held(decode(bits, format), x.dtype, format), flags)
 
 
 @in_ieee_floats
-def encode(x, format, rounding="nearest-even", tininess="after"):
+def encode(x, format=BINARY32, rounding="nearest-even", tininess="after"):
     """As round_to, but the format's words, uint32."""
-    x = np.asarray(x)
+    x = _numbers(x)
     if x.dtype.kind != "f" or x.dtype.itemsize > 8:
         raise InputError(f"found an array of {x.dtype}, expected one of float16, float32 or float64")
     _one_of("rounding", rounding, ROUNDINGS)
@@ -128,7 +144,7 @@ def encode(x, format, rounding="nearest-even", tininess="after"):
     flat = np.ascontiguousarray(x, np.float64).ravel()
     bits, flags = _raygate.float_encode(flat, format.exponent_bits, format.fraction_bits,
                                         ROUNDINGS.index(rounding), tininess == "before")
-    return Result(bits.reshape(x.shape)[()], flags.reshape(x.shape)[()])
+    return Result(bits.reshape(x.shape)[()], _flags(flags.reshape(x.shape)))
 
 
 @in_ieee_floats
@@ -149,12 +165,14 @@ def decode(bits, format):
 def _run(operation, a, b, format, rounding, tininess, cores):
     _one_of("rounding", rounding, ROUNDINGS)
     _one_of("tininess", tininess, _TININESS)
-    a, b = np.asarray(a), np.asarray(b)
+    operands = a, b
+    a, b = _numbers(a), _numbers(b)
     kinds = {a.dtype.kind, b.dtype.kind}
     if kinds == {"u"}:
         words = _words(a, format), _words(b, format)
     elif kinds == {"f"}:
-        words = _exact(a, format), _exact(b, format)
+        words = tuple(_exact(array, format, is_pythons=not isinstance(x, (np.ndarray, np.generic)))
+                      for array, x in zip((a, b), operands))
     else:
         raise InputError(f"found arrays of {a.dtype} and {b.dtype}, expected both of unsigned "
                          "integers (the format's words) or both of floats")
@@ -174,7 +192,23 @@ def _run(operation, a, b, format, rounding, tininess, cores):
         value = value != 0
     elif kinds == {"f"}:
         value = _held(decode(value, format), np.result_type(a, b), format)
-    return Result(value.reshape(x.shape)[()], flags.reshape(x.shape)[()])
+    return Result(value.reshape(x.shape)[()], _flags(flags.reshape(x.shape)))
+
+
+def _flags(flags):
+    return Flags(int(flags)) if flags.ndim == 0 else flags
+
+
+def _numbers(x):
+    """An array; of whole numbers with a sign as floats."""
+    array = np.asarray(x)
+    if array.dtype.kind == "i":
+        wide = array.astype(np.float64)
+        if array.size and (np.abs(wide) >= 2.0 ** 53).any():
+            raise InputError(f"found {int(array.flat[np.abs(wide).argmax()])}, expected a whole number "
+                             "below 2^53")
+        return wide
+    return array
 
 
 def _by_cores(cores, operation, x, y, format, rounding, tininess):
@@ -200,12 +234,16 @@ def _words(array, format):
     return array.astype(np.uint32)
 
 
-def _exact(array, format):
-    """The words of floats, which must be numbers of the format."""
+def _exact(array, format, is_pythons):
+    """The words of floats: those of Python rounded, others must be numbers of the format."""
     bits, flags = encode(array, format)
     if np.any(flags):
-        wrong = array[np.asarray(flags) != 0].flat[0] if array.ndim else array[()]
-        raise InputError(f"found {wrong}, which is no number of {format}: round_to makes it one")
+        wrong = np.atleast_1d(array)[np.atleast_1d(flags) != 0].flat[0]
+        if not is_pythons:
+            raise InputError(f"found {wrong}, which is no number of {format}: round_to makes it one")
+        taken = decode(np.atleast_1d(bits)[np.atleast_1d(flags) != 0][:1], format)[0]
+        warnings.warn(f"{wrong} is no number of {format}: taken as {taken}, the nearest one",
+                      RoundingWarning, stacklevel=6)
     return np.asarray(bits)
 
 

@@ -1,6 +1,7 @@
 """raygate.float: against the machine's own arithmetic where that knows the format."""
 
 import unittest
+import warnings
 
 import numpy as np
 
@@ -59,6 +60,22 @@ class Operations(unittest.TestCase):
         self.assertEqual(rf.fp_multiply(a, b, tininess="before").flags,
                          rf.Flags.INEXACT | rf.Flags.UNDERFLOW)
 
+    def test_takes_pythons_numbers(self):
+        with self.assertWarnsRegex(rf.RoundingWarning, "0.1 is no number of .*: taken as 0.100000001") as said:
+            value, flags = rf.fp_add(0.1, 0.2)
+        self.assertEqual(said.filename, __file__)
+        self.assertEqual(value, float(np.float32(0.1) + np.float32(0.2)))
+        self.assertIs(flags, rf.Flags.INEXACT)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(rf.fp_divide(1, 3).value, float(np.float32(1) / np.float32(3)))
+            self.assertEqual(rf.fp_add([1, 2], 0.5).value.tolist(), [1.5, 2.5])
+            self.assertEqual(rf.round_to(0.1).value, float(np.float32(0.1)))
+        self.assertEqual(rf.fp_divide(1, 0).flag_names, "DIVIDE_BY_ZERO")
+        self.assertEqual(rf.fp_add(1, 1).flag_names, "")
+        many = rf.fp_multiply(np.float32([3e38, 1]), np.float32([3e38, 1]))
+        self.assertEqual(many.flag_names.tolist(), ["OVERFLOW|INEXACT", ""])
+
     def test_any_format(self):
         form = rf.Format(3, 2)  # all of it
         words = np.arange(1 << form.width, dtype=np.uint8)
@@ -91,9 +108,10 @@ class Operations(unittest.TestCase):
 
     def test_says_what_it_cannot_use(self):
         for expected, call in (
-                ("int64 and int64", lambda: rf.fp_add([1], [2])),
+                ("below 2\\^53", lambda: rf.fp_add(1 << 60, 2)),
+                ("<U1 and float64", lambda: rf.fp_add("1", 2.0)),
                 ("float64 and uint32", lambda: rf.fp_add([1.0], np.uint32([2]))),
-                ("found 0.1, which is no number", lambda: rf.fp_add(0.1, 0.5, rf.BINARY16)),
+                ("found 0.1, which is no number", lambda: rf.fp_add(np.float64(0.1), 0.5, rf.BINARY16)),
                 ("word 0x10000, expected 16 bits", lambda: rf.fp_add(
                     np.uint32([65536]), np.uint32([0]), rf.BINARY16)),
                 ("rounding: found 'near'", lambda: rf.fp_add(1.0, 1.0, rounding="near")),

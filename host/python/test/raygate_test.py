@@ -5,11 +5,13 @@ import ctypes
 import os
 import pathlib
 import platform
+import re
 import resource
 import signal
 import tempfile
 import threading
 import unittest
+import warnings
 
 import numpy as np
 
@@ -117,6 +119,74 @@ class Trace(unittest.TestCase):
         self.assertEqual(len(self.scene.trace(np.zeros((0, 3)), np.zeros((0, 3)))), 0)
 
 
+class Readme(unittest.TestCase):
+    def test_its_lines_run(self):
+        text = (SCENES.parent / "README.md").read_text()
+        lines = re.search(r"```python\n(.*?)```", text, re.DOTALL)[1]
+        before = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+            warnings.simplefilter("ignore", raygate.float.RoundingWarning)
+            os.symlink(SCENES, os.path.join(folder, "scenes"))
+            os.chdir(folder)
+            try:
+                exec(lines, {})
+                self.assertTrue(pathlib.Path("teapot.png").read_bytes().startswith(b"\x89PNG"))
+            finally:
+                os.chdir(before)
+
+
+class Arrays(unittest.TestCase):
+    """A scene of NumPy arrays, and what is asked of points."""
+
+    VERTICES = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    FACES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+             [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+
+    def setUp(self):
+        self.cube = raygate.Scene(self.VERTICES, self.FACES)
+        self.points = np.random.default_rng(2).uniform(-2, 2, (3000, 3))
+
+    def test_one_origin_serves_many_directions(self):
+        directions = np.random.default_rng(3).normal(size=(50, 3))
+        eye = [0.5, 0.25, 0]
+        hits = self.cube.trace(eye, directions)
+        self.assertTrue((hits["hit"] == 1).all())
+        same = self.cube.trace(np.tile(eye, (50, 1)), directions)
+        self.assertEqual(hits.tobytes(), same.tobytes())
+        self.assertEqual(len(self.cube.trace(self.points, [0, 0, 1])), 3000)
+        with self.assertRaisesRegex(ValueError, r"origins: found an array of shape \(2,\)"):
+            self.cube.trace([0, 1], directions)
+
+    def test_inside(self):
+        expected = (np.abs(self.points) < 1).all(axis=1)
+        self.assertTrue(expected.any())
+        np.testing.assert_array_equal(self.cube.inside(self.points), expected)
+        two = raygate.Scene(np.concatenate([self.VERTICES, np.array(self.VERTICES) * 0.9 + 0.5]),
+                            np.concatenate([self.FACES, np.array(self.FACES) + 8]))
+        both = expected | (np.abs(self.points - 0.5) < 0.9).all(axis=1)
+        np.testing.assert_array_equal(two.inside(self.points), both)  # also where they overlap
+
+    def test_closest(self):
+        outside = self.points[(np.abs(self.points) > 1).any(axis=1)]
+        found = self.cube.closest(outside)
+        expected = np.clip(outside, -1, 1)
+        for axis, name in enumerate("xyz"):
+            np.testing.assert_allclose(found[name], expected[:, axis], atol=1e-15)
+        np.testing.assert_allclose(found["distance"], np.linalg.norm(outside - expected, axis=1))
+        self.assertTrue(((found["triangle"] >= 0) & (found["triangle"] < 12)).all())
+
+    def test_says_what_it_cannot_use(self):
+        for expected, call in (
+                ("face 1, expected numbers from 0 to 7",
+                 lambda: raygate.Scene(self.VERTICES, [[0, 1, 2], [0, 1, 8]])),
+                ("faces: found None", lambda: raygate.Scene(np.zeros((3, 3)))),
+                ("faces: found an array of float64",
+                 lambda: raygate.Scene(self.VERTICES, [[0.0, 1.0, 2.0]])),
+                ("in point 0", lambda: self.cube.closest([[np.nan, 0, 0]]))):
+            with self.assertRaisesRegex(ValueError, expected):
+                call()
+
+
 class Render(unittest.TestCase):
     def test_a_picture(self):
         scene = raygate.Scene(SCENES / "cornell.obj")
@@ -129,6 +199,19 @@ class Render(unittest.TestCase):
         again = scene.render(40, 30, spp=1, engine="model", threads=1)
         for name, channel in picture.items():
             self.assertEqual(channel.tobytes(), again[name].tobytes(), name)
+
+    def test_a_picture_is_saved_and_shown(self):
+        picture = raygate.Scene(SCENES / "cornell.obj").render(40, 30, spp=1)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, start in (("a.png", b"\x89PNG"), ("a.exr", b"\x76\x2f\x31\x01")):
+                path = pathlib.Path(folder) / name
+                picture.save(path)
+                self.assertTrue(path.read_bytes().startswith(start))
+            self.assertEqual((pathlib.Path(folder) / "a.png").read_bytes(), picture._repr_png_())
+        self.assertNotEqual(picture.png(exposure=1), picture.png())
+        with self.assertRaisesRegex(ValueError, "ends in .png or .exr"):
+            picture.save("a.jpg")
+        self.assertRegex(raygate.__version__, r"^\d+\.\d+\.\d+$")
 
     def test_a_picture_that_was_interrupted_leaves_no_light(self):
         scene = raygate.Scene(SCENES / "teapot.obj")

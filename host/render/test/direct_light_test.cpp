@@ -139,6 +139,32 @@ TEST(DirectLight, RectangularLightHasItsFormFactor) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 3.0 * form, 3e-3 * form);
 }
 
+// A light whose texture is black beyond its half is as bright as that half.
+TEST(DirectLight, ATexturedLightShinesByTexel) {
+  constexpr int kTexels = 256;
+  std::vector<Texture::Texel> texels(kTexels, {0, 0, 0});
+  std::fill_n(texels.begin(), kTexels / 2, Texture::Texel{255, 255, 255});
+  Scene half, textured;
+  add(half, rectangle({0, 1.2f, 0}, {1.5f, 0, 0}, {0, 0, 0.8f}), emitter(glm::vec3(3.0f)));
+  textured.textures.emplace_back(kTexels, 1, texels);
+  Material material = emitter(glm::vec3(3.0f));
+  material.emission_map.texture = 0;
+  material.emission_map.mapping.clamp = true;
+  add(textured, rectangle({0, 1.2f, 0}, {3, 0, 0}, {0, 0, 0.8f}), material);
+  textured.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  textured.triangles[0].texcoords = {0, 1, 2};
+  textured.triangles[1].texcoords = {0, 2, 3};
+  const float wanted = floor_radiance(half, kWhitted, 4096);
+  EXPECT_NEAR(floor_radiance(textured, kWhitted, 4096), wanted, 1e-3f * wanted);
+  EXPECT_NEAR(floor_radiance(textured, kPath, 4096), wanted, 1e-2f * wanted);
+  // And so it is seen; from below +x is on the left.
+  const Camera camera = camera_at({1.5, -3, 0.4}, {1.5, 1.2, 0.4}, 20.0);
+  for (const IntegratorKind integrator : {kWhitted, kPath, IntegratorKind::kPrimary}) {
+    const Film film = film_of(textured, camera, light(integrator, 8, 1, 1));
+    for (std::size_t x = 0; x < 8; ++x) EXPECT_EQ(film.color[x].r, x < 4 ? 0.0f : 3.0f) << x;
+  }
+}
+
 // Of a rough floor under a light_at, seen at an angle: the integral over the light. Whether lights
 // are asked for or met by chance, wide lobes or narrow ones.
 TEST(DirectLight, FacetsReflectALight) {
@@ -159,7 +185,7 @@ TEST(DirectLight, FacetsReflectALight) {
     std::uint32_t floor = 0;
     while (!hits_triangle(ray, bvh.corners_of(floor))) ++floor;
     const SurfaceHit places[] = {{&ray, floor, &scene.triangles[bvh.triangle_of(floor)], nullptr}};
-    const HitKind kind = parameters.kind | weights_needed(places[0]);
+    const HitKind kind = parameters.kind | weights_needed(scene, places[0]);
     const Bsdf<float> bsdf(surface_at<float>(scene, bvh, kind, places), kind, materials);
     double integral = 0.0;
     constexpr int kSteps = 400;

@@ -100,6 +100,26 @@ TEST(Surface, AMaskHidesHalfOfASquare) {
   }
 }
 
+// Colours of vertices multiply that of the material, in triangles written out and in instances.
+TEST(Surface, ColoursOfVerticesAreBetweenThem) {
+  Scene scene;
+  add_picture(scene, matte({0.5f, 1.0f, 1.0f}));
+  scene.colors = {{1, 0, 0}, {1, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 0}};
+  scene.background = glm::vec3(1.0f);
+  const Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 15.0);
+  RenderOptions options = light(kWhitted, 5, 5, 1);
+  options.channels.albedo = true;
+  const Film film = film_of(scene, camera, options);
+  const float half = 6.0f * std::tan(7.5f * 3.14159265f / 180.0f);
+  for (std::size_t x = 0; x < 5; ++x) {
+    const float at = half * (2.0f * (static_cast<float>(x) + 0.5f) / 5.0f - 1.0f);
+    const glm::vec3 wanted(0.5f, 0.5f + 0.5f * at, 0.0f);
+    EXPECT_LT(glm::length(film.albedo[10 + x] - wanted), 1e-5f) << x;
+  }
+  scene.materials[0].has_vertex_colors = false;
+  EXPECT_EQ(film_of(scene, camera, options).albedo[12], glm::vec3(0.5f, 1.0f, 1.0f));
+}
+
 // A map that leans along u turns the normal to where u grows.
 TEST(Surface, ANormalMapTurnsTheNormal) {
   for (const bool is_mirrored : {false, true}) {

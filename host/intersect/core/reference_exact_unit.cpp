@@ -1,0 +1,291 @@
+#include "host/intersect/core/reference_exact_unit.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <initializer_list>
+#include <vector>
+
+namespace raygate {
+namespace {
+
+using Wide = __int128;
+
+// Clocks from the request to the first step; from a step to the clock in which its sum is seen.
+constexpr int kFirstStep = 4, kSeen = 3;
+
+/// A binary32 number as significand 2^(exponent - 150).
+struct Fields {
+  bool negative;
+  int exponent;
+  std::uint32_t significand;
+
+  explicit Fields(float x) {
+    const auto word = std::bit_cast<std::uint32_t>(x);
+    const std::uint32_t field = word >> 23 & 0xFF;
+    negative = word >> 31 != 0;
+    exponent = static_cast<int>(field == 0 ? 1 : field);
+    significand = (word & 0x7FFFFF) | (field == 0 ? 0 : 0x800000);
+  }
+};
+
+/// The least and the largest exponent of numbers that are not 0.
+struct Range {
+  int low = 255, high = 0;
+
+  void add(const glm::vec3& v) {
+    for (int k = 0; k < 3; ++k) {
+      if (v[k] == 0.0f) continue;
+      low = std::min(low, Fields(v[k]).exponent);
+      high = std::max(high, Fields(v[k]).exponent);
+    }
+  }
+};
+
+/// Digits of a number, the lowest first, balanced.
+using Number = std::vector<std::int64_t>;
+using Vector = std::array<Number, 3>;
+
+/// x y, or its negative.
+struct Term {
+  const Number& x;
+  const Number& y;
+  bool negate = false;
+};
+
+int sign_of(const Number& number) {
+  for (std::size_t k = number.size(); k-- > 0;) {
+    if (number[k] != 0) return number[k] > 0 ? 1 : -1;
+  }
+  return 0;
+}
+
+class Machine {
+ public:
+  explicit Machine(const ExactRequest& request, int width)
+      : request_(request),
+        width_(width),
+        sure_bit_(width - 1 + std::bit_width(products(width) - 1u)) {
+    Range coordinates, direction;
+    coordinates.add(request.ray.origin);
+    for (const glm::vec3& corner : request.triangle) coordinates.add(corner);
+    if (request.against == ExactRequest::Against::kOther) {
+      for (const glm::vec3& corner : request.other) coordinates.add(corner);
+    }
+    if (coordinates.high == 0) coordinates.low = coordinates.high = 1;
+    direction.add(request.ray.direction);
+    unit_ = coordinates.low;
+    direction_unit_ = direction.low;
+    digits_ = count(coordinates.high - coordinates.low);
+    direction_digits_ = count(direction.high - direction.low);
+  }
+
+  ExactAnswer run() {
+    using Against = ExactRequest::Against;
+    const glm::vec3& o = request_.ray.origin;
+    const Corners& t = request_.triangle;
+    if (request_.asks_hit) {
+      const bool hit = hits();
+      if (!hit || request_.against == Against::kNothing) return {hit, 0, answer_};
+    } else {
+      a_ = difference(t[0], o);
+      direction_ = load_direction();
+    }
+    Number distance, slope, other_distance, other_slope;
+    const Vector b = difference(t[1], t[0]), c = difference(t[2], t[0]);
+    const auto fraction = static_cast<std::size_t>(fraction_digits());
+    if (request_.against == Against::kLimit) {
+      load_limit(other_distance, other_slope);
+      fence();
+      const Vector normal = cross(b, c);
+      distance = dot(a_, normal, fraction);
+      slope = dot(direction_, normal, fraction);
+    } else {
+      fence();
+      const Vector normal = cross(b, c);
+      const Vector other_b = difference(request_.other[1], request_.other[0]);
+      const Vector other_c = difference(request_.other[2], request_.other[0]);
+      distance = dot(a_, normal, fraction);
+      const Vector other_normal = cross(other_b, other_c);
+      const Vector other_a = difference(request_.other[0], o);
+      slope = dot(direction_, normal, fraction);
+      other_distance = dot(other_a, other_normal, fraction);
+      other_slope = dot(direction_, other_normal, fraction);
+    }
+    fence();
+    const int order = sign({{distance, other_slope}, {slope, other_distance, true}});
+    return {true, order * sign_of(distance) * sign_of(other_distance), answer_};
+  }
+
+ private:
+  /// Products in a column, at most.
+  static unsigned products(int width) { return static_cast<unsigned>(6 * count(253, width)); }
+  static int count(int spread, int width) { return (spread + 27 + width - 1) / width; }
+  [[nodiscard]] int count(int spread) const { return count(spread, width_); }
+  [[nodiscard]] int fraction_digits() const {
+    return 2 * digits_ + std::max(digits_, direction_digits_);
+  }
+
+  bool hits() {
+    const glm::vec3& o = request_.ray.origin;
+    const Corners& t = request_.triangle;
+    const Vector b = difference(t[1], o), c = difference(t[2], o);
+    a_ = difference(t[0], o);
+    direction_ = load_direction();
+    const Vector bc = cross(b, c), ca = cross(c, a_);
+    const int plane = side(a_, bc);
+    if (plane == 0 || edge(bc) != plane) return false;
+    const Vector ab = cross(a_, b);
+    return edge(ca) == plane && edge(ab) == plane;
+  }
+
+  int side(const Vector& x, const Vector& y) {
+    return sign({{x[0], y[0]}, {x[1], y[1]}, {x[2], y[2]}});
+  }
+  int edge(const Vector& normal) {
+    int found = side(direction_, normal);
+    for (int k = 0; k < 3 && found == 0; ++k) found = sign_of(normal[static_cast<std::size_t>(k)]);
+    return found;
+  }
+
+  /// Takes the low digit of a column's sum away.
+  std::int64_t take_digit(Wide& sum) const {
+    const Wide half = Wide{1} << (width_ - 1);
+    const Wide digit = ((sum + half) & (2 * half - 1)) - half;
+    sum = (sum - digit) >> width_;
+    return static_cast<std::int64_t>(digit);
+  }
+
+  /// Digit k of significand 2^shift.
+  [[nodiscard]] Wide slice(std::uint32_t significand, int shift, int k) const {
+    const int by = shift - width_ * k;
+    if (by >= width_ || by <= -24) return 0;
+    return by < 0 ? Wide{significand} >> -by
+                  : (Wide{significand} << by) & ((Wide{1} << width_) - 1);
+  }
+
+  /// x minus y, in units of 2^(unit - 150), a digit in each clock.
+  Number difference(float x, float y, int unit, int digits) {
+    const Fields a(x), b(y);
+    Number number;
+    Wide sum = 0;
+    for (int k = 0; k < digits; ++k) {
+      const Wide from = slice(a.significand, a.exponent - unit, k);
+      const Wide other = slice(b.significand, b.exponent - unit, k);
+      sum += a.negative == b.negative ? from - other : from + other;
+      number.push_back(take_digit(sum));
+      ++clock_;
+    }
+    // The digits of the other sign are not the negative's, where one is half of 2^width: the unit's
+    // are those of x's magnitude, negated.
+    for (std::int64_t& digit : number) digit = a.negative ? -digit : digit;
+    return number;
+  }
+  Vector difference(const glm::vec3& x, const glm::vec3& y) {
+    Vector vector;
+    for (int k = 0; k < 3; ++k) {
+      vector[static_cast<std::size_t>(k)] = difference(x[k], y[k], unit_, digits_);
+    }
+    return vector;
+  }
+  Vector load_direction() {
+    Vector vector;
+    for (int k = 0; k < 3; ++k) {
+      vector[static_cast<std::size_t>(k)] =
+          difference(request_.ray.direction[k], 0.0f, direction_unit_, direction_digits_);
+    }
+    return vector;
+  }
+  /// t = D / S in units of 2^(unit - direction's unit) against the limit: D times the one, S times
+  /// the limit times the other, in the smaller one's units. (One has a bit, the limit 24.)
+  void load_limit(Number& limit, Number& one) {
+    const Fields fields(request_.limit);
+    const int gap = unit_ - (fields.exponent + direction_unit_ - 150);
+    const int digits = count(gap < 0 ? -gap : std::max(gap - 23, 0));
+    const auto load = [&](std::uint32_t significand, int shift) {
+      Number number;
+      Wide sum = 0;
+      for (int k = 0; k < digits; ++k) {
+        sum += slice(significand, shift, k);
+        number.push_back(take_digit(sum));
+        ++clock_;
+      }
+      return number;
+    };
+    limit = load(fields.significand, std::max(-gap, 0));
+    one = load(1, std::max(gap, 0));
+  }
+
+  /// The products of a column. Adds them up, a clock each; none at all take one, too.
+  Wide column(std::initializer_list<Term> terms, int k) {
+    const int x = static_cast<int>(terms.begin()->x.size());
+    const int y = static_cast<int>(terms.begin()->y.size());
+    Wide sum = 0;
+    int clocks = 0;
+    for (int i = std::max(0, k - y + 1); i <= std::min(x - 1, k); ++i) {
+      for (const Term& term : terms) {
+        const Wide product = Wide{term.x[static_cast<std::size_t>(i)]} *
+                             Wide{term.y[static_cast<std::size_t>(k - i)]};
+        sum += term.negate ? -product : product;
+        ++clocks;
+      }
+    }
+    clock_ += std::max(clocks, 1);
+    return sum;
+  }
+
+  Number sum(std::initializer_list<Term> terms, std::size_t digits) {
+    Number number;
+    Wide left = 0;
+    for (std::size_t k = 0; k < digits; ++k) {
+      left += column(terms, static_cast<int>(k));
+      number.push_back(take_digit(left));
+    }
+    return number;
+  }
+  Number dot(const Vector& x, const Vector& y, std::size_t digits) {
+    return sum({{x[0], y[0]}, {x[1], y[1]}, {x[2], y[2]}}, digits);
+  }
+  Vector cross(const Vector& x, const Vector& y) {
+    const auto component = [&](std::size_t j, std::size_t k) {
+      return sum({{x[j], y[k]}, {x[k], y[j], true}}, 2 * x[0].size());
+    };
+    return {component(1, 2), component(2, 0), component(0, 1)};
+  }
+
+  /// Of the columns' sum from the top: as soon as those below cannot change it.
+  int sign(std::initializer_list<Term> terms) {
+    const auto top = static_cast<int>(terms.begin()->x.size() + terms.begin()->y.size()) - 2;
+    const Wide sure = Wide{1} << sure_bit_;
+    Wide sum = 0;
+    bool known = false;
+    for (int k = top; k >= 0; --k) {
+      if (known && clock_ > answer_ - 1) break;  // it is seen, and the next instruction follows
+      const Wide more = column(terms, k);
+      if (known) continue;
+      sum = (sum << width_) + more;
+      known = k == 0 || sum >= sure || sum < -sure;
+      if (known) answer_ = clock_ - 1 + kSeen + 1;
+    }
+    // Steps that had set out when it was seen count until then.
+    clock_ = std::min(clock_, answer_);
+    return (sum > 0) - (sum < 0);
+  }
+
+  /// Waits until all numbers are written.
+  void fence() { clock_ += kSeen; }
+
+  const ExactRequest& request_;
+  int width_, sure_bit_, unit_, direction_unit_, digits_, direction_digits_;
+  int clock_ = kFirstStep;  // of the next step
+  int answer_ = 0;          // the clock after the latest sign was seen
+  Vector a_, direction_;
+};
+
+}  // namespace
+
+ExactAnswer decide(const ExactRequest& request, int width) { return Machine(request, width).run(); }
+
+}  // namespace raygate
