@@ -9,7 +9,9 @@ SETUP ?= .ci/setup
 PYTHON := build/venv/bin/python3
 
 # Configured each time, in a third of a second: a library that was missing then may be here now.
-configure = cmake -S . -B build -G Ninja --log-level=WARNING
+# VARIANTS: of another table than host/lab/variants/variants.json (`make variant`).
+configure = cmake -S . -B build -G Ninja --log-level=WARNING \
+  -DRAYGATE_VARIANTS=$(VARIANTS) -DRAYGATE_SIMULATION=ON
 # $(call build,KIND,TARGETS): sets up and builds these programs.
 define build
 @$(SETUP) $(1)
@@ -17,13 +19,16 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help verilate example wave render gallery frames test python check mutate fuzz lint format clean
+.PHONY: help cpu verilate example wave render gallery frames test python check mutate fuzz lint format clean
 
 help:
 	@for group in use test measure hardware develop; do \
 	  echo "$$group:"; \
 	  sed -nE "s/^([a-z-]+):.*## $$group: /  \1\t/p" $(MAKEFILE_LIST) | expand -t 13; \
 	done
+
+cpu: ## use: build ./render, ./trace, ./compare, ./merge without Verilator and the simulated hardware
+	$(call build,cpu,render trace compare merge scenes)
 
 verilate: ## use: build ./render, ./trace, ./compare, ./merge and the simulated hardware: make verilate [MPI=1]
 	$(call build,$(if $(filter-out 0,$(MPI)),mpi,build),render trace compare merge scenes)
@@ -57,16 +62,18 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 frames: verilate ## measure: the paper's frame at 10 MHz: clocks, frames per second, bytes read
 	@python3 sim/bench/frame_rates.py ./render scenes/paper.obj
 
-# Long runs of single tests: ten million tests of the pipelined unit; renders and ranks that are killed; each allocation,
-# write, sync and rename failing in turn; the intervals of --error.
+# Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic; renders and
+# ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error.
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
+LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
+LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
 LONG_kills = RAYGATE_KILLS=$(or $(KILLS),100) build/run_test --gtest_filter='*SurviveBeingKilled'
 LONG_faults = RAYGATE_FAULTS=0 build/faults_test
 LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='KilledRanks.*'
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: ## test: build and run all tests; long runs: make test LONG=unit | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=error SEEDS=1000
+test: ## test: build and run all tests; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=error SEEDS=1000
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, kills, ranks, faults or error))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults or error))
 	$(call build,test,$(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))))
 	@$(LONG_$(LONG))
 else
@@ -130,12 +137,14 @@ format: ## develop: lay out all sources as lint expects
 	@.ci/lint format --fix
 
 clean: ## develop: remove what was built; scenes and pictures stay
-	rm -rf build render trace compare
+	rm -rf build render trace compare merge
 
 # What was chosen once stays, until `make MPI=0 ...` or 1.
 ifdef MPI
 configure += -DRAYGATE_MPI=$(if $(filter 0,$(MPI)),OFF,ON)
 endif
+
+cpu: configure += -DRAYGATE_SIMULATION=OFF
 
 .PHONY: everything
 everything test: configure += -DBUILD_TESTING=ON
