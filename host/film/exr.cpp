@@ -12,14 +12,12 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
-#include <ImfVersion.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <new>
 #include <utility>
 
@@ -310,12 +308,6 @@ std::string encode_exr(const Film& film, const ExrMetadata& metadata, int thread
     bytes.append(file, first);
   }
   return bytes;
-}
-
-bool is_exr(const std::filesystem::path& file) {
-  char magic[4] = {};
-  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
-  return Imf::isImfMagic(magic);
 }
 
 ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::string> names) {

@@ -60,9 +60,6 @@ struct ChannelPicture {
   std::vector<std::vector<double>> channels;  ///< names[i]'s numbers, row by row from the top
 };
 
-/// Whether the file begins as OpenEXR files do.
-[[nodiscard]] bool is_exr(const std::filesystem::path& file);
-
 /// Reads the channels `names` of a scan-line or tiled file's first part. Throws InputError: what
 /// cannot be read or is not OpenEXR, is damaged, lacks a channel, or is larger than 2^26 pixels.
 [[nodiscard]] ChannelPicture read_exr(const std::filesystem::path& file,

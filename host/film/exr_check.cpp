@@ -1,5 +1,6 @@
 #include "host/film/exr_check.h"
 
+#include <ImfVersion.h>
 #include <openexr.h>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
-#include "host/film/exr.h"
 
 namespace raygate {
 namespace {
@@ -81,6 +81,12 @@ void require_types(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+bool is_exr(const std::filesystem::path& file) {
+  char magic[4] = {};
+  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
+  return Imf::isImfMagic(magic);
+}
 
 void require_exr(const std::filesystem::path& file) {
   require_readable(file);
