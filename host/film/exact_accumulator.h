@@ -25,45 +25,54 @@ class ExactAccumulator {
       significand >>= -shift;
       shift = 0;
     }
-    const int word = shift / 64, within = shift % 64;
-    ExactAccumulator term;
-    term.words_[word] = significand << within;
-    if (within != 0 && word < 2) term.words_[word + 1] = significand >> (64 - within);
-    if (number < 0.0) term = -term;
-    *this += term;
+    // kMost's shift is 107, so that the last 64 bits have what lies above the first 128.
+    const Wide low = Wide{significand} << shift;
+    const std::uint64_t high = shift > 64 ? significand >> (128 - shift) : 0;
+    if (number < 0.0) {
+      subtract(low, high);
+    } else {
+      add(low, high);
+    }
   }
 
   ExactAccumulator& operator+=(const ExactAccumulator& other) {
-    std::uint64_t carry = 0;
-    for (int i = 0; i < 3; ++i) {
-      const std::uint64_t with_carry = words_[i] + carry;
-      words_[i] = with_carry + other.words_[i];
-      carry = static_cast<std::uint64_t>(with_carry < carry) | (words_[i] < with_carry);
-    }
+    add(other.low(), other.words_[2]);
     return *this;
   }
 
   [[nodiscard]] ExactAccumulator operator-() const {
     ExactAccumulator result;
-    std::uint64_t carry = 1;
-    for (int i = 0; i < 3; ++i) {
-      result.words_[i] = ~words_[i] + carry;
-      carry &= result.words_[i] == 0;
-    }
+    result.subtract(low(), words_[2]);
     return result;
   }
 
   /// The double near it: off by less than 2^-51 of it.
   [[nodiscard]] double value() const {
     if (words_[2] >> 63 != 0) return -(-*this).value();
-    return std::ldexp(static_cast<double>(words_[2]), 128 - kFraction) +
-           (std::ldexp(static_cast<double>(words_[1]), 64 - kFraction) +
-            std::ldexp(static_cast<double>(words_[0]), -kFraction));
+    return static_cast<double>(words_[2]) * 0x1p32 +
+           (static_cast<double>(words_[1]) * 0x1p-32 + static_cast<double>(words_[0]) * 0x1p-96);
   }
 
   friend bool operator==(const ExactAccumulator&, const ExactAccumulator&) = default;
 
  private:
+  __extension__ using Wide = unsigned __int128;
+
+  [[nodiscard]] Wide low() const { return Wide{words_[1]} << 64 | words_[0]; }
+  void set(Wide low, std::uint64_t high) {
+    words_[0] = static_cast<std::uint64_t>(low);
+    words_[1] = static_cast<std::uint64_t>(low >> 64);
+    words_[2] = high;
+  }
+  void add(Wide low, std::uint64_t high) {
+    const Wide sum = this->low() + low;
+    set(sum, words_[2] + high + (sum < low ? 1 : 0));
+  }
+  void subtract(Wide low, std::uint64_t high) {
+    const Wide from = this->low();
+    set(from - low, words_[2] - high - (from < low ? 1 : 0));
+  }
+
   static constexpr int kFraction = 96;
   static constexpr double kMost = 0x1p63, kLeast = 0x1p-96;
   static constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;

@@ -218,6 +218,7 @@ void TileRenderer::write() {
     std::array<ExactAccumulator, 3> albedo{};
     if (!kept.color.empty()) color = kept.color[at];
     if (!kept.albedo.empty()) albedo = kept.albedo[at];
+    int hits = 0;
     for (int index = pixel.first; index < pixel.end; ++index, ++i) {
       const FirstHit& first_hit = first_hits_[i];
       const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(direct_light_[i]);
@@ -225,9 +226,10 @@ void TileRenderer::write() {
         color[k].add(light[k]);
         albedo[k].add(output_.first_surface[i].albedo[k]);
       }
-      color[3].add(first_hit.primitive == NearestHit::kNone ? 0.0 : 1.0);
+      hits += first_hit.primitive != NearestHit::kNone;
       count(first_hit.work);
     }
+    color[3].add(hits);
     for (int k = 0; k < 3; ++k) color[k] += edge_emission_[p][k];
     if (is_counting_) count(edge_work_[place_in_tile(pixel)]);
     const int samples = pixel.end - job_.options.first_sample;
