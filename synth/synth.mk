@@ -2,7 +2,7 @@
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth cells prove verilog fpga datasheet layout
+.PHONY: synth cells prove verilog fpga datasheet lecture layout
 
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(TOP),,verilate) ## hardware: area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
@@ -38,6 +38,10 @@ datasheet: ## hardware: the tables and diagrams of hw/'s pages
 	$(call build,build,worked_example)
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.datasheet
+
+lecture: ## hardware: a page of adders with numbers in them: make lecture [WIDTH=12 GROUPS=3,4,5 A=1365 B=2731 X=1.5 Y=-0.3]
+	@$(SETUP) synth
+	@$(PYTHON) -m synth.lecture --width '$(WIDTH)' --groups '$(GROUPS)' --a '$(A)' --b '$(B)' --carry '$(CARRY)' --x '$(X)' --y '$(Y)'
 
 layout: ## hardware: place, route, time, draw: make layout [TOP=adders | multipliers | cores | MODULE | energy SEEDS=3]
 	@$(SETUP) layout

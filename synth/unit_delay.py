@@ -31,11 +31,12 @@ COUNTINGS = [
 
 
 def netlist(design: Design) -> dict:
-    """The module of `design` as Yosys's JSON, flattened to structure.v's cells and gates."""
+    """The module of `design` as Yosys's JSON, flattened to structure.v's cells and gates; `names`: the bits of each word of
+    the sources."""
     folder = store.OUT / "structure" / design.name
     scripts = ("structure_json.tcl", "structure.tcl", "elaborate.tcl", "known_inputs.v")
     files = [*design.sources(structural=True), *(tools.FLOWS / name for name in scripts)]
-    wanted = store.key(files, tools.version("yosys"), design.facts)
+    wanted = store.key(files, tools.version("yosys"), design.facts, "with names")
     return store.cached(folder, wanted, lambda: _elaborate(design, folder))[0]
 
 
@@ -44,7 +45,8 @@ def _elaborate(design: Design, folder: pathlib.Path) -> dict:
     tools.run(["yosys", "-c", tools.FLOWS / "structure_json.tcl"], folder / "yosys.log",
               {**mapping.elaboration(design, structural=True), "OUT": str(file)})
     module = mapping.top_module(file)
-    return {"ports": module["ports"], "cells": [
+    names = {name: net["bits"] for name, net in module["netnames"].items() if not net["hide_name"]}
+    return {"ports": module["ports"], "names": names, "cells": [
         {"type": cell["type"], "connections": cell["connections"],
          "directions": cell["port_directions"]} for cell in module["cells"].values()]}
 

@@ -1,0 +1,281 @@
+"""A page for a lecture: each kind of adder, a Booth multiplication and a float addition, drawn from their elaborated netlists with
+chosen operands in them.
+
+`python3 -m synth.lecture`: see `--help`. Every value on the page is the netlist's (netlist_values), none is computed beside it.
+"""
+
+import argparse
+import collections
+import html
+import pathlib
+import string
+import struct
+import sys
+
+from synth import catalogue, chosen, netlist_values, store, tools, unit_delay
+from synth.netlist_values import evaluate, word
+
+MOST_BITS = 16  # wider adders do not fit on a page
+
+# What a cell counts on a path, in full-adder delays: a full adder's sum is two gates deep.
+DELAYS = {"FULL_ADDER": 1.0, "MULTIPLEXER": 1.0}
+GATE = 0.5
+SYMBOLS = {"FULL_ADDER": "FA", "MULTIPLEXER": "mux", "$_AND_": "and", "$_OR_": "or", "$_XOR_": "xor", "$_NOT_": "not"}
+CELL, SLOT, ROW, MARGIN = 30, 36, 62, 40  # pixels
+
+KINDS = {
+    "ripple": "Ripple carry: the carry goes through every full adder.",
+    "uniform": "Carry select, groups of one width: each group adds for both carries at once, and the carry below chooses.",
+    "graded": "Carry select, graded groups: a group is as wide as the time that its carry takes to come (the paper, 3.4).",
+    "prefix": "Parallel prefix (Sklansky): generate and propagate of ever more bits, joined in a tree.",
+}
+
+
+class AdderDrawing:
+    """Where an adder's cells are on the page: columns by the highest operand bit that a cell depends on, rows by time."""
+
+    def __init__(self, module: dict) -> None:
+        self.module = module
+        self.top = {bit: place for port in ("a_i", "b_i") for place, bit in enumerate(module["ports"][port]["bits"])}
+        self.arrival: dict[object, float] = {}
+        self.slowest: dict[object, dict] = {}  # bit -> the cell that gives it
+        self.cells = list(netlist_values.in_order(module))
+        slots = collections.Counter()
+        self.at = []  # of each cell: column, row, place in that
+        for cell in self.cells:
+            ins = netlist_values.bits_of(netlist_values.pins(cell, "input"))
+            column = max(self.top.get(bit, 0) for bit in ins)
+            arrival = max(self.arrival.get(bit, 0.0) for bit in ins) + DELAYS.get(cell["type"], GATE)
+            for bit in netlist_values.bits_of(netlist_values.pins(cell, "output")):
+                self.top[bit], self.arrival[bit], self.slowest[bit] = column, arrival, cell
+            self.at.append((column, arrival, slots[column, arrival]))
+            slots[column, arrival] += 1
+        self.rows = {arrival: row for row, arrival in enumerate(sorted({arrival for _, arrival, _ in self.at}))}
+        width = len(module["ports"]["a_i"]["bits"])
+        most = [max([count for (column, _), count in slots.items() if column == place], default=1) for place in range(width)]
+        self.left = {place: MARGIN + sum(SLOT * count + 12 for count in most[place + 1:]) for place in range(width)}
+        self.width = 2 * MARGIN + sum(SLOT * count + 12 for count in most)
+        self.middle = {place: self.left[place] + SLOT * most[place] // 2 for place in range(width)}
+
+    def on_slowest_path(self) -> set[int]:
+        """The cells, by identity, that one longest path goes through."""
+        outputs = [bit for port in ("sum_o", "carry_o") for bit in self.module["ports"][port]["bits"]]
+        bit, found = max(outputs, key=lambda bit: self.arrival.get(bit, 0.0)), set()
+        while bit in self.slowest:
+            cell = self.slowest[bit]
+            found.add(id(cell))
+            bit = max(netlist_values.bits_of(netlist_values.pins(cell, "input")), key=lambda bit: self.arrival.get(bit, 0.0))
+        return found
+
+    def svg(self, values: dict[object, int]) -> str:
+        """The drawing with `values` (evaluate) on its wires."""
+        ports = self.module["ports"]
+        below = MARGIN + 44 + ROW * len(self.rows)
+        places = {}  # bit -> where its wire begins
+        parts, wires = [], []
+        for name, y in (("a_i", MARGIN - 14), ("b_i", MARGIN + 6)):
+            parts.append(text(12, y, name[0], "name"))
+            for place, bit in enumerate(ports[name]["bits"]):
+                places[bit] = (self.middle[place] + (-6 if name == "a_i" else 6), MARGIN + 10)
+                parts.append(text(self.middle[place], y, str(values[bit]), f"v{values[bit]}"))
+        (carry,) = ports["carry_i"]["bits"]
+        places[carry] = (self.width - 14, MARGIN + 10)
+        parts.append(text(self.width - 14, MARGIN + 6, str(values[carry]), f"v{values[carry]}"))
+        slow = self.on_slowest_path()
+        for cell, (column, arrival, slot) in zip(self.cells, self.at, strict=True):
+            x = self.left[column] + SLOT * slot + SLOT // 2
+            y = MARGIN + 40 + ROW * self.rows[arrival]
+            ins = netlist_values.bits_of(netlist_values.pins(cell, "input"))
+            outs = netlist_values.bits_of(netlist_values.pins(cell, "output"))
+            for place, bit in enumerate(ins):
+                pin = x + 7 * (2 * place - len(ins) + 1) // 2
+                if bit in places:
+                    wires.append(wire(places[bit], (pin, y), values[bit]))
+                else:
+                    parts.append(text(pin, y - 3, bit, "kind"))
+            places |= {bit: (x + 8 * (2 * place - len(outs) + 1) // 2, y + CELL) for place, bit in enumerate(outs)}
+            bold = " slow" if id(cell) in slow else ""
+            parts.append(f'<rect class="cell{bold}" x="{x - CELL // 2}" y="{y}" width="{CELL}" height="{CELL}" rx="4"/>')
+            parts.append(text(x, y + 12, SYMBOLS.get(cell["type"], cell["type"]), "kind"))
+            found = netlist_values.pins(cell, "output")
+            order = [bit for port in ("CARRY", "SUM") if port in found for bit in found[port]] or outs
+            parts.append(text(x, y + 25, " ".join(str(values[bit]) for bit in order), "value"))
+        for place, bit in [*enumerate(ports["sum_o"]["bits"]), (-1, ports["carry_o"]["bits"][0])]:
+            x = self.middle[place] if place >= 0 else 14
+            wires.append(wire(places[bit], (x, below), values[bit]))
+            parts.append(text(x, below + 16, str(values[bit]), f"v{values[bit]}"))
+        return (f'<svg viewBox="0 0 {self.width} {below + 28}" style="max-width:{self.width}px" role="img">'
+                + "".join(wires) + "".join(parts) + "</svg>")
+
+
+def text(x: float, y: float, words: str, kind: str) -> str:
+    """Centred at x."""
+    return f'<text class="{kind}" x="{x}" y="{y}">{html.escape(words)}</text>'
+
+
+def wire(begin: tuple[float, float], end: tuple[float, float], value: int) -> str:
+    """A line that leaves and arrives upright."""
+    (x0, y0), (x1, y1) = begin, end
+    bend = min(24.0, (y1 - y0) / 2)
+    return f'<path class="w{value}" d="M{x0} {y0}C{x0} {y0 + bend} {x1} {y1 - bend} {x1} {y1}"/>'
+
+
+def binary(number: int, width: int) -> str:
+    """In groups of four bits, from the lowest."""
+    digits = f"{number:0{width}b}"
+    first = width % 4
+    return "\u2009".join(filter(None, [digits[:first], *(digits[k:k + 4] for k in range(first, width, 4))]))
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    """Of cells that are HTML already."""
+    line = lambda tag, cells: "<tr>" + "".join(f"<{tag}>{cell}</{tag}>" for cell in cells) + "</tr>"  # noqa: E731
+    return "<table>" + line("th", header) + "".join(line("td", row) for row in rows) + "</table>"
+
+
+def adder_section(kind: str, given: argparse.Namespace) -> str:
+    """One kind of adder with the operands in it."""
+    widths = [int(size) for size in given.groups.split(",")] if given.groups and kind == "graded" else None
+    design = catalogue.design("adder", adder=kind, widths=widths, Width=given.width,
+                              look_ahead=None if kind in ("ripple", "prefix") else False)
+    module = netlist_values.without_constants(unit_delay.netlist(design))
+    values = evaluate(module, {"a_i": given.a, "b_i": given.b, "carry_i": given.carry})
+    drawing = AdderDrawing(module)
+    ports = module["ports"]
+    total = word(ports["sum_o"]["bits"] + ports["carry_o"]["bits"], values)
+    cells = collections.Counter(SYMBOLS.get(cell["type"], cell["type"]) for cell in drawing.cells)
+    slowest = max(drawing.arrival.get(bit, 0.0) for port in ("sum_o", "carry_o") for bit in ports[port]["bits"])
+    return (f"<section><h3>{html.escape(KINDS[kind])}</h3><p>{given.a} + {given.b} + {given.carry} = <b>{total}</b>. "
+            f"Slowest path (bold): {slowest:g} full-adder delays. Cells: "
+            f"{', '.join(f'{count} {name}' for name, count in sorted(cells.items()))}.</p>{drawing.svg(values)}</section>")
+
+
+def booth_section(given: argparse.Namespace) -> str:
+    """The multiplication of the operands: digits, partial products, the tree's rows, the last addition."""
+    width = given.width + given.width % 2
+    module = unit_delay.netlist(catalogue.design("booth_multiplier", Width=width))
+    values = evaluate(module, {"a_i": given.a, "b_i": given.b})
+    number = lambda name: word(module["names"][name], values)  # noqa: E731
+    digits = width // 2 + 1
+    one, two, negative = (number(name) for name in ("one", "two", "negative"))
+    rows = []
+    for k in range(digits):
+        size = (one >> 2 * k & 1) + 2 * (two >> 2 * k & 1)
+        row = number(f"gen_row[{k}].row")
+        rows.append([str(k), ("-" if negative >> 2 * k & 1 else "") + str(size), f"4<sup>{k}</sup>",
+                     f"<code>{binary(row, width + 1)}</code>"])
+    queue = number("u_tree.queue")
+    count = len(module["names"]["u_tree.queue"]) // (2 * width)
+    words = [queue >> 2 * width * k & (1 << 2 * width) - 1 for k in range(count)]
+    steps = []
+    for k in range((count - digits) // 2):
+        into, out = words[3 * k:3 * k + 3], words[digits + 2 * k:digits + 2 * k + 2]
+        steps += [[str(k) if first else "", what, f"<code>{binary(row, 2 * width)}</code>"]
+                  for row, what, first in zip((*into, *out), ("row", "row", "row", "sum", "carry"), (1, 0, 0, 0, 0), strict=True)]
+    product = word(module["ports"]["product_o"]["bits"], values)
+    total, carry = words[-2:]
+    return (f"<section><h2>Booth multiplier, {width} x {width} bits</h2><p>{given.a} x {given.b} = <b>{product}</b>: "
+            f"the digits of {given.b} in radix 4 are -2 to 2, and each makes one partial product of {given.a}.</p>"
+            + table(["digit", "value", "weight", "partial product (complement where negative)"], rows)
+            + "<p>Carry-save tree: each adder makes two rows of three, without passing a carry on.</p>"
+            + table(["adder", "", "bits"], steps)
+            + f"<p>The last adder: {total} + {carry} = <b>{product}</b> modulo 2<sup>{2 * width}</sup>.</p></section>")
+
+
+def float_section(given: argparse.Namespace) -> str:
+    """The sum of two binary16 numbers, step by step."""
+    design = catalogue.design("fp_adder", ExpWidth=5, FracWidth=10)
+    module = unit_delay.netlist(design)
+    packed = [struct.unpack("<H", struct.pack("<e", number))[0] for number in (given.x, given.y)]
+    values = evaluate(module, {"a_i": packed[0], "b_i": packed[1], "subtract_i": 0, "rounding_mode_i": 0, "tininess_after_i": 0})
+    names = module["names"]
+
+    def row(step: str, name: str, meaning: str) -> list[str]:
+        bits = names[f"u_stages.{name}"]
+        return [step, f"<code>{name}</code>", f"<code>{binary(word(bits, values), len(bits))}</code>", str(word(bits, values)), meaning]
+
+    near = values[names["u_stages.near"][0]]
+    way = ([row("near path", "near_difference", "difference of neighbours, exact"), row("", "near_count", "zeros before the leading one"),
+            row("", "near_normal", "shifted left by as many places")] if near else
+           [row("far path", "far_aligned", "the smaller one, shifted right by the distance"),
+            row("", "far_sticky", "1 where a bit was lost on the way"), row("", "far_sum", "the sum, with a guard bit"),
+            row("round", "u_round.increment", "1 where the result is rounded up")])
+    result = word(module["ports"]["result_o"]["bits"], values)
+    (shown,) = struct.unpack("<e", struct.pack("<H", result))
+    operands = [struct.unpack("<e", struct.pack("<H", bits))[0] for bits in packed]
+    rows = [row("unpack", "a_exp", "exponent of the first, biased by 15"), row("", "a_sig", "its significand with the leading one"),
+            row("", "b_exp", "of the second"), row("", "b_sig", ""), row("order", "swap", "1 where the second is the larger one"),
+            row("", "distance", "between the exponents"), *way]
+    return (f"<section><h2>Float adder, binary16</h2><p>{operands[0]!r} + {operands[1]!r} = <b>{shown!r}</b>, rounded to the nearest; "
+            f"words <code>{packed[0]:04x}</code>, <code>{packed[1]:04x}</code> and <code>{result:04x}</code>.</p>"
+            + table(["step", "word", "bits", "number", "what it is"], rows) + "</section>")
+
+
+PAGE = string.Template("""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>Adders with $a and $b in them</title><style>
+:root { color-scheme: light dark; --ink: #222; --paper: #fff; --faint: #adb5bd; --one: #d9480f; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e9ecef; --paper: #16181c; --faint: #5c636a; --one: #ff922b; } }
+body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--paper); max-width: 1100px; margin: 2em auto; padding: 0 1em; }
+svg { width: 100%; height: auto; display: block; } section { break-inside: avoid; margin-bottom: 2.5em; overflow-x: auto; }
+text { font: 11px system-ui, sans-serif; text-anchor: middle; fill: var(--ink); } text.kind { font-size: 9px; fill: var(--faint); }
+text.v1, text.v0, text.name { font-size: 15px; } text.v1 { font-weight: 700; fill: var(--one); }
+rect.cell { fill: var(--paper); stroke: var(--faint); } rect.slow { stroke: var(--ink); stroke-width: 2.5; }
+path { fill: none; stroke-width: 1.2; } path.w0 { stroke: var(--faint); } path.w1 { stroke: var(--one); stroke-width: 1.8; }
+table { border-collapse: collapse; font-size: 14px; } td, th { padding: 2px 12px 2px 0; text-align: left; white-space: nowrap; }
+@media print { body { max-width: none; margin: 0; } }
+</style></head><body><h1>What happens in an adder</h1>
+<p>a = $a = <code>$a_bits</code>, b = $b = <code>$b_bits</code>. Drawn from the netlists of <code>hw/arith</code> and <code>hw/fp</code>: time runs
+downwards, the highest bit is on the left, a wire that carries a 1 has a colour. A full adder (FA; its carry and its sum are
+written into it) and a multiplexer count one full-adder delay each, a gate half of one.</p>
+$sections
+</body></html>
+""")
+
+
+def page(given: argparse.Namespace) -> str:
+    """The whole page as HTML, without anything from elsewhere."""
+    sections = [adder_section(kind, given) for kind in KINDS] + [booth_section(given), float_section(given)]
+    return PAGE.substitute(a=given.a, b=given.b, a_bits=binary(given.a, given.width), b_bits=binary(given.b, given.width),
+                           sections="\n".join(sections))
+
+
+def binary16(text: str) -> str:
+    """The `type` of an option: nothing, or a number that binary16 holds, rounded, as its text."""
+    try:
+        struct.pack("<e", float(text or 0))
+    except (OverflowError, ValueError):
+        raise argparse.ArgumentTypeError(f"expected a number from -65504 to 65504, got {text!r}") from None
+    return text
+
+
+def main() -> int:
+    """The command line; 2 for what the user can mend."""
+    parser = argparse.ArgumentParser(prog="synth.lecture", description="Draws adders with operands in them, as a page.")
+    parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), help="bits of the adders (12)")
+    parser.add_argument("--groups", type=chosen.whole_numbers, help="the graded adder's groups, lowest first")
+    parser.add_argument("--a", type=chosen.whole(0, 2**MOST_BITS - 1), help="an operand (1,365)")
+    parser.add_argument("--b", type=chosen.whole(0, 2**MOST_BITS - 1), help="the other (2,731)")
+    parser.add_argument("--carry", type=chosen.whole(0, 1), help="the carry into bit 0 (0)")
+    parser.add_argument("--x", type=binary16, help="a number for the float adder (1.5)")
+    parser.add_argument("--y", type=binary16, help="the other (-0.3)")
+    given = chosen.parse(parser)
+    for name, usual in (("width", 12), ("a", 1365), ("b", 2731), ("carry", 0)):
+        setattr(given, name, int(getattr(given, name) or usual))
+    out = store.OUT / "lecture.html"
+    given.x, given.y = float(given.x or 1.5), float(given.y or -0.3)
+    try:
+        if max(given.a, given.b) >> given.width:
+            raise ValueError(f"found operands {given.a} and {given.b}, expected numbers of {given.width} bits")
+        if given.groups and sum(map(int, given.groups.split(","))) != given.width:
+            raise ValueError(f"found groups {given.groups}, expected {given.width} bits together")
+        out.parent.mkdir(parents=True, exist_ok=True)
+        store.replace(out, page(given))
+    except (tools.MissingTool, OSError, ValueError) as error:
+        print(f"synth.lecture: {error}", file=sys.stderr)
+        return 2
+    print(f"The page: {out.relative_to(pathlib.Path.cwd()) if out.is_relative_to(pathlib.Path.cwd()) else out}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,82 @@
+"""Values of netlists against Python's own arithmetic, and the page that shows them."""
+
+import argparse
+import html.parser
+import random
+import struct
+import subprocess
+import sys
+import unittest
+
+from synth import catalogue, lecture, netlist_values, tools, unit_delay
+
+
+def given(**changed: object) -> argparse.Namespace:
+    """The options of a page of eight bits."""
+    return argparse.Namespace(**{"width": 8, "groups": None, "a": 181, "b": 90, "carry": 1, "x": 1.5, "y": -0.3} | changed)
+
+
+class Values(unittest.TestCase):
+    def test_adders_add(self) -> None:
+        """Each kind, as elaborated and without what constants decide; that has fewer gates where there are constants."""
+        numbers = random.Random(1)
+        for kind, look_ahead in (("ripple", None), ("uniform", False), ("graded", True), ("graded", False), ("prefix", None)):
+            whole = unit_delay.netlist(catalogue.design("adder", adder=kind, look_ahead=look_ahead, Width=9))
+            fewer = netlist_values.without_constants(whole)
+            self.assertEqual(len(fewer["cells"]) < len(whole["cells"]), kind == "prefix" or look_ahead is True)
+            for _ in range(100):
+                a, b, carry = numbers.getrandbits(9), numbers.getrandbits(9), numbers.getrandbits(1)
+                for module in (whole, fewer):
+                    values = netlist_values.evaluate(module, {"a_i": a, "b_i": b, "carry_i": carry})
+                    bits = module["ports"]["sum_o"]["bits"] + module["ports"]["carry_o"]["bits"]
+                    self.assertEqual(netlist_values.word(bits, values), a + b + carry)
+
+    def test_a_float_adder_adds(self) -> None:
+        module = unit_delay.netlist(catalogue.design("fp_adder", ExpWidth=5, FracWidth=10))
+        numbers = random.Random(2)
+        for _ in range(100):
+            a, b = (numbers.getrandbits(16) & 0xbfff for _ in range(2))  # finite, and so is their sum
+            values = netlist_values.evaluate(module, {"a_i": a, "b_i": b, "subtract_i": 0, "rounding_mode_i": 0, "tininess_after_i": 0})
+            x, y = struct.unpack("<ee", struct.pack("<HH", a, b))
+            result = netlist_values.word(module["ports"]["result_o"]["bits"], values)
+            self.assertEqual(result, struct.unpack("<H", struct.pack("<e", x + y))[0])
+
+
+class Page(unittest.TestCase):
+    def test_has_each_cell_and_the_results(self) -> None:
+        page = lecture.page(given())
+        self.assertEqual(page.count("181 + 90 + 1 = <b>272</b>"), len(lecture.KINDS))
+        self.assertIn("181 x 90 = <b>16290</b>", page)
+        self.assertIn("1.5 + -0.300048828125 = <b>1.2001953125</b>", page)
+        ripple = page[page.index("Ripple carry"):page.index("groups of one width")]
+        self.assertEqual(ripple.count(">FA<"), 8)
+        self.assertEqual(ripple.count("cell slow"), 8)
+        self.assertIn("8 full-adder delays", ripple)
+
+    def test_has_a_name_for_every_word_of_the_near_path(self) -> None:
+        self.assertIn("near_difference", lecture.page(given(x=1.0, y=-0.99)))
+
+    def test_opens_and_closes_each_element(self) -> None:
+        opened: list[str] = []
+
+        class Reader(html.parser.HTMLParser):
+            def handle_starttag(self, tag: str, attrs: object) -> None:
+                if tag != "meta":
+                    opened.append(tag)
+
+            def handle_endtag(self, tag: str) -> None:
+                assert opened.pop() == tag
+
+        Reader().feed(lecture.page(given(groups="3,5")))
+        self.assertEqual(opened, [])
+
+    def test_says_what_it_cannot_draw(self) -> None:
+        for options, words in ((["--a", "5000"], "expected numbers of 12 bits"), (["--groups", "3,4"], "expected 12 bits together"),
+                               (["--x", "1e9"], "expected a number from -65504"), (["--y", "two"], "got 'two'"), (["--width", "17"], "from 2 to 16")):
+            run = subprocess.run([sys.executable, "-m", "synth.lecture", *options], cwd=tools.ROOT, capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, 2, options)
+            self.assertIn(words, run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
