@@ -24,7 +24,7 @@ def arguments() -> argparse.Namespace:
 
 
 def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
-    """Measures one design and prints it."""
+    """Measures one design and prints it; an adder beside the other kinds of its width."""
     design = chosen.design(given)
     cells = design.top == "adder"
     flows = (("cells", "kept", "default", "fast") if cells else
@@ -34,8 +34,16 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     for library in catalogue.LIBRARIES:
         if library.name in plan:
             plan[library.name] = tuple(flow for flow in flows if flow != "cells" or library.structural)
-    records, failures = measure.measure([catalogue.Row(design.name, design, plan)], targets)
+    rows = [catalogue.Row(design.name, design, plan)]
+    if cells:
+        width = dict(design.parameters).get("Width", adder_study.WIDTH)
+        libraries = {target: flows for target, flows in plan.items() if flows != catalogue.PLACED}
+        others = [catalogue.design("adder", adder=kind, look_ahead=False if kind == "uniform" else None, Width=width)
+                  for kind in ("ripple", "uniform", "prefix", catalogue.BEHAVIOURAL)]
+        rows += [catalogue.Row(design.name, other, libraries) for other in others if other.name != design.name]
+    records, failures = measure.measure(rows, targets)
     print(report.section_tables(records, design.name))
+    records = [record for record in records if record["design"] == design.name]
     for record in records:
         if "blocks" in record:
             print(report.blocks_table(record))
