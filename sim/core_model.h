@@ -90,6 +90,7 @@ class CoreModel : public CoreUnit {
     while (!memory_.is_idle()) memory_.pop();
   }
 
+  [[nodiscard]] bool is_exact() const override { return set_.exact; }
   [[nodiscard]] CoreCounters counters() const override {
     CoreCounters sum;
     for (const Core& core : cores_) sum += core.counters();

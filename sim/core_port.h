@@ -185,7 +185,7 @@ class CorePort {
   }
 
  private:
-  static constexpr unsigned kEvents = 10;  // ray_core_pkg::NumEvents
+  static constexpr unsigned kEvents = 11;  // ray_core_pkg::NumEvents
 
   /// ray_core_pkg::event_e; of several cores one after the other.
   void count() {
@@ -206,6 +206,7 @@ class CorePort {
     counters_.overflows += events >> 7 & 1;
     counters_.lines += events >> 8 & 1;
     counters_.waits += events >> 9 & 1;
+    counters_.exact_clocks += events >> 10 & 1;
     nodes_in_span_ += events >> 1 & 1;
     triangles_in_span_ += events >> 2 & 1;
   }

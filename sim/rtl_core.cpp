@@ -7,6 +7,9 @@
 namespace raygate {
 namespace {
 
+constexpr ModelFile kExact{"ray_core_exact", "the simulated exact ray core", 60};
+constexpr ModelFile kExactBehavioural{"ray_core_exact_behavioural",
+                                      "the simulated exact ray core of behavioural arithmetic", 60};
 constexpr ModelFile kStructural{"ray_core_structural", "the simulated ray core", 90};
 constexpr ModelFile kBehavioural{"ray_core_behavioural",
                                  "the simulated ray core of behavioural arithmetic", 40};
@@ -18,11 +21,12 @@ constexpr ModelFile kOpen{"ray_core_open", "the simulated ray core that writes w
 std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
                                         const CoreStalls& stalls, const CoreSet& set) {
   const bool structural = arith == Arith::kStructural, wide = set.rays > kTableRays;
-  assert(set.rays <= kWideRays && !(structural && wide));
+  assert(set.rays <= kWideRays && !((structural || set.exact) && wide));
   const auto make = load_model<CoreUnit*(const MemoryTiming&, const CoreStalls&, const CoreSet&)>(
-      structural ? kStructural
-      : wide     ? kWide
-                 : kBehavioural);
+      set.exact    ? (structural ? kExact : kExactBehavioural)
+      : structural ? kStructural
+      : wide       ? kWide
+                   : kBehavioural);
   return std::unique_ptr<CoreUnit>(make(timing, stalls, set));
 }
 

@@ -22,7 +22,8 @@ inline constexpr int kTableRays = 64, kWideRays = 256;
 /// Cores behind one port to memory.
 struct CoreSet {
   int cores = 1;
-  int rays = 0;  ///< in flight in each core at most; 0: as many as its table holds
+  int rays = 0;        ///< in flight in each core at most; 0: as many as its table holds
+  bool exact = false;  ///< they settle doubts by themselves; a table of 64 rays alone
 };
 
 /// ray_core, Verilated, and the memory behind it. Not for use by two threads at once: each thread

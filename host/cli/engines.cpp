@@ -82,9 +82,10 @@ IntersectorFactory make_core_factory(const EngineOptions& options, const Bvh& bv
   return [options, &bvh, image]() -> std::unique_ptr<Intersector> {
     std::unique_ptr<CoreUnit> core;
     if (options.engine == Engine::kModel) {
-      core = std::make_unique<ReferenceCore>();
+      core = std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);
     } else {
-      core = make_rtl_core(options.arith, options.memory, {}, {.cores = options.cores});
+      core =
+          make_rtl_core(options.arith, options.memory, {}, {.cores = options.cores, .exact = true});
     }
     return std::make_unique<CoreIntersector>(bvh, image, std::move(core));
   };
@@ -105,7 +106,7 @@ IntersectorFactory make_unit_factory(const EngineOptions& options, const Bvh& bv
 void prepare_engine(const EngineOptions& options) {
   if (!options.simulates()) return;
   if (options.unit == "core") {
-    (void)make_rtl_core(options.arith);
+    (void)make_rtl_core(options.arith, {}, {}, {.exact = true});
   } else {
     (void)make_tester(options, {});
   }

@@ -242,6 +242,7 @@ std::string to_json(const Report& report) {
       {"depth_doubts", hit.depth_doubts},
       {"exact_inside", render.intersect.exact_inside},
       {"exact_depth", render.intersect.exact_depth},
+      {"host_decisions", render.intersect.exact_inside + render.intersect.exact_depth},
       {"point_doubts", render.point_doubts},
       {"plane_tests", hit.plane_tests},
       {"unit_tests", hit.unit_tests},

@@ -6,10 +6,15 @@
 // hit's may be off by 2**t_error units (set_up_pkg). At first t_max is the user's, so that a hit that may be
 // beyond it is a doubt. A ray that wants any hit ends with its first sure one.
 //
+// With Exact no doubt leaves: open_o tells exact_resolver of each in the clock in which its test is over. The one that turns
+// out to be the ray's nearest hit is tested again, settle_i: whatever the test says, it is kept, with t and P where that
+// is a sure hit, else with NoT. It is the ray's last test.
+//
 // A result is taken in each clock, and compared in the next one; a ray's tests are over when as many results have been
 // compared as test_i was high. P comes later, in the order of the results that were hits, PointDelay clocks at most.
 module closest_hit #(
   parameter int unsigned Rays = 64,
+  parameter bit Exact = 1'b0,
   // Tests on their way when tests_allowed_o falls: from the clock in which a triangle line leaves memory to that in
   // which its test is over, and one more
   parameter int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
@@ -28,6 +33,7 @@ module closest_hit #(
   // a test sets out, a ray's triangle was asked for
   input  logic                       test_i,
   input  logic [RayWidth-1:0]        test_ray_i,
+  input  logic                       settle_i,  // with test_i
   output logic                       tests_allowed_o,  // room for the doubts of all on their way
   // a test is over, or P of an earlier one is there
   input  logic [RayWidth-1:0]        result_ray_i,
@@ -43,10 +49,18 @@ module closest_hit #(
   output logic                       leaf_counter_full_o,
   input  logic [RayWidth-1:0]        box_ray_i,
   output logic [30:0]                box_t_max_o,
+  input  logic [RayWidth-1:0]        exact_ray_i,
+  output logic                       exact_found_o,
+  output logic                       exact_ended_o,
+  output logic [ray_core_pkg::AddressWidth-1:0] exact_triangle_o,  // of the nearest sure hit
+  output logic [30:0]                exact_t_max_o,
   output logic [Rays-1:0]            testing_o,
   // doubts
   output ray_core_pkg::doubt_t       doubt_o,
   input  logic                       doubt_fire_i,
+  output logic [RayWidth-1:0]        open_ray_o,
+  output ray_core_pkg::open_t        open_o,
+  output logic                       over_o,  // a test is over, none of settle_i
   // the nearest hit of a ray, in the same clock
   input  logic [RayWidth-1:0]        end_ray_i,
   output ray_core_pkg::hit_t         end_o,
@@ -79,14 +93,37 @@ module closest_hit #(
   assign leaf_ended_o        = found_q[leaf_ray_i] & any_hit_q[leaf_ray_i];
   assign leaf_counter_full_o = &counts[leaf_ray_i];
   assign box_t_max_o         = t_max[box_ray_i];
+  assign exact_found_o       = found_q[exact_ray_i];
+  assign exact_ended_o       = found_q[exact_ray_i] & any_hit_q[exact_ray_i];
+  assign exact_triangle_o    = ray_core_pkg::AddressWidth'(nearest_triangle[exact_ray_i]);
+  assign exact_t_max_o       = t_max[exact_ray_i];
 
   // ---- Read: the result, and the nearest so far
 
-  logic good, is_over_q, is_hit_q, is_sure_q, is_vague_q, replace, forward, old_found_q;
+  logic good, is_over_q, is_hit_q, is_sure_q, is_vague_q, replace, forward, old_found_q, settled_q;
   logic [RayWidth-1:0] ray_q;
   logic [TErrorWidth-1:0] t_error, t_error_q;
   logic [31:0] margin, sum, t_q, low_q, high_q, tag_q, triangle_q, old_low_q, old_triangle_q;
   logic [30:0] old_t_max_q;
+
+  if (Exact) begin : gen_settle
+    logic [Rays-1:0] settling_q;
+
+    always_ff @(posedge clk_i or negedge rst_ni) begin
+      if (!rst_ni) begin
+        settling_q <= '0;
+        settled_q  <= 1'b0;
+      end else begin
+        if (load_i) settling_q[load_ray_i] <= 1'b0;
+        if (test_i && settle_i) settling_q[test_ray_i] <= 1'b1;
+        settled_q <= result_i.valid & settling_q[result_ray_i];
+      end
+    end
+  end else begin : gen_no_settle
+    logic unused_settle;
+    assign unused_settle = settle_i;
+    assign settled_q     = 1'b0;
+  end
 
   assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_i.t_error), result_i.normal_error);
   assign t_error = set_up_pkg::t_error_exponent(
@@ -122,12 +159,15 @@ module closest_hit #(
 
   // ---- Compare
 
-  logic open, old_open;
+  logic open, old_open, doubt;
+  logic [31:0] doubt_triangle;
 
-  assign replace    = is_sure_q & (high_q < {1'b0, old_t_max_q});
-  assign old_open   = replace & old_found_q & (old_low_q <= high_q);
+  assign replace    = is_sure_q & (settled_q | (high_q < {1'b0, old_t_max_q}));
+  assign old_open   = replace & ~settled_q & old_found_q & (old_low_q <= high_q);
   assign open       = is_sure_q & ~replace & (low_q <= {1'b0, old_t_max_q});
   assign near_tie_o = old_open | open;
+  assign doubt      = (is_vague_q & ~settled_q) | near_tie_o;
+  assign doubt_triangle = old_open ? old_triangle_q : triangle_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -138,16 +178,16 @@ module closest_hit #(
         found_q[load_ray_i]   <= 1'b0;
         any_hit_q[load_ray_i] <= load_any_hit_i;
       end
-      if (replace) found_q[ray_q] <= 1'b1;
+      if (replace | settled_q) found_q[ray_q] <= 1'b1;
     end
   end
   always_ff @(posedge clk_i) begin
     if (load_i) t_max[load_ray_i] <= load_t_max_i;
-    if (replace) begin
+    if (replace | settled_q) begin
       t_max[ray_q]            <= high_q[30:0];
-      nearest_t[ray_q]        <= t_q;
+      nearest_t[ray_q]        <= is_sure_q ? t_q : '0;
       nearest_low[ray_q]      <= low_q;
-      nearest_error[ray_q]    <= t_error_q;
+      nearest_error[ray_q]    <= is_sure_q ? t_error_q : ray_core_pkg::NoT;
       nearest_triangle[ray_q] <= triangle_q;
     end
   end
@@ -161,13 +201,19 @@ module closest_hit #(
   ) u_doubts (
     .clk_i,
     .rst_ni,
-    .push_i(is_vague_q | open | old_open),
-    .data_i({tag_q, old_open ? old_triangle_q : triangle_q}),
+    .push_i(doubt & ~Exact),
+    .data_i({tag_q, doubt_triangle}),
     .space_o(tests_allowed_o),
     .pop_i(doubt_fire_i),
     .valid_o(doubt_o.valid),
     .data_o({doubt_o.tag, doubt_o.triangle})
   );
+
+  assign open_ray_o    = ray_q;
+  assign open_o.valid  = doubt & Exact;
+  assign open_o.is_hit = near_tie_o;
+  assign open_o.line   = ray_core_pkg::AddressWidth'(doubt_triangle);
+  assign over_o        = is_over_q & ~settled_q;
 
   // ---- P: of every hit in turn, kept if the hit was
 

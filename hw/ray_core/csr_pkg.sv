@@ -46,7 +46,7 @@ package csr_pkg;
   localparam int unsigned FlagsFull = 4;
   localparam int unsigned FlagsWriteError = 5;
 
-  localparam int unsigned NumCounters = 11;
+  localparam int unsigned NumCounters = 12;
 
   // Bits that can be written of words 31 to 0, while nothing is traced
   localparam logic [1023:0] PlainBits = {

@@ -12,6 +12,7 @@ module memory_subsystem #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
   parameter int unsigned TriangleLines = 256,  // of the triangles'
+  parameter bit Exact = 1'b0,  // triangles have ranks, and some are for exact_resolver
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned EntryWidth =
@@ -30,7 +31,7 @@ module memory_subsystem #(
   input  ray_core_pkg::request_t  prefetch_i,
   // triangles asked for
   input  logic [RayWidth-1:0]     triangle_ctx_i,
-  input  ray_core_pkg::request_t  triangle_i,
+  input  ray_core_pkg::triangle_request_t triangle_i,
   output logic                    triangle_ready_o,
   // memory
   output logic                    read_valid_o,
@@ -51,12 +52,18 @@ module memory_subsystem #(
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
+  localparam int unsigned WhoWidth = RayWidth + (Exact ? 1 : 0);  // {for exact_resolver, context}
+  localparam int unsigned KeptWidth = ray_core_pkg::TriangleWidth
+                                    + (Exact ? ray_core_pkg::RankWidth : 0);
   localparam int unsigned MissWidth = EntryWidth + AddressWidth;
 
   // ---- Requests
 
   logic node_valid, node_ready, triangle_valid, triangle_ready, unused_space;
-  logic [RequestWidth-1:0] node, triangle;
+  logic [RequestWidth-1:0] node;
+  logic [WhoWidth+AddressWidth-1:0] triangle;
+  logic [WhoWidth-1:0] triangle_who;
+  logic [KeptWidth-1:0] triangle_kept;
   logic prefetch_valid, prefetch_fire, prefetch_space;
   logic [AddressWidth-1:0] prefetch_line;
 
@@ -87,13 +94,13 @@ module memory_subsystem #(
     .data_o(prefetch_line)
   );
   fifo #(
-    .Width(RequestWidth),
+    .Width(WhoWidth + AddressWidth),
     .Depth(4)
   ) u_triangles (
     .clk_i,
     .rst_ni,
     .push_i(triangle_i.valid & triangle_ready_o),
-    .data_i({triangle_ctx_i, triangle_i.line}),
+    .data_i({WhoWidth'({triangle_i.exact, triangle_ctx_i}), triangle_i.line}),
     .space_o(triangle_ready_o),
     .pop_i(triangle_valid & triangle_ready),
     .valid_o(triangle_valid),
@@ -160,8 +167,8 @@ module memory_subsystem #(
   line_cache #(
     .Lines(TriangleLines),
     .Targets(2 * Rays),
-    .RayWidth(RayWidth),
-    .Width(ray_core_pkg::TriangleWidth)
+    .RayWidth(WhoWidth),
+    .Width(KeptWidth)
   ) u_triangle_cache (
     .clk_i,
     .rst_ni,
@@ -169,7 +176,7 @@ module memory_subsystem #(
     .valid_i(triangle_valid),
     .ready_o(triangle_ready),
     .demand_i(1'b1),
-    .ray_i(triangle[RequestWidth-1 -: RayWidth]),
+    .ray_i(triangle[AddressWidth +: WhoWidth]),
     .line_number_i(triangle[AddressWidth-1:0]),
     .outstanding_o(unused_looking),
     .miss_valid_o(triangle_miss_valid),
@@ -179,14 +186,17 @@ module memory_subsystem #(
     .fill_i(fill & fill_triangle),
     .fill_done_o(triangle_done),
     .fill_entry_i(fill_entry[$clog2(TriangleLines)-1:0]),
-    .fill_line_i(line[ray_core_pkg::TriangleWidth-1:0]),
+    .fill_line_i(line[KeptWidth-1:0]),
     .fill_error_i(line_error),
     .valid_o(triangle_o.valid),
     .ready_i(tests_allowed_i),
-    .ray_o(triangle_ctx_o),
-    .line_o(triangle_o.line),
+    .ray_o(triangle_who),
+    .line_o(triangle_kept),
     .error_o(triangle_o.error)
   );
+  assign {triangle_o.exact, triangle_ctx_o} = (RayWidth + 1)'(triangle_who);
+  assign {triangle_o.rank, triangle_o.line} =
+      (ray_core_pkg::RankWidth + ray_core_pkg::TriangleWidth)'(triangle_kept);
 
   assign node_miss     = {EntryWidth'(node_entry), node_number};
   assign triangle_miss = {EntryWidth'(triangle_entry), triangle_number};

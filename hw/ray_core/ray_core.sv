@@ -1,9 +1,4 @@
-// Ray core: rays in, nearest sure hits and doubts out; it traverses a tree of boxes in memory by itself.
-//
-//   traversal_subsystem     what each ray has still to visit, and its nearest hit so far
-//   memory_subsystem        nodes and triangles, from caches or memory
-//   intersection_subsystem  a ray and a node's boxes, a ray and a triangle
-//   ray_retire              which rays have ended; results
+// Ray core: rays in, nearest hits out, or, without Exact, nearest sure hits and doubts; it traverses a tree in memory.
 //
 // Rays and results: valid/ready. A ray begins at the inner node of line `start` (the root's, as a rule). Its direction
 // is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangle `skip_id` do
@@ -19,6 +14,7 @@ module ray_core #(
   parameter int unsigned Depth = 8,   // groups on a ray's stack
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
+  parameter bit Exact = 1'b0,  // no doubts; triangles are named by their lines, and have ranks
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -31,15 +27,12 @@ module ray_core #(
   output logic                    outstanding_o,
   input  logic                    abort_i,  // the rays that are here
   input  logic [ray_core_pkg::AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
-  // rays
   input  logic                    ray_valid_i,
   output logic                    ray_ready_o,
   input  ray_core_pkg::ray_t        ray_i,
-  // results
   output logic                    result_valid_o,
   input  logic                    result_ready_i,
   output ray_core_pkg::result_t    result_o,
-  // memory
   output logic                    read_valid_o,
   input  logic                    read_ready_i,
   output logic [ray_core_pkg::AddressWidth-1:0] read_line_o,
@@ -51,15 +44,16 @@ module ray_core #(
   input  logic                    line_error_i,
   output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
 );
-
-  logic start_fire, triangle_ready, tests_allowed, near_tie, ending, doubt_fire, overflow_fire;
+  logic start_fire, triangle_ready, tests_allowed, ending, doubt_fire, overflow_fire;
   logic [RayWidth-1:0] start_ctx, node_ctx, triangle_ctx, node_line_ctx, triangle_line_ctx;
   logic [RayWidth-1:0] box_ctx, verdict_ctx, ending_ctx, point_ctx;
   logic [Rays-1:0] busy;
   logic [30:0] t_max;
   logic [95:0] end_point;
+  logic [5:0] events;
   ray_core_pkg::start_t start;
-  ray_core_pkg::request_t node, prefetch, triangle;
+  ray_core_pkg::request_t node, prefetch;
+  ray_core_pkg::triangle_request_t triangle;
   ray_core_pkg::node_line_t node_line;
   ray_core_pkg::triangle_line_t triangle_line;
   ray_core_pkg::boxes_t boxes;
@@ -70,7 +64,10 @@ module ray_core #(
 
   traversal_subsystem #(
     .Rays(Rays),
-    .Depth(Depth)
+    .Depth(Depth),
+    .Exact(Exact),
+    .Arith(Arith),
+    .Adder(Adder)
   ) u_traversal (
     .clk_i,
     .rst_ni,
@@ -94,13 +91,13 @@ module ray_core #(
     .node_error_i(node_line.valid & node_line.error),
     .t_max_o(t_max),
     .triangle_line_ctx_i(triangle_line_ctx),
-    .triangle_error_i(triangle_line.valid & triangle_line.error),
+    .triangle_line_i(triangle_line),
     .busy_o(busy),
     .doubt_o(doubt),
     .doubt_fire_i(doubt_fire),
     .overflow_o(overflow),
     .overflow_fire_i(overflow_fire),
-    .near_tie_o(near_tie),
+    .events_o(events),
     .ending_ctx_i(ending_ctx),
     .end_o(ended),
     .point_ctx_i(point_ctx),
@@ -110,7 +107,8 @@ module ray_core #(
   memory_subsystem #(
     .Rays(Rays),
     .NodeLines(NodeLines),
-    .TriangleLines(TriangleLines)
+    .TriangleLines(TriangleLines),
+    .Exact(Exact)
   ) u_memory (
     .clk_i,
     .rst_ni,
@@ -186,15 +184,17 @@ module ray_core #(
     .result_o
   );
 
-  logic [1:0] reads, lines;  // events, the last of event_e first
-  logic [2:0] verdicts;
-  assign reads    = {2{read_valid_o}} & {~read_ready_i, read_ready_i};
-  assign verdicts = {3{verdict.valid}}
-                  & {verdict.doubt, ~verdict.found & ~verdict.doubt, verdict.found};
-  assign lines    = {triangle_line.valid, node_line.valid};
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) events_o <= '0;
-    else events_o <= {reads, overflow_fire, near_tie, verdicts, lines, ending};
+    else
+      events_o <= {
+        events[5],
+        {2{read_valid_o}} & {~read_ready_i, read_ready_i},
+        overflow_fire,
+        events[4:0],
+        node_line.valid,
+        ending
+      };
   end
 
 endmodule

@@ -13,6 +13,7 @@ module ray_core_axi #(
   parameter int unsigned Depth = 8,
   parameter int unsigned NodeLines     = 256,
   parameter int unsigned TriangleLines = 256,
+  parameter bit Exact = 1'b0,
   parameter int unsigned DataWidth = 128,  // of the AXI4 port
   parameter int unsigned IdWidth   = 6,
   parameter int unsigned Arith = arith_pkg::Structural,
@@ -218,6 +219,7 @@ module ray_core_axi #(
     .Depth(Depth),
     .NodeLines(NodeLines),
     .TriangleLines(TriangleLines),
+    .Exact(Exact),
     .Arith(Arith),
     .Adder(Adder)
   ) u_core (

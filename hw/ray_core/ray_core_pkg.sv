@@ -31,9 +31,11 @@ package ray_core_pkg;
   // ---- Triangle line
 
   localparam int unsigned TriangleCorners = 0;  // nine binary32: A.x, A.y, A.z, B.x, ... C.z
-  localparam int unsigned TriangleIndex = 288;  // 32 bits, the host's name of the triangle
+  localparam int unsigned TriangleIndex = 288;  // 32 bits, its name; with Exact this line's number
+  localparam int unsigned TriangleRank = 320;  // 32 bits, with Exact: at equal t lowest is nearest
 
-  localparam int unsigned TriangleWidth = 320;  // what is used of the line
+  localparam int unsigned TriangleWidth = 320;  // what is used of the line without the rank
+  localparam int unsigned RankWidth = 32;
 
   // ---- What box_unit says of a node: a group of children
   //
@@ -110,6 +112,7 @@ package ray_core_pkg;
   endfunction
 
   localparam int unsigned TErrorWidth = 5;  // set_up_pkg::TErrorExponentWidth
+  localparam logic [TErrorWidth-1:0] NoT = 5'd31;  // of a hit whose t and P are not known
   // hit_test_pkg::TErrorWidth and set_up_pkg::PlaneErrorWidth
   localparam int unsigned VerdictErrorWidth = 4;
 
@@ -119,7 +122,7 @@ package ray_core_pkg;
     logic                    found;     // ResultEnd: a sure hit, and so on to tests
     logic [31:0]             triangle;  // ResultDoubt: that one
     logic [31:0]             t;
-    logic [TErrorWidth-1:0]  t_error;   // t is off by fewer than 2**t_error numbers
+    logic [TErrorWidth-1:0]  t_error;   // t is off by fewer than 2**t_error numbers, see NoT
     logic [95:0]             point;
     logic [TestsWidth-1:0]   tests;
     logic [2:0]              error;     // ResultEnd: error_e
@@ -132,6 +135,8 @@ package ray_core_pkg;
   typedef struct packed {  // a ray begins
     logic                    valid;
     logic [31:0]             tag;
+    logic [95:0]             origin;
+    logic [95:0]             direction;
     logic [30:0]             t_max;
     logic [AddressWidth-1:0] line;
     logic                    any_hit;
@@ -143,6 +148,12 @@ package ray_core_pkg;
     logic [AddressWidth-1:0] line;
   } request_t;
 
+  typedef struct packed {  // a triangle's line is asked for
+    logic                    valid;
+    logic                    exact;  // for exact_resolver; else for a test
+    logic [AddressWidth-1:0] line;
+  } triangle_request_t;
+
   typedef struct packed {  // a node's line for a ray
     logic                 valid;
     logic                 error;
@@ -151,7 +162,9 @@ package ray_core_pkg;
 
   typedef struct packed {  // a triangle's
     logic                     valid;
+    logic                     exact;  // triangle_request_t's
     logic                     error;
+    logic [RankWidth-1:0]     rank;
     logic [TriangleWidth-1:0] line;
   } triangle_line_t;
 
@@ -197,6 +210,12 @@ package ray_core_pkg;
     logic [31:0] triangle;
   } doubt_t;
 
+  typedef struct packed {  // a doubt, as closest_hit meets it, for exact_resolver
+    logic                    valid;
+    logic                    is_hit;  // surely; else the ray may miss it
+    logic [AddressWidth-1:0] line;
+  } open_t;
+
   typedef struct packed {
     logic                    valid;
     logic [31:0]             tag;
@@ -216,10 +235,11 @@ package ray_core_pkg;
     EventNearTie  = 4'd6,  // a sure hit leaves as a doubt
     EventOverflow = 4'd7,
     EventRead     = 4'd8,  // a line is asked for
-    EventWait     = 4'd9   // memory does not take what is asked for
+    EventWait     = 4'd9,  // memory does not take what is asked for
+    EventExact    = 4'd10  // exact_unit has a question
   } event_e;
 
-  localparam int unsigned NumEvents = 10;
+  localparam int unsigned NumEvents = 11;
 
   // verilator lint_on UNUSEDPARAM
 

@@ -10,6 +10,7 @@ module ray_cores #(
   parameter int unsigned Depth = 8,
   parameter int unsigned NodeLines     = 256,
   parameter int unsigned TriangleLines = 256,
+  parameter bit Exact = 1'b0,
   parameter int unsigned SharedLines   = 0,  // or a power of two, at least 16
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
@@ -95,6 +96,7 @@ module ray_cores #(
       .Depth(Depth),
       .NodeLines(NodeLines),
       .TriangleLines(TriangleLines),
+      .Exact(Exact),
       .Arith(Arith),
       .Adder(Adder)
     ) u_core (

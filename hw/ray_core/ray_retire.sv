@@ -131,7 +131,7 @@ module ray_retire #(
       result_o.triangle <= doubt_i.valid ? doubt_i.triangle : ended.hit.triangle;
       result_o.t        <= ended.hit.t;
       result_o.t_error  <= ended.hit.t_error;
-      result_o.point    <= end_point;
+      result_o.point    <= (ended.hit.t_error == ray_core_pkg::NoT) ? '0 : end_point;
       result_o.tests    <= ended.hit.tests;
       result_o.error    <= ended.error;
       result_o.line     <= overflow_i.line;

@@ -3,10 +3,14 @@
 //   traversal        the stacks, and which ray goes to its next node
 //   primitive_fetch  the triangles of the leaves that it enters
 //   closest_hit      its nearest hit and t_max, its doubts
+//   exact_resolver   with Exact: what doubts mean for it
 //   ray_errors       why its hits must not be believed
 module traversal_subsystem #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,
+  parameter bit Exact = 1'b0,
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
 ) (
@@ -16,6 +20,8 @@ module traversal_subsystem #(
   input  logic [AddressWidth-1:0] lines_i,  // of memory
   // a ray begins
   input  logic [RayWidth-1:0]     start_ctx_i,
+  // verilator lint_off UNUSEDSIGNAL
+  // Vectors and corners are exact_resolver's.
   input  ray_core_pkg::start_t    start_i,
   output logic                    start_fire_o,
   // what is found
@@ -28,7 +34,7 @@ module traversal_subsystem #(
   output ray_core_pkg::request_t  node_o,
   output ray_core_pkg::request_t  prefetch_o,
   output logic [RayWidth-1:0]     triangle_ctx_o,
-  output ray_core_pkg::request_t  triangle_o,
+  output ray_core_pkg::triangle_request_t triangle_o,
   input  logic                    triangle_ready_i,
   output logic                    tests_allowed_o,  // triangles may leave memory
   // lines that come: the ray's t_max in the same clock, and whether they are errors
@@ -36,14 +42,15 @@ module traversal_subsystem #(
   input  logic                    node_error_i,
   output logic [30:0]             t_max_o,
   input  logic [RayWidth-1:0]     triangle_line_ctx_i,
-  input  logic                    triangle_error_i,
+  input  ray_core_pkg::triangle_line_t triangle_line_i,
+  // verilator lint_on UNUSEDSIGNAL
   // results
   output logic [Rays-1:0]         busy_o,  // rays that have something to be done
   output ray_core_pkg::doubt_t    doubt_o,
   input  logic                    doubt_fire_i,
   output ray_core_pkg::overflow_t overflow_o,
   input  logic                    overflow_fire_i,
-  output logic                    near_tie_o,
+  output logic [5:0]              events_o,  // EventExact, EventNearTie to EventTriangle
   input  logic [RayWidth-1:0]     ending_ctx_i,
   output ray_core_pkg::end_t      end_o,  // in the same clock
   input  logic [RayWidth-1:0]     point_ctx_i,
@@ -94,7 +101,31 @@ module traversal_subsystem #(
     .overflow_fire_i
   );
 
-  assign busy_o = traversing | leaf_pending | testing;
+  // ---- Triangles asked for: for doubts first
+
+  logic [RayWidth-1:0] fetch_ray, exact_ray, open_ray;
+  logic [Rays-1:0] doubtful, idle;
+  logic tests_allowed, test, over, exact_found, exact_ended, computing, near_tie;
+  logic [AddressWidth-1:0] exact_found_line;
+  logic [30:0] exact_t_max;
+  ray_core_pkg::request_t fetch;
+  ray_core_pkg::triangle_request_t exact;
+  ray_core_pkg::open_t open;
+
+  assign idle   = ~(traversing | leaf_pending | testing);
+  assign busy_o = ~idle | doubtful;
+
+  assign triangle_o     = exact.valid ? exact : {fetch.valid & tests_allowed, 1'b0, fetch.line};
+  assign triangle_ctx_o = exact.valid ? exact_ray : fetch_ray;
+  assign test           = triangle_o.valid & triangle_ready_i & ~triangle_o.exact;
+
+  assign events_o = {
+    computing,
+    near_tie,
+    {3{verdict_i.valid}}
+        & {verdict_i.doubt, ~verdict_i.found & ~verdict_i.doubt, verdict_i.found},
+    triangle_line_i.valid & ~triangle_line_i.exact
+  };
 
   // ---- Leaves
 
@@ -112,15 +143,16 @@ module traversal_subsystem #(
     .ended_i(leaf_ended | failed[leaf_ray]),
     .counter_full_i(leaf_counter_full),
     .leaf_pending_o(leaf_pending),
-    .triangle_ray_o(triangle_ctx_o),
-    .triangle_o,
-    .triangle_ready_i
+    .triangle_ray_o(fetch_ray),
+    .triangle_o(fetch),
+    .triangle_ready_i(triangle_ready_i & tests_allowed & ~exact.valid)
   );
 
   // ---- Hits and errors
 
   closest_hit #(
-    .Rays(Rays)
+    .Rays(Rays),
+    .Exact(Exact)
   ) u_closest_hit (
     .clk_i,
     .rst_ni,
@@ -128,8 +160,9 @@ module traversal_subsystem #(
     .load_ray_i(start_ctx_i),
     .load_t_max_i(start_i.t_max),
     .load_any_hit_i(start_i.any_hit),
-    .test_i(triangle_o.valid & triangle_ready_i),
+    .test_i(test),
     .test_ray_i(triangle_ctx_o),
+    .settle_i(exact.valid),
     .tests_allowed_o,
     .result_ray_i(verdict_ctx_i),
     .result_tag_i(tags[verdict_ctx_i]),
@@ -144,14 +177,64 @@ module traversal_subsystem #(
     .box_ray_i(node_line_ctx_i),
     .box_t_max_o(t_max_o),
     .testing_o(testing),
+    .exact_ray_i(exact_ray),
+    .exact_found_o(exact_found),
+    .exact_ended_o(exact_ended),
+    .exact_triangle_o(exact_found_line),
+    .exact_t_max_o(exact_t_max),
     .doubt_o,
     .doubt_fire_i,
+    .open_ray_o(open_ray),
+    .open_o(open),
+    .over_o(over),
     .end_ray_i(ending_ctx_i),
     .end_o(end_o.hit),
     .point_ray_i(point_ctx_i),
     .point_o,
-    .near_tie_o
+    .near_tie_o(near_tie)
   );
+
+  if (Exact) begin : gen_exact
+    exact_resolver #(
+      .Rays(Rays),
+      .Arith(Arith),
+      .Adder(Adder)
+    ) u_resolver (
+      .clk_i,
+      .rst_ni,
+      .load_i(start_fire_o),
+      .load_ctx_i(start_ctx_i),
+      .load_origin_i(start_i.origin),
+      .load_direction_i(start_i.direction),
+      .test_i(test & ~exact.valid),
+      .over_i(over),
+      .tests_allowed_o(tests_allowed),
+      .open_ctx_i(open_ray),
+      .open_i(open),
+      .idle_i(idle),
+      .busy_o(doubtful),
+      .ctx_o(exact_ray),
+      .ended_i(exact_ended | failed[exact_ray]),
+      .found_i(exact_found),
+      .found_line_i(exact_found_line),
+      .t_max_i(exact_t_max),
+      .request_o(exact),
+      .request_ready_i(triangle_ready_i),
+      .line_i(triangle_line_i),
+      .computing_o(computing)
+    );
+  end else begin : gen_doubts
+    assign tests_allowed = 1'b1;
+    assign doubtful      = '0;
+    assign exact         = '0;
+    assign exact_ray     = '0;
+    assign computing     = 1'b0;
+
+    logic unused_exact;
+    assign unused_exact = ^{
+      over, exact_found, exact_ended, exact_found_line, exact_t_max, open_ray, open
+    };
+  end
 
   ray_errors #(
     .Rays(Rays)
@@ -164,7 +247,7 @@ module traversal_subsystem #(
     .start_scaled_i(start_i.is_scaled),
     .node_i(node_error_i),
     .node_ctx_i(node_line_ctx_i),
-    .triangle_i(triangle_error_i),
+    .triangle_i(triangle_line_i.valid & triangle_line_i.error),
     .triangle_ctx_i(triangle_line_ctx_i),
     .cycle_i(cycle),
     .cycle_ctx_i(cycle_ray),

@@ -15,7 +15,10 @@ module triangle_test #(
   input  logic                       clk_i,
   input  logic                       rst_ni,
   input  logic [RayWidth-1:0]        ctx_i,
+  // verilator lint_off UNUSEDSIGNAL
+  // Ranks are exact_resolver's, and so are lines that are `exact`.
   input  ray_core_pkg::triangle_line_t triangle_i,  // with an error it counts for nothing
+  // verilator lint_on UNUSEDSIGNAL
   input  logic [95:0]                origin_i,
   input  logic [31:0]                skip_id_i,   // a triangle that counts for nothing
   output logic [RayWidth-1:0]        direction_ctx_o,
@@ -70,7 +73,7 @@ module triangle_test #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) setting_q <= '0;
-    else setting_q <= {setting_q[set_up_pkg::Latency-1:0], triangle_i.valid};
+    else setting_q <= {setting_q[set_up_pkg::Latency-1:0], triangle_i.valid & ~triangle_i.exact};
   end
   always_ff @(posedge clk_i) begin
     {set_ctx_q, set_triangle_q, set_skipped_q} <= {direction_ctx_o, early_triangle, early_skipped};

@@ -80,6 +80,8 @@ module hits_keep_nearest #(
     .load_any_hit_i(load_any_hit),
     .test_i(test),
     .test_ray_i(test_ray),
+    .settle_i(1'b0),
+    .exact_ray_i(1'b0),
     .tests_allowed_o(tests_allowed),
     .result_ray_i(read_ray),
     .result_tag_i(read_ray ? tag_1 : tag_0),

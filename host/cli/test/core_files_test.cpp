@@ -38,6 +38,14 @@ TEST_F(CoreFiles, TheMemoryImageIsWhatItsReaderExpects) {
   folder_.write("image", moved);
   EXPECT_NE(read_image().err.find("outside the box"), std::string::npos);
   EXPECT_EQ(read_image({"--hex", "image.hex"}).status, 2);
+  moved = image;
+  moved[64 * 41 + 36] ^= 1;  // its name
+  folder_.write("image", moved);
+  EXPECT_NE(read_image().err.find("expected its line"), std::string::npos);
+  moved[64 * 41 + 36] ^= 1;
+  moved[64 * 41 + 40] = moved[64 * 40 + 40];  // its rank
+  folder_.write("image", moved);
+  EXPECT_NE(read_image().err.find("expected it once"), std::string::npos);
 }
 
 TEST_F(CoreFiles, NoImageThatCannotBeWrittenIsBegun) {
@@ -53,6 +61,8 @@ TEST_F(CoreFiles, CoresBehindOneMemoryDrawTheSamePicture) {
             "--threads", "1", "--cores", cores, "-o", "core"});
     expect_same_pictures("cpu", "core");
     clocks.push_back(stats_.at("clocks"));
+    EXPECT_GT(stats_.at("edge_doubts"), 0);
+    EXPECT_EQ(stats_.at("host_decisions"), 0);
   }
   EXPECT_LT(clocks[1], clocks[0]);
 }

@@ -13,9 +13,10 @@
 namespace raygate {
 namespace {
 
-CoreRay core_ray(const Ray& ray, const RayQuery& query, std::uint32_t number) {
+CoreRay core_ray(const MemoryImage& image, const Ray& ray, const RayQuery& query,
+                 std::uint32_t number) {
   CoreRay core{.ray = ray, .t_max = query.t_max_of(number), .tag = number};
-  if (!query.skip_ids.empty()) core.skip_id = query.skip_ids[number];
+  if (!query.skip_ids.empty()) core.skip_id = image.line_of(query.skip_ids[number]);
   // A hit before the limit is before what is enough.
   core.any_hit = !query.any_hit_before.empty() && query.any_hit_before[number] >= core.t_max;
   core.no_cull = !query.culling;
@@ -55,7 +56,7 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (!is_usable(rays[i].direction)) continue;
     if (!is_scaled(rays[i].direction)) throw_unscaled(rays[i]);
-    sent_.push_back(core_ray(rays[i], query, i));
+    sent_.push_back(core_ray(*image_, rays[i], query, i));
   }
   // Each walk that had no room goes on at least a level below its start.
   for (int level = 0; !sent_.empty(); ++level) {
@@ -71,7 +72,8 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
       const bool has_triangle = result.kind == CoreResult::Kind::kDoubt ||
                                 (result.kind == CoreResult::Kind::kEnd && result.found);
       if (result.tag >= rays.size() ||
-          (has_triangle && result.triangle >= bvh_.primitive_count())) {
+          (has_triangle && image_->primitive_at(result.triangle) == MemoryImage::kNoTriangle) ||
+          (core_->is_exact() && result.kind == CoreResult::Kind::kDoubt)) {
         throw std::runtime_error("ray core: found triangle " + std::to_string(result.triangle) +
                                  " for ray " + std::to_string(result.tag) +
                                  ", expected some that it was given");
@@ -86,7 +88,7 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
         continue;
       }
       for (std::uint64_t left = result.nodes; left != 0; left &= left - 1) {
-        CoreRay& again = sent_.emplace_back(core_ray(ray, query, result.tag));
+        CoreRay& again = sent_.emplace_back(core_ray(*image_, ray, query, result.tag));
         again.start = result.line + static_cast<std::uint32_t>(std::countr_zero(left));
       }
     }
@@ -108,12 +110,16 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
 /// Takes a hit, or what may be one.
 void CoreIntersector::resolve(const Ray& ray, const RayQuery& query, const CoreResult& result,
                               NearestHit& best) {
-  NearestHit hit{.primitive = result.triangle};
+  NearestHit hit{.primitive = image_->primitive_at(result.triangle)};
   const float limit = query.t_max_of(result.tag);
   if (result.kind == CoreResult::Kind::kDoubt) {
     resolve_doubt(bvh_, ray, limit, hit, best, counters_);
   } else if (result.found) {
     hit.t = hit_distance(ray, bvh_.corners_of(hit.primitive));
+    if (core_->is_exact() && best.primitive == NearestHit::kNone) {
+      best = hit;
+      return;
+    }
     take_if_nearer(bvh_, ray, limit, hit, best, counters_);
   }
 }

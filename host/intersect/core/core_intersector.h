@@ -11,9 +11,11 @@
 
 namespace raygate {
 
-/// Exact arithmetic resolves what the core leaves open. P is computed once for each nearest hit,
-/// from a record that the host makes, so that it has the bits of the other intersectors'. Throws
-/// InputError where the core reads a line that memory lacks, or a node that is below itself.
+/// Exact arithmetic resolves what the core leaves open: with a core that is_exact nothing but which
+/// hit is nearer of a ray that went on where a stack had no room. P is computed once for each
+/// nearest hit, from a record that the host makes, so that it has the bits of the other
+/// intersectors'. Throws InputError where the core reads a line that memory lacks, or a node that
+/// is below itself.
 class CoreIntersector : public Intersector {
  public:
   /// `image`, of `bvh`, is what the core reads. The tree must outlive this. Intersectors of one

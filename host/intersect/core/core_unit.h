@@ -1,4 +1,5 @@
-// Core unit: the interface of the ray core, rays in, certain hits and doubts out.
+// Core unit: the interface of the ray core, rays in, hits out, and doubts of a core that is not
+// exact.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,7 @@ struct CoreRay {
   Ray ray;  ///< the direction scaled (see is_scaled)
   /// Positive, +infinity for none: hits at t >= limit do not count. The exact t.
   float t_max = std::numeric_limits<float>::infinity();
-  std::uint32_t skip_id = kNoTriangle;       ///< a triangle that does not count
+  std::uint32_t skip_id = kNoTriangle;       ///< a triangle that does not count, by its name
   std::uint32_t start = MemoryImage::kRoot;  ///< the line of the inner node where its walk begins
   std::uint32_t tag = 0;                     ///< comes back with all that concerns the ray
   bool any_hit = false;                      ///< the first sure hit that is found will do
@@ -44,12 +45,14 @@ struct CoreResult {
     kAbort = 4,      ///< the user of the core gave it up
   };
 
+  static constexpr std::uint32_t kNoT = 31;
+
   Kind kind = Kind::kEnd;
   bool found = false;     ///< kEnd: whether there is a sure hit; the next three are its
   std::uint32_t tag = 0;  ///< the ray's
-  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt
+  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt: its name, its line in memory
   float t = 0.0f;                                 ///< kEnd: off by fewer than 2^t_error numbers
-  std::uint32_t t_error = 0;
+  std::uint32_t t_error = 0;                      ///< kNoT: t and P are not known, and 0
   glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
   Error error = Error::kNone;  ///< kEnd: if not kNone, the ray was given up: nothing else holds
@@ -69,7 +72,8 @@ struct CoreCounters {
   std::uint64_t near_ties = 0;                     ///< sure hits that leave as doubts
   std::uint64_t overflows = 0;                     ///< words of kind kOverflow
   std::uint64_t lines = 0;                         ///< read from memory
-  std::uint64_t waits = 0;  ///< clocks in which memory did not take what was asked for
+  std::uint64_t waits = 0;         ///< clocks in which memory did not take what was asked for
+  std::uint64_t exact_clocks = 0;  ///< of an exact core's exact unit, with a question
   /// Clocks of the busier of both units in each span of kSpan clocks: rays that keep boxes busy and
   /// rays that keep triangles busy come in turns.
   std::uint64_t busier = 0;
@@ -86,7 +90,8 @@ struct CoreCounters {
 /// Promises: the ray's nearest hit, in exact arithmetic, is the sure hit of its end, or a triangle
 /// of its doubts, or below a node of its overflows; with any_hit the first that is found may be in
 /// its place. A ray whose end has an error has no hit that counts. What is a doubt may differ
-/// between cores, and for a core that waits for memory from run to run.
+/// between cores, and for a core that waits for memory from run to run. A core that is_exact has
+/// no doubts: the nearest hit is that of its end, or below a node of its overflows.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
@@ -97,6 +102,7 @@ class CoreUnit {
                      std::vector<CoreResult>& results) = 0;
 
   [[nodiscard]] virtual CoreCounters counters() const = 0;
+  [[nodiscard]] virtual bool is_exact() const { return false; }
 };
 
 }  // namespace raygate

@@ -64,6 +64,7 @@ class ImageWriter {
 
   void write() {
     image_.lines_.resize(1);
+    image_.primitive_lines_.resize(bvh_.primitive_count(), MemoryImage::kNoTriangle);
     if (tree_.size() == 0) {
       image_.lines_[0] = NodeLine().line();
       image_.depth_ = 1;
@@ -167,8 +168,13 @@ class ImageWriter {
         write_node(next, refs[i], depth + 1);
       } else {
         for (std::uint32_t k = 0; k < node.child[i].kind; ++k) {
-          const std::uint32_t name = primitive_at(tree_.first(refs[i]) + k);
-          image_.lines_[next + k] = TriangleLine(bvh_.corners_of(name), name).line();
+          TriangleLine triangle;
+          triangle.primitive = primitive_at(tree_.first(refs[i]) + k);
+          triangle.corners = bvh_.corners_of(triangle.primitive);
+          triangle.rank = bvh_.triangle_of(triangle.primitive);
+          triangle.index = next + k;
+          image_.lines_[next + k] = triangle.line();
+          image_.primitive_lines_[triangle.primitive] = next + k;
         }
       }
       next += node.child[i].size();

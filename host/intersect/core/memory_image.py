@@ -61,15 +61,15 @@ def children(line: int) -> list[Child]:
     return found
 
 
-def triangle(line: int) -> tuple[list[list[fractions.Fraction]], int]:
-    """The corners of a triangle line, and its number."""
-    return [[number(line, 3 * i + k) for k in range(3)] for i in range(3)], bits(line, 288, 32)
+def triangle(line: int) -> tuple[list[list[fractions.Fraction]], int, int]:
+    """The corners of a triangle line, its name, and its rank."""
+    return [[number(line, 3 * i + k) for k in range(3)] for i in range(3)], bits(line, 288, 32), bits(line, 320, 32)
 
 
 def check(lines: list[int]) -> dict[str, int]:
     """Nodes, triangles, depth; raises NoImage."""
     seen = [False] * len(lines)
-    names: set[int] = set()
+    ranks: set[int] = set()
     counts = {"lines": len(lines), "nodes": 0, "triangles": 0, "depth": 0}
 
     def visit(place: int) -> int:
@@ -95,10 +95,12 @@ def check(lines: list[int]) -> dict[str, int]:
             if child.kind > CHILDREN:
                 raise NoImage(f"line {place}: found a child of kind {child.kind}, expected 0 to {INNER}")
             for at in range(child.line, child.line + child.kind):
-                corners, name = triangle(visit(at))
-                if name in names:
-                    raise NoImage(f"line {at}: found triangle {name} again, expected it once")
-                names.add(name)
+                corners, name, rank = triangle(visit(at))
+                if name != at:
+                    raise NoImage(f"line {at}: found a triangle named {name}, expected its line")
+                if rank in ranks:
+                    raise NoImage(f"line {at}: found rank {rank} again, expected it once")
+                ranks.add(rank)
                 counts["triangles"] += 1
                 for corner in corners:
                     require_inside(corner, [*above, child], at)

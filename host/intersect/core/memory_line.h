@@ -84,14 +84,16 @@ struct NodeLine {
   }
 };
 
-/// A triangle, and the host's name of it.
+/// A triangle, and what it is called.
 struct TriangleLine {
   Corners corners{};
-  std::uint32_t index = 0;
+  std::uint32_t index = 0;      ///< its name: the number of this line
+  std::uint32_t rank = 0;       ///< of hits at the same t the lowest is the nearest
+  std::uint32_t primitive = 0;  ///< the host's number of it, which the core does not read
 
   TriangleLine() = default;
-  TriangleLine(const Corners& triangle, std::uint32_t name) : corners(triangle), index(name) {}
-  explicit TriangleLine(const MemoryLine& line) : index(line.words[9]) {
+  explicit TriangleLine(const MemoryLine& line)
+      : index(line.words[9]), rank(line.words[10]), primitive(line.words[11]) {
     for (unsigned i = 0; i < 9; ++i) corners[i / 3][static_cast<int>(i % 3)] = line.number(i);
   }
 
@@ -101,6 +103,8 @@ struct TriangleLine {
       line.words[i] = std::bit_cast<std::uint32_t>(corners[i / 3][static_cast<int>(i % 3)]);
     }
     line.words[9] = index;
+    line.words[10] = rank;
+    line.words[11] = primitive;
     return line;
   }
 };

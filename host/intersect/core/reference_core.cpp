@@ -2,8 +2,10 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 #include "host/intersect/core/reference_box_unit.h"
+#include "host/intersect/core/reference_exact_unit.h"
 #include "host/intersect/core/set_up.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 
@@ -43,6 +45,67 @@ struct NearestSureHit {
     t_error = error;
     return open;
   }
+
+  /// What exact arithmetic says, whatever was kept.
+  void settle(std::uint32_t number, float t, std::uint32_t error) {
+    found = true;
+    triangle = number;
+    t_word = std::bit_cast<std::uint32_t>(t);
+    t_error = error;
+  }
+};
+
+/// The nearest hit among a ray's doubts, as hw/ray_core/exact_resolver.sv finds it.
+class DoubtResolver {
+ public:
+  DoubtResolver(std::span<const MemoryLine> lines, const CoreRay& ray) : lines_(lines), ray_(ray) {}
+
+  /// Takes a doubt; whether it `is_hit` surely.
+  void take(std::uint32_t line, bool is_hit) {
+    const bool is_open = candidate_ != CoreRay::kNoTriangle;
+    if ((is_hit && !is_open) ||
+        ask(line, !is_hit, is_open ? Against::kOther : Against::kNothing, candidate_)) {
+      candidate_ = line;
+    }
+  }
+  /// The candidate that is nearer than the nearest sure hit, or than the limit where there is none;
+  /// or kNoTriangle.
+  std::uint32_t settle(const NearestSureHit& nearest) {
+    if (candidate_ == CoreRay::kNoTriangle) return candidate_;
+    limit_ = nearest.limit();
+    const bool has_limit = limit_ != std::numeric_limits<float>::infinity();
+    if (!nearest.found && !has_limit) return candidate_;
+    const bool nearer =
+        ask(candidate_, false, nearest.found ? Against::kOther : Against::kLimit, nearest.triangle);
+    return nearer ? candidate_ : CoreRay::kNoTriangle;
+  }
+  [[nodiscard]] std::uint64_t clocks() const { return clocks_; }
+
+ private:
+  using Against = ExactRequest::Against;
+
+  /// Whether the triangle of `line` is hit, and nearer than that of `other` or the limit.
+  bool ask(std::uint32_t line, bool asks_hit, Against against, std::uint32_t other) {
+    const TriangleLine triangle(lines_[line]);
+    ExactRequest request{.ray = ray_.ray,
+                         .triangle = triangle.corners,
+                         .asks_hit = asks_hit,
+                         .against = against,
+                         .limit = limit_};
+    if (against == Against::kOther) request.other = TriangleLine(lines_[other]).corners;
+    const ExactAnswer answer = decide(request);
+    clocks_ += static_cast<std::uint64_t>(answer.clocks);
+    if (!answer.hit || against == Against::kNothing || answer.order != 0) {
+      return answer.hit && answer.order <= 0;
+    }
+    return against == Against::kOther && triangle.rank < TriangleLine(lines_[other]).rank;
+  }
+
+  std::span<const MemoryLine> lines_;
+  const CoreRay& ray_;
+  float limit_ = 1.0f;
+  std::uint32_t candidate_ = CoreRay::kNoTriangle;
+  std::uint64_t clocks_ = 0;
 };
 
 /// Inner nodes of a group that wait.
@@ -65,10 +128,15 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
   glm::vec3 point{0.0f};
   std::uint32_t tests = 0;
   bool ended = false;
-  const auto doubt = [&](std::uint32_t triangle) {
-    results.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray.tag, .triangle = triangle});
+  DoubtResolver resolver(lines, ray);
+  const auto doubt = [&](std::uint32_t triangle, bool is_hit) {
+    if (exact_) {
+      if (!ended) resolver.take(triangle, is_hit);
+    } else {
+      results.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray.tag, .triangle = triangle});
+    }
   };
-  const auto test = [&](const TriangleLine& triangle) {
+  const auto test = [&](const TriangleLine& triangle, bool settles) {
     ++tests;
     if (triangle.index == ray.skip_id) return;
     const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
@@ -78,18 +146,25 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     counters_.doubts += verdict == UnitVerdict::kDoubt;
     if (verdict == UnitVerdict::kMiss) return;
     const HitDistance distance = unit.distance(set.record, ray.ray.direction);
-    if (verdict == UnitVerdict::kDoubt || !is_good_hit(set, distance.error)) {
-      doubt(triangle.index);
+    const bool is_sure = verdict == UnitVerdict::kHit && is_good_hit(set, distance.error);
+    if (settles) {
+      nearest.settle(triangle.index, is_sure ? distance.t : 0.0f,
+                     is_sure ? t_error_exponent(set, distance.error) : CoreResult::kNoT);
+      point = is_sure ? unit.point(set.record, ray.ray.direction) : glm::vec3(0.0f);
+      return;
+    }
+    if (!is_sure) {
+      doubt(triangle.index, false);
       return;
     }
     const std::uint32_t open =
         nearest.take(triangle.index, distance.t, t_error_exponent(set, distance.error));
     if (nearest.triangle == triangle.index) point = unit.point(set.record, ray.ray.direction);
+    ended = ray.any_hit && nearest.found;
     if (open != CoreRay::kNoTriangle) {
       ++counters_.near_ties;
-      doubt(open);
+      doubt(open, true);
     }
-    ended = ray.any_hit && nearest.found;
   };
 
   std::vector<StackEntry> stack;
@@ -124,7 +199,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
       if (ended || is_beyond(group, entry, nearest.limit())) continue;
       for (std::uint32_t k = 0; k < entry.count && end.error == CoreResult::Error::kNone; ++k) {
         const std::uint32_t triangle = group.base + entry.offset + k;
-        if (is_read(triangle)) test(TriangleLine(lines[triangle]));
+        if (is_read(triangle)) test(TriangleLine(lines[triangle]), false);
       }
     }
     if (inside.group.size != 0) {
@@ -157,6 +232,11 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     // A group that has given its last node makes room.
     if (top.next == top.group.size) stack.pop_back();
   }
+  if (exact_ && !ended && end.error == CoreResult::Error::kNone) {
+    const std::uint32_t settled = resolver.settle(nearest);
+    if (settled != CoreRay::kNoTriangle) test(TriangleLine(lines[settled]), true);
+  }
+  counters_.exact_clocks += resolver.clocks();
   ++counters_.rays;
   counters_.triangles += tests;
   counters_.lines = counters_.nodes + counters_.triangles;

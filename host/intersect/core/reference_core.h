@@ -10,20 +10,23 @@ namespace raygate {
 /// doubts. Lines beyond those that trace() is given come with an error.
 class ReferenceCore : public CoreUnit {
  public:
-  /// `stack_depth`: see ray_core.sv.
-  explicit ReferenceCore(int stack_depth = kStackDepth) : stack_depth_(stack_depth) {}
+  /// `stack_depth`, `exact`: see ray_core.sv.
+  explicit ReferenceCore(int stack_depth = kStackDepth, bool exact = false)
+      : stack_depth_(stack_depth), exact_(exact) {}
 
   void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
              std::vector<CoreResult>& results) override;
   [[nodiscard]] CoreCounters counters() const override { return counters_; }
+  [[nodiscard]] bool is_exact() const override { return exact_; }
 
- private:
   static constexpr int kStackDepth = 8;
 
+ private:
   void trace(std::span<const MemoryLine> lines, const CoreRay& ray,
              std::vector<CoreResult>& results);
 
   int stack_depth_;
+  bool exact_;
   CoreCounters counters_;
 };
 

@@ -24,6 +24,7 @@ struct Options {
   std::vector<std::string> kinds = {"camera", "light", "scattered"};
   int size = 128, every = 1;
   bool structural = false;
+  bool exact = false;
 };
 
 class CoreBench {
@@ -41,7 +42,8 @@ class CoreBench {
       for (const int latency : options_.latencies) {
         for (const int cores : options_.cores) {
           for (const int rays : options_.in_flight) {
-            run(bvh, image, chosen, {.latency = latency}, {.cores = cores, .rays = rays});
+            run(bvh, image, chosen, {.latency = latency},
+                {.cores = cores, .rays = rays, .exact = options_.exact});
           }
         }
       }
@@ -96,6 +98,7 @@ class CoreBench {
                   {"triangles_percent", percent(counters.triangles)},
                   {"busier_percent", percent(counters.busier)},
                   {"waits_percent", percent(counters.waits)},
+                  {"exact_percent", percent(counters.exact_clocks)},
                   {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
                   {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)},
                   {"rays_per_second", static_cast<double>(set.rays.size()) / seconds}});
@@ -126,9 +129,11 @@ void add_core(CLI::App& lab, Outcome& outcome) {
   app->add_option("--every", options->every, "of the rays only each so-manieth")
       ->check(CLI::Range(1, 1024));
   app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
+  app->add_flag("--exact", options->exact, "cores settle doubts; else the host does");
   app->callback([options, &outcome] {
-    if (options->structural && std::ranges::max(options->in_flight) > kTableRays) {
-      throw CLI::ValidationError("--in-flight", "expected at most 64 with --structural");
+    if ((options->structural || options->exact) &&
+        std::ranges::max(options->in_flight) > kTableRays) {
+      throw CLI::ValidationError("--in-flight", "expected at most 64 with --structural or --exact");
     }
     CoreBench bench(*options, outcome.results);
     for (const std::string& scene : options->scenes) bench.scene(scene);

@@ -225,7 +225,13 @@ std::vector<SubjectKind> engine_subjects() {
           core("model core", "the ray core's reference model", 0.2,
                []() -> std::unique_ptr<CoreUnit> { return std::make_unique<ReferenceCore>(); }),
           core("rtl core", "the ray core, simulated", 0.02,
-               [] { return make_rtl_core(Arith::kBehavioural); })};
+               [] { return make_rtl_core(Arith::kBehavioural); }),
+          core("model exact core", "the exact ray core's reference model", 0.2,
+               []() -> std::unique_ptr<CoreUnit> {
+                 return std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);
+               }),
+          core("rtl exact core", "the exact ray core, simulated", 0.02,
+               [] { return make_rtl_core(Arith::kBehavioural, {}, {}, {.exact = true}); })};
 }
 
 std::vector<SubjectKind> variant_subjects() {

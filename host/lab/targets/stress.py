@@ -31,7 +31,8 @@ def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> l
 
 # Half a million tests a suite by the core's reference model, 50,000 by the simulated hardware.
 PARTS = {"all": lambda given: steps("all", given, 10_000_000),
-         "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core")}
+         "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core",
+                                     "model exact core", "rtl exact core")}
 USUAL = ("all",)
 
 

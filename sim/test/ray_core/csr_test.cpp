@@ -12,7 +12,7 @@ namespace raygate {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261122;
-constexpr unsigned kEvents = 10;  // ray_core_pkg::NumEvents
+constexpr unsigned kEvents = 11;  // ray_core_pkg::NumEvents
 
 /// Whether word `n` is a plain register, and which of its bits can be written.
 bool is_plain(unsigned n) {

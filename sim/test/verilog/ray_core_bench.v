@@ -14,7 +14,7 @@ module bench;
   wire [27:0] tests, result_line, read_line;
   wire [2:0] error;
   wire [48:0] nodes;
-  wire [9:0] events;
+  wire [10:0] events;
 
   ray_core dut (
     .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .outstanding_o(outstanding), .abort_i(1'b0), .lines_i(28'd5),

@@ -178,7 +178,8 @@ TEST_F(CoreIntersectorTest, RefusesWordsAboutWhatItDidNotGive) {
   EXPECT_NO_THROW(take({.kind = Kind::kEnd, .tag = 0}));
   EXPECT_THROW(take({.kind = Kind::kEnd, .tag = 1}), std::runtime_error);
   EXPECT_THROW(take({.kind = Kind::kOverflow, .nodes = 1}), std::runtime_error) << "for ever";
-  for (const std::uint32_t triangle : {bvh_.primitive_count(), ~0u}) {
+  for (const std::uint32_t triangle :
+       {MemoryImage::kRoot, static_cast<std::uint32_t>(image_->lines().size()), ~0u}) {
     EXPECT_THROW(take({.kind = Kind::kDoubt, .triangle = triangle}), std::runtime_error);
     EXPECT_THROW(take({.kind = Kind::kEnd, .found = true, .triangle = triangle}),
                  std::runtime_error);

@@ -1,0 +1,256 @@
+// Resolver of doubts: what closest_hit leaves open of a ray exact_unit decides, so that no doubt leaves the core.
+//
+// Of a ray's doubts the nearest that it hits is kept, its candidate:
+//
+//   a doubt   does the ray hit it, unless that is sure, and if there is a candidate, is it nearer? Then it is the candidate
+//   settling  when nothing else of the ray is to be done: the candidate against closest_hit's nearest sure hit, or, where there is
+//             none, against the user's t_max. Where the candidate is nearer, its triangle is tested once more, for t and P
+//
+// Of hits at the same t the one of lower rank is nearer. Corners come by line, as for tests. One question at a time:
+// exact_unit's clocks, some seven more, and twice the way to the triangles' cache. Doubts of a ray that has ended
+// (ended_i) are dropped.
+//
+// Tests on their way and doubts that wait are Queue together at most, so that each doubt has room and tests
+// never wait for the resolver: it waits for lines that come behind them.
+module exact_resolver #(
+  parameter int unsigned Rays  = 64,
+  parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be on its way
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  localparam int unsigned RayWidth = $clog2(Rays),
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  // a ray begins
+  input  logic                    load_i,
+  input  logic [RayWidth-1:0]     load_ctx_i,
+  input  logic [95:0]             load_origin_i,
+  input  logic [95:0]             load_direction_i,
+  // tests set out, are over, and may leave a doubt
+  input  logic                    test_i,
+  input  logic                    over_i,
+  output logic                    tests_allowed_o,
+  input  logic [RayWidth-1:0]     open_ctx_i,
+  input  ray_core_pkg::open_t     open_i,
+  // rays of which nothing else is to be done, and those that have doubts or a candidate
+  input  logic [Rays-1:0]         idle_i,
+  output logic [Rays-1:0]         busy_o,
+  // the ray whose turn it is; what is known of it, in the same clock
+  output logic [RayWidth-1:0]     ctx_o,
+  input  logic                    ended_i,  // it needs no hit, or no other
+  input  logic                    found_i,  // a sure hit, and its line
+  input  logic [AddressWidth-1:0] found_line_i,
+  input  logic [30:0]             t_max_i,  // without one: the user's
+  // its lines: for here, or (not exact) to be tested, kept whatever the test says
+  output ray_core_pkg::triangle_request_t request_o,
+  input  logic                    request_ready_i,
+  input  ray_core_pkg::triangle_line_t line_i,
+  output logic                    computing_o  // exact_unit has a question
+);
+
+  localparam int unsigned CountWidth = $clog2(Queue + 1);
+  localparam int unsigned CornersWidth = 9 * 32;
+  localparam logic [30:0] Infinity = 31'h7f80_0000;
+
+  typedef enum logic [2:0] {
+    StateIdle   = 3'd0,
+    StateLook   = 3'd1,  // what is to be asked
+    StateFetch  = 3'd2,  // a line is asked for
+    StateWait   = 3'd3,  // it is on its way
+    StateAsk    = 3'd4,
+    StateAnswer = 3'd5,
+    StateTest   = 3'd6   // the candidate is the hit
+  } state_e;
+
+  state_e state_q, state_d;
+
+  // ---- Doubts that wait
+
+  logic push, pop, freed, queued, queued_hit, unused_space;
+  logic [RayWidth-1:0] queued_ctx;
+  logic [AddressWidth-1:0] queued_line;
+  logic [CountWidth-1:0] here_q;  // tests on their way and doubts
+
+  assign push = open_i.valid;
+
+  ram_fifo #(
+    .Width(RayWidth + 1 + AddressWidth),
+    .Depth(Queue)
+  ) u_doubts (
+    .clk_i,
+    .rst_ni,
+    .push_i(push),
+    .data_i({open_ctx_i, open_i.is_hit, open_i.line}),
+    .space_o(unused_space),
+    .pop_i(pop),
+    .valid_o(queued),
+    .data_o({queued_ctx, queued_hit, queued_line})
+  );
+
+  assign freed           = over_i & ~push;
+  assign tests_allowed_o = here_q < CountWidth'(Queue - 1);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) here_q <= '0;
+    else here_q <= here_q + CountWidth'(test_i) - CountWidth'(freed) - CountWidth'(pop);
+  end
+
+  // ---- Of each ray: how many doubts it has, and its candidate
+
+  logic [CountWidth-1:0] counts[Rays];
+  logic [AddressWidth-1:0] candidates[Rays];  // lines
+  logic [Rays-1:0] doubtful_q, candidate_q, ready_q;
+  logic [RayWidth-1:0] ready_ctx, ctx_q;
+  logic settle, doubt_done, same, keep, drop;
+  logic settling_q, is_hit_q;  // what is asked; of the doubt that it is surely hit
+  logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
+
+  assign busy_o = doubtful_q | candidate_q;
+  assign ctx_o  = ctx_q;
+  assign same   = push & doubt_done & (open_ctx_i == ctx_q);
+
+  rr_arbiter #(
+    .Width(Rays)
+  ) u_settle (
+    .requests_i(ready_q & candidate_q),
+    .start_i(ctx_q),
+    .valid_o(settle),
+    .index_o(ready_ctx)
+  );
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      doubtful_q  <= '0;
+      candidate_q <= '0;
+      ready_q     <= '0;
+    end else begin
+      if (doubt_done && !same && counts[ctx_q] == CountWidth'(1)) doubtful_q[ctx_q] <= 1'b0;
+      if (push) doubtful_q[open_ctx_i] <= 1'b1;
+      if (keep) candidate_q[ctx_q] <= 1'b1;
+      if (drop) candidate_q[ctx_q] <= 1'b0;
+      ready_q <= candidate_q & ~doubtful_q & idle_i;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (load_i) counts[load_ctx_i] <= '0;
+    if (push && !same) counts[open_ctx_i] <= counts[open_ctx_i] + 1'b1;
+    if (doubt_done && !same) counts[ctx_q] <= counts[ctx_q] - 1'b1;
+    if (keep) candidates[ctx_q] <= line_q;
+  end
+
+  // ---- The question
+
+  logic has_candidate, simple, lacks_q;
+  logic [1:0] against, against_q;  // exact_pkg::against_e
+  logic [AddressWidth-1:0] other_line_q, candidate;
+  logic [CornersWidth-1:0] corners_q, other_q;
+  logic [31:0] rank_q, other_rank_q;
+  logic [95:0] origin, direction;
+  logic fetch, line_here, unit_ready, answered, hit, nearer;
+  exact_pkg::sign_t order;
+
+  assign candidate     = candidates[ctx_q];
+  assign has_candidate = candidate_q[ctx_q];
+
+  always_comb begin
+    against = exact_pkg::AgainstNothing;
+    if (settling_q ? found_i : has_candidate) against = exact_pkg::AgainstOther;
+    else if (settling_q && t_max_i != Infinity) against = exact_pkg::AgainstLimit;
+  end
+  // Nothing is to be asked.
+  assign simple = (against == exact_pkg::AgainstNothing) & (settling_q | is_hit_q);
+
+  assign line_here = line_i.valid & line_i.exact;
+  assign nearer = hit & ((against_q == exact_pkg::AgainstNothing) | order.negative
+                         | (~order.nonzero & (against_q == exact_pkg::AgainstOther)
+                            & (rank_q < other_rank_q)));
+
+  always_comb begin
+    state_d = state_q;
+    case (state_q)
+      StateIdle:  if (settle || queued) state_d = StateLook;
+      StateLook:
+        if (ended_i) state_d = StateIdle;
+        else if (simple) state_d = settling_q ? StateTest : StateIdle;
+        else state_d = StateFetch;
+      StateFetch: if (request_ready_i) state_d = StateWait;
+      StateWait:
+        if (line_here) begin
+          state_d = line_i.error ? StateIdle : lacks_q ? StateFetch : StateAsk;
+        end
+      StateAsk:   if (unit_ready) state_d = StateAnswer;
+      StateAnswer:
+        if (answered) state_d = (settling_q && nearer) ? StateTest : StateIdle;
+      StateTest:  if (request_ready_i) state_d = StateIdle;
+      default:    state_d = StateIdle;
+    endcase
+  end
+
+  assign pop        = (state_q == StateIdle) & ~settle & queued;
+  assign doubt_done = (state_q != StateIdle) & (state_d == StateIdle) & ~settling_q;
+  assign drop       = (state_q != StateIdle) & (state_d == StateIdle) & settling_q;
+  assign keep       = doubt_done & (((state_q == StateLook) & ~ended_i)
+                                    | ((state_q == StateAnswer) & nearer));
+
+  assign fetch           = state_q == StateFetch;
+  assign request_o.valid = fetch | (state_q == StateTest);
+  assign request_o.exact = fetch;
+  assign request_o.line  = (fetch & lacks_q) ? other_line_q : line_q;
+  assign computing_o     = state_q == StateAnswer;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) state_q <= StateIdle;
+    else state_q <= state_d;
+  end
+  always_ff @(posedge clk_i) begin
+    if (state_q == StateIdle) begin
+      settling_q <= settle;
+      ctx_q      <= settle ? ready_ctx : queued_ctx;
+      is_hit_q   <= settle | queued_hit;
+      line_q     <= settle ? candidates[ready_ctx] : queued_line;
+    end
+    if (state_q == StateLook) begin
+      against_q    <= against;
+      other_line_q <= settling_q ? found_line_i : candidate;
+      lacks_q      <= against == exact_pkg::AgainstOther;  // the other's line comes first
+    end
+    if (state_q == StateWait && line_here) begin
+      lacks_q <= 1'b0;
+      {other_q, other_rank_q} <= {corners_q, rank_q};
+      corners_q <= line_i.line[ray_core_pkg::TriangleCorners+:CornersWidth];
+      rank_q    <= line_i.rank;
+    end
+  end
+
+  ram #(
+    .Width(2 * 96),
+    .Depth(Rays)
+  ) u_rays (
+    .clk_i,
+    .write_i(load_i),
+    .write_address_i(load_ctx_i),
+    .data_i({load_direction_i, load_origin_i}),
+    .read_i(1'b1),
+    .read_address_i(ctx_q),
+    .data_o({direction, origin})
+  );
+
+  exact_unit #(
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_unit (
+    .clk_i,
+    .rst_ni,
+    .valid_i(state_q == StateAsk),
+    .ready_o(unit_ready),
+    .hit_i(~is_hit_q),
+    .against_i(against_q),
+    .floats_i({1'b0, t_max_i, other_q, corners_q, direction, origin}),
+    .valid_o(answered),
+    .ready_i(1'b1),
+    .hit_o(hit),
+    .order_o(order)
+  );
+
+endmodule

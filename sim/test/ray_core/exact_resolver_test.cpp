@@ -1,0 +1,186 @@
+// The exact core in simulation gives the words of its reference model, bit for bit, whatever makes
+// it wait. Tests: exact_resolver
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "Vray_core_small_exact.h"
+#include "host/exact/exact.h"
+#include "host/intersect/core/core_intersector.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/core/test/core_cases.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "sim/core_model.h"
+
+namespace raygate {
+namespace {
+
+using test::Random;
+using test::some_rays;
+using Core = CoreModel<Vray_core_small_exact>;
+
+constexpr CoreSet kExact{.exact = true};
+
+/// Four rays at a time, stacks of a group, caches of 16 lines.
+class ExactResolverTest : public testing::Test {
+ protected:
+  /// The bodies, each triangle twice, its corners in another order: every hit is a tie.
+  static std::vector<Corners> doubled() {
+    std::vector<Corners> mesh = test::bodies();
+    const std::size_t count = mesh.size();
+    for (std::size_t i = 0; i < count; ++i) mesh.push_back({mesh[i][1], mesh[i][2], mesh[i][0]});
+    return mesh;
+  }
+
+  /// By ray; of one that overflowed its last overflow.
+  static std::vector<CoreResult> words(CoreUnit& unit, std::span<const MemoryLine> lines,
+                                       std::span<const CoreRay> rays) {
+    std::vector<CoreResult> results, words(rays.size());
+    unit.trace(lines, rays, results);
+    for (const CoreResult& result : results) {
+      EXPECT_NE(result.kind, CoreResult::Kind::kDoubt);
+      CoreResult& word = words.at(result.tag);
+      if (word.kind != CoreResult::Kind::kOverflow) word = result;
+    }
+    return words;
+  }
+
+  /// Triangle, t, its bound and P, of rays without overflows.
+  void compare(Core& core, std::vector<CoreRay> rays) {
+    for (std::uint32_t i = 0; i < rays.size(); ++i) rays[i].tag = i;
+    ReferenceCore reference(ReferenceCore::kStackDepth, true);
+    const std::vector<CoreResult> got = words(core, image_->lines(), rays),
+                                  expected = words(reference, image_->lines(), rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (got[i].kind == CoreResult::Kind::kOverflow) continue;
+      ASSERT_EQ(got[i].error, CoreResult::Error::kNone) << i;
+      ASSERT_EQ(got[i].found, expected[i].found) << i;
+      if (!got[i].found || rays[i].any_hit) continue;
+      ASSERT_EQ(got[i].triangle, expected[i].triangle) << i;
+      ASSERT_EQ(got[i].t, expected[i].t) << i;
+      ASSERT_EQ(got[i].t_error, expected[i].t_error) << i;
+      ASSERT_EQ(got[i].point, expected[i].point) << i;
+      found_ += got[i].found;
+      without_t_ += got[i].t_error == CoreResult::kNoT;
+    }
+  }
+
+  std::vector<Corners> mesh_ = doubled();
+  Bvh bvh_{test::scene_of(mesh_)};
+  std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
+  Random random_;
+  int found_ = 0, without_t_ = 0;
+};
+
+TEST_F(ExactResolverTest, WordsAreTheReferences) {
+  std::vector<CoreRay> rays;
+  for (const Ray& ray : some_rays(mesh_, random_, 1'500)) rays.push_back({.ray = ray});
+  for (const MemoryTiming& timing :
+       {MemoryTiming{.latency = 1},
+        MemoryTiming{.latency = 50, .disorder = 100, .not_taken = 64}}) {
+    Core core(timing, {.no_ray = 32, .not_taken = timing.not_taken, .seed = 3}, kExact);
+    compare(core, rays);
+    EXPECT_GT(core.counters().near_ties, 1'000u);
+    EXPECT_GT(core.counters().exact_clocks, 56'000u);
+  }
+  EXPECT_GT(found_, 1'500);
+  EXPECT_GT(without_t_, 20);
+}
+
+TEST_F(ExactResolverTest, LimitsAndFirstHitsAreTheReferences) {
+  std::vector<CoreRay> rays;
+  for (const Ray& ray : some_rays(mesh_, random_, 2'000)) {
+    const Corners& corners =
+        mesh_[static_cast<std::size_t>(random_.below(static_cast<int>(mesh_.size())))];
+    CoreRay& sent = rays.emplace_back(CoreRay{.ray = ray});
+    sent.any_hit = random_.below(4) == 0;
+    sent.skip_id =
+        image_->line_of(static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
+    const bool is_hit = hits_triangle(ray, corners);
+    sent.t_max =
+        is_hit ? static_cast<float>(hit_distance(ray, corners).low) : random_.uniform(0.01f, 3.0f);
+    if (is_hit && random_.below(2) == 0) sent.t_max = std::nextafter(sent.t_max, 1e9f);
+  }
+  std::vector<NearestHit> nearest(rays.size());
+  // Half of the limits are within a float of the nearest hit.
+  for (std::size_t i = 0; i < rays.size(); i += 2) {
+    CpuIntersector(bvh_).intersect({&rays[i].ray, 1}, {}, {&nearest[i], 1});
+    if (nearest[i].primitive == NearestHit::kNone) continue;
+    rays[i].t_max =
+        static_cast<float>(hit_distance(rays[i].ray, bvh_.corners_of(nearest[i].primitive)).low);
+    for (int n = random_.below(3); n > 0; --n) rays[i].t_max = std::nextafter(rays[i].t_max, 1e9f);
+  }
+  Core core({.latency = 5}, {.not_taken = 100}, kExact);
+  compare(core, rays);
+  EXPECT_GT(found_, 250);
+}
+
+/// Overflows and all: CpuIntersector's hits, with the host's help where a stack had no room.
+TEST_F(ExactResolverTest, NearestHitsAreTheCpuIntersectors) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 500);
+  std::vector<NearestHit> found(rays.size()), expected(rays.size());
+  CoreIntersector intersector(bvh_, image_,
+                              std::make_unique<Core>(MemoryTiming{.latency = 20, .disorder = 40},
+                                                     CoreStalls{.not_taken = 100}, kExact));
+  intersector.intersect(rays, {}, found);
+  CpuIntersector(bvh_).intersect(rays, {}, expected);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(found[i].primitive, expected[i].primitive) << i;
+  }
+  EXPECT_EQ(intersector.counters().exact_inside, 0u);
+}
+
+/// Many doubts a ray: all triangles of fans are met at their common corner, so that doubts wait for
+/// room.
+TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
+  std::vector<Corners> fan;
+  for (int n = 0; n < 600; ++n) {
+    const auto corner = [&](int k) {
+      const double angle = 2.0 * M_PI * k / 200.0;
+      return glm::vec3(1.0f, static_cast<float>(std::cos(angle)),
+                       static_cast<float>(std::sin(angle)));
+    };
+    fan.push_back({glm::vec3(1, 0, 0), corner(n), corner(n + 1)});
+  }
+  const Bvh bvh(test::scene_of(fan));
+  const MemoryImage image(bvh);
+  std::vector<CoreRay> rays;
+  for (std::uint32_t n = 0; n < 20; ++n) {
+    rays.push_back({.ray = {glm::vec3(-1, 0.01f * static_cast<float>(n % 3), 0), {}},
+                    .tag = n,
+                    .no_cull = true});
+    rays.back().ray.direction =
+        scaled_direction(glm::dvec3(1, 0, 0) - glm::dvec3(rays.back().ray.origin));
+  }
+  Core core({.latency = 5}, {}, kExact);
+  std::vector<CoreResult> results;
+  core.trace(image.lines(), rays, results);
+  int found = 0;
+  for (const CoreResult& result : results) {
+    if (result.kind != CoreResult::Kind::kEnd) continue;
+    NearestHit expected;
+    CpuIntersector(bvh).intersect({&rays[result.tag].ray, 1}, {}, {&expected, 1});
+    found += result.found && result.triangle == image.line_of(expected.primitive);
+  }
+  EXPECT_GT(core.counters().doubts, 150u * rays.size());
+  EXPECT_GT(found, 0);
+}
+
+TEST_F(ExactResolverTest, ResetsInMidRunLeaveNothing) {
+  std::vector<CoreRay> rays;
+  for (const Ray& ray : some_rays(mesh_, random_, 200)) rays.push_back({.ray = ray});
+  Core core({.latency = 20, .disorder = 100, .not_taken = 64}, {.not_taken = 100}, kExact);
+  for (int round = 0; round < 8; ++round) {
+    core.abandon(image_->lines(), rays, static_cast<unsigned>(1 + random_.below(3'000)));
+  }
+  compare(core, rays);
+  EXPECT_GT(found_, 20);
+}
+
+}  // namespace
+}  // namespace raygate
