@@ -7,7 +7,8 @@
 #     and the signals that visible.vlt lists be read. Name a model after its module and what its
 #     parameters stand for; models that several programs use are built once.
 #
-#     PATCHES <folder>: modules found there are taken instead of those of hw/, to break them on purpose.
+#     PATCHES <folder>: modules found there are taken instead of those of hw/: broken on purpose, or brought
+#     along (synth/brought.py), so without lint.
 #     NETLIST <file>: TOP is in that file, as Yosys wrote it; what it instantiates and lacks is in hw/.
 #     AS <name>: its class is that of model <name>, V<name>, so that a program takes it in that one's place.
 #
@@ -103,7 +104,7 @@ function(raygate_model NAME)
     list(APPEND open ${CMAKE_SOURCE_DIR}/sim/shared.vlt)
   endif()
   if(MODEL_PATCHES)
-    set(patches -y ${MODEL_PATCHES})
+    set(patches -y ${MODEL_PATCHES} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
   endif()
   add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${MODEL_AS}.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}

@@ -2,11 +2,14 @@
 
 import dataclasses
 import pathlib
+import re
 from collections.abc import Callable
 
 from synth import catalogue, cores, induction, store, tools
 
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
+# A line of a counterexample of Yosys's: name, decimal, hexadecimal, bits.
+PORT = re.compile(r"^  \\(\S+) +\S+ +\S+ +([01x]+)$", re.M)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,7 +33,7 @@ def rtl(core: str) -> list[pathlib.Path]:
 def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
           prepare: str = "", parameters: tuple[tuple[str, object], ...] = (), steps: int = 0,
           reach: int = 0, prepared: str = "", beside: tuple[str, ...] = (), name: str = "") -> tuple[dict, bool]:
-    """Proves the assertions of proofs/<top>.sv; raises ToolFailed where one does not hold, where there
+    """Proves the assertions of proofs/<top>.sv; raises Refuted or ToolFailed where one does not hold, where there
     is none, and where what is assumed leaves a `cover` out of reach.
 
     `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, what is named of hw/arith unless said.
@@ -49,7 +52,7 @@ def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = No
 
     def work() -> dict:
         smt2 = folder / "model.smt2"
-        tools.run(["yosys", "-c", PROOFS / "prove.tcl"], folder / "yosys.log", {
+        said = tools.run(["yosys", "-c", PROOFS / "prove.tcl"], folder / "yosys.log", {
             "SOURCES": " ".join(map(str, read)), "TOP": top,
             "PARAMETERS": " ".join(f"{key} {value}" for key, value in parameters),
             "PREPARE": str(PROOFS / prepare) if prepare else "",
@@ -57,6 +60,8 @@ def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = No
             "SMT2": str(smt2) if method == "Bitwuzla" else ""})
         if method == "Bitwuzla":
             induction.holds(top, smt2, steps, reach or steps)
+        elif "no model found: SUCCESS!" not in said:
+            raise tools.Refuted(f"{top} (log: {folder / 'yosys.log'})", dict(PORT.findall(said)))
         return {"holds": True}
 
     return store.cached(folder, wanted, tools.measured(work))

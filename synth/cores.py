@@ -17,12 +17,17 @@ def names(hw: pathlib.Path = HW) -> list[str]:
     return _ordered(sorted(file.stem for file in hw.glob("*/*.core")), hw)
 
 
+# A folder: its files are taken in place of hw/'s of the same names (brought.py).
+replaced: pathlib.Path | None = None
+
+
 def files(core: str, hw: pathlib.Path = HW) -> list[pathlib.Path]:
     """The files of `core` and of all that it depends on, in the order to compile them.
 
     Raises ValueError where a list names a file that is not there, or leaves one out that is.
     """
-    return [file for name in _ordered([core], hw) for file in _own(name, hw)]
+    found = [file for name in _ordered([core], hw) for file in _own(name, hw)]
+    return [replaced / file.name if replaced and (replaced / file.name).exists() else file for file in found]
 
 
 def used(top: str, among: list[pathlib.Path]) -> list[pathlib.Path]:

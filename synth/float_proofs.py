@@ -257,6 +257,8 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
             raise tools.ToolFailed(f"{one.name}: what it assumes cannot be")
         answer = smt.solve(folder / "query.smt2",
                        text + "(assert assumed)\n(assert (not claimed))\n", tuple(wires))
+        if answer["answer"] == "sat":
+            raise tools.Refuted(one.name, answer["values"])
         if answer["answer"] != "unsat":
             raise tools.ToolFailed(f"{one.name}: {answer['answer']}: {answer['values']}")
         return {"holds": True}

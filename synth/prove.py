@@ -31,7 +31,13 @@ def every_product(width: int) -> tuple[dict, bool]:
                    "OPT_FAST=-O3", "-CFLAGS", f"-DWIDTH={width}", f"-GWidth={width}",
                    "--top-module", "booth_multiplier", "--Mdir", folder / "obj",
                    *sources, harness, "-o", "exhaustive"], folder / "build.log")
-        tools.run([str(folder / "obj" / "exhaustive")], folder / "run.log")
+        try:
+            tools.run([str(folder / "obj" / "exhaustive")], folder / "run.log")
+        except tools.ToolFailed as error:
+            found = re.search(r"(\d+) \* (\d+) gave (\d+)", str(error))
+            values = dict(zip(("a", "b", "product"), map(int, found.groups()))) if found else {}
+            raise tools.Refuted(f"every product of {width} bits", {
+                name: f"{value:0{2 * width if name == 'product' else width}b}" for name, value in values.items()}) from error
         return {"holds": True}
 
     return store.cached(folder, wanted, tools.measured(work))

@@ -41,6 +41,14 @@ class ToolFailed(Exception):
     """A tool ended with an error; the message holds its last lines and where its log is."""
 
 
+class Refuted(ToolFailed):
+    """A claim does not hold. `values`: of the ports, bits by name."""
+
+    def __init__(self, what: str, values: dict[str, str]) -> None:
+        super().__init__(f"{what} does not hold: {values}")
+        self.values = values
+
+
 def find(tool: str) -> str:
     """The path of `tool`, from PATH or from the Python environment that runs this program."""
     path = os.pathsep.join([os.environ.get("PATH", ""), str(pathlib.Path(sys.executable).parent)])

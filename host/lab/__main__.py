@@ -1,7 +1,8 @@
 """`python3 -m host.lab TARGET`: measures what `make TARGET` is about and writes its report, build/reports/TARGET/report.md.
 
 A target is a module of host/lab/targets: `PARTS` gives the steps of each part, `values` what its template
-host/lab/report/TARGET.md.j2 needs besides the rows, `failures` what is wrong in them (exit status 1).
+host/lab/report/TARGET.md.j2 needs besides the rows, `failures` what is wrong in them (exit status 1), `own_folder` the report's own
+folder where a target has several.
 """
 
 import argparse
@@ -12,7 +13,7 @@ import shutil
 import subprocess
 import sys
 
-from host.lab import rows as kept, steps
+from host.lab import evidence, rows as kept, steps
 from host.lab.machine import processors
 from host.lab.report import document
 from host.lab.rows import KEPT, ROOT
@@ -41,6 +42,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--base", type=pathlib.Path, metavar="OLD.jsonl",
                         help="bench: say what got slower or less accurate since these rows")
     parser.add_argument("--variant", nargs="*", default=[], metavar="FRAC_WIDTH=15", help="variant: what is not as in binary32")
+    parser.add_argument("--energy", action="store_true", help="variant: simulate what an operation of the paper's unit takes")
+    parser.add_argument("--wires", action="store_true", help="variant: place the units, and estimate their wires")
     parser.add_argument("--report-only", action="store_true", help="write the report of the last rows again")
     parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results too")
     return parser.parse_args()
@@ -50,13 +53,14 @@ def make_command(given: argparse.Namespace) -> str:
     """What makes the rows again."""
     words = {"QUICK": int(given.quick), "ONLY": given.only, "SCENE" if given.target == "variant" else "SCENES": given.scenes, "TESTS": given.tests,
              "SEED": given.seed if given.seed != 1 else 0, "RENDER": given.render if given.render != ROOT / "render" else "",
-             "BEFORE": given.before}
+             "BEFORE": given.before, "ENERGY": int(given.energy), "WIRES": int(given.wires)}
     return " ".join(["make", given.target, *given.variant, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
 
 
-def publish(name: str, folder: pathlib.Path, text: str) -> None:
-    """Into host/lab/results, with the plots; those that no report shows any more go."""
+def publish(name: str, folder: pathlib.Path, text: str, about: dict) -> None:
+    """Into host/lab/results, with the plots; those that no report shows any more go. `about`: when and where it was measured."""
     (PUBLISHED / f"{name}.md").write_text(text)
+    evidence.renew(f"host/lab/results/{name}.md", about["command"], about)
     for file in [*folder.glob("*.png"), *folder.glob("*.csv")]:
         shutil.copy(file, PUBLISHED)
     shown = "".join(page.read_text() for page in [PUBLISHED.parent / "README.md", *PUBLISHED.glob("*.md")])
@@ -82,17 +86,17 @@ def run(given: argparse.Namespace) -> int:
         found[0] |= {"quick": given.quick, "command": make_command(given)}
         kept.write(file, target.finish(found) if hasattr(target, "finish") else found)
     rows = kept.read(file)
-    folder = REPORTS / given.target
+    folder = REPORTS / given.target / (target.own_folder(rows) if hasattr(target, "own_folder") else "")
     folder.mkdir(parents=True, exist_ok=True)
-    text = document.render(f"{given.target}.md.j2", folder, rows, **target.values(rows, folder))
+    text = document.render(f"{given.target}.md.j2", folder, rows, **target.values(rows, folder)) + document.measured(rows[0])
     document.write(text, folder)
     if base:
         print("\n".join(target.compare(base, rows)))
     if given.publish:
-        publish(given.target, folder, text)
+        publish(given.target, folder, text, rows[0])
     if given.target not in ("bench", "stress"):  # of which nobody reads all
         print(text)
-    print(f"Report: build/reports/{given.target}/report.md, and report.html beside it; rows: {file.relative_to(ROOT)}")
+    print(f"Report: {folder.relative_to(ROOT)}/report.md, and report.html beside it; rows: {file.relative_to(ROOT)}")
     wrong = target.failures(rows) if hasattr(target, "failures") else []
     print("".join(f"error: {line}\n" for line in wrong), end="", file=sys.stderr)
     return 1 if wrong else 0

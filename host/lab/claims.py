@@ -3,9 +3,12 @@
 A row of the page is `| what | figure | command |`. The numbers of a figure must stand in the output in
 this order, commas aside. A figure that begins with ~ depends on the machine: what its command prints is
 shown, not judged. Exit status 1 where a figure is not there, 2 where no command was asked for.
+
+A row `| page | words | published result | text, text |` is a quote: `misquoted` finds those that are not in their result.
 """
 
 import argparse
+import decimal
 import pathlib
 import re
 import subprocess
@@ -14,6 +17,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "host/lab/CLAIMS.md"
 ROW = re.compile(r"^\| (.+?) \| (.+?) \| `(.+?)` \|$", re.MULTILINE)
+QUOTE = re.compile(r"^\| \[.*?\]\((.+?)\) \| (.+?) \| \[.*?\]\((.+?)\) \| (.+?) \|$", re.MULTILINE)
 NUMBER = re.compile(r"0x[0-9A-Fa-f]+|\d[\d,]*\.?\d*")
 
 
@@ -33,6 +37,27 @@ def holds(output: str, figure: str) -> bool:
     words = iter(re.findall(r"[0-9A-Fa-f.]+", output.replace(",", "").upper().replace("0X", "")))
     words = (word.rstrip(".") for word in words)
     return all(number in words for number in numbers(figure))
+
+
+def rounds_to(number: str, figure: str) -> bool:
+    """Whether a number, to as many digits as a figure has, is that figure, which may be in millions."""
+    wanted = decimal.Decimal(figure.split()[0])
+    value = decimal.Decimal(number) / (1_000_000 if figure.endswith("million") else 1)
+    return value.quantize(wanted, decimal.ROUND_HALF_UP) == wanted
+
+
+def misquoted(text: str, folder: pathlib.Path) -> list[str]:
+    """What pages quote in the rows of `text`, links being relative to `folder`, and do not have, or their results don't."""
+    wrong = []
+    for page, quote, result, marks in QUOTE.findall(text):
+        if " ".join(quote.split()) not in " ".join((folder / page).read_text().split()):
+            wrong.append(f"{page}: no longer has: {quote}")
+        figures = re.findall(r"\d+(?:\.\d+)?(?: million)?", quote.replace(",", ""))
+        lines = [line for line in (folder / result).read_text().splitlines() if all(mark in line for mark in marks.split(", "))]
+        if not figures or not any(all(figure in found for figure in figures) for found in (
+                [figure for figure in figures for number in numbers(line) if rounds_to(number, figure)] for line in lines)):
+            wrong.append(f"{page}: {quote}: {result} has no such line with: {marks}")
+    return wrong
 
 
 def main() -> int:

@@ -1,6 +1,6 @@
 # What the lab measures: host/lab/README.md. Rows are kept in build/results/, reports written to build/reports/. An interrupted
 # run goes on when it is started again.
-.PHONY: stress bench variant peers speed core scaling claims
+.PHONY: stress bench variant peers speed core scaling dates claims
 
 comma := ,
 # $(call of,PARTS): those of PARTS that were asked for; all without ONLY.
@@ -31,14 +31,16 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 	$(call build,bench,lab render scenes unit_bench $(if $(MPIRUN),share))
 	$(measure)
 
-variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER,$(if $($(word)),$(word)=$($(word))))
+variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),$(word)=$($(word))))
 variant: VARIANTS = $(CURDIR)/build/results/variant.json
 variant: SCENES = $(SCENE)
-variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix ROUNDING=toward-zero UNIT=serial QUOTIENT_BITS=12]
+variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my_adder.sv MULTIPLIER= KEEP_GOING=1 ROUNDING=toward-zero UNIT=serial QUOTIENT_BITS=12 ENERGY=1 WIRES=1]
 	@$(SETUP) bench
-	@$(PYTHON) -B -m host.lab.targets.variant $(variant_words)
+	@$(if $(filter %.sv %.v,$(variant_words)),$(SETUP) prove)
+	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
+	@$(PYTHON) -B -m host.lab.targets.variant $(if $(KEEP_GOING),--keep-going) $(variant_words)
 	$(call build,bench,lab)
-	$(measure) --variant $(variant_words)
+	$(measure) $(if $(ENERGY),--energy) $(if $(WIRES),--wires) --variant $(variant_words)
 
 peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 ONLY=pictures,gltf SCENES=cornell]
 	$(call build,peers,render compare scenes $(if $(call of,techniques),lab))
@@ -59,5 +61,8 @@ scaling: ## measure: a picture's time by ranks, and a model up to 1,000: make sc
 	$(call build,lab,render scenes)
 	$(measure)
 
-claims: everything ## measure: figures of host/lab/CLAIMS.md by their commands: make claims [ONLY=frame_rates]
+dates:
+	@-python3 -B -m host.lab.evidence
+
+claims: dates everything ## measure: how old results are; figures of host/lab/CLAIMS.md by their commands: make claims [ONLY=frame_rates]
 	@python3 -B host/lab/claims.py --only '$(ONLY)'

@@ -1,5 +1,6 @@
 """What the figures were made on and with."""
 
+import datetime
 import os
 import pathlib
 import platform
@@ -41,6 +42,7 @@ def describe(root: pathlib.Path) -> dict:
         "build_type": _first(r"^CMAKE_BUILD_TYPE:\w+=(.*)$", settings),
         "verilator": _first(r"(\d+\.\d+)", _output("verilator_bin", "--version")),
         "python": platform.python_version(),
+        "date": datetime.date.today().isoformat(),
         "commit": _output("git", "-C", str(root), "rev-parse", "--short=12", "HEAD"),
         "changed_files": len(_output("git", "-C", str(root), "status", "--porcelain",
                                      "--untracked-files=no").splitlines()),

@@ -5,13 +5,12 @@ module adder_adds #(
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = '0,
   parameter bit LookAhead = 1'b1
 ) (
-  input logic [Width-1:0] a,
-  input logic [Width-1:0] b,
-  input logic             carry
+  input  logic [Width-1:0] a,
+  input  logic [Width-1:0] b,
+  input  logic             carry,
+  output logic [Width-1:0] sum,
+  output logic             carry_out
 );
-
-  logic [Width-1:0] sum;
-  logic carry_out;
 
   adder #(
     .Width      (Width),

@@ -2,11 +2,10 @@
 module booth_multiplies #(
   parameter int unsigned Width = 8
 ) (
-  input logic [Width-1:0] a,
-  input logic [Width-1:0] b
+  input  logic [Width-1:0]   a,
+  input  logic [Width-1:0]   b,
+  output logic [2*Width-1:0] product
 );
-
-  logic [2*Width-1:0] product;
 
   booth_multiplier #(
     .Width(Width)

@@ -18,5 +18,5 @@ if {$::env(SMT2) ne ""} {
   yosys write_smt2 -stbv -wires $::env(SMT2)
 } else {
   yosys select -assert-none t:\$assume
-  yosys sat -verify -prove-asserts -show-inputs -set-def-inputs
+  yosys sat -prove-asserts -show-ports -set-def-inputs
 }

@@ -5,12 +5,18 @@ are added up: multiplier, adder and divider for the paper's unit, whose slowest 
 multiplication and a division.
 """
 
+import concurrent.futures
+import contextlib
 import dataclasses
+import functools
 import json
+import pathlib
 import sys
 
 from host.lab.rows import ROOT
-from synth import catalogue
+from synth import brought, catalogue, measure as synth, tools
+from synth.layout import energy as energy_of, flow, formats, tests as operations
+from synth.layout.jobs import SPARSE
 
 LIBRARY = "osu035"  # the paper's era
 FLOWS = ("parts", "fast", "small")  # the first that there is
@@ -37,45 +43,71 @@ def _parameters(variant: dict) -> dict[str, int]:
             "RoundingMode": ROUNDINGS.index(variant["rounding"]), **adder}
 
 
-def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
+def design(variant: dict) -> catalogue.Design:
+    """The variant's unit."""
+    return catalogue.design(UNITS[variant["unit"]], **{name: value for name, value in _parameters(variant).items()
+                                                       if value != USUAL[name]})
+
+
+def _kept_apart(variant: dict) -> contextlib.AbstractContextManager:
+    """Within it, synthesis reads the modules that the variant brings along."""
+    return brought.in_place(pathlib.Path(variant["brought"])) if variant["brought"] else contextlib.nullcontext()
+
+
+def _measured(folder: str, rows: dict, workers: int, wires: bool) -> list[dict]:
+    with _kept_apart({"brought": folder}):
+        made, failures = synth.measure(list(rows.values()), synth.Targets((LIBRARY,), workers))
+        for record in made if wires else ():
+            placed = flow.Job(rows[record["design"]].design, catalogue.library(LIBRARY), FLOWS[0], *SPARSE, routed=False)
+            record["wired_ns"] = flow.make(placed)[0]["guess_ns"]
+    print("\n".join(failures), file=sys.stderr)
+    return [{**record, "brought": folder} for record in made]
+
+
+def synthesis(variants: list[dict], workers: int, measure: bool, wires: bool = False) -> list[dict]:
     """Rows of what `make synth` has kept and, with `measure`, of each unit in each format of the
-    variants. What fails, or is missing to synthesise with, is said on standard error."""
+    variants, with `wires` placed, too: `wired_ns` is the period with the wires that layout/estimate.py
+    gives it. What fails, or is missing to synthesise with, is said on standard error."""
     file = ROOT / "build" / "synth" / "results.json"
     records = json.loads(file.read_text())["results"] if file.exists() else []
     if measure:
-        from synth import measure as synth, tools
-        designs = {}
+        designs = {variant["brought"]: {} for variant in variants}
         for variant in variants:
             if variant["hardware"]:
-                changed = {name: value for name, value in _parameters(variant).items()
-                           if value != USUAL[name]}
-                design = catalogue.design(UNITS[variant["unit"]], **changed)
-                designs[design.name] = catalogue.Row("variants", design, {LIBRARY: FLOWS[:1]})
+                designs[variant["brought"]][design(variant).name] = catalogue.Row("variants", design(variant), {LIBRARY: FLOWS[:1]})
         try:
-            made, failures = synth.measure(list(designs.values()),
-                                           synth.Targets((LIBRARY,), workers))
-            records = made + records
-            print("\n".join(failures), file=sys.stderr)
-        except tools.MissingTool as error:
+            with concurrent.futures.ProcessPoolExecutor() as pool:  # which files are read is a process's own
+                for made in pool.map(functools.partial(_measured, workers=-(-workers // len(designs)), wires=wires), *zip(*designs.items())):
+                    records = made + records
+        except (tools.MissingTool, tools.ToolFailed) as error:
             print(error, file=sys.stderr)
     return [{"table": "synthesis", **record} for record in records
             if record.get("target") == LIBRARY and "area" in record]
 
 
-def energies() -> list[dict]:
-    """Rows of what `make layout TOP=energy` has kept: a core's operation in a format, pJ, and how many a test has."""
+def energies(variants: list[dict] | tuple = ()) -> list[dict]:
+    """Rows of what `make layout TOP=energy` has kept, and of the cores of these variants of the paper's unit: a core's operation
+    in a format, pJ, and how many a test has."""
     file = ROOT / "build" / "synth" / "energies.json"
-    kept = json.loads(file.read_text()) if file.exists() else {"results": []}
-    return [{"table": "energy", **record, "a_test": kept["operations"][record["top"]]}
-            for record in kept["results"]]
+    found = json.loads(file.read_text())["results"] if file.exists() else []
+    for variant in variants:
+        if variant["unit"] == "serial" and variant["exponent_bits"] == 8:  # what layout/tests.py has words for
+            usual = {name: value for name, value in _parameters(variant).items() if name not in ("RoundingMode", "QuotientBits")
+                     and value != USUAL[name]}
+            with _kept_apart(variant):
+                found = [{"top": core, "exponent": variant["exponent_bits"], "significand": variant["digits"], "brought": variant["brought"],
+                          **energy_of.of_cells(catalogue.design(core, **usual), catalogue.library(LIBRARY), formats.FLOW)[0]}
+                         for core in CORES] + found
+    return [{"table": "energy", **record, "a_test": operations.OPERATIONS[record["top"]]} for record in found]
 
 
 def energy(records: list[dict], variant: dict) -> float | None:
     """nJ that the cores take for a test of the paper's unit in the variant's format, where that is known."""
     if variant["unit"] != "serial" or variant["flush"] or variant["fused"] or variant["quotient_digits"]:
         return None
+    wanted = variant["exponent_bits"], variant["digits"], variant.get("brought", "")
     mine = {record["top"]: record["pj"] * record["a_test"] for record in records
-            if (record["exponent"], record["significand"]) == (variant["exponent_bits"], variant["digits"])}
+            if (record["exponent"], record["significand"], record.get("brought", "")) == wanted}
     return sum(mine.values()) / 1000 if mine.keys() == set(CORES) else None
 
 
@@ -91,6 +123,7 @@ def _find(records: list[dict], top: str, variant: dict, flow: str) -> dict | Non
     if top in CORES:
         del wanted["RoundingMode"]  # they take it as an input
     return next((record for record in records if record["top"] == top and record["flow"] == flow
+                 and record.get("brought", "") == variant.get("brought", "")
                  and all(_number(record, name) == value for name, value in wanted.items())), None)
 
 

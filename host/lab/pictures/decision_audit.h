@@ -19,7 +19,8 @@ namespace raygate::lab {
 ///   hits                      of the other rays: so many are in the errors
 ///   t_ulp, point_ulp          errors of t and of P's worst coordinate in units of float32's last
 ///   place: median (p50),
-///                             99th percentile, largest; 0 where there are none
+///                             99th percentile, largest; 0 where there are none. No t_ulp where
+///                             modules are brought along, for t is the reference model's
 [[nodiscard]] Row audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
                                   const Variant& variant, HitTester& tester);
 

@@ -51,7 +51,9 @@ constexpr std::pair<const char*, IntegratorKind> kIntegrators[] = {
 }
 
 /// Binary32 as it stands: what the renderer's own engines are.
-bool is_plain(const Variant& variant) { return variant.math == Arithmetic{} && variant.doubts; }
+bool is_plain(const Variant& variant) {
+  return variant.math == Arithmetic{} && variant.doubts && variant.brought.empty();
+}
 
 EngineOptions options_of(const PictureRun& run, const Variant& variant) {
   const bool serial = variant.unit == Variant::Unit::kSerial;

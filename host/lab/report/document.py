@@ -80,6 +80,12 @@ def render(template: str, folder: pathlib.Path, rows: list[dict], **values: obje
         values, figure=figure, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0])
 
 
+def measured(about: dict) -> str:
+    """A report's last line: when and where it was measured."""
+    return (f"\nMeasured by `{about['command']}` at commit {about['commit']} ({about['changed_files']} files changed), "
+            f"{about['date']}, on {about['processor']}, {about['processors']} processors.\n")
+
+
 def page(text: str, folder: pathlib.Path) -> str:
     """The report as one HTML page, pictures and all."""
     body = markdown.markdown(text, extensions=["tables"])

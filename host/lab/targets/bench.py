@@ -123,7 +123,7 @@ def frames(rows: list[dict]) -> list[dict]:
     synthesis, energies = of(rows, "synthesis"), of(rows, "energy")
     found = []
     for row in pictures:
-        if row["engine"] == "unit":
+        if row["engine"] == "unit" and not row.get("audit"):  # of the unit alone, for its clocks
             continue
         variant, judged = known[row["variant"]], row["decisions"]
         usual = "serial" if variant["unit"] == "serial" else "binary32"

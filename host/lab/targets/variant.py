@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import pathlib
 import sys
 
@@ -9,10 +10,10 @@ from host.lab.bench import costs
 from host.lab.machine import processors
 from host.lab.report import plots
 from host.lab.report.document import number
-from host.lab.rows import KEPT, ROOT, of, read, write
+from host.lab.rows import KEPT, ROOT, of, read, scene_name, write
 from host.lab.steps import Step
 from host.lab.targets import bench
-from synth import catalogue, report, store
+from synth import brought, catalogue, report, store, tools
 
 # The table that `lab` is built with: host/lab/variants/CMakeLists.txt.
 TABLE = KEPT / "variant.json"
@@ -21,9 +22,12 @@ CARDS = KEPT / "cards.jsonl"
 # Words of make's command line: the column of variants.json, and what it may be.
 WORDS = {"EXP_WIDTH": ("exponent_bits", range(3, 9)), "FRAC_WIDTH": ("digits", range(2, 24)),
          "QUOTIENT_BITS": ("quotient_digits", range(1, 25)), "ROUNDING": ("rounding", costs.ROUNDINGS),
-         "UNIT": ("unit", tuple(costs.UNITS)), "ADDER": ("adder", None)}
+         "UNIT": ("unit", tuple(costs.UNITS)), "ADDER": ("adder", None), **dict.fromkeys(("MULTIPLIER", "DIVIDER_ROW", "ROUNDER"), ("", ()))}
+# In place of a value: a file with a module that is taken in the place of hw/'s.
+FILES = (".sv", ".v")
 # Lines of the card: name, value of a frame, format.
 FIGURES = (("area, OSU 0.35 um units", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
+           ("period with estimated wires, ns", "wired_ns", ".2f"),
            ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"), ("uJ a frame, cores", "energy_uj", ".3g"),
            ("wrong tests a million", "wrong", ".1f"), ("doubts a million", "doubtful", ".1f"),
            ("wrong rays", "decisions.wrong_rays", ",d"), ("P, ulp: median", "decisions.point_ulp.p50", ".3g"),
@@ -45,15 +49,25 @@ def read_word(word: str) -> tuple[str, object]:
         allowed = (*catalogue.adder_kinds(), catalogue.BEHAVIOURAL)
     value = int(text) if isinstance(allowed, range) and text.isdigit() else text.replace("_", "-")
     if value not in allowed:
-        known = f"{allowed[0]} to {allowed[-1]}" if isinstance(allowed, range) else ", ".join(allowed)
+        files = [f"a file ({', '.join(FILES)})"] * (name in brought.PLACES)
+        known = f"{allowed[0]} to {allowed[-1]}" if isinstance(allowed, range) else ", ".join([*allowed, *files])
         raise ValueError(f"{word}: expected {known}")
     return column, value + 1 if name == "FRAC_WIDTH" else value  # the leading digit is not stored
+
+
+def brought_files(words: list[str]) -> dict[str, str]:
+    """Files of modules that are brought along, by brought.PLACES."""
+    return {name: text for name, _, text in (word.partition("=") for word in words)
+            if name in brought.PLACES and text.endswith(FILES)}
 
 
 def table(words: list[str]) -> list[dict]:
     """Lines of variants.json: binary32's, that of binary32 in the same unit, and the one that the words describe, which
     may have an `adder`, too."""
-    mine: dict = dict(map(read_word, words))
+    files = brought_files(words)
+    mine: dict = dict(read_word(word) for word in words if not word.endswith(FILES))
+    if files:
+        mine |= {"brought": str(brought.folder_of(files))} | ({"adder": "prefix"} if "ADDER" in files else {})
     exponent_bits, digits = mine.get("exponent_bits", 8), mine.get("digits", 24)
     if digits - 1 > 2 ** (exponent_bits - 1) or mine.get("quotient_digits", 0) > digits:
         raise ValueError(f"found {exponent_bits} exponent bits, {digits - 1} fraction bits and {mine.get('quotient_digits', 0)} "
@@ -66,7 +80,8 @@ def table(words: list[str]) -> list[dict]:
     elif mine.get("rounding", "nearest-even") != "nearest-even" or digits < 11:
         mine["doubts"] = False  # no bound of its errors is proven: what the unit says is taken as it comes
     parts = ["serial" if len(usual) > 1 else "", f"e{exponent_bits}p{digits}",
-             f"q{mine.get('quotient_digits', '')}".removesuffix("q"), mine.get("rounding"), mine.get("adder")]
+             f"q{mine.get('quotient_digits', '')}".removesuffix("q"), mine.get("rounding"), "" if "ADDER" in files else mine.get("adder"),
+             *(pathlib.Path(name).stem for name in files.values())]
     return [*usual, {"variant": "-".join(part for part in parts if part), **mine}]
 
 
@@ -78,6 +93,12 @@ def prepare(words: list[str]) -> None:
         TABLE.write_text(text)
 
 
+def judged(words: list[str]) -> list[dict]:
+    """Proofs of what is brought along, see brought.judge."""
+    usual = {"unit": "pipeline", "exponent_bits": 8, "digits": 24, "quotient_digits": 0, "rounding": "nearest-even"}
+    return brought.judge(brought_files(words), costs.design({**usual, **table(words)[-1]}))
+
+
 def variants(given: argparse.Namespace) -> list[dict]:
     """The rows of `lab variants`, with the adder."""
     return [{**row, "adder": line.get("adder", "")}
@@ -85,27 +106,30 @@ def variants(given: argparse.Namespace) -> list[dict]:
 
 
 def pictures(given: argparse.Namespace) -> list[Step]:
-    """The scene by each variant's reference model, judged exactly, and in small by its hardware, for the clocks."""
+    """The scene by each variant's reference model, judged exactly, and in small by its hardware, for the clocks; with modules
+    brought along both by the hardware."""
     (ROOT / "build/bench/pictures").mkdir(parents=True, exist_ok=True)
     scene = str(pathlib.Path(given.scenes or "scenes/cornell.obj"))
-    names = [row["variant"] for row in bench.variants()]
+    rows = bench.variants()
     stem = f"build/bench/pictures/card-{pathlib.Path(scene).stem}"
     file = KEPT / "runs-card.json"
     file.write_text(json.dumps(
         [{"section": "variants", "scene": scene, "width": 320, "height": 240, "integrator": "whitted", "audit": True,
-          "variant": name, "engine": "model", "picture": f"{stem}-{name}", "against": f"{stem}-binary32"} for name in names]
-        + [{"section": "variants", "scene": scene, "width": 80, "height": 60, "variant": name, "engine": "unit"}
-           for name in names]))
+          "variant": row["variant"], "engine": "unit" if row["brought"] else "model",  # what is brought has no model
+         "picture": f"{stem}-{row['variant']}", "against": f"{stem}-binary32"} for row in rows]
+        + [{"section": "variants", "scene": scene, "width": 80, "height": 60, "variant": row["variant"], "engine": "unit"}
+           for row in rows]))
     return [Step("pictures", scene, ("pictures", "--runs", file))]
 
 
 PARTS = {
     "variants": lambda given: [Step("variants", "names", measure=lambda: variants(given))],
+    "proofs": lambda given: [Step("proofs", "of modules brought along", measure=lambda: judged(given.variant))] if brought_files(given.variant) else [],
     "checks": lambda given: [Step("checks", "models against hardware", ("check", "--tests", 100_000))],
     "pictures": pictures,
     "synthesis": lambda given: [Step("synthesis", "area and clock", measure=lambda: costs.synthesis(
-        variants(given), processors(), measure=True))],
-    "energy": lambda given: [Step("energy", "of operations", measure=costs.energies)]}
+        variants(given), processors(), measure=True, wires=given.wires))],
+    "energy": lambda given: [Step("energy", "of operations", measure=lambda: costs.energies(variants(given) if given.energy else ()))]}
 finish = bench.judge_pictures
 
 
@@ -117,8 +141,9 @@ def kept_cards(mine: dict) -> list[dict]:
     return [*(card for card in others if card["scene"] == mine["scene"]), mine]
 
 
-def figures(usual: dict, mine: dict) -> list[dict]:
-    """Lines of the card: both values as text, a dash where there is none, and their ratio."""
+def figures(usual: dict, mine: dict, made: dict[str, str] = {}) -> list[dict]:
+    """Lines of the card: both values as text, a dash where there is none, their ratio, and the file in `made` that the variant's
+    is from."""
     def value(frame: dict, path: str) -> float | None:
         for key in path.split("."):
             frame = frame.get(key) if isinstance(frame, dict) else None
@@ -129,7 +154,20 @@ def figures(usual: dict, mine: dict) -> list[dict]:
         numbers = [value(usual, path), value(mine, path)]
         if numbers[1] is not None:
             found.append({"figure": name, "ratio": numbers[1] / numbers[0] if numbers[0] else None,
+                          "from": made.get(path, made.get("", "")),
                           **dict(zip(("usual", "mine"), (number(each, form) for each in numbers), strict=True))})
+    return found
+
+
+def standing(cards: list[dict]) -> list[dict]:
+    """Whether the last card is on the front of all, by cost and error; else who is better in both."""
+    found = []
+    for cost, error in ((cost, error) for cost in COSTS for error in ERRORS):
+        known = [card for card in cards if card.get(cost)]
+        better = [card["variant"] for card in known if card is not cards[-1] and card[cost] <= cards[-1].get(cost, 0)
+                  and card[error] <= cards[-1][error] and (card[cost], card[error]) != (cards[-1][cost], cards[-1][error])]
+        if cards[-1] in known:
+            found.append({"cost": COSTS[cost], "error": ERRORS[error], "better": ", ".join(better) or "none"})
     return found
 
 
@@ -137,27 +175,59 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
     """Frames of binary32 and the variant, its critical path and the files behind it, pictures, plots."""
     frames = bench.frames(rows)
     usual, mine = frames[max(len(frames) - 2, 0)], frames[-1]
-    record = costs.unit(of(rows, "synthesis"), of(rows, "variants")[-1])
+    known = {row["variant"]: row for row in of(rows, "variants")}
+    for frame in (usual, mine):
+        frame["wired_ns"] = (costs.unit(of(rows, "synthesis"), known[frame["variant"]]) or {}).get("wired_ns")
+    record = costs.unit(of(rows, "synthesis"), known[mine["variant"]])
     shown = [(usual["variant"], ROOT / f"{usual['picture']}.png"), (mine["variant"], ROOT / f"{mine['picture']}.png"),
              (f"FLIP {mine['flip']:.5f}", ROOT / mine["map"])]
     cards = [{**frame, "name": frame["variant"]} for frame in [usual, *kept_cards(mine)]]
     plots_made = [(plots.pareto([{**card, "error": card[error]} for card in cards], COSTS, label,
                                 f"{mine['scene']}: {label}", folder / f"pareto-{error}.png"), label)
                   for error, label in ERRORS.items() if all(card.get("area") for card in cards)]
-    return {"usual": usual, "mine": mine, "figures": figures(usual, mine), "pareto": plots_made,
+
+    def link(name: str, file: pathlib.Path) -> str:
+        return f"[{name}]({os.path.relpath(file, folder)})"
+
+    write(folder / "rows.jsonl", rows)
+    made = {"": link("rows", folder / "rows.jsonl")}
+    if record:
+        run = (pathlib.Path(record["brought"], "synth") if record.get("brought") else store.OUT) / "runs" / (
+            f"{record['design']}.{record['target']}.{record['flow']}")
+        made |= {"area": link("netlist", run / "netlist.v"), "period_ns": link("timing", run / "timing.txt")}
+        made |= {"frame_ms": f"{made['period_ns']}, {made['']}", "log": link("log of synthesis", run / "yosys.log")}
+    return {"usual": usual, "mine": mine, "figures": figures(usual, mine, made), "pareto": plots_made, "standing": standing(cards),
             "pictures": plots.gallery(shown, folder / "pictures.png", 3), "path": report.path_table(record) if record else "",
-            "files": store.OUT.relative_to(ROOT) / "runs" / f"{record['design']}.{record['target']}.{record['flow']}"
-            if record else ""}
+            "made": made}
+
+
+def own_folder(rows: list[dict]) -> str:
+    """A folder for each card."""
+    return f"{of(rows, 'variants')[-1]['variant']}-{scene_name(of(rows, 'pictures')[0])}"
 
 
 def failures(rows: list[dict]) -> list[str]:
     """A model that is not its hardware; a unit that could not be synthesised."""
     missing = costs.unit(of(rows, "synthesis"), of(rows, "variants")[-1]) is None
-    return bench.failures(rows) + ["the unit could not be synthesised"] * missing
+    return ([f"{row['file']}: {row['counterexample']}" for row in of(rows, "proofs") if not row["holds"]]
+            + [line.split("; direction")[0] for line in bench.failures(rows)]
+            + ["the unit could not be synthesised"] * missing)
+
+
+def main() -> int:
+    """Reads the words, proves what they bring along and prepares the build; 1 where it is refuted, 2 for wrong words."""
+    keep_going = "--keep-going" in sys.argv
+    words = [word for word in sys.argv[1:] if word != "--keep-going"]
+    try:
+        brought.bring(brought_files(words))
+        refuted = [f"{row['file']}: {row['counterexample']}" for row in judged(words) if not row["holds"]]
+        prepare(words)
+    except (ValueError, tools.MissingTool, tools.ToolFailed) as error:
+        return print(f"error: {error}", file=sys.stderr) or 2
+    for text in refuted:
+        print(f"{text}{'' if keep_going else '; KEEP_GOING=1 draws it all the same'}", file=sys.stderr)
+    return 1 if refuted and not keep_going else 0
 
 
 if __name__ == "__main__":
-    try:
-        prepare(sys.argv[1:])
-    except ValueError as error:
-        sys.exit(print(f"error: {error}", file=sys.stderr) or 2)
+    sys.exit(main())

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "host/lab/variants/variant_hit_tester.h"
@@ -57,9 +58,10 @@ class PackedNumbers {
 
 /// Whether a model with these parameters computes as the variant does.
 bool matches(const Variant& variant, int exponent_bits, int digits, int rounding,
-             int quotient_digits) {
+             int quotient_digits, std::string_view brought) {
   const Arithmetic& math = variant.math;
-  return variant.has_hardware() && math.exponent_bits == exponent_bits && math.digits == digits &&
+  return variant.has_hardware() && variant.brought == brought &&
+         math.exponent_bits == exponent_bits && math.digits == digits &&
          math.rounding == static_cast<Rounding>(rounding) &&
          math.quotient_digits == quotient_digits;
 }

@@ -40,6 +40,7 @@ Variant parse_variant(const Row& object) {
   Variant variant;
   variant.name = row["variant"];
   variant.doubts = row["doubts"];
+  variant.brought = row["brought"];
   if (row["unit"] == "serial") {
     variant.unit = Variant::Unit::kSerial;
   } else if (row["unit"] != "pipeline") {
@@ -71,6 +72,7 @@ Row Variant::row() const {
           {"quotient_digits", math.quotient_digits},
           {"fused", math.fused},
           {"doubts", doubts},
+          {"brought", brought},
           {"hardware", has_hardware()}};
 }
 

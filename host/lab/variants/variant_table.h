@@ -17,6 +17,7 @@ namespace raygate {
 ///   exponent_bits, digits, rounding ("nearest-even", "toward-zero", "down", "up", "nearest-away"),
 ///   flush, quotient_digits (serial alone), fused (no hardware)      see Arithmetic
 ///   doubts           whether exact arithmetic on the host resolves them; else there are no bounds
+///   brought          a folder of modules in place of those of hw/ (synth/brought.py); "": none
 ///
 /// That is all there is to a new variant: CMake verilates its design, if hw/ has such parameters,
 /// and `make bench` and `make stress` take their rows from here.
@@ -30,6 +31,8 @@ struct Variant {
   Unit unit = Unit::kPipeline;
   Arithmetic math;
   bool doubts = true;  ///< false: no error bounds; what the unit says is taken as it comes
+
+  std::string brought;
 
   /// Whether hw/ can be given these parameters; else there is the reference model alone.
   [[nodiscard]] bool has_hardware() const { return !math.flush && !math.fused; }

@@ -1,9 +1,11 @@
-// The picture is made of the unit's numbers: a unit whose P is wrong by 2^-12 makes another one
-// (CMakeLists.txt has the patch), unless the host computes every P.
+// The picture is made of the unit's numbers: a unit whose P is wrong by 2^-12, or whose products
+// are too small, makes another one (CMakeLists.txt has the patches), unless the host computes every
+// P.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "Vhit_test_array_truncated.h"
 #include "Vhit_test_array_wrong_point.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/cpu/cpu_intersector.h"
@@ -14,7 +16,8 @@
 namespace raygate {
 namespace {
 
-class WrongPointUnit : public BurstUnit {
+template <class Model>
+class BrokenUnit : public BurstUnit {
  public:
   void run(std::span<const RayBundle> batch, BurstResults& results) override {
     start(batch);
@@ -25,8 +28,10 @@ class WrongPointUnit : public BurstUnit {
   [[nodiscard]] BurstCounters counters() const override { return model_->counters(); }
 
  private:
-  std::unique_ptr<BurstModel> model_ = std::make_unique<ArrayModel<Vhit_test_array_wrong_point>>(1);
+  std::unique_ptr<BurstModel> model_ = std::make_unique<ArrayModel<Model>>(1);
 };
+using WrongPointUnit = BrokenUnit<Vhit_test_array_wrong_point>;
+using TruncatingUnit = BrokenUnit<Vhit_test_array_truncated>;
 
 template <class Unit, class... Arguments>
 std::unique_ptr<Intersector> intersector_of(const Bvh& bvh, Arguments... arguments) {
@@ -36,8 +41,8 @@ std::unique_ptr<Intersector> intersector_of(const Bvh& bvh, Arguments... argumen
 
 class WrongPointTest : public testing::Test {
  protected:
-  Film film(const IntersectorFactory& intersector, float point_error) {
-    RenderOptions options = test::light(IntegratorKind::kWhitted, 24, 18, 1);
+  Film film(const IntersectorFactory& intersector, float point_error, int scale = 1) {
+    RenderOptions options = test::light(IntegratorKind::kWhitted, 24 * scale, 18 * scale, 1);
     options.channels.position = true;
     options.point_error = point_error;
     RenderStats stats;
@@ -49,6 +54,7 @@ class WrongPointTest : public testing::Test {
   Camera camera_ = test::camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
   IntersectorFactory sound_ = [this] { return intersector_of<RtlBurstUnit>(bvh_, 1); };
   IntersectorFactory wrong_ = [this] { return intersector_of<WrongPointUnit>(bvh_); };
+  IntersectorFactory truncating_ = [this] { return intersector_of<TruncatingUnit>(bvh_); };
 };
 
 TEST_F(WrongPointTest, ChangesThePicture) {
@@ -66,6 +72,19 @@ TEST_F(WrongPointTest, ChangesThePicture) {
   EXPECT_GT(moved, seen / 2);
   EXPECT_GT(deeper, seen / 2);
   EXPECT_GT(brighter, seen / 4);
+}
+
+// Products that lack their low columns move points, and decide: rays go past triangles that they
+// hit.
+TEST_F(WrongPointTest, TruncatedProductsShowInThePicture) {
+  const Film sound = film(sound_, kPointError, 8), wrong = film(truncating_, kPointError, 8);
+  std::size_t moved = 0, other = 0;
+  for (std::size_t i = 0; i < sound.primitive.size(); ++i) {
+    moved += sound.color[i] != wrong.color[i];
+    other += sound.primitive[i] != wrong.primitive[i];
+  }
+  EXPECT_GT(moved, sound.color.size() / 4);
+  EXPECT_GT(other, 0u);
 }
 
 TEST_F(WrongPointTest, IsOfNoConsequenceWhereTheHostComputesEveryPoint) {

@@ -1,5 +1,7 @@
 """The card of one variant: what its words mean, and its figures."""
 
+import pathlib
+import tempfile
 import unittest
 
 from host.lab.targets import variant
@@ -14,6 +16,20 @@ class Words(unittest.TestCase):
             {"variant": "binary32"}, {"variant": "serial", "unit": "serial"},
             {"variant": "serial-e6p24-q12-toward-zero", "unit": "serial", "quotient_digits": 12, "rounding": "toward-zero",
              "exponent_bits": 6}])
+
+    def test_a_file_takes_a_modules_place(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "mine.sv"
+            file.write_text("module mine; endmodule\n")
+            line = variant.table([f"MULTIPLIER={file}", "FRAC_WIDTH=15"])[-1]
+            self.assertEqual((line["variant"], line["digits"], "adder" in line), ("e8p16-mine", 16, False))
+            other = variant.table([f"ADDER={file}"])[-1]
+            self.assertEqual((other["variant"], other["adder"]), ("e8p24-mine", "prefix"))
+            self.assertNotEqual(line["brought"], other["brought"])
+        with self.assertRaisesRegex(ValueError, "mine.sv: No such file"):
+            variant.table([f"ADDER={file}"])
+        with self.assertRaisesRegex(ValueError, "^MULTIPLIER=wallace: expected .*a file"):
+            variant.table(["MULTIPLIER=wallace"])
 
     def test_doubts_are_ignored_where_no_bound_is_proven(self) -> None:
         for words in (["ROUNDING=down"], ["FRAC_WIDTH=9"]):
@@ -39,6 +55,17 @@ class Figures(unittest.TestCase):
         lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in variant.figures(usual, mine)}
         self.assertEqual(lines, {"area, OSU 0.35 um units": ("2,000", "500", 0.25), "wrong tests a million": ("0.0", "12.0", None),
                                  "wrong rays": ("0", "7", None), "P, ulp: median": ("0.5", "64", 128.0)})
+
+
+class Standing(unittest.TestCase):
+    def test_who_is_better(self) -> None:
+        cards = [{"variant": name, "area": area, "frame_ms": 1.0, "wrong": wrong, "point": 1.0}
+                 for name, area, wrong in (("a", 5.0, 0.0), ("b", 3.0, 2.0), ("mine", 4.0, 2.0))]
+        found = {(line["cost"], line["error"]): line["better"] for line in variant.standing(cards)}
+        self.assertEqual(found[variant.COSTS["area"], variant.ERRORS["wrong"]], "b")
+        self.assertEqual(found[variant.COSTS["frame_ms"], variant.ERRORS["wrong"]], "a")
+        self.assertEqual(found[variant.COSTS["frame_ms"], variant.ERRORS["point"]], "none")
+        self.assertEqual(variant.standing([{"variant": "mine", "wrong": 1.0, "point": 1.0}]), [])
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ TEST(VariantTable, ReadsEachColumn) {
   const auto variants = parse_variants(
       R"([{"variant": "paper", "unit": "serial", "quotient_digits": 21},
           {"variant": "half", "exponent_bits": 5, "digits": 11, "rounding": "toward-zero",
-           "flush": true, "fused": true, "doubts": false}])",
+           "flush": true, "fused": true, "doubts": false, "brought": "folder"}])",
       "table");
   ASSERT_EQ(variants.size(), 2u);
   EXPECT_EQ(variants[0].name, "paper");
@@ -25,6 +25,7 @@ TEST(VariantTable, ReadsEachColumn) {
                                           .flush = true,
                                           .fused = true}));
   EXPECT_FALSE(variants[1].doubts);
+  EXPECT_EQ(variants[0].brought + ":" + variants[1].brought, ":folder");
   EXPECT_FALSE(variants[1].has_hardware());
 }
 

@@ -1,0 +1,69 @@
+"""`python3 -m host.lab.evidence`: how old the published results are, and what they depend on has changed since.
+
+results/evidence.jsonl has a row for each published page: its command, the commit that it was measured at (of pages that did not
+say so: the one that published the figures), date, machine, and the paths whose change makes it stale; those of its own target's
+come from `publish`. Prints the table and writes it into results/README.md. Exit status 1 where something is stale.
+"""
+
+import datetime
+import pathlib
+import subprocess
+import sys
+
+from host.lab.rows import ROOT, read, write
+from synth.tables import markdown
+
+FILE = ROOT / "host" / "lab" / "results" / "evidence.jsonl"
+PAGE = FILE.with_name("README.md")
+# Words and tests change no figure.
+WITHOUT = (":(exclude)*.md", ":(exclude)*/test/*")
+
+
+def git(*words: str, root: pathlib.Path = ROOT) -> list[str]:
+    """Lines of what git says; raises CalledProcessError."""
+    return subprocess.run(["git", "-C", root, *words], check=True, capture_output=True, text=True).stdout.splitlines()
+
+
+def changes(row: dict, root: pathlib.Path = ROOT) -> list[str]:
+    """Commits since then that changed what the page depends on, "HASH SUBJECT", the newest first."""
+    return git("log", "--format=%h %s", f"{row['commit']}..HEAD", "--", *row["paths"], *WITHOUT, root=root)
+
+
+def renew(page: str, command: str, machine: dict) -> None:
+    """Notes that a page was published now, measured as `machine` (machine.describe) says."""
+    rows = read(FILE)
+    (row,) = [row for row in rows if row["page"] == page]
+    row |= {"command": command, "commit": machine["commit"], "date": machine["date"],
+            "machine": f"{machine['processor']}, {machine['processors']} processors"}
+    write(FILE, rows)
+
+
+def table(rows: list[dict], today: datetime.date) -> str:
+    """Markdown: a line for each page, the oldest first."""
+    cells = []
+    for row in sorted(rows, key=lambda row: row["date"]):
+        since = changes(row)
+        age = (today - datetime.date.fromisoformat(row["date"])).days
+        cells.append([f"[{row['page']}](../../../{row['page']})", f"`{row['command']}`", row["date"], age, f"`{row['commit'][:7]}`", len(since),
+                      since[0].split(" ", 1)[0] if since else "", row["machine"] or "not noted"])
+    return markdown(["page", "command", "date", "age, days", "commit", "commits to its paths since", "the last", "machine"], cells)
+
+
+def main() -> int:
+    """Prints and writes the table."""
+    rows = read(FILE)
+    try:
+        text = table(rows, datetime.date.today())
+        stale = [row["page"] for row in rows if changes(row)]
+    except (FileNotFoundError, subprocess.CalledProcessError) as error:
+        print(f"error: no history of this repository: {getattr(error, 'stderr', '') or error}", file=sys.stderr)
+        return 2
+    PAGE.write_text("# Published results\n\nWritten by `make dates`, with which `make claims` begins, from [evidence.jsonl](evidence.jsonl). A commit counts where it changed\n"
+                    "code (no test, no page) in one of the paths that the result depends on; `git log COMMIT..HEAD -- PATHS` has them.\n\n" + text)
+    print(text)
+    print(f"{len(stale)} of {len(rows)} pages are older than what they depend on" + (f": {', '.join(stale)}" if stale else ""))
+    return 1 if stale else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

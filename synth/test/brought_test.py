@@ -1,0 +1,97 @@
+"""Modules brought along: what is no such module is refused with its line, what does not compute is refuted in words."""
+
+import pathlib
+import re
+import tempfile
+import unittest
+import unittest.mock
+
+from synth import brought, catalogue, store
+
+EXERCISES = catalogue.HW.parent / "host" / "lab" / "exercises"
+PORTS = """(
+  input logic [Width-1:0] a_i, b_i,
+  input logic carry_i,
+  output logic [Width-1:0] sum_o,
+  output logic carry_o);
+"""
+HEAD = f"module mine #(parameter int unsigned Width = 48) {PORTS}"
+# A sum that forgets the carry into bit 3.
+FORGETS = """
+  logic [Width-1:0] right;
+  assign {carry_o, right} = (Width + 1)'(a_i) + (Width + 1)'(b_i) + (Width + 1)'(carry_i);
+  assign sum_o = {right[Width-1:4], a_i[3] ^ b_i[3], right[2:0]};
+endmodule
+"""
+
+
+class Brought(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        patch = unittest.mock.patch.object(store, "OUT", self.folder / "synth")
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def file(self, text: str, name: str = "mine.sv") -> str:
+        (self.folder / name).write_text(text)
+        return str(self.folder / name)
+
+    def judged(self, **files: str) -> list[dict]:
+        brought.bring(files)
+        return brought.judge(files, catalogue.design("hit_test_pipeline", Adder=3))
+
+    def test_what_is_no_such_module(self) -> None:
+        body = "  assign {carry_o, sum_o} = a_i + b_i + (Width + 1)'(carry_i);\nendmodule\n"
+        for text, said in {
+                "": ":1: found no module",
+                f"{HEAD}  assign sum_o = a_i\nendmodule\n": r":7:1: syntax error",
+                f"{HEAD}  other u_other();\nendmodule\n": r":6:3: Cannot find file containing module: 'other'",
+                f"{HEAD}  prefix_adder u_a (.*);\nendmodule\n": ":1: module mine: uses prefix_adder, whose place it takes",
+                f"module mine {PORTS.replace('Width', '48')}{body.replace('Width', '48')}": ":1: module mine: has no parameter Width, expected as in",
+                f"// mine\n{HEAD.replace('carry_i', 'cin')}{body.replace('carry_i', 'cin')}":
+                    ":2: module mine: carry_i: found no such port, expected as in hw/arith/prefix_adder.sv: input of 1 bits",
+                f"{HEAD.replace('output logic [Width-1:0]', 'output logic [47:0]')}{body}":
+                    r"sum_o: found output of 48 bits, expected as in .*: output of 13 bits \(Width = 13\)"}.items():
+            with self.subTest(said), self.assertRaisesRegex(ValueError, f"^{self.folder}/mine.sv.*{said}"):
+                brought.bring({"ADDER": self.file(text)})
+        with self.assertRaisesRegex(ValueError, "nowhere.sv: No such file"):
+            brought.bring({"ADDER": "nowhere.sv"})
+
+    def test_a_counterexample_in_words(self) -> None:
+        row = self.judged(ADDER=self.file(HEAD + FORGETS))[-1]
+        self.assertFalse(row["holds"])
+        found = row["counterexample"]
+        self.assertRegex(found, r"^carry, sum = a \+ b \+ carry at 7 bits: refuted by a = \d+ \(0x[0-9A-F]{2}\), b = \d+ \(0x[0-9A-F]{2}\), "
+                         r"carry in = [01]: it says sum = \d+ \(0x[0-9A-F]{2}\), carry out = [01]; right is sum = \d+ \(0x[0-9A-F]{2}\), "
+                         "carry out = [01]$")
+        a, b, carry, says, _, right, _ = map(int, re.findall(r"= (\d+)", found))
+        self.assertEqual((right, says), ((a + b + carry) % 128, right ^ 8))
+
+    def test_the_exercises(self) -> None:
+        for name in ("carry_skip_adder", "kogge_stone_adder"):
+            rows = self.judged(ADDER=str(EXERCISES / f"{name}.sv"))
+            self.assertGreater(len(rows), 5)
+            self.assertEqual([row["claim"] for row in rows if not row["holds"]], [])
+        (row,) = self.judged(MULTIPLIER=str(EXERCISES / "truncating_multiplier.sv"))
+        self.assertRegex(row["counterexample"], r"^product = a \* b at 5 bits: refuted by a = \d+ .*it says product = 0 \(0x000\); right is")
+
+    def test_names_of_hardware_are_free_to_use(self) -> None:
+        """A copy of the module that is replaced, and a multiplier of another name, by every product."""
+        rows = self.judged(ADDER=self.file((catalogue.HW / "arith/prefix_adder.sv").read_text()), MULTIPLIER=self.file(
+            "module times #(parameter Width = 24) (input [Width-1:0] a_i, b_i, output [2*Width-1:0] product_o);\n"
+            "  assign product_o = a_i * b_i;\nendmodule\n", "times.v"))
+        self.assertEqual({(row["word"], row["holds"]) for row in rows}, {("ADDER", True), ("MULTIPLIER", True)})
+
+    def test_rows_and_rounders(self) -> None:
+        row = (catalogue.HW / "arith/srt_row.sv").read_text()
+        self.assertTrue(all(each["holds"] for each in self.judged(DIVIDER_ROW=self.file(row))))
+        broken = row.replace("y >= M0[", "y >= M2[")
+        self.assertIn("refuted by", self.judged(DIVIDER_ROW=self.file(broken))[-1]["counterexample"])
+        rounder = (catalogue.HW / "fp/fp_round.sv").read_text().replace("fp_pkg::RoundNearestEven", "fp_pkg::RoundNearestMaxMagnitude")
+        self.assertIn("refuted by", self.judged(ROUNDER=self.file(rounder))[-1]["counterexample"])
+
+
+if __name__ == "__main__":
+    unittest.main()
