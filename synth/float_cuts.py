@@ -20,12 +20,13 @@ class Cut:
     parameters: str
     uncut: str  # of OPERATIONS, for its module and its contracts
     latency: dict[str, int]  # by format
+    product: int = 0  # the clock in which the multiplier's contract gives the product
 
 
 ALL = 2 ** 32 - 1
 CUTS = [
     Cut("add", "fp_adder_stages", "PipeRegs 7", "add", {"binary16": 3, "binary32": 3}),
-    Cut("multiply", "fp_multiplier_stages", "PipeRegs 3", "multiply", {"binary16": 2, "binary32": 2}),
+    Cut("multiply", "fp_multiplier_stages", "PipeRegs 7", "multiply", {"binary16": 3, "binary32": 3}, 1),
     Cut("divide", "fp_divider_stages", f"PipeRegs {ALL}", "divide_whole",
         {"binary16": 11, "binary32": 17}),
 ]
@@ -36,14 +37,14 @@ def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
     module without registers nothing."""
     named, wires = smt.ports(uncut, OPERATIONS[cut.uncut].top)
     modes = [wire for wire in wires if wire in ("rounding_mode_i", "tininess_after_i")]
-    enters = {wire: word(uncut, wire) for wire in wires
-              if wire.endswith("_i") or wire == "free_product"}
+    enters = {wire: word(uncut, wire) for wire in wires if wire.endswith("_i")}
+    product = {wire: word(uncut, wire) for wire in wires if wire == "free_product"}
     stays = {wire: enters[wire] for wire in modes}
     if "|fp_divider_stages_n valid_i|" in stages:
         enters["valid_i"] = "#b1"
     text = ["(set-logic QF_BV)\n", uncut, named, stages]
     text += [smt.ports(stages, cut.top, f"_{k}", f"state_{k - 1}" if k else "",
-                                stays if k else enters)[0] for k in range(latency + 1)]
+                       {**(stays if k else enters), **(product if k == cut.product else {})})[0] for k in range(latency + 1)]
     text.append(f"(define-fun claimed () Bool "
                 f"(and (= result_o result_o_{latency}) (= flags_o flags_o_{latency})))\n")
     return "".join(text)

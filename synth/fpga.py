@@ -6,6 +6,7 @@ A design without a clock, or with more ports than a package has pins, is put bet
 
 import argparse
 import dataclasses
+import hashlib
 import inspect
 import json
 import pathlib
@@ -20,30 +21,32 @@ MOST_PINS = 150  # what every package here has
 
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
-    """LUTs, registers, multipliers, and the slowest path between registers as MHz: the median of the seeds."""
-    folder, wanted, seeds = _keys(design, fpga)
-    _, mapped = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
-    runs = [store.cached(folder / f"seed-{seed}", key, lambda s=seed: _place(fpga, folder, s))
-            for seed, key in seeds.items()]
+    """LUTs, registers, multipliers, block RAMs, and the slowest path between registers as MHz: the median of the seeds."""
+    folder, wanted = _keys(design, fpga)
+    netlist, mapped = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
+    runs = [store.cached(folder / f"seed-{seed}", _seed_key(fpga, netlist), lambda s=seed: _place(fpga, folder, s))
+            for seed in fpga.seeds]
     return median([run for run, _ in runs]), mapped and all(there for _, there in runs)
 
 
 def placed(design: Design, fpga: Fpga) -> dict | None:
-    """The same of those seeds alone that were placed before, with their number; None where none was."""
-    folder, _, seeds = _keys(design, fpga)
-    runs = [run for seed, key in seeds.items() if (run := store.kept(folder / f"seed-{seed}", key))]
-    return {**median(runs), "seeds": len(runs)} if runs else None
+    """The same of those seeds alone that were placed before, with their number and rates; None where none was."""
+    folder, wanted = _keys(design, fpga)
+    netlist = store.kept(folder, wanted)
+    runs = [run for seed in fpga.seeds
+            if netlist and (run := store.kept(folder / f"seed-{seed}", _seed_key(fpga, netlist)))]
+    rates = [run["mhz"] for run in runs]
+    return {**median(runs), "seeds": len(runs), "least": min(rates), "most": max(rates)} if runs else None
 
 
 def placement(design: Design, fpga: Fpga) -> pathlib.Path:
     """The folder of the first seed's placement: nextpnr's placed.json and written.json; made if need be."""
-    folder, wanted, seeds = _keys(design, fpga)
-    seed, key = next(iter(seeds.items()))
-    there = folder / f"seed-{seed}"
-    if store.kept(there, key) is None or not (there / "written.json").exists():
-        store.cached(folder, wanted, lambda: _map(design, fpga, folder))
+    folder, wanted = _keys(design, fpga)
+    netlist, _ = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
+    there = folder / f"seed-{fpga.seeds[0]}"
+    if not (there / "written.json").exists():
         (there / "result.json").unlink(missing_ok=True)
-        store.cached(there, key, lambda: _place(fpga, folder, seed))
+    store.cached(there, _seed_key(fpga, netlist), lambda: _place(fpga, folder, fpga.seeds[0]))
     return there
 
 
@@ -52,14 +55,18 @@ def median(runs: list[dict]) -> dict:
     return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
 
 
-def _keys(design: Design, fpga: Fpga) -> tuple[pathlib.Path, str, dict[int, str]]:
-    """Where results are kept, under what key the netlist is, and each seed's placement."""
+def _keys(design: Design, fpga: Fpga) -> tuple[pathlib.Path, str]:
+    """Where results are kept, and under what key the netlist is."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     files = [*design.sources(), tools.FLOWS / "fpga.tcl", tools.FLOWS / "elaborate.tcl"]
-    wanted = store.key(files, tools.version("yosys"), design.facts, fpga.name,
-                       inspect.getsource(registered))
-    key = store.key([], wanted, tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz)
-    return folder, wanted, dict.fromkeys(fpga.seeds, key)
+    return folder, store.key(files, tools.version("yosys"), design.facts, fpga.name, inspect.getsource(registered),
+                             inspect.getsource(_map))
+
+
+def _seed_key(fpga: Fpga, netlist: dict) -> str:
+    """Under what key a placement is: that of the netlist's contents, so that RTL which makes the same one keeps it."""
+    return store.key([], netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz,
+                     inspect.getsource(_place))
 
 
 def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
@@ -74,7 +81,8 @@ def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
         wrapper.write_text(registered(design, sides))
         environment["WRAPPER"] = str(wrapper)
     tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "yosys.log", environment)
-    return {}
+    text = re.sub(r'"src": "[^"]*"', "", (folder / "netlist.json").read_text())
+    return {"digest": hashlib.sha256(text.encode()).hexdigest()}
 
 
 def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
@@ -85,9 +93,24 @@ def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
                "--timing-allow-fail", "--report", report, "--write", written, "--quiet"], folder / f"seed-{seed}" / "nextpnr.log")
     placed = json.loads((tools.ROOT / report).read_text())
     used = {name: count["used"] for name, count in placed["utilization"].items() if count["used"]}
-    luts, registers, multipliers = (used.get(cell, 0) for cell in fpga.cells)
+    luts, registers, multipliers, memories = (used.get(cell, 0) for cell in fpga.cells)
     return {"mhz": round(max(clock["achieved"] for clock in placed["fmax"].values()), 1), "luts": luts,
-            "registers": registers, "multipliers": multipliers, "used": used}
+            "registers": registers, "multipliers": multipliers, "block RAMs": memories, "used": used,
+            **slowest_path(placed["critical_paths"])}
+
+
+def slowest_path(paths: list[dict]) -> dict:
+    """Where the slowest path between registers begins and ends, and its ns in logic (registers included) and in wires."""
+    path = next(path["path"] for path in paths if path["from"] == path["to"])
+    ns = {kind: sum(step["delay"] for step in path if (step["type"] == "routing") == (kind == "wires"))
+          for kind in ("logic", "wires")}
+    return {"from": register(path[0]["from"]["cell"]), "to": register(path[-1]["to"]["cell"]),
+            **{kind: round(delay, 1) for kind, delay in ns.items()}}
+
+
+def register(cell: str) -> str:
+    """What a register or DSP block that Yosys named holds: u_divider.norm_q of u_divider.norm_q_TRELLIS_FF_Q_7."""
+    return re.sub(r"_(TRELLIS_FF|SB_DFF|MULT18X18D|DP16KD|LUT4|CCU2C|PFUMX|L6MUX21).*", "", cell)
 
 
 def port_widths(top: str, netlist: dict) -> list[tuple[str, str, int]]:
@@ -140,9 +163,10 @@ def main() -> int:
         for _, _, _, fpga in units:
             tools.find(fpga.tool)
         _, failures = runner.run_all(
-            [runner.Job(f"{design.name} {fpga.name}", lambda d=design, f=fpga: place(d, f),
+            [runner.Job(f"{design.name} {fpga.name} seed {seed}",
+                        lambda d=design, f=dataclasses.replace(fpga, seeds=(seed,)): place(d, f),
                         lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz")
-             for design, _, _, fpga in units], 1)
+             for design, _, _, fpga in units for seed in fpga.seeds], 1)
     except (tools.MissingTool, ValueError) as error:
         print(f"fpga: {error}", file=sys.stderr)
         return 2
@@ -152,16 +176,41 @@ def main() -> int:
     return 1 if failures else 0
 
 
+def period(top: str) -> int | None:
+    """Clocks a test, as the header of a unit's module has it."""
+    (file,) = catalogue.HW.glob(f"*/{top}.sv")
+    said = re.search(r"Throughput:? (?:a test every (\d+) clocks|one test a clock)", file.read_text())
+    return said and int(said[1] or 1)
+
+
 def table() -> str:
-    """All units that have been placed as they are now."""
-    heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz", "seeds"]
-    rows = []
+    """All units that have been placed as they are now: what they take, and where their slowest paths are."""
+    heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "block RAMs", "least MHz",
+             "median", "most", "seeds", "million tests/s"]
+    rows, limits = [], []
     for design, form, kind, fpga in catalogue.fpga_units():
         if tools.installed(fpga.tool) and (got := placed(design, fpga)):
-            short = ", 21-bit quotients" if ("QuotientBits", "21") in design.parameters else ""
-            rows.append([design.top + short, form, kind, fpga.title,
-                         *(got[head.lower()] for head in heads[4:])])
-    return tables.markdown(heads, rows)
+            name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
+            cells = ["-" if not cell else got[key] for key, cell in zip(
+                ("luts", "registers", "multipliers", "block RAMs"), fpga.cells, strict=True)]
+            clocks = period(design.top)
+            rows.append([name, form, kind, fpga.title, *cells, got["least"], got["mhz"], got["most"], got["seeds"],
+                         f"{got['mhz'] / clocks:.2f}"])
+            limits.append([name, form, kind, fpga.title, got["from"], got["to"], got["logic"], got["wires"]])
+    if not rows:
+        return ""
+    commit = tools.run(["git", "describe", "--always", "--dirty"], store.OUT / "git.log").strip()
+    return f"""{tables.markdown(heads, rows)}
+The slowest path of the median placement, ns:
+
+{tables.markdown([*heads[:4], "from", "to", "logic", "wires"], limits)}
+`make fpga` at {commit}.
+"""
+
+
+# What a parameter makes of a unit, in words.
+NAMES = {("QuotientBits", "21"): "21-bit quotients", ("RowsPerClock", "1"): "a row a clock",
+         ("RowsPerClock", "2"): "two rows a clock"}
 
 
 if __name__ == "__main__":

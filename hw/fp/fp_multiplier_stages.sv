@@ -1,4 +1,4 @@
-// Floating-point multiply, a_i * b_i, in up to two stages.
+// Floating-point multiply, a_i * b_i, in up to three stages.
 //
 // The significands go into the multiplier as they are, a subnormal one with its leading zeros; how
 // far the product must move is found from the operands alone, beside the multiplication: to the
@@ -6,8 +6,8 @@
 // result. Behind the multiplier are left one shift and the shared rounder.
 //
 // Arith, Adder: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
-// PipeRegs: registers behind the product (bit 0) and behind the result (bit 1). As many clocks of latency
-// as registers, one operation a clock; none: combinational. The rounding mode is the second stage's.
+// PipeRegs: registers behind the product (bit 0), behind the result (bit 1) and before the product (bit 2). As many
+// clocks of latency as registers, one operation a clock; none: combinational. The rounding mode is the last stage's.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
 // operands' signs, also that of zeros and infinities. Zero times infinity is invalid.
@@ -18,7 +18,7 @@ module fp_multiplier_stages #(
   parameter int unsigned Arith       = arith_pkg::Structural,
   parameter int unsigned Adder       = arith_pkg::AdderGraded,
   parameter bit          ConstantRow = 1'b0,
-  parameter bit [1:0]    PipeRegs    = 2'b00
+  parameter bit [2:0]    PipeRegs    = 3'b000
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -69,21 +69,6 @@ module fp_multiplier_stages #(
     .signaling_nan_o(b_snan)
   );
 
-  // ---- Multiply the significands: in [1, 4) if both are normal
-
-  logic [ProdWidth-1:0] product;
-
-  multiplier #(
-    .Width(SigWidth),
-    .Arith(Arith),
-    .Adder(Adder),
-    .ConstantRow(ConstantRow)
-  ) u_multiplier (
-    .a_i(a_sig),
-    .b_i(b_sig),
-    .product_o(product)
-  );
-
   // ---- Add the exponents: the biased exponent of the product less one, as the rounder wants it, is
   // a_exp + b_exp - bias - 1 = a_exp + b_exp - 2**(ExpWidth-1), which leaves the low bits alone.
 
@@ -104,24 +89,6 @@ module fp_multiplier_stages #(
   assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
   assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
 
-  // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two
-  // is far below the smallest subnormal). A mark stops the count where the exponent is the smallest.
-
-  logic [SigWidth-1:0] may_be_subnormal, mark;
-  logic [LeftWidth-1:0] left;
-  logic unused_zero;
-
-  assign may_be_subnormal = a_sig[SigWidth-1] ? b_sig : a_sig;
-  assign mark = {1'b1, {FracWidth{1'b0}}} >> exp;
-
-  leading_zero_counter #(
-    .Width(SigWidth)
-  ) u_left (
-    .a_i(may_be_subnormal | mark),
-    .count_o(left),
-    .zero_o(unused_zero)
-  );
-
   // ---- Specials
 
   logic sign, nan, infinity, zero, invalid;
@@ -138,26 +105,57 @@ module fp_multiplier_stages #(
     end
   end
 
-  // ---- Exponent after the shift
+  // ---- Cut before the product
 
-  logic [ExpWidth:0] exp_less_left, left_extended;
-  logic unused_carry;
+  logic [SigWidth-1:0] a_sig_0, b_sig_0;
+  logic [ExpWidth:0] exp_0;
+  logic exp_negative_0;
+  logic [4:0] specials_0;
 
-  assign left_extended = (ExpWidth + 1)'(left);
-
-  adder #(
-    .Width(ExpWidth + 1),
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_exp_less_left (
-    .a_i(exp),
-    .b_i(~left_extended),
-    .carry_i(1'b1),
-    .sum_o(exp_less_left),
-    .carry_o(unused_carry)
+  delay_line #(
+    .Width(2 * SigWidth + ExpWidth + 7),
+    .Depth(32'(PipeRegs[2]))
+  ) u_operands (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({a_sig, b_sig, exp, exp_negative, sign, nan, infinity, zero, invalid}),
+    .data_o({a_sig_0, b_sig_0, exp_0, exp_negative_0, specials_0})
   );
 
-  // ---- First cut
+  // ---- Multiply the significands: in [1, 4) if both are normal
+
+  logic [ProdWidth-1:0] product;
+
+  multiplier #(
+    .Width(SigWidth),
+    .Arith(Arith),
+    .Adder(Adder),
+    .ConstantRow(ConstantRow)
+  ) u_multiplier (
+    .a_i(a_sig_0),
+    .b_i(b_sig_0),
+    .product_o(product)
+  );
+
+  // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two
+  // is far below the smallest subnormal). A mark stops the count where the exponent is the smallest.
+
+  logic [SigWidth-1:0] may_be_subnormal, mark;
+  logic [LeftWidth-1:0] left;
+  logic unused_zero;
+
+  assign may_be_subnormal = a_sig_0[SigWidth-1] ? b_sig_0 : a_sig_0;
+  assign mark = {1'b1, {FracWidth{1'b0}}} >> exp_0;
+
+  leading_zero_counter #(
+    .Width(SigWidth)
+  ) u_left (
+    .a_i(may_be_subnormal | mark),
+    .count_o(left),
+    .zero_o(unused_zero)
+  );
+
+  // ---- Cut behind the product
 
   logic [ProdWidth-1:0] product_1;
   logic [ExpWidth:0] exp_1;
@@ -179,8 +177,7 @@ module fp_multiplier_stages #(
   ) u_sideband_product (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({exp_negative ? exp : exp_less_left, left, exp_negative, sign, nan, infinity, zero,
-             invalid}),
+    .data_i({exp_0, left, exp_negative_0, specials_0}),
     .data_o({exp_1, left_1, exp_negative_1, sign_1, nan_1, infinity_1, zero_1, invalid_1})
   );
 
@@ -202,6 +199,25 @@ module fp_multiplier_stages #(
   assign placed = exp_negative_1 ? {1'b0, shifted, lost | product_1[0]}
                                  : {product_1 << left_1, 1'b0};
 
+  // ---- Exponent after the shift to the left, beside it
+
+  logic [ExpWidth:0] exp_less_left, left_extended;
+  logic unused_carry;
+
+  assign left_extended = (ExpWidth + 1)'(left_1);
+
+  adder #(
+    .Width(ExpWidth + 1),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_exp_less_left (
+    .a_i(exp_1),
+    .b_i(~left_extended),
+    .carry_i(1'b1),
+    .sum_o(exp_less_left),
+    .carry_o(unused_carry)
+  );
+
   // ---- Round
 
   logic [ExpWidth+FracWidth:0] result;
@@ -214,7 +230,7 @@ module fp_multiplier_stages #(
     .Arith(Arith)
   ) u_round (
     .sign_i(sign_1),
-    .exponent_i({1'b0, exp_1 & {(ExpWidth + 1){~exp_negative_1}}}),
+    .exponent_i({1'b0, exp_less_left & {(ExpWidth + 1){~exp_negative_1}}}),
     .significand_i({placed[ProdWidth-:FracWidth+4], |placed[ProdWidth-FracWidth-4:0]}),
     .nan_i(nan_1),
     .infinity_i(infinity_1),

@@ -40,7 +40,7 @@ package hit_test_pkg;
 
   // ---- Pipeline stages: where the cores are cut (see them), and how many clocks that makes
 
-  localparam bit [1:0] MultiplierPipeRegs = 2'b11;
+  localparam bit [2:0] MultiplierPipeRegs = 3'b011;
   localparam bit [2:0] AdderPipeRegs = 3'b111;
   localparam bit [31:0] DividerPipeRegs = 32'hffff_ffff;
   localparam int unsigned MultiplierLatency = 2;

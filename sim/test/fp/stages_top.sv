@@ -20,7 +20,7 @@ module stages_top #(
   output logic [Width+4:0] product_o,
   output logic [Width+4:0] quotient_o,
   output logic [9:0]       differ_sum_o,
-  output logic [5:0]       differ_product_o,
+  output logic [9:0]       differ_product_o,
   output logic [3:0]       differ_quotient_o,
   output logic             valid_o
 );
@@ -29,7 +29,9 @@ module stages_top #(
   localparam bit [4*10-1:0] AdderKinds = {
     4'hf, 4'h8, 4'h7, 4'h6, 4'h5, 4'h4, 4'h3, 4'h2, 4'h1, 4'h0
   };
-  localparam bit [3*6-1:0] MultiplierKinds = {3'h7, 3'h4, 3'h3, 3'h2, 3'h1, 3'h0};
+  localparam bit [4*10-1:0] MultiplierKinds = {
+    4'hf, 4'h8, 4'h7, 4'h6, 4'h5, 4'h4, 4'h3, 4'h2, 4'h1, 4'h0
+  };
 
   for (genvar n = 0; n < 10; n++) begin : gen_adder
     localparam bit [2:0] PipeRegs = AdderKinds[4*n +: 3];
@@ -47,17 +49,18 @@ module stages_top #(
   end
   assign sum_o = gen_adder[0].late;
 
-  for (genvar n = 0; n < 6; n++) begin : gen_multiplier
-    localparam bit [1:0] PipeRegs = MultiplierKinds[3*n +: 2];
+  for (genvar n = 0; n < 10; n++) begin : gen_multiplier
+    localparam bit [2:0] PipeRegs = MultiplierKinds[4*n +: 3];
     logic [Width+4:0] result, late;
 
     fp_multiplier_stages #(
-      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(32'(MultiplierKinds[3*n+2])), .PipeRegs(PipeRegs)
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth),
+      .Arith(32'(MultiplierKinds[4*n+3])), .PipeRegs(PipeRegs)
     ) u_multiplier (
       .clk_i, .a_i, .b_i, .rounding_mode_i, .tininess_after_i,
       .result_o(result[Width+4:5]), .flags_o(result[4:0]));
     delay_line #(
-      .Width(Width + 5), .Depth(Latency - 32'(PipeRegs[0]) - 32'(PipeRegs[1]))
+      .Width(Width + 5), .Depth(Latency - 32'(PipeRegs[0]) - 32'(PipeRegs[1]) - 32'(PipeRegs[2]))
     ) u_late (.clk_i, .enable_i(1'b1), .data_i(result), .data_o(late));
     assign differ_product_o[n] = late != product_o;
   end

@@ -1,6 +1,7 @@
 // Random input for the hit-test units, and how their results are compared.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +15,15 @@ inline std::uint32_t bits(float value) {
 }
 
 inline float from_bits(std::uint32_t word) { return std::bit_cast<float>(word); }
+
+/// P = d I / (I . N) of I, N and d, in the order of the units that take these seven words.
+inline std::array<std::uint32_t, 3> point_of(const std::array<std::uint32_t, 7>& words) {
+  float dot = 0.0f;
+  for (int k = 0; k < 3; ++k) dot += from_bits(words[3 + k]) * from_bits(words[k]);
+  std::array<std::uint32_t, 3> point;
+  for (int k = 0; k < 3; ++k) point[k] = bits(from_bits(words[6]) * from_bits(words[k]) / dot);
+  return point;
+}
 
 /// Floats of three kinds, so that whole tests in the ordinary range are as frequent as odd ones:
 /// ordinary numbers around 1; any bit pattern; and zeros, subnormals, the largest and smallest

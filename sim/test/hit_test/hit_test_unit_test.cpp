@@ -19,16 +19,6 @@ using Point = std::array<std::uint32_t, 3>;
 const BusTest<7> kWorkedExample{{bits(3.3125f), bits(5.875f), bits(2.921875f), bits(15.1875f),
                                  bits(0.46875f), bits(2.109375f), bits(1.75f)}};
 
-// P = d I / (I . H), in the unit's order.
-Point expected(const BusTest<7>& test) {
-  const auto& w = test.words;
-  float dot = 0.0f;
-  for (int k = 0; k < 3; ++k) dot += from_bits(w[3 + k]) * from_bits(w[k]);
-  Point point;
-  for (int k = 0; k < 3; ++k) point[k] = bits(from_bits(w[6]) * from_bits(w[k]) / dot);
-  return point;
-}
-
 TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
   Model<Vhit_test_unit_open> unit;
   unit.reset();
@@ -117,7 +107,7 @@ TEST(HitTestUnit, ResetEndsATestHalfway) {
     unit.reset();
     EXPECT_FALSE(unit->valid_o);
     EXPECT_EQ(stream_tests(unit, std::vector{kWorkedExample}).at(0).point,
-              expected(kWorkedExample));
+              point_of(kWorkedExample.words));
   }
 }
 
@@ -137,7 +127,7 @@ TEST(HitTestUnit, RandomStreamsEqualFloatArithmetic) {
   const auto results = stream_tests(unit, tests);
   ASSERT_EQ(results.size(), kTests);
   for (std::size_t i = 0; i < kTests; ++i) {
-    ASSERT_EQ(results[i].point, expected(tests[i])) << "test " << i;
+    ASSERT_EQ(results[i].point, point_of(tests[i].words)) << "test " << i;
     ASSERT_EQ(results[i].last_component, results[i].first_word + 9) << "test " << i;
   }
 }

@@ -41,7 +41,7 @@ module fp_multiplier_stages #(
   parameter int unsigned Arith       = 0,
   parameter int unsigned Adder       = 0,
   parameter bit          ConstantRow = 1'b0,
-  parameter bit [1:0]    PipeRegs    = 2'd0
+  parameter bit [2:0]    PipeRegs    = 3'd0
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,

@@ -1,0 +1,181 @@
+// The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N), with its words, its
+// period and its bits (see hit_test_unit), cut into stages, with three small dividers in place of a large one.
+//
+// The same seven words come in, Ix Iy Iz a b c d, and the same three go out. Six products go through one
+// multiplier, two sums through one adder, three quotients by the one divisor I . N through three dividers that find
+// 2 RowsPerClock bits a clock. With M = 3, A = 3 and D the clocks of the multiplier, the adder and
+// the dividers (fp_vector_divider), counted from the first word's clock edge:
+//
+//   clock      what is there
+//   1-3        Ix Iy Iz shift into I-3, I-2, I-1, which turn while they are multiplied
+//   4-7        a, b, c, d in the factor
+//   M+4..M+9   the products a Ix, b Iy, c Iz, d Ix, d Iy, d Iz; the third and the last three are kept
+//   M+A+5      (+0 + a Ix) + b Iy: the paper's sum from +0 turns a first product of -0 to +0, unless rounding down
+//   M+2A+5     I . N, the divisor; in the clocks after it the last three products follow it
+//   M+2A+D+6.. Px Py Pz
+//
+// valid_i with the first word while ready_o; the other six words follow in consecutive clocks.
+// valid_o is high, with a component on bus_o, in three consecutive clocks.
+// Throughput: a test every 7 clocks. Latency M + 2A + D + 8 clocks from first word to last component: 28 in binary32
+// with two rows a clock, 34 with one.
+//
+// Source: the paper's equation 10; the timetable is this project's.
+module iterative_hit_test_unit #(
+  parameter int unsigned ExpWidth = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned RowsPerClock = 2,  // of (FracWidth + 2) / 2
+  parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
+  localparam int unsigned Width = ExpWidth + FracWidth + 1
+) (
+  input  logic             clk_i,
+  input  logic             rst_ni,
+  input  logic             valid_i,
+  output logic             ready_o,
+  input  logic [Width-1:0] bus_i,
+  output logic [Width-1:0] bus_o,
+  output logic             valid_o
+);
+
+  localparam int unsigned NumWords = 7;
+  localparam bit [2:0] MultiplierPipeRegs = 3'b111;
+  localparam int unsigned MultiplierLatency = 3;
+  localparam int unsigned AdderLatency = hit_test_pkg::AdderLatency;
+
+  // The adder's two turns must not meet in the period; kept products wait for longer than three arrive, and no longer than
+  // until the next ones do.
+  if (AdderLatency < 2 || 2 * AdderLatency - 1 > NumWords) begin : gen_check
+    $error("iterative_hit_test_unit: its timetable needs other latencies");
+  end
+
+  // ---- Control: word k is taken at edge k + 1; since_q[n] is n + 1 clocks after the last word's
+
+  localparam int unsigned ThirdProduct = MultiplierLatency - 1;
+  localparam int unsigned FirstSum = MultiplierLatency + AdderLatency - 2;
+  localparam int unsigned Divisor = FirstSum + AdderLatency;
+
+  logic [2:0] word;
+  logic step;
+  logic [Divisor+3:1] since_q;
+  logic [Divisor+3:0] since;
+
+  hit_test_control #(
+    .NumWords(NumWords),
+    .NumSteps(1)
+  ) u_control (
+    .clk_i,
+    .rst_ni,
+    .valid_i,
+    .ready_o,
+    .word_o(word),
+    .step_o(step)
+  );
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) since_q <= '0;
+    else since_q <= since[Divisor+2:0];
+  end
+  assign since = {since_q, step};
+
+  // ---- Operands
+
+  logic [Width-1:0] direction_1_q, direction_2_q, direction_3_q, factor_q;
+
+  always_ff @(posedge clk_i) begin
+    if (word != 3'd3) begin
+      direction_3_q <= (word > 3'd3) ? direction_1_q : bus_i;
+      direction_2_q <= direction_3_q;
+      direction_1_q <= direction_2_q;
+    end
+    if (word >= 3'd3) factor_q <= bus_i;
+  end
+
+  // ---- Multiply
+
+  logic [Width-1:0] product;
+  fp_pkg::flags_t unused_multiplier_flags;
+
+  fp_multiplier_stages #(
+    .ExpWidth (ExpWidth),
+    .FracWidth(FracWidth),
+    .Arith    (Arith),
+    .Adder    (Adder),
+    .PipeRegs (MultiplierPipeRegs)
+  ) u_multiplier (
+    .clk_i,
+    .a_i             (factor_q),
+    .b_i             (direction_1_q),
+    .rounding_mode_i (RoundingMode),
+    .tininess_after_i(1'b0),
+    .result_o        (product),
+    .flags_o         (unused_multiplier_flags)
+  );
+
+  logic [Width-1:0] first_q, third_q, dividend;
+  logic [2:0] keep, divide;
+
+  assign keep = since[MultiplierLatency+:3];
+  assign divide = since[Divisor+1+:3];
+
+  always_ff @(posedge clk_i) begin
+    first_q <= {
+      product[Width-1] & ((|product[Width-2:0]) | (RoundingMode == fp_pkg::RoundDown)),
+      product[Width-2:0]
+    };
+    if (since[ThirdProduct]) third_q <= product;
+  end
+  delay_line #(
+    .Width(Width),
+    .Depth(3)
+  ) u_dividends (
+    .clk_i,
+    .enable_i(|{keep, divide}),
+    .data_i(product),
+    .data_o(dividend)
+  );
+
+  // ---- Add
+
+  logic [Width-1:0] sum;
+  fp_pkg::flags_t unused_adder_flags;
+
+  fp_adder_stages #(
+    .ExpWidth (ExpWidth),
+    .FracWidth(FracWidth),
+    .Arith    (Arith),
+    .Adder    (Adder),
+    .PipeRegs (hit_test_pkg::AdderPipeRegs)
+  ) u_adder (
+    .clk_i,
+    .a_i             (since[FirstSum] ? sum : first_q),
+    .b_i             (since[FirstSum] ? third_q : product),
+    .subtract_i      (1'b0),
+    .rounding_mode_i (RoundingMode),
+    .tininess_after_i(1'b0),
+    .result_o        (sum),
+    .flags_o         (unused_adder_flags)
+  );
+
+  // ---- Divide
+
+  fp_vector_divider #(
+    .ExpWidth    (ExpWidth),
+    .FracWidth   (FracWidth),
+    .Arith       (Arith),
+    .Adder       (Adder),
+    .Components  (3),
+    .Period      (NumWords),
+    .RowsPerClock(RowsPerClock)
+  ) u_divider (
+    .clk_i,
+    .rst_ni,
+    .divisor_i      (since[Divisor]),
+    .dividend_i     (|divide),
+    .word_i         (since[Divisor] ? sum : dividend),
+    .rounding_mode_i(RoundingMode),
+    .valid_o,
+    .result_o       (bus_o)
+  );
+
+endmodule

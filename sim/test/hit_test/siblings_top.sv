@@ -1,0 +1,55 @@
+// The paper's unit and the iterative one side by side, in other formats and roundings than the default: they have the same
+// words in, so the same three come out, the iterative one's later.
+//
+// bfloat16 reads the upper half of bus_i, binary16 the lower one.
+module siblings_top (
+  input  logic         clk_i,
+  input  logic         rst_ni,
+  input  logic         valid_i,
+  output logic         ready_o,
+  input  logic [31:0]  bus_i,
+  output logic [5:0]   paper_valid_o,
+  output logic [191:0] paper_bus_o,
+  output logic [5:0]   valid_o,
+  output logic [191:0] bus_o
+);
+
+  // Of each kind: exponent and fraction bits, rounding mode, rows a clock; a byte each
+  localparam bit [6*32-1:0] Kinds = {
+    32'h08_17_02_02,  // binary32, down
+    32'h08_17_03_01,  // binary32, up
+    32'h08_17_01_0c,  // binary32, towards zero; all rows in a clock
+    32'h05_0a_00_03,  // binary16, to the nearest even
+    32'h05_0a_04_01,  // binary16, to the nearest, ties away
+    32'h08_07_02_02   // bfloat16, down
+  };
+  logic [5:0] ready, paper_ready;
+
+  for (genvar n = 0; n < 6; n++) begin : gen_kind
+    localparam int unsigned ExpWidth = 32'(Kinds[32*n+24 +: 8]);
+    localparam int unsigned FracWidth = 32'(Kinds[32*n+16 +: 8]);
+    localparam bit [2:0] RoundingMode = Kinds[32*n+8 +: 3];
+    localparam int unsigned Width = 1 + ExpWidth + FracWidth;
+    logic [Width-1:0] bus, paper_out, out;
+
+    assign bus = (FracWidth == 7) ? Width'(bus_i >> 16) : Width'(bus_i);
+
+    hit_test_unit #(
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(1), .RoundingMode(RoundingMode)
+    ) u_paper (
+      .clk_i, .rst_ni, .valid_i, .ready_o(paper_ready[n]), .bus_i(bus), .bus_o(paper_out),
+      .valid_o(paper_valid_o[n])
+    );
+    iterative_hit_test_unit #(
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(1), .RoundingMode(RoundingMode),
+      .RowsPerClock(32'(Kinds[32*n +: 8]))
+    ) u_iterative (
+      .clk_i, .rst_ni, .valid_i, .ready_o(ready[n]), .bus_i(bus), .bus_o(out), .valid_o(valid_o[n])
+    );
+    assign paper_bus_o[32*n +: 32] = 32'(paper_out);
+    assign bus_o[32*n +: 32] = 32'(out);
+  end
+
+  assign ready_o = &ready & &paper_ready;
+
+endmodule
