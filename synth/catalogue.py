@@ -326,6 +326,7 @@ def report_rows() -> list[Row]:
     rows += core_rows()
     parts = {"osu035": ("parts",), "osu018": ("parts",), "sky130": ("parts",)}
     rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
+             Row("units", design("iterative_hit_test_unit", RowsPerClock=1), {"osu035": ("parts",)}),
              Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
              Row("units", design("hit_test_pipeline"), parts),
              Row("exact unit", design("exact_unit"), {"osu035": ("blocks",)}),

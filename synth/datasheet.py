@@ -26,7 +26,7 @@ COLUMNS = ["module", "what it is", "latency", "mm2", "ns", "MHz"]
 # Design of the catalogue -> the flow that is shown.
 SHOWN = {"adder-graded": "fast", "booth-graded-ripple-groups": "fast", "fp-multiplier": "fast",
          "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
-         "hit_test_pipeline": "parts", "exact_unit": "blocks"}
+         "hit_test_pipeline": "parts", "iterative_hit_test_unit-RowsPerClock1": "parts", "exact_unit": "blocks"}
 
 
 def pages() -> list[pathlib.Path]:
