@@ -187,6 +187,18 @@ class Wrappers(unittest.TestCase):
 
     PORTS = {"a_i": {"direction": "input", "bits": [2, 3]}, "b_o": {"direction": "output", "bits": [4]}}
 
+    def test_the_slowest_path_between_registers(self):
+        steps = [("clk-to-q", 0.5, "u_a.sum_q_TRELLIS_FF_Q_5", "u_a.sum_q_TRELLIS_FF_Q_5"), ("routing", 1.5, "u_a.sum_q_TRELLIS_FF_Q_5", "l"),
+                 ("logic", 0.25, "l", "l"), ("routing", 1, "l", "u_b.norm_q_TRELLIS_FF_Q"), ("setup", 0.25, "", "u_b.norm_q_TRELLIS_FF_Q")]
+        path = [{"type": kind, "delay": delay, "from": {"cell": a}, "to": {"cell": b}} for kind, delay, a, b in steps]
+        found = fpga.slowest_path([{"from": "<async>", "to": "posedge clk", "path": []},
+                                   {"from": "posedge clk", "to": "posedge clk", "path": path}])
+        self.assertEqual(found, {"from": "u_a.sum_q", "to": "u_b.norm_q", "logic": 1.0, "wires": 2.5})
+
+    def test_clocks_a_test_are_those_of_the_headers(self):
+        self.assertEqual([fpga.period(top) for top in ("hit_test_unit", "general_hit_test_unit", "hit_test_pipeline")],
+                         [7, 10, 1])
+
     def test_registered(self):
         """All inputs and outputs between registers, as many as there are."""
         ports = fpga.port_widths("d", {"modules": {"d": {"ports": self.PORTS}}})
