@@ -34,7 +34,7 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),$(word)=$($(word))))
 variant: VARIANTS = $(CURDIR)/build/results/variant.json
 variant: SCENES = $(SCENE)
-variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my_adder.sv MULTIPLIER= KEEP_GOING=1 ROUNDING=toward-zero UNIT=serial QUOTIENT_BITS=12 ENERGY=1 WIRES=1]
+variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
 	@$(SETUP) bench
 	@$(if $(filter %.sv %.v,$(variant_words)),$(SETUP) prove)
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
