@@ -16,7 +16,9 @@ module truncating_multiplier #(
   logic unused_carry;
 
   for (genvar k = 0; k < Width; k++) begin : gen_row
-    assign rows[2*Width*k+:2*Width] = ((2 * Width)'(a_i & {Width{b_i[k]}}) << k) & Kept;
+    logic [Width-1:0] row;
+    assign row = a_i & {Width{b_i[k]}};
+    assign rows[2*Width*k+:2*Width] = ((2 * Width)'(row) << k) & Kept;
   end
 
   carry_save_tree #(
