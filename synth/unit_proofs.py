@@ -131,6 +131,8 @@ def cache_answers_once() -> tuple[dict, bool]:
     """line_cache answers each request once, by its line, by induction: of two sets, and two that may wait."""
     wires = ("valid_q pending_q free_q follows_q draining_q current_q target current somebody leaves entry room "
              "u_hits.count_q u_hits.valid_o u_hits.data_o u_hits.read_q u_hits.write_q request_q demand_q ray_q set tag set_tags done "
+             "compare_q compare_demand_q compare_ray_q compare_tag_q compare_set_q changed_q changed_way_q changed_tag_q same_q "
+             "valid_ways_q pending_ways_q "
              "hit_q hit_ray_q hit_line")
     memories = "u_lines.words 16 2 u_tags.words 2 216 heads 16 2 nexts 2 1 rays 2 1 u_hits.u_words.words 16 3"
     return holds("cache_answers_once", "Bitwuzla", cores.used("line_cache", cores.files("ray_core")), "open.tcl",

@@ -1,14 +1,16 @@
 // Memory with a clock, one port to write and one to read: what block RAM and SRAM macros are.
 //
 // The word that is read at a clock edge is at data_o after it and stays there until the next is read. Where one is read
-// and written at the same edge, it is the one before. Its contents have no reset.
+// and written at the same edge, it is the one before. Its contents have no reset. A word has Parts of equal width, each
+// with its own write_i.
 module ram #(
-  parameter int unsigned Width = 32,
+  parameter int unsigned Width = 32,  // a multiple of Parts
   parameter int unsigned Depth = 64,  // at least 2
+  parameter int unsigned Parts = 1,
   localparam int unsigned AddressWidth = (Depth < 2) ? 1 : $clog2(Depth)
 ) (
   input  logic                    clk_i,
-  input  logic                    write_i,
+  input  logic [Parts-1:0]        write_i,
   input  logic [AddressWidth-1:0] write_address_i,
   input  logic [Width-1:0]        data_i,
   input  logic                    read_i,
@@ -16,14 +18,20 @@ module ram #(
   output logic [Width-1:0]        data_o
 );
 
-  if (Depth < 2) begin : gen_check
-    $error("ram: expected a Depth of 2 or more");
+  localparam int unsigned PartWidth = Width / Parts;
+
+  if (Depth < 2 || Width % Parts != 0) begin : gen_check
+    $error("ram: expected a Depth of 2 or more, and a Width of whole Parts");
   end
 
   logic [Width-1:0] words[Depth];
 
   always_ff @(posedge clk_i) begin
-    if (write_i) words[write_address_i] <= data_i;
+    for (int unsigned p = 0; p < Parts; p++) begin
+      if (write_i[p]) begin
+        words[write_address_i][PartWidth*p+:PartWidth] <= data_i[PartWidth*p+:PartWidth];
+      end
+    end
     if (read_i) data_o <= words[read_address_i];
   end
 

@@ -6,11 +6,12 @@
 // the one that was used last.
 //
 //   ask      a request is taken; the tags of its set are read
-//   look up  they are compared: a hit's line is read, a miss asks memory
+//   compare  which of them are the line's
+//   look up  a hit's line is read, a miss asks memory
 //   queue    hits wait for a clock in which no line comes from memory
 //
 // A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken; where its
-// set has no way for it, or memory takes no request, it is forgotten. outstanding_o: one is being looked up.
+// set has no way for it, or memory takes no request, it is forgotten. outstanding_o: one is on its way.
 //
 // A line from memory goes to all targets, one a clock, the latest first; then fill_done_o, and the line, offered
 // until then, may go. Lines leave in any order, one a clock, each with the ray that asked; those from memory
@@ -70,74 +71,112 @@ module line_cache #(
   logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way
   logic [Sets*WayWidth-1:0] victims_q;  // of each set the way after the one that was used last
 
-  // ---- Ask: not for tags that are being written
+  // ---- Ask
 
-  logic ask, request_q, demand_q, done;  // the request looked up leaves
-  logic allocate;
-  logic [RayWidth-1:0] ray_q;
-  logic [SetWidth-1:0] set;
-  logic [TagWidth-1:0] tag;
-  logic [Ways*TagWidth-1:0] set_tags, new_tags;  // the other bits of numbers, by way
+  logic ask, compare_q, compare_demand_q, request_q, demand_q, go;
+  logic done;  // the request looked up leaves
+  logic allocate, changed_q;
+  logic [RayWidth-1:0] compare_ray_q, ray_q;
+  logic [SetWidth-1:0] asked_set, compare_set_q, set;
+  logic [TagWidth-1:0] asked_tag, compare_tag_q, changed_tag_q, tag;
+  logic [Ways*TagWidth-1:0] set_tags;  // the other bits of numbers, by way
+  logic [WayWidth-1:0] changed_way_q, way, start_q, victim_way;
+  logic [Ways-1:0] same, same_q, valid_ways_q, pending_ways_q, hits, follows;
+  logic hit, follow, some_way;
 
-  assign ready_o = (~request_q | done) & ~(allocate & line_number_i[SetWidth-1:0] == set);
+  assign {asked_tag, asked_set} = line_number_i;
+  assign go      = ~request_q | done;
+  assign ready_o = ~compare_q | go;
   assign ask     = valid_i & ready_o;
-  assign outstanding_o = request_q & ~demand_q;
+  assign outstanding_o = (compare_q & ~compare_demand_q) | (request_q & ~demand_q);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) request_q <= 1'b0;
-    else request_q <= ask | (request_q & ~done);
+    if (!rst_ni) {compare_q, request_q} <= '0;
+    else {compare_q, request_q} <= {ask | (compare_q & ~go), compare_q | ~go};
   end
   always_ff @(posedge clk_i) begin
     if (ask) begin
-      demand_q   <= demand_i;
-      ray_q      <= ray_i;
-      {tag, set} <= line_number_i;
+      compare_demand_q <= demand_i;
+      compare_ray_q    <= ray_i;
+      compare_tag_q    <= asked_tag;
+      compare_set_q    <= asked_set;
+      // The tag that is written at this edge is read as it was.
+      changed_q     <= allocate & (asked_set == set);
+      changed_way_q <= way;
+      changed_tag_q <= tag;
+    end
+    if (go) begin
+      {demand_q, ray_q} <= {compare_demand_q, compare_ray_q};
+      {tag, set}        <= {compare_tag_q, compare_set_q};
+      same_q  <= same;
+      start_q <= victims_q[WayWidth*compare_set_q+:WayWidth];
     end
   end
 
   ram #(
     .Width(Ways * TagWidth),
-    .Depth(Sets)
+    .Depth(Sets),
+    .Parts(Ways)
   ) u_tags (
     .clk_i,
-    .write_i(allocate),
+    .write_i({Ways{allocate}} & (Ways'(1) << way)),
     .write_address_i(set),
-    .data_i(new_tags),
+    .data_i({Ways{tag}}),
     .read_i(ask),
-    .read_address_i(line_number_i[SetWidth-1:0]),
+    .read_address_i(asked_set),
     .data_o(set_tags)
   );
 
-  // ---- Look up
+  // ---- Compare: with the set's ways as they are after this clock
 
-  logic [Ways-1:0] pending, hits, follows;
-  logic [WayWidth-1:0] way, victim_way;
-  logic [EntryWidth-1:0] entry;
-  logic hit, follow, some_way;
-
-  assign pending = pending_q[Ways*set+:Ways];
+  logic [SetWidth-1:0] fill_set;
+  logic [WayWidth-1:0] fill_way;
+  logic arrive, is_changed, same_as_changed, same_as_tag;
+  assign {fill_way, fill_set} = fill_entry_i;
+  assign same_as_changed = compare_tag_q == changed_tag_q;
+  assign same_as_tag     = compare_tag_q == tag;
+  assign is_changed      = allocate & (compare_set_q == set);
 
   for (genvar w = 0; w < Ways; w++) begin : gen_way
-    logic same;
-    assign same       = set_tags[TagWidth*w +: TagWidth] == tag;
-    assign hits[w]    = same & valid_q[{set, WayWidth'(w)}];
-    assign follows[w] = same & pending[w];
-    assign new_tags[TagWidth*w +: TagWidth] =
-        (way == WayWidth'(w)) ? tag : set_tags[TagWidth*w +: TagWidth];
+    logic [Sets-1:0] valid_sets, pending_sets;
+    logic arrives, changes;
+    assign arrives = arrive & (fill_way == WayWidth'(w)) & (fill_set == (go ? compare_set_q : set));
+    assign changes = is_changed & (way == WayWidth'(w));
+    assign same[w] = changes ? same_as_tag
+                   : (changed_q & changed_way_q == WayWidth'(w)) ? same_as_changed
+                   : set_tags[TagWidth*w +: TagWidth] == compare_tag_q;
+    assign valid_sets   = valid_q[Sets*w +: Sets];
+    assign pending_sets = pending_q[Sets*w +: Sets];
+    always_ff @(posedge clk_i) begin
+      if (go) begin
+        valid_ways_q[w]   <= valid_sets[compare_set_q] & ~changes;
+        pending_ways_q[w] <= pending_sets[compare_set_q] | changes;
+      end
+      if (arrives) begin
+        valid_ways_q[w]   <= ~fill_error_i;
+        pending_ways_q[w] <= 1'b0;
+      end
+    end
   end
+
+  // ---- Look up
+
+  logic [EntryWidth-1:0] entry;
 
   rr_arbiter #(
     .Width(Ways)
   ) u_victim (
-    .requests_i(~pending),
-    .start_i(victims_q[WayWidth*set +: WayWidth]),
+    .requests_i(~pending_ways_q),
+    .start_i(start_q),
     .valid_o(some_way),
     .index_o(victim_way)
   );
 
+  assign hits    = same_q & valid_ways_q;
+  assign follows = same_q & pending_ways_q;
   assign hit    = hits != '0;
   assign follow = follows != '0;
-  assign entry  = {set, way};
+  assign entry  = {way, set};  // so that memories are selected by what is known early, first
 
   always_comb begin
     way = (hit | follow) ? '0 : victim_way;
@@ -160,7 +199,7 @@ module line_cache #(
   logic [TargetWidth:0] heads[Lines];  // {there is one, the latest}
   logic [TargetWidth:0] head, fill_head;
   logic [RayWidth-1:0] rays[Targets];
-  logic some_free, add_target, arrive, draining_q, somebody, more;
+  logic some_free, add_target, draining_q, somebody, more;
   logic room;  // for one more hit, below
 
   rr_arbiter #(
@@ -174,7 +213,7 @@ module line_cache #(
 
   always_comb begin
     if (hit) done = room;
-    else if (follow) done = some_free & ~(arrive & fill_entry_i == entry);
+    else if (follow) done = some_free & ~(arrive & fill_set == set & follows[fill_way]);
     else done = some_way & miss_ready_i & some_free;
     if (!demand_q) done = 1'b1;
   end

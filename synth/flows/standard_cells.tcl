@@ -16,6 +16,8 @@ switch $::env(FLOW) {
   fast - faster - kept - parts - modules - blocks {
     # Nothing here looks across a multiplexer, so carry-select stays carry-select.
     yosys proc
+    # A read enable becomes the memory's, or its word would wait in a register behind it.
+    if {$::env(FLOW) eq "blocks"} { yosys opt_dff -nosdff ram *\\ram *\\ram\\* }
     if {$::env(FLOW) in {parts blocks}} {
       # ABC maps each float core on its own, and once, however often it is instantiated.
       yosys setattr -mod -set keep_hierarchy 1 *fp_*_stages*

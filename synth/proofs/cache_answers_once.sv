@@ -1,5 +1,5 @@
 // The cache of lines, whatever is asked for and in whichever order memory answers, from reset and for ever: a request
-// that is demand and taken is looked up, once, and answered once, with its ray, by the line of its number in memory, or by its error; it waits in the queue of hits, or is
+// that is demand and taken is compared and looked up, once, and answered once, with its ray, by the line of its number in memory, or by its error; it waits in the queue of hits, or is
 // enlisted for an entry whose line is on its way, and that line does not go before it is answered. No line is asked for
 // while it is here or on its way.
 // opened_line_cache is line_cache of two sets and two waiters with its registers and memories as outputs. Of memory is said
@@ -35,7 +35,10 @@ module cache_answers_once #(
   (* anyconst *) logic [Width-1:0] content;
 
   logic taken, request_q, demand_q, ray_q, done, set, hit_q, hit_ray, looking;
-  logic [TagWidth-1:0] tag;
+  logic compare_q, compare_demand_q, compare_ray, compare_set, changed;
+  logic [2:0] changed_way;
+  logic [Ways-1:0] same, valid_ways, pending_ways;
+  logic [TagWidth-1:0] tag, compare_tag, changed_tag;
   logic [Ways*TagWidth-1:0] set_tags;
   logic [Width-1:0] hit_line;
   logic miss, fill_done, answer, answer_ray, answer_error;
@@ -48,7 +51,7 @@ module cache_answers_once #(
   logic [3:0] entry, read_q, write_q;
   logic [4:0] count;
   logic [Lines*Width-1:0] words;
-  logic [Lines*TagWidth-1:0] tags;
+  logic [Lines*TagWidth-1:0] tag_words, tags;  // by set and way, by entry
   logic [Lines*2-1:0] heads;
   logic [Depth*(1+Width)-1:0] queue;
   logic [Width:0] queued_word;
@@ -100,17 +103,32 @@ module cache_answers_once #(
     .set(set),
     .tag(tag),
     .set_tags(set_tags),
+    .compare_q(compare_q),
+    .compare_demand_q(compare_demand_q),
+    .compare_ray_q(compare_ray),
+    .compare_tag_q(compare_tag),
+    .compare_set_q(compare_set),
+    .changed_q(changed),
+    .changed_way_q(changed_way),
+    .changed_tag_q(changed_tag),
+    .same_q(same),
+    .valid_ways_q(valid_ways),
+    .pending_ways_q(pending_ways),
     .done(done),
     .hit_q(hit_q),
     .hit_ray_q(hit_ray),
     .hit_line(hit_line),
     .u_lines_words(words),
-    .u_tags_words(tags),
+    .u_tags_words(tag_words),
     .heads(heads),
     .nexts(nexts),
     .rays(rays),
     .u_hits_u_words_words(queue)
   );
+
+  for (genvar p = 0; p < Lines; p++) begin : gen_tag
+    assign tags[TagWidth*p+:TagWidth] = tag_words[TagWidth*(Ways*(p%2)+p/2)+:TagWidth];
+  end
 
   logic [AddressWidth-1:0] looked_up;
   logic request, asked, adds_target, hits;  // this clock's: a request is looked up to its end
@@ -139,7 +157,7 @@ module cache_answers_once #(
     if (reset_n) begin
       assume (!fill || (ready && (draining ? fill_entry == entry_q : pending[fill_entry])));
       assume (!fill || !comes || fill_error || fill_line == content);
-      assume (!invalidate || (pending == '0 && !draining && !request_q));
+      assume (!invalidate || (pending == '0 && !draining && !request_q && !compare_q));
     end else begin
       assume (!fill && !invalidate && !valid && !ready);
     end
@@ -157,8 +175,8 @@ module cache_answers_once #(
 
   // ---- The watched request
 
-  localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Pending = 2'd2, LookedUp = 2'd3;
-  logic [1:0] state;
+  localparam logic [2:0] Nowhere = 3'd0, Queued = 3'd1, Pending = 3'd2, LookedUp = 3'd3, Compared = 3'd4;
+  logic [2:0] state;
   logic w_ray, w_target, answered;
   logic [3:0] w_index, w_entry;
   logic [4:0] ahead, outstanding;
@@ -176,9 +194,11 @@ module cache_answers_once #(
       outstanding <= outstanding + 5'(valid && taken && demand) - 5'(answer);
       if (state == Nowhere) begin
         if (valid && taken && demand && choose && line_number == number) begin
-          state <= LookedUp;
+          state <= Compared;
           w_ray <= ray;
         end
+      end else if (state == Compared) begin
+        if (!request_q || done) state <= LookedUp;
       end else if (state == LookedUp) begin
         if (request) begin
           state <= hits ? Queued : Pending;
@@ -203,38 +223,51 @@ module cache_answers_once #(
         assert (answer_error ? state == Pending && fill_error : answer_line == content);
       end
       if (answer) assert (outstanding != '0 && ready);
-      assert (outstanding == count + 5'(hit_q) + 5'(request_q && demand_q) + 5'(!free[0]) + 5'(!free[1]));
+      assert (outstanding == count + 5'(hit_q) + 5'(request_q && demand_q)
+                             + 5'(compare_q && compare_demand_q) + 5'(!free[0]) + 5'(!free[1]));
       // Its line does not go without it
       if (state == Pending && fill_done && fill_entry == w_entry
           && (draining ? coming[w_target] : !coming[w_target])) assert (answered);
       if (state == Pending) assert (pending[w_entry] || coming[w_target]);
       if (asked) begin
-        assert (!pending[miss_entry] && miss_number == looked_up && miss_entry[3] == set);
+        assert (!pending[miss_entry] && miss_number == looked_up && miss_entry[0] == set);
       end
       for (int unsigned p = 0; p < Lines; p++) begin
-        if (asked && (line_valid[p] || pending[p]) && (p >= Ways) == set) begin
+        if (asked && (line_valid[p] || pending[p]) && 1'(p % 2) == set) begin
           assert (tags[TagWidth*p+:TagWidth] != tag);
         end
       end
 
-      // The request that is looked up, and its set's tags
-      if (request_q) assert (set_tags == tags[Ways*TagWidth*set+:Ways*TagWidth]);
+      // The requests that are compared and looked up, and their sets' tags
+      for (int unsigned w = 0; w < Ways; w++) begin
+        if (compare_q) begin
+          assert ((changed && changed_way == 3'(w) ? changed_tag : set_tags[TagWidth*w+:TagWidth])
+                  == tag_words[TagWidth*(Ways*compare_set+w)+:TagWidth]);
+        end
+        if (request_q) begin
+          assert (same[w] == (tag_words[TagWidth*(Ways*set+w)+:TagWidth] == tag));
+          assert (valid_ways[w] == line_valid[2*w+set] && pending_ways[w] == pending[2*w+set]);
+        end
+      end
+      if (state == Compared) begin
+        assert (compare_q && compare_demand_q && {compare_tag, compare_set} == number && compare_ray == w_ray);
+      end
       if (state == LookedUp) assert (request_q && demand_q && looked_up == number && ray_q == w_ray);
 
       // Invariants: a line is in one entry, that of `number` is its content
       assert ((line_valid & pending) == '0);
       for (int unsigned p = 0; p < Lines; p++) begin
-        for (int unsigned q = p + 1; q < (p < Ways ? Ways : Lines); q++) begin
+        for (int unsigned q = p + 2; q < Lines; q += 2) begin
           if ((line_valid[p] || pending[p]) && (line_valid[q] || pending[q])) begin
             assert (tags[TagWidth*p+:TagWidth] != tags[TagWidth*q+:TagWidth]);
           end
         end
-        if (line_valid[p] && tags[TagWidth*p+:TagWidth] == number[AddressWidth-1:1] && (p >= Ways) == number[0]) begin
+        if (line_valid[p] && tags[TagWidth*p+:TagWidth] == number[AddressWidth-1:1] && 1'(p % 2) == number[0]) begin
           assert (words[Width*p+:Width] == content);
         end
         if (pending[p]) begin
           assert (is_number[p] == (tags[TagWidth*p+:TagWidth] == number[AddressWidth-1:1]
-                                   && (p >= Ways) == number[0]));
+                                   && 1'(p % 2) == number[0]));
           // The list of a entry that waits: who enlisted last, and before
           assert (heads[2*p+1] == ((!free[0] && !coming[0] && entry_0 == 4'(p))
                                    || (!free[1] && !coming[1] && entry_1 == 4'(p))));

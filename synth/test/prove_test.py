@@ -26,10 +26,13 @@ LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
           ("triangle_o.valid & triangle_ready_i;", "triangle_o.valid;"),
           ("if (push) leaf_pending_o[box_ray_i] <= 1'b1;", "if (push && !done) leaf_pending_o[box_ray_i] <= 1'b1;")]
 
-CACHE = [("some_free & ~(arrive & fill_entry_i == entry)", "some_free"),
+CACHE = [("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_free"),
+         ("changed_q     <= allocate & (asked_set == set)", "changed_q     <= 1'b0"),
+         ("is_changed & (way == WayWidth'(w))", "1'b0"),
+         ("if (arrives) begin", "if (arrives && go) begin"),
          ("<= follow & head[TargetWidth]", "<= follow"),
-         ("<= ~fill_error_i;", "<= 1'b1;"),
-         (".requests_i(~pending)", ".requests_i({Ways{1'b1}})")]
+         ("valid_q[fill_entry_i]   <= ~fill_error_i;", "valid_q[fill_entry_i]   <= 1'b1;"),
+         (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})")]
 
 
 class ProofsRefuseFaults(unittest.TestCase):

@@ -75,14 +75,19 @@ TEST_F(CommonTest, MemoriesGiveTheWordBefore) {
   unsigned together = 0;
   for (int clock = 0; clock < 20'000; ++clock) {
     model_->data_i = random_();
-    model_->write_i = clock < 16 || random_() % 2 != 0;
+    model_->write_i = clock < 16 ? 0xf : random_() % 16;
     model_->write_address_i = clock < 16 ? clock : random_() % 16;
     model_->read_i = clock == 16 || random_() % 3 != 0;
     model_->read_address_i = random_() % 16;
     if (model_->read_i != 0) expected = words[model_->read_address_i];
     together += model_->read_i != 0 && model_->write_i != 0 &&
                 model_->read_address_i == model_->write_address_i;
-    if (model_->write_i != 0) words[model_->write_address_i] = model_->data_i;
+    for (unsigned byte = 0; byte < 4; ++byte) {
+      if ((model_->write_i >> byte & 1) == 0) continue;
+      const std::uint32_t mask = 0xffu << 8 * byte;
+      std::uint32_t& word = words[model_->write_address_i];
+      word = (word & ~mask) | (model_->data_i & mask);
+    }
     model_.clock();
     if (clock >= 16) {
       ASSERT_EQ(model_->read_o, expected);

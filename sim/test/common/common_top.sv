@@ -8,7 +8,7 @@ module common_top (
   output logic [5:0]   space_o,
   output logic [5:0]   valid_o,
   output logic [191:0] word_o,    // 32 bits for each FIFO
-  input  logic         write_i,   // of the memory of 16 words, with data_i
+  input  logic [3:0]   write_i,   // of the memory of 16 words, with data_i, byte by byte
   input  logic [3:0]   write_address_i,
   input  logic         read_i,
   input  logic [3:0]   read_address_i,
@@ -55,7 +55,8 @@ module common_top (
 
   ram #(
     .Width(32),
-    .Depth(16)
+    .Depth(16),
+    .Parts(4)
   ) u_ram (
     .clk_i,
     .write_i,
