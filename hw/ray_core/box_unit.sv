@@ -1,7 +1,7 @@
 // Box test: which children of a node a ray enters, near first; a node line and a ray in each clock.
 // Latency: ray_core_pkg::BoxLatency clocks.
 //
-//   take        node, ray                                                   registers
+//   take        node, then node and ray                                     registers
 //   subtract    D_k = origin_k - O_k                                        3 adders
 //   scale       2**E, how far the ray may go in this node; caps of 1 / I_k  see ray_scale
 //   multiply    a_k = D_k / I_k                                             3 multipliers
@@ -11,8 +11,7 @@
 //   enter       largest near plane, smallest far plane                      49 comparators, see slab_test
 //   sort        near first; the group                                       see child_sort, sort7
 //
-// No valid: what belongs to a node is the user's to carry along. Of its ray t_max_i comes with the node, the rest a
-// clock later, out of a memory.
+// No valid: what belongs to a node is the user's to carry along. Its ray comes a clock later, out of a memory.
 //
 // In:  node_i       a node line, see ray_core_pkg
 //      origin_i     O, binary32; word x lowest, here and below
@@ -65,6 +64,7 @@ module box_unit #(
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
 
   // Clocks of the stages
+  localparam int unsigned Take = 2;
   localparam int unsigned Subtract = hit_test_pkg::AdderLatency;
   localparam int unsigned Scale = 3;
   localparam int unsigned Multiply = hit_test_pkg::MultiplierLatency;
@@ -72,19 +72,22 @@ module box_unit #(
   localparam int unsigned Slab = 4;
   localparam int unsigned Sort = 4;
 
-  if (ray_core_pkg::BoxLatency != 1 + Subtract + Scale + Multiply + Align + Slab + Sort)
+  if (ray_core_pkg::BoxLatency != Take + Subtract + Scale + Multiply + Align + Slab + Sort)
   begin : gen_check
     $error("box_unit: ray_core_pkg::BoxLatency is not the number of its stages");
   end
 
   // ---- Take
 
-  logic [ray_core_pkg::LineWidth-1:0] node_q;
+  logic [ray_core_pkg::LineWidth-1:0] first_q, node_q;
+  logic [95:0] origin_q, inverse_q;
   logic [30:0] t_max_q;
+  logic no_cull_q;
 
   always_ff @(posedge clk_i) begin
-    node_q  <= node_i;
-    t_max_q <= t_max_i;
+    first_q <= node_i;
+    node_q  <= first_q;
+    {origin_q, inverse_q, t_max_q, no_cull_q} <= {origin_i, inverse_i, t_max_i, no_cull_i};
   end
 
   // What goes along: base, kinds and boxes, and of the ray what the planes need
@@ -108,7 +111,7 @@ module box_unit #(
 
   sideband_t taken, subtracted, scaled, multiplied;
 
-  assign taken = {node_q[ray_core_pkg::LineWidth-1:Base], t_max_q, no_cull_i};
+  assign taken = {node_q[ray_core_pkg::LineWidth-1:Base], t_max_q, no_cull_q};
 
   // ---- Subtract
 
@@ -122,7 +125,7 @@ module box_unit #(
   ) u_subtract (
     .clk_i,
     .a_i(node_q[ray_core_pkg::NodeOrigin +: 96]),
-    .b_i(origin_i),
+    .b_i(origin_q),
     .sum_o(distance)
   );
   delay_line #(
@@ -131,7 +134,7 @@ module box_unit #(
   ) u_sideband_subtract (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({taken, inverse_i, node_q[ray_core_pkg::NodeExponents +: 24]}),
+    .data_i({taken, inverse_q, node_q[ray_core_pkg::NodeExponents +: 24]}),
     .data_o({subtracted, inverse, cells})
   );
 

@@ -18,7 +18,7 @@ module closest_hit #(
   // Tests on their way when tests_allowed_o falls: from the clock in which a triangle line leaves memory to that in
   // which its test is over, and one more
   parameter int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
-                                  + hit_test_pkg::divide_latency(23) + 8,
+                                  + hit_test_pkg::divide_latency(23) + 9,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
   localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth
@@ -72,6 +72,8 @@ module closest_hit #(
 );
 
   localparam int unsigned CountWidth = 10;
+  // A test may wait to be counted
+  localparam logic [CountWidth-1:0] NearlyFull = {{CountWidth - 1{1'b1}}, 1'b0};
   localparam logic [31:0] Infinity = 32'h7f80_0000;
 
   if (ray_core_pkg::TErrorWidth != TErrorWidth) begin : gen_check
@@ -91,7 +93,7 @@ module closest_hit #(
   assign traversal_ended_o   = found_q[traversal_ray_i] & any_hit_q[traversal_ray_i];
   assign leaf_t_max_o        = t_max[leaf_ray_i];
   assign leaf_ended_o        = found_q[leaf_ray_i] & any_hit_q[leaf_ray_i];
-  assign leaf_counter_full_o = &counts[leaf_ray_i];
+  assign leaf_counter_full_o = counts[leaf_ray_i] >= NearlyFull;
   assign box_t_max_o         = t_max[box_ray_i];
   assign exact_found_o       = found_q[exact_ray_i];
   assign exact_ended_o       = found_q[exact_ray_i] & any_hit_q[exact_ray_i];
@@ -249,13 +251,16 @@ module closest_hit #(
 
   // ---- Tests on their way
 
-  logic same;
-  assign same = test_i & is_over_q & (test_ray_i == ray_q);
+  logic [RayWidth-1:0] test_ray_q;
+  logic test_q, same;
+  assign same = test_q & is_over_q & (test_ray_q == ray_q);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      test_q    <= 1'b0;
       testing_o <= '0;
     end else begin
+      test_q <= test_i;
       if (is_over_q && !same && counts[ray_q] == CountWidth'(1)) begin
         testing_o[ray_q] <= 1'b0;
       end
@@ -267,8 +272,9 @@ module closest_hit #(
       counts[load_ray_i] <= '0;
       tests[load_ray_i]  <= '0;
     end
-    if (test_i) tests[test_ray_i] <= tests[test_ray_i] + 1'b1;
-    if (test_i && !same) counts[test_ray_i] <= counts[test_ray_i] + 1'b1;
+    test_ray_q <= test_ray_i;
+    if (test_q) tests[test_ray_q] <= tests[test_ray_q] + 1'b1;
+    if (test_q && !same) counts[test_ray_q] <= counts[test_ray_q] + 1'b1;
     if (is_over_q && !same) counts[ray_q] <= counts[ray_q] - 1'b1;
   end
 

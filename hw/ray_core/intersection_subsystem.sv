@@ -26,7 +26,7 @@ module intersection_subsystem #(
   // lines for rays
   input  logic [RayWidth-1:0]          node_ctx_i,
   input  ray_core_pkg::node_line_t     node_i,
-  input  logic [30:0]                  t_max_i,  // of node_ctx_i
+  input  logic [30:0]                  t_max_i,  // of node_ctx_i, in the clock after
   input  logic [RayWidth-1:0]          triangle_ctx_i,
   input  ray_core_pkg::triangle_line_t triangle_i,
   // what is found

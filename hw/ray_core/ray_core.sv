@@ -4,7 +4,6 @@
 // is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangle `skip_id` do
 // not count. With `any_hit` it ends at its first sure hit, with `no_cull` it enters all boxes. Words about rays come
 // mixed, by tag, and rays end in any order: see ray_core_pkg::result_e. With an error they say nothing, see error_e.
-//
 // Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order, valid/ready;
 // with line_error_i, not to be believed: it is read again for the next ray. Some are prefetched: outstanding_o may be high
 // when the last ray has ended. Memory may change, and invalidate_i be high, while no ray is here and outstanding_o is low.
@@ -46,7 +45,7 @@ module ray_core #(
 );
   logic start_fire, triangle_ready, tests_allowed, ending, doubt_fire, overflow_fire;
   logic [RayWidth-1:0] start_ctx, node_ctx, triangle_ctx, node_line_ctx, triangle_line_ctx;
-  logic [RayWidth-1:0] box_ctx, verdict_ctx, ending_ctx, point_ctx;
+  logic [RayWidth-1:0] box_ctx, verdict_ctx, ending_ctx, end_ctx, point_ctx;
   logic [Rays-1:0] busy;
   logic [30:0] t_max;
   logic [95:0] end_point;
@@ -98,7 +97,7 @@ module ray_core #(
     .overflow_o(overflow),
     .overflow_fire_i(overflow_fire),
     .events_o(events),
-    .ending_ctx_i(ending_ctx),
+    .end_ctx_i(end_ctx),
     .end_o(ended),
     .point_ctx_i(point_ctx),
     .point_o(end_point)
@@ -172,7 +171,8 @@ module ray_core #(
     .busy_i(busy),
     .ending_o(ending),
     .ending_ctx_o(ending_ctx),
-    .ending_i(ended),
+    .end_ctx_o(end_ctx),
+    .end_i(ended),
     .point_ctx_o(point_ctx),
     .point_i(end_point),
     .doubt_i(doubt),

@@ -61,7 +61,7 @@ package ray_core_pkg;
   endfunction
 
   // From the clock edge that takes a node to the one after which its group is there, see box_unit.
-  localparam int unsigned BoxLatency = 19;
+  localparam int unsigned BoxLatency = 20;
 
   // ---- Numbers inside box_unit, in units of 2**(E - UnitBits): E is how far the ray may go in the node
 

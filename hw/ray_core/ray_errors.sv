@@ -23,8 +23,8 @@ module ray_errors #(
   input  logic [RayWidth-1:0]  cycle_ctx_i,
   output logic [Rays-1:0]      failed_o,
   // of one ray, in the same clock
-  input  logic [RayWidth-1:0]  ending_ctx_i,
-  output logic [2:0]           ending_error_o
+  input  logic [RayWidth-1:0]  end_ctx_i,
+  output logic [2:0]           end_error_o
 );
 
   logic [3*Rays-1:0] errors_q;
@@ -55,6 +55,6 @@ module ray_errors #(
     end
   end
 
-  assign ending_error_o = errors_q[3*ending_ctx_i+:3];
+  assign end_error_o = errors_q[3*end_ctx_i+:3];
 
 endmodule

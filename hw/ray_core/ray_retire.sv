@@ -14,10 +14,11 @@ module ray_retire #(
   input  logic                   start_i,        // a ray is in a context
   input  logic [RayWidth-1:0]    start_ctx_i,
   input  logic [Rays-1:0]        busy_i,         // something is to be done for a context's ray
-  // a ray ends, its context is free; what is known of it, in the same clock
+  // a ray ends, its context is free; in the clock after what is known of it
   output logic                   ending_o,
   output logic [RayWidth-1:0]    ending_ctx_o,
-  input  ray_core_pkg::end_t     ending_i,
+  output logic [RayWidth-1:0]    end_ctx_o,
+  input  ray_core_pkg::end_t     end_i,
   // the P of a context's last ray, in the clock after
   output logic [RayWidth-1:0]    point_ctx_o,
   input  logic [95:0]            point_i,
@@ -33,7 +34,7 @@ module ray_retire #(
 );
 
   localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
-  localparam int unsigned Depth = PointDelay + 4;  // for an end a clock
+  localparam int unsigned Depth = PointDelay + 5;  // for an end a clock
 
   // ---- The end of a ray
 
@@ -67,13 +68,14 @@ module ray_retire #(
   logic [95:0] end_point;
 
   ram_fifo #(
-    .Width($bits(ending_i)),
-    .Depth(Depth)
+    .Width($bits(end_i)),
+    .Depth(Depth),
+    .Reserve(1)
   ) u_ends (
     .clk_i,
     .rst_ni,
-    .push_i(ending_o),
-    .data_i(ending_i),
+    .push_i(pointing_q[0]),
+    .data_i(end_i),
     .space_o(space),
     .pop_i(end_fire),
     .valid_o(unused_valid),
@@ -82,13 +84,14 @@ module ray_retire #(
 
   delay_line #(
     .Width(RayWidth),
-    .Depth(PointDelay)
+    .Depth(PointDelay - 1)
   ) u_pointing (
     .clk_i,
     .enable_i(1'b1),
-    .data_i(ending_ctx_o),
+    .data_i(end_ctx_o),
     .data_o(point_ctx_o)
   );
+  always_ff @(posedge clk_i) end_ctx_o <= ending_ctx_o;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) pointing_q <= '0;
     else pointing_q <= {pointing_q[PointDelay-1:0], ending_o};

@@ -51,7 +51,7 @@ module traversal_subsystem #(
   output ray_core_pkg::overflow_t overflow_o,
   input  logic                    overflow_fire_i,
   output logic [5:0]              events_o,  // EventExact, EventNearTie to EventTriangle
-  input  logic [RayWidth-1:0]     ending_ctx_i,
+  input  logic [RayWidth-1:0]     end_ctx_i,
   output ray_core_pkg::end_t      end_o,  // in the same clock
   input  logic [RayWidth-1:0]     point_ctx_i,
   output logic [95:0]             point_o  // in the next one
@@ -61,7 +61,7 @@ module traversal_subsystem #(
 
   always_ff @(posedge clk_i) if (start_fire_o) tags[start_ctx_i] <= start_i.tag;
 
-  assign end_o.tag = tags[ending_ctx_i];
+  assign end_o.tag = tags[end_ctx_i];
 
   // ---- Nodes
 
@@ -150,6 +150,10 @@ module traversal_subsystem #(
 
   // ---- Hits and errors
 
+  logic [RayWidth-1:0] box_ray_q;
+
+  always_ff @(posedge clk_i) box_ray_q <= node_line_ctx_i;
+
   closest_hit #(
     .Rays(Rays),
     .Exact(Exact)
@@ -174,7 +178,7 @@ module traversal_subsystem #(
     .leaf_t_max_o(leaf_t_max),
     .leaf_ended_o(leaf_ended),
     .leaf_counter_full_o(leaf_counter_full),
-    .box_ray_i(node_line_ctx_i),
+    .box_ray_i(box_ray_q),
     .box_t_max_o(t_max_o),
     .testing_o(testing),
     .exact_ray_i(exact_ray),
@@ -187,7 +191,7 @@ module traversal_subsystem #(
     .open_ray_o(open_ray),
     .open_o(open),
     .over_o(over),
-    .end_ray_i(ending_ctx_i),
+    .end_ray_i(end_ctx_i),
     .end_o(end_o.hit),
     .point_ray_i(point_ctx_i),
     .point_o,
@@ -252,8 +256,8 @@ module traversal_subsystem #(
     .cycle_i(cycle),
     .cycle_ctx_i(cycle_ray),
     .failed_o(failed),
-    .ending_ctx_i,
-    .ending_error_o(end_o.error)
+    .end_ctx_i,
+    .end_error_o(end_o.error)
   );
 
 endmodule

@@ -36,26 +36,27 @@ module triangle_test #(
 
   logic [hit_test_pkg::RecordWords*32-1:0] set_record;
   logic [PlaneErrorWidth-1:0] set_normal_error, set_distance_error;
-  logic [set_up_pkg::Latency:0] setting_q;
-  logic [ray_core_pkg::TriangleWidth-1:0] triangle_q;
-  logic [RayWidth-1:0] ctx_q, set_ctx_q;
+  logic [set_up_pkg::Latency+1:0] setting_q;
+  logic [ray_core_pkg::TriangleWidth-1:0] first_q, triangle_q;
+  logic [95:0] origin_q;
+  logic [RayWidth-1:0] first_ctx_q, ctx_q, set_ctx_q;
   logic [31:0] index, early_triangle, set_triangle_q;
-  logic error_q, early_skipped, set_skipped_q;
+  logic error_q, skipped_q, early_skipped, set_skipped_q;
+
+  assign index = first_q[ray_core_pkg::TriangleIndex+:32];
 
   always_ff @(posedge clk_i) begin
-    triangle_q <= triangle_i.line;
-    ctx_q      <= ctx_i;
-    error_q    <= triangle_i.error;
+    {first_q, first_ctx_q, error_q} <= {triangle_i.line, ctx_i, triangle_i.error};
+    {triangle_q, ctx_q, origin_q}   <= {first_q, first_ctx_q, origin_i};
+    skipped_q <= error_q | (index == skip_id_i);
   end
-
-  assign index = triangle_q[ray_core_pkg::TriangleIndex+:32];
 
   set_up_unit #(
     .Arith(Arith),
     .Adder(Adder)
   ) u_set_up (
     .clk_i,
-    .origin_i,
+    .origin_i(origin_q),
     .corners_i(triangle_q[ray_core_pkg::TriangleCorners +: 9*32]),
     .record_o(set_record),
     .normal_error_o(set_normal_error),
@@ -67,13 +68,13 @@ module triangle_test #(
   ) u_sideband_set_up (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({ctx_q, index, error_q | (index == skip_id_i)}),
+    .data_i({ctx_q, triangle_q[ray_core_pkg::TriangleIndex+:32], skipped_q}),
     .data_o({direction_ctx_o, early_triangle, early_skipped})
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) setting_q <= '0;
-    else setting_q <= {setting_q[set_up_pkg::Latency-1:0], triangle_i.valid & ~triangle_i.exact};
+    else setting_q <= {setting_q[set_up_pkg::Latency:0], triangle_i.valid & ~triangle_i.exact};
   end
   always_ff @(posedge clk_i) begin
     {set_ctx_q, set_triangle_q, set_skipped_q} <= {direction_ctx_o, early_triangle, early_skipped};
@@ -96,7 +97,7 @@ module triangle_test #(
   ) u_tests (
     .clk_i,
     .rst_ni,
-    .valid_i(setting_q[set_up_pkg::Latency]),
+    .valid_i(setting_q[set_up_pkg::Latency+1]),
     .ready_o(unused_ready),  // always, as results are always taken
     .first_i(1'b1),
     .last_i(1'b1),

@@ -19,7 +19,7 @@ module contexts_answer_once #(
   localparam int unsigned Divide = hit_test_pkg::divide_latency(23);
   localparam int unsigned Delay = Divide + 5;
   localparam int unsigned InDepth = Divide + 3;
-  localparam int unsigned EndDepth = Delay + 3;
+  localparam int unsigned EndDepth = Delay + 4;
   localparam int unsigned InCountWidth = $clog2(InDepth + 1);
   localparam int unsigned EndCountWidth = $clog2(EndDepth + 1);
   localparam int unsigned TotalWidth = 8;
@@ -99,23 +99,24 @@ module contexts_answer_once #(
       if (started) assert (!used[started_ctx]);
       if (ending) assert (used[ending_ctx] && !busy[ending_ctx]);
       if (ended) assert (in_flight != '0);
-      assert (in_flight == TotalWidth'(rays_count) + ones(32'(used)) + TotalWidth'(ends_count)
-                        + TotalWidth'(end_offered));
-      assert (rays_count <= InCountWidth'(InDepth) && ends_count <= EndCountWidth'(EndDepth));
+      assert (in_flight == TotalWidth'(rays_count) + ones(32'(used)) + TotalWidth'(pointing_q[0])
+                        + TotalWidth'(ends_count) + TotalWidth'(end_offered));
+      assert (rays_count <= InCountWidth'(InDepth));
+      assert (TotalWidth'(ends_count) + TotalWidth'(pointing_q[0]) <= TotalWidth'(EndDepth));
 
       // Invariants
       assert (free_q == ~used && active_q == used);
       assert (TotalWidth'(rays_count) == TotalWidth'(inverses_count) + ones(32'(dividing_q)));
-      assert (TotalWidth'(ends_count) == TotalWidth'(points_count) + ones(32'(pointing_q)));
+      assert (TotalWidth'(ends_count) + TotalWidth'(pointing_q[0]) == TotalWidth'(points_count) + ones(32'(pointing_q)));
       assert (inverses_valid == (inverses_count != '0));
       // In memories a word is there a clock later; one alone may be that of the clock before
       if (rays_count != InCountWidth'(dividing_q[0])) assert (rays_valid);
-      if (ends_count != EndCountWidth'(pointing_q[0])) assert (ends_valid);
+      if (ends_count != EndCountWidth'(pointing_q[1])) assert (ends_valid);
       if (rays_valid) assert (rays_count != '0);
       if (ends_valid) assert (ends_count != '0);
       if (points_valid) assert (points_count != '0);
       assert (rays_space == (rays_count < InCountWidth'(InDepth)));
-      assert (ends_space == (ends_count < EndCountWidth'(EndDepth)));
+      assert (ends_space == (ends_count < EndCountWidth'(EndDepth - 1)));
     end
   end
 

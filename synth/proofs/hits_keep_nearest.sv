@@ -55,7 +55,7 @@ module hits_keep_nearest #(
   logic [TestsWidth-1:0] end_tests;
   logic [95:0] end_point, read_point;  // read_point: of the ray of the clock before
   logic read_before;
-  logic replace, push, doubts_space, doubts_valid, points_read, points_write;
+  logic replace, test_q, test_ray_q, push, doubts_space, doubts_valid, points_read, points_write;
   logic [63:0] pushed, doubt_word;
   logic [4:0] doubts;
   logic [1:0] points_count;
@@ -122,6 +122,8 @@ module hits_keep_nearest #(
     .old_low_q(old_low),
     .old_triangle_q(old_triangle),
     .replace(replace),
+    .test_q(test_q),
+    .test_ray_q(test_ray_q),
     .\u_doubts.push_i (push),
     .\u_doubts.data_i (pushed),
     .\u_doubts.count_q (doubts),
@@ -311,17 +313,19 @@ module hits_keep_nearest #(
       assert (box_t_max == (box_ray ? t_max_words[61:31] : t_max_words[30:0]));
       // Tests
       assert (testing == {flight_1 != '0, flight_0 != '0});
-      if (loaded[0]) assert ({2'b00, counts[9:0]} == flight_0);
-      if (loaded[1]) assert ({2'b00, counts[19:10]} == flight_1);
+      if (loaded[0]) assert ({2'b00, counts[9:0]} == flight_0 - 12'(test_q && !test_ray_q));
+      if (loaded[1]) assert ({2'b00, counts[19:10]} == flight_1 - 12'(test_q && test_ray_q));
+      if (test_q) assert (loaded[test_ray_q] && (test_ray_q ? flight_1 : flight_0) != '0);
+      assert (flight_0 < 12'd1024 && flight_1 < 12'd1024);
       assert (end_tests == tests[TestsWidth*end_ray+:TestsWidth]);
-      if (loaded[0]) assert (tests[TestsWidth-1:0] == made_0);
-      if (loaded[1]) assert (tests[2*TestsWidth-1:TestsWidth] == made_1);
+      if (loaded[0]) assert (tests[TestsWidth-1:0] == made_0 - TestsWidth'(test_q && !test_ray_q));
+      if (loaded[1]) assert (tests[2*TestsWidth-1:TestsWidth] == made_1 - TestsWidth'(test_q && test_ray_q));
       // Room for doubts
       assert ({1'b0, doubts} + 6'(flying) <= 6'(Depth));
 
       // Invariants
       if (result) begin
-        assert ((result_ray ? flight_1 : flight_0) != '0 && flying != '0);
+        assert (loaded[result_ray] && (result_ray ? counts[19:10] : counts[9:0]) != '0 && flying != '0);
         assert (!(result_hit && result_doubt) && result_t <= Infinity);
         assert (over_ray == result_ray && over_triangle == result_triangle && over_t == result_t);
         assert (over_tag == result_tag && over_t_error == t_error);

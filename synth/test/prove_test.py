@@ -19,7 +19,8 @@ HITS = [("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
         ("old_open ? old_triangle_q : triangle_q", "open ? triangle_q : old_triangle_q"),
         ("forward ? low_q : nearest_low", "is_over_q ? low_q : nearest_low"),
         (".data_i({ray_q, replace})", ".data_i({ray_q, is_sure_q})"),
-        ("if (test_i && !same) counts", "if (test_i) counts")]
+        ("if (test_q && !same) counts", "if (test_q) counts"),
+        (">= NearlyFull", "> NearlyFull")]
 
 LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
           ("fire & last & (remaining == '0)", "fire & (remaining == '0)"),
@@ -33,6 +34,9 @@ CACHE = [("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_f
          ("<= follow & head[TargetWidth]", "<= follow"),
          ("valid_q[fill_entry_i]   <= ~fill_error_i;", "valid_q[fill_entry_i]   <= 1'b1;"),
          (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})")]
+
+CONTEXTS = [(".Reserve(1)", ".Reserve(0)"),
+            ("active_q & ~busy_i", "active_q")]
 
 
 class ProofsRefuseFaults(unittest.TestCase):
@@ -64,6 +68,9 @@ class ProofsRefuseFaults(unittest.TestCase):
 
     def test_of_leaves(self):
         self.refuse("primitive_fetch", LEAVES, unit_proofs.leaves_are_asked_for)
+
+    def test_of_contexts(self):
+        self.refuse("ray_retire", CONTEXTS, unit_proofs.contexts_answer_once)
 
     def test_of_the_cache(self):
         self.refuse("line_cache", CACHE, unit_proofs.cache_answers_once)

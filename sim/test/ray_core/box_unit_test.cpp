@@ -18,7 +18,7 @@ class BoxUnitTest : public testing::Test {};
 using Tops = testing::Types<Vbox_unit_behavioural, Vbox_unit_structural>;
 TYPED_TEST_SUITE(BoxUnitTest, Tops);
 
-constexpr std::size_t kLatency = 19;  // ray_core_pkg::BoxLatency
+constexpr std::size_t kLatency = 20;  // ray_core_pkg::BoxLatency
 
 /// Bits of a port.
 template <class Port>
@@ -51,7 +51,7 @@ TYPED_TEST(BoxUnitTest, EqualsItsReference) {
     std::memcpy(&model->node_i, &line, sizeof line);
     std::memcpy(&model->origin_i, &before.origin, sizeof ray.origin);
     std::memcpy(&model->inverse_i, &before.inverse, sizeof ray.inverse);
-    model->t_max_i = std::bit_cast<std::uint32_t>(ray.t_max);
+    model->t_max_i = std::bit_cast<std::uint32_t>(before.t_max);
     model->no_cull_i = before.no_cull;
     before = ray;
     taken.push_front(box);

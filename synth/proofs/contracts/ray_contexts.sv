@@ -47,7 +47,7 @@ module ray_contexts #(
 
   (* anyseq *) ray_core_pkg::end_t ended;
   (* anyseq *) logic [95:0] point;
-  logic [CtxWidth-1:0] point_ctx;
+  logic [CtxWidth-1:0] end_ctx, point_ctx;
   logic doubt_fire, overflow_fire;
   ray_core_pkg::result_t result;
   assign result_kind_o = result.kind;
@@ -62,7 +62,8 @@ module ray_contexts #(
     .busy_i,
     .ending_o,
     .ending_ctx_o,
-    .ending_i(ended),
+    .end_ctx_o(end_ctx),
+    .end_i(ended),
     .point_ctx_o(point_ctx),
     .point_i(point),
     .doubt_i({doubt_valid_i, 64'd0}),
