@@ -62,7 +62,7 @@ module memory_subsystem #(
   logic node_valid, node_ready, triangle_valid, triangle_ready, unused_space;
   logic [RequestWidth-1:0] node;
   logic [WhoWidth+AddressWidth-1:0] triangle;
-  logic [WhoWidth-1:0] triangle_who;
+  logic [WhoWidth-1:0] triangle_who, triangle_asker;
   logic [KeptWidth-1:0] triangle_kept;
   logic prefetch_valid, prefetch_fire, prefetch_space;
   logic [AddressWidth-1:0] prefetch_line;
@@ -93,6 +93,8 @@ module memory_subsystem #(
     .valid_o(prefetch_valid),
     .data_o(prefetch_line)
   );
+  assign triangle_asker = WhoWidth'({triangle_i.exact, triangle_ctx_i});
+
   fifo #(
     .Width(WhoWidth + AddressWidth),
     .Depth(4)
@@ -100,7 +102,7 @@ module memory_subsystem #(
     .clk_i,
     .rst_ni,
     .push_i(triangle_i.valid & triangle_ready_o),
-    .data_i({WhoWidth'({triangle_i.exact, triangle_ctx_i}), triangle_i.line}),
+    .data_i({triangle_asker, triangle_i.line}),
     .space_o(triangle_ready_o),
     .pop_i(triangle_valid & triangle_ready),
     .valid_o(triangle_valid),
