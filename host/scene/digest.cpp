@@ -1,6 +1,5 @@
 #include "host/scene/digest.h"
 
-#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <cstdio>
@@ -28,14 +27,15 @@ class Digest {
   void bytes(const void* first, std::size_t count) {
     word(count);
     const char* at = static_cast<const char*>(first);
-    for (; count > 0;) {
-      std::uint64_t bits = 0;
-      const std::size_t step = std::min(count, sizeof bits);
-      std::memcpy(&bits, at, step);
+    std::uint64_t bits = 0;
+    for (; count >= sizeof bits; at += sizeof bits, count -= sizeof bits) {
+      std::memcpy(&bits, at, sizeof bits);
       word(bits);
-      at += step;
-      count -= step;
     }
+    if (count == 0) return;
+    bits = 0;
+    std::memcpy(&bits, at, count);
+    word(bits);
   }
 
   // Only what is without gaps between its members, whose bytes may be anything, goes in by its
