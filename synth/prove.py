@@ -3,6 +3,7 @@ netlists with the RTL that they were made of. Each proof is one command on the R
 
 import argparse
 import collections
+import csv
 import functools
 import re
 import sys
@@ -121,8 +122,8 @@ def outcome(proof: Proof, result: dict | None) -> str:
     return "simulated" if proof.how in ("simulation", "evaluation") else "proven"
 
 
-PAGE = PROOFS / "README.md"
-TIMES = re.compile(r"(?<=<!-- times: make prove RECORD=1 -->\n\n).*?(?=\n\n<!-- end of times -->)", re.S)
+TIMES = PROOFS / "times.csv"
+TIMES_COLUMNS = ["proofs", "by", "number", "most s", "most MB"]
 
 
 def group(name: str) -> str:
@@ -134,22 +135,17 @@ def group(name: str) -> str:
 
 
 def record(proofs: list[Proof], results: list[dict | None]) -> None:
-    """Writes into the page what these proofs took; rows of others stay as they are."""
-    page = PAGE.read_text()
-    old = re.findall(r"^\| `(\S+)` *\| (.*) \|$", TIMES.search(page)[0], re.M)
-    rows = {name: [cell.strip() for cell in cells.split("|")] for name, cells in old}
+    """Writes into TIMES what these proofs took; rows of others stay as they are."""
+    rows = {row["proofs"]: row for row in csv.DictReader(TIMES.read_text().splitlines())}
     groups: dict[str, list[tuple[Proof, dict]]] = {}
     for proof, result in zip(proofs, results, strict=True):
         if result and "seconds" in result:
             groups.setdefault(group(proof.name), []).append((proof, result))
     for name, members in groups.items():
-        rows[name] = [members[0][0].how, str(len(members)),
-                      str(max(result["seconds"] for _, result in members)),
-                      str(max(result["megabytes"] for _, result in members))]
+        rows[name] = dict(zip(TIMES_COLUMNS, [name, members[0][0].how, len(members), max(result["seconds"] for _, result in members),
+                                              max(result["megabytes"] for _, result in members)], strict=True))
     order = list(dict.fromkeys(group(proof.name) for proof in all_proofs()))
-    table = tables.markdown(["proofs", "by", "number", "most s", "most MB"], [
-        [f"`{name}`", *rows[name]] for name in order if name in rows])
-    PAGE.write_text(TIMES.sub(lambda _: table.strip(), page))
+    TIMES.write_text(tables.comma_separated([rows[name] for name in order if name in rows], TIMES_COLUMNS))
 
 
 def is_kept(proof: Proof) -> bool:
@@ -168,7 +164,7 @@ def main() -> int:
     parser.add_argument("--long", action="store_true", help="those too that take hours")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     parser.add_argument("--record", action="store_true",
-                        help="write into the page of proofs what they took")
+                        help="write what they took into proofs/times.csv")
     parser.add_argument("--kept", action="store_true",
                         help="runs nothing: those alone that an earlier run has left")
     given = parser.parse_args()

@@ -1,4 +1,4 @@
-"""The report generator: rows and a Jinja2 template make a page of Markdown, beside its plots, and one of HTML."""
+"""The report generator: rows and a Jinja2 template make a page of Markdown, beside its plots and long tables, and one of HTML."""
 
 import base64
 import pathlib
@@ -29,31 +29,46 @@ ENVIRONMENT = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__f
                                  undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 
 
-def number(value: object, form: str) -> str:
-    """A cell: text as it is, numbers by `form`, a dash where there is none."""
+def number(value: object, form: str, dash: str = "-") -> str:
+    """A cell: text as it is, numbers by `form`, `dash` where there is none."""
     if isinstance(value, str):
         return value
-    return "-" if value is None or pandas.isna(value) else format(value, form)
+    return dash if value is None or pandas.isna(value) else format(value, form)
 
 
-def table(rows: list[dict], *columns: str | list[str]) -> str:
-    """Markdown: a line for each row. Columns see its values, `row`, and what templates see."""
-    if not rows:
-        return "(none)\n"
+def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[str], list[list[str]]]:
+    """Heads, formats, and the cells of each row: `dash` where it has no value, thousands apart by `comma`.
+
+    Columns see the row's values, `row`, and what templates see.
+    """
     parts = [COLUMN.match(column) for column in (one for each in columns for one in ([each] if isinstance(each, str) else each))]
     forms = [part["form"] or "" for part in parts]
     values = [ENVIRONMENT.compile_expression(part["expression"] or part["head"].replace(" ", "_")) for part in parts]
 
     def cell(value: object, row: dict, form: str) -> str:
         try:
-            return number(value(**row, row=row), form)
+            return number(value(**row, row=row), form.replace(",", comma), dash)
         except (KeyError, TypeError, ZeroDivisionError, jinja2.UndefinedError):  # of something that the row does not have
-            return "-"
+            return dash
 
-    cells = [[cell(value, row, form) for value, form in zip(values, forms, strict=True)] for row in rows]
+    return ([part["head"] for part in parts], forms,
+            [[cell(value, row, form) for value, form in zip(values, forms, strict=True)] for row in rows])
+
+
+def table(rows: list[dict], *columns: str | list[str]) -> str:
+    """Markdown: a line for each row."""
+    if not rows:
+        return "(none)\n"
+    heads, forms, cells = cells_of(rows, columns, "-", ",")
     return pandas.DataFrame(cells).to_markdown(
-        index=False, headers=[part["head"] for part in parts], disable_numparse=True,
-        colalign=["right" if form else "left" for form in forms]) + "\n"
+        index=False, headers=heads, disable_numparse=True, colalign=["right" if form else "left" for form in forms]) + "\n"
+
+
+def save(file: pathlib.Path, rows: list[dict], *columns: str | list[str]) -> str:
+    """A table that is too long for a page: CSV beside it. Gives the link to it."""
+    heads, _, cells = cells_of(rows, columns, "", "")
+    pandas.DataFrame(cells, columns=heads).to_csv(file, index=False)
+    return f"[{file.name}]({file.name})"
 
 
 def each(values: list, *columns: str) -> list[str]:
@@ -74,10 +89,13 @@ ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name"
 def render(template: str, folder: pathlib.Path, rows: list[dict], **values: object) -> str:
     """The Markdown of host/lab/report/<template>; `of(table, ...)` in it gives rows."""
     def figure(file: pathlib.Path, caption: str) -> str:
-        return f"![{caption}]({file.relative_to(folder)})\n\n{caption}\n"
+        return f"![{file.stem}]({file.relative_to(folder)})\n\n{caption}\n"
+
+    def saved(name: str, rows: list[dict], *columns: str | list[str]) -> str:
+        return save(folder / f"{name}.csv", rows, *columns)
 
     return ENVIRONMENT.get_template(template).render(
-        values, figure=figure, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0])
+        values, figure=figure, saved=saved, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0])
 
 
 def measured(about: dict) -> str:

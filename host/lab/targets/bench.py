@@ -231,7 +231,7 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
              for row in of(rows, "references")]
     return {**by_scene(rows, folder), "points": grouped(points, ("scene", "variant"), "guarded"), "races": races,
             "samples": samples(rows, folder), "lanes": lanes(rows, folder), "scaling": scaling(rows, folder),
-            "columns": COLUMNS, "example": pictures[0]["command"] if pictures else "",
+            "example": pictures[0]["command"] if pictures else "",
             "facts": [{"what": key.replace("_", " "), "which": str(value)} for key, value in rows[0].items() if key != "table"]}
 
 

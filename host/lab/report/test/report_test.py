@@ -33,6 +33,12 @@ class Document(unittest.TestCase):
         self.assertEqual([[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines()[::2]],
                          [["scene", "clocks, 50", "clocks, 99", "hits per ray", "sides: left"], ["a", "3.00", "-", "-", "x"]])
 
+    def test_long_tables_are_files(self):
+        with tempfile.TemporaryDirectory() as name:
+            file = pathlib.Path(name) / "long.csv"
+            self.assertEqual(document.save(file, [{"n": 1234, "what": "a, b"}, {"what": "none"}], "n :,", "what"), "[long.csv](long.csv)")
+            self.assertEqual(file.read_text(), 'n,what\n1234,"a, b"\n,none\n')
+
     def test_a_page_has_its_pictures_in_it(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
