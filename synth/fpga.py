@@ -165,7 +165,7 @@ def main() -> int:
         _, failures = runner.run_all(
             [runner.Job(f"{design.name} {fpga.name} seed {seed}",
                         lambda d=design, f=dataclasses.replace(fpga, seeds=(seed,)): place(d, f),
-                        lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz")
+                        lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz, from {got['from']} to {got['to']}")
              for design, _, _, fpga in units for seed in fpga.seeds], 1)
     except (tools.MissingTool, ValueError) as error:
         print(f"fpga: {error}", file=sys.stderr)
@@ -184,28 +184,21 @@ def period(top: str) -> int | None:
 
 
 def table() -> str:
-    """All units that have been placed as they are now: what they take, and where their slowest paths are."""
-    heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "block RAMs", "least MHz",
-             "median", "most", "seeds", "million tests/s"]
-    rows, limits = [], []
+    """All units that have been placed as they are now: what they take, their clock rates, and the logic and wires of their slowest paths."""
+    heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "block RAMs", "least MHz", "median", "most", "seeds", "million tests/s",
+             "slowest path: logic, ns", "wires, ns"]
+    rows = []
     for design, form, kind, fpga in catalogue.fpga_units():
         if tools.installed(fpga.tool) and (got := placed(design, fpga)):
             name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
             cells = ["-" if not cell else got[key] for key, cell in zip(
                 ("luts", "registers", "multipliers", "block RAMs"), fpga.cells, strict=True)]
-            clocks = period(design.top)
             rows.append([name, form, kind, fpga.title, *cells, got["least"], got["mhz"], got["most"], got["seeds"],
-                         f"{got['mhz'] / clocks:.2f}"])
-            limits.append([name, form, kind, fpga.title, got["from"], got["to"], got["logic"], got["wires"]])
+                         f"{got['mhz'] / period(design.top):.2f}", got["logic"], got["wires"]])
     if not rows:
         return ""
     commit = tools.run(["git", "describe", "--always", "--dirty"], store.OUT / "git.log").strip()
-    return f"""{tables.markdown(heads, rows)}
-The slowest path of the median placement, ns:
-
-{tables.markdown([*heads[:4], "from", "to", "logic", "wires"], limits)}
-`make fpga` at {commit}.
-"""
+    return f"{tables.markdown(heads, rows)}\n`make fpga` at {commit}.\n"
 
 
 # What a parameter makes of a unit, in words.

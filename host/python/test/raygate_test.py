@@ -119,17 +119,18 @@ class Trace(unittest.TestCase):
         self.assertEqual(len(self.scene.trace(np.zeros((0, 3)), np.zeros((0, 3)))), 0)
 
 
-class Readme(unittest.TestCase):
-    def test_its_lines_run(self):
-        text = (SCENES.parent / "README.md").read_text()
-        lines = re.search(r"```python\n(.*?)```", text, re.DOTALL)[1]
+class Pages(unittest.TestCase):
+    def test_lines_of_readme_and_tutorial_run(self):
+        blocks = [re.findall(r"```python\n(.*?)```", (SCENES.parent / page).read_text(), re.DOTALL) for page in ("README.md", "docs/python.md")]
+        self.assertTrue(all(blocks))
         before = os.getcwd()
         with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
             warnings.simplefilter("ignore", raygate.float.RoundingWarning)
             os.symlink(SCENES, os.path.join(folder, "scenes"))
             os.chdir(folder)
             try:
-                exec(lines, {})
+                for lines in ["\n".join(block) for block in blocks]:
+                    exec(lines, {})
                 self.assertTrue(pathlib.Path("teapot.png").read_bytes().startswith(b"\x89PNG"))
             finally:
                 os.chdir(before)

@@ -30,7 +30,7 @@ class CoreReport(unittest.TestCase):
         rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| a ")]
         self.assertEqual(rows, [
             ["a", "camera", "0.10", "5.00", "20.00", "0.25"],
-            ["a", "camera", "6.00", "3.00", "1.5", "1.5"]])
+            ["a", "camera", "6.00", "3.00", "1.5"]])
 
 
 if __name__ == "__main__":
