@@ -46,6 +46,11 @@ def sentences(text: str) -> list[str]:
     return [part.strip() for part in re.split(r"(?<=[^\s.])\.(?=\s|$)|\n", text) if part.strip()]
 
 
+def what(sentence: str) -> str:
+    """What a module is, without the formula that its header goes on with."""
+    return re.sub(r": [^:]* = .*$|; .*$", "", sentence)
+
+
 def modules(core: str, figures: dict[str, list[str]]) -> str:
     """A line a module of a core: what it is and the first clause of what its header says of its latency; `figures`: of the last columns."""
     rows = []
@@ -55,7 +60,7 @@ def modules(core: str, figures: dict[str, list[str]]) -> str:
         said = sentences(header(file.read_text()))
         latency = next((part for part in said[1:] if re.match(r"(Combinational|Latency|As many clocks)\b", part)), "")
         rows.append([f"[{file.stem}]({file.name})", *(re.sub(r"([|*])", r"\\\1", text) for text in (
-            said[0], re.split(r"[;,] | \(|: ", latency.removeprefix("Latency: ").removeprefix("Latency "))[0])), *figures.get(file.stem, ["", "", ""])])
+            what(said[0]), re.split(r"[;,] | \(|: ", latency.removeprefix("Latency: ").removeprefix("Latency "))[0])), *figures.get(file.stem, ["", "", ""])])
     used = [place for place, _ in enumerate(COLUMNS) if any(row[place] for row in rows)]
     rows = [[row[place] for place in used] for row in [COLUMNS, *rows]]
     return "\n".join(f"| {' | '.join(row)} |" for row in [rows[0], ["---"] * len(used), *rows[1:]]) + "\n"

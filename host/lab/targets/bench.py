@@ -1,6 +1,7 @@
 """`make bench`: run time against error, from the adder to the picture."""
 
 import argparse
+import csv
 import functools
 import json
 import pathlib
@@ -29,8 +30,8 @@ ERRORS = {"point": "error of P, 99th percentile, ulp of binary32",
           "rmse": "RMSE of the picture, scene-linear"}
 # Pictures that differ by less are not shown: their maps are black.
 LEAST_FLIP = 0.00005
-# What results.csv holds: "* `column`: explanation." A column of nested values is explained by the first part of its name.
-COLUMNS = (ROOT / "host" / "lab" / "report" / "columns.md").read_text()
+# What results.csv holds: column, meaning. A column of nested values is explained by the first part of its name.
+COLUMNS = ROOT / "host" / "lab" / "report" / "columns.csv"
 
 
 @functools.cache
@@ -212,7 +213,7 @@ def scaling(rows: list[dict], folder: pathlib.Path) -> list[dict]:
 def comma_separated(rows: list[dict]) -> str:
     """CSV: nested values as name.name; of a list of numbers the median."""
     frame = pandas.json_normalize(rows)
-    unknown = {name.split(".")[0] for name in frame.columns} - set(re.findall(r"^\* `(\w+)`", COLUMNS, re.MULTILINE))
+    unknown = {name.split(".")[0] for name in frame.columns} - {row["column"] for row in csv.DictReader(COLUMNS.read_text().splitlines())}
     if unknown:
         raise ValueError(f"columns that nobody explains: {', '.join(sorted(unknown))}")
     return frame.map(lambda value: statistics.median(value) if isinstance(value, list) else value).to_csv(index=False)
