@@ -100,7 +100,8 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
     extremes = [{"scene": word, **{f"{kind}_ratio": of_all(row[f"{kind}_ratio"] for row in found) for kind in adaptive.MEASURES}}
                 for word, of_all in (("median", statistics.median), ("most", max))] if found else []
     gltf = of(rows, "gltf")
-    return {"variants": VARIANTS, "summary": summary(rows), "adaptive": found + extremes, "gltf_plot": plots.gallery(
+    beyond = max(((max(row["rmse"] ** 2 - row["noise"] ** 2, 0.0)) ** 0.5 for row in of(rows, "references")), default=0.0)
+    return {"variants": VARIANTS, "beyond": beyond, "summary": summary(rows), "adaptive": found + extremes, "gltf_plot": plots.gallery(
         [(f"{row['model']}: raygate, Mitsuba, difference + 0.5", ROOT / row["picture"]) for row in gltf],
         folder / "gltf.png", 1) if gltf else None,
         "scenes": [{"reference": reference,

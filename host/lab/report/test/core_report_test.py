@@ -29,7 +29,7 @@ class CoreReport(unittest.TestCase):
         self.assertEqual(saved, ["a,camera,0.10,5.00,20.00,0.50,32,70.0,80.0,0.25", "a,camera,90.0,90.0,90.0,95.0,3.00"])
         rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| a ")]
         self.assertEqual(rows, [
-            ["a", "camera", "0.10", "5.00", "20.00", "0.25"],
+            ["a", "camera", "5.00", "0.25"],
             ["a", "camera", "6.00", "3.00", "1.5"]])
 
 
