@@ -1,16 +1,16 @@
 """Fills what the pages of hw/ hold between their marks, from the sources and from what was measured.
 
 `python3 -m synth.datasheet` writes the text and draws the diagrams; with `--check` it changes nothing, and
-its exit status is 1 where a table of modules or a timing diagram is out of date, or where the example of
+its exit status is 1 where the table of modules or a timing diagram is out of date, or where the example of
 hw/fp does not pass Verilator. A mark is `<!-- KIND -->`, its text ends at `<!-- end -->`:
 
-  modules   the modules of the page's folder: what each is, its latency, and where `make synth` measures it area
-            and time, measured again where they have changed
   fpga      the units that `make fpga` has placed; where none are, the old text stays
 
-The registers' package and header are made of their page, see `synth.registers`.
+hw/modules.csv has all modules: what each is, its latency, and where `make synth` measures it area and time, measured
+again where they have changed. The registers' package and header are made of their page, see `synth.registers`.
 """
 
+import csv
 import dataclasses
 import difflib
 import pathlib
@@ -22,7 +22,8 @@ from synth import catalogue, cores, fpga, measure, registers, store, tables, too
 
 DIAGRAMS = cores.HW / "diagrams"
 MARK = re.compile(r"<!-- (?!end)(\w+) -->\n(.*?)<!-- end -->", re.S)
-COLUMNS = ["module", "what it is", "latency", "mm2", "ns", "MHz"]
+MODULES = cores.HW / "modules.csv"
+FIGURES = ["mm2", "ns", "MHz"]
 # Design of the catalogue -> the flow that is shown.
 SHOWN = {"adder-graded": "fast", "booth-graded-ripple-groups": "fast", "fp-multiplier": "fast",
          "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
@@ -46,33 +47,23 @@ def sentences(text: str) -> list[str]:
     return [part.strip() for part in re.split(r"(?<=[^\s.])\.(?=\s|$)|\n", text) if part.strip()]
 
 
-def what(sentence: str) -> str:
-    """What a module is, without the formula that its header goes on with."""
-    return re.sub(r": [^:]* = .*$|; .*$", "", sentence)
-
-
-def modules(core: str, figures: dict[str, list[str]]) -> str:
-    """A line a module of a core: what it is and the first clause of what its header says of its latency; `figures`: of the last columns."""
+def modules(figures: dict[str, list[str]]) -> str:
+    """MODULES: what each module is and what its header says of its latency; `figures`: of the last columns."""
     rows = []
-    for file in cores.files(core):
-        if file.parent.name != core or file.stem.endswith("_pkg"):
-            continue
-        said = sentences(header(file.read_text()))
-        latency = next((part for part in said[1:] if re.match(r"(Combinational|Latency|As many clocks)\b", part)), "")
-        rows.append([f"[{file.stem}]({file.name})", *(re.sub(r"([|*])", r"\\\1", text) for text in (
-            what(said[0]), re.split(r"[;,] | \(|: ", latency.removeprefix("Latency: ").removeprefix("Latency "))[0])), *figures.get(file.stem, ["", "", ""])])
-    used = [place for place, _ in enumerate(COLUMNS) if any(row[place] for row in rows)]
-    rows = [[row[place] for place in used] for row in [COLUMNS, *rows]]
-    return "\n".join(f"| {' | '.join(row)} |" for row in [rows[0], ["---"] * len(used), *rows[1:]]) + "\n"
+    for core in cores.names():
+        for file in cores.files(core):
+            if file.parent.name != core or file.stem.endswith("_pkg"):
+                continue
+            said = sentences(header(file.read_text()))
+            latency = next((part for part in said[1:] if re.match(r"(Combinational|Latency|As many clocks)\b", part)), "")
+            rows.append({"folder": core, "module": file.stem, "what it is": said[0], "latency": latency.removeprefix("Latency: "),
+                         **dict(zip(FIGURES, figures.get(file.stem, ["", "", ""]), strict=True))})
+    return tables.comma_separated(rows, ["folder", "module", "what it is", "latency", *FIGURES])
 
 
-def published(old: str) -> dict[str, list[str]]:
+def published(text: str) -> dict[str, list[str]]:
     """The figures in a table that `modules` wrote."""
-    rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in old.splitlines()]
-    if not rows or COLUMNS[3] not in rows[0]:
-        return {}
-    return {re.match(r"\[(\w+)\]", row[0])[1]: [dict(zip(rows[0], row, strict=True)).get(name, "") for name in COLUMNS[3:]]
-            for row in rows[2:]}
+    return {row["module"]: [row[name] for name in FIGURES] for row in csv.DictReader(text.splitlines())}
 
 
 def measured_figures() -> dict[str, list[str]]:
@@ -89,17 +80,13 @@ def measured_figures() -> dict[str, list[str]]:
             for record in records}
 
 
-def filled(page: pathlib.Path, text: str, figures: dict[str, list[str]] | None = None, fpgas: str = "") -> str:
+def filled(page: pathlib.Path, text: str, fpgas: str = "") -> str:
     """The text of a page with what its marks stand for; what was not measured stays. Raises ValueError for another mark."""
     def fill(mark: re.Match) -> str:
         kind, old = mark.groups()
-        if kind == "modules":
-            new = modules(page.parent.name, published(old) if figures is None else figures)
-        elif kind == "fpga":
-            new = fpgas or old
-        else:
-            raise ValueError(f"{page}: found the mark {kind}, expected modules or fpga")
-        return f"<!-- {kind} -->\n{new}<!-- end -->"
+        if kind != "fpga":
+            raise ValueError(f"{page}: found the mark {kind}, expected fpga")
+        return f"<!-- {kind} -->\n{fpgas or old}<!-- end -->"
 
     return MARK.sub(fill, text)
 
@@ -125,9 +112,10 @@ def write() -> None:
 
     for file, text in registers.made(registers.PAGE.read_text()).items():
         file.write_text(text)
-    figures, fpgas = measured_figures(), fpga.table()
+    MODULES.write_text(modules(measured_figures()))
+    fpgas = fpga.table()
     for page in pages():
-        page.write_text(filled(page, page.read_text(), figures, fpgas))
+        page.write_text(filled(page, page.read_text(), fpgas))
     program = tools.ROOT / "build" / "sim" / "worked_example"
     trace = program.with_suffix(".vcd")
     subprocess.run([program, "--trace", trace], check=True, stdout=subprocess.DEVNULL)
@@ -145,6 +133,7 @@ def check() -> list[str]:
     """What is out of date."""
     lines = []
     made = registers.made(registers.PAGE.read_text())
+    made[MODULES] = modules(published(MODULES.read_text()))
     for file, new in [*made.items(), *((page, filled(page, page.read_text())) for page in pages())]:
         lines += difflib.unified_diff(file.read_text().splitlines(), new.splitlines(),
                                       str(file.relative_to(tools.ROOT)), "the sources", n=0, lineterm="")

@@ -34,7 +34,7 @@ fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-bina
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.$(if $(FLOORPLAN),floorplan,fpga) $(if $(FLOORPLAN),,$(if $(SEEDS),--seeds $(SEEDS))) $(UNITS)
 
-datasheet: ## hardware: the tables and diagrams of hw/'s pages
+datasheet: ## hardware: the table of modules and the diagrams of hw
 	$(call build,build,worked_example)
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.datasheet
