@@ -122,8 +122,8 @@ def outcome(proof: Proof, result: dict | None) -> str:
     return "simulated" if proof.how in ("simulation", "evaluation") else "proven"
 
 
-TIMES = PROOFS / "times.csv"
-TIMES_COLUMNS = ["proofs", "by", "number", "most s", "most MB"]
+TABLE = PROOFS / "proofs.csv"
+COLUMNS = ["proofs", "claim", "by", "number", "most s", "most MB"]
 
 
 def group(name: str) -> str:
@@ -135,17 +135,17 @@ def group(name: str) -> str:
 
 
 def record(proofs: list[Proof], results: list[dict | None]) -> None:
-    """Writes into TIMES what these proofs took; rows of others stay as they are."""
-    rows = {row["proofs"]: row for row in csv.DictReader(TIMES.read_text().splitlines())}
+    """Writes these proofs into TABLE: what each claims, and what it took; rows of others stay as they are."""
+    rows = {row["proofs"]: row for row in csv.DictReader(TABLE.read_text().splitlines())}
     groups: dict[str, list[tuple[Proof, dict]]] = {}
     for proof, result in zip(proofs, results, strict=True):
         if result and "seconds" in result:
             groups.setdefault(group(proof.name), []).append((proof, result))
     for name, members in groups.items():
-        rows[name] = dict(zip(TIMES_COLUMNS, [name, members[0][0].how, len(members), max(result["seconds"] for _, result in members),
-                                              max(result["megabytes"] for _, result in members)], strict=True))
+        rows[name] = dict(zip(COLUMNS, [name, members[0][0].claim, members[0][0].how, len(members), max(result["seconds"] for _, result in members),
+                                        max(result["megabytes"] for _, result in members)], strict=True))
     order = list(dict.fromkeys(group(proof.name) for proof in all_proofs()))
-    TIMES.write_text(tables.comma_separated([rows[name] for name in order if name in rows], TIMES_COLUMNS))
+    TABLE.write_text(tables.comma_separated([rows[name] for name in order if name in rows], COLUMNS))
 
 
 def is_kept(proof: Proof) -> bool:
@@ -164,7 +164,7 @@ def main() -> int:
     parser.add_argument("--long", action="store_true", help="those too that take hours")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     parser.add_argument("--record", action="store_true",
-                        help="write what they took into proofs/times.csv")
+                        help="write what they took into proofs/proofs.csv")
     parser.add_argument("--kept", action="store_true",
                         help="runs nothing: those alone that an earlier run has left")
     given = parser.parse_args()
