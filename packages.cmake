@@ -3,7 +3,7 @@ set(missing)
 foreach(pair
     libglm-dev:glm/glm.hpp libopenexr-dev:OpenEXR/OpenEXRConfig.h libimath-dev:Imath/ImathConfig.h
     libpng-dev:png.h libcli11-dev:CLI/CLI.hpp libstb-dev:stb/stb_image.h
-    nlohmann-json3-dev:nlohmann/json.hpp libtinygltf-dev:tiny_gltf.h)
+    nlohmann-json3-dev:nlohmann/json.hpp libcpp-httplib-dev:httplib.h libtinygltf-dev:tiny_gltf.h)
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 package)
   list(GET pair 1 header)

@@ -24,6 +24,8 @@ constexpr const char* kFooter =
     R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
 
+constexpr Range<int> kPortRange{1, 65535};
+
 void require_pixels(const std::string& option, const std::string& text, int width, int height) {
   if (std::int64_t{width} * height <= kMaxPixels) return;
   fail_value(option, text,
@@ -94,6 +96,8 @@ struct CommandLine {
     table.text("--resume", "FILE.exr", "resume an unfinished render, or an animation",
                options.resume);
     add_run_output_options(table, options.output);
+    table.flag("--serve", "show the scene in a page of the browser; write no file", options.serve);
+    table.number("--port", "N", "of --serve's page (any free one)", options.port, kPortRange);
     table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
     table.flag("--no-scene-file", "ignore the .json beside an OBJ", no_scene_file);
     table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
@@ -213,6 +217,20 @@ std::vector<std::string> words_of(const SceneFile& file) {
   return words;
 }
 
+/// What the page of --serve cannot show.
+void check_serve(const OptionTable& table, const Options& options) {
+  if (!options.serve) {
+    if (!table.typed("port").empty()) throw InputError("--port: expected with --serve");
+    return;
+  }
+  for (const char* name : {"crop", "error", "frames", "resume", "samples", "stats", "save-every",
+                           "trace", "dump-image"}) {
+    if (!table.typed(name).empty()) {
+      throw InputError("--" + std::string(name) + " and --serve exclude each other");
+    }
+  }
+}
+
 /// No output may take the place of the scene or of another output.
 void require_distinct_outputs(const Options& options) {
   // What cannot be resolved is refused where it is read or written.
@@ -242,6 +260,7 @@ void require_distinct_outputs(const Options& options) {
 Options parse_options(int argc, const char* const* argv, unsigned processors) {
   std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
+  options.words = words;
   {
     Options first;                // for the scene's name
     first.environment.emplace();  // the scene file may have one
@@ -271,6 +290,7 @@ Options parse_options(int argc, const char* const* argv, unsigned processors) {
   CommandLine line(options);
   (void)line.parse(words);
   check(line.table, options, processors);
+  check_serve(line.table, options);
   require_distinct_outputs(options);
   return options;
 }

@@ -22,6 +22,7 @@ struct Options : EngineOptions {
   /// Text that --help or --version asked for; if not empty nothing else here is of use.
   std::string information;
 
+  std::vector<std::string> words;       ///< as they were typed, without the program's name
   std::filesystem::path scene;          ///< as it was named: an OBJ or a scene file
   std::optional<SceneFile> scene_file;  ///< named, or found beside the OBJ
   RenderOptions render;                 ///< but for threads, channels and what one picture has
@@ -30,6 +31,8 @@ struct Options : EngineOptions {
   OutputOptions output;
   CoreFileOptions core_files;
   std::filesystem::path resume;  ///< a picture to resume; empty: none
+  bool serve = false;  ///< the scene in a page, in place of files
+  int port = 0;        ///< of that page; 0: any that is free
   bool quiet = false, verbose = false;
   bool strict = false;           ///< faces without area are refused
   std::optional<double> smooth;  ///< degrees, as LoadOptions has it

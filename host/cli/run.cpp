@@ -15,6 +15,7 @@
 #include "host/cli/engines.h"
 #include "host/cli/format.h"
 #include "host/cli/output_files.h"
+#include "host/cli/picture_server.h"
 #include "host/cli/process.h"
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
@@ -128,7 +129,7 @@ class Run {
   }
 
   void operator()() {
-    check_outputs();
+    if (!options_.serve) check_outputs();
     report_.options = options_;
     report_.ranks = ranks_.count();
     scene_ = load(options_);
@@ -140,6 +141,7 @@ class Run {
 
     // Cameras and lights are found before there is a ground, which is not to be framed.
     const CameraSequence cameras(options_, scene_);
+    const Scene unframed = options_.serve ? scene_ : Scene();
     if (cameras.has_ground()) add_ground(scene_, cameras.up());
     report_.view = cameras.text();
     resolve_instances(scene_, options_.instances, options_.scene);
@@ -149,6 +151,10 @@ class Run {
     const Bvh bvh(scene_, options_.threads);
     report_.tree_seconds = seconds_since(tree_start);
     const PreparedScene prepared(scene_, bvh);
+    if (options_.serve) {
+      if (ranks_.index() == 0) serve_pictures(options_, {unframed, prepared, cameras.has_ground()});
+      return;
+    }
     image_ = make_memory_image(options_, options_.core_files, bvh);
     if (options_.core_files.pixel) {
       write_wave(bvh, cameras.frame(1).camera);

@@ -1,0 +1,351 @@
+#include "host/cli/picture_server.h"
+
+#include <httplib.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "host/base/input_error.h"
+#include "host/cli/camera_sequence.h"
+#include "host/cli/picture_page.h"
+#include "host/cli/process.h"
+#include "host/film/display.h"
+#include "host/film/false_color.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/hex_words.h"
+#include "host/render/renderer.h"
+
+namespace raygate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The options that a request may have: what needs neither another scene nor files.
+const std::set<std::string>& request_options() {
+  static const std::set<std::string> kNames = {
+      "ambient",  "aperture",     "arith",       "camera",     "cores", "depth",      "engine",
+      "exposure", "false-colour", "filter",      "focus",      "fov",   "integrator", "lanes",
+      "memory",   "no-skip",      "point-error", "projection", "seed",  "size",       "spp",
+      "threads",  "threshold",    "tone",        "unit",       "up",    "view"};
+  return kNames;
+}
+
+/// As a shell takes it.
+std::string quoted(const std::string& word) {
+  const auto is_plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("-_=.,:/+^%@", c) != nullptr;
+  };
+  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+Json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+/// A command line that a request stands for.
+struct Command {
+  std::vector<std::string> words;
+  Options options;
+
+  [[nodiscard]] std::string text() const {
+    std::string text = "./render";
+    for (const std::string& word : words) text.append(" ").append(quoted(word));
+    return text;
+  }
+};
+
+class PictureServer {
+ public:
+  PictureServer(const Options& options, const ServedScene& scene)
+      : options_(options), scene_(scene) {
+    words_ = options.words;
+    std::erase(words_, "--serve");
+    erase_option("port");
+  }
+
+  void serve() {
+    httplib::Server server;
+    // The library would share a port with whoever has it (SO_REUSEPORT).
+    server.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    add_answers(server);
+    int port = options_.port;
+    if (port == 0) {
+      port = server.bind_to_any_port("127.0.0.1");
+    } else if (!server.bind_to_port("127.0.0.1", port)) {
+      port = -1;
+    }
+    if (port < 0) {
+      fail_value("--port", std::to_string(options_.port),
+                 "a port that no other program listens at");
+    }
+    names_ = {"127.0.0.1:" + std::to_string(port), "localhost:" + std::to_string(port)};
+    print("http://127.0.0.1:" + std::to_string(port) + "/ shows the scene; Ctrl-C ends it\n");
+    flush_standard_output();
+    note_interruptions();
+    std::jthread watch([&](const std::stop_token& stop) {
+      while (!stop.stop_requested() && interruption() == 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+      server.stop();
+    });
+    server.listen_after_bind();
+  }
+
+ private:
+  using Answer = void (PictureServer::*)(const httplib::Request&, httplib::Response&);
+
+  void add_answers(httplib::Server& server) {
+    // A page of another site may know our port, but not call us by our name.
+    server.set_pre_routing_handler([this](const auto& request, auto& response) {
+      if (names_.contains(request.get_header_value("Host"))) {
+        return httplib::Server::HandlerResponse::Unhandled;
+      }
+      response.status = 403;
+      response.set_content("expected the host 127.0.0.1 or localhost, and this port\n", kText);
+      return httplib::Server::HandlerResponse::Handled;
+    });
+    server.Get("/", [](const auto& /*request*/, auto& response) {
+      response.set_content(kPicturePage, "text/html; charset=utf-8");
+    });
+    for (const auto& [path, answer] :
+         {std::pair<const char*, Answer>{"/picture", &PictureServer::send_picture},
+          {"/camera", &PictureServer::send_camera},
+          {"/pixel", &PictureServer::send_pixel}}) {
+      server.Get(path, [this, answer](const auto& request, auto& response) {
+        response.set_header("Cache-Control", "no-store");
+        try {
+          (this->*answer)(request, response);
+        } catch (const InputError& error) {
+          response.status = 400;
+          response.set_content(printable(error.what()) + "\n", kText);
+        } catch (const std::exception& error) {
+          response.status = 500;
+          response.set_content(printable(error.what()) + "\n", kText);
+        }
+      });
+    }
+  }
+
+  /// What was typed, with the request's options in place of those.
+  [[nodiscard]] Command command_of(const httplib::Request& request) const {
+    Command command{words_, {}};
+    if (request.has_param("camera") || request.has_param("view")) {
+      erase_option(command.words, "camera");
+      erase_option(command.words, "view");
+    }
+    for (const auto& [name, value] : request.params) {
+      if (name == "slot" || name == "x" || name == "y") continue;
+      if (!request_options().contains(name)) {
+        throw InputError(name +
+                         ": expected an option of ./render that changes neither the scene "
+                         "nor files");
+      }
+      erase_option(command.words, name);
+      command.words.push_back(std::string("--").append(name).append("=").append(value));
+    }
+    // Other cameras have none by default.
+    erase_option(command.words, "ground");
+    command.words.push_back(std::string("--ground=") + (scene_.has_ground ? "on" : "off"));
+    std::vector<const char*> words{"render"};
+    for (const std::string& word : command.words) words.push_back(word.c_str());
+    command.options = parse_options(static_cast<int>(words.size()), words.data());
+    if (command.options.has_core() && scene_.prepared.bvh.has_instances()) {
+      throw InputError("--unit core: expected --instances write beside --serve");
+    }
+    return command;
+  }
+
+  void erase_option(const std::string& name) { erase_option(words_, name); }
+  static void erase_option(std::vector<std::string>& words, const std::string& name) {
+    const std::string dashed = std::string("--").append(name);
+    for (auto at = words.begin(); at != words.end();) {
+      if (*at == dashed && at + 1 != words.end()) {
+        at = words.erase(at, at + 2);
+      } else if (at->starts_with(dashed + "=")) {
+        at = words.erase(at);
+      } else {
+        ++at;
+      }
+    }
+  }
+
+  [[nodiscard]] IntersectorFactory intersectors_of(const Options& options) {
+    prepare_engine(options);
+    if (options.has_core() && !image_) {
+      image_ = make_memory_image(options, {}, scene_.prepared.bvh);
+    }
+    return make_intersector_factory(options, scene_.prepared.bvh, options.render.skips, image_);
+  }
+
+  void send_picture(const httplib::Request& request, httplib::Response& response) {
+    const std::string slot = request.get_param_value("slot");
+    const std::uint64_t turn = next_turn(slot);
+    const Command command = command_of(request);
+    const Options& options = command.options;
+    const CameraSequence cameras(options, scene_.unframed);
+    const std::lock_guard<std::mutex> one_at_a_time(rendering_);
+    RenderOptions render_options = options.render;
+    render_options.threads = options.threads;
+    render_options.lights = cameras.frame(1).lights;
+    render_options.exposure = options.output.display.exposure;
+    render_options.channels = options.output.needed_channels();
+    RenderMonitor monitor;
+    monitor.progress = [&](double /*fraction*/) {
+      return interruption() == 0 && is_current(slot, turn);
+    };
+    RenderStats stats;
+    if (is_current(slot, turn)) {
+      const Film film = render(scene_.prepared, cameras.frame(1).camera, render_options,
+                               intersectors_of(options), stats, monitor);
+      if (!stats.cancelled) {
+        response.set_header("X-Command", command.text());
+        response.set_header("X-Statistics", text_of(stats));
+        response.set_content(encode_png(shown(film, options.output)), "image/png");
+        return;
+      }
+    }
+    response.status = 409;
+    response.set_content("a newer request took its place\n", kText);
+  }
+
+  /// The picture itself, or the last of its channels in false colours.
+  static Image8 shown(const Film& film, const OutputOptions& output) {
+    if (output.false_colors.empty()) return to_display(film, output.display);
+    const FalseColorOutput& wanted = output.false_colors.back();
+    const std::vector<Channel> channels = channels_of(film);
+    const auto channel = std::ranges::find(channels, wanted.channel, &Channel::name);
+    if (channel == channels.end()) throw InputError("found no channel " + wanted.channel);
+    return false_color(film.width, film.height, film.window, *channel, wanted.scale);
+  }
+
+  static std::string text_of(const RenderStats& stats) {
+    const HitCounters& hit = stats.intersect.hit;
+    return Json{{"seconds", stats.wall_seconds},
+                {"rays", stats.rays},
+                {"tests", hit.tests},
+                {"doubts", hit.edge_doubts + hit.depth_doubts},
+                {"clocks", hit.clocks}}
+        .dump();
+  }
+
+  void send_camera(const httplib::Request& request, httplib::Response& response) {
+    const Options options = command_of(request).options;
+    const CameraSequence cameras(options, scene_.unframed);
+    const Camera& camera = cameras.frame(1).camera;
+    const glm::dvec3 eye = scene_.unframed.origin + glm::dvec3(camera.eye());
+    Json json{{"eye", numbers(eye)},
+              {"target", numbers(eye + camera.focus() * camera.forward())},
+              {"right", numbers(camera.right())},
+              {"up", numbers(camera.up())},
+              {"fov", camera.vertical_fov_degrees()},
+              {"width", options.render.width},
+              {"height", options.render.height},
+              {"samples", options.render.samples}};
+    for (const auto& [name, value] : cameras.options()) {
+      if (name == "view") json["view"] = Json::parse("[" + value + "]");
+    }
+    response.set_content(json.dump(), kJson);
+  }
+
+  void send_pixel(const httplib::Request& request, httplib::Response& response) {
+    const Command command = command_of(request);
+    const Options& options = command.options;
+    const glm::ivec2 size{options.render.width, options.render.height};
+    const auto coordinate = [&](const char* name, int end) {
+      const std::string text = request.get_param_value(name);
+      const auto number = parse_number<int>(text);
+      if (!number || *number < 0 || *number >= end) {
+        fail_value(name, text,
+                   "a pixel of " + std::to_string(size.x) + "x" + std::to_string(size.y));
+      }
+      return *number;
+    };
+    const int x = coordinate("x", size.x), y = coordinate("y", size.y);
+    const CameraSequence cameras(options, scene_.unframed);
+    const Ray ray = cameras.frame(1).camera.ray((x + 0.5) / size.x, (y + 0.5) / size.y, {});
+    const std::lock_guard<std::mutex> one_at_a_time(rendering_);
+    const Bvh& bvh = scene_.prepared.bvh;
+    Json json{{"pixel", {x, y}},
+              {"origin", words(ray.origin)},
+              {"direction", words(ray.direction)},
+              {"engine", found(ray, *intersectors_of(options)())},
+              {"cpu", found(ray, CpuIntersector(bvh))}};
+    response.set_content(json.dump(), kJson);
+  }
+
+  /// A vector, in decimal and as binary32 words.
+  static Json words(const glm::vec3& v) {
+    const std::array<float, 3> coordinates{v.x, v.y, v.z};
+    return {{"decimal", coordinates}, {"words", hex_words(coordinates).substr(1)}};
+  }
+
+  /// What an intersector makes of one ray.
+  [[nodiscard]] Json found(const Ray& ray, Intersector&& intersector) const {
+    return found(ray, intersector);
+  }
+  [[nodiscard]] Json found(const Ray& ray, Intersector& intersector) const {
+    NearestHit hit;
+    intersector.intersect({&ray, 1}, {}, {&hit, 1});
+    const HitCounters counters = intersector.counters().hit;
+    Json json{{"tests", counters.tests},
+              {"doubts", counters.edge_doubts + counters.depth_doubts},
+              {"clocks", counters.clocks}};
+    if (hit.primitive == NearestHit::kNone) return json;
+    const Bvh& bvh = scene_.prepared.bvh;
+    json["triangle"] = bvh.triangle_of(hit.primitive);
+    json["t"] = {hit.t.low, hit.t.high};
+    json["P"] = words(hit.point);
+    if (std::isfinite(hit.point_error)) json["error of P"] = hit.point_error;
+    json["corners"] = Json::array();
+    for (const glm::vec3& corner : bvh.corners_of(hit.primitive)) {
+      json["corners"].push_back(words(corner));
+    }
+    return json;
+  }
+
+  std::uint64_t next_turn(const std::string& slot) {
+    const std::lock_guard<std::mutex> lock(turns_mutex_);
+    return ++turns_[slot];
+  }
+  [[nodiscard]] bool is_current(const std::string& slot, std::uint64_t turn) {
+    if (slot.empty()) return true;
+    const std::lock_guard<std::mutex> lock(turns_mutex_);
+    return turns_[slot] == turn;
+  }
+
+  static constexpr const char* kText = "text/plain; charset=utf-8";
+  static constexpr const char* kJson = "application/json";
+
+  const Options& options_;
+  const ServedScene scene_;
+  std::vector<std::string> words_;  // of the command line, but for --serve and --port
+  std::set<std::string> names_;     // that we go by
+  std::mutex rendering_;            // one picture has all threads
+  std::shared_ptr<const MemoryImage> image_;
+  std::mutex turns_mutex_;
+  std::map<std::string, std::uint64_t> turns_;  // the last request of each slot
+};
+
+}  // namespace
+
+void serve_pictures(const Options& options, const ServedScene& scene) {
+  PictureServer(options, scene).serve();
+}
+
+}  // namespace raygate
