@@ -140,13 +140,11 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
                Range{1, 64, "a whole number, 1 to 64"}, kInStats);
   table.number("--threads", "N", "threads (one per processor)", options.threads, kThreadRange,
                kInStats);
-  table.choice<InstanceMode>(
-      "--instances", "auto|keep|write",
-      "a mesh in many places: in memory once or written out ({}: once above 4 million triangles)",
-      options.instances,
-      {{"auto", InstanceMode::kAutomatic},
-       {"keep", InstanceMode::kKeep},
-       {"write", InstanceMode::kFlatten}});
+  table.choice<InstanceMode>("--instances", "auto|keep|write",
+                             "a repeated mesh: in memory once, or written out", options.instances,
+                             {{"auto", InstanceMode::kAutomatic},
+                              {"keep", InstanceMode::kKeep},
+                              {"write", InstanceMode::kFlatten}});
 }
 
 void check_engine_options(const OptionTable& table, EngineOptions& options, unsigned processors) {

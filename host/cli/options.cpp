@@ -85,9 +85,7 @@ struct CommandLine {
                  "smooth shading over edges up to this angle, of faces without normals (the OBJ's "
                  "s, or 30; 0: facets)",
                  options.smooth, kSmoothRange, kInExr);
-    table.number("--frames", "N",
-                 "animation of N frames, NAME-0001 and on: along the scene file's path, or once "
-                 "around the target",
+    table.number("--frames", "N", "animation: along the scene file's path, or an orbit",
                  options.output.frames, Range{1, 9999});
     table.group("Light");
     add_light_options(table, render);
@@ -96,7 +94,7 @@ struct CommandLine {
     table.text("--resume", "FILE.exr", "resume an unfinished render, or an animation",
                options.resume);
     add_run_output_options(table, options.output);
-    table.flag("--serve", "show the scene in a page of the browser; write no file", options.serve);
+    table.flag("--serve", "show the scene in a page of the browser", options.serve);
     table.number("--port", "N", "of --serve's page (any free one)", options.port, kPortRange);
     table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
     table.flag("--no-scene-file", "ignore the .json beside an OBJ", no_scene_file);

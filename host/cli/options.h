@@ -31,8 +31,8 @@ struct Options : EngineOptions {
   OutputOptions output;
   CoreFileOptions core_files;
   std::filesystem::path resume;  ///< a picture to resume; empty: none
-  bool serve = false;  ///< the scene in a page, in place of files
-  int port = 0;        ///< of that page; 0: any that is free
+  bool serve = false;            ///< the scene in a page, in place of files
+  int port = 0;                  ///< of that page; 0: any that is free
   bool quiet = false, verbose = false;
   bool strict = false;           ///< faces without area are refused
   std::optional<double> smooth;  ///< degrees, as LoadOptions has it

@@ -54,11 +54,8 @@ void add_light_options(OptionTable& table, RenderOptions& options) {
                "primary: camera rays alone; whitted: shadows, reflection, refraction; path: all "
                "global illumination ({}; path with an environment)",
                options.integrator, integrator_choices(), kInExr | kInStats | kInPython);
-  table.number(
-      "--spp", "N",
-      "samples per pixel ({}; 16 where an environment makes the integrator path; at most 1024 "
-      "with --error)",
-      options.samples, Range{1, 1 << 20}, kInExr | kInStats | kInPython);
+  table.number("--spp", "N", "samples per pixel ({}; path by an environment: 16)", options.samples,
+               Range{1, 1 << 20}, kInExr | kInStats | kInPython);
   table.number("--error", "X",
                "adaptive sampling to error X, in steps of an 8-bit display: stop a pixel after 16 "
                "samples if its error is X, after n if it is X n / 16",
