@@ -1,0 +1,53 @@
+"""The Markdown pages: links lead to files and headings that are there, and `make` targets that they name exist."""
+
+import pathlib
+import re
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def pages() -> list[pathlib.Path]:
+    """All pages of the repository, without what was built."""
+    folders = [folder for folder in ROOT.iterdir() if folder.is_dir() and not folder.name.startswith((".", "build"))]
+    return [*ROOT.glob("*.md"), *(page for folder in folders for page in folder.rglob("*.md"))]
+
+
+def anchors(text: str) -> set[str]:
+    """What GitHub makes of the headings."""
+    heads = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\[(.*?)\]\(.*?\)", r"\1", head).lower()).replace(" ", "-") for head in heads}
+
+
+class Pages(unittest.TestCase):
+    def setUp(self) -> None:
+        self.texts = {page: page.read_text() for page in pages()}
+        self.assertGreater(len(self.texts), 30)
+
+    def test_anchors(self) -> None:
+        self.assertEqual(anchors("# A `b`, c\n```\n# no\n```\n## [D](x.md) - e\n"), {"a-b-c", "d---e"})
+
+    def test_links_lead_somewhere(self) -> None:
+        links = [(page, link) for page, text in self.texts.items()
+                 for link in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"```.*?```", "", text, flags=re.DOTALL)) if "://" not in link]
+        self.assertGreater(len(links), 100)
+        for page, link in links:
+            name, _, anchor = link.partition("#")
+            there = (page.parent / name).resolve() if name else page
+            self.assertTrue(there.exists(), f"{page.relative_to(ROOT)}: {link}: no such file")
+            if anchor:
+                self.assertIn(anchor, anchors(there.read_text()), f"{page.relative_to(ROOT)}: {link}: no such heading")
+
+    def test_make_targets_exist(self) -> None:
+        makefiles = [ROOT / "Makefile", *ROOT.glob("*/*.mk"), *ROOT.glob("*/*/*.mk")]
+        targets = {target for file in makefiles for target in re.findall(r"^([a-z][\w-]*):", file.read_text(), re.MULTILINE)}
+        named = [(page, target) for page, text in self.texts.items()
+                 for code in re.findall(r"```.*?```|`[^`]+`", text, re.DOTALL)
+                 for target in re.findall(r"(?:^`?|&& )make ([a-z][\w-]*)", code, re.MULTILINE)]
+        self.assertGreater(len(named), 50)
+        for page, target in named:
+            self.assertIn(target, targets, f"{page.relative_to(ROOT)}: make {target}")
+
+
+if __name__ == "__main__":
+    unittest.main()
