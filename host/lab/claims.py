@@ -4,7 +4,7 @@ A row of the page is `| what | figure | command |`. The numbers of a figure must
 this order, commas aside. A figure that begins with ~ depends on the machine: what its command prints is
 shown, not judged. Exit status 1 where a figure is not there, 2 where no command was asked for.
 
-A row `| page | words | published result | text, text |` is a quote: `misquoted` finds those that are not in their result.
+quotes.csv has what pages quote from published results: `misquoted` finds what is not in its result.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "host/lab/CLAIMS.md"
 ROW = re.compile(r"^\| (.+?) \| (.+?) \| `(.+?)` \|$", re.MULTILINE)
-QUOTE = re.compile(r"^\| \[.*?\]\((.+?)\) \| (.+?) \| \[.*?\]\((.+?)\) \| (.+?) \|$", re.MULTILINE)
+QUOTES = ROOT / "host/lab/quotes.csv"
 NUMBER = re.compile(r"0x[0-9A-Fa-f]+|\d[\d,]*\.?\d*")
 
 
@@ -46,17 +46,18 @@ def rounds_to(number: str, figure: str) -> bool:
     return value.quantize(wanted, decimal.ROUND_HALF_UP) == wanted
 
 
-def misquoted(text: str, folder: pathlib.Path) -> list[str]:
-    """What pages quote in the rows of `text`, links being relative to `folder`, and do not have, or their results don't."""
+def misquoted(quotes: list[dict], root: pathlib.Path) -> list[str]:
+    """What pages quote and do not have, or their results don't; of each quote `page`, `quote`, `result`, and the `line` of it, "text, text"."""
     wrong = []
-    for page, quote, result, marks in QUOTE.findall(text):
-        if " ".join(quote.split()) not in " ".join((folder / page).read_text().split()):
+    for row in quotes:
+        page, quote, result = row["page"], row["quote"], row["result"]
+        if " ".join(quote.split()) not in " ".join((root / page).read_text().split()):
             wrong.append(f"{page}: no longer has: {quote}")
         figures = re.findall(r"\d+(?:\.\d+)?(?: million)?", quote.replace(",", ""))
-        lines = [line for line in (folder / result).read_text().splitlines() if all(mark in line for mark in marks.split(", "))]
+        lines = [line for line in (root / result).read_text().splitlines() if all(mark in line for mark in row["line"].split(", "))]
         if not figures or not any(all(figure in found for figure in figures) for found in (
                 [figure for figure in figures for number in numbers(line) if rounds_to(number, figure)] for line in lines)):
-            wrong.append(f"{page}: {quote}: {result} has no such line with: {marks}")
+            wrong.append(f"{page}: {quote}: {result} has no such line with: {row['line']}")
     return wrong
 
 

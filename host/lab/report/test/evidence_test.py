@@ -1,6 +1,7 @@
 """Published results have a date, and pages quote what they say."""
 
 import contextlib
+import csv
 import io
 import pathlib
 import re
@@ -20,12 +21,12 @@ class Quotes(unittest.TestCase):
             folder = pathlib.Path(name)
             (folder / "page.md").write_text(page)
             (folder / "result.md").write_text(RESULT)
-            return claims.misquoted(f"| [a](page.md) | {quote} | [b](result.md) | {line} |\n", folder)
+            return claims.misquoted([{"page": "page.md", "quote": quote, "result": "result.md", "line": line}], folder)
 
     def test_of_every_page_are_in_their_results(self) -> None:
-        text = claims.PAGE.read_text()
-        self.assertGreater(len(claims.QUOTE.findall(text)), 5)
-        self.assertEqual(claims.misquoted(text, claims.PAGE.parent), [])
+        quotes = list(csv.DictReader(claims.QUOTES.read_text().splitlines()))
+        self.assertGreater(len(quotes), 5)
+        self.assertEqual(claims.misquoted(quotes, claims.ROOT), [])
 
     def test_to_as_many_digits_as_they_have(self) -> None:
         self.assertEqual(self.misquoted("at 127\nMHz", "127 MHz", "pipelined"), [])
