@@ -1,0 +1,33 @@
+// The unit's adder as gates of which one may be broken: what `make page` puts in place of hw/fp/fp_adder.
+//
+// fp_adder_gates is Yosys's netlist of fp_adder in binary32 with single faults (sim/mutate/netlist.py). `mutant`
+// is the page's to write: 0 for the sound adder, k for fault k of the netlist's list.
+module fp_adder #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Structural,
+  parameter int unsigned Adder     = arith_pkg::AdderGraded
+) (
+  input  logic [ExpWidth+FracWidth:0] a_i,
+  input  logic [ExpWidth+FracWidth:0] b_i,
+  input  logic                        subtract_i,
+  input  logic [2:0]                  rounding_mode_i,
+  input  logic                        tininess_after_i,
+  output logic [ExpWidth+FracWidth:0] result_o,
+  output fp_pkg::flags_t              flags_o
+);
+
+  logic [15:0] mutant  /*verilator public_flat_rw*/;
+
+  fp_adder_gates u_gates (
+    .a_i,
+    .b_i,
+    .subtract_i,
+    .rounding_mode_i,
+    .tininess_after_i,
+    .mutant,
+    .result_o,
+    .flags_o
+  );
+
+endmodule
