@@ -19,7 +19,7 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help cpu verilate example wave render gallery frames test python check mutate fuzz lint format clean
+.PHONY: help cpu verilate example page wave render gallery frames test python check mutate fuzz lint format clean
 
 help:
 	@for group in use test measure hardware develop; do \
@@ -39,6 +39,10 @@ example: ## use: the paper's worked example, and its waveform for GTKWave
 	@echo "With the paper's divider, whose quotients have 21 bits:"
 	@build/sim/worked_example --paper-divider | tail -n 1
 	@echo 'Waveform: gtkwave build/worked_example.vcd sim/worked_example.gtkw'
+
+page: ## use: the paper's unit in one file for a browser: its registers, clock by clock, and gates to break
+	@$(SETUP) page
+	@python3 -m sim.page build/page/index.html
 
 render: verilate ## use: render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
 	./render $(SCENE) $(ARGS)
@@ -70,11 +74,12 @@ LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
 LONG_kills = RAYGATE_KILLS=$(or $(KILLS),100) build/run_test --gtest_filter='*SurviveBeingKilled'
 LONG_faults = RAYGATE_FAULTS=0 build/faults_test
 LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='KilledRanks.*'
+LONG_page = $(PYTHON) -m unittest sim/page/test/page_test.py
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: ## test: build and run all tests; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=error SEEDS=1000
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=page | LONG=error SEEDS=1000
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults or error))
-	$(call build,test,$(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page or error))
+	$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))),worked_example))
 	@$(LONG_$(LONG))
 else
 	$(call build,test,all)

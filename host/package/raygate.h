@@ -1,5 +1,5 @@
 // raygate's C++ interface: triangles and rays in, exact hits out. The only header that is
-// installed; docs/python.md explains how to use it, host/EMBEDDING.md what it promises about
+// installed; host/docs/python.md explains how to use it, host/EMBEDDING.md what it promises about
 // threads, signals, memory, exceptions and fork.
 #pragma once
 

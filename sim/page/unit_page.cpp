@@ -1,5 +1,5 @@
-// The paper's hit-test unit for the page of `make page`: one test, clock by clock, with a sound adder or one with
-// a broken gate.
+// The paper's hit-test unit for the page of `make page`: one test, clock by clock, with a sound
+// adder or one with a broken gate.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,8 +22,8 @@ struct Row {
 }  // namespace
 
 /// Sends I, N and d (seven binary32 words) through the unit; `fault` is 0, or the number of a fault
-/// in its adder (the netlist's list). Returns ten rows of nine words, one for each clock edge, valid
-/// until the next call.
+/// in its adder (the netlist's list). Returns ten rows of nine words, one for each clock edge,
+/// valid until the next call.
 extern "C" const std::uint32_t* run_unit(const std::uint32_t* words, std::uint32_t fault) {
   static std::array<Row, kEdges> rows;
   raygate::Model<Vhit_test_unit_page> unit;

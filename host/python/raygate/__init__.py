@@ -114,7 +114,7 @@ class Scene:
         hits: "nearest", a row for each ray; "any", whether there is a hit, sooner; "all", a row for
         each hit of each ray, near before far. columns: ray, hit, triangle, object, material, t,
         point (x, y, z), uv, normal (nx, ny, nz), doubts, unit-point, unit-error; what each means is
-        in docs/reference.md. engine: "cpu", or "model", the hit-test unit's reference model."""
+        in host/docs/reference.md. engine: "cpu", or "model", the hit-test unit's reference model."""
         origins, directions = _rays(origins, directions)
         if limits is not None:
             limits = np.ascontiguousarray(_numbers("limits", limits))

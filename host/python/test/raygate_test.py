@@ -121,7 +121,7 @@ class Trace(unittest.TestCase):
 
 class Pages(unittest.TestCase):
     def test_lines_of_readme_and_tutorial_run(self):
-        blocks = [re.findall(r"```python\n(.*?)```", (SCENES.parent / page).read_text(), re.DOTALL) for page in ("README.md", "docs/python.md")]
+        blocks = [re.findall(r"```python\n(.*?)```", (SCENES.parent / page).read_text(), re.DOTALL) for page in ("README.md", "host/docs/python.md")]
         self.assertTrue(all(blocks))
         before = os.getcwd()
         with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
