@@ -1,4 +1,4 @@
-// scene.json: what an OBJ file cannot say of a scene. host/docs/reference.md has the format for users.
+// scene.json: what an OBJ file cannot say of a scene; host/docs/reference.md has its format.
 #pragma once
 
 #include <cstddef>
