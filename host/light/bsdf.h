@@ -39,8 +39,8 @@ namespace raygate {
 /// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is what
 /// is under the facets, `glossy` what rough facets reflect (up to what they hide from each other)
 /// and `mirror` what smooth ones do; glass is `mirror` and `transmission`. Where glass is rough,
-/// these two are its shares straight on: what a facet does, it says itself, and light from light
-/// sources comes by it by chance alone.
+/// these two are its shares straight on, and scattered: eval(), sample() and pdf() have them, to
+/// both sides.
 ///
 /// T is float or FloatLanes: hits of one kind, each with a material of its own.
 template <class T>
@@ -64,46 +64,53 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& emission() const { return emission_; }
   /// Radiance that is only there to be seen: illum 0.
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& unlit() const { return unlit_; }
-  /// Whether light from a direction of its own is scattered: diffuse or glossy.
+  /// Whether light from a direction of its own is scattered: diffuse or glossy, or by rough glass.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
-    return largest(diffuse_ + glossy_) > 0.0f;
+    return largest(diffuse_) + glossy_sum() > 0.0f;
+  }
+  /// What all of that brings, about.
+  [[nodiscard]] RAYGATE_INLINE T scattered_share() const {
+    return has_rough_glass() ? largest(diffuse_) + glossy_sum() : largest(diffuse_ + glossy_);
   }
 
-  /// Diffuse and glossy reflection, per steradian and without the cosine, from unit direction
-  /// `light`; 0 from behind.
+  /// Scattered per steradian and without the cosine, from unit direction `light`; from behind by
+  /// rough glass alone.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     if ((kind_ & kMetallicRoughness) != 0) {
-      return above(light, facets_.eval(light, (kind_ & kGlossy) != 0, false));
+      const Triple<T> reflected = above(light, facets_.eval(light));
+      return has_rough_glass() ? reflected + facets_.transmitted(light).value : reflected;
     }
     return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * phong_lobe(light)
                                                : diffuse_ * per_pi());
   }
   /// The same with the mirror as a highlight, for point lights.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval_for_point_light(const Triple<T>& light) const {
-    if ((kind_ & (kGlossy | kMirrors)) == 0) return eval(light);
-    if ((kind_ & kMetallicRoughness) != 0) {
-      return above(light, facets_.eval(light, (kind_ & kGlossy) != 0, has_rough_glass()));
-    }
+    if ((kind_ & (kGlossy | kMirrors)) == 0 || (kind_ & kMetallicRoughness) != 0)
+      return eval(light);
     const Triple<T> shown = choose(exponent_ > 1.0f, mirror_, zero<T>());
     return above(light, diffuse_ * per_pi() + (glossy_ + shown) * phong_lobe(light));
   }
 
-  /// A direction for diffuse or glossy reflection, chosen for a point of the unit square, nearly
-  /// in proportion to what it brings. May point behind the surface: it brings nothing then.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
+  /// A direction in which light is scattered, chosen for a point of the unit square, nearly in
+  /// proportion to what it brings. May point behind the surface, or be 0: it brings nothing then,
+  /// but behind rough glass. `choice` in [0, 1): see MetallicRoughnessLobes::sample.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u,
+                                                const T& choice = T{}) const;
   /// The pdf of sample() per steradian.
   [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
     const T diffuse = at_least(dot(normal_, light), 0.0f) * kPerPi;
     if ((kind_ & kGlossy) == 0) return diffuse;
     const T share = glossy_share();
     if ((kind_ & kMetallicRoughness) != 0) {
-      return (1.0f - share) * diffuse + share * facets_.pdf(light);
+      const T glossy = choose(dot(normal_, light) > 0.0f, facets_.pdf(light), T{});
+      return (1.0f - share) * diffuse +
+             share * (has_rough_glass() ? glossy + facets_.transmitted(light).pdf : glossy);
     }
     return (1.0f - share) * diffuse +
            share * (phong_lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
   }
 
-  /// Whether what a facet mirrors and lets through is for that facet to say.
+  /// Whether light is scattered to both sides.
   [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
     return (~kind_ & (kMetallicRoughness | kGlossy | kMirrors)) == 0;
   }
@@ -118,8 +125,12 @@ class Bsdf {
                                                const Triple<T>& value) const {
     return choose(dot(normal_, light) > 0.0f, value, zero<T>());
   }
+  [[nodiscard]] RAYGATE_INLINE T glossy_sum() const {
+    const T glossy = largest(glossy_);
+    return has_rough_glass() ? glossy + largest(mirror_) + largest(transmission_) : glossy;
+  }
   [[nodiscard]] RAYGATE_INLINE T glossy_share() const {
-    const T glossy = largest(glossy_), sum = glossy + largest(diffuse_);
+    const T glossy = glossy_sum(), sum = glossy + largest(diffuse_);
     return choose(glossy > 0.0f, glossy / sum, T{});
   }
 
@@ -170,7 +181,7 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     unlit_ = colour * gather<T>(materials, &Material::unlit);
   }
   if ((kind & kMetallicRoughness) != 0) {
-    facets_ = MetallicRoughnessLobes<T>(surface, (kind & kGlossy) != 0, materials);
+    facets_ = MetallicRoughnessLobes<T>(surface, kind, materials);
     set_facets();
     return;
   }
@@ -205,23 +216,32 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     glossy_ = glossy_ * scale;
     mirror_ = mirror_ * scale;
   }
+  if ((~kind & (kInterpolates | kTransmits)) != 0) return;
+  diffuse_ = diffuse_ * surface.opacity;
+  glossy_ = glossy_ * surface.opacity;
+  mirror_ = mirror_ * surface.opacity;
+  unlit_ = unlit_ * surface.opacity;
+  const T clear = one - surface.opacity;
+  transmission_ = transmission_ * surface.opacity + Triple<T>{clear, clear, clear};
 }
 
 template <class T>
 RAYGATE_INLINE void Bsdf<T>::set_facets() {
-  diffuse_ = facets_.diffuse;
-  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.specular;
-  transmission_ = {facets_.clear, facets_.clear, facets_.clear};
+  diffuse_ = (facets_.diffuse + facets_.multiple) * facets_.under_coat;
+  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.specular * facets_.under_coat;
+  if ((kind_ & kCoated) != 0) glossy_ = glossy_ + facets_.grey(facets_.coat_specular);
+  transmission_ = facets_.grey(facets_.clear);
   if ((~kind_ & (kMirrors | kTransmits)) != 0) return;
   eta_ = facets_.eta;
   is_refracting_ = facets_.is_glass;
-  const T mirrored = facets_.glass * fresnel_reflectance(facets_.view_cosine, eta_);
-  mirror_ = mirror_ + Triple<T>{mirrored, mirrored, mirrored};
-  transmission_ = choose(is_refracting_, facets_.tint * (facets_.glass - mirrored), transmission_);
+  const T glass = facets_.glass * facets_.under_coat;
+  const T mirrored = glass * fresnel_reflectance(facets_.view_cosine, eta_);
+  mirror_ = mirror_ + facets_.grey(mirrored);
+  transmission_ = choose(is_refracting_, facets_.tint * (glass - mirrored), transmission_);
 }
 
 template <class T>
-RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u) const {
+RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u, const T& choice) const {
   const auto turn = sine_cosine(wide(u.y));
   const T turned_x = narrow(turn.cosine), turned_y = narrow(turn.sine);
   if ((kind_ & kGlossy) == 0) {
@@ -235,8 +255,7 @@ RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u) const {
   const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
   if ((kind_ & kMetallicRoughness) != 0) {
     // The same point of the square for both: each lane has use for one of them.
-    const Triple<T> facet = facets_.ggx.sample(view_, {rest, u.y});
-    return choose(is_glossy, reflect(view_, facet),
+    return choose(is_glossy, facets_.sample({rest, u.y}, choice),
                   spherical_direction(normal_, root(1.0f - rest), root(rest), turned_x, turned_y));
   }
   const auto cosine = power(wide(at_least(rest, 0x1p-24f)), 1.0 / (wide(exponent_) + 1.0));

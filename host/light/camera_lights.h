@@ -16,6 +16,8 @@ struct CameraLights {
   /// What mirrors and light from all around show in place of the background, which the camera
   /// sees; of the same mean radiance.
   std::optional<EnvironmentMap> studio{};
+  /// Of balls in place of the points, which are beyond the scene: their shadows are soft.
+  double radius = 0.0;
 };
 
 }  // namespace raygate

@@ -157,6 +157,7 @@ std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& cam
   if (!places.is_inside()) lights.points.push_back(places.fill());
   if (lights.background == glm::vec3(0.0f)) lights.background = kDimSky;
   if (!places.is_inside()) lights.studio = studio(camera, lights.background);
+  if (!places.is_inside()) lights.radius = 0.5 * places.size();
   return lights;
 }
 

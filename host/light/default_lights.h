@@ -17,8 +17,8 @@ class Camera;
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera);
 
 /// The same for a first look, whose camera nobody chose: with a second, weaker light from the
-/// right, and also where all the light there is is a background, or faces that glow but light
-/// nothing.
+/// right, with soft shadows, and also where all the light there is is a background, or faces that
+/// glow but light nothing.
 [[nodiscard]] std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera);
 
 }  // namespace raygate

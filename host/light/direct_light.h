@@ -26,33 +26,38 @@ template <class T>
 struct DirectionToLight {
   Triple<T> direction;  ///< unit vector
   T distance_squared;
-  MaskOf<T> is_in_front;  ///< it leads away from the surface, and somewhere
+  T cosine;  ///< as Hits::cosine has it; 0 where they lead nowhere
 
-  RAYGATE_INLINE DirectionToLight(const Lights& lights, const Surface<T>& surface,
+  RAYGATE_INLINE DirectionToLight(const Lights& lights, const Hits<T>& hits,
                                   const Triple<T>& place) {
     constexpr float kNear = 1e-30f;  // floats have room for the inverse
-    const Triple<T> way = (place - surface.point) * spread<T>(lights.per_unit());
+    const Triple<T> way = (place - hits.surface.point) * spread<T>(lights.per_unit());
     distance_squared = dot(way, way);
     direction = way * (1.0f / root(distance_squared));
-    is_in_front = (distance_squared > kNear) & (dot(surface.flat_normal, direction) > 0.0f);
+    cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
 };
 
-/// Asks for light that is `light` where nothing is between; `number` says which of its hit's
-/// samples it is.
+/// Asks for light from a direction that is `light` where nothing is between; `number` says which of
+/// its hit's samples it is.
 template <class T>
 RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number, const MaskOf<T>& is_asked,
-                                     const Triple<T>& light,
+                                     const Triple<T>& towards, const Triple<T>& light,
                                      const std::uint32_t (&indices)[LanesOf<T>::kCount],
                                      const LightPoint<T>& point) {
   const auto asked = unpack(is_asked);
   const auto radiances = unpack(light), points = unpack(point.position);
   const auto primitives = unpack(point.primitive);
+  const auto is_behind = unpack(dot(hits.surface.flat_normal, towards) < 0.0f);
   for (int k = 0; k < hits.count; ++k) {
     if (!asked[k]) continue;
     const bool is_dark = radiances[k] == glm::vec3(0.0f);
     hits.block.light_sample(hits.place[k], number) = {
-        is_dark ? LightSample::kDark : LightSample::kToTrace, radiances[k], indices[k], points[k],
+        is_dark ? LightSample::kDark : LightSample::kToTrace,
+        radiances[k],
+        !is_dark && is_behind[k] ? SpawnSide::kTransmitted : SpawnSide::kIncident,
+        indices[k],
+        points[k],
         primitives[k]};
   }
 }
@@ -62,11 +67,10 @@ template <class T>
 RAYGATE_INLINE Triple<T> point_light_contribution(const Hits<T>& hits, const Lights& lights,
                                                   const Triple<T>& position,
                                                   const Triple<T>& intensity, const T& chance) {
-  const DirectionToLight<T> to_light(lights, hits.surface, position);
-  const T cosine = at_least(dot(hits.surface.normal, to_light.direction), 0.0f);
+  const DirectionToLight<T> to_light(lights, hits, position);
   const Triple<T> light = hits.throughput * hits.bsdf.eval_for_point_light(to_light.direction) *
-                          intensity * (cosine / (to_light.distance_squared * chance));
-  return choose(to_light.is_in_front, bounded(light), zero<T>());
+                          intensity * (to_light.cosine / (to_light.distance_squared * chance));
+  return choose(to_light.cosine > 0.0f, bounded(light), zero<T>());
 }
 
 /// a^2 / (a^2 + b^2), where a may be infinite.
@@ -87,7 +91,7 @@ RAYGATE_INLINE Triple<T> sky(const Lights& lights, const Triple<T>& direction) {
 template <class T>
 RAYGATE_INLINE T spot_cosine(const Hits<T>& hits, const Lights& lights, const Triple<T>& position,
                              const Triple<T>& axis) {
-  return -dot(DirectionToLight<T>(lights, hits.surface, position).direction, axis);
+  return -dot(DirectionToLight<T>(lights, hits, position).direction, axis);
 }
 
 /// The light of one direction that surfaces scatter, per chance; `towards` is a unit vector, and
@@ -98,9 +102,9 @@ RAYGATE_INLINE Triple<T> directional_light_contribution(const Hits<T>& hits,
                                                         const Triple<T>& scattered,
                                                         const Triple<T>& irradiance,
                                                         const T& chance) {
-  const T cosine = at_least(dot(hits.surface.normal, towards), 0.0f);
+  const T cosine = hits.cosine(towards);
   const Triple<T> light = hits.throughput * scattered * irradiance * (cosine / chance);
-  return choose(dot(hits.surface.flat_normal, towards) > 0.0f, bounded(light), zero<T>());
+  return choose(cosine > 0.0f, bounded(light), zero<T>());
 }
 
 /// The light of points of lights; `weighted` is radiance over the pdf of the point, per area,
@@ -110,11 +114,10 @@ RAYGATE_INLINE Triple<T> area_light_contribution(const Hits<T>& hits,
                                                  const DirectionToLight<T>& to_light,
                                                  const LightPoint<T>& point,
                                                  const Triple<T>& weighted) {
-  const T cosines = at_least(dot(hits.surface.normal, to_light.direction), 0.0f) *
-                    absolute(dot(point.normal, to_light.direction));
+  const T cosines = to_light.cosine * absolute(dot(point.normal, to_light.direction));
   const Triple<T> light = hits.throughput * hits.bsdf.eval(to_light.direction) *
                           (cosines / to_light.distance_squared) * weighted;
-  return choose(to_light.is_in_front, bounded(light), zero<T>());
+  return choose(to_light.cosine > 0.0f, bounded(light), zero<T>());
 }
 
 }  // namespace raygate

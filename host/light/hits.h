@@ -28,9 +28,10 @@ struct LightSample {
     kToTrace,
   };
   State state = kNone;
-  glm::vec3 radiance{0.0f};  ///< what arrives if nothing is between
+  glm::vec3 radiance{0.0f};               ///< what arrives if nothing is between
+  SpawnSide side = SpawnSide::kIncident;  ///< transmitted: by rough glass
   std::uint32_t light_index = 0;
-  glm::vec3 point{0.0f};  ///< of an area light
+  glm::vec3 point{0.0f};  ///< of an area light; or, without a primitive, the direction to any other
   std::uint32_t primitive = 0;
 };
 
@@ -137,6 +138,18 @@ struct Hits {
     }
     bsdf = Bsdf<T>(surface, kind, materials);
     if (hits.first_surfaces != nullptr) show_first_surfaces();
+  }
+
+  /// The cosine of light from a unit direction; 0 where the surface scatters none of it: from the
+  /// other side of the triangle, or, of rough glass, where its two normals do not agree on a side.
+  [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
+    const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
+    if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
+    return choose((flat > 0.0f) == (cosine > 0.0f), absolute(cosine), T{});
+  }
+  /// What chooses lights: the normal, or 0 where light from both sides counts.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> lit_normal() const {
+    return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
   /// A point of the rays' own random streams for this purpose.

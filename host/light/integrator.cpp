@@ -187,7 +187,8 @@ void Integrator::list_spawn_queries(std::size_t i) {
       ++block_.skipped.lights_behind;
       light_sample.state = LightSample::kNone;
     }
-    any_incident = any_incident || light_sample.state != LightSample::kNone;
+    (light_sample.side == SpawnSide::kIncident ? any_incident : any_transmitted) |=
+        light_sample.state != LightSample::kNone;
   }
   for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {
     ScatteredRay& scattered = block_.scattered_ray(i, number);
@@ -236,14 +237,15 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
   for (std::size_t number = 0; number < block_.light_samples_per_hit; ++number) {
     const LightSample& light_sample = block_.light_sample(i, number);
     if (light_sample.state == LightSample::kNone) continue;
-    const auto& origin = origin_on(SpawnSide::kIncident);
+    const auto& origin = origin_on(light_sample.side);
     if (!origin) continue;
     ShadowRay& shadow = output.shadows.emplace_back();
     shadow.sample = state.sample;
     shadow.radiance = light_sample.radiance;
     shadow.surface = *origin;
     shadow.surface_slot = place.primitive;
-    if (shading_.lights.light(light_sample.light_index).kind == Lights::Kind::kPoint) {
+    const Lights::Light& light = shading_.lights.light(light_sample.light_index);
+    if (light.kind == Lights::Kind::kPoint && light.radius == 0.0f) {
       shadow.point_light = light_sample.light_index;
     } else {
       shadow.target = light_sample.point;

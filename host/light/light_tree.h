@@ -44,8 +44,8 @@ class LightTree {
     std::uint32_t source = kNoIndex;  ///< kNoIndex: none, no light would come
     float pmf = 0.0f;                 ///< of having been chosen
   };
-  /// For u in [0, 1), where any source has power. T is float or FloatLanes: so many children are
-  /// weighed at a time.
+  /// For u in [0, 1), where any source has power; a normal of 0 is that of a surface that light
+  /// reaches from all sides. T is float or FloatLanes: so many children are weighed at a time.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Sample sample(const glm::vec3& point, const glm::vec3& normal,
                                              double u) const;
@@ -109,7 +109,8 @@ RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& poi
     const auto sine_of = [](const T& cosine)
                              RAYGATE_BODY { return root(at_least(1.0f - cosine * cosine, 0.0f)); };
     const T arriving = dot(way, spread<T>(normal)) * per_distance;
-    const T received = less_ball(arriving, sine_of(arriving)) + kMargin;
+    const T received =
+        normal == glm::vec3(0.0f) ? one : less_ball(arriving, sine_of(arriving)) + kMargin;
 
     const Triple<T> axis = {lanes_from<T>(node.axis_x + k), lanes_from<T>(node.axis_y + k),
                             lanes_from<T>(node.axis_z + k)};

@@ -134,6 +134,7 @@ class Lights {
     /// one direction irradiance; of the environment nothing.
     glm::vec3 emission{0.0f};
     glm::vec3 position{0.0f};  ///< of a point light; or the direction towards the light
+    float radius = 0.0f;       ///< of a point light: it is a ball, beyond all of the scene
     SpotFalloff spot;
     float area = 0.0f;         ///< in square units
     bool is_textured = false;  ///< `emission` is the mean; radiance_at() has it at a point
@@ -169,6 +170,17 @@ class Lights {
     return gather<T>([&](int k) RAYGATE_BODY {
       return lights[k]->is_textured ? textured_radiance(primitives[k], points[k]) : plain[k];
     });
+  }
+
+  /// Where on a point light light comes from to a place: its position, or a point of its disc.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE static Triple<T> point_on(const Triple<T>& position, const T& radius,
+                                                         const Triple<T>& from,
+                                                         const SquarePoint<T>& u) {
+    const auto turn = sine_cosine(wide(u.y));
+    const Triple<T> towards = normalized(from - position);
+    return position + spherical_direction(towards, T{}, radius * root(u.x), narrow(turn.cosine),
+                                          narrow(turn.sine));
   }
 
   // For sampling one light at a time:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/light/facet_albedo.h"
 #include "host/light/scattering.h"
 
 namespace raygate {
@@ -25,7 +26,9 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   if (index == 1.0f) index = 1.5f;
   const float root = (index - 1.0f) / (index + 1.0f);
   specular = std::clamp(shares.specular, 0.0f, 1.0f);
-  reflectance = specular * limited(root * root * shares.specular_color);
+  reflectance = root * root * shares.specular_color;
+  coat = std::clamp(shares.coat, 0.0f, 1.0f);
+  coat_roughness = std::clamp(shares.coat_roughness, 0.0f, 1.0f);
   const bool has_map = shares.map.texture != kNoIndex;
   refracts = transmission > 0.0f && (metallic < 1.0f || has_map);
   is_glass = is_fresnel = false;
@@ -34,11 +37,17 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   transmittance = glm::vec3(1.0f - opacity);
   // A texture may leave any roughness: it is never smooth, only nearly.
   roughness = std::clamp(shares.roughness, 0.0f, 1.0f);
-  const bool is_rough = has_map || roughness * roughness >= Ggx<float>::kLeast;
+  // Nor is what is under a coat: one kind of lobes under another one.
+  const bool is_rough = has_map || coat > 0.0f || roughness * roughness >= Ggx<float>::kLeast;
   kind |= kMetallicRoughness | (is_rough ? kGlossy : kMirrors);
+  if (is_rough) facet_albedo = &FacetAlbedo::of_mirrors();
+  if (is_rough && refracts) glass_albedo = &FacetAlbedo::of_glass(index);
+  if (coat > 0.0f) kind |= kCoated;
   if (refracts) kind |= kMirrors;
   if (refracts || opacity < 1.0f) kind |= kTransmits;
-  if (has_map) kind |= kInterpolates;
+  for_each_map(shares, [&](const MaterialMap& map) {
+    if (map.texture != kNoIndex) kind |= kInterpolates;
+  });
 }
 
 MaterialParameters::MaterialParameters(const Material& material) {
@@ -56,7 +65,8 @@ MaterialParameters::MaterialParameters(const Material& material) {
   if (material.diffuse_texture != kNoIndex) kind |= kInterpolates;
   if (material.emission_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.normal_map.texture != kNoIndex) kind |= kInterpolates | kIsBumpy;
-  has_mask = material.opacity_map.texture != kNoIndex;
+  has_mask = material.opacity_map.texture != kNoIndex && !material.opacity_blends;
+  if (material.opacity_blends) kind |= kInterpolates | kTransmits;
   if (material.metallic_roughness) {
     set(material, *material.metallic_roughness);
     return;

@@ -8,6 +8,8 @@
 
 namespace raygate {
 
+class FacetAlbedo;
+
 /// Features of a hit's material: a set of these bits. Hits with the same set are shaded together.
 using HitKind = std::uint32_t;
 inline constexpr HitKind kInterpolates = 1;  ///< something is interpolated between the vertices
@@ -18,7 +20,8 @@ inline constexpr HitKind kTransmits = 16;          ///< light passes
 inline constexpr HitKind kShadowCatcher = 32;      ///< of the background's colour but for shadows
 inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; rough where it is glossy
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
-inline constexpr HitKind kHitKinds = 256;          ///< sets are less than that
+inline constexpr HitKind kCoated = 256;  ///< a clear coat: of kMetallicRoughness and kGlossy alone
+inline constexpr HitKind kHitKinds = 512;  ///< sets are less than that
 
 /// The lobes of a material before an angle is known. MTL's illumination models (Bsdf has the table)
 /// and metallic-roughness materials meet in this record.
@@ -39,9 +42,12 @@ struct MaterialParameters {
   bool mirror_is_traced = true;
   /// Of a metallic-roughness material, which has the textures' colours in all its shares:
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
-  float specular = 1.0f;         ///< of what is not metallic, at grazing angles
-  glm::vec3 reflectance{0.04f};  ///< and straight on
-  HitKind kind = 0;              ///< without what depends on the triangle
+  float specular = 1.0f;         ///< of what is not metallic, at grazing angles; and, times this,
+  glm::vec3 reflectance{0.04f};  ///< straight on, limited to 1
+  float coat = 0.0f, coat_roughness = 0.0f;
+  const FacetAlbedo* facet_albedo = nullptr;  ///< of what is rough,
+  const FacetAlbedo* glass_albedo = nullptr;  ///< and of what is rough glass
+  HitKind kind = 0;                           ///< without what depends on the triangle
 
   bool has_mask =
       false;  ///< is_masked_out may say that it is not there: hits have transparent() then

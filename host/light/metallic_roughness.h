@@ -1,7 +1,9 @@
-// Metallic-roughness lobes (glTF 2.0): GGX facets over a diffuse base, or rough glass.
+// Metallic-roughness lobes (glTF 2.0): GGX facets over a diffuse base, or rough glass; a clear
+// coat.
 #pragma once
 
 #include "host/base/lane_math.h"
+#include "host/light/facet_albedo.h"
 #include "host/light/material_parameters.h"
 #include "host/light/sampler.h"
 #include "host/light/scattering.h"
@@ -22,110 +24,193 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 ///
 /// * Facets (Ggx) reflect f0 + (f90 - f0) s of what meets them: f0 = m c + (1 - m)(1 - t) r0 and
 ///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).
-/// * Under them is (1 - m)(1 - t) c (1 - r0's largest part)(1 - h(view))(1 - h(light)) / (1 - h's
-/// mean), diffuse:
-///   what glTF 2.0 leaves to implementations. h is a little more than what rough facets reflect for
-///   s (CoatAlbedo, below), so that both never add up to more than arrives; and both are the same
-///   there and back.
+/// * What meets more facets than one, 1 - E (FacetAlbedo), comes back in a wide lobe, (1 - E(view))
+///   (1 - E(light)) / (1 - E's mean), weaker by what facets absorb ("Revisiting physically based
+///   shading at Imageworks", Kulla and Conty 2017; F^2 in place of F as Hill has it).
+/// * Under the facets of what is no metal is (1 - m)(1 - t) c (1 - h(view))(1 - h(light)) /
+///   (1 - h's mean), diffuse; h is the share that both lobes reflect, where they reflect most. So
+///   white neither makes nor loses light, and all is the same there and back.
 /// * The share (1 - m) t is glass with such facets: Fresnel's formula, and c times what goes
-///   through.
+///   through. Both are divided by what leaves glass after one facet ("Practical multiple scattering
+///   compensation for microfacet models", Turquin 2019), which is not the same there and back.
+/// * Over all is a clear coat (KHR_materials_clearcoat) with facets of its own that reflect r =
+/// 0.04
+///   + 0.96 s: what is below is multiplied by 1 - h of the coat on the way in and on the way out.
 ///
-/// All is multiplied with the opacity. T is float or FloatLanes.
+/// All but glass is multiplied with the opacity. T is float or FloatLanes.
 template <class T>
 struct MetallicRoughnessLobes {
-  /// An upper bound of what facets of a whole surface reflect where one reflects Schlick's share s:
-  /// s / (1 + k s) and a little in the middle, fitted to the integral over the facets; its error is
-  /// below 1e-4 where it is too small, and 0.06 where it is too large. The mean is over a cosine.
-  struct CoatAlbedo {
-    T k, middle;
+  using Shares = FacetAlbedo::Shares<T>;
 
-    CoatAlbedo() = default;
-    RAYGATE_INLINE explicit CoatAlbedo(const T& alpha)
-        : k(18.0f * alpha * alpha / (alpha + 0.07f)), middle(at_most(0.5f * alpha, 0.055f)) {}
-    [[nodiscard]] RAYGATE_INLINE T at(const T& cosine) const {
-      const T share = schlick_weight(cosine), both = (1.0f - cosine) * cosine;
-      return share / (1.0f + k * share) + middle * both * both;
-    }
-    [[nodiscard]] RAYGATE_INLINE T mean() const {
-      return (1.0f / 21.0f) / (1.0f + 0.33f * k) + middle * (1.0f / 30.0f);
-    }
-  };
-
+  HitKind kind;
+  const FacetAlbedo* albedo;
   Triple<T> view;
   Ggx<T> ggx;
-  CoatAlbedo coat_albedo;
+  T alpha;
   T view_cosine;  ///< off 0: it is divided by
   Triple<T> f0;
   T f90;
-  Triple<T> specular;  ///< what facets reflect of the view, but for what they hide
-  Triple<T> diffuse;   ///< what is diffuse of it
+  Triple<T> specular;  ///< what the view sees of facets after one of them,
+  Triple<T> multiple;  ///< after several,
+  Triple<T> diffuse;   ///< and of what is under them; without the coat's share
   T glass, eta;        ///< the share of glass; its index beyond the border over that before
+  T glass_gain;        ///< what makes up for light that meets several facets of glass
   MaskOf<T> is_glass;
-  Triple<T> tint;  ///< c
-  T clear;         ///< what the opacity leaves
+  Triple<T> tint;   ///< c
+  T clear;          ///< what the opacity leaves
+  Ggx<T> coat_ggx;  ///< of kCoated alone, as is coat_alpha
+  T coat_alpha;
+  T coat, coat_specular;  ///< its weight; what the view sees of it
+  T under_coat;           ///< what the view sees of all that is under it
 
   MetallicRoughnessLobes() = default;
   RAYGATE_INLINE MetallicRoughnessLobes(
-      const Surface<T>& surface, bool is_rough,
-      const MaterialParameters* const (&materials)[LanesOf<T>::kCount]) {
+      const Surface<T>& surface, HitKind hit_kind,
+      const MaterialParameters* const (&materials)[LanesOf<T>::kCount])
+      : kind(hit_kind), albedo(materials[0]->facet_albedo), view(surface.view) {
     using Material = MaterialParameters;
-    const T one = spread<T>(1.0f), opacity = gather<T>(materials, &Material::opacity);
-    clear = one - opacity;
+    const T one = spread<T>(1.0f);
     tint = clamped(surface.colour);
     const T metallic = gather<T>(materials, &Material::metallic) * surface.metallic;
     const T roughness = gather<T>(materials, &Material::roughness) * surface.roughness;
-    view = surface.view;
-    const T alpha = at_least(roughness * roughness, Ggx<T>::kLeast);
+    alpha = at_least(roughness * roughness, Ggx<T>::kLeast);
     ggx = Ggx<T>(surface.normal, alpha);
     view_cosine = at_most(at_least(dot(surface.normal, view), 0x1p-20f), 1.0f);
-    glass = (one - metallic) * gather<T>(materials, &Material::transmission);
-    const T plastic = at_least((one - metallic) - glass, 0.0f);
-    const Triple<T> reflectance = gather<T>(materials, &Material::reflectance);
-    f0 = (tint * metallic + reflectance * plastic) * opacity;
-    f90 = ((one - glass) - plastic * (one - gather<T>(materials, &Material::specular))) * opacity;
-    coat_albedo = CoatAlbedo(is_rough ? alpha : T{});
-    const T share = coat_albedo.at(view_cosine);
-    specular = schlick(share);
-    diffuse = tint * (plastic * (one - largest(reflectance)) * (one - share) * opacity);
-    const T index = gather<T>(materials, &Material::index);
+    glass =
+        (one - metallic) * (gather<T>(materials, &Material::transmission) * surface.transmission);
     is_glass = glass > 0.0f;
+    const T opacity =
+        choose(is_glass, one, gather<T>(materials, &Material::opacity) * surface.opacity);
+    clear = one - opacity;
+    const T index = gather<T>(materials, &Material::index);
     eta = choose(is_glass, choose(surface.outside, index, one / index), one);
-  }
+    const T plastic = at_least((one - metallic) - glass, 0.0f);
+    weight_ = gather<T>(materials, &Material::specular) * surface.specular;
+    const Triple<T> reflectance =
+        clamped(gather<T>(materials, &Material::reflectance) * surface.specular_color) * weight_;
+    most_ = largest(reflectance);
+    f0 = (tint * metallic + reflectance * plastic) * opacity;
+    f90 = ((one - glass) - plastic * (one - weight_)) * opacity;
 
-  /// Per steradian and without the cosine, for a direction before the surface; `is_rough`: with
-  /// what facets reflect; `with_glass`: also those of glass.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light, bool is_rough,
-                                              bool with_glass) const {
-    constexpr float kPerPi = 0.318309886183790671537767526745f;
-    const T cosine = at_least(dot(ggx.normal, light), 0.0f);
-    const Triple<T> lambert = diffuse * (kPerPi * (1.0f - coat_albedo.at(at_most(cosine, 1.0f))) /
-                                         (1.0f - coat_albedo.mean()));
-    if (!is_rough) return lambert;
-    const auto pair = ggx.pair(view, light);
-    Triple<T> reflected_there = schlick(schlick_weight(pair.cos_half));
-    if (with_glass) {
-      const T inner = at_most(pair.cos_half, 1.0f);
-      reflected_there = reflected_there + grey(glass * fresnel_reflectance(inner, eta));
+    const Shares seen = shares_at(view_cosine), mean = mean_shares();
+    specular = f0 * (seen.first - seen.second) + grey(f90) * seen.second;
+    plastic_again_ = again(most_, weight_, mean);
+    const auto again_of = [&](const T& straight, const T& dielectric) RAYGATE_BODY {
+      return metallic * again(straight, one, mean) + plastic * again(dielectric, weight_, mean);
+    };
+    const T lost = at_least(1.0f - seen.first, 0.0f);
+    multiple = Triple<T>{again_of(tint.x, reflectance.x), again_of(tint.y, reflectance.y),
+                         again_of(tint.z, reflectance.z)} *
+               (lost * opacity);
+    diffuse = tint * (plastic * (one - reflected(seen)) * opacity);
+    per_lost_mean_ = kPerPi / at_least(1.0f - mean.first, 0x1p-20f);
+    per_left_mean_ = kPerPi / at_least(1.0f - reflected(mean), 0x1p-20f);
+    glass_gain = under_coat = one;
+    if (has_rough_glass()) {
+      const auto table_of = [&](int k) RAYGATE_BODY -> const FacetAlbedo& {
+        return *materials[k]->glass_albedo;
+      };
+      const Shares left = FacetAlbedo::at<T>(table_of, view_cosine, alpha);
+      glass_gain = one / choose(surface.outside, left.first, left.second);
     }
-    return lambert + reflected_there * (pair.d * ggx.visibility(view_cosine, cosine));
+    if (!is_coated()) return;
+    const T coat_roughness =
+        gather<T>(materials, &Material::coat_roughness) * surface.coat_roughness;
+    coat_alpha = at_least(coat_roughness * coat_roughness, Ggx<T>::kLeast);
+    coat_ggx = Ggx<T>(surface.normal, coat_alpha);
+    coat = gather<T>(materials, &Material::coat) * surface.coat;
+    const T share = coat_share(view_cosine);
+    under_coat = one - share;
+    coat_specular = share * opacity;
   }
 
-  /// How likely reflect(view, ggx.sample(view, ..)) is, per steradian.
-  [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
-    return ggx.reflection_pdf(view_cosine, ggx.pair(view, light).d);
+  [[nodiscard]] RAYGATE_INLINE bool is_rough() const { return (kind & kGlossy) != 0; }
+  [[nodiscard]] RAYGATE_INLINE bool is_coated() const { return (kind & kCoated) != 0; }
+  [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
+    return (~kind & (kGlossy | kMirrors)) == 0;
   }
 
-  /// One facet of glass, chosen among those that the view sees, and what Fresnel's formula gives
-  /// it.
-  struct SampledFacet {
-    Triple<T> normal;
-    T reflectance;
+  /// Reflected per steradian and without the cosine, for a direction before the surface.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
+    const T cosine = at_most(at_least(dot(ggx.normal, light), 0.0f), 1.0f);
+    const Shares there = shares_at(cosine);
+    Triple<T> sum = diffuse * ((1.0f - reflected(there)) * per_left_mean_) +
+                    multiple * (at_least(1.0f - there.first, 0.0f) * per_lost_mean_);
+    if (!is_rough()) return sum;
+    const auto pair = ggx.pair(view, light);
+    Triple<T> mirrored = schlick(schlick_weight(pair.cos_half));
+    if (has_rough_glass()) {
+      mirrored = mirrored +
+                 grey(glass * glass_gain * fresnel_reflectance(at_most(pair.cos_half, 1.0f), eta));
+    }
+    sum = sum + mirrored * (pair.d * ggx.visibility(view_cosine, cosine));
+    if (!is_coated()) return sum;
+    const auto coat_pair = coat_ggx.pair(view, light);
+    return sum * (under_coat * (1.0f - coat_share(cosine))) +
+           grey((1.0f - clear) * coat * coat_schlick(schlick_weight(coat_pair.cos_half)) *
+                coat_pair.d * coat_ggx.visibility(view_cosine, cosine));
+  }
+
+  /// The same transmitted by rough glass, for a direction behind the surface (Walter and others,
+  /// equation 21); and how likely its facets send the view there.
+  struct Transmitted {
+    Triple<T> value;
+    T pdf;
   };
-  [[nodiscard]] RAYGATE_INLINE SampledFacet sample_glass_facet(const SquarePoint<T>& u) const {
-    const Triple<T> facet = ggx.sample(view, u);
-    const T cosine = at_most(at_least(dot(facet, view), 0.0f), 1.0f);
-    return {facet, fresnel_reflectance(cosine, eta)};
+  [[nodiscard]] RAYGATE_INLINE Transmitted transmitted(const Triple<T>& light) const {
+    const Triple<T> sum = view + light * eta;
+    const T size = dot(sum, sum), per_size = 1.0f / size;
+    const T along =
+        root(per_size) * choose(dot(sum, ggx.normal) < 0.0f, spread<T>(-1.0f), spread<T>(1.0f));
+    const T before = dot(view, sum) * along, beyond = -dot(light, sum) * along;
+    const T cosine = -dot(ggx.normal, light);
+    const auto is_any = is_glass & (before > 0.0f) & (beyond > 0.0f) & (cosine > 0.0f);
+    const T inner = at_most(before, 1.0f);
+    // Facets per steradian of the light's direction, over the view's part of what they hide.
+    const T facets = 2.0f * ggx.pair(view, light * eta).d * before * beyond *
+                     (eta * eta * per_size) / (view_cosine + ggx.stretched(view_cosine));
+    const T value = glass * glass_gain * (1.0f - fresnel_reflectance(inner, eta)) * facets *
+                    (2.0f / (cosine + ggx.stretched(cosine))) * under_coat;
+    return {choose(is_any, tint * value, zero<T>()),
+            choose(is_any, facets * (1.0f - coat_chance()) * (1.0f - mirrored_chance(inner)), T{})};
   }
+
+  /// A direction after one facet of what is rough: u says which facet, `choice` in [0, 1) what it
+  /// does, which only matters where there are glass or a coat. No direction, 0, where glass would
+  /// send it to the wrong side.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u, const T& choice) const {
+    if (!is_coated() && !has_rough_glass()) return reflect(view, ggx.sample(view, u));
+    const T of_coat = coat_chance();
+    const auto is_coat = choice < of_coat;
+    Ggx<T> met = ggx;
+    if (is_coated()) met.squared = choose(is_coat, coat_ggx.squared, ggx.squared);
+    const Triple<T> facet = met.sample(view, u), mirrored = reflect(view, facet);
+    if (!has_rough_glass()) return mirrored;
+    const T inner = at_most(at_least(dot(view, facet), 0.0f), 1.0f);
+    const Refraction<T> bent(view, facet, eta);
+    const auto is_mirrored =
+        is_coat | (!bent.exists) | ((choice - of_coat) < mirrored_chance(inner) * (1.0f - of_coat));
+    const Triple<T> way = choose(is_mirrored, mirrored, bent.direction);
+    return choose((dot(ggx.normal, way) > 0.0f) == is_mirrored, way, zero<T>());
+  }
+  /// How likely that is, per steradian, for a direction before the surface.
+  [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
+    const auto pair = ggx.pair(view, light);
+    T pdf = ggx.reflection_pdf(view_cosine, pair.d);
+    if (has_rough_glass()) pdf = pdf * mirrored_chance(at_most(pair.cos_half, 1.0f));
+    if (!is_coated()) return pdf;
+    const T of_coat = coat_chance();
+    return (1.0f - of_coat) * pdf +
+           of_coat * coat_ggx.reflection_pdf(view_cosine, coat_ggx.pair(view, light).d);
+  }
+
+  /// How likely a facet that sample() meets is the coat's.
+  [[nodiscard]] RAYGATE_INLINE T coat_chance() const {
+    if (!is_coated()) return T{};
+    const T below = (largest(specular) + glass) * under_coat, sum = coat_specular + below;
+    return choose(sum > 0.0f, coat_specular / sum, T{});
+  }
+
   /// What gets away of what a sampled facet mirrors, or lets through, in this direction.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
@@ -139,9 +224,49 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE Triple<T> schlick(const T& share) const {
     return f0 + (grey(f90) - f0) * share;
   }
+  [[nodiscard]] RAYGATE_INLINE static T coat_schlick(const T& share) {
+    return kCoatReflectance + (1.0f - kCoatReflectance) * share;
+  }
+  [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
+  static constexpr float kPerPi = 0.318309886183790671537767526745f;
+  static constexpr float kCoatReflectance = 0.04f;
+
+  /// Of all light at a cosine, what facets reflect that reflect all, and Schlick's share.
+  [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
+    if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
+    return albedo->at(cosine, alpha);
+  }
+  [[nodiscard]] RAYGATE_INLINE Shares mean_shares() const {
+    if (!is_rough()) return {spread<T>(1.0f), spread<T>(1.0f / 21.0f)};
+    return albedo->mean(alpha);
+  }
+  /// Of what meets several facets, what gets away: each reflects between `straight` and `grazing`.
+  [[nodiscard]] RAYGATE_INLINE static T again(const T& straight, const T& grazing,
+                                              const Shares& mean) {
+    const T each = straight + (grazing - straight) * (1.0f / 21.0f);
+    return each * each * mean.first / (1.0f - each * (1.0f - mean.first));
+  }
+  /// What facets of what is no metal reflect, all in all, in the colour that they reflect best.
+  [[nodiscard]] RAYGATE_INLINE T reflected(const Shares& shares) const {
+    return most_ * (shares.first - shares.second) + weight_ * shares.second +
+           at_least(1.0f - shares.first, 0.0f) * plastic_again_;
+  }
+  [[nodiscard]] RAYGATE_INLINE T coat_share(const T& cosine) const {
+    const Shares shares = albedo->at(cosine, coat_alpha);
+    return coat * (kCoatReflectance * (shares.first - shares.second) + shares.second);
+  }
+  /// How likely sample() mirrors at a facet that is met at this cosine.
+  [[nodiscard]] RAYGATE_INLINE T mirrored_chance(const T& inner) const {
+    const T share = glass * fresnel_reflectance(inner, eta);
+    const T mirrored = largest(schlick(schlick_weight(inner))) + share;
+    const T sum = mirrored + (glass - share) * largest(tint);
+    return choose(sum > 0.0f, mirrored / sum, spread<T>(1.0f));
+  }
+
+  T weight_, most_, plastic_again_;  // w, r0's largest part, again() of these
+  T per_left_mean_, per_lost_mean_;
 };
 
 }  // namespace raygate

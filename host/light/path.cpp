@@ -12,15 +12,15 @@ constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the i
 
 const Lights::Source kNoSource{.per_area = 1.0f};
 
-/// How likely each lobe is to be sampled, in proportion to what it reflects.
+/// How likely each lobe is to be sampled, in proportion to what it reflects; rough glass scatters.
 template <class T>
 struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
 
   RAYGATE_INLINE explicit LobeProbabilities(const Bsdf<T>& bsdf)
-      : mirror(largest(bsdf.mirror())),
-        transmission(largest(bsdf.transmission())),
-        scatter(largest(bsdf.diffuse() + bsdf.glossy())),
+      : mirror(bsdf.has_rough_glass() ? T{} : largest(bsdf.mirror())),
+        transmission(bsdf.has_rough_glass() ? T{} : largest(bsdf.transmission())),
+        scatter(bsdf.scattered_share()),
         sum(mirror + transmission + scatter) {}
 
   /// Of diffuse and glossy reflection together; 0 where nothing is reflected at all.
@@ -68,7 +68,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
   const Lights& lights = shading.lights;
   const SquarePoint<T> u = hits.random(kChooseLight);
   const auto high = unpack(u.x), low = unpack(u.y);
-  const auto points = unpack(hits.surface.point), normals = unpack(hits.surface.normal);
+  const auto points = unpack(hits.surface.point), normals = unpack(hits.lit_normal());
   const Lights::Source* sources[kCount];
   const Lights::Light* chosen[kCount];
   std::uint32_t indices[kCount];
@@ -94,6 +94,12 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                WordOf<T>{} + NearestHit::kNone};
   if (any(is_a(Kind::kPoint))) {
     Triple<T> intensity = emission;
+    const T radius = gather<T>(chosen, &Lights::Light::radius);
+    Triple<T> position = place.position;
+    if (any(radius > 0.0f)) {
+      position =
+          Lights::point_on<T>(position, radius, hits.surface.point, hits.random(kLightPoint));
+    }
     if (any(gather<T>(chosen, &Lights::Light::is_spot))) {
       const auto axis = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.axis; });
       const T scale = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.scale; });
@@ -101,14 +107,15 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
       intensity =
           intensity * spot_falloff(spot_cosine(hits, lights, place.position, axis), scale, offset);
     }
-    add_light_sample<T>(hits, 0, is_a(Kind::kPoint),
-                        point_light_contribution(hits, lights, place.position, intensity, pmf),
-                        indices, place);
+    const Triple<T> towards = position - hits.surface.point;
+    add_light_sample<T>(hits, 0, is_a(Kind::kPoint), towards,
+                        point_light_contribution(hits, lights, position, intensity, pmf), indices,
+                        {towards, zero<T>(), place.primitive});
   }
   if (any(is_a(Kind::kDirection))) {
     const Triple<T> light = directional_light_contribution(
         hits, place.position, hits.bsdf.eval_for_point_light(place.position), emission, pmf);
-    add_light_sample<T>(hits, 0, is_a(Kind::kDirection), light, indices, place);
+    add_light_sample<T>(hits, 0, is_a(Kind::kDirection), place.position, light, indices, place);
   }
   const auto scatters = hits.bsdf.scatters();
   if (const auto is_environment = is_a(Kind::kEnvironment); any(is_environment)) {
@@ -120,7 +127,8 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
         hits, towards, hits.bsdf.eval(towards) * power_heuristic(light_pdf, bsdf_pdf),
         environment.radiance(towards), light_pdf);
     const auto is_valid = scatters & is_environment & (light_pdf > kMinPdf);
-    add_light_sample<T>(hits, 0, is_valid, light, indices, {towards, zero<T>(), place.primitive});
+    add_light_sample<T>(hits, 0, is_valid, towards, light, indices,
+                        {towards, zero<T>(), place.primitive});
   }
   const auto is_area = is_a(Kind::kArea);
   if (!any(is_area)) return;
@@ -130,7 +138,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
     patches[k] = sources[k]->patch == kNoIndex ? 0 : sources[k]->patch;
   }
   const LightPoint<T> point = lights.sample_patches<T>(patches, hits.random(kLightPoint));
-  const DirectionToLight<T> to_light(lights, hits.surface, point.position);
+  const DirectionToLight<T> to_light(lights, hits, point.position);
   const T area_pdf = pmf * gather<T>(sources, &Lights::Source::per_area);
   const T cosine = absolute(dot(point.normal, to_light.direction));
   const T light_pdf = area_pdf * to_light.distance_squared / cosine;
@@ -141,7 +149,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                               minimum(power_heuristic(light_pdf, bsdf_pdf), 1.0f - min_bsdf_weight),
                               spread<T>(1.0f));
   add_light_sample<T>(
-      hits, 0, is_area & scatters & (cosine > 0.0f),
+      hits, 0, is_area & scatters & (cosine > 0.0f), to_light.direction,
       area_light_contribution(hits, to_light, point,
                               lights.radiance_at<T>(chosen, point) * (mis_weight / area_pdf)),
       indices, point);
@@ -166,39 +174,31 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   }
   if (!any(next.is_wanted)) return;
   const T u = choice.x * lobes.sum;
-  // Rough glass: the sampled facet decides between reflection and transmission.
-  const bool has_rough_glass = bsdf.has_rough_glass();
-  const T glass_chance = lobes.mirror + lobes.transmission;
-  Triple<T> facet = surface.normal;
-  T mirrored_up_to = lobes.mirror;
-  if (has_rough_glass) {
-    const auto found = bsdf.facets().sample_glass_facet(hits.random(kFacet));
-    facet = found.normal;
-    mirrored_up_to = found.reflectance * glass_chance;
-  }
-  const auto is_mirrored = u < mirrored_up_to;
+  const auto is_mirrored = u < lobes.mirror;
   next.is_transmitted = (!is_mirrored) & (u < lobes.mirror + lobes.transmission);
   next.has_flat = is_mirrored | next.is_transmitted;
-  if (has_rough_glass) next.has_flat = next.has_flat & !next.has_flat;
   next.stream = hash(hits.stream, kNextRay);
 
-  next.direction = bsdf.sample(hits.random(kDirection));
+  const bool has_rough_glass = bsdf.has_rough_glass();
+  const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
+  next.direction = bsdf.sample(hits.random(kDirection), has_choice ? hits.random(kFacet).x : T{});
   next.flat = next.direction;
   next.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
   next.scattered_at = surface.point;
-  next.normal = surface.normal;
-  const T cosine = at_least(dot(surface.normal, next.direction), 0.0f);
-  const auto brings = (next.pdf > kMinPdf) & (dot(surface.flat_normal, next.direction) > 0.0f);
+  next.normal = hits.lit_normal();
+  const T cosine = hits.cosine(next.direction);
+  const auto brings = (next.pdf > kMinPdf) & (cosine > 0.0f);
   next.throughput = choose(
       brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.pdf)), zero<T>());
+  if (has_rough_glass) {
+    next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
+    next.is_wanted = next.is_wanted & brings;
+    next.send(hits, 0);
+    return;
+  }
   if ((hits.kind & kMirrors) != 0) {
-    const Triple<T> reflected = reflect(surface.view, facet);
-    Triple<T> reflected_throughput = throughput * bsdf.mirror() * (lobes.sum / lobes.mirror);
-    if (has_rough_glass) {
-      const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-      reflected_throughput =
-          throughput * (facets.glass * facets.g2_over_g1(reflected) * (lobes.sum / glass_chance));
-    }
+    const Triple<T> reflected = reflect(surface.view, surface.normal);
+    const Triple<T> reflected_throughput = throughput * bsdf.mirror() * (lobes.sum / lobes.mirror);
     next.direction = choose(is_mirrored, reflected, next.direction);
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
     next.throughput = choose(is_mirrored, reflected_throughput, next.throughput);
@@ -211,20 +211,14 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   if ((hits.kind & kTransmits) != 0) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
     const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
-    const Refraction<T> bent(surface.view, facet, bsdf.eta());
+    const Refraction<T> bent(surface.view, surface.normal, bsdf.eta());
     const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
     next.direction = choose(is_bent, bent.direction, next.direction);
     next.flat = choose(is_bent, flat.direction, next.flat);
     next.has_flat = next.has_flat & ((!is_bent) | flat.exists);
     next.is_wanted = next.is_wanted & ((!is_bent) | bent.exists);
-    Triple<T> transmitted_throughput =
+    const Triple<T> transmitted_throughput =
         throughput * bsdf.transmission() * (lobes.sum / lobes.transmission);
-    if (has_rough_glass) {
-      const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-      transmitted_throughput =
-          throughput * facets.tint *
-          (facets.glass * facets.g1(bent.direction) * (lobes.sum / glass_chance));
-    }
     next.throughput = choose(next.is_transmitted, transmitted_throughput, next.throughput);
     next.pdf = choose(is_bent, T{}, next.pdf);
     // Straight on as if there were nothing.

@@ -60,8 +60,10 @@ struct Surface {
   /// be seen from the ray, tilted until it is at right angles to the ray.
   Triple<T> normal;
   Triple<T> colour;  ///< Kd, times the texture
-  /// What the texture of a metallic-roughness material multiplies; of other kinds nothing.
-  T roughness, metallic;
+  T opacity;         ///< what its texture multiplies; of kinds that interpolate and transmit
+  /// What the textures of a metallic-roughness material multiply; of other kinds nothing.
+  T roughness, metallic, transmission, specular, coat, coat_roughness;
+  Triple<T> specular_color;
   Triple<T> glow;  ///< what the texture of emission multiplies; of kinds that interpolate and emit
   /// The ray comes from outside: from where the file's normals point or, without, from where the
   /// vertices run counter-clockwise.
@@ -141,7 +143,12 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   surface.colour = gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& {
     return scene.materials[places[k].face->material].diffuse;
   });
-  if ((kind & kMetallicRoughness) != 0) surface.roughness = surface.metallic = spread<T>(1.0f);
+  surface.opacity = spread<T>(1.0f);
+  if ((kind & kMetallicRoughness) != 0) {
+    surface.roughness = surface.metallic = surface.transmission = surface.specular = surface.coat =
+        surface.coat_roughness = surface.opacity;
+    surface.specular_color = spread<T>(glm::vec3(1.0f));
+  }
 
   const Triple<Wide> corners[3] = {corner(0), corner(1), corner(2)};
   const Triple<Wide> u = corners[1] - corners[0], v = corners[2] - corners[0];
@@ -187,13 +194,26 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
         return emission_factor_at(scene, *places[k].face, glm::dvec3(weight[k]));
       });
     }
+    if ((kind & kTransmits) != 0) {
+      surface.opacity = gather<T>([&](int k) RAYGATE_BODY {
+        return opacity_factor_at(scene, *places[k].face, glm::dvec3(weight[k]));
+      });
+    }
     if ((kind & kMetallicRoughness) != 0) {
-      glm::vec2 factors[kCount];
+      using Factors = MetallicRoughnessFactors;
+      Factors factors[kCount];
+      const Factors* all[kCount];
       for (int k = 0; k < kCount; ++k) {
-        factors[k] = roughness_at(scene, *places[k].face, glm::dvec3(weight[k]));
+        factors[k] = metallic_roughness_factors_at(scene, *places[k].face, glm::dvec3(weight[k]));
+        all[k] = &factors[k];
       }
-      surface.roughness = gather<T>([&](int k) RAYGATE_BODY { return factors[k].x; });
-      surface.metallic = gather<T>([&](int k) RAYGATE_BODY { return factors[k].y; });
+      surface.roughness = gather<T>(all, &Factors::roughness);
+      surface.metallic = gather<T>(all, &Factors::metallic);
+      surface.transmission = gather<T>(all, &Factors::transmission);
+      surface.specular = gather<T>(all, &Factors::specular);
+      surface.specular_color = gather<T>(all, &Factors::specular_color);
+      surface.coat = gather<T>(all, &Factors::coat);
+      surface.coat_roughness = gather<T>(all, &Factors::coat_roughness);
     }
     const Triple<T> own_point = narrow(corners[0] * wide(weights.x) + corners[1] * wide(weights.y) +
                                        corners[2] * wide(weights.z));

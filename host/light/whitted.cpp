@@ -5,7 +5,8 @@ namespace raygate {
 namespace {
 
 // Streams of random numbers.
-constexpr std::uint32_t kMirror = 1, kTransmission = 2, kFacet = 3, kFirstAreaLight = 16;
+constexpr std::uint32_t kMirror = 1, kTransmission = 2, kFacet = 3, kCoat = 4, kFirstAreaLight = 16,
+                        kFirstPointLight = 1u << 16;
 constexpr float kNarrow = 0.25f;  // alpha: what wider facets reflect counts as ambient light
 
 /// Whether rays are sent for what rough facets reflect.
@@ -13,10 +14,10 @@ template <class T>
 RAYGATE_INLINE bool has_rough_facets(const Hits<T>& hits) {
   return (~hits.kind & (kMetallicRoughness | kGlossy)) == 0;
 }
-/// In which lanes.
+/// What facets of that alpha reflect, where they are narrow: a ray is sent for it.
 template <class T>
-RAYGATE_INLINE MaskOf<T> is_narrow(const Hits<T>& hits) {
-  return !(hits.bsdf.facets().ggx.squared > kNarrow * kNarrow);
+RAYGATE_INLINE Triple<T> if_narrow(const Ggx<T>& ggx, const Triple<T>& reflected) {
+  return choose(ggx.squared > kNarrow * kNarrow, zero<T>(), reflected);
 }
 
 /// A light sample of each hit for every light but the environment, which is the ambient light.
@@ -39,13 +40,19 @@ RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits
         emission = emission *
                    spot_falloff(cosine, spread<T>(light.spot.scale), spread<T>(light.spot.offset));
       }
-      add_light_sample<T>(hits, i, one > 0.0f,
-                          point_light_contribution(hits, lights, place.position, emission, one),
-                          indices, place);
+      Triple<T> position = place.position;
+      if (light.radius > 0.0f && !shading.single_sample) {
+        position = Lights::point_on<T>(position, spread<T>(light.radius), hits.surface.point,
+                                       hits.random(kFirstPointLight + i));
+      }
+      const Triple<T> towards = position - hits.surface.point;
+      add_light_sample<T>(hits, i, one > 0.0f, towards,
+                          point_light_contribution(hits, lights, position, emission, one), indices,
+                          {towards, zero<T>(), place.primitive});
     } else if (light.kind == Kind::kDirection) {
       const Triple<T> scattered = hits.bsdf.eval_for_point_light(place.position);
       add_light_sample<T>(
-          hits, i, one > 0.0f,
+          hits, i, one > 0.0f, place.position,
           directional_light_contribution(hits, place.position, scattered, emission, one), indices,
           place);
     } else if (light.kind == Kind::kArea && any(hits.bsdf.scatters())) {
@@ -55,14 +62,14 @@ RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits
           shading.single_sample && area.is_flat
               ? Lights::middle<T>(area)
               : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
-      const DirectionToLight<T> to_light(lights, hits.surface, point.position);
+      const DirectionToLight<T> to_light(lights, hits, point.position);
       if (light.is_textured && !(shading.single_sample && area.is_flat)) {
         const Lights::Light* same[Hits<T>::kCount];
         std::ranges::fill(same, &light);
         emission = lights.radiance_at<T>(same, point);
       }
       add_light_sample<T>(
-          hits, i, hits.bsdf.scatters(),
+          hits, i, hits.bsdf.scatters(), to_light.direction,
           area_light_contribution(hits, to_light, point, emission * spread<T>(light.area)), indices,
           point);
     }
@@ -95,38 +102,59 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.pdf = T{};
   next.scattered_at = next.normal = zero<T>();
   next.throughput = hits.throughput * bsdf.mirror();
-  Triple<T> facet = surface.normal, transmitted = bsdf.transmission();
+  Triple<T> facet = surface.normal, mirror_facet = facet, transmitted = bsdf.transmission();
   if (has_rough_facets(hits)) {
-    // By chance, as the facets lie (Cook, Porter and Carpenter 1984).
+    // By chance, as the facets lie (Cook, Porter and Carpenter 1984), of the coat or under it.
     const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-    const auto found = facets.sample_glass_facet(hits.random(kFacet));
-    facet = found.normal;
-    const T cosine = at_least(dot(surface.view, facet), 0.0f);
-    Triple<T> reflected =
-        choose(is_narrow(hits), facets.schlick(schlick_weight(cosine)), zero<T>());
+    const SquarePoint<T> u = hits.random(kFacet);
+    const auto cosine_at = [&](const Triple<T>& at) RAYGATE_BODY {
+      return at_most(at_least(dot(surface.view, at), 0.0f), 1.0f);
+    };
+    facet = facets.ggx.sample(surface.view, u);
+    const T cosine = cosine_at(facet);
+    Triple<T> reflected = if_narrow(facets.ggx, facets.schlick(schlick_weight(cosine)));
     if (bsdf.has_rough_glass()) {
-      const T mirrored = facets.glass * found.reflectance;
-      reflected = reflected + Triple<T>{mirrored, mirrored, mirrored};
+      const T glass = facets.glass * facets.glass_gain,
+              mirrored = glass * fresnel_reflectance(cosine, facets.eta);
+      reflected = reflected + facets.grey(mirrored);
       const Refraction<T> bent(surface.view, facet, bsdf.eta());
-      transmitted = facets.tint * ((facets.glass - mirrored) * facets.g1(bent.direction));
+      transmitted =
+          facets.tint * ((glass - mirrored) * facets.g1(bent.direction) * facets.under_coat);
     }
-    next.throughput = hits.throughput * reflected * facets.g2_over_g1(reflect(surface.view, facet));
-    // Lights are asked for what these facets show of them; glass shows them by its rays alone.
-    next.pdf = choose(facets.is_glass, T{}, spread<T>(1.0f));
+    reflected = reflected * facets.g2_over_g1(reflect(surface.view, facet));
+    mirror_facet = facet;
+    if ((hits.kind & kCoated) != 0) {
+      const Ggx<T>& coat = facets.coat_ggx;
+      const T above = if_narrow(coat, facets.grey(facets.coat_specular)).x;
+      const T below = largest(reflected) * facets.under_coat, sum = above + below;
+      const T chance = choose(sum > 0.0f, above / sum, T{});
+      const auto is_coat = hits.random(kCoat).x < chance;
+      const Triple<T> own = coat.sample(surface.view, u);
+      const T light = dot(surface.normal, reflect(surface.view, own));
+      const T share = (1.0f - facets.clear) * facets.coat *
+                      facets.coat_schlick(schlick_weight(cosine_at(own))) / chance *
+                      choose(light > 0.0f, coat.g2_over_g1(facets.view_cosine, light), T{});
+      reflected =
+          choose(is_coat, facets.grey(share), reflected * (facets.under_coat / (1.0f - chance)));
+      mirror_facet = choose(is_coat, own, facet);
+    }
+    next.throughput = hits.throughput * reflected;
+    // Lights are asked for what these facets show of them.
+    next.pdf = spread<T>(1.0f);
   }
   next.is_wanted = bsdf.mirror_is_traced();
   if (any(next.is_wanted)) {
     next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.throughput);
   }
   if (any(next.is_wanted)) {
-    next.direction = reflect(surface.view, facet);
+    next.direction = reflect(surface.view, mirror_facet);
     next.flat = reflect(surface.view, surface.flat_normal);
     next.has_flat = next.is_wanted;
     next.is_transmitted = next.is_wanted & !next.is_wanted;
     next.stream = hash(hits.stream, kMirror);
     next.send(hits, 0);
   }
-  next.pdf = T{};
+  if (!bsdf.has_rough_glass()) next.pdf = T{};
   next.throughput = hits.throughput * transmitted;
   next.is_wanted = worthwhile(shading, hits, next.throughput);
   if (any(next.is_wanted)) {
@@ -154,7 +182,14 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     Triple<T> emission = bsdf.emission(), glossy = bsdf.glossy();
     // What a light was asked for is not counted again where it is met.
     if ((kind & kEmits) != 0) emission = choose(hits.pdf > 0.0f, zero<T>(), emission);
-    if (goes_on && has_rough_facets(hits)) glossy = choose(is_narrow(hits), zero<T>(), glossy);
+    if (goes_on && has_rough_facets(hits)) {
+      const MetallicRoughnessLobes<T>& facets = bsdf.facets();
+      const auto rest = [](const Ggx<T>& ggx, const Triple<T>& reflected)
+                            RAYGATE_BODY { return reflected - if_narrow(ggx, reflected); };
+      glossy = rest(facets.ggx, facets.specular * facets.under_coat);
+      if ((kind & kCoated) != 0)
+        glossy = glossy + rest(facets.coat_ggx, facets.grey(facets.coat_specular));
+    }
     const Triple<T> shown =
         emission + bsdf.unlit() + (bsdf.diffuse() + glossy) * spread<T>(shading.ambient);
     Triple<T> background = zero<T>();

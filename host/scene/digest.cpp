@@ -73,12 +73,18 @@ class Digest {
     if (m.specular != 1.0f || m.specular_color != glm::vec3(1.0f)) {
       add(m.specular, m.specular_color);
     }
+    if (m.coat != 0.0f) add(m.coat, m.coat_roughness);
+    int number = 0;
+    for_each_map(m, [&](const MaterialMap& map) {
+      if (number++ > 0 && map.texture != kNoIndex) add(number, map);
+    });
   }
   void add(const Material& m) {
     add(m.diffuse, m.specular, m.emission, m.transmittance, m.shininess, m.refraction_index,
         m.opacity, m.illumination_model, m.diffuse_mapping, m.diffuse_texture);
     add(m.metallic_roughness, m.normal_map, m.normal_scale, m.opacity_map, m.opacity_cutoff);
     if (m.emission_map.texture != kNoIndex) add(m.emission_map);
+    if (m.opacity_blends) add(m.opacity_blends);
   }
   void add(const NameList& names) {
     word(names.size());

@@ -93,7 +93,9 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
     shift(material.normal_map.texture);
     shift(material.opacity_map.texture);
     shift(material.emission_map.texture);
-    if (material.metallic_roughness) shift(material.metallic_roughness->map.texture);
+    if (material.metallic_roughness) {
+      for_each_map(*material.metallic_roughness, [&](MaterialMap& map) { shift(map.texture); });
+    }
   }
   const std::uint32_t materials = append(scene.materials, std::move(part.materials));
   (void)append(scene.files, std::move(part.files));

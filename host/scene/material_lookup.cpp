@@ -17,6 +17,14 @@ glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Tri
 
 Wrap wrap_of(const TextureMapping& mapping) { return mapping.clamp ? Wrap::kClamp : Wrap::kRepeat; }
 
+/// The codes of a map, from 0 to 1.
+glm::vec3 codes_of(const MaterialMap& map, const Scene& scene, const Triangle& triangle,
+                   const glm::dvec3& weights) {
+  if (map.texture == kNoIndex) return glm::vec3(1.0f);
+  return scene.textures[map.texture].codes_at(place_on(map.mapping, scene, triangle, weights),
+                                              wrap_of(map.mapping));
+}
+
 }  // namespace
 
 glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
@@ -42,10 +50,15 @@ glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& 
 bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
   const MaterialMap& map = material.opacity_map;
-  if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return false;
-  const glm::dvec2 place = place_on(map.mapping, scene, triangle, weights);
-  return scene.textures[map.texture].codes_at(place, wrap_of(map.mapping)).r <
-         material.opacity_cutoff;
+  if (map.texture == kNoIndex || material.opacity_blends || triangle.texcoords[0] == kNoIndex)
+    return false;
+  return codes_of(map, scene, triangle, weights).r < material.opacity_cutoff;
+}
+
+float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const Material& material = scene.materials[triangle.material];
+  if (!material.opacity_blends || triangle.texcoords[0] == kNoIndex) return 1.0f;
+  return codes_of(material.opacity_map, scene, triangle, weights).r;
 }
 
 glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
@@ -92,15 +105,26 @@ glm::dvec3 mean_emission(const Scene& scene, const Material& material) {
   return texture == kNoIndex ? emission : emission * scene.textures[texture].mean_color();
 }
 
-glm::vec2 roughness_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene, const Triangle& triangle,
+                                                       const glm::dvec3& weights) {
+  MetallicRoughnessFactors factors;
   const auto& shares = scene.materials[triangle.material].metallic_roughness;
-  if (!shares || shares->map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) {
-    return glm::vec2(1.0f);
+  if (!shares || triangle.texcoords[0] == kNoIndex) return factors;
+  const auto codes = [&](const MaterialMap& map) {
+    return codes_of(map, scene, triangle, weights);
+  };
+  const glm::vec3 map = codes(shares->map);
+  factors.roughness = map.g;
+  factors.metallic = map.b;
+  factors.transmission = codes(shares->transmission_map).r;
+  factors.specular = codes(shares->specular_map).r;
+  factors.coat = codes(shares->coat_map).r;
+  factors.coat_roughness = codes(shares->coat_roughness_map).g;
+  if (const MaterialMap& color = shares->specular_color_map; color.texture != kNoIndex) {
+    factors.specular_color = scene.textures[color.texture].at(
+        place_on(color.mapping, scene, triangle, weights), wrap_of(color.mapping));
   }
-  const TextureMapping& mapping = shares->map.mapping;
-  const glm::vec3 codes = scene.textures[shares->map.texture].codes_at(
-      place_on(mapping, scene, triangle, weights), wrap_of(mapping));
-  return {codes.g, codes.b};
+  return factors;
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// Textured values of a triangle's material at a point: colour, mask, normal, roughness.
+// Textured values of a triangle's material at a point: colour, opacity, normal, roughness ...
 #pragma once
 
 #include <array>
@@ -39,9 +39,20 @@ namespace raygate {
 /// The radiance that a material emits, in the mean over its texture.
 [[nodiscard]] glm::dvec3 mean_emission(const Scene& scene, const Material& material);
 
-/// What the texture of a metallic-roughness material multiplies at that point: x roughness, y
-/// metallic. 1 where it has none, or the face has no texture coordinates.
-[[nodiscard]] glm::vec2 roughness_at(const Scene& scene, const Triangle& triangle,
-                                     const glm::dvec3& weights);
+/// The opacity at that point by a map that blends, without the material's own. 1 where there is
+/// none, or the face has no texture coordinates.
+[[nodiscard]] float opacity_factor_at(const Scene& scene, const Triangle& triangle,
+                                      const glm::dvec3& weights);
+
+/// What the textures of a metallic-roughness material multiply. 1 where it has none, or the face
+/// has no texture coordinates.
+struct MetallicRoughnessFactors {
+  float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f, coat = 1.0f,
+        coat_roughness = 1.0f;
+  glm::vec3 specular_color{1.0f};
+};
+[[nodiscard]] MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene,
+                                                                     const Triangle& triangle,
+                                                                     const glm::dvec3& weights);
 
 }  // namespace raygate

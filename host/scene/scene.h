@@ -45,7 +45,21 @@ struct MetallicRoughness {
   std::string metallic_file;  ///< where `map.file` has roughness alone: grey, put into one map
   float specular = 1.0f;      ///< in [0, 1]: so much of what is not metallic reflects at all, and
   glm::vec3 specular_color{1.0f};  ///< straight on in this colour: KHR_materials_specular
+  float coat = 0.0f;  ///< in [0, 1]: weight of a clear layer over all, KHR_materials_clearcoat
+  float coat_roughness = 0.0f;       ///< in [0, 1]
+  MaterialMap transmission_map{};    ///< times the transmission: red code
+  MaterialMap specular_map{};        ///< times `specular`: its opacity, as all three codes
+  MaterialMap specular_color_map{};  ///< times specular_color: a colour
+  MaterialMap coat_map{}, coat_roughness_map{};  ///< times these two: red code, green code
 };
+
+/// Calls visit(map) for each map of a metallic-roughness material.
+template <class Shares, class Visit>
+void for_each_map(Shares& shares, const Visit& visit) {
+  for (auto* const map : {&shares.map, &shares.transmission_map, &shares.specular_map,
+                          &shares.specular_color_map, &shares.coat_map, &shares.coat_roughness_map})
+    visit(*map);
+}
 
 /// One material: of an MTL file, or what other files have in its terms. Colours are scene-linear
 /// RGB, usually in [0, 1].
@@ -68,6 +82,7 @@ struct Material {
   MaterialMap emission_map;       ///< times the emission
   MaterialMap opacity_map;        ///< what is below opacity_cutoff there is not there
   float opacity_cutoff = 0.5f;    ///< in [0, 1]
+  bool opacity_blends = false;    ///< there is no cutoff: the map is times the opacity
   bool has_vertex_colors = true;  ///< those of its vertices count
 };
 

@@ -103,15 +103,16 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
   if (std::int64_t{width} * height > kMaxTexels) {
     fail(file, "a texture of more than " + std::to_string(kMaxTexels) + " pixels");
   }
-  const bool is_opacity = content == Content::kOpacity;
+  const bool is_opacity = content != Content::kColour;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(first, size, &width, &height, &channels, is_opacity ? 2 : 3),
       stbi_image_free);
   if (!pixels) fail(file, unreadable + stbi_failure_reason());
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (is_opacity) {
-    // Grey and opacity: the second of pictures that have one.
-    const stbi_uc* code = pixels.get() + (channels == 2 || channels == 4 ? 1 : 0);
+    // Grey and opacity, 1 where there is none.
+    const bool has_opacity = channels == 2 || channels == 4 || content == Content::kAlpha;
+    const stbi_uc* code = pixels.get() + (has_opacity ? 1 : 0);
     for (Texel& texel : texels) {
       texel.fill(*code);
       code += 2;

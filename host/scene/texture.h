@@ -20,9 +20,9 @@ class Texture {
  public:
   using Texel = std::array<std::uint8_t, 3>;  ///< sRGB codes
 
-  /// What is read of a file: its colours; or its opacity, as all three codes, or what is bright
-  /// where it has none.
-  enum class Content : std::uint8_t { kColour, kOpacity };
+  /// What is read of a file: its colours; or its opacity, as all three codes. Where it has none:
+  /// what is bright (MTL), or 1 (kAlpha, glTF).
+  enum class Content : std::uint8_t { kColour, kOpacity, kAlpha };
 
   /// `texels`, row by row from the top; width * height of them, at least one.
   Texture(int width, int height, std::vector<Texel> texels);

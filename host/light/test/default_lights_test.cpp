@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "host/light/environment.h"
 #include "host/light/test/light_scenes.h"
@@ -81,6 +83,32 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   EXPECT_LT(lights->points[1].position.x, 0.0f);
   for (const PointLight& light : lights->points) EXPECT_LT(light.position.z, 0.0f);
   EXPECT_GT(lights->points[0].intensity.x, lights->points[1].intensity.x);
+}
+
+// Under the edge of a roof, a floor gets as much light as it sees of a ball's disc: a segment.
+TEST(PreviewLights, CastSoftShadows) {
+  EXPECT_GT(preview_lights(square(matte(glm::vec3(0.5f))), camera_from({0, 0, 5}))->radius, 0.0);
+  const auto floor_at = [](double x, IntegratorKind integrator, bool has_roof) {
+    Scene scene;
+    add(scene, rectangle({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), matte(glm::vec3(0.5f)));
+    if (has_roof) add(scene, rectangle({0, 1, -9}, {0, 0, 18}, {9, 0, 0}), matte(glm::vec3(0.0f)));
+    const Camera camera = Camera::look_at({x - 1, 0.5, 0.1}, {x, 0, 0}, {0, 1, 0}, 1e-3, 1.0);
+    RenderOptions options = test::light(integrator, 1, 1, 4096);
+    options.ambient = 0.0;
+    options.max_depth = 1;
+    options.lights = CameraLights{{{{0, 101, 0}, glm::dvec3(1e4)}}, glm::vec3(0.0f), {}, 10.0};
+    return double(test::film_of(scene, camera, options).color[0].r);
+  };
+  for (const IntegratorKind integrator : {IntegratorKind::kWhitted, IntegratorKind::kPath}) {
+    for (const double part : {-0.8, -0.5, 0.0, 0.5}) {
+      // A line from there by the edge, at (0, 1), meets the disc that far from its middle.
+      const double x = -part * 10.0 / 100.0;
+      const double seen =
+          1.0 - (std::acos(part) - part * std::sqrt(1.0 - part * part)) / std::numbers::pi;
+      EXPECT_NEAR(floor_at(x, integrator, true) / floor_at(x, integrator, false), seen, 0.01)
+          << part;
+    }
+  }
 }
 
 TEST(PreviewLights, TakeALabelThatGlowsForNoLight) {

@@ -228,7 +228,7 @@ TEST_P(EveryIntegrator, EveryPixelIsFinite) {
 // Each counter counts, and a scene in a corner of the picture leaves tiles empty.
 TEST(Skips, AreCounted) {
   Scene scene = everything();
-  scene.materials[4] = scene.materials[6] = matte(glm::vec3(0.4f));  // nothing clear
+  for (const int clear : {4, 6, 7}) scene.materials[clear] = matte(glm::vec3(0.4f));
   const Bvh bvh(scene);
   const Camera camera = camera_at({0.6, 0.4, 60}, {12, 12, 0}, 40.0);
   RenderOptions options = light(IntegratorKind::kWhitted, 400, 400, 1);

@@ -206,6 +206,62 @@ TEST(DirectLight, FacetsReflectALight) {
   }
 }
 
+// Rough glass between the camera and a light: a point light is seen in it, and a wide one as bright
+// as an integral says.
+TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
+  for (const float roughness : {0.3f, 0.7f, 1.0f}) {
+    Material material = facets(0.0f, roughness, 1.0f);
+    Scene scene;
+    add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
+    const Camera camera = camera_at({0, 1, 1.5}, {0, 0, 0}, 1e-3);
+    RenderOptions options = light(kPath, 1, 1, 4096);
+    options.max_depth = 1;
+    options.ambient = 0.0;
+    const Bvh bvh(scene);
+    const glm::vec3 eye(camera.eye());
+    const Ray ray = {eye, camera.direction(0.5, 0.5)};
+    const MaterialParameters parameters(material);
+    const MaterialParameters* const materials[] = {&parameters};
+    const std::uint32_t floor = hits_triangle(ray, bvh.corners_of(0)) ? 0 : 1;
+    const SurfaceHit places[] = {{&ray, floor, &scene.triangles[bvh.triangle_of(floor)], nullptr}};
+    const HitKind kind = parameters.kind | weights_needed(scene, places[0]);
+    const Bsdf<float> bsdf(surface_at<float>(scene, bvh, kind, places), kind, materials);
+    const auto seen = [&](const glm::dvec3& at) {
+      const glm::vec3 way(glm::normalize(at));
+      return double(bsdf.eval({way.x, way.y, way.z}).x) * std::abs(way.y) / glm::dot(at, at);
+    };
+    for (const glm::dvec3& at : {glm::dvec3(0.2, -1, -1.0), {0.2, 1, -1.0}}) {
+      Scene lit = scene;
+      lit.lights.push_back({glm::vec3(at), glm::dvec3(2.0)});
+      const double expected = 2.0 * seen(at);
+      EXPECT_GT(expected, 1e-3);
+      for (const IntegratorKind integrator : {kPath, kWhitted}) {
+        options.integrator = integrator;
+        EXPECT_NEAR(film_of(lit, camera, options).color[0].r, expected, 1e-3 * expected)
+            << roughness << " " << at.y;
+      }
+    }
+    add(scene, rectangle({-1, -2, -2}, {2, 0, 0}, {0, 0, 1.5f}), emitter(glm::vec3(3.0f)));
+    double integral = 0.0;
+    constexpr int kSteps = 400;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int k = 0; k < kSteps; ++k) {
+        const glm::dvec3 at(-1 + 2 * (i + 0.5) / kSteps, -2.0, -2 + 1.5 * (k + 0.5) / kSteps);
+        integral += 3.0 * seen(at) * 2.0 / glm::length(at) * (3.0 / kSteps / kSteps);
+      }
+    }
+    for (const IntegratorKind integrator : {kPath, kWhitted}) {
+      options.integrator = integrator;
+      options.max_depth = integrator == kPath ? 1 : 0;
+      EXPECT_NEAR(film_of(scene, camera, options).color[0].r, integral, 0.02 * integral)
+          << roughness;
+    }
+    options.max_depth = 1;
+    const double again = film_of(scene, camera, options).color[0].r;
+    EXPECT_NEAR(again, integral, 0.02 * integral) << "rays that find the light do not count twice";
+  }
+}
+
 // A disc parallel to the floor, straight above: sin^2 of the angle under which its rim is seen.
 TEST(DirectLight, DiscLightHasItsFormFactor) {
   std::vector<Corners> disc;
@@ -267,7 +323,8 @@ TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
 TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
   Scene scene = everything();
   scene.background = glm::vec3(0.0f);
-  scene.materials[4] = matte(glm::vec3(0.5f));  // the glass: its shadows differ
+  // Of what is of glass shadows differ.
+  scene.materials[4] = scene.materials[7] = matte(glm::vec3(0.5f));
   const Camera camera = camera_at({0.6, 0.2, 5}, {0, -0.3, 0}, 40.0);
   RenderOptions options = light(kWhitted, 24, 24, 256);
   options.max_depth = 0;

@@ -36,28 +36,36 @@ TEST(Furnace, WhiteThingsInAWhiteWorld) {
   }
 }
 
-// Facets hide light from each other, which is lost; nothing is made.
+// However rough, with glass or without: nothing is lost but to depth, and nothing is made.
 TEST(Furnace, WhiteFacetsInAWhiteWorld) {
   struct Case {
-    float metallic, roughness, transmission, least;
+    float metallic, roughness, transmission, coat, least;
   };
-  for (const Case& c : {Case{1, 0, 0, 0.999f},
-                        {1, 0.3f, 0, 0.95f},
-                        {1, 1, 0, 0.5f},
-                        {0, 0, 0, 0.999f},
-                        {0, 0.5f, 0, 0.9f},
-                        {0.5f, 0.5f, 0, 0.8f},
-                        {0, 0.2f, 1, 0.93f},
-                        {0, 0.5f, 0.5f, 0.85f}}) {
+  for (const Case& c : {Case{1, 0, 0, 0, 0.999f},
+                        {1, 0.3f, 0, 0, 0.99f},
+                        {1, 1, 0, 0, 0.99f},
+                        {0, 0, 0, 0, 0.999f},
+                        {0, 0.5f, 0, 0, 0.99f},
+                        {0.5f, 0.5f, 0, 0, 0.99f},
+                        {0, 0.2f, 1, 0, 0.98f},
+                        {0, 1, 1, 0, 0.98f},
+                        {0, 0.5f, 0.5f, 0, 0.98f},
+                        {1, 0.4f, 0, 1, 0.8f},
+                        {0, 0.4f, 1, 1, 0.8f}}) {
     Scene scene;
-    add(scene, sphere(2), facets(c.metallic, c.roughness, c.transmission));
+    Material material = facets(c.metallic, c.roughness, c.transmission);
+    material.metallic_roughness->coat = c.coat;
+    add(scene, sphere(2), material);
     scene.background = glm::vec3(1.0f);
     const Camera camera = camera_at({0, 0, 4}, {0, 0, 0}, 30.0);
     for (const IntegratorKind integrator : {kPath, kWhitted}) {
       const Film film = film_of(scene, camera, light(integrator, 24, 24, 16));
       const glm::dvec3 mean = mean_colour(film);
       EXPECT_LE(mean.g, 1.002) << c.metallic << " " << c.roughness << " " << c.transmission;
-      EXPECT_GE(mean.g, c.least) << c.metallic << " " << c.roughness << " " << c.transmission;
+      // Whitted's rays end after four surfaces, some of them within the glass.
+      const bool ends = integrator == kWhitted && c.transmission > 0.0f;
+      EXPECT_GE(mean.g, ends ? std::min(c.least, 0.93f) : c.least)
+          << c.metallic << " " << c.roughness << " " << c.transmission;
     }
   }
 }

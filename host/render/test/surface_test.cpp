@@ -100,6 +100,36 @@ TEST(Surface, AMaskHidesHalfOfASquare) {
   }
 }
 
+// What blends covers its share of what is behind it, for camera rays and for shadows.
+TEST(Surface, OpacityOfATextureBlends) {
+  for (const bool is_unlit : {false, true}) {
+    Material veil = is_unlit ? matte(glm::vec3(0.5f)) : facets(0.0f, 0.6f, 0.0f);
+    if (is_unlit) veil.illumination_model = 0;
+    veil.opacity_map.texture = 0;
+    veil.opacity_blends = true;
+    const auto center = [&](std::uint8_t code, IntegratorKind integrator, double behind) {
+      Scene scene;
+      scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{code, code, code}});
+      add(scene, rectangle({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}), matte(glm::vec3(float(behind))));
+      add_picture(scene, veil);
+      scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
+      const Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 1e-2);
+      RenderOptions options = light(integrator, 1, 1, integrator == kPath ? 16384 : 1);
+      options.ambient = 0.0;
+      options.max_depth = 1;
+      return film_of(scene, camera, options).color[0].r;
+    };
+    for (const IntegratorKind integrator : {kWhitted, kPath}) {
+      if (is_unlit && integrator == kPath) continue;  // the wall sees it, too
+      const double veiled = center(255, integrator, 0.8), bare = center(0, integrator, 0.8);
+      EXPECT_GT(std::abs(veiled - bare), 0.05);
+      const double a = 51 / 255.0, half = center(51, integrator, 0.8);
+      // Of the wall, both what is seen of it and the light that it gets are fewer.
+      EXPECT_NEAR(half, a * veiled + (1 - a) * (1 - a) * bare, 0.02 * half) << is_unlit;
+    }
+  }
+}
+
 // Colours of vertices multiply that of the material, in triangles written out and in instances.
 TEST(Surface, ColoursOfVerticesAreBetweenThem) {
   Scene scene;

@@ -56,6 +56,28 @@ glm::vec3 three_in(const tinygltf::Value& value, const char* key) {
   return colour_of(numbers, std::numeric_limits<float>::max());
 }
 
+/// A texture that an extension names; index -1: it names none.
+tinygltf::TextureInfo texture_in(const tinygltf::Material& material, const char* extension,
+                                 const char* key) {
+  tinygltf::TextureInfo info;
+  const auto found = material.extensions.find(extension);
+  if (found == material.extensions.end() || !found->second.Has(key)) return info;
+  const tinygltf::Value& texture = found->second.Get(key);
+  const auto number = [&](const char* name, int otherwise) {
+    const bool is_given = texture.Has(name) && texture.Get(name).IsInt();
+    return is_given ? texture.Get(name).Get<int>() : otherwise;
+  };
+  info.index = number("index", -1);
+  info.texCoord = number("texCoord", 0);
+  if (texture.Has("extensions") && texture.Get("extensions").IsObject()) {
+    info.extensions = texture.Get("extensions").Get<tinygltf::Value::Object>();
+  }
+  return info;
+}
+
+constexpr const char *kCoat = "KHR_materials_clearcoat", *kSpecular = "KHR_materials_specular",
+                     *kTransmission = "KHR_materials_transmission";
+
 }  // namespace
 
 std::uint32_t GltfMaterials::number_of(int material) {
@@ -93,6 +115,11 @@ int GltfMaterials::texcoord_set(int material) {
   look(pbr.metallicRoughnessTexture);
   look(from.normalTexture);
   look(from.emissiveTexture);
+  look(texture_in(from, kCoat, "clearcoatTexture"));
+  look(texture_in(from, kCoat, "clearcoatRoughnessTexture"));
+  look(texture_in(from, kTransmission, "transmissionTexture"));
+  look(texture_in(from, kSpecular, "specularTexture"));
+  look(texture_in(from, kSpecular, "specularColorTexture"));
   return set;
 }
 
@@ -157,19 +184,17 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
   const bool is_mask = from.alphaMode == "MASK";
   const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
-  const double cutoff = is_mask ? in_unit(from.alphaCutoff) : 0.5;
+  const double cutoff = in_unit(from.alphaCutoff);
   if (!is_mask) material.opacity = static_cast<float>(factor);
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
   const tinygltf::TextureInfo& base = pbr.baseColorTexture;
   if (base.index < 0 || material.opacity == 0.0f) return;
-  MaterialMap map = map_of(base.index, base.extensions, Texture::Content::kOpacity);
-  const double least = is_mask ? cutoff / factor : cutoff;
+  MaterialMap map = map_of(base.index, base.extensions, Texture::Content::kAlpha);
+  const double least = is_mask ? cutoff / factor : 1.0;
   if (map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least) return;
-  if (!is_mask)
-    file_.warn_once("alphaMode BLEND: opacity in a texture is taken as a mask of one half",
-                    scene_.warnings);
   material.opacity_map = std::move(map);
-  material.opacity_cutoff = static_cast<float>(least);
+  material.opacity_blends = !is_mask;
+  if (is_mask) material.opacity_cutoff = static_cast<float>(least);
 }
 
 Material GltfMaterials::translated(const tinygltf::Material& from) {
@@ -203,14 +228,30 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
     material.emission_map =
         map_of(from.emissiveTexture.index, from.emissiveTexture.extensions, colour);
   }
-  const char* const specular = "KHR_materials_specular";
-  shares.specular =
-      static_cast<float>(in_unit(number_in(from.extensions, specular, "specularFactor", 1.0)));
-  if (const auto found = from.extensions.find(specular); found != from.extensions.end()) {
+  const auto share = [&](const char* extension, const char* key, double otherwise) {
+    return static_cast<float>(in_unit(number_in(from.extensions, extension, key, otherwise)));
+  };
+  const auto map = [&](const char* extension, const char* key, Texture::Content content) {
+    const tinygltf::TextureInfo info = texture_in(from, extension, key);
+    return map_of(info.index, info.extensions, content);
+  };
+  shares.specular = share(kSpecular, "specularFactor", 1.0);
+  shares.specular_map = map(kSpecular, "specularTexture", Texture::Content::kAlpha);
+  if (const auto found = from.extensions.find(kSpecular); found != from.extensions.end()) {
     shares.specular_color = three_in(found->second, "specularColorFactor");
   }
-  shares.transmission = static_cast<float>(
-      in_unit(number_in(from.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0)));
+  shares.specular_color_map = map(kSpecular, "specularColorTexture", colour);
+  shares.transmission = share(kTransmission, "transmissionFactor", 0.0);
+  shares.transmission_map = map(kTransmission, "transmissionTexture", colour);
+  shares.coat = share(kCoat, "clearcoatFactor", 0.0);
+  shares.coat_roughness = share(kCoat, "clearcoatRoughnessFactor", 0.0);
+  shares.coat_map = map(kCoat, "clearcoatTexture", colour);
+  shares.coat_roughness_map = map(kCoat, "clearcoatRoughnessTexture", colour);
+  if (texture_in(from, kCoat, "clearcoatNormalTexture").index >= 0) {
+    file_.warn_once(
+        "clearcoatNormalTexture is not read: a coat has the normals of what is under it",
+        scene_.warnings);
+  }
   material.refraction_index = static_cast<float>(
       std::clamp(number_in(from.extensions, "KHR_materials_ior", "ior", 1.5), 1.0, 4.0));
   if (from.extensions.contains("KHR_materials_unlit")) {

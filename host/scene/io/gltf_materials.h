@@ -13,8 +13,7 @@ namespace raygate {
 
 /// Turns materials into those of a scene, each once, with their textures.
 ///
-/// Their terms are glTF's own. Textures of opacity without a mask are masks of one half.
-/// KHR_materials_unlit has no shading (illum 0).
+/// Their terms are glTF's own. KHR_materials_unlit has no shading (illum 0).
 class GltfMaterials {
  public:
   /// Without `textures` none is decoded.

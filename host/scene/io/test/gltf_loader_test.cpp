@@ -323,6 +323,66 @@ TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
   EXPECT_EQ(bare.triangles.size(), scene.triangles.size());
 }
 
+class LoadGltfPicture : public LoadGltf {
+ protected:
+  /// A square with one material, and a picture that is red and opaque on the left, blue and nearly
+  /// clear on the right.
+  [[nodiscard]] Scene with_picture(const std::string& material) const {
+    std::string json = square_json(kOneNode,
+                                   R"(, "materials": [{)" + material +
+                                       R"(}], "textures": [{"source": 0}],
+         "images": [{"bufferView": 4, "mimeType": "image/tga"}])",
+                                   R"(, "material": 0)");
+    const std::string last = R"({"buffer": 0, "byteOffset": 128, "byteLength": 12})";
+    json.replace(json.find(last), last.size(),
+                 last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 26})");
+    json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 166)");
+    return load(json, square_buffer() + half_clear());
+  }
+};
+
+TEST_F(LoadGltfPicture, TexturesOfExtensions) {
+  const Scene scene = with_picture(R"("extensions": {
+      "KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25,
+        "clearcoatTexture": {"index": 0}, "clearcoatRoughnessTexture": {"index": 0}},
+      "KHR_materials_transmission": {"transmissionFactor": 0.75, "transmissionTexture": {"index": 0}},
+      "KHR_materials_specular": {"specularFactor": 0.5, "specularTexture": {"index": 0},
+        "specularColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [1, 0.5]}}}}})");
+  const MetallicRoughness& shares = *scene.materials[0].metallic_roughness;
+  EXPECT_EQ(shares.coat, 0.5f);
+  EXPECT_EQ(shares.coat_roughness, 0.25f);
+  EXPECT_EQ(shares.transmission, 0.75f);
+  EXPECT_EQ(shares.specular_color_map.mapping.scale, glm::vec2(1.0f, 0.5f));
+  ASSERT_EQ(scene.textures.size(), 2u) << "colours, and opacity";
+  const auto left = metallic_roughness_factors_at(scene, scene.triangles[0], {0.75, 0.0, 0.25});
+  const auto right = metallic_roughness_factors_at(scene, scene.triangles[0], {0.25, 0.5, 0.25});
+  EXPECT_EQ(left.coat, 1.0f) << "red";
+  EXPECT_EQ(left.coat_roughness, 0.0f) << "green";
+  EXPECT_EQ(left.transmission, 1.0f) << "red";
+  EXPECT_EQ(left.specular, 1.0f) << "opacity";
+  EXPECT_EQ(left.specular_color, glm::vec3(1, 0, 0));
+  EXPECT_EQ(right.coat, 0.0f);
+  EXPECT_EQ(right.transmission, 0.0f);
+  EXPECT_NEAR(right.specular, 16 / 255.0, 1e-6);
+  EXPECT_EQ(right.specular_color, glm::vec3(0, 0, 1));
+  EXPECT_EQ(right.roughness, 1.0f) << "there is no texture of it";
+  EXPECT_TRUE(scene.warnings.empty());
+  const Scene bumpy = with_picture(R"("extensions": {"KHR_materials_clearcoat": {
+      "clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0}}})");
+  ASSERT_EQ(bumpy.warnings.size(), 1u);
+  EXPECT_NE(bumpy.warnings[0].find("clearcoatNormalTexture"), std::string::npos);
+}
+
+TEST_F(LoadGltfPicture, BlendedOpacity) {
+  const Scene scene = with_picture(R"("alphaMode": "BLEND", "pbrMetallicRoughness": {
+      "baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5]})");
+  EXPECT_TRUE(scene.materials[0].opacity_blends);
+  EXPECT_EQ(scene.materials[0].opacity, 0.5f);
+  EXPECT_NEAR(opacity_factor_at(scene, scene.triangles[0], {0.25, 0.5, 0.25}), 16 / 255.0, 1e-6);
+  EXPECT_FALSE(is_masked_out(scene, scene.triangles[0], {0.25, 0.5, 0.25}));
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
 TEST_F(LoadGltf, WhatIsRefused) {
   expect_error("{}", "not a glTF 2.0 file that can be read: ");
   expect_error(square_json(R"([{"mesh": 1}])"), "mesh 1, but the file has 1");
