@@ -53,8 +53,8 @@ def computes(name: str, exp: int, frac: int) -> tuple[dict, bool]:
 
 def keeps_credits(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     """The pipelined unit never overfills its queue, and holds what it offers, by induction."""
-    inner = ("test_q decided_q dividing_q report closed u_point.valid_q u_results.push_i "
-             "u_results.count_q u_results.read_q u_results.write_q")
+    inner = ("test_q decided_q dividing_q report closed u_point.valid_q gen_queue.u_results.push_i "
+             "gen_queue.u_results.count_q gen_queue.u_results.read_q gen_queue.u_results.write_q")
     return holds("pipeline_keeps_credits", "Bitwuzla", around("hit_test_pipeline", "hit_test_arithmetic"),
                  "open.tcl", (("ExpWidth", exp), ("FracWidth", frac)), steps=1,
                  prepared=_opened(exp, frac, 1, inner), name=f"credits.{name}")
@@ -101,7 +101,8 @@ def stack_keeps_nodes() -> tuple[dict, bool]:
     """What a ray's stack holds is asked for once, or beyond, by induction: of two rays and two levels."""
     wires = ("busy_q waiting_q ready_q picked_q ray_q choosing_q choosing_ray_q level_q t_max_q "
              "ended_q asked_q asking_ray_q asked_level_q mask_q remaining_q next_valid_q next_started_q next_ray_q "
-             "next_level_q next_remaining_q next_enter_q base_q offset_q group *.next_q")
+             "next_level_q next_remaining_q next_enter_q base_q offset_q group *.next_q u_overflows.push_i u_overflows.data_i "
+             "u_overflows.count_q")
     memories = "levels 2 2 u_groups.words 4 224 " + " ".join(f"gen_level[{d}].nexts 2 26" for d in range(2))
     return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=18, prepared=f"traversal {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
@@ -109,7 +110,7 @@ def stack_keeps_nodes() -> tuple[dict, bool]:
 
 def hits_keep_nearest() -> tuple[dict, bool]:
     """closest_hit keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
-    wires = ("found_q any_hit_q is_over_q is_hit_q is_sure_q is_vague_q ray_q tag_q triangle_q t_q t_error_q low_q high_q "
+    wires = ("found_q any_hit_q traversal_ray_q leaf_ray_q box_ray_q is_over_q is_hit_q is_sure_q is_vague_q ray_q tag_q triangle_q t_q t_error_q low_q high_q "
              "old_found_q old_t_max_q old_low_q old_triangle_q replace test_q test_ray_q u_doubts.push_i u_doubts.data_i *.count_q "
              "u_points.read_q u_points.write_q")
     memories = ("t_max 2 31 nearest_t 2 32 nearest_low 2 32 nearest_error 2 5 nearest_triangle 2 32 u_kept.words 2 96 tests 2 28 "
@@ -266,6 +267,8 @@ ALL = [
     *(Proof(f"unit.exact_accumulator_{width}", f"sums of {products} products of {width} bits a column, without rounding, and sure only where it may be",
             "Bitwuzla", functools.partial(exact_accumulator_sums, width, products), width < 48)
       for width, products in ((24, 72), (48, 36))),
+    Proof("unit.beyond", "words of t are ordered as the numbers that they stand for", "Bitwuzla",
+          functools.partial(of_ray_core, "beyond_orders_numbers", "ray_core_pkg")),
     Proof("unit.plane_offset", "ways on a node's grid are products, cut off", "Bitwuzla",
           functools.partial(of_ray_core, "plane_offset_multiplies", "plane_offset", 2)),
     Proof("unit.array", "an array is its lanes, and its counters are their sums", "Bitwuzla", array),

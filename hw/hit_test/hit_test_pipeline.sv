@@ -35,7 +35,7 @@ module hit_test_pipeline #(
   parameter int unsigned Adder     = arith_pkg::AdderGraded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
-  parameter bit          AlwaysReady = 1'b0,  // ready_i is always high: no queue is needed
+  parameter bit          Single = 1'b0,  // each test is a burst, and ready_i always high: no queue
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
   localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
 ) (
@@ -286,8 +286,8 @@ module hit_test_pipeline #(
     .clk_i,
     .rst_ni,
     .valid_i(dividing_q[DivideLatency-1]),
-    .first_i(divided_first),
-    .last_i(divided_last),
+    .first_i(divided_first | Single),
+    .last_i(divided_last | Single),
     .hit_i(divided_hit),
     .doubt_i(divided_doubt),
     .tag_i(divided_tag),
@@ -328,24 +328,44 @@ module hit_test_pipeline #(
 
   // ---- Results: the queue keeps a word free for each clock edge at which what is on its way may end
 
-  localparam int unsigned Reserve = AlwaysReady ? 0 : hit_test_pkg::point_latency(FracWidth) - 1;
+  localparam int unsigned ResultWidth = 2 + 2 * TagWidth + 2 + Width + TErrorWidth + 1 + 3 * Width;
+  logic push;
+  logic [ResultWidth-1:0] pushed, word;
 
-  fifo #(
-    .Width(2 + TagWidth + 2 + TagWidth + Width + TErrorWidth + 1 + 3 * Width),
-    .Depth(AlwaysReady ? 2 : Reserve + 3),
-    .Reserve(Reserve)
-  ) u_results (
-    .clk_i,
-    .rst_ni,
-    .push_i(report != hit_test_pkg::ReportNone | closed | point_valid),
-    .data_i({report, closed, found, nearest_t_error, point_valid, report_tag, nearest_tag, t,
-             point}),
-    .space_o(ready_o),
-    .pop_i(valid_o & ready_i),
-    .valid_o,
-    .data_o({report_o, closed_o, found_o, t_error_o, point_valid_o, report_tag_o, tag_o, t_o,
-             point_o})
-  );
+  assign push   = report != hit_test_pkg::ReportNone | closed | point_valid;
+  assign pushed = {report, closed, found, nearest_t_error, point_valid, report_tag, nearest_tag, t,
+                   point};
+  assign {report_o, closed_o, found_o, t_error_o, point_valid_o, report_tag_o, tag_o, t_o,
+          point_o} = word;
+
+  if (Single) begin : gen_register
+    logic unused_ready;
+    assign unused_ready = ready_i;
+    assign ready_o      = 1'b1;
+
+    always_ff @(posedge clk_i or negedge rst_ni) begin
+      if (!rst_ni) valid_o <= 1'b0;
+      else valid_o <= push;
+    end
+    always_ff @(posedge clk_i) word <= pushed;
+  end else begin : gen_queue
+    localparam int unsigned Reserve = hit_test_pkg::point_latency(FracWidth) - 1;
+
+    fifo #(
+      .Width(ResultWidth),
+      .Depth(Reserve + 3),
+      .Reserve(Reserve)
+    ) u_results (
+      .clk_i,
+      .rst_ni,
+      .push_i(push),
+      .data_i(pushed),
+      .space_o(ready_o),
+      .pop_i(valid_o & ready_i),
+      .valid_o,
+      .data_o(word)
+    );
+  end
 
   // ---- Events
 

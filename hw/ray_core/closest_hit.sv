@@ -39,7 +39,8 @@ module closest_hit #(
   input  logic [RayWidth-1:0]        result_ray_i,
   input  logic [31:0]                result_tag_i,  // the ray's, for doubts
   input  ray_core_pkg::verdict_t     result_i,
-  // t_max, by ray, in the same clock
+  // t_max, by ray, in the clock after; exact_ray_i's in the same one. A ray ends by any hit, or as it has failed
+  input  logic [Rays-1:0]            failed_i,
   input  logic [RayWidth-1:0]        traversal_ray_i,
   output logic [30:0]                traversal_t_max_o,
   output logic                       traversal_ended_o,
@@ -87,16 +88,23 @@ module closest_hit #(
   logic [31:0] nearest_triangle[Rays];
   logic [TestsWidth-1:0] tests[Rays];
   logic [CountWidth-1:0] counts[Rays];  // tests on their way
-  logic [Rays-1:0] found_q, any_hit_q;
+  logic [Rays-1:0] found_q, any_hit_q, ended;
+  logic [RayWidth-1:0] traversal_ray_q, leaf_ray_q, box_ray_q;
 
-  assign traversal_t_max_o   = t_max[traversal_ray_i];
-  assign traversal_ended_o   = found_q[traversal_ray_i] & any_hit_q[traversal_ray_i];
-  assign leaf_t_max_o        = t_max[leaf_ray_i];
-  assign leaf_ended_o        = found_q[leaf_ray_i] & any_hit_q[leaf_ray_i];
-  assign leaf_counter_full_o = counts[leaf_ray_i] >= NearlyFull;
-  assign box_t_max_o         = t_max[box_ray_i];
+  assign ended = (found_q & any_hit_q) | failed_i;
+
+  always_ff @(posedge clk_i) begin
+    {traversal_ray_q, leaf_ray_q, box_ray_q} <= {traversal_ray_i, leaf_ray_i, box_ray_i};
+  end
+
+  assign traversal_t_max_o   = t_max[traversal_ray_q];
+  assign traversal_ended_o   = ended[traversal_ray_q];
+  assign leaf_t_max_o        = t_max[leaf_ray_q];
+  assign leaf_ended_o        = ended[leaf_ray_q];
+  assign leaf_counter_full_o = counts[leaf_ray_q] >= NearlyFull;
+  assign box_t_max_o         = t_max[box_ray_q];
   assign exact_found_o       = found_q[exact_ray_i];
-  assign exact_ended_o       = found_q[exact_ray_i] & any_hit_q[exact_ray_i];
+  assign exact_ended_o       = ended[exact_ray_i];
   assign exact_triangle_o    = ray_core_pkg::AddressWidth'(nearest_triangle[exact_ray_i]);
   assign exact_t_max_o       = t_max[exact_ray_i];
 

@@ -16,9 +16,9 @@ module primitive_fetch #(
   input  ray_core_pkg::group_t    box_group_i,
   input  logic [Children-1:0]     box_leaf_i,
   output logic [RayWidth-1:0]     t_max_ray_o,
-  input  logic [30:0]             t_max_i,   // of t_max_ray_o, in the same clock
-  input  logic                    ended_i,   // of t_max_ray_o: it needs nothing any more
-  input  logic                    counter_full_i, // of t_max_ray_o: no more tests can be counted
+  input  logic [30:0]             t_max_i,   // of t_max_ray_o of the clock before
+  input  logic                    ended_i,   // of that ray: it needs nothing any more
+  input  logic                    counter_full_i, // of it: no more tests can be counted
   output logic [Rays-1:0]         leaf_pending_o,  // has a group here
   // triangles asked for
   output logic [RayWidth-1:0]     triangle_ray_o,
@@ -73,7 +73,7 @@ module primitive_fetch #(
     end
   end
 
-  assign t_max_ray_o = ray_q;
+  assign t_max_ray_o = load ? queued_ray : ray_q;
   assign beyond = ended_i | ray_core_pkg::is_beyond(entry[EntryWidth-1-:EnterWidth], t_max_i);
   assign triangle_o.valid = valid_q & ~beyond & ~counter_full_i;
   assign triangle_ray_o   = ray_q;

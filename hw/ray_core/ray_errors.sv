@@ -1,7 +1,7 @@
 // Errors of the rays in flight: why a ray's hits must not be believed, the first reason of each.
 //
-// A ray has failed from the clock after its first error on, and stays so until another begins in its context. While
-// abort_i is high, all rays in the core fail.
+// A ray has failed from the second clock after its first error on, no later than its end is told, and stays so until
+// another begins in its context. While abort_i is high, all rays in the core fail.
 module ray_errors #(
   parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays)
@@ -28,6 +28,16 @@ module ray_errors #(
 );
 
   logic [3*Rays-1:0] errors_q;
+  logic node_q, triangle_q, cycle_q;
+  logic [RayWidth-1:0] node_ctx_q, triangle_ctx_q, cycle_ctx_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) {node_q, triangle_q, cycle_q} <= '0;
+    else {node_q, triangle_q, cycle_q} <= {node_i, triangle_i, cycle_i};
+  end
+  always_ff @(posedge clk_i) begin
+    {node_ctx_q, triangle_ctx_q, cycle_ctx_q} <= {node_ctx_i, triangle_ctx_i, cycle_ctx_i};
+  end
 
   for (genvar r = 0; r < Rays; r++) begin : gen_ray
     logic [2:0] error_d;
@@ -37,9 +47,9 @@ module ray_errors #(
     always_comb begin
       error_d = errors_q[3*r+:3];
       if (!failed_o[r]) begin
-        if (cycle_i && cycle_ctx_i == RayWidth'(r)) error_d = ray_core_pkg::ErrorCycle;
-        if ((node_i && node_ctx_i == RayWidth'(r))
-            || (triangle_i && triangle_ctx_i == RayWidth'(r))) begin
+        if (cycle_q && cycle_ctx_q == RayWidth'(r)) error_d = ray_core_pkg::ErrorCycle;
+        if ((node_q && node_ctx_q == RayWidth'(r))
+            || (triangle_q && triangle_ctx_q == RayWidth'(r))) begin
           error_d = ray_core_pkg::ErrorMemory;
         end
         if (abort_i) error_d = ray_core_pkg::ErrorAbort;

@@ -46,8 +46,8 @@ module traversal #(
   input  logic [Rays-1:0]         leaf_pending_i,  // has leaves to be asked for
   input  logic [Rays-1:0]         testing_i,   // has tests on their way
   output logic [RayWidth-1:0]     t_max_ray_o,
-  input  logic [30:0]             t_max_i,     // of t_max_ray_o, in the same clock
-  input  logic                    ended_i,     // of t_max_ray_o: it needs nothing any more
+  input  logic [30:0]             t_max_i,     // of t_max_ray_o of the clock before
+  input  logic                    ended_i,     // of that ray: it needs nothing any more
   output logic                    cycle_o,     // cycle_ray_o meets a node again
   output logic [RayWidth-1:0]     cycle_ray_o,
   input  logic [AddressWidth-1:0] lines_i,     // of memory; 0: 2**AddressWidth
@@ -146,7 +146,7 @@ module traversal #(
   logic [Children-1:0] mask, remaining, mask_q, remaining_q, next_remaining_q;
   logic [EnterWidth-1:0] box_enter, next_enter_q;
 
-  assign t_max_ray_o = ray_q;
+  assign t_max_ray_o = picked_ray;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) choosing_q <= 1'b0;

@@ -37,7 +37,7 @@ module traversal_subsystem #(
   output ray_core_pkg::triangle_request_t triangle_o,
   input  logic                    triangle_ready_i,
   output logic                    tests_allowed_o,  // triangles may leave memory
-  // lines that come: the ray's t_max in the same clock, and whether they are errors
+  // lines that come: the ray's t_max in the clock after, and whether they are errors
   input  logic [RayWidth-1:0]     node_line_ctx_i,
   input  logic                    node_error_i,
   output logic [30:0]             t_max_o,
@@ -89,7 +89,7 @@ module traversal_subsystem #(
     .testing_i(testing),
     .t_max_ray_o(traversal_ray),
     .t_max_i(traversal_t_max),
-    .ended_i(traversal_ended | failed[traversal_ray]),
+    .ended_i(traversal_ended),
     .cycle_o(cycle),
     .cycle_ray_o(cycle_ray),
     .lines_i,
@@ -140,7 +140,7 @@ module traversal_subsystem #(
     .box_leaf_i(boxes_i.leaf),
     .t_max_ray_o(leaf_ray),
     .t_max_i(leaf_t_max),
-    .ended_i(leaf_ended | failed[leaf_ray]),
+    .ended_i(leaf_ended),
     .counter_full_i(leaf_counter_full),
     .leaf_pending_o(leaf_pending),
     .triangle_ray_o(fetch_ray),
@@ -149,10 +149,6 @@ module traversal_subsystem #(
   );
 
   // ---- Hits and errors
-
-  logic [RayWidth-1:0] box_ray_q;
-
-  always_ff @(posedge clk_i) box_ray_q <= node_line_ctx_i;
 
   closest_hit #(
     .Rays(Rays),
@@ -171,6 +167,7 @@ module traversal_subsystem #(
     .result_ray_i(verdict_ctx_i),
     .result_tag_i(tags[verdict_ctx_i]),
     .result_i(verdict_i),
+    .failed_i(failed),
     .traversal_ray_i(traversal_ray),
     .traversal_t_max_o(traversal_t_max),
     .traversal_ended_o(traversal_ended),
@@ -178,7 +175,7 @@ module traversal_subsystem #(
     .leaf_t_max_o(leaf_t_max),
     .leaf_ended_o(leaf_ended),
     .leaf_counter_full_o(leaf_counter_full),
-    .box_ray_i(box_ray_q),
+    .box_ray_i(node_line_ctx_i),
     .box_t_max_o(t_max_o),
     .testing_o(testing),
     .exact_ray_i(exact_ray),
@@ -218,7 +215,7 @@ module traversal_subsystem #(
       .idle_i(idle),
       .busy_o(doubtful),
       .ctx_o(exact_ray),
-      .ended_i(exact_ended | failed[exact_ray]),
+      .ended_i(exact_ended),
       .found_i(exact_found),
       .found_line_i(exact_found_line),
       .t_max_i(exact_t_max),

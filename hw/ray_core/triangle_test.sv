@@ -86,14 +86,14 @@ module triangle_test #(
 
   logic unused_ready, word_valid, closed, found, point_valid;
   hit_test_pkg::report_e report;
-  logic [TagWidth-1:0] report_tag, found_tag, tag;
+  logic [TagWidth-1:0] tag, unused_tag;
   logic [hit_test_pkg::NumCounts-1:0] unused_events;
 
   hit_test_pipeline #(
     .Arith(Arith),
     .Adder(Adder),
     .TagWidth(TagWidth),
-    .AlwaysReady(1'b1)
+    .Single(1'b1)
   ) u_tests (
     .clk_i,
     .rst_ni,
@@ -107,10 +107,10 @@ module triangle_test #(
     .valid_o(word_valid),
     .ready_i(1'b1),
     .report_o(report),
-    .report_tag_o(report_tag),
+    .report_tag_o(tag),
     .closed_o(closed),
     .found_o(found),
-    .tag_o(found_tag),
+    .tag_o(unused_tag),
     .t_o(verdict_o.t),
     .t_error_o(verdict_o.t_error),
     .point_valid_o(point_valid),
@@ -122,7 +122,6 @@ module triangle_test #(
   assign verdict_o.found       = found;
   assign verdict_o.doubt       = report == hit_test_pkg::ReportDoubt;
   assign verdict_o.point_valid = word_valid & point_valid;
-  assign tag                   = found ? found_tag : report_tag;
   assign {verdict_o.normal_error, verdict_o.distance_error, verdict_o.is_skipped, ctx_o,
           verdict_o.triangle} = tag;
 

@@ -29,6 +29,7 @@ module hits_keep_nearest #(
   input logic [3:0]  read_normal_error,
   input logic [3:0]  read_distance_error,
   input logic        point_valid,
+  input logic [Rays-1:0] failed,
   input logic        traversal_ray,
   input logic        leaf_ray,
   input logic        box_ray,
@@ -55,6 +56,7 @@ module hits_keep_nearest #(
   logic [TestsWidth-1:0] end_tests;
   logic [95:0] end_point, read_point;  // read_point: of the ray of the clock before
   logic read_before;
+  logic traversal_ray_q, leaf_ray_q, box_ray_q, traversal_before, leaf_before, box_before;
   logic replace, test_q, test_ray_q, push, doubts_space, doubts_valid, points_read, points_write;
   logic [63:0] pushed, doubt_word;
   logic [4:0] doubts;
@@ -87,6 +89,7 @@ module hits_keep_nearest #(
     .result_tag_i(read_ray ? tag_1 : tag_0),
     .result_i({read, read_skipped, read_doubt, read_hit, read_triangle, read_t, read_t_error,
                read_normal_error, read_distance_error, point_valid, point}),
+    .failed_i(failed),
     .traversal_ray_i(traversal_ray),
     .traversal_t_max_o(traversal_t_max),
     .traversal_ended_o(traversal_ended),
@@ -106,6 +109,9 @@ module hits_keep_nearest #(
     .near_tie_o(near_tie),
     .found_q(found_q),
     .any_hit_q(any_hit_q),
+    .traversal_ray_q(traversal_ray_q),
+    .leaf_ray_q(leaf_ray_q),
+    .box_ray_q(box_ray_q),
     .is_over_q(over),
     .is_hit_q(over_hit),
     .is_sure_q(over_sure),
@@ -196,7 +202,7 @@ module hits_keep_nearest #(
     if (reset_n) begin
       assume (!load || ((load_ray ? flight_1 : flight_0) == '0 && load_t_max <= Infinity[30:0]
                         && !(test && test_ray == load_ray)));
-      assume (!test || (loaded[test_ray] && test_ray == leaf_ray && !counter_full));
+      assume (!test || (loaded[test_ray] && test_ray == leaf_ray_q && !counter_full));
       assume (!enter || (tests_allowed && (flying < 3'(InFlight) || result)));
       assume (!read || ((read_ray ? flight_1 : flight_0) > 12'(result && result_ray == read_ray)
                         && flying > 3'(result)));
@@ -268,6 +274,7 @@ module hits_keep_nearest #(
   always_ff @(posedge clk) begin
     read_point <= points[96*point_ray+:96];
     read_before <= reset_n;
+    {traversal_before, leaf_before, box_before} <= {traversal_ray, leaf_ray, box_ray};
   end
   initial read_before = 1'b0;
 
@@ -298,19 +305,23 @@ module hits_keep_nearest #(
       assert (end_found == found_q[end_ray] && end_t == nearest_t[32*end_ray+:32]
               && end_triangle == nearest_triangle[32*end_ray+:32]
               && end_t_error == nearest_error[TErrorWidth*end_ray+:TErrorWidth]);
-      if (read_before) assert (end_point == read_point);
+      if (read_before) begin
+        assert (end_point == read_point);
+        assert ({traversal_ray_q, leaf_ray_q, box_ray_q} == {traversal_before, leaf_before, box_before});
+      end
       // The user's t_max holds until a hit is kept
       if (loaded[0]) assert (found_q[0] ? t_max_words[30:0] < user_0 : t_max_words[30:0] == user_0);
       if (loaded[1]) assert (found_q[1] ? t_max_words[61:31] < user_1 : t_max_words[61:31] == user_1);
-      if (loaded[traversal_ray]) begin
-        assert (traversal_t_max == (traversal_ray ? t_max_words[61:31] : t_max_words[30:0])
-                && traversal_ended == (found_q[traversal_ray] && any_hit[traversal_ray]));
+      if (loaded[traversal_ray_q]) begin
+        assert (traversal_t_max == (traversal_ray_q ? t_max_words[61:31] : t_max_words[30:0])
+                && traversal_ended == (failed[traversal_ray_q]
+                                       || (found_q[traversal_ray_q] && any_hit[traversal_ray_q])));
       end
-      if (loaded[leaf_ray]) begin
-        assert (leaf_t_max == (leaf_ray ? t_max_words[61:31] : t_max_words[30:0])
-                && leaf_ended == (found_q[leaf_ray] && any_hit[leaf_ray]));
+      if (loaded[leaf_ray_q]) begin
+        assert (leaf_t_max == (leaf_ray_q ? t_max_words[61:31] : t_max_words[30:0])
+                && leaf_ended == (failed[leaf_ray_q] || (found_q[leaf_ray_q] && any_hit[leaf_ray_q])));
       end
-      assert (box_t_max == (box_ray ? t_max_words[61:31] : t_max_words[30:0]));
+      assert (box_t_max == (box_ray_q ? t_max_words[61:31] : t_max_words[30:0]));
       // Tests
       assert (testing == {flight_1 != '0, flight_0 != '0});
       if (loaded[0]) assert ({2'b00, counts[9:0]} == flight_0 - 12'(test_q && !test_ray_q));

@@ -165,6 +165,10 @@ module leaves_are_asked_for #(
     end
   end
 
+  logic asked_before, t_max_before;
+  initial asked_before = 1'b0;
+  always_ff @(posedge clk) {asked_before, t_max_before} <= {reset_n, t_max_ray};
+
   // ---- Claims
 
   logic [WordWidth-1:0] first, second, w_word;  // of the queue
@@ -175,7 +179,7 @@ module leaves_are_asked_for #(
   always_comb begin
     if (reset_n) begin
       if (counter_full) assert (!triangle);
-      assert (t_max_ray == ray_q && triangle_ray == ray_q);
+      assert (triangle_ray == ray_q && (!asked_before || t_max_before == ray_q));
       if (triangle) assert (valid_q);
       if (state != Nowhere) assert (leaf_pending[w_ray]);
       if (given && asked == rank) begin

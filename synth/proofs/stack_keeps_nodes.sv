@@ -1,7 +1,8 @@
 // A ray's stack, whatever box_unit says, whichever rays wait, from reset and for ever: a node that was pushed is
 // asked for, once, by the line that its group gives, unless it was beyond the ray's t_max, or the ray had ended or met a node again, in
-// a clock in which its stack was looked at; until then the ray counts as traversing. Of groups for which there is room; others leave
-// as rests. No more nodes wait than there are rays.
+// a clock in which its stack was looked at; until then the ray counts as traversing. A group without room, and no other, goes
+// into the queue of overflows, with its ray's tag, its line and the mask of its nodes, and the queue has room for it (that it keeps
+// order is ram_fifo_keeps_order's). No more nodes wait than there are rays.
 // opened_traversal is traversal of two rays, with stacks of two groups, with its registers and memories as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
@@ -13,6 +14,8 @@ module stack_keeps_nodes #(
   localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth,
   localparam int unsigned CountWidth = ray_core_pkg::CountWidth,
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
+  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
+  localparam int unsigned OverflowWidth = 32 + AddressWidth + NodesWidth,
   localparam int unsigned NextWidth = Children + EnterWidth
 ) (
   input logic                  clk,
@@ -37,9 +40,12 @@ module stack_keeps_nodes #(
   (* anyseq *) logic [AddressWidth-1:0] start_line;
   (* anyconst *) logic [AddressWidth-1:0] lines;
   (* anyseq *) logic [GroupWidth-1:0] box_group;
+  (* anyseq *) logic [31:0] box_tag;
 
   logic start_fire, node, node_ray, overflow, cycle;
-  logic [32+AddressWidth+ray_core_pkg::NodesWidth-1:0] overflow_word;
+  logic [OverflowWidth-1:0] overflow_word, pushed;
+  logic push_overflow;
+  logic [2:0] overflows;  // in the queue
   logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
   logic [Rays-1:0] traversing, busy_q, waiting_q;
@@ -69,7 +75,7 @@ module stack_keeps_nodes #(
     .start_fire_o(start_fire),
     .box_valid_i(box),
     .box_ray_i(box_ray),
-    .box_tag_i(32'd0),
+    .box_tag_i(box_tag),
     .box_group_i(box_group),
     .box_inner_i(box_inner),
     .leaf_pending_i(leaf_pending),
@@ -84,6 +90,9 @@ module stack_keeps_nodes #(
     .node_o({node, node_line}),
     .overflow_o({overflow, overflow_word}),
     .overflow_fire_i(overflow_fire),
+    .\u_overflows.push_i (push_overflow),
+    .\u_overflows.data_i (pushed),
+    .\u_overflows.count_q (overflows),
     .busy_q(busy_q),
     .waiting_q(waiting_q),
     .ready_q(ready_q),
@@ -208,10 +217,24 @@ module stack_keeps_nodes #(
     end
   end
 
+  // The nodes of box_group that box_inner has, by their offsets
+  logic [NodesWidth-1:0] inner_nodes;
+  always_comb begin
+    inner_nodes = '0;
+    for (int unsigned n = 0; n < Children; n++) begin
+      if (box_inner[n]) inner_nodes = inner_nodes | NodesWidth'(1) << box_group[EntryWidth*n+CountWidth+:OffsetWidth];
+    end
+  end
+
   // ---- Claims
 
   always_comb begin
     if (reset_n) begin
+      assert (push_overflow == (box && box_inner != '0 && box_level == 2'(Depth)));
+      if (push_overflow) begin
+        assert (pushed == {box_tag, box_group[GroupWidth-1-:AddressWidth], inner_nodes});
+        assert (overflows < 3'(Rays + 2));
+      end
       if (watching) begin
         assert (present || asked || dropped);
         if (present) assert (traversing[w_ray] && !asked);
@@ -220,6 +243,8 @@ module stack_keeps_nodes #(
       if (done) assert (!asked && !present);
 
       // Invariants
+      assert (overflow ? overflows != '0 : overflows <= 3'd1);
+      assert (5'(overflows) + 5'(busy_q[0]) + 5'(busy_q[1]) <= 5'(Rays + 1));
       for (int unsigned r = 0; r < Rays; r++) begin
         assert (3'(busy_q[r]) == 3'(wanted[r]) + 3'(picked_q && ray_q == 1'(r))
                                  + 3'(choosing_q && choosing_ray_q == 1'(r)) + 3'(asked_q && asking_ray_q == 1'(r))
@@ -261,6 +286,7 @@ module stack_keeps_nodes #(
       cover (watching && asked);
       cover (watching && dropped && !asked);
       cover (done && push_here);
+      cover (push_overflow);
     end
   end
 

@@ -12,8 +12,8 @@ LANES = [(".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])
          (".ready_i(ready_i[n])", ".ready_i(ready_i[Lanes-1-n])"),
          ("n < Lanes; n++) begin\n        increment", "n < Lanes-1; n++) begin\n        increment"),
          ("count_q + increment", "count_q | increment")]
-RESULTS = [(".data_o({report_o, closed_o, found_o", ".data_o({report_o, found_o, closed_o"),
-           (".push_i(report != hit_test_pkg::ReportNone | closed", ".push_i(closed")]
+RESULTS = [("assign {report_o, closed_o, found_o", "assign {report_o, found_o, closed_o"),
+           ("push   = report != hit_test_pkg::ReportNone | closed", "push   = closed")]
 HITS = [("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
         ("(old_low_q <= high_q)", "(old_low_q < high_q)"),
         ("old_open ? old_triangle_q : triangle_q", "open ? triangle_q : old_triangle_q"),
@@ -34,6 +34,9 @@ CACHE = [("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_f
          ("<= follow & head[TargetWidth]", "<= follow"),
          ("valid_q[fill_entry_i]   <= ~fill_error_i;", "valid_q[fill_entry_i]   <= 1'b1;"),
          (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})")]
+
+STACK = [("pick = some & ~overflow_o.valid", "pick = some"),
+         ("(box_inner_i != '0) & ~room)", "~room)")]
 
 CONTEXTS = [(".Reserve(1)", ".Reserve(0)"),
             ("active_q & ~busy_i", "active_q")]
@@ -68,6 +71,9 @@ class ProofsRefuseFaults(unittest.TestCase):
 
     def test_of_leaves(self):
         self.refuse("primitive_fetch", LEAVES, unit_proofs.leaves_are_asked_for)
+
+    def test_of_the_stack(self):
+        self.refuse("traversal", STACK, unit_proofs.stack_keeps_nodes)
 
     def test_of_contexts(self):
         self.refuse("ray_retire", CONTEXTS, unit_proofs.contexts_answer_once)
