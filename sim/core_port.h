@@ -192,6 +192,8 @@ class CorePort {
     for (unsigned events = model_->events_o; events != 0; events >>= kEvents) count(events);
     if (model_.clocks() % CoreCounters::kSpan == 0) {
       counters_.busier += std::max(nodes_in_span_, triangles_in_span_);
+      counters_.busier_two_boxes += std::max((nodes_in_span_ + 1) / 2, triangles_in_span_);
+      counters_.busier_half_triangles += std::max(nodes_in_span_, 2 * triangles_in_span_);
       nodes_in_span_ = triangles_in_span_ = 0;
     }
   }

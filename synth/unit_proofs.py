@@ -163,6 +163,13 @@ def reader_gives_lines() -> tuple[dict, bool]:
                  prepared=f"axi_read_manager {{DataWidth 256 IdWidth 1 ReadIdWidth 2}} {{{wires}}} {{{memories}}}")
 
 
+def writer_puts_records(width: int) -> tuple[dict, bool]:
+    """axi_write_manager keeps AXI4 and puts each record in its place, by induction, at this width."""
+    return holds("writer_puts_records", "Bitwuzla", prepare="open.tcl", parameters=(("DataWidth", width),), steps=2, reach=12,
+                 **_watched("axi_write_manager", "axi_write_checks"), name=f"writer_{width}",
+                 prepared=f"axi_write_manager {{DataWidth {width}}} {{next_q left_q record_q}}")
+
+
 def exact_accumulator_sums(width: int, products: int) -> tuple[dict, bool]:
     """exact_accumulator adds without rounding and is sure only where it may be, by induction."""
     return holds("exact_accumulator_sums", "Bitwuzla", cores.used("exact_accumulator", cores.files("exact")), "open.tcl",
@@ -260,6 +267,8 @@ ALL = [
     Proof("unit.csr", "the registers' port keeps AXI4-Lite; a register is read as it was written", "Bitwuzla", csr_keeps_protocol),
     Proof("unit.reader", "the memory port keeps AXI4; each read is given its line, once, in any order of beats", "Bitwuzla",
           reader_gives_lines, False),
+    *(Proof(f"unit.writer_{width}", "results: the port keeps AXI4, each record is written in its place, once", "Bitwuzla",
+            functools.partial(writer_puts_records, width)) for width in (128, 512)),
     Proof("unit.sort", "seven words come out in order, each as often as it went in", "Bitwuzla",
           functools.partial(of_ray_core, "sort7_sorts", "sort7", 3)),
     Proof("unit.arbiter", "the first request from a place on is picked", "Bitwuzla",

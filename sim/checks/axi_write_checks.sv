@@ -2,9 +2,11 @@
 // bursts increment, are no wider than the port and stay within 4 KiB; WLAST is with the last of as many beats as AWLEN says;
 // an answer comes after its burst's address and last beat. Here all bursts have the same length and the same ID.
 //
+// Inputs: whether the subordinate is watched, too.
 // Source: AMBA AXI protocol specification, issue E, A3.2 to A3.4.
 module axi_write_checks #(
-  parameter int unsigned DataWidth = 128
+  parameter int unsigned DataWidth = 128,
+  parameter bit Inputs = 1'b1
 ) (
   input logic                             clk_i,
   input logic                             rst_ni,
@@ -21,7 +23,10 @@ module axi_write_checks #(
   input logic                             wlast,
   input logic                             bvalid,
   input logic                             bready,
-  input logic [1:0]                       bresp
+  input logic [1:0]                       bresp,
+  output logic [31:0]                     addresses_q,  // taken and not answered, for proofs
+  output logic [31:0]                     bursts_q,
+  output logic [7:0]                      beat_q  // of the burst that is being written
 );
 
   stream_checks #(
@@ -42,19 +47,6 @@ module axi_write_checks #(
     .ready(wready),
     .data ({w, wlast})
   );
-  stream_checks #(
-    .Width(2)
-  ) u_b (
-    .clk_i,
-    .rst_ni,
-    .valid(bvalid & rst_ni),
-    .ready(bready),
-    .data (bresp)
-  );
-
-  logic [31:0] addresses_q, bursts_q;  // taken and not answered
-  logic [7:0] beat_q;  // of the burst that is being written
-
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) {addresses_q, bursts_q, beat_q} <= '0;
     else begin
@@ -71,7 +63,24 @@ module axi_write_checks #(
       a_within_4_kib : assert ({1'b0, awaddr[11:0]} + ((13'(awlen) + 13'd1) << awsize) <= 13'd4096);
     end
     if (rst_ni && wvalid) a_last_by_length : assert (wlast == (beat_q == awlen));
-    if (rst_ni && bvalid) a_was_asked : assert (addresses_q != 0 && bursts_q != 0);
   end
+
+  if (Inputs) begin : gen_inputs
+    stream_checks #(
+      .Width(2)
+    ) u_b (
+      .clk_i,
+      .rst_ni,
+      .valid(bvalid & rst_ni),
+      .ready(bready),
+      .data (bresp)
+    );
+    always_ff @(posedge clk_i) begin
+      if (rst_ni && bvalid) a_was_asked : assert (addresses_q != 0 && bursts_q != 0);
+    end
+  end
+
+  logic unused;
+  assign unused = ^bresp;
 
 endmodule

@@ -142,7 +142,10 @@ bind axi_write_manager axi_write_checks #(
   .wlast(axi_wlast_o),
   .bvalid(axi_bvalid_i),
   .bready(axi_bready_o),
-  .bresp(axi_bresp_i)
+  .bresp(axi_bresp_i),
+  .addresses_q(),
+  .bursts_q(),
+  .beat_q()
 );
 bind ray_core_axi stream_checks #(
   .Width($bits({stream_tdata_o, stream_tlast_o}))

@@ -38,6 +38,10 @@ CACHE = [("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_f
 STACK = [("pick = some & ~overflow_o.valid", "pick = some"),
          ("(box_inner_i != '0) & ~room)", "~room)")]
 
+WRITER = [("(axi_wready_i & axi_wlast_o)", "axi_wready_i"),
+          ("next_q[0], 5'd0}", "1'b0, 5'd0}"),
+          ("some_room & address_free", "address_free")]
+
 CONTEXTS = [(".Reserve(1)", ".Reserve(0)"),
             ("active_q & ~busy_i", "active_q")]
 
@@ -74,6 +78,9 @@ class ProofsRefuseFaults(unittest.TestCase):
 
     def test_of_the_stack(self):
         self.refuse("traversal", STACK, unit_proofs.stack_keeps_nodes)
+
+    def test_of_the_writer(self):
+        self.refuse("axi_write_manager", WRITER, lambda: unit_proofs.writer_puts_records(128))
 
     def test_of_contexts(self):
         self.refuse("ray_retire", CONTEXTS, unit_proofs.contexts_answer_once)

@@ -77,6 +77,9 @@ struct CoreCounters {
   /// Clocks of the busier of both units in each span of kSpan clocks: rays that keep boxes busy and
   /// rays that keep triangles busy come in turns.
   std::uint64_t busier = 0;
+  /// The same if box tests had two units for the one of triangles, or the triangles' took two
+  /// clocks each, and nothing else were slower.
+  std::uint64_t busier_two_boxes = 0, busier_half_triangles = 0;
   std::uint64_t clocks = 0;
 
   CoreCounters& operator+=(const CoreCounters& other) {

@@ -321,6 +321,9 @@ TEST_F(RayCoreTest, EventsAreCounted) {
     EXPECT_GE(number(CoreResult::Kind::kDoubt), counters.near_ties);
     EXPECT_GE(counters.doubts + counters.near_ties, number(CoreResult::Kind::kDoubt));
     EXPECT_GT(counters.nodes, counters.rays);
+    EXPECT_LT(counters.busier_two_boxes, counters.busier);
+    EXPECT_GE(2 * counters.busier_two_boxes, counters.busier);
+    EXPECT_GT(counters.busier_half_triangles, counters.busier);
     EXPECT_GT(counters.misses, counters.hits);
     EXPECT_GT(counters.waits, counters.lines / 4);
     EXPECT_LT(counters.waits, 4 * counters.lines);

@@ -105,6 +105,47 @@ TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
   EXPECT_GT(infinities, 0) << "refused by the core, so not to be scaled";
 }
 
+/// Resets in mid-run: nothing of the frame is left, and the next one is whole.
+TYPED_TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
+  Model<TypeParam> model;
+  std::mt19937 random(kSeed);
+  model->start_i = model->stop_i = model->x_i = model->y_i = 0;
+  const PixelGrid grid{{-1.0f, 1.0f, -2.0f}, {0.01f, 0.0f, 0.0f}, {0.0f, -0.01f, 0.0f}};
+  std::memcpy(&model->first_i, &grid.first, sizeof grid.first);
+  std::memcpy(&model->right_i, &grid.right, sizeof grid.right);
+  std::memcpy(&model->down_i, &grid.down, sizeof grid.down);
+  int broken_off = 0;
+  for (int round = 0; round < 100; ++round) {
+    model.reset();
+    ASSERT_EQ(model->busy_o | model->valid_o, 0);
+    model->width_i = 1 + random() % 8;
+    model->height_i = 1 + random() % 8;
+    model->start_i = 1;
+    model.clock();
+    model->start_i = 0;
+    const bool whole = round % 2 != 0;
+    const unsigned end = whole ? 2'000 : random() % 60;
+    unsigned given = 0;
+    for (unsigned clock = 0; clock < end && model->busy_o != 0; ++clock) {
+      model->ready_i = random() % 2;
+      model.eval();
+      if ((model->valid_o & model->ready_i) != 0) {
+        const unsigned column = given % model->width_i, row = given / model->width_i;
+        ASSERT_EQ(model->pixel_o, row << 16 | column);
+        ASSERT_EQ(model->direction_o[0],
+                  std::bit_cast<std::uint32_t>(grid.direction(static_cast<std::uint16_t>(column),
+                                                              static_cast<std::uint16_t>(row))
+                                                   .x));
+        ++given;
+      }
+      model.clock();
+    }
+    broken_off += model->busy_o;
+    if (whole) ASSERT_EQ(given, model->width_i * model->height_i);
+  }
+  EXPECT_GT(broken_off, 20);
+}
+
 /// A ray in every clock, where it is taken.
 TYPED_TEST(RayGeneratorTest, GivesARayAClock) {
   Model<TypeParam> model;

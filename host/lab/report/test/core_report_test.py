@@ -12,7 +12,8 @@ def row(run, rays, latency, **values):
     """A row of `lab core`."""
     return {"table": "core", "part": run, "scene": "a", "rays": rays, "latency": latency, "cores": 1, "in_flight": 64,
             "clocks_per_ray": latency / 10, "lines_per_ray": 0.5, "bytes_per_ray": 32.0, "nodes_percent": 70.0,
-            "triangles_percent": 80.0, "busier_percent": 90.0, "waits_percent": 1.5, "doubts_per_1000": 0.25, **values}
+            "triangles_percent": 80.0, "busier_percent": 90.0, "busier_per_ray": 1.5, "two_boxes_per_ray": 0.75,
+            "half_triangles_per_ray": 2.25, "waits_percent": 1.5, "doubts_per_1000": 0.25, **values}
 
 
 class CoreReport(unittest.TestCase):
@@ -30,6 +31,7 @@ class CoreReport(unittest.TestCase):
         rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| a ")]
         self.assertEqual(rows, [
             ["a", "camera", "5.00", "0.25"],
+            ["a", "camera", "1.50", "0.75", "2.25"],
             ["a", "camera", "6.00", "3.00", "1.5"]])
 
 
