@@ -1,9 +1,15 @@
 # Names the Debian packages of all libraries that are missing, at once, rather than one by one as each is looked for.
 set(missing)
-foreach(pair
-    libglm-dev:glm/glm.hpp libopenexr-dev:OpenEXR/OpenEXRConfig.h libimath-dev:Imath/ImathConfig.h
-    libpng-dev:png.h libcli11-dev:CLI/CLI.hpp libstb-dev:stb/stb_image.h
-    nlohmann-json3-dev:nlohmann/json.hpp libcpp-httplib-dev:httplib.h libtinygltf-dev:tiny_gltf.h)
+set(pairs
+  libglm-dev:glm/glm.hpp libopenexr-dev:OpenEXR/OpenEXRConfig.h libimath-dev:Imath/ImathConfig.h
+  libpng-dev:png.h libcli11-dev:CLI/CLI.hpp libstb-dev:stb/stb_image.h
+  nlohmann-json3-dev:nlohmann/json.hpp libtinygltf-dev:tiny_gltf.h)
+if(RAYGATE_PYTHON)
+  list(APPEND pairs libmpfr-dev:mpfr.h)
+else()
+  list(APPEND pairs libcpp-httplib-dev:httplib.h)
+endif()
+foreach(pair ${pairs})
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 package)
   list(GET pair 1 header)
@@ -14,13 +20,6 @@ foreach(pair
     list(APPEND missing ${package})
   endif()
 endforeach()
-if(RAYGATE_PYTHON)
-  find_path(raygate_has_mpfr mpfr.h)
-  mark_as_advanced(raygate_has_mpfr)
-  if(NOT raygate_has_mpfr)
-    list(APPEND missing libmpfr-dev)
-  endif()
-endif()
 find_program(raygate_has_pkg_config NAMES pkg-config pkgconf)
 mark_as_advanced(raygate_has_pkg_config)
 if(NOT raygate_has_pkg_config)
