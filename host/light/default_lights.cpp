@@ -29,18 +29,17 @@ class LightPlaces {
   [[nodiscard]] bool is_inside() const { return is_inside_; }
   [[nodiscard]] double size() const { return size_; }
 
-  /// From the upper left of the camera, or from the camera.
-  [[nodiscard]] PointLight key() const {
+  /// From the upper left of the camera, or from the camera. Outside, `radiance` is that of a white
+  /// wall in the middle of the scene that faces the light; it is not much more in front.
+  [[nodiscard]] PointLight key(double radiance) const {
     if (is_inside_) return light(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
-    // In the middle of the scene a white wall that faces the light has radiance 0.6 from it, and
-    // not much more in front: with fill and sky it stays below 1.
     const glm::dvec3 at = place(-0.8, 1.2);
-    return light(at, glm::length(at - middle_), 0.6);
+    return light(at, glm::length(at - middle_), radiance);
   }
   /// From the right of the camera.
   [[nodiscard]] PointLight fill() const {
     const glm::dvec3 at = place(1.4, 0.3);
-    return light(at, glm::length(at - middle_), 0.2);
+    return light(at, glm::length(at - middle_), 0.16);
   }
 
  private:
@@ -144,7 +143,7 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
   }
   const LightPlaces places(scene, camera);
   if (is_lit_by_emitters(scene, places.size())) return {};
-  CameraLights lights{{places.key()}, kDimSky, {}};
+  CameraLights lights{{places.key(0.6)}, kDimSky, {}};
   if (!places.is_inside()) lights.studio = studio(camera, kDimSky);
   return lights;
 }
@@ -153,11 +152,13 @@ std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& cam
   if (is_empty(scene) || has_lights(scene)) return {};
   const LightPlaces places(scene, camera);
   if (is_lit_by_emitters(scene, places.size())) return {};
-  CameraLights lights{{places.key()}, scene.background, {}};
-  if (!places.is_inside()) lights.points.push_back(places.fill());
+  // With the fill, the sky, and light between surfaces, white stays below 1.
+  CameraLights lights{{places.key(0.4)}, scene.background, {}};
   if (lights.background == glm::vec3(0.0f)) lights.background = kDimSky;
-  if (!places.is_inside()) lights.studio = studio(camera, lights.background);
-  if (!places.is_inside()) lights.radius = 0.5 * places.size();
+  if (places.is_inside()) return lights;
+  lights.points.push_back(places.fill());
+  lights.studio = studio(camera, lights.background);
+  lights.radius = 0.5 * places.size();
   return lights;
 }
 

@@ -48,14 +48,15 @@ RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number, const Ma
   const auto asked = unpack(is_asked);
   const auto radiances = unpack(light), points = unpack(point.position);
   const auto primitives = unpack(point.primitive);
-  const auto is_behind = unpack(dot(hits.surface.flat_normal, towards) < 0.0f);
+  const bool from_behind = hits.bsdf.has_rough_glass();
+  const auto sides = unpack(from_behind ? dot(hits.surface.flat_normal, towards) : T{});
   for (int k = 0; k < hits.count; ++k) {
     if (!asked[k]) continue;
     const bool is_dark = radiances[k] == glm::vec3(0.0f);
     hits.block.light_sample(hits.place[k], number) = {
         is_dark ? LightSample::kDark : LightSample::kToTrace,
         radiances[k],
-        !is_dark && is_behind[k] ? SpawnSide::kTransmitted : SpawnSide::kIncident,
+        !is_dark && sides[k] < 0.0f ? SpawnSide::kTransmitted : SpawnSide::kIncident,
         indices[k],
         points[k],
         primitives[k]};

@@ -94,8 +94,9 @@ RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& 
   return shading.skips_weightless ? MaskOf<T>(is_bright) : MaskOf<T>(is_bright | (size == 0.0f));
 }
 
+/// Without `goes_on` the depth is reached: rays go on only where a mask says that nothing is there.
 template <class T>
-RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hits) {
+RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hits, bool goes_on) {
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
   ScatteredRays<T> next;
@@ -143,6 +144,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.pdf = spread<T>(1.0f);
   }
   next.is_wanted = bsdf.mirror_is_traced();
+  if (!goes_on) next.is_wanted = next.is_wanted & !next.is_wanted;
   if (any(next.is_wanted)) {
     next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.throughput);
   }
@@ -157,6 +159,10 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   if (!bsdf.has_rough_glass()) next.pdf = T{};
   next.throughput = hits.throughput * transmitted;
   next.is_wanted = worthwhile(shading, hits, next.throughput);
+  if (!goes_on) {
+    const T least = minimum(minimum(transmitted.x, transmitted.y), transmitted.z);
+    next.is_wanted = next.is_wanted & !bsdf.is_refracting() & !(least < 1.0f);
+  }
   if (any(next.is_wanted)) {
     const Refraction<T> bent(surface.view, facet, bsdf.eta());
     const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
@@ -200,7 +206,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     hits.set_radiance(hits.throughput *
                       (shown + choose(bsdf.mirror_is_traced(), zero<T>(), background)));
     sample_all_lights(shading, hits);
-    if (goes_on) spawn_specular_rays(shading, hits);
+    if (goes_on || (kind & kTransmits) != 0) spawn_specular_rays(shading, hits, goes_on);
   });
 }
 

@@ -100,6 +100,30 @@ TEST(Surface, AMaskHidesHalfOfASquare) {
   }
 }
 
+// However many surfaces are masked out one behind the other, what is behind them is seen.
+TEST(Surface, ManyMasksHideNothing) {
+  Material masked = matte(glm::vec3(0.5f));
+  masked.opacity_map.texture = 0;
+  const auto center = [&](int squares, IntegratorKind integrator) {
+    Scene scene;
+    scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{0, 0, 0}});
+    add(scene, rectangle({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}), matte(glm::vec3(0.8f)));
+    for (int i = 0; i < squares; ++i) {
+      const std::size_t first = scene.positions.size();
+      add_picture(scene, masked);
+      for (std::size_t k = first; k < scene.positions.size(); ++k)
+        scene.positions[k].z += 0.1f * static_cast<float>(i);
+    }
+    scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
+    RenderOptions options = light(integrator, 1, 1, integrator == kPath ? 256 : 1);
+    options.ambient = 0.0;
+    return film_of(scene, camera_at({0, 0, 6}, {0, 0, 0}, 1e-2), options).color[0].r;
+  };
+  for (const IntegratorKind integrator : {kWhitted, kPath}) {
+    EXPECT_NEAR(center(9, integrator), center(0, integrator), 1e-4f);
+  }
+}
+
 // What blends covers its share of what is behind it, for camera rays and for shadows.
 TEST(Surface, OpacityOfATextureBlends) {
   for (const bool is_unlit : {false, true}) {
