@@ -51,7 +51,7 @@ speed: ## measure: rays/s next to Embree, exact decisions, skips, where time goe
 	@$(if $(call of,skips),python3 -B scenes/make_teapot.py build/scenes/teapot_coarse.obj --fineness 3)
 	$(measure)
 
-core: ## measure: clocks of the simulated ray core: make core [QUICK=1 ONLY=scenes,wide,in-flight,cores]
+core: ## measure: clocks of the simulated ray core: make core [QUICK=1 ONLY=scenes,wide,in-flight,exact,cores]
 	$(call build,lab,lab scenes)
 	$(measure)
 

@@ -1,4 +1,5 @@
-// Clocks, lines and bytes a ray of the simulated ray core, by kind of ray and by memory. Nothing
+// Clocks, lines and bytes a ray of the simulated ray core, by kind of ray, or of all rays of a
+// picture, and by memory. Nothing
 // passes or fails here: each ray's answer is compared with the cpu engine's, and a difference ends
 // the run.
 #include <CLI/CLI.hpp>
@@ -12,7 +13,11 @@
 #include "host/lab/commands.h"
 #include "host/lab/rays/rays.h"
 #include "host/lab/timing.h"
+#include "host/light/default_lights.h"
+#include "host/render/renderer.h"
+#include "host/scene/camera.h"
 #include "host/scene/io/scene_loader.h"
+#include "host/scene/view.h"
 #include "sim/rtl_core.h"
 
 namespace raygate::lab {
@@ -36,21 +41,43 @@ class CoreBench {
     name_ = file.stem().string();
     const Bvh bvh(scene);
     const auto image = std::make_shared<const MemoryImage>(bvh);
+    const auto is_asked = [&](const std::string& kind) {
+      return std::ranges::find(options_.kinds, kind) != options_.kinds.end();
+    };
     for (const RaySet& set : ray_sets(scene, options_.size - options_.size % 128)) {
-      if (std::ranges::find(options_.kinds, set.name) == options_.kinds.end()) continue;
+      if (!is_asked(set.name)) continue;
       const RaySet chosen = every(set);
-      for (const int latency : options_.latencies) {
-        for (const int cores : options_.cores) {
-          for (const int rays : options_.in_flight) {
-            run(bvh, image, chosen, {.latency = latency},
-                {.cores = cores, .rays = rays, .exact = options_.exact});
-          }
-        }
-      }
+      run(bvh, image, set.name, [&](const IntersectorFactory& make_intersector) {
+        std::vector<NearestHit> hits(chosen.rays.size());
+        make_intersector()->intersect(chosen.rays, chosen.query(0, hits.size()), hits);
+        return hits.size();
+      });
+    }
+    for (const auto& [kind, integrator] : kPictures) {
+      if (!is_asked(kind)) continue;
+      run(bvh, image, kind, [&](const IntersectorFactory& make_intersector) {
+        const Camera camera = front_camera(scene, 1.0);
+        const int size = options_.size / options_.every;
+        RenderStats stats;
+        (void)render(scene, bvh, camera,
+                     {.width = size,
+                      .height = size,
+                      .window = {},
+                      .samples = 1,
+                      .integrator = integrator,
+                      .lights = default_lights(scene, camera)},
+                     make_intersector, stats);
+        return static_cast<std::size_t>(stats.rays);
+      });
     }
   }
 
  private:
+  static constexpr std::pair<const char*, IntegratorKind> kPictures[] = {
+      {"whitted", IntegratorKind::kWhitted}, {"path", IntegratorKind::kPath}};
+  /// Traces rays; how many.
+  using Trace = std::function<std::size_t(const IntersectorFactory&)>;
+
   /// One of `options_.every` rays.
   [[nodiscard]] RaySet every(const RaySet& set) const {
     RaySet some = set;
@@ -69,25 +96,37 @@ class CoreBench {
                          cores);
   }
 
-  void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const RaySet& set,
-           const MemoryTiming& timing, const CoreSet& cores) {
+  void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
+           const Trace& trace) {
+    for (const int latency : options_.latencies) {
+      for (const int cores : options_.cores) {
+        for (const int rays : options_.in_flight) {
+          run(bvh, image, kind, trace, {.latency = latency},
+              {.cores = cores, .rays = rays, .exact = options_.exact});
+        }
+      }
+    }
+  }
+
+  void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
+           const Trace& trace, const MemoryTiming& timing, const CoreSet& cores) {
     const std::shared_ptr<CoreUnit> core = make_core(timing, cores);
-    CheckIntersector intersector(bvh, std::make_unique<CoreIntersector>(bvh, image, core),
-                                 std::make_unique<CpuIntersector>(bvh));
-    std::vector<NearestHit> hits(set.rays.size());
-    const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-    intersector.intersect(set.rays, set.query(0, set.rays.size()), hits);
-    const double seconds = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+    const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const auto count = static_cast<double>(trace([&] {
+      return std::make_unique<CheckIntersector>(bvh,
+                                                std::make_unique<CoreIntersector>(bvh, image, core),
+                                                std::make_unique<CpuIntersector>(bvh));
+    }));
+    const double seconds = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     const CoreCounters counters = core->counters();
-    const auto a_ray = [&](std::uint64_t count) {
-      return static_cast<double>(count) / static_cast<double>(set.rays.size());
-    };
+    const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };
     const auto percent = [&](std::uint64_t clocks) {  // of the clocks of all cores
       return 100.0 * a_ray(clocks) / (a_ray(counters.clocks) * cores.cores);
     };
     results_.add({{"table", "core"},
                   {"scene", name_},
-                  {"rays", set.name},
+                  {"rays", kind},
+                  {"exact", options_.exact},
                   {"latency", timing.latency},
                   {"cores", cores.cores},
                   {"in_flight", cores.rays == 0 ? Row("all") : Row(cores.rays)},
@@ -104,7 +143,7 @@ class CoreBench {
                   {"exact_percent", percent(counters.exact_clocks)},
                   {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
                   {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)},
-                  {"rays_per_second", static_cast<double>(set.rays.size()) / seconds}});
+                  {"rays_per_second", count / seconds}});
   }
 
   const Options& options_;
@@ -127,9 +166,11 @@ void add_core(CLI::App& lab, Outcome& outcome) {
       ->check(CLI::Range(0, kWideRays));
   app->add_option("--cores", options->cores, "behind one port to memory; several may be given")
       ->check(CLI::Range(1, 64));
-  app->add_option("--kinds", options->kinds, "of rays: camera, light, scattered")
-      ->check(CLI::IsMember({"camera", "light", "scattered"}));
-  app->add_option("--every", options->every, "of the rays only each so-manieth")
+  app->add_option("--kinds", options->kinds,
+                  "of rays: camera, light, scattered; all of a picture: whitted, path")
+      ->check(CLI::IsMember({"camera", "light", "scattered", "whitted", "path"}));
+  app->add_option("--every", options->every,
+                  "of the rays only each so-manieth; of a picture's rows and columns")
       ->check(CLI::Range(1, 1024));
   app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
   app->add_flag("--exact", options->exact, "cores settle doubts; else the host does");

@@ -14,6 +14,7 @@ FEW = ("scenes/cornell.obj", "scenes/teapot.obj", "build/scenes/sphereflake.obj"
 ALL = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj",
        *(f"build/scenes/{name}.obj" for name in ("cornell_spheres", "still_life", "columns", "sphereflake")))
 SCATTERED = ("--kinds", "camera", "scattered")
+PICTURES = ("--kinds", "whitted", "path", "--latency", 50)
 
 
 def part(name: str, scenes: tuple, *words: object, every: int = 1) -> Callable[[argparse.Namespace], list[Step]]:
@@ -27,6 +28,7 @@ def part(name: str, scenes: tuple, *words: object, every: int = 1) -> Callable[[
 PARTS = {"scenes": part("scenes", ALL),
          "wide": part("wide", ALL, "--latency", 200, "--in-flight", 128),
          "in-flight": part("in-flight", FEW, *SCATTERED, "--in-flight", *(2 ** power for power in range(9)), every=4),
+         "exact": lambda given: [step for way in ((), ("--exact",)) for step in part("exact", ALL, *PICTURES, *way)(given)],
          "cores": part("cores", FEW, *SCATTERED, "--latency", 50, "--cores", 1, 2, 4, 8, every=2)}
 
 
@@ -55,12 +57,13 @@ def draw(rows: list[dict], file: pathlib.Path) -> pathlib.Path:
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
     """Rows side by side, by latency and by cores; the plot."""
-    scenes, cores, wide = (of(rows, "core", part=name) for name in ("scenes", "cores", "wide"))
+    scenes, cores, wide, exact = (of(rows, "core", part=name) for name in ("scenes", "cores", "wide", "exact"))
     latencies = sorted({row["latency"] for row in scenes})
     by_latency = grouped(scenes, ("scene", "rays"), "latency")
     usual = {(row["scene"], row["rays"]): row["at"] for row in by_latency}
     in_flight = of(rows, "core", part="in-flight")
     return {"latencies": latencies, "middle": latencies[len(latencies) // 2] if latencies else None,
             "scenes": by_latency, "wide": [{**row, "at": usual.get((row["scene"], row["rays"]), {})} for row in wide],
+            "exact": grouped(exact, ("scene", "rays"), "exact"),
             "cores": grouped(cores, ("scene", "rays"), "cores"), "numbers": sorted({row["cores"] for row in cores}),
             "plot": draw(in_flight, folder / "core.png") if in_flight else None}

@@ -23,6 +23,8 @@ class CoreReport(unittest.TestCase):
                 [*(row("scenes", "camera", latency) for latency in (1, 50, 200)),
                  *(row("in-flight", "camera", 1, in_flight=rays, clocks_per_ray=64 / rays) for rays in (1, 64)),
                  *(row("cores", "camera", 50, cores=cores, clocks_per_ray=6 / cores) for cores in (1, 2)),
+                 row("exact", "path", 50, exact=False, clocks_per_ray=4.0),
+                 row("exact", "path", 50, exact=True, clocks_per_ray=5.0, near_ties_per_1000=2.0, exact_percent=1.25),
                  row("wide", "camera", 200, in_flight=128, busier_percent=95.0, clocks_per_ray=3.0)])
             text = document.render("core.md.j2", pathlib.Path(name), rows, **core.values(rows, pathlib.Path(name)))
             self.assertGreater((pathlib.Path(name) / "core.png").stat().st_size, 1000)
@@ -32,6 +34,7 @@ class CoreReport(unittest.TestCase):
         self.assertEqual(rows, [
             ["a", "camera", "5.00", "0.25"],
             ["a", "camera", "1.50", "0.75", "2.25"],
+            ["a", "path", "4.00", "5.00", "25.0", "0.25", "2.00", "1.25"],
             ["a", "camera", "6.00", "3.00", "1.5"]])
 
 
