@@ -72,6 +72,7 @@ void put_ray(Top& top, const CoreRay& ray) {
   fields.put(ray.no_cull, 1);
   fields.put(ray.any_hit, 1);
   fields.put(ray.start, 28);
+  fields.put(ray.source_id);
   fields.put(ray.skip_id);
   fields.put(std::bit_cast<std::uint32_t>(ray.t_max), 31);
   fields.put(ray.ray.direction);

@@ -156,9 +156,12 @@ std::string details(const Report& report) {
   const RenderStats& render = report.render;
   const HitCounters& hit = render.intersect.hit;
   std::string text = row("hits", format_count(hit.hits));
-  text += row("doubts", format_count(hit.edge_doubts) + " about edges, " +
-                            format_count(hit.depth_doubts) +
-                            " about the order of hits, settled by exact arithmetic");
+  text += row(
+      "doubts",
+      format_count(hit.edge_doubts) + " about edges, " + format_count(hit.depth_doubts) +
+          " about the order of hits, settled by exact arithmetic" +
+          (hit.exact_clocks > 0 ? ", in " + format_count(hit.exact_clocks, "clock") + " of the core"
+                                : ""));
   text += row("points",
               format_count(render.point_doubts) + " computed by the host, as --point-error says");
   if (hit.clocks > 0) {
@@ -251,6 +254,7 @@ std::string to_json(const Report& report) {
       {"clocks", hit.clocks},
       {"idle_clocks", hit.idle_clocks},
       {"output_stalls", hit.output_stalls},
+      {"exact_clocks", hit.exact_clocks},
       {"clocks_per_test", clocks_per_test(hit)},
       {"skipped",
        {{"culled_tests", render.skipped.culled_tests},

@@ -34,6 +34,7 @@ struct HitCounters {
   std::uint64_t clocks = 0;         ///< simulated clock cycles
   std::uint64_t idle_clocks = 0;    ///< clocks of the pipelined unit's lanes without a test
   std::uint64_t output_stalls = 0;  ///< clocks of the lanes in which a result was not taken
+  std::uint64_t exact_clocks = 0;   ///< clocks in which the exact units of ray cores had a doubt
 
   HitCounters& operator+=(const HitCounters& other) {
     add_counters(*this, other);

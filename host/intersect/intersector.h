@@ -56,6 +56,9 @@ struct RayQuery {
   /// A primitive whose hits do not count, or NearestHit::kNone. With skip_ids or any_hit_before,
   /// NearestHit::point is not valid.
   std::span<const std::uint32_t> skip_ids{};
+  /// A primitive that the ray does not hit, as its sender knows: its source, the one that it
+  /// leaves; or NearestHit::kNone. Changes no result, but saves the test that is hardest to decide.
+  std::span<const std::uint32_t> source_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
   /// False: every ray is tested against every polygon, whatever the boxes say.

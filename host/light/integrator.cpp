@@ -260,6 +260,7 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
     Ray& ray = output.next.rays.emplace_back();
     ray.origin = *origin;
     ray.direction = scattered.direction;
+    output.next.sources.push_back(place.primitive);
     PathState& next = output.next.states.emplace_back(scattered.state);
     next.sample = state.sample;
     next.index = state.index;

@@ -28,11 +28,13 @@ struct PathState {
 struct RayBatch {
   int depth = 0;  ///< so many; 0: from the camera
   std::vector<Ray> rays;
-  std::vector<PathState> states;  ///< of the rays
+  std::vector<PathState> states;       ///< of the rays
+  std::vector<std::uint32_t> sources;  ///< the primitives that they leave; none from the camera
 
   void clear() {
     rays.clear();
     states.clear();
+    sources.clear();
   }
 };
 

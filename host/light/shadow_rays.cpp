@@ -89,6 +89,7 @@ void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
   Segment& segment = next_.emplace_back();
   segment.index = index;
   segment.from = ray.surface;
+  segment.source = ray.surface_slot;
   segment.to = is_area ? ray.target : lights_.points()[ray.point_light].position;
   segment.ignored = is_area ? ray.target_slot : NearestHit::kNone;
   segment.share = !is_area                               ? kWholeWay
@@ -101,7 +102,8 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
   const glm::vec3& position = lights_.points()[point_light].position;
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (rays[i].point_light != point_light) continue;
-    segments_.push_back({i, position, rays[i].surface, rays[i].surface_slot, kWholeWay});
+    segments_.push_back(
+        {i, position, rays[i].surface, NearestHit::kNone, rays[i].surface_slot, kWholeWay});
   }
   if (segments_.empty()) return;
   trace(true, kSureOfLight);
@@ -141,6 +143,7 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
       continue;
     }
     next_[kept] = next_[i];
+    next_[kept].source = spawn_queries_[i].primitive;
     next_[kept++].from = *origins_[i];
   }
   next_.resize(kept);
@@ -153,6 +156,7 @@ void ShadowRays::trace(bool from_light, float enough) {
   limits_.resize(count);
   enough_.resize(count);
   ignored_.resize(count);
+  sources_.resize(from_light ? 0 : count);
   for (std::size_t i = 0; i < count; ++i) {
     const Segment& segment = segments_[i];
     batch_[i].origin = segment.from;
@@ -160,15 +164,23 @@ void ShadowRays::trace(bool from_light, float enough) {
     if (segment.share == kNoEnd) {
       batch_[i].direction = scaled_direction(glm::dvec3(segment.to));
       limits_[i] = enough_[i] = kNoEnd;
-      continue;
+    } else {
+      const Aim aim(segment.from, segment.to);
+      batch_[i].direction = aim.direction;
+      limits_[i] = aim.whole_way * segment.share;
+      enough_[i] = aim.whole_way * std::min(enough, segment.share);
     }
-    const Aim aim(segment.from, segment.to);
-    batch_[i].direction = aim.direction;
-    limits_[i] = aim.whole_way * segment.share;
-    enough_[i] = aim.whole_way * std::min(enough, segment.share);
+    // Rounding may turn a ray that hardly leaves back to its own triangle.
+    if (!from_light) {
+      const bool leaves = !is_ahead(batch_[i], bvh_.corners_of(segment.source));
+      sources_[i] = leaves ? segment.source : NearestHit::kNone;
+    }
   }
-  RayQuery search{
-      .common_origin = from_light, .t_max = limits_, .skip_ids = ignored_, .culling = culling_};
+  RayQuery search{.common_origin = from_light,
+                  .t_max = limits_,
+                  .skip_ids = ignored_,
+                  .source_ids = sources_,
+                  .culling = culling_};
   if (first_occluder_) search.any_hit_before = enough_;
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;

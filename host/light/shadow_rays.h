@@ -59,6 +59,7 @@ class ShadowRays {
   struct Segment {
     std::uint32_t index;  // of the shadow ray that it is a part of
     glm::vec3 from, to;
+    std::uint32_t source;   // the primitive that it begins at, if it begins at one
     std::uint32_t ignored;  // primitive
     float share;            // of the way in which hits count; infinite: `to` is a direction
   };
@@ -86,7 +87,7 @@ class ShadowRays {
   std::vector<NearestHit> hits_;
   std::vector<RayWork> work_;
   std::vector<float> limits_, enough_;
-  std::vector<std::uint32_t> ignored_;
+  std::vector<std::uint32_t> ignored_, sources_;
   const TracedFunction* traced_ = nullptr;
 };
 

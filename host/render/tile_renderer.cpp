@@ -153,6 +153,7 @@ void TileRenderer::trace_wave() {
   work_.resize(is_counting_ ? rays.size() : 0);
   intersector_.intersect(rays,
                          {.common_origin = batch_.depth == 0 && job_.camera.has_common_origin(),
+                          .source_ids = batch_.sources,
                           .culling = job_.options.skips.culling,
                           .work = work_},
                          hits_);

@@ -37,7 +37,7 @@ module intersection_subsystem #(
 );
 
   logic [95:0] box_origin, box_inverse, triangle_origin, direction;
-  logic [31:0] skip_id;
+  logic [31:0] skip_id, source_id;
   logic [RayWidth-1:0] direction_ctx;
   logic no_cull;
 
@@ -63,6 +63,7 @@ module intersection_subsystem #(
     .triangle_ctx_i,
     .triangle_origin_o(triangle_origin),
     .triangle_skip_id_o(skip_id),
+    .triangle_source_id_o(source_id),
     .direction_ctx_i(direction_ctx),
     .direction_o(direction)
   );
@@ -123,6 +124,7 @@ module intersection_subsystem #(
     .triangle_i,
     .origin_i(triangle_origin),
     .skip_id_i(skip_id),
+    .source_id_i(source_id),
     .direction_ctx_o(direction_ctx),
     .direction_i(direction),
     .ctx_o(verdict_ctx_o),

@@ -29,6 +29,7 @@ module ray_context #(
   input  logic [RayWidth-1:0] triangle_ctx_i,
   output logic [95:0]         triangle_origin_o,
   output logic [31:0]         triangle_skip_id_o,
+  output logic [31:0]         triangle_source_id_o,
   input  logic [RayWidth-1:0] direction_ctx_i,
   output logic [95:0]         direction_o
 );
@@ -70,16 +71,16 @@ module ray_context #(
     .data_o({node_origin_o, node_inverse_o, node_no_cull_o})
   );
   ram #(
-    .Width(96 + 32),
+    .Width(96 + 2 * 32),
     .Depth(Rays)
   ) u_triangle (
     .clk_i,
     .write_i(start_fire_i),
     .write_address_i(start_ctx_o),
-    .data_i({start.origin, start.skip_id}),
+    .data_i({start.origin, start.skip_id, start.source_id}),
     .read_i(1'b1),
     .read_address_i(triangle_ctx_i),
-    .data_o({triangle_origin_o, triangle_skip_id_o})
+    .data_o({triangle_origin_o, triangle_skip_id_o, triangle_source_id_o})
   );
   ram #(
     .Width(96),

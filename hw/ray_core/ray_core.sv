@@ -1,8 +1,8 @@
 // Ray core: rays in, nearest hits out, or, without Exact, nearest sure hits and doubts; it traverses a tree in memory.
 //
 // Rays and results: valid/ready. A ray begins at the inner node of line `start` (the root's, as a rule). Its direction
-// is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangle `skip_id` do
-// not count. With `any_hit` it ends at its first sure hit, with `no_cull` it enters all boxes. Words about rays come
+// is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangles `skip_id`
+// and `source_id`, the one that it leaves, do not count. With `any_hit` it ends at its first sure hit, with `no_cull` it enters all boxes. Words about rays come
 // mixed, by tag, and rays end in any order: see ray_core_pkg::result_e. With an error they say nothing, see error_e.
 // Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order, valid/ready;
 // with line_error_i, not to be believed: it is read again for the next ray. Some are prefetched: outstanding_o may be high

@@ -192,7 +192,7 @@ module ray_core_axi #(
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
   assign generated = {
-    camera[0+:96], camera_direction, Infinity, NoTriangle, AddressWidth'(0), 2'b00, pixel
+    camera[0+:96], camera_direction, Infinity, {2{NoTriangle}}, AddressWidth'(0), 2'b00, pixel
   };
   assign ray_ready_o  = core_ready & ~closed_q;
   assign ray_fire     = core_valid & core_ready;

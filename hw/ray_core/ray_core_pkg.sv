@@ -76,6 +76,7 @@ package ray_core_pkg;
     logic [95:0]             direction;
     logic [30:0]             t_max;
     logic [31:0]             skip_id;
+    logic [31:0]             source_id;
     logic [AddressWidth-1:0] start;
     logic                    any_hit;
     logic                    no_cull;

@@ -106,6 +106,7 @@ module traversal_subsystem #(
   logic [RayWidth-1:0] fetch_ray, exact_ray, open_ray;
   logic [Rays-1:0] doubtful, idle;
   logic tests_allowed, test, over, exact_found, exact_ended, computing, near_tie;
+  logic [2:0] verdict_kind;
   logic [AddressWidth-1:0] exact_found_line;
   logic [30:0] exact_t_max;
   ray_core_pkg::request_t fetch;
@@ -119,11 +120,12 @@ module traversal_subsystem #(
   assign triangle_ctx_o = exact.valid ? exact_ray : fetch_ray;
   assign test           = triangle_o.valid & triangle_ready_i & ~triangle_o.exact;
 
+  assign verdict_kind = verdict_i.is_skipped ? 3'b010
+      : {verdict_i.doubt, ~verdict_i.found & ~verdict_i.doubt, verdict_i.found};
   assign events_o = {
     computing,
     near_tie,
-    {3{verdict_i.valid}}
-        & {verdict_i.doubt, ~verdict_i.found & ~verdict_i.doubt, verdict_i.found},
+    {3{verdict_i.valid}} & verdict_kind,
     triangle_line_i.valid & ~triangle_line_i.exact
   };
 

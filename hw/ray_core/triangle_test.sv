@@ -1,7 +1,7 @@
 // Triangle pipeline: set_up_unit's record of a triangle, then hit_test_pipeline's verdict on it; one a clock.
 //
 // Nothing that comes in is stalled; an output is there for the clock that says so. The ray is given by its context:
-// origin_i and skip_id_i in the clock after the triangle came, its direction in that after direction_ctx_o asked for it.
+// origin_i and both ids in the clock after the triangle came, its direction in that after direction_ctx_o asked for it.
 //
 // Every test is a burst of its own. A hit's P is there later than its verdict, in the order of the hits: up to
 // divide_latency + 4 clocks after it.
@@ -20,7 +20,8 @@ module triangle_test #(
   input  ray_core_pkg::triangle_line_t triangle_i,  // with an error it counts for nothing
   // verilator lint_on UNUSEDSIGNAL
   input  logic [95:0]                origin_i,
-  input  logic [31:0]                skip_id_i,   // a triangle that counts for nothing
+  input  logic [31:0]                skip_id_i,   // triangles that count for nothing
+  input  logic [31:0]                source_id_i,
   output logic [RayWidth-1:0]        direction_ctx_o,
   input  logic [95:0]                direction_i,
   output logic [RayWidth-1:0]        ctx_o,
@@ -48,7 +49,7 @@ module triangle_test #(
   always_ff @(posedge clk_i) begin
     {first_q, first_ctx_q, error_q} <= {triangle_i.line, ctx_i, triangle_i.error};
     {triangle_q, ctx_q, origin_q}   <= {first_q, first_ctx_q, origin_i};
-    skipped_q <= error_q | (index == skip_id_i);
+    skipped_q <= error_q | (index == skip_id_i) | (index == source_id_i);
   end
 
   set_up_unit #(

@@ -17,6 +17,7 @@ CoreRay core_ray(const MemoryImage& image, const Ray& ray, const RayQuery& query
                  std::uint32_t number) {
   CoreRay core{.ray = ray, .t_max = query.t_max_of(number), .tag = number};
   if (!query.skip_ids.empty()) core.skip_id = image.line_of(query.skip_ids[number]);
+  if (!query.source_ids.empty()) core.source_id = image.line_of(query.source_ids[number]);
   // A hit before the limit is before what is enough.
   core.any_hit = !query.any_hit_before.empty() && query.any_hit_before[number] >= core.t_max;
   core.no_cull = !query.culling;
@@ -44,6 +45,7 @@ IntersectCounters CoreIntersector::counters() const {
   counters.hit.quotients = 3 * core.rays + 4 * core.hits;  // 1 / I, t, P
   counters.hit.input_bytes = core.lines * sizeof(MemoryLine);
   counters.hit.clocks = core.clocks;
+  counters.hit.exact_clocks = core.exact_clocks;
   return counters;
 }
 

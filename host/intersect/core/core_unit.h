@@ -22,6 +22,7 @@ struct CoreRay {
   /// Positive, +infinity for none: hits at t >= limit do not count. The exact t.
   float t_max = std::numeric_limits<float>::infinity();
   std::uint32_t skip_id = kNoTriangle;       ///< a triangle that does not count, by its name
+  std::uint32_t source_id = kNoTriangle;     ///< another: the one that the ray leaves
   std::uint32_t start = MemoryImage::kRoot;  ///< the line of the inner node where its walk begins
   std::uint32_t tag = 0;                     ///< comes back with all that concerns the ray
   bool any_hit = false;                      ///< the first sure hit that is found will do

@@ -138,7 +138,10 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
   };
   const auto test = [&](const TriangleLine& triangle, bool settles) {
     ++tests;
-    if (triangle.index == ray.skip_id) return;
+    if (triangle.index == ray.skip_id || triangle.index == ray.source_id) {
+      ++counters_.misses;
+      return;
+    }
     const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
     const UnitVerdict verdict = unit.verdict(set.record, ray.ray.direction);
     counters_.misses += verdict == UnitVerdict::kMiss;

@@ -41,7 +41,7 @@ struct RayTraversal {
   float low, high;          ///< bounds of the nearest hit's depth; without one, the limit's
   float enough;             ///< a hit whose depth is surely less is enough
   std::uint32_t primitive;  ///< of the nearest hit
-  std::uint32_t skip_id;    ///< a primitive
+  std::uint32_t skip_id, source_id;  ///< primitives
   RayWork work;
 
   Bvh::Child at;  ///< what is visited next
@@ -126,7 +126,7 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   for (RayTraversal* const walk : walks) {
     walk->low = walk->high = std::numeric_limits<float>::infinity();
     walk->cutoff = std::numeric_limits<float>::max();
-    walk->primitive = walk->skip_id = NearestHit::kNone;
+    walk->primitive = walk->skip_id = walk->source_id = NearestHit::kNone;
     walk->enough = -1.0f;
     walk->work = {};
     walk->at = {0, 0};

@@ -28,7 +28,7 @@ RAYGATE_INLINE bool SingleRayIntersector::judge(RayTraversal& walk, const Bvh::C
     const int i = std::countr_zero(open);
     const std::uint32_t primitive = leaf.first + static_cast<std::uint32_t>(i);
     const float low = verdict.low[i], high = verdict.high[i];
-    if (low > walk.high || primitive == walk.skip_id) continue;
+    if (low > walk.high || primitive == walk.skip_id || primitive == walk.source_id) continue;
     if ((verdict.level >> i & 1) != 0) {
       if (!is_ahead(rays_[walk.number], bvh_.corners_of(primitive))) continue;
       ++counters.hits;
@@ -90,6 +90,7 @@ RAYGATE_INLINE LaneMask SingleRayIntersector::begin(RayTraversal* const (&walks)
       walk.end_at(Interval{query_.t_max[number], query_.t_max[number]});
     }
     if (!query_.skip_ids.empty()) walk.skip_id = query_.skip_ids[number];
+    if (!query_.source_ids.empty()) walk.source_id = query_.source_ids[number];
     if (!query_.any_hit_before.empty()) {
       walk.enough = float_below(query_.any_hit_before[number] * walk.t_scale());
     }

@@ -73,6 +73,42 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
   EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), cpu, stats)));
 }
 
+/// Counts the rays that name their source; none may hit it.
+class SourceGuard : public CpuIntersector {
+ public:
+  SourceGuard(const Bvh& bvh, std::size_t& named, std::size_t& unnamed)
+      : CpuIntersector(bvh), bvh_(bvh), named_(named), unnamed_(unnamed) {}
+  void intersect(std::span<const Ray> rays, const RayQuery& query,
+                 std::span<NearestHit> hits) override {
+    for (std::size_t i = 0; i < rays.size() && !query.common_origin; ++i) {
+      const std::uint32_t source =
+          query.source_ids.empty() ? NearestHit::kNone : query.source_ids[i];
+      ++(source == NearestHit::kNone ? unnamed_ : named_);
+      if (source == NearestHit::kNone) continue;
+      EXPECT_FALSE(hits_triangle(rays[i], bvh_.corners_of(source)));
+    }
+    CpuIntersector::intersect(rays, query, hits);
+  }
+
+ private:
+  const Bvh& bvh_;
+  std::size_t &named_, &unnamed_;
+};
+
+TEST_P(EveryIntegrator, RaysNameTheTriangleThatTheyLeave) {
+  std::size_t named = 0, unnamed = 0;
+  const IntersectorFactory guard = [&] {
+    return std::make_unique<SourceGuard>(bvh_, named, unnamed);
+  };
+  RenderStats stats;
+  RenderOptions one_thread = options(150, 100);
+  one_thread.threads = 1;
+  EXPECT_TRUE(same(film(one_thread), render(scene_, bvh_, camera_, one_thread, guard, stats)));
+  if (GetParam() == IntegratorKind::kPrimary) return;
+  EXPECT_GT(named, 10'000u);
+  EXPECT_LT(1'000 * unnamed, named);
+}
+
 // The baseline shades one hit at a time, the others as many as they have lanes.
 TEST_P(EveryIntegrator, VectorsChangeNoByte) {
   RenderOptions all = options(80, 60);

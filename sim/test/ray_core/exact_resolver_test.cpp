@@ -99,8 +99,10 @@ TEST_F(ExactResolverTest, LimitsAndFirstHitsAreTheReferences) {
         mesh_[static_cast<std::size_t>(random_.below(static_cast<int>(mesh_.size())))];
     CoreRay& sent = rays.emplace_back(CoreRay{.ray = ray});
     sent.any_hit = random_.below(4) == 0;
-    sent.skip_id =
-        image_->line_of(static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
+    for (std::uint32_t* const id : {&sent.skip_id, &sent.source_id}) {
+      *id = image_->line_of(
+          static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
+    }
     const bool is_hit = hits_triangle(ray, corners);
     sent.t_max =
         is_hit ? static_cast<float>(hit_distance(ray, corners).low) : random_.uniform(0.01f, 3.0f);

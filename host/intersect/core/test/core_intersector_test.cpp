@@ -38,6 +38,13 @@ class CoreIntersectorTest : public testing::Test {
     counters_ = core_->counters();
   }
 
+  /// Of a triangle of the mesh.
+  [[nodiscard]] std::uint32_t primitive_of(std::size_t triangle) const {
+    std::uint32_t primitive = 0;
+    while (bvh_.triangle_of(primitive) != triangle) ++primitive;
+    return primitive;
+  }
+
   std::vector<Corners> mesh_ = bodies();
   Bvh bvh_{test::scene_of(mesh_)};
   std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
@@ -80,6 +87,25 @@ TEST_F(CoreIntersectorTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
   const std::uint64_t nodes = counters_.nodes;
   check(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = enough}, 8);
   EXPECT_LT(counters_.nodes, nodes);
+}
+
+// Next to the plane float32 cannot tell on which side the origin is: each such ray has a doubt.
+TEST_F(CoreIntersectorTest, TheTriangleThatARayLeavesIsNoDoubt) {
+  std::vector<Ray> rays;
+  std::vector<std::uint32_t> sources;
+  const auto count = static_cast<int>(test::sphere(2).size());  // the first of the mesh
+  for (int i = 0; i < 10'000; ++i) {
+    const auto triangle = static_cast<std::size_t>(random_.below(count));
+    const Corners& t = mesh_[triangle];
+    Ray& ray = rays.emplace_back(
+        Ray{(t[0] + t[1] + t[2]) / 3.0f, scaled_direction(glm::dvec3(random_.point(1.0f)))});
+    if (is_ahead(ray, t)) ray.direction = -ray.direction;
+    sources.push_back(primitive_of(triangle));
+  }
+  check(rays, {}, 8);
+  EXPECT_GT(counters_.doubts, 9'000u);
+  check(rays, {.source_ids = sources}, 8);
+  EXPECT_LT(counters_.doubts, 100u);
 }
 
 TEST_F(CoreIntersectorTest, WithoutCullingEveryTriangleIsTested) {

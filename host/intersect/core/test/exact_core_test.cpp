@@ -123,7 +123,7 @@ TEST_F(ExactCoreTest, NearestHitsAreTheCpuIntersectors) {
   EXPECT_GT(asked, 5'000) << "the guards see CpuIntersector";
 }
 
-TEST_F(ExactCoreTest, LimitsSkippedTrianglesAndFirstHitsCount) {
+TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
   std::vector<NearestHit> nearest(rays.size());
   CpuIntersector(bvh_).intersect(rays, {}, nearest);
@@ -149,6 +149,14 @@ TEST_F(ExactCoreTest, LimitsSkippedTrianglesAndFirstHitsCount) {
   EXPECT_LT(hits_, 4'500);
   check(rays, {.t_max = limits, .skip_ids = skipped});
   check(rays, {.t_max = limits, .skip_ids = skipped, .any_hit_before = limits});
+  std::vector<std::uint32_t> sources;
+  for (const Ray& ray : rays) {
+    const auto primitive =
+        static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size())));
+    const bool is_hit = hits_triangle(ray, bvh_.corners_of(primitive));
+    sources.push_back(is_hit ? NearestHit::kNone : primitive);
+  }
+  check(rays, {.t_max = limits, .source_ids = sources});
 }
 
 /// A sure hit has t within its bound, whoever settled it; what float32 has no t for says so.
