@@ -30,6 +30,7 @@ class CheckIntersector : public Intersector {
   [[nodiscard]] std::size_t preferred_batch() const override {
     return intersector_->preferred_batch();
   }
+  [[nodiscard]] bool wants_sources() const override { return intersector_->wants_sources(); }
   [[nodiscard]] IntersectCounters counters() const override { return intersector_->counters(); }
 
  private:

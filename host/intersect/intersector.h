@@ -89,6 +89,9 @@ class Intersector {
   /// The best number of rays for one query; about 16,384 for each test that runs at the same time.
   [[nodiscard]] virtual std::size_t preferred_batch() const { return kBatch; }
 
+  /// Whether RayQuery::source_ids are worth an exact decision of who sends a ray.
+  [[nodiscard]] virtual bool wants_sources() const { return false; }
+
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
 
  protected:

@@ -156,7 +156,7 @@ void ShadowRays::trace(bool from_light, float enough) {
   limits_.resize(count);
   enough_.resize(count);
   ignored_.resize(count);
-  sources_.resize(from_light ? 0 : count);
+  sources_.resize(from_light || !intersector_.wants_sources() ? 0 : count);
   for (std::size_t i = 0; i < count; ++i) {
     const Segment& segment = segments_[i];
     batch_[i].origin = segment.from;
@@ -171,7 +171,7 @@ void ShadowRays::trace(bool from_light, float enough) {
       enough_[i] = aim.whole_way * std::min(enough, segment.share);
     }
     // Rounding may turn a ray that hardly leaves back to its own triangle.
-    if (!from_light) {
+    if (!sources_.empty()) {
       const bool leaves = !is_ahead(batch_[i], bvh_.corners_of(segment.source));
       sources_[i] = leaves ? segment.source : NearestHit::kNone;
     }

@@ -26,6 +26,7 @@ class CoreIntersector : public Intersector {
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
+  [[nodiscard]] bool wants_sources() const override { return true; }
   [[nodiscard]] IntersectCounters counters() const override;
 
  private:

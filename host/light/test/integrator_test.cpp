@@ -78,6 +78,7 @@ class SourceGuard : public CpuIntersector {
  public:
   SourceGuard(const Bvh& bvh, std::size_t& named, std::size_t& unnamed)
       : CpuIntersector(bvh), bvh_(bvh), named_(named), unnamed_(unnamed) {}
+  [[nodiscard]] bool wants_sources() const override { return true; }
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override {
     for (std::size_t i = 0; i < rays.size() && !query.common_origin; ++i) {

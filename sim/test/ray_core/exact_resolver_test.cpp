@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "Vray_core_small_exact.h"
@@ -171,6 +173,56 @@ TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   }
   EXPECT_GT(core.counters().doubts, 150u * rays.size());
   EXPECT_GT(found, 0);
+}
+
+/// One read in 32 comes back with an error, a line that was there before among them, and now and
+/// then rays are given up: those say so, all others have the reference's hit.
+TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
+  std::vector<CoreRay> rays;
+  for (const Ray& ray : some_rays(mesh_, random_, 1'000)) {
+    rays.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(rays.size())});
+  }
+  ReferenceCore reference(ReferenceCore::kStackDepth, true);
+  const std::vector<CoreResult> expected = words(reference, image_->lines(), rays);
+  CorePort<Vray_core_small_exact> core;
+  core.invalidate(image_->lines().size());
+  core.set_read_ready(true);
+  std::deque<std::pair<std::uint32_t, std::uint64_t>> reads;  // lines and their tags
+  std::vector<bool> overflowed(rays.size());
+  std::size_t sent = 0, ended = 0;
+  int compared = 0, broken = 0, aborted = 0;
+  for (int clock = 0; ended < rays.size(); ++clock) {
+    ASSERT_LT(clock, 3'000'000) << "a ray has not ended";
+    if (sent < rays.size() && !core.is_offering()) core.offer(rays[sent++]);
+    if (core.take_result(true)) {
+      const CoreResult result = core.result();
+      ASSERT_NE(result.kind, CoreResult::Kind::kDoubt);
+      overflowed.at(result.tag) =
+          overflowed[result.tag] || result.kind == CoreResult::Kind::kOverflow;
+      if (result.kind == CoreResult::Kind::kEnd) {
+        ++ended;
+        broken += result.error == CoreResult::Error::kMemory;
+        aborted += result.error == CoreResult::Error::kAbort;
+        if (result.error == CoreResult::Error::kNone && !overflowed[result.tag]) {
+          ASSERT_EQ(result.found, expected[result.tag].found) << result.tag;
+          if (result.found) ASSERT_EQ(result.triangle, expected[result.tag].triangle) << result.tag;
+          ++compared;
+        }
+      }
+    }
+    if (core.is_reading()) reads.emplace_back(core.line(), core.tag());
+    if (!reads.empty() && core.has_room()) {
+      const auto [line, tag] = reads.front();
+      reads.pop_front();
+      core.put(image_->lines()[line], random_.below(32) == 0, tag);
+    }
+    core.model()->abort_i = random_.below(4'096) == 0;
+    core.clock();
+  }
+  EXPECT_GT(compared, 100);
+  EXPECT_GT(broken, 100);
+  EXPECT_GT(aborted, 20);
+  EXPECT_GT(core.counters().exact_clocks, 1'000u);
 }
 
 TEST_F(ExactResolverTest, ResetsInMidRunLeaveNothing) {
