@@ -142,6 +142,16 @@ void check_error(const OptionTable& table, RenderOptions& options) {
   }
 }
 
+/// What --caustics on asks of other options; its default does without where they say otherwise.
+void check_caustics(const RenderOptions& options) {
+  if (options.caustics != Caustics::kOn) return;
+  if (options.integrator != IntegratorKind::kPath) {
+    throw InputError("--caustics on: expected --integrator path");
+  }
+  if (options.error > 0.0) throw InputError("--caustics on and --error exclude each other");
+  if (options.samples == 1) throw InputError("--caustics on: expected --spp 2 or more");
+}
+
 /// What options ask of each other.
 void check(const OptionTable& table, Options& options, unsigned processors) {
   RenderOptions& render = options.render;
@@ -155,6 +165,7 @@ void check(const OptionTable& table, Options& options, unsigned processors) {
   check_engine_options(table, options, processors);
   check_core_file_options(options.core_files, options, {render.width, render.height});
   check_error(table, render);
+  check_caustics(render);
   if (render.end_sample > 0) {
     if (render.end_sample > render.samples) {
       fail_value("--samples", table.typed("samples"),

@@ -144,6 +144,11 @@ class Run {
     const Scene unframed = options_.serve ? scene_ : Scene();
     if (cameras.has_ground()) add_ground(scene_, cameras.up());
     report_.view = cameras.text();
+    if (options_.render.caustics == Caustics::kOn &&
+        (cameras.frame(1).lights ||
+         cameras.frame(1).camera.projection() != Projection::kPerspective)) {
+      throw InputError("--caustics on: expected a perspective camera and a scene with lights");
+    }
     resolve_instances(scene_, options_.instances, options_.scene);
 
     if (!options_.core_files.pixel) prepare_engine(options_);

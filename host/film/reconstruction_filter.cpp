@@ -47,6 +47,14 @@ class Inverse {
     return place(step + std::clamp(within, 0.0, 1.0));
   }
 
+  /// How likely that place is, per length: constant in each step.
+  [[nodiscard]] double density(double at) const {
+    const double step = (at / kRadius + 1.0) * (0.5 * kSteps);
+    if (!(step >= 0.0 && step < kSteps)) return 0.0;
+    const int i = static_cast<int>(step);
+    return (cumulative_[i + 1] - cumulative_[i]) * (0.5 * kSteps / kRadius);
+  }
+
  private:
   static constexpr int kSteps = 1024, kStarts = 8 * kSteps;  // so that few searches go on
   static double place(double step) { return (2.0 * step / kSteps - 1.0) * kRadius; }
@@ -58,21 +66,47 @@ double tent(double u) {
   return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u));
 }
 
+const Inverse& gauss_inverse() {
+  static const Inverse kInverse(gauss);
+  return kInverse;
+}
+const Inverse& blackman_harris_inverse() {
+  static const Inverse kInverse(blackman_harris);
+  return kInverse;
+}
+
+double density(ReconstructionFilter filter, double at) {
+  switch (filter) {
+    case ReconstructionFilter::kBox:
+      return at >= -0.5 && at < 0.5 ? 1.0 : 0.0;
+    case ReconstructionFilter::kTent:
+      return std::max(0.0, 1.0 - std::abs(at));
+    case ReconstructionFilter::kGauss:
+      return gauss_inverse().density(at);
+    case ReconstructionFilter::kBlackmanHarris:
+      break;
+  }
+  return blackman_harris_inverse().density(at);
+}
+
 }  // namespace
 
+double filter_density(ReconstructionFilter filter, const glm::dvec2& offset) {
+  return density(filter, offset.x) * density(filter, offset.y);
+}
+
 glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u) {
-  static const Inverse kGaussInverse(gauss), kBlackmanHarrisInverse(blackman_harris);
   switch (filter) {
     case ReconstructionFilter::kBox:
       return u - 0.5;
     case ReconstructionFilter::kTent:
       return {tent(u.x), tent(u.y)};
     case ReconstructionFilter::kGauss:
-      return {kGaussInverse(u.x), kGaussInverse(u.y)};
+      return {gauss_inverse()(u.x), gauss_inverse()(u.y)};
     case ReconstructionFilter::kBlackmanHarris:
       break;
   }
-  return {kBlackmanHarrisInverse(u.x), kBlackmanHarrisInverse(u.y)};
+  return {blackman_harris_inverse()(u.x), blackman_harris_inverse()(u.y)};
 }
 
 double filter_radius(ReconstructionFilter filter) {

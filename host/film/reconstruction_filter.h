@@ -18,6 +18,9 @@ enum class ReconstructionFilter {
 /// pixel has a say in it. What is rendered of a window is what the whole picture has there.
 [[nodiscard]] glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u);
 
+/// How likely filter_offset() is to give an offset, per square pixel, for uniform `u`.
+[[nodiscard]] double filter_density(ReconstructionFilter filter, const glm::dvec2& offset);
+
 /// No offset is larger, on either axis.
 [[nodiscard]] double filter_radius(ReconstructionFilter filter);
 

@@ -20,6 +20,8 @@
 
 namespace raygate {
 
+class LightPaths;
+
 /// What one light sends to a hit if nothing is between: a shadow ray to trace.
 struct LightSample {
   enum State : std::uint8_t {
@@ -30,8 +32,9 @@ struct LightSample {
   State state = kNone;
   glm::vec3 radiance{0.0f};               ///< what arrives if nothing is between
   SpawnSide side = SpawnSide::kIncident;  ///< transmitted: by rough glass
-  std::uint32_t light_index = 0;
-  glm::vec3 point{0.0f};  ///< of an area light; or, without a primitive, the direction to any other
+  std::uint32_t light_index = 0;          ///< kNoIndex: this goes to the camera's lens
+  glm::vec3 point{0.0f};  ///< of an area light; or, without a primitive, the direction to any
+                          ///< other; or of the lens
   std::uint32_t primitive = 0;
 };
 
@@ -81,6 +84,7 @@ struct ShadingScene {
   bool single_sample = false;
   bool skips_weightless = true;
   PathOptions path{};
+  const LightPaths* light_paths = nullptr;  ///< none: camera paths find all light
 };
 
 /// The matte colour at which `surface` looks like the background, in the light of all lights
@@ -119,7 +123,6 @@ struct Hits {
       : block(hits), kind(hit_kind), count(static_cast<int>(at.size())) {
     const PathState* states[kCount];
     SurfaceHit places[kCount];
-    const MaterialParameters* materials[kCount];
     for (int k = 0; k < kCount; ++k) {
       place[k] = at[static_cast<std::size_t>(k < count ? k : count - 1)];
       states[k] = &hits.state(place[k]);
@@ -132,6 +135,8 @@ struct Hits {
     scattering_normal = gather<T>(states, &PathState::normal);
     stream = gather<T>(states, &PathState::stream);
     index = gather<T>(states, &PathState::index);
+    ratio = gather<T>(states, &PathState::ratio);
+    vertices = gather<T>(states, &PathState::vertices);
     surface = surface_at<T>(shading.scene, shading.bvh, kind, places);
     if ((kind & kShadowCatcher) != 0) {
       surface.colour = catcher_colour(shading.lights, shading.ambient, surface);
@@ -157,6 +162,16 @@ struct Hits {
     return sobol_point<T>(index, hash(stream, purpose));
   }
 
+  /// The BSDF seen from another direction on the same side, and the normal there.
+  struct Seen {
+    Bsdf<T> bsdf;
+    Triple<T> normal;
+  };
+  [[nodiscard]] RAYGATE_INLINE Seen seen_from(const Triple<T>& direction) const {
+    const Surface<T> seen = surface.seen_from(direction);
+    return {Bsdf<T>(seen, kind, materials), seen.normal};
+  }
+
   RAYGATE_INLINE void set_radiance(const Triple<T>& radiance) {
     const auto out = unpack(radiance);
     for (int k = 0; k < count; ++k) block.radiance[place[k]] = out[k];
@@ -167,8 +182,9 @@ struct Hits {
   int count;
   std::uint32_t place[kCount];  ///< in the block
   Triple<T> throughput, scattered_at, scattering_normal;
-  T pdf;
-  WordOf<T> stream, index;
+  T pdf, ratio;
+  WordOf<T> stream, index, vertices;
+  const MaterialParameters* materials[kCount];
   Surface<T> surface;
   Bsdf<T> bsdf;
 
@@ -185,8 +201,8 @@ struct Hits {
 template <class T>
 struct ScatteredRays {
   Triple<T> direction, flat, throughput, scattered_at, normal;
-  T pdf;
-  WordOf<T> stream;
+  T pdf, ratio = T{};
+  WordOf<T> stream, vertices = WordOf<T>{};
   MaskOf<T> is_wanted, has_flat, is_transmitted;
 
   RAYGATE_INLINE void send(Hits<T>& hits, std::size_t number) const {
@@ -199,8 +215,8 @@ struct ScatteredRays {
     const auto directions = unpack(ahead), flat_ones = unpack(scaled(flat)),
                throughputs = unpack(throughput), points = unpack(scattered_at),
                normals = unpack(normal);
-    const auto pdfs = unpack(pdf);
-    const auto streams = unpack(stream);
+    const auto pdfs = unpack(pdf), ratios = unpack(ratio);
+    const auto streams = unpack(stream), counts = unpack(vertices);
     for (int k = 0; k < hits.count; ++k) {
       if (!wanted[k]) continue;
       ScatteredRay& ray = hits.block.scattered_ray(hits.place[k], number);
@@ -215,6 +231,8 @@ struct ScatteredRays {
       ray.state.scattered_at = points[k];
       ray.state.normal = normals[k];
       ray.state.stream = streams[k];
+      ray.state.ratio = ratios[k];
+      ray.state.vertices = counts[k];
     }
   }
 };

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "host/base/vectors.h"
+#include "host/light/light_paths.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
@@ -34,20 +35,20 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
       shading_{.scene = prepared.scene,
                .bvh = prepared.bvh,
                .lights = lights,
-               .ambient = kind == IntegratorKind::kPath ? lights.light_from_above()
-                                                        : glm::vec3(options.ambient),
+               .ambient = is_path() ? lights.light_from_above() : glm::vec3(options.ambient),
                .max_depth = options.max_depth,
                .threshold = static_cast<float>(options.threshold),
                .single_sample = options.single_sample,
                .skips_weightless = skips.weightless,
-               .path = options.path},
+               .path = options.path,
+               .light_paths = options.light_paths},
       spawner_(prepared.clearances),
       skips_(skips),
       point_error_(options.point_error),
       materials_(prepared.materials) {
-  const bool is_whitted = kind == IntegratorKind::kWhitted, is_path = kind == IntegratorKind::kPath;
-  block_.light_samples_per_hit = is_whitted ? lights.count() : is_path ? 1 : 0;
-  block_.scattered_per_hit = is_whitted ? 2 : is_path ? 1 : 0;
+  const bool is_whitted = kind == IntegratorKind::kWhitted;
+  block_.light_samples_per_hit = is_whitted ? lights.count() : is_path() ? 1 : 0;
+  block_.scattered_per_hit = is_whitted ? 2 : is_path() ? 1 : 0;
   block_size_ = std::clamp<std::size_t>(
       kMostLightSamples / std::max<std::size_t>(1, block_.light_samples_per_hit), 1, kMostHits);
   block_.places.resize(block_size_);
@@ -69,6 +70,7 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   sort(hits, count, output);
   ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary   ? shade_primary
                                     : kind_ == IntegratorKind::kWhitted ? shade_whitted
+                                    : kind_ == IntegratorKind::kLight   ? shade_light_path
                                                                         : shade_path;
   for (HitKind kind = 0; kind < kHitKinds; ++kind) {
     const std::span<const std::uint32_t> at(order_.data() + first_[kind],
@@ -167,6 +169,13 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
         const T pdf = gather<T>(states, &PathState::pdf);
         const T light_pdf = environment.pdf(direction) * lanes_from<T>(pmfs);
         light = light * choose(pdf > 0.0f, power_heuristic(pdf, light_pdf), spread<T>(1.0f));
+        const auto directions = unpack(direction);
+        light = light * gather<T>([&](int k) RAYGATE_BODY {
+                  return caustic_weight(*states[k], [&] {
+                    return shading_.light_paths->environment_density(states[k]->scattered_at,
+                                                                     directions[k]);
+                  });
+                });
       }
       const auto lights_out = unpack(light);
       for (std::size_t k = 0; k < count; ++k) {
@@ -216,6 +225,7 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
   };
   if (scattered.surely_leaves || leaves(scattered.direction)) return true;
   scattered.direction = scattered.flat;
+  scattered.state.ratio = 0.0f;  // no light path goes this way
   return scattered.has_flat && leaves(scattered.flat);
 }
 
@@ -244,8 +254,10 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
     shadow.radiance = light_sample.radiance;
     shadow.surface = *origin;
     shadow.surface_slot = place.primitive;
-    const Lights::Light& light = shading_.lights.light(light_sample.light_index);
-    if (light.kind == Lights::Kind::kPoint && light.radius == 0.0f) {
+    shadow.is_to_camera = light_sample.light_index == kNoIndex;
+    const Lights::Light* const light =
+        shadow.is_to_camera ? nullptr : &shading_.lights.light(light_sample.light_index);
+    if (light != nullptr && light->kind == Lights::Kind::kPoint && light->radius == 0.0f) {
       shadow.point_light = light_sample.light_index;
     } else {
       shadow.target = light_sample.point;

@@ -41,22 +41,28 @@ class Integrator {
 
   /// Radiance along rays that hit nothing.
   [[nodiscard]] glm::vec3 background() const {
-    return kind_ == IntegratorKind::kPrimary ? glm::vec3(0.0f) : shading_.lights.background();
+    return sees_background() ? shading_.lights.background() : glm::vec3(0.0f);
   }
   /// Whether they see an environment instead, at that depth.
   [[nodiscard]] bool sees_environment(int depth) const {
     const Lights& lights = shading_.lights;
-    return kind_ != IntegratorKind::kPrimary && lights.environment() != nullptr &&
+    return sees_background() && lights.environment() != nullptr &&
            (depth > 0 || !lights.has_studio());
   }
   /// Whether shadows are cast as if glass did not bend light.
-  [[nodiscard]] bool shadows_through_refraction() const { return kind_ != IntegratorKind::kPath; }
+  [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
 
   [[nodiscard]] const SkipCounters& skipped() const { return block_.skipped; }
   /// Hits whose P the host found.
   [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  private:
+  [[nodiscard]] bool is_path() const {
+    return kind_ == IntegratorKind::kPath || kind_ == IntegratorKind::kLight;
+  }
+  [[nodiscard]] bool sees_background() const {
+    return kind_ != IntegratorKind::kPrimary && kind_ != IntegratorKind::kLight;
+  }
   void sort(std::span<const NearestHit> hits, std::size_t count, ShadingOutput& output);
   void add_infinite_light(ShadingOutput& output);
   void list_spawn_queries(std::size_t i);

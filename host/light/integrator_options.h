@@ -10,6 +10,7 @@ enum class IntegratorKind {
   kPrimary,  ///< camera rays alone, lit from the camera: diffuse colour times cosine, and emission
   kWhitted,  ///< reflection, refraction and shadows, as in the paper
   kPath,     ///< full global illumination: Monte Carlo path tracing
+  kLight,    ///< paths from the lights to the camera: a part of kPath, not to be asked for
 };
 
 /// How one of many lights is chosen.
@@ -32,13 +33,23 @@ struct PathOptions {
 /// The default relative error of the hit-test unit's P above which the host computes the point.
 inline constexpr float kPointError = 0x1p-16f;
 
+class LightPaths;
+
 struct IntegratorOptions {
   int max_depth = 4;               ///< rays of this depth are the last
   double threshold = 1.0 / 256.0;  ///< Whitted: rays that count for less are not traced
   glm::dvec3 ambient{0.0};         ///< Whitted: radiance from all sides that reaches everything
   bool single_sample = false;      ///< one sample a pixel: no chance where there is a middle
   PathOptions path{};
-  float point_error = kPointError;  ///< relative; beyond it the host computes P
+  float point_error = kPointError;          ///< relative; beyond it the host computes P
+  const LightPaths* light_paths = nullptr;  ///< kPath, kLight: what it is to be combined with
+};
+
+/// Whether light paths find caustics.
+enum class Caustics {
+  kOff,   ///< they are found by chance
+  kOn,    ///< they are found by light paths
+  kAuto,  ///< the same; where that is not possible, nobody has asked for it
 };
 
 /// Work that is skipped because it cannot change the picture: no bit depends on these.

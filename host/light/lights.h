@@ -191,6 +191,7 @@ class Lights {
     std::uint32_t patch = kNoIndex;  ///< of an area light
     float per_area = 0.0f;           ///< of a patch: 1 / its area in square units
   };
+  [[nodiscard]] std::size_t source_count() const { return sources_.size(); }
   [[nodiscard]] const Source& source(std::size_t index) const { return sources_[index]; }
   /// Which one a primitive belongs to; kNoIndex for none.
   [[nodiscard]] std::uint32_t source_of(std::uint32_t primitive) const {

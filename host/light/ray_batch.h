@@ -10,7 +10,7 @@
 
 namespace raygate {
 
-/// The state of a path along its ray: 52 bytes in a row, since hits are shaded in another order
+/// The state of a path along its ray: 60 bytes in a row, since hits are shaded in another order
 /// than rays are traced in, and one cache line is fetched for a ray, not ten.
 struct PathState {
   glm::vec3 throughput{1.0f};  ///< what light along the ray is multiplied by
@@ -22,6 +22,10 @@ struct PathState {
   std::uint32_t sample = 0;      ///< of those that are traced together: whose radiance it adds to
   std::uint32_t stream = 0;      ///< of random numbers, its own in the picture
   std::uint32_t index = 0;       ///< of its points in such streams
+  std::uint32_t vertices = 0;    ///< surfaces that have scattered it
+  /// How dense light paths are here over how dense camera paths are, or on light paths the other
+  /// way round (LightPaths); 0: there is one kind alone.
+  float ratio = 0.0f;
 };
 
 /// Rays with the same number of surfaces behind them.

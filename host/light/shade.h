@@ -46,4 +46,9 @@ ShadeFunction shade_whitted;
 /// nothing else.
 ShadeFunction shade_path;
 
+/// Light tracing (Dutre, Lafortune and Willems, "Monte Carlo light tracing with direct computation
+/// of pixel intensities", 1993): each hit behind a first mirror or glass is connected to the
+/// camera, as a light sample that is on its way to the lens, and one ray goes on.
+ShadeFunction shade_light_path;
+
 }  // namespace raygate

@@ -92,7 +92,7 @@ void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
   segment.source = ray.surface_slot;
   segment.to = is_area ? ray.target : lights_.points()[ray.point_light].position;
   segment.ignored = is_area ? ray.target_slot : NearestHit::kNone;
-  segment.share = !is_area                               ? kWholeWay
+  segment.share = !is_area || ray.is_to_camera           ? kWholeWay
                   : ray.target_slot == NearestHit::kNone ? kNoEnd
                                                          : kBeforeAreaLight;
 }

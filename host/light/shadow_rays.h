@@ -27,6 +27,7 @@ struct ShadowRay {
   std::uint32_t point_light = kNoPoint;  ///< index; or else the light is an area's or far away:
   glm::vec3 target{0.0f};                ///< its point, or the direction towards it
   std::uint32_t target_slot = 0;         ///< and what that is on; kNone: it is infinitely far away
+  bool is_to_camera = false;             ///< the target is a point that is on nothing
 };
 
 /// Traces shadow rays in batches.

@@ -59,8 +59,9 @@ struct Surface {
   /// Unit normal, interpolated where the file has normals, to the same side; where that would not
   /// be seen from the ray, tilted until it is at right angles to the ray.
   Triple<T> normal;
-  Triple<T> colour;  ///< Kd, times the texture
-  T opacity;         ///< what its texture multiplies; of kinds that interpolate and transmit
+  Triple<T> untilted;  ///< without that
+  Triple<T> colour;    ///< Kd, times the texture
+  T opacity;           ///< what its texture multiplies; of kinds that interpolate and transmit
   /// What the textures of a metallic-roughness material multiply; of other kinds nothing.
   T roughness, metallic, transmission, specular, coat, coat_roughness;
   Triple<T> specular_color;
@@ -98,6 +99,24 @@ struct Surface {
       is_sure = is_far & is_some;
     }
   };
+  /// Tilts the normal for the view.
+  RAYGATE_INLINE void tilt() {
+    const T facing = dot(untilted, view);
+    const Triple<T> tilted = untilted - view * facing;
+    const T tilted_size = dot(tilted, tilted);
+    normal = choose(facing < 0.0f,
+                    choose(tilted_size > 0.0f, tilted * (1.0f / root(tilted_size)), flat_normal),
+                    untilted);
+  }
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_tilted() const { return dot(untilted, view) < 0.0f; }
+
+  /// The same point seen from another direction on this side.
+  [[nodiscard]] RAYGATE_INLINE Surface seen_from(const Triple<T>& direction) const {
+    Surface seen = *this;
+    seen.view = direction;
+    seen.tilt();
+    return seen;
+  }
   Triple<WideOf<T>> own_normal;  ///< as the vertices say, of any length,
   Triple<WideOf<T>> own_size;    ///< and the sum of magnitudes that each component comes from
   T side;                        ///< the exact sign of I . N, of the ray
@@ -247,13 +266,8 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   surface.outside = towards == along;
   surface.flat_normal = choose(surface.outside, surface.flat_normal, -surface.flat_normal);
   surface.normal = choose(surface.outside, surface.normal, -surface.normal);
-  const T facing = dot(surface.normal, surface.view);
-  const Triple<T> tilted = surface.normal - surface.view * facing;
-  const T tilted_size = dot(tilted, tilted);
-  surface.normal =
-      choose(facing < 0.0f,
-             choose(tilted_size > 0.0f, tilted * (1.0f / root(tilted_size)), surface.flat_normal),
-             surface.normal);
+  surface.untilted = surface.normal;
+  surface.tilt();
   return surface;
 }
 

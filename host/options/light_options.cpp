@@ -21,6 +21,10 @@ Choices<ReconstructionFilter> filter_choices() {
           {"blackman-harris", ReconstructionFilter::kBlackmanHarris}};
 }
 
+Choices<Caustics> caustics_choices() {
+  return {{"on", Caustics::kOn}, {"off", Caustics::kOff}, {"auto", Caustics::kAuto}};
+}
+
 /// "inf": the unit's point wherever it has one.
 float parse_point_error(const std::string& option, const std::string& text) {
   constexpr double kLargest = std::numeric_limits<float>::max();
@@ -82,6 +86,17 @@ void add_light_options(OptionTable& table, RenderOptions& options) {
         options.max_depth = depth;
       },
       [&options] { return std::to_string(options.depth()); }, kInExr | kInStats | kInPython);
+  table.add(
+      "--caustics", "WHEN", "path: light paths find caustics: on, off or auto",
+      [&options](const std::string& option, const std::string& text) {
+        options.caustics = choose(option, text, caustics_choices());
+      },
+      // The default is not written: pictures without mirrors and glass keep their bytes.
+      [&options] {
+        return options.caustics == Caustics::kAuto ? std::string()
+                                                   : name_of(caustics_choices(), options.caustics);
+      },
+      kInExr | kInPython);
   table.number("--threshold", "X", "whitted: ignore rays that weigh less ({})", options.threshold,
                Range{0.0, 1.0}, kInExr | kInPython);
   table.number("--ambient", "X", "whitted: ambient radiance (background or lights)",

@@ -29,9 +29,10 @@ class Coordinator : public TileWorkers {
         tiles_(tiles),
         monitor_(monitor),
         queue_(tiles.count, tiles.passes(), job.options.unfinished != nullptr) {
+    if (job.light_paths != nullptr) splats_ = SplatLayer(film, job.options.filter);
     Ranks* const ranks = job.options.ranks;
     if (ranks == nullptr || ranks->count() == 1) return;
-    remote_.emplace(*ranks, tiles, job.options.first_sample, film);
+    remote_.emplace(*ranks, tiles, job.options.first_sample, film, splats_);
     grace_ = {};
   }
   ~Coordinator() override { join(); }
@@ -53,6 +54,7 @@ class Coordinator : public TileWorkers {
       watch(threads);
     }
     threads_.clear();
+    splats_.add_to(film_);
     if (error_) {
       if (remote_ && monitor_.urgent_snapshot) monitor_.urgent_snapshot(&film_);
       std::rethrow_exception(error_);
@@ -75,6 +77,7 @@ class Coordinator : public TileWorkers {
   }
   [[nodiscard]] bool is_over() const override { return queue_.all_begun(); }
   void done(const TileWork& work) override { queue_.end(work.number); }
+  void add(int /*tile*/, std::span<const Splat> splats) override { splats_.add(splats); }
   void between_batches() override {
     if (is_alone_) look();
   }
@@ -113,6 +116,7 @@ class Coordinator : public TileWorkers {
       if (stopped_) {
         if (!stopped_at_) stopped_at_ = Clock::now();
         if (monitor_.abandon && !error_ && Clock::now() - *stopped_at_ > grace_) {
+          splats_.add_to(film_);
           monitor_.abandon(film_);  // under the lock: nobody changes it any more
         }
         return;
@@ -150,7 +154,8 @@ class Coordinator : public TileWorkers {
     take(film ? &*film : nullptr);
   }
 
-  /// Tile by tile: a thread waits for the copy of one at most.
+  /// Tile by tile: a thread waits for the copy of one at most. With light paths, all at once: what
+  /// these have brought belongs to the samples that the film has.
   Film copy_of_film() {
     Film copy;
     copy.width = film_.width;
@@ -159,10 +164,14 @@ class Coordinator : public TileWorkers {
     copy.keeps_sums = film_.keeps_sums;
     for_each_field([](const FilmField&, const auto& from, auto& to) { to.resize(from.size()); },
                    film_, copy);
+    std::unique_lock lock(mutex_);
     for (int i = 0; i < tiles_.count; ++i) {
-      const std::scoped_lock lock(mutex_);
       set_region(copy, tiles_[i], region_bytes(film_, tiles_[i]));
+      if (job_.light_paths != nullptr) continue;
+      lock.unlock();
+      lock.lock();
     }
+    splats_.add_to(copy);
     return copy;
   }
 
@@ -181,6 +190,7 @@ class Coordinator : public TileWorkers {
   const Tiles& tiles_;
   const RenderMonitor& monitor_;
   TileQueue queue_;
+  SplatLayer splats_;
   std::optional<RemoteWorkers> remote_;  // none: there is one rank
   bool served_ = false;
   // Of the watching thread alone.

@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 #include "host/base/input_error.h"
@@ -24,11 +25,23 @@ double thread_seconds() {
 
 }  // namespace
 
-RemoteWorkers::RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film)
+std::vector<Splat> splats_in(const std::string& message) {
+  const std::size_t room = message.size() - sizeof(TileWork);
+  const auto count = value_of<TileWork>(message).splats;
+  if (count > room / sizeof(Splat)) throw_short_message(room, count * sizeof(Splat));
+  std::vector<Splat> splats(count);
+  std::memcpy(static_cast<void*>(splats.data()), message.data() + sizeof(TileWork),
+              count * sizeof(Splat));
+  return splats;
+}
+
+RemoteWorkers::RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film,
+                             SplatLayer& splats)
     : ranks_(ranks),
       tiles_(tiles),
       first_sample_(first_sample),
       film_(film),
+      splats_(splats),
       room_(static_cast<std::size_t>(ranks.count()), 0) {}
 
 bool RemoteWorkers::serve(TileQueue& queue) {
@@ -67,7 +80,9 @@ void RemoteWorkers::take(const Message& message, TileQueue& queue) {
                        std::to_string(tile.number) + ", expected one of " +
                        std::to_string(tiles_.count));
     }
+    const std::vector<Splat> splats = splats_in(message.bytes);
     set_region(film_, tile.rect, region_in(message.bytes));
+    splats_.add(splats);
     queue.end(tile.number);
     seconds_ += tile.seconds;
     passes_ += (tile.last - tile.end) / tile.step + 1;

@@ -1,12 +1,14 @@
 // Remote workers: the other ranks as rank 0 sees them, and the messages about tiles.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/film/film.h"
 #include "host/ranks/ranks.h"
+#include "host/render/splat_layer.h"
 #include "host/render/tile_queue.h"
 #include "host/render/tile_workers.h"
 #include "host/render/tiles.h"
@@ -14,12 +16,19 @@
 namespace raygate {
 
 /// A message about a tile: with the work goes what the film has of the tile (film_region.h), there
-/// where the worker lacks it, and back what it has then.
-[[nodiscard]] inline std::string message_of(const TileWork& work, std::string_view region) {
-  return bytes_of(work).append(region);
+/// where the worker lacks it, and back what it has then, after the splats that it has brought.
+[[nodiscard]] inline std::string message_of(TileWork work, std::string_view region,
+                                            std::span<const Splat> splats = {}) {
+  work.splats = splats.size();
+  return bytes_of(work)
+      .append(reinterpret_cast<const char*>(splats.data()), splats.size_bytes())
+      .append(region);
 }
+/// Throws InputError where there are fewer than the message says.
+[[nodiscard]] std::vector<Splat> splats_in(const std::string& message);
 [[nodiscard]] inline std::string_view region_in(const std::string& message) {
-  return std::string_view(message).substr(sizeof(TileWork));
+  return std::string_view(message).substr(sizeof(TileWork) +
+                                          splats_in(message).size() * sizeof(Splat));
 }
 
 /// Hands out tiles and puts what comes back into the film. For one thread at a time, which also
@@ -27,7 +36,7 @@ namespace raygate {
 class RemoteWorkers {
  public:
   /// `first_sample`: of the render. All else must outlive this.
-  RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film);
+  RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film, SplatLayer& splats);
 
   /// Takes what has come and gives everyone with room for it more to do. True if a tile came back.
   bool serve(TileQueue& queue);
@@ -45,6 +54,7 @@ class RemoteWorkers {
   const Tiles& tiles_;
   int first_sample_;
   Film& film_;
+  SplatLayer& splats_;
   std::vector<int> room_;  // by rank: for so many more tiles
   int most_room_ = 0;      // of all of them, when they had nothing to do
   double seconds_ = 0.0;   // of threads, for ...

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "host/film/reconstruction_filter.h"
+#include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/light/prepared_scene.h"
 #include "host/light/sampler.h"
@@ -18,7 +19,8 @@ struct RenderJob {
   const Camera& camera;
   const RenderOptions& options;
   const Lights& lights;
-  glm::dvec3 ambient;  ///< as IntegratorOptions has it
+  glm::dvec3 ambient;                       ///< as IntegratorOptions has it
+  const LightPaths* light_paths = nullptr;  ///< none: caustics are found by chance
 
   /// What a triangle, or kNone, sends out as a light whose edges are worth more rays: it is one
   /// colour.

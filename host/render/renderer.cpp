@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "host/base/stopwatch.h"
+#include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/ranks/ranks.h"
 #include "host/render/coordinator.h"
@@ -25,6 +27,22 @@ Film empty_film(const RenderOptions& options) {
   return make_film(options.width, options.height, window, options.channels);
 }
 
+/// Whether light paths are asked for and possible.
+bool wants_light_paths(const RenderOptions& options, const Camera& camera) {
+  return options.caustics != Caustics::kOff && options.integrator == IntegratorKind::kPath &&
+         options.samples > 1 && options.error == 0.0 && !options.lights &&
+         camera.projection() == Projection::kPerspective;
+}
+
+/// The frame as light paths have to hit it for the film's window.
+FrameView frame_view(const Camera& camera, const RenderOptions& options, const Film& film) {
+  const glm::dvec2 size(film.width, film.height);
+  const double margin = filter_radius(options.filter) + 1.0;
+  const PixelRect& window = film.window;
+  return {camera, film.width, film.height, (glm::dvec2(window.x0, window.y0) - margin) / size,
+          (glm::dvec2(window.x1, window.y1) + margin) / size};
+}
+
 }  // namespace
 
 Film render(const PreparedScene& prepared, const Camera& camera, const RenderOptions& options,
@@ -41,26 +59,36 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   const int ranks = options.ranks == nullptr ? 1 : options.ranks->count();
   const Tiles tiles(film.window, end - options.first_sample, first_intersector->preferred_batch(),
                     options.threads, ranks, options.error > 0.0);
+  const bool is_path = options.integrator == IntegratorKind::kPath;
+  const Lights lights(prepared.scene, bvh, is_path ? options.path.lights : LightSampling::kNone,
+                      options.lights);
+  std::optional<LightPaths> light_paths;
+  if (wants_light_paths(options, camera)) {
+    light_paths.emplace(prepared, lights, frame_view(camera, options, film));
+    if (!light_paths->exist()) light_paths.reset();
+  }
   if (options.unfinished != nullptr) {
     film = *options.unfinished;
     film.keeps_sums = options.channels.sums;
     assert(film.sums.samples.size() == film.color.size());
-  } else if (tiles.passes() > 1 || film.keeps_sums || options.error > 0.0 || ranks > 1) {
+  } else if (tiles.passes() > 1 || film.keeps_sums || options.error > 0.0 || ranks > 1 ||
+             light_paths) {
     add_sums(film, options.error > 0.0);
   }
-  const bool is_path = options.integrator == IntegratorKind::kPath;
-  const Lights lights(prepared.scene, bvh, is_path ? options.path.lights : LightSampling::kNone,
-                      options.lights);
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lights
   // have no edges.
   std::vector<EmitterEdge> emitter_edges;
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
     emitter_edges.assign(film.color.size(), EmitterEdge::kUnknown);
   }
-  const RenderJob job{prepared, camera, options, lights,
+  const RenderJob job{prepared,
+                      camera,
+                      options,
+                      lights,
                       options.ambient ? glm::dvec3(*options.ambient)
                       : is_path       ? glm::dvec3(0.0)
-                                      : lights.ambient()};
+                                      : lights.ambient(),
+                      light_paths ? &*light_paths : nullptr};
   if (ranks > 1 && options.ranks->index() != 0) {
     run_worker(*options.ranks, job, std::move(first_intersector), make_intersector, monitor, film,
                emitter_edges, stats);

@@ -22,7 +22,8 @@ IntegratorOptions integrator_options(const RenderJob& job) {
           .ambient = job.ambient,
           .single_sample = options.samples == 1,
           .path = options.path,
-          .point_error = options.point_error};
+          .point_error = options.point_error,
+          .light_paths = job.light_paths};
 }
 
 }  // namespace
@@ -37,7 +38,11 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
                   integrator_options(job)),
       shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
-      is_counting_(!film.tests.empty() || !film.doubts.empty()) {}
+      is_counting_(!film.tests.empty() || !film.doubts.empty()) {
+  if (job.light_paths == nullptr) return;
+  light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options.skips,
+                            integrator_options(job));
+}
 
 void TileRenderer::make_camera_rays() {
   batch_.clear();
@@ -50,13 +55,18 @@ void TileRenderer::make_camera_rays() {
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
       state.stream = sampler.key();
       state.index = index;
-      batch_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
+      const Ray& ray = batch_.rays.emplace_back(
+          camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
+      if (job_.light_paths == nullptr) continue;
+      state.scattered_at = ray.origin;
+      state.ratio = job_.light_paths->camera_ratio(ray);
     }
   }
 }
 
 bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going) {
   Stopwatch watch;
+  splats_.clear();
   pixels_ = samples_to_trace(job_.options, film_, tile, end);
   if (pixels_.empty()) return true;
   samples_ = 0;
@@ -71,6 +81,13 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   edge_emission_.assign(pixels_.size(), {});
   tile_ = tile;
   edge_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
+  stats_.shade_seconds += watch.lap();
+  return trace_camera_rays(tile, keep_going) && trace_light_paths(keep_going);
+}
+
+bool TileRenderer::trace_camera_rays(const PixelRect& tile,
+                                     const std::function<bool()>& keep_going) {
+  Stopwatch watch;
   const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
   if (job_.options.skips.empty_tiles && !integrator_.sees_environment(0) &&
       !may_see_anything(job_.prepared.bvh, job_.camera, film_, tile, margin)) {
@@ -82,12 +99,47 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   make_camera_rays();
   stats_.camera_rays += samples_;
   stats_.shade_seconds += watch.lap();
-  while (!batch_.rays.empty()) {
-    if (!keep_going()) return false;
-    trace_wave();
-  }
+  if (!trace_batch(integrator_, keep_going)) return false;
   supersample_emitter_edges(tile);
   return true;
+}
+
+/// The batch, and all that follows from it; false if it was to stop.
+bool TileRenderer::trace_batch(Integrator& integrator, const std::function<bool()>& keep_going) {
+  while (!batch_.rays.empty()) {
+    if (!keep_going()) return false;
+    trace_wave(integrator);
+  }
+  return true;
+}
+
+/// Each sample of a pixel has the same share of the frame's light paths with it, so that these are
+/// traced with the pixels, whoever traces what; a window's pixels have all of them.
+bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
+  if (!light_integrator_) return true;
+  constexpr std::size_t kManyPaths = 1 << 16;  // at once
+  const std::uint64_t paths = job_.light_paths->count(), window = film_.color.size();
+  std::uint32_t sample = 0;
+  batch_.clear();
+  for (const PixelSamples& pixel : pixels_) {
+    for (int i = pixel.first; i < pixel.end; ++i, ++sample) {
+      for (std::uint64_t path = pixel.index * paths / window;
+           path < (pixel.index + 1) * paths / window; ++path) {
+        const auto start = job_.light_paths->start(static_cast<std::uint64_t>(i) * paths + path,
+                                                   job_.options.seed);
+        if (!start) continue;
+        batch_.rays.push_back(start->ray);
+        batch_.states.push_back(start->state);
+        batch_.states.back().sample = sample;
+        if (batch_.rays.size() < kManyPaths) continue;
+        batch_.depth = 1;
+        if (!trace_batch(*light_integrator_, keep_going)) return false;
+        batch_.clear();
+      }
+    }
+  }
+  batch_.depth = 1;
+  return trace_batch(*light_integrator_, keep_going);
 }
 
 /// Where a light's edge runs through a pixel, looks more often what camera rays see of lights: the
@@ -145,7 +197,7 @@ void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
 /// The rays of one depth, and the shadow rays from where they end: these in several batches where
 /// there are many lights. Light from lights is added up apart from other light, so that the order
 /// of a sample's sums does not depend on the batches.
-void TileRenderer::trace_wave() {
+void TileRenderer::trace_wave(Integrator& integrator) {
   Stopwatch watch;
   const std::vector<Ray>& rays = batch_.rays;
   stats_.rays += rays.size();
@@ -163,8 +215,8 @@ void TileRenderer::trace_wave() {
   for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], batch_.states[i].sample);
   if (batch_.depth == 0) record_first_hits();
   for (std::size_t i = 0; i < rays.size();) {
-    const std::size_t end = std::min(rays.size(), i + integrator_.block_size());
-    integrator_.shade(batch_, hits_, i, end, output_);
+    const std::size_t end = std::min(rays.size(), i + integrator.block_size());
+    integrator.shade(batch_, hits_, i, end, output_);
     i = end;
     if (output_.shadows.size() < kManyShadowRays && i < rays.size()) continue;
     stats_.shade_seconds += watch.lap();
@@ -181,8 +233,23 @@ void TileRenderer::trace_shadows() {
   };
   shadow_rays_.resolve(output_.shadows,
                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
-  for (const ShadowRay& shadow : output_.shadows) direct_light_[shadow.sample] += shadow.radiance;
+  for (const ShadowRay& shadow : output_.shadows) {
+    if (shadow.is_to_camera) {
+      add_splat(shadow);
+    } else {
+      direct_light_[shadow.sample] += shadow.radiance;
+    }
+  }
   output_.shadows.clear();
+}
+
+/// Where what is seen of a surface through a point of the lens comes to in the frame.
+void TileRenderer::add_splat(const ShadowRay& way) {
+  if (way.radiance == glm::vec3(0.0f)) return;
+  const auto place = job_.camera.place_of(glm::dvec3(way.surface), glm::dvec3(way.target));
+  if (!place) return;
+  splats_.push_back(
+      {*place * glm::dvec2(job_.options.width, job_.options.height), glm::dvec3(way.radiance)});
 }
 
 /// Notes what the camera's rays hit.
@@ -280,6 +347,10 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.intersect += intersector_.counters();
   stats.skipped += stats_.skipped;
   stats.skipped += integrator_.skipped();
+  if (light_integrator_) {
+    stats.point_doubts += light_integrator_->point_doubts();
+    stats.skipped += light_integrator_->skipped();
+  }
   stats.skipped.first_occluders += intersector_.counters().ended_early;
   stats.shade_seconds += stats_.shade_seconds;
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "host/render/adaptive_sampling.h"
 #include "host/render/emitter_edges.h"
 #include "host/render/render_job.h"
+#include "host/render/splat_layer.h"
 
 namespace raygate {
 
@@ -35,6 +37,8 @@ class TileRenderer {
 
   /// Adds the samples that were traced last to the film.
   void write();
+  /// What the light paths of these samples have brought, anywhere in the frame.
+  [[nodiscard]] std::span<const Splat> splats() const { return splats_; }
 
   void add_to(RenderStats& stats) const;
 
@@ -49,8 +53,12 @@ class TileRenderer {
 
   void make_camera_rays();
   void supersample_emitter_edges(const PixelRect& tile);
-  void trace_wave();
+  bool trace_camera_rays(const PixelRect& tile, const std::function<bool()>& keep_going);
+  bool trace_light_paths(const std::function<bool()>& keep_going);
+  bool trace_batch(Integrator& integrator, const std::function<bool()>& keep_going);
+  void trace_wave(Integrator& integrator);
   void trace_shadows();
+  void add_splat(const ShadowRay& way);
   void record_first_hits();
   void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, std::size_t sample);
@@ -61,6 +69,7 @@ class TileRenderer {
   Film& film_;
   std::span<EmitterEdge> emitter_edges_;
   Integrator integrator_;
+  std::optional<Integrator> light_integrator_;  // of light paths
   ShadowRays shadow_rays_;
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.
@@ -83,6 +92,7 @@ class TileRenderer {
   RayBatch batch_;
   std::vector<NearestHit> hits_;  // of the batch
   std::vector<RayWork> work_;     // of the batch, if it is counted
+  std::vector<Splat> splats_;
 };
 
 }  // namespace raygate

@@ -68,6 +68,7 @@ bool TileWorkers::render(TileRenderer& renderer, const TileWork& work) {
     if (!renderer.trace(work.rect, end, keep_going)) return false;
     const std::scoped_lock lock(mutex_);
     renderer.write();
+    add(work.number, renderer.splats());
     if (end == work.last) return true;
   }
 }

@@ -23,7 +23,8 @@ struct TileWork {
   int number;
   PixelRect rect;
   int end, step, last;
-  double seconds;  ///< that one thread took, when it is done
+  double seconds;          ///< that one thread took, when it is done
+  std::size_t splats = 0;  ///< of a message about it
 };
 
 /// What a render's threads do on rank 0 and on others. Where tiles come from and who hears of them
@@ -48,6 +49,8 @@ class TileWorkers {
   virtual std::optional<TileWork> take() = 0;      ///< a tile; none: not now
   [[nodiscard]] virtual bool is_over() const = 0;  ///< no tile will come any more
   virtual void done(const TileWork& work) = 0;     ///< it is in the film
+  /// What a part of it has brought to any pixels: that part has just come into the film.
+  virtual void add(int tile, std::span<const Splat> splats) = 0;
   /// Not under the lock, now and then in a thread that works.
   virtual void between_batches() {}
 

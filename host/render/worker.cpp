@@ -1,6 +1,8 @@
 // What a rank other than 0 does in a render.
 #include <chrono>
 #include <deque>
+#include <map>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -46,6 +48,10 @@ class Worker : public TileWorkers {
   }
   [[nodiscard]] bool is_over() const override { return false; }
   void done(const TileWork& work) override { traced_.push_back(work); }
+  void add(int tile, std::span<const Splat> splats) override {
+    std::vector<Splat>& all = splats_[tile];
+    all.insert(all.end(), splats.begin(), splats.end());
+  }
 
   /// False when rank 0 has said that all is rendered, or the caller wants no more.
   bool talk(Ranks& ranks, const RenderMonitor& monitor) {
@@ -67,13 +73,16 @@ class Worker : public TileWorkers {
     changed_.wait_for(lock, kLook, [this] { return error_ || !traced_.empty(); });
     if (error_) std::rethrow_exception(error_);
     for (const TileWork& work : std::exchange(traced_, {})) {
-      ranks.send(0, About::kTraced, message_of(work, region_bytes(film_, work.rect)));
+      ranks.send(0, About::kTraced,
+                 message_of(work, region_bytes(film_, work.rect),
+                            std::exchange(splats_[work.number], {})));
     }
     return true;
   }
 
   std::deque<TileWork> to_do_;
   std::vector<TileWork> traced_;
+  std::map<int, std::vector<Splat>> splats_;  // of tiles that rank 0 has not yet
 };
 
 }  // namespace

@@ -130,6 +130,24 @@ Ray Camera::ray(double x, double y, const glm::dvec2& lens) const {
   return {glm::vec3(origin), scaled_direction(way)};
 }
 
+glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
+  if (!(aperture_ > 0.0)) return glm::dvec3(eye_);
+  const SineCosine<double> turn = sine_cosine(lens.y);
+  return glm::dvec3(eye_) +
+         aperture_ * std::sqrt(lens.x) * (turn.cosine * right_ + turn.sine * up_);
+}
+
+/// The ray meets the plane of focus where that of the lens's middle does.
+std::optional<glm::dvec2> Camera::place_of(const glm::dvec3& point,
+                                           const glm::dvec3& lens_point) const {
+  const glm::dvec3 way = point - lens_point;
+  const double far = glm::dot(way, forward_);
+  if (!(far > 0.0)) return std::nullopt;
+  const glm::dvec3 at = (lens_point - glm::dvec3(eye_)) / focus_ + way / far;
+  return glm::dvec2(0.5 + 0.5 * glm::dot(at, right_) / half_width_,
+                    0.5 - 0.5 * glm::dot(at, up_) / half_height_);
+}
+
 double Camera::depth(const glm::dvec3& point) const {
   return projection_ == Projection::kPanorama ? glm::length(point) : glm::dot(point, forward_);
 }

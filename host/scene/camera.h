@@ -60,6 +60,14 @@ class Camera {
   /// The ray through a point of the picture, places as in direction(), and through the point of
   /// the lens that a point of the unit square stands for; (0, 0) is its middle.
   [[nodiscard]] Ray ray(double x, double y, const glm::dvec2& lens) const;
+  /// Of a perspective camera: the point of the lens that a point of the unit square stands for,
+  [[nodiscard]] glm::dvec3 lens_point(const glm::dvec2& lens) const;
+  /// and the place in the picture of the ray through that and `point`: ray() the other way round.
+  /// None where `point` is not before the camera.
+  [[nodiscard]] std::optional<glm::dvec2> place_of(const glm::dvec3& point,
+                                                   const glm::dvec3& lens_point) const;
+  /// The area of the picture at distance 1 along forward().
+  [[nodiscard]] double picture_area() const { return 4.0 * half_width_ * half_height_; }
   /// How far a point is along the camera's axis, or of a panorama from the eye; `point` is relative
   /// to that.
   [[nodiscard]] double depth(const glm::dvec3& point) const;

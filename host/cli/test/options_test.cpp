@@ -312,6 +312,18 @@ TEST(Options, FilesOfTheRayCore) {
                "--trace: expected with --unit core");
 }
 
+TEST(Options, CausticsOnNeedWhatLightPathsNeed) {
+  const RenderOptions off = parse({"a.obj", "--caustics", "off"}).render;
+  EXPECT_EQ(off.caustics, Caustics::kOff);
+  EXPECT_EQ(parse({"a.obj", "--error", "1"}).render.caustics, Caustics::kAuto);
+  expect_error({"a.obj", "--caustics", "maybe"}, "--caustics: expected on, off or auto");
+  expect_error({"a.obj", "--caustics", "on"}, "--caustics on: expected --integrator path");
+  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--spp", "1"},
+               "--caustics on: expected --spp 2 or more");
+  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--error", "1"},
+               "--caustics on and --error exclude each other");
+}
+
 TEST(Options, NamesThatPeopleType) {
   EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).render.depth(), 7);
 }
@@ -338,7 +350,8 @@ TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {
                              "--arith",         "--point-error",
                              "--cores",         "--dump-image",
                              "--trace",         "--trace-pixel",
-                             "-h, --help",      "--version"}) {
+                             "--caustics",      "-h, --help",
+                             "--version"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
   for (const SkipName& skip : kSkipNames) {

@@ -115,6 +115,31 @@ TEST_F(Parts, OfItsPixelsMakeThePicture) {
   expect_merged(names);
 }
 
+/// Light paths bring light to the pixels of other parts.
+TEST_F(Parts, WithLightPathsMakeThePicture) {
+  const auto render = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {kPaper,         "--size", "60x44",    "--spp", "6",
+                                          "--integrator", "path",   "--engine", "cpu"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  };
+  render({"-o", "whole", "--threads", "1"});
+  render({"-o", "chance", "--caustics", "off"});
+  EXPECT_NE(folder_.read("chance.png"), folder_.read("whole.png"));
+  std::vector<std::string> names;
+  for (const char* crop : {"0,0,31,44", "31,0,60,44"}) {
+    for (const char* samples : {"0:2", "2:6"}) {
+      names.push_back(std::to_string(names.size()) + ".exr");
+      render({"-o", names.back(), "--crop", crop, "--samples", samples, "--threads", "3"});
+    }
+  }
+  expect_merged(names);
+  render({"-o", "few.exr", "--spp", "3", "--channels", "sums"});
+  render({"-o", "more", "--resume", "few.exr"});
+  expect_same_pictures("more", "whole");
+}
+
 TEST_F(Parts, ThatAreNotAllKeepTheirSums) {
   make({"-o", "whole", "--channels", "sums"});
   make({"-o", "a.exr", "--samples", "0:3"});

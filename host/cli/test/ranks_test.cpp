@@ -71,6 +71,17 @@ class Ranks : public Render {
 
 Words small() { return {kCornell, "--size", "60x44", "--integrator", "path", "--threads", "1"}; }
 
+TEST_F(Ranks, ShareLightPaths) {
+  const Words arguments = {kPaper, "--size",   "60x44", "--integrator", "path", "--spp",
+                           "9",    "--engine", "cpu",   "--threads",    "1"};
+  alone(arguments + Words{"-o", "whole"});
+  for (const int count : {2, 3}) {
+    const Outcome outcome = on_ranks(count, arguments + Words{"-o", "shared"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    expect_same_pictures("shared", "whole");
+  }
+}
+
 TEST_F(Ranks, ShareAPicture) {
   const Words arguments = small() + Words{"--spp", "9", "--channels", "Albedo,objectId"};
   alone(arguments + Words{"--engine", "cpu", "-o", "whole"});

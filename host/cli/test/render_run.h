@@ -18,6 +18,7 @@ using nlohmann::json;
 using namespace std::string_literals;
 
 inline const std::string kCornell = RAYGATE_SCENES "/cornell.obj";
+inline const std::string kPaper = RAYGATE_SCENES "/paper_room.json";
 
 /// Runs of ./render, each test in a folder of its own.
 class Render : public testing::Test {

@@ -1,0 +1,299 @@
+#include "host/light/light_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "host/base/elementary.h"
+#include "host/scene/bounds.h"
+#include "host/scene/instances.h"
+
+namespace raygate {
+namespace {
+
+constexpr std::size_t kMostBalls = 16;  // beyond that one for all
+constexpr double kPi = std::numbers::pi;
+constexpr double kBeyondLight = 0x1p-16;  // of the way from a light: off its own triangle
+
+// Light paths are aimed where they count, so that few of them are less noisy than what chance is
+// left with: with one for so many pixels, time times mean square error was least.
+constexpr std::uint64_t kPixelsOfPath = 4;
+
+std::uint64_t pixels_of(const FrameView& frame) {
+  return static_cast<std::uint64_t>(frame.width) * static_cast<std::uint64_t>(frame.height);
+}
+
+// Streams of random numbers; paths have others of their own further on.
+constexpr std::uint32_t kLightPaths = 0x6C696768;
+constexpr std::uint32_t kSource = 10, kPlace = 11, kBall = 12, kTowards = 13;
+
+bool is_mirror_or_glass(const MaterialParameters& material) {
+  constexpr HitKind kRoughGlass = kMetallicRoughness | kGlossy | kMirrors;
+  return (material.kind & kMirrors) != 0 && (~material.kind & kRoughGlass) != 0 &&
+         (material.mirror_is_traced || material.refracts);
+}
+
+glm::dvec3 wide(const Triple<float>& v) { return {v.x, v.y, v.z}; }
+Triple<float> narrow(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// A unit vector at this angle from the unit vector `axis`, or with cosine 0 a place on its disc.
+glm::dvec3 around(const glm::dvec3& axis, double cosine, double sine, double turns) {
+  const Frame<float> frame(narrow(axis));
+  const SineCosine<double> turn = sine_cosine(turns);
+  return cosine * axis + sine * (turn.cosine * wide(frame.u) + turn.sine * wide(frame.v));
+}
+
+}  // namespace
+
+double LightPaths::Ball::solid_angle(const glm::dvec3& point) const {
+  const glm::dvec3 way = middle - point;
+  const double squared = glm::dot(way, way);
+  if (squared <= radius * radius) return 4.0 * kPi;
+  const double sine_squared = radius * radius / squared;
+  return 2.0 * kPi * sine_squared / (1.0 + std::sqrt(1.0 - sine_squared));
+}
+
+bool LightPaths::Ball::meets(const glm::dvec3& point, const glm::dvec3& direction,
+                             bool both_ways) const {
+  const glm::dvec3 way = middle - point;
+  const double along = glm::dot(way, direction);
+  const double squared = glm::dot(way, way), most = radius * radius;
+  return squared <= most || ((both_ways || along > 0.0) && squared - along * along <= most);
+}
+
+LightPaths::LightPaths(const PreparedScene& prepared, const Lights& lights, const FrameView& frame)
+    : lights_(lights),
+      count_((pixels_of(frame) + kPixelsOfPath - 1) / kPixelsOfPath),
+      frame_(frame) {
+  if (!lights.any_power() || std::ranges::none_of(prepared.materials, is_mirror_or_glass)) return;
+  find_balls(prepared);
+  if (balls_.empty()) return;
+  const Bounds3 box = position_bounds(prepared.scene);
+  reach_ = 4.0 * glm::length(box.half_size());
+  weigh_sources();
+}
+
+void LightPaths::find_balls(const PreparedScene& prepared) {
+  const auto visit = [&](const auto& each) {
+    for (std::uint32_t primitive = 0; primitive < prepared.bvh.primitive_count(); ++primitive) {
+      const FaceRef face = prepared.bvh.face_of(primitive);
+      if (!is_mirror_or_glass(prepared.materials[face_at(prepared.scene, face).material])) continue;
+      for (const glm::vec3& corner : prepared.bvh.corners_of(primitive)) {
+        each(object_at(prepared.scene, face), glm::dvec3(corner));
+      }
+    }
+  };
+  std::map<std::uint32_t, Bounds3> boxes;
+  visit([&](std::uint32_t object, const glm::dvec3& corner) { boxes[object].expand(corner); });
+  std::map<std::uint32_t, std::size_t> numbers;
+  Bounds3 all;
+  for (const auto& [object, box] : boxes) {
+    all.expand(box.low);
+    all.expand(box.high);
+    const std::size_t number = boxes.size() > kMostBalls ? 0 : balls_.size();
+    numbers[object] = number;
+    if (number == balls_.size()) balls_.push_back({box.middle(), 0.0});
+  }
+  if (boxes.size() > kMostBalls) balls_[0].middle = all.middle();
+  visit([&](std::uint32_t object, const glm::dvec3& corner) {
+    Ball& ball = balls_[numbers[object]];
+    ball.radius = std::max(ball.radius, glm::distance(ball.middle, corner));
+  });
+  constexpr double kRounding = 1.0 + 0x1p-20;
+  for (Ball& ball : balls_) {
+    ball.radius *= kRounding;
+    const double radius = ball.radius * lights_.per_unit();
+    discs_ += kPi * radius * radius;
+  }
+}
+
+/// By the flux that each sends to the balls, as a point in its middle would.
+void LightPaths::weigh_sources() {
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < lights_.source_count(); ++i) {
+    const Lights::Source& source = lights_.source(i);
+    const Lights::Light& light = lights_.light(source.light);
+    double flux = mean(glm::dvec3(light.emission));
+    switch (light.kind) {
+      case Lights::Kind::kNone:
+        break;
+      case Lights::Kind::kPoint:
+        flux *= solid_angle(glm::dvec3(light.position));
+        break;
+      case Lights::Kind::kArea:
+        flux *= solid_angle(
+                    wide(lights_.sample_patches<float>({source.patch}, {0.5f, 0.5f}).position)) /
+                double{source.per_area};
+        break;
+      case Lights::Kind::kDirection:
+        flux *= discs_;
+        break;
+      case Lights::Kind::kEnvironment:
+        flux = 4.0 * kPi * mean(lights_.environment()->mean_radiance()) * discs_;
+        break;
+    }
+    if (flux > 0.0 && std::isfinite(flux)) sum += flux;
+    source_cdf_.push_back(sum);
+  }
+  if (!(sum > 0.0)) source_cdf_.clear();
+  for (double& value : source_cdf_) value /= sum;
+}
+
+double LightPaths::solid_angle(const glm::dvec3& point) const {
+  double sum = 0.0;
+  for (const Ball& ball : balls_) sum += ball.solid_angle(point);
+  return sum;
+}
+
+double LightPaths::nearest_middle(const glm::dvec3& point) const {
+  double nearest = reach_;
+  for (const Ball& ball : balls_) nearest = std::min(nearest, glm::distance(ball.middle, point));
+  return nearest;
+}
+
+/// With how many balls.
+double LightPaths::meetings(const glm::dvec3& point, const glm::dvec3& direction,
+                            bool both_ways) const {
+  double count = 0.0;
+  for (const Ball& ball : balls_) count += ball.meets(point, direction, both_ways) ? 1.0 : 0.0;
+  return count;
+}
+
+float LightPaths::density(std::uint32_t source, const glm::vec3& point,
+                          const glm::vec3& direction) const {
+  const glm::dvec3 from(point);
+  const double per_area = lights_.source(source).per_area;
+  return finite_float(static_cast<double>(count()) * pmf(source) * per_area *
+                      meetings(from, glm::dvec3(direction), false) / solid_angle(from));
+}
+
+float LightPaths::environment_density(const glm::vec3& point, const glm::vec3& towards) const {
+  const float pdf =
+      lights_.environment()->pdf<float>(Triple<float>{towards.x, towards.y, towards.z});
+  return finite_float(static_cast<double>(count()) * pmf(lights_.environment_source()) *
+                      double{pdf} * meetings(glm::dvec3(point), glm::dvec3(towards), true) /
+                      discs_);
+}
+
+/// Uniform in the angles of all balls.
+glm::dvec3 LightPaths::direction_from(const glm::dvec3& point, const SquarePoint<float>& choice,
+                                      const SquarePoint<float>& u) const {
+  double left = solid_angle(point) * double{choice.x};
+  const Ball* chosen = &balls_.back();
+  for (const Ball& ball : balls_) {
+    const double own = ball.solid_angle(point);
+    if (left < own) {
+      chosen = &ball;
+      break;
+    }
+    left -= own;
+  }
+  const double height = chosen->solid_angle(point) / (2.0 * kPi);  // of the cap of the unit ball
+  const double cosine = 1.0 - double{u.x} * height;
+  const glm::dvec3 axis =
+      height < 2.0 ? glm::normalize(chosen->middle - point) : glm::dvec3(0, 0, 1);
+  return around(axis, cosine, std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), u.y);
+}
+
+/// Uniform across the discs of all balls.
+glm::dvec3 LightPaths::point_across(const glm::dvec3& towards, const SquarePoint<float>& choice,
+                                    const SquarePoint<float>& u) const {
+  const auto area = [](const Ball& ball) { return ball.radius * ball.radius; };
+  double left = 0.0;
+  for (const Ball& ball : balls_) left += area(ball);
+  left *= double{choice.x};
+  const Ball* chosen = &balls_.back();
+  for (const Ball& ball : balls_) {
+    if (left < area(ball)) {
+      chosen = &ball;
+      break;
+    }
+    left -= area(ball);
+  }
+  return chosen->middle + around(towards, 0.0, chosen->radius * std::sqrt(double{u.x}), u.y);
+}
+
+std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::uint64_t seed) const {
+  Start start;
+  PathState& state = start.state;
+  state.index = static_cast<std::uint32_t>(number);
+  state.stream =
+      hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
+           hash(kLightPaths, static_cast<std::uint32_t>(number >> 32)));
+  const auto random = [&](std::uint32_t purpose) {
+    return sobol_point<float>(state.index, hash(state.stream, purpose));
+  };
+  const SquarePoint<float> choice = random(kSource), ball = random(kBall), u = random(kTowards);
+  const double wanted = double{choice.x} + double{choice.y} * 0x1p-24;
+  const auto found = std::upper_bound(source_cdf_.begin(), source_cdf_.end() - 1, wanted);
+  const auto source = static_cast<std::uint32_t>(found - source_cdf_.begin());
+  const Lights::Light* const light = &lights_.light(lights_.source(source).light);
+  glm::dvec3 origin, direction, flux(light->emission);
+  double density = static_cast<double>(count()) * pmf(source);
+  if (light->kind == Lights::Kind::kPoint) {
+    origin = glm::dvec3(light->position);
+    direction = direction_from(origin, ball, u);
+    density *= meetings(origin, direction, false) / solid_angle(origin);
+    if (light->is_spot) {
+      const auto cosine = static_cast<float>(glm::dot(direction, glm::dvec3(light->spot.axis)));
+      flux *= double{spot_falloff(cosine, light->spot.scale, light->spot.offset)};
+    }
+  } else if (light->kind == Lights::Kind::kArea) {
+    const Lights::Source& own = lights_.source(source);
+    const LightPoint<float> point = lights_.sample_patches<float>({own.patch}, random(kPlace));
+    origin = wide(point.position);
+    direction = direction_from(origin, ball, u);
+    density *= double{own.per_area} * meetings(origin, direction, false) / solid_angle(origin);
+    const double cosine = std::abs(glm::dot(direction, wide(point.normal)));
+    flux = wide(lights_.radiance_at<float>({light}, point)) * cosine;
+    state.ratio = finite_float(cosine / density);
+    origin += direction * (kBeyondLight * nearest_middle(origin));
+  } else {
+    glm::dvec3 towards(light->position);
+    if (light->kind == Lights::Kind::kEnvironment) {
+      const Triple<float> sampled = lights_.environment()->sample<float>(random(kPlace));
+      towards = wide(sampled);
+      flux = wide(lights_.environment()->radiance<float>(sampled));
+      density *= double{lights_.environment()->pdf<float>(sampled)};
+    }
+    const glm::dvec3 across = point_across(towards, ball, u);
+    density *= meetings(across, towards, true) / discs_;
+    if (light->kind == Lights::Kind::kEnvironment) state.ratio = finite_float(1.0 / density);
+    origin = across + towards * reach_;
+    direction = -towards;
+  }
+  flux /= density;
+  if (!(mean(flux) > 0.0) || !std::isfinite(mean(flux))) return std::nullopt;
+  state.throughput = finite_floats(flux);
+  start.ray = {glm::vec3(origin), scaled_direction(direction)};
+  return start;
+}
+
+float LightPaths::camera_ratio(const Ray& ray) const {
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(ray.direction));
+  const double cosine = glm::dot(direction, frame_.camera.forward());
+  return finite_float(cosine * cosine * cosine * frame_.camera.picture_area() /
+                      static_cast<double>(pixels_of(frame_)));
+}
+
+LightPaths::View LightPaths::view_of(const glm::vec3& point, const glm::vec2& lens) const {
+  const Camera& camera = frame_.camera;
+  const glm::dvec3 eye = camera.lens_point(glm::dvec2(lens));
+  View view{.lens = glm::vec3(eye)};
+  const auto place = camera.place_of(glm::dvec3(point), eye);
+  if (!place || place->x < frame_.low.x || place->x > frame_.high.x || place->y < frame_.low.y ||
+      place->y > frame_.high.y) {
+    return view;
+  }
+  const glm::dvec3 way = (glm::dvec3(point) - eye) * double{lights_.per_unit()};
+  const double far = glm::dot(way, camera.forward()), distance = glm::length(way);
+  // Pixels to an area across the axis at distance 1, over cosine^3 and the squared distance.
+  view.per_area = finite_float(static_cast<double>(pixels_of(frame_)) / camera.picture_area() *
+                               distance / (far * far * far));
+  return view;
+}
+
+}  // namespace raygate

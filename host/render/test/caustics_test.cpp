@@ -1,0 +1,247 @@
+// Caustics by light paths: closed forms, long runs without them, and the same bytes whoever traces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/light/test/light_scenes.h"
+
+namespace raygate {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+constexpr double kPi = std::numbers::pi;
+
+Film caustics_of(const Scene& scene, const Camera& camera, RenderOptions options) {
+  RenderStats stats;
+  const Bvh bvh(scene);
+  const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
+  return render(scene, bvh, camera, options, cpu, stats);
+}
+
+RenderOptions options_of(int size, int samples, Caustics caustics = Caustics::kOn) {
+  RenderOptions options = light(IntegratorKind::kPath, size, size, samples);
+  options.caustics = caustics;
+  return options;
+}
+
+/// Fresnel's share of unpolarised light that glass of index 1.5 reflects.
+double reflectance(double angle, double bent) {
+  if (angle < 1e-6) return 0.04;
+  const double across = std::sin(angle - bent) / std::sin(angle + bent);
+  const double parallel = std::tan(angle - bent) / std::tan(angle + bent);
+  return 0.5 * (across * across + parallel * parallel);
+}
+
+constexpr float kHigh = 5.0f, kThick = 1.0f;  // of the slab: its upper side, and how thick
+
+/// A dark floor below a slab of glass, seen from between them: the square of 1 around the origin.
+Scene slab() {
+  Scene scene;
+  add(scene, rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), matte(glm::vec3(0.1f)));
+  add(scene, box({-1.5f, kHigh - kThick, -1.5f}, {1.5f, kHigh, 1.5f}), glass(1.5f));
+  return scene;
+}
+Camera above_floor() {
+  return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / kPi * std::atan(0.25));
+}
+
+// Every reflection inside the slab sends a little more through.
+TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
+  for (const double degrees : {0.0, 5.0}) {
+    const double angle = degrees * kPi / 180.0, bent = std::asin(std::sin(angle) / 1.5);
+    Scene scene = slab();
+    scene.directional_lights.push_back({{std::sin(angle), -std::cos(angle), 0.0}, glm::vec3(3.0f)});
+    const double r = reflectance(angle, bent);
+    const double expected = 3.0 * std::cos(angle) * (1.0 - r) / (1.0 + r) * 0.1 / kPi;
+    const double found = mean_colour(caustics_of(scene, above_floor(), options_of(16, 1024))).x;
+    EXPECT_NEAR(found, expected, 0.01 * expected) << degrees;
+    EXPECT_EQ(mean_colour(caustics_of(scene, above_floor(), options_of(16, 4, Caustics::kOff))).x,
+              0.0);
+  }
+}
+
+// A point light over the slab: each order of reflection inside is a ring of its own, by Snell's
+// law.
+TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
+  constexpr double kLamp = 7.0, kIndex = 1.5;
+  Scene scene = slab();
+  scene.lights.push_back({{0, float(kLamp), 0}, glm::dvec3(500.0)});
+  const auto irradiance = [&](double radius) {
+    double sum = 0.0;
+    for (int order = 0; order < 4; ++order) {
+      const auto arrives = [&](double angle) {
+        const double bent = std::asin(std::sin(angle) / kIndex);
+        return (kLamp - kThick) * std::tan(angle) + (2 * order + 1) * kThick * std::tan(bent);
+      };
+      double low = 0.0, high = 0.3;
+      for (int i = 0; i < 60; ++i) {
+        (arrives(0.5 * (low + high)) < radius ? low : high) = 0.5 * (low + high);
+      }
+      const double step = 1e-6, slope = (arrives(low + step) - arrives(low)) / step;
+      const double r = reflectance(low, std::asin(std::sin(low) / kIndex));
+      sum += 500.0 * std::sin(low) / (radius * slope) * (1 - r) * (1 - r) * std::pow(r, 2 * order);
+    }
+    return sum;
+  };
+  double expected = 0.0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      expected +=
+          irradiance(std::hypot((x + 0.5) / 32 - 0.5, (y + 0.5) / 32 - 0.5)) / 1024 * 0.1 / kPi;
+    }
+  }
+  RenderOptions options = options_of(16, 8192);
+  options.filter = ReconstructionFilter::kBox;
+  EXPECT_NEAR(mean_colour(caustics_of(scene, above_floor(), options)).x, expected, 0.01 * expected);
+}
+
+// What a flat mirror sends to a floor comes from the mirrored lamp.
+TEST(Caustics, AMirrorIsAnotherLamp) {
+  Scene floor;
+  add(floor, rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), matte(glm::vec3(0.5f)));
+  add(floor, rectangle({1, 3, -0.5f}, {0, 1, 0.3f}, {0, 0, 1}), emitter({4, 3, 2}));
+  Scene with_mirror = floor, with_lamp = floor;
+  add(with_mirror, rectangle({3, 0.1f, -1.5f}, {0, 0, 3}, {0, 4, 0}), mirror(0.8f));
+  add(with_lamp, rectangle({5, 3, -0.5f}, {0, 1, 0.3f}, {0, 0, 1}), emitter({3.2f, 2.4f, 1.6f}));
+  const glm::dvec3 expected =
+      mean_colour(caustics_of(with_lamp, above_floor(), options_of(16, 1024)));
+  for (const Caustics caustics : {Caustics::kOff, Caustics::kOn}) {
+    const glm::dvec3 found =
+        mean_colour(caustics_of(with_mirror, above_floor(), options_of(16, 1024, caustics)));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], expected[k], 0.01 * expected[k]);
+  }
+}
+
+/// Means over quarters of pictures with and without light paths, of some seeds each: the largest of
+/// their differences is within 4.5 standard errors, which chance exceeds once in 10^4 scenes.
+void expect_same_means(const Scene& scene, const Camera& camera, int samples) {
+  constexpr int kSize = 24, kSeeds = 12;
+  struct Sums {
+    double sum[12] = {}, squares[12] = {};
+  };
+  const auto sums_of = [&](Caustics caustics, int spp) {
+    Sums sums;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      RenderOptions options = options_of(kSize, spp, caustics);
+      options.seed = std::uint64_t(1000 * int(caustics) + seed);
+      const Film film = caustics_of(scene, camera, options);
+      double means[12] = {};
+      for (int i = 0; i < kSize * kSize; ++i) {
+        const int quarter = i / (kSize * kSize / 2) * 2 + i % kSize / (kSize / 2);
+        for (int k = 0; k < 3; ++k) means[3 * quarter + k] += double{film.color[std::size_t(i)][k]};
+      }
+      for (int k = 0; k < 12; ++k) {
+        sums.sum[k] += means[k] / kSeeds;
+        sums.squares[k] += means[k] * means[k] / kSeeds;
+      }
+    }
+    return sums;
+  };
+  const Sums by_chance = sums_of(Caustics::kOff, samples), on = sums_of(Caustics::kOn, samples / 4);
+  for (int k = 0; k < 12; ++k) {
+    const double variance = by_chance.squares[k] - by_chance.sum[k] * by_chance.sum[k] +
+                            on.squares[k] - on.sum[k] * on.sum[k];
+    EXPECT_NEAR(on.sum[k], by_chance.sum[k], 4.5 * std::sqrt(variance / (kSeeds - 1))) << k;
+  }
+}
+
+/// The room with everything in it and a larger lamp, which chance finds, too; no point light.
+Scene room() {
+  Scene scene = everything();
+  scene.lights.clear();
+  return scene;
+}
+Camera into_room() { return camera_at({0.3, 0.2, 5.5}, {0, -0.6, 0}, 32.0); }
+
+TEST(Caustics, HaveTheMeansOfChance) { expect_same_means(room(), into_room(), 256); }
+
+TEST(Caustics, AreSeenByALens) {
+  CameraSetting setting{{0.3, 0.2, 5.5}, {0, -0.6, 0}, {}, 32.0};
+  setting.lens.aperture = 0.2;
+  expect_same_means(room(), Camera::look_at(setting, 1.0), 256);
+}
+
+/// A ball with the normals of a ball.
+void add_smooth(Scene& scene, const glm::vec3& middle, float radius, const Material& material) {
+  const std::size_t first = scene.triangles.size();
+  add(scene, sphere(2, radius, middle), material);
+  for (std::size_t i = first; i < scene.triangles.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      scene.triangles[i].normals[k] = static_cast<std::uint32_t>(scene.normals.size());
+      scene.normals.push_back(
+          glm::normalize(scene.positions[scene.triangles[i].vertices[k]] - middle));
+    }
+  }
+}
+
+// Smooth, rough and metallic balls under an environment with a bright part, which chance finds,
+// too.
+TEST(Caustics, OfAnEnvironmentHaveTheMeansOfChance) {
+  Scene scene;
+  add(scene, rectangle({-3, -1, -3}, {0, 0, 6}, {6, 0, 0}), matte({0.7f, 0.6f, 0.5f}));
+  add_smooth(scene, {-1, -0.2f, 0}, 0.7f, glass(1.5f));
+  add_smooth(scene, {1, -0.4f, 0.4f}, 0.5f, facets(0.0f, 0.3f, 1.0f));
+  add_smooth(scene, {0.2f, -0.5f, 1.2f}, 0.4f, facets(1.0f, 0.0f, 0.0f));
+  EnvironmentMap& map = scene.environment.emplace();
+  map.width = 8;
+  map.height = 4;
+  map.texels.assign(32, glm::vec3(0.3f, 0.4f, 0.5f));
+  map.texels[3] = map.texels[10] = glm::vec3(6, 5, 4);
+  expect_same_means(scene, camera_at({0.5, 2.5, 5}, {0, -0.7, 0}, 40.0), 256);
+}
+
+TEST(Caustics, AreTheSameBytesWhoeverTraces) {
+  Scene scene = everything();
+  const Bvh bvh(scene);
+  const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
+  const auto picture = [&](const RenderOptions& options, const IntersectorFactory& engine) {
+    RenderStats stats;
+    return render(scene, bvh, into_room(), options, engine, stats);
+  };
+  RenderOptions options = options_of(72, 8);
+  const Film whole = picture(options, cpu);
+  options.caustics = Caustics::kOff;
+  EXPECT_FALSE(same(picture(options, cpu), whole));
+  options.caustics = Caustics::kAuto;
+  EXPECT_TRUE(same(picture(options, pipeline_model(bvh)), whole));
+  options.threads = 4;
+  EXPECT_TRUE(same(picture(options, cpu), whole));
+  const Vectors vectors = vectors_in_use();
+  use_vectors(Vectors::kBaseline);
+  EXPECT_TRUE(same(picture(options, cpu), whole));
+  use_vectors(vectors);
+
+  options.window = {9, 30, 50, 61};
+  const Film crop = picture(options, cpu);
+  for (int y = 30; y < 61; ++y) {
+    for (int x = 9; x < 50; ++x) {
+      ASSERT_EQ(crop.color[crop.index_of(x, y)], whole.color[whole.index_of(x, y)])
+          << x << " " << y;
+    }
+  }
+  options.window = {};
+
+  // Broken off, and gone on with.
+  options.channels.sums = true;
+  options.end_sample = 3;
+  const Film first = picture(options, cpu);
+  options.end_sample = 0;
+  options.threads = 1;
+  options.unfinished = &first;
+  EXPECT_TRUE(same(picture(options, cpu), whole));
+  // Any part of it, whose tiles have not come to the same samples.
+  RenderStats stats;
+  int asked = 0;
+  options.unfinished = nullptr;
+  const Film part = render(scene, bvh, into_room(), options, cpu, stats,
+                           {.progress = [&](double) { return ++asked < 2; }});
+  ASSERT_TRUE(stats.cancelled);
+  options.unfinished = &part;
+  EXPECT_TRUE(same(picture(options, cpu), whole));
+}
+
+}  // namespace
+}  // namespace raygate
