@@ -7,7 +7,7 @@ set(pairs
 if(RAYGATE_PYTHON)
   list(APPEND pairs libmpfr-dev:mpfr.h)
 else()
-  list(APPEND pairs libcpp-httplib-dev:httplib.h)
+  list(APPEND pairs libcivetweb-dev:civetweb.h)
 endif()
 foreach(pair ${pairs})
   string(REPLACE ":" ";" pair ${pair})

@@ -1,6 +1,6 @@
 #include "host/cli/picture_server.h"
 
-#include <httplib.h>
+#include <civetweb.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +13,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -55,6 +56,60 @@ std::string quoted(const std::string& word) {
 
 Json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
+/// What a browser asks.
+struct Request {
+  std::string host;
+  std::multimap<std::string, std::string> parameters;
+
+  [[nodiscard]] std::string value(const std::string& name) const {
+    const auto at = parameters.find(name);
+    return at == parameters.end() ? "" : at->second;
+  }
+};
+
+constexpr const char* kText = "text/plain; charset=utf-8";
+
+struct Reply {
+  int status = 200;
+  const char* type = kText;
+  std::string body;
+  std::vector<std::pair<const char*, std::string>> headers{};
+};
+
+std::string decoded(const std::string& text) {
+  std::string result(text.size() + 1, '\0');
+  const int size = mg_url_decode(text.data(), static_cast<int>(text.size()), result.data(),
+                                 static_cast<int>(result.size()), 1);
+  result.resize(static_cast<std::size_t>(std::max(0, size)));
+  return result;
+}
+
+Request request_of(mg_connection* connection) {
+  Request request;
+  if (const char* host = mg_get_header(connection, "Host")) request.host = host;
+  const char* query = mg_get_request_info(connection)->query_string;
+  std::istringstream words(query == nullptr ? "" : query);
+  for (std::string word; std::getline(words, word, '&');) {
+    const std::size_t equals = std::min(word.find('='), word.size());
+    request.parameters.emplace(decoded(word.substr(0, equals)),
+                               decoded(word.substr(std::min(equals + 1, word.size()))));
+  }
+  return request;
+}
+
+void send(mg_connection* connection, const Reply& reply) {
+  mg_response_header_start(connection, reply.status);
+  mg_response_header_add(connection, "Content-Type", reply.type, -1);
+  mg_response_header_add(connection, "Content-Length", std::to_string(reply.body.size()).c_str(),
+                         -1);
+  mg_response_header_add(connection, "Cache-Control", "no-store", -1);
+  for (const auto& [name, value] : reply.headers) {
+    mg_response_header_add(connection, name, value.c_str(), static_cast<int>(value.size()));
+  }
+  mg_response_header_send(connection);
+  mg_write(connection, reply.body.data(), reply.body.size());
+}
+
 /// A command line that a request stands for.
 struct Command {
   std::vector<std::string> words;
@@ -77,79 +132,66 @@ class PictureServer {
   }
 
   void serve() {
-    httplib::Server server;
-    // The library would share a port with whoever has it (SO_REUSEPORT).
-    server.set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
-    add_answers(server);
-    int port = options_.port;
-    if (port == 0) {
-      port = server.bind_to_any_port("127.0.0.1");
-    } else if (!server.bind_to_port("127.0.0.1", port)) {
-      port = -1;
-    }
-    if (port < 0) {
+    const std::string port = "127.0.0.1:" + std::to_string(options_.port);
+    const char* settings[] = {"listening_ports",   port.c_str(), "num_threads", "8",
+                              "enable_keep_alive", "yes",        nullptr};
+    const mg_callbacks none{};
+    const std::unique_ptr<mg_context, void (*)(mg_context*)> server(mg_start(&none, this, settings),
+                                                                    mg_stop);
+    mg_server_port bound{};
+    if (!server || mg_get_server_ports(server.get(), 1, &bound) != 1) {
       fail_value("--port", std::to_string(options_.port),
                  "a port that no other program listens at");
     }
-    names_ = {"127.0.0.1:" + std::to_string(port), "localhost:" + std::to_string(port)};
-    print("http://127.0.0.1:" + std::to_string(port) + "/ shows the scene; Ctrl-C ends it\n");
-    flush_standard_output();
+    const std::string number = std::to_string(bound.port);
+    names_ = {"127.0.0.1:" + number, "localhost:" + number};
     note_interruptions();
-    std::jthread watch([&](const std::stop_token& stop) {
-      while (!stop.stop_requested() && interruption() == 0) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      }
-      server.stop();
-    });
-    server.listen_after_bind();
+    for (const Route& route : kRoutes) {
+      mg_set_request_handler(server.get(), route.path, route.handler, this);
+    }
+    print("http://127.0.0.1:" + number + "/ shows the scene; Ctrl-C ends it\n");
+    flush_standard_output();
+    while (interruption() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 
  private:
-  using Answer = void (PictureServer::*)(const httplib::Request&, httplib::Response&);
+  struct Route {
+    const char* path;
+    mg_request_handler handler;
+  };
 
-  void add_answers(httplib::Server& server) {
-    // A page of another site may know our port, but not call us by our name.
-    server.set_pre_routing_handler([this](const auto& request, auto& response) {
-      if (names_.contains(request.get_header_value("Host"))) {
-        return httplib::Server::HandlerResponse::Unhandled;
+  using Answer = Reply (PictureServer::*)(const Request&);
+
+  template <Answer kAnswer>
+  static int handle(mg_connection* connection, void* server) {
+    const Reply reply = static_cast<PictureServer*>(server)->answered(connection, kAnswer);
+    send(connection, reply);
+    return reply.status;
+  }
+
+  Reply answered(mg_connection* connection, Answer answer) {
+    try {
+      const Request request = request_of(connection);
+      // A page of another site may know our port, but not call us by our name.
+      if (!names_.contains(request.host)) {
+        return {403, kText, "expected the host 127.0.0.1 or localhost, and this port\n"};
       }
-      response.status = 403;
-      response.set_content("expected the host 127.0.0.1 or localhost, and this port\n", kText);
-      return httplib::Server::HandlerResponse::Handled;
-    });
-    server.Get("/", [](const auto& /*request*/, auto& response) {
-      response.set_content(kPicturePage, "text/html; charset=utf-8");
-    });
-    for (const auto& [path, answer] :
-         {std::pair<const char*, Answer>{"/picture", &PictureServer::send_picture},
-          {"/camera", &PictureServer::send_camera},
-          {"/pixel", &PictureServer::send_pixel}}) {
-      server.Get(path, [this, answer](const auto& request, auto& response) {
-        response.set_header("Cache-Control", "no-store");
-        try {
-          (this->*answer)(request, response);
-        } catch (const InputError& error) {
-          response.status = 400;
-          response.set_content(printable(error.what()) + "\n", kText);
-        } catch (const std::exception& error) {
-          response.status = 500;
-          response.set_content(printable(error.what()) + "\n", kText);
-        }
-      });
+      return (this->*answer)(request);
+    } catch (const InputError& error) {
+      return {400, kText, printable(error.what()) + "\n"};
+    } catch (const std::exception& error) {
+      return {500, kText, printable(error.what()) + "\n"};
     }
   }
 
   /// What was typed, with the request's options in place of those.
-  [[nodiscard]] Command command_of(const httplib::Request& request) const {
+  [[nodiscard]] Command command_of(const Request& request) const {
     Command command{words_, {}};
-    if (request.has_param("camera") || request.has_param("view")) {
+    if (request.parameters.contains("camera") || request.parameters.contains("view")) {
       erase_option(command.words, "camera");
       erase_option(command.words, "view");
     }
-    for (const auto& [name, value] : request.params) {
+    for (const auto& [name, value] : request.parameters) {
       if (name == "slot" || name == "x" || name == "y") continue;
       if (!request_options().contains(name)) {
         throw InputError(name +
@@ -193,8 +235,10 @@ class PictureServer {
     return make_intersector_factory(options, scene_.prepared.bvh, options.render.skips, image_);
   }
 
-  void send_picture(const httplib::Request& request, httplib::Response& response) {
-    const std::string slot = request.get_param_value("slot");
+  Reply page(const Request& /*request*/) { return {200, "text/html; charset=utf-8", kPicturePage}; }
+
+  Reply picture(const Request& request) {
+    const std::string slot = request.value("slot");
     const std::uint64_t turn = next_turn(slot);
     const Command command = command_of(request);
     const Options& options = command.options;
@@ -214,14 +258,13 @@ class PictureServer {
       const Film film = render(scene_.prepared, cameras.frame(1).camera, render_options,
                                intersectors_of(options), stats, monitor);
       if (!stats.cancelled) {
-        response.set_header("X-Command", command.text());
-        response.set_header("X-Statistics", text_of(stats));
-        response.set_content(encode_png(shown(film, options.output)), "image/png");
-        return;
+        return {200,
+                "image/png",
+                encode_png(shown(film, options.output)),
+                {{"X-Command", printable(command.text())}, {"X-Statistics", text_of(stats)}}};
       }
     }
-    response.status = 409;
-    response.set_content("a newer request took its place\n", kText);
+    return {409, kText, "a newer request took its place\n"};
   }
 
   /// The picture itself, or the last of its channels in false colours.
@@ -244,7 +287,7 @@ class PictureServer {
         .dump();
   }
 
-  void send_camera(const httplib::Request& request, httplib::Response& response) {
+  Reply camera(const Request& request) {
     const Options options = command_of(request).options;
     const CameraSequence cameras(options, scene_.unframed);
     const Camera& camera = cameras.frame(1).camera;
@@ -260,15 +303,15 @@ class PictureServer {
     for (const auto& [name, value] : cameras.options()) {
       if (name == "view") json["view"] = Json::parse("[" + value + "]");
     }
-    response.set_content(json.dump(), kJson);
+    return {200, kJson, json.dump()};
   }
 
-  void send_pixel(const httplib::Request& request, httplib::Response& response) {
+  Reply pixel(const Request& request) {
     const Command command = command_of(request);
     const Options& options = command.options;
     const glm::ivec2 size{options.render.width, options.render.height};
     const auto coordinate = [&](const char* name, int end) {
-      const std::string text = request.get_param_value(name);
+      const std::string text = request.value(name);
       const auto number = parse_number<int>(text);
       if (!number || *number < 0 || *number >= end) {
         fail_value(name, text,
@@ -286,7 +329,7 @@ class PictureServer {
               {"direction", words(ray.direction)},
               {"engine", found(ray, *intersectors_of(options)())},
               {"cpu", found(ray, CpuIntersector(bvh))}};
-    response.set_content(json.dump(), kJson);
+    return {200, kJson, json.dump()};
   }
 
   /// A vector, in decimal and as binary32 words.
@@ -329,7 +372,11 @@ class PictureServer {
     return turns_[slot] == turn;
   }
 
-  static constexpr const char* kText = "text/plain; charset=utf-8";
+  // "$": the path alone, and nothing below it.
+  static constexpr Route kRoutes[] = {{"/$", handle<&PictureServer::page>},
+                                      {"/picture$", handle<&PictureServer::picture>},
+                                      {"/camera$", handle<&PictureServer::camera>},
+                                      {"/pixel$", handle<&PictureServer::pixel>}};
   static constexpr const char* kJson = "application/json";
 
   const Options& options_;
