@@ -118,8 +118,9 @@ TEST_F(Parts, OfItsPixelsMakeThePicture) {
 /// Light paths bring light to the pixels of other parts.
 TEST_F(Parts, WithLightPathsMakeThePicture) {
   const auto render = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {kPaper,         "--size", "60x44",    "--spp", "6",
-                                          "--integrator", "path",   "--engine", "cpu"};
+    std::vector<std::string> arguments = {kPaper, "--size",       "60x44", "--spp",
+                                          "6",    "--integrator", "path",  "--engine",
+                                          "cpu",  "--exposure",   "0"};  // as merge has it
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
     ASSERT_EQ(outcome.status, 0) << outcome.err;

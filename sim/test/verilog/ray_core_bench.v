@@ -3,7 +3,7 @@
 module bench;
   reg clk = 0, reset_n = 0, ray = 0, result_ready = 0, read_ready = 0, line_valid = 0;
   reg [95:0] origin = 0;
-  reg [31:0] skip = 0, tag = 0;
+  reg [31:0] skip = 0, source = 0, tag = 0;
   reg [4:0] line_id = 0;
   reg [511:0] line = 0;
   wire ray_ready, result, found, read, line_ready, outstanding;
@@ -19,7 +19,7 @@ module bench;
   ray_core dut (
     .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .outstanding_o(outstanding), .abort_i(1'b0), .lines_i(28'd5),
     .ray_valid_i(ray), .ray_ready_o(ray_ready),
-    .ray_i({origin, 64'd0, 32'h3f800000, 31'h7f800000, skip, 28'd0, 2'd0, tag}), .result_valid_o(result),
+    .ray_i({origin, 64'd0, 32'h3f800000, 31'h7f800000, skip, source, 28'd0, 2'd0, tag}), .result_valid_o(result),
     .result_ready_i(result_ready),
     .result_o({kind, result_tag, found, triangle, t, t_error, point, tests, error, result_line, nodes}),
     .read_valid_o(read),
@@ -56,7 +56,8 @@ module bench;
       if (!ray && sent < 24 && $random(seed) % 2 == 0) begin
         ray = 1;
         tag = sent;
-        skip = sent % 4 == 3 ? 11 : 99;
+        skip = sent % 8 == 3 ? 11 : 99;
+        source = sent % 8 == 7 ? 11 : 99;
         origin = {sent % 4 == 1 ? 64'h40900000_40900000 : sent % 4 == 2 ? 64'h40f00000_40f00000
                   : 64'h3f800000_3f800000, 32'hbf800000};
         sent = sent + 1;
