@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <future>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -164,7 +165,11 @@ class PictureServer {
 
   template <Answer kAnswer>
   static int handle(mg_connection* connection, void* server) {
-    const Reply reply = static_cast<PictureServer*>(server)->answered(connection, kAnswer);
+    // The library's threads have stacks of 100 kB, which parsing a command line nearly fills.
+    const Reply reply =
+        std::async(std::launch::async, &PictureServer::answered,
+                   static_cast<PictureServer*>(server), connection, kAnswer)
+            .get();
     send(connection, reply);
     return reply.status;
   }
