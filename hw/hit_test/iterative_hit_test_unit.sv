@@ -16,8 +16,8 @@
 //
 // valid_i with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in three consecutive clocks.
-// Throughput: a test every 7 clocks. Latency M + 2A + D + 8 clocks from first word to last component: 28 in binary32
-// with two rows a clock, 34 with one.
+// Throughput: a test every 7 clocks. Latency M + 2A + D + 8 clocks from first word to last component: 34 in binary32
+// with a row a clock, 28 with two.
 //
 // Source: the paper's equation 10; the timetable is this project's.
 module iterative_hit_test_unit #(
@@ -25,7 +25,7 @@ module iterative_hit_test_unit #(
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
-  parameter int unsigned RowsPerClock = 2,  // of (FracWidth + 2) / 2
+  parameter int unsigned RowsPerClock = 1,  // of (FracWidth + 2) / 2
   parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
   localparam int unsigned Width = ExpWidth + FracWidth + 1
 ) (

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "Viterative_hit_test_unit_behavioural.h"
-#include "Viterative_hit_test_unit_one_row.h"
 #include "Viterative_hit_test_unit_structural.h"
+#include "Viterative_hit_test_unit_two_rows.h"
 #include "Vsiblings_top.h"
 #include "sim/bus_stream.h"
 #include "sim/model.h"
@@ -26,9 +26,9 @@ class IterativeHitTestUnit : public testing::Test {
   Model<typename UnitKind::Top> unit_;
 };
 
-using Kinds = testing::Types<Kind<Viterative_hit_test_unit_structural, 28>,
-                             Kind<Viterative_hit_test_unit_behavioural, 28>,
-                             Kind<Viterative_hit_test_unit_one_row, 34>>;
+using Kinds = testing::Types<Kind<Viterative_hit_test_unit_structural, 34>,
+                             Kind<Viterative_hit_test_unit_behavioural, 34>,
+                             Kind<Viterative_hit_test_unit_two_rows, 28>>;
 TYPED_TEST_SUITE(IterativeHitTestUnit, Kinds);
 
 std::vector<BusTest<7>> random_tests(std::uint32_t seed, std::size_t count) {

@@ -25,7 +25,7 @@ module bench;
       if (ready !== (edges > 21 || edges % 7 == 1)) failures = failures + 1;
       #1 clk = 1;
       #1 clk = 0;
-      if (out_valid !== (edges >= 26 && edges <= 42 && (edges - 26) % 7 < 3)) failures = failures + 1;
+      if (out_valid !== (edges >= 32 && edges <= 48 && (edges - 32) % 7 < 3)) failures = failures + 1;
       if (out_valid) begin
         cases = cases + 1;
         if (out !== expected[95:64]) failures = failures + 1;
