@@ -166,10 +166,9 @@ class PictureServer {
   template <Answer kAnswer>
   static int handle(mg_connection* connection, void* server) {
     // The library's threads have stacks of 100 kB, which parsing a command line nearly fills.
-    const Reply reply =
-        std::async(std::launch::async, &PictureServer::answered,
-                   static_cast<PictureServer*>(server), connection, kAnswer)
-            .get();
+    const Reply reply = std::async(std::launch::async, &PictureServer::answered,
+                                   static_cast<PictureServer*>(server), connection, kAnswer)
+                            .get();
     send(connection, reply);
     return reply.status;
   }

@@ -88,8 +88,9 @@ def run(given: argparse.Namespace) -> int:
     rows = kept.read(file)
     folder = REPORTS / given.target / (target.own_folder(rows) if hasattr(target, "own_folder") else "")
     folder.mkdir(parents=True, exist_ok=True)
-    text = document.render(f"{given.target}.md.j2", folder, rows, **target.values(rows, folder)) + document.measured(rows[0])
-    document.write(text, folder)
+    values = target.values(rows, folder)
+    text = document.render(f"{given.target}.md.j2", folder, rows, **values) + document.measured(rows[0])
+    document.write(text, folder, values.get("cards"))
     if base:
         print("\n".join(target.compare(base, rows)))
     if given.publish:

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 
 from host.lab import machine, rows as kept
@@ -34,7 +35,6 @@ class Step:
 
 
 def _measure(step: Step, file: pathlib.Path) -> None:
-    print(step.part, step.name, file=sys.stderr)
     if step.measure:
         kept.write(file, step.measure())
         return
@@ -55,6 +55,11 @@ def _share(launcher: str, steps: list[tuple[Step, pathlib.Path]]) -> None:
     subprocess.run([*shlex.split(launcher), ROOT / "build" / "share", file], cwd=ROOT, stdout=sys.stderr, check=True)
 
 
+def _left(seconds: list[float | None]) -> str:
+    """What is left of steps that took so long the last time; nothing where one is new."""
+    return "" if None in seconds else f", about {max(1, round(sum(seconds) / 60))} min left"
+
+
 def run(target: str, steps: list[Step], asked: str = "", launcher: str = "", at_once: int = 1) -> list[dict]:
     """The rows of all steps. Steps of an interrupted run of the same make command `asked`, at the same commit, stay as they are."""
     about = machine.describe(ROOT)
@@ -69,12 +74,26 @@ def run(target: str, steps: list[Step], asked: str = "", launcher: str = "", at_
     files = [(step, file_of(step)) for step in steps]
     if launcher:
         _share(launcher, [(step, file) for step, file in files if not file.exists()])
+    missing = [(step, file) for step, file in files if not file.exists()]
+    taken = KEPT / "seconds.json"
+    seconds = json.loads(taken.read_text()) if taken.exists() else {}
+
+    def measure(i: int) -> None:
+        step, file = missing[i]
+        left = _left([seconds.get(f"{asked}: {other.part} {other.name}") for other, _ in missing[i:]])
+        print(f"[{len(files) - len(missing) + i + 1}/{len(files)}] {step.part}: {step.name}{left}", file=sys.stderr)
+        begin = time.monotonic()
+        _measure(step, file)
+        seconds[f"{asked}: {step.part} {step.name}"] = round(time.monotonic() - begin, 1)
+        kept.write(taken, [dict(seconds)])
+
     with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
-        list(pool.map(lambda each: _measure(*each), [(step, file) for step, file in files if not file.exists()]))
+        list(pool.map(measure, range(len(missing))))
     found = [{"command": step.command(target)} | row | {"part": step.part} | stamp
              for step, file in files for row in kept.read(file)]
     shutil.rmtree(folder)
     return [about, *found]
+
 
 def render(command: list, *words: object, picture: pathlib.Path | None = None, **how: object) -> dict:
     """What ./render says about a picture, by the cpu engine unless `words` say otherwise; `how`: of subprocess.run."""

@@ -1,25 +1,20 @@
 """The report generator: rows and a Jinja2 template make a page of Markdown, beside its plots and long tables, and one of HTML."""
 
 import base64
+import json
 import pathlib
 import re
 
 import jinja2
 import markdown
 import pandas
+import vl_convert
 
 from host.lab.report.statistics import median_seconds, spread, times
 from host.lab.rows import of, scene_name
 
-STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 1100px; margin: 2em auto; padding: 0 1em;
-       color: #1b1b1b; background: #fff; }
-table { border-collapse: collapse; font-size: 13px; display: block; overflow-x: auto; }
-td, th { padding: 3px 9px; border-bottom: 1px solid #ddd; white-space: nowrap; }
-th { border-bottom: 2px solid #999; }
-img { max-width: 100%; height: auto; }
-code { background: #f3f3f3; padding: 0 3px; font-size: 13px; }
-"""
+# In a template: where the page has the cards. Markdown shows nothing there.
+CARDS = "<!-- cards -->"
 
 
 # "HEAD = EXPRESSION :FORMAT": a column of a table. Without an expression the head names the row's value; without a
@@ -104,22 +99,35 @@ def measured(about: dict) -> str:
             f"{about['date']}, on {about['processor']}, {about['processors']} processors.\n")
 
 
-def page(text: str, folder: pathlib.Path) -> str:
-    """The report as one HTML page, pictures and all."""
-    body = markdown.markdown(text, extensions=["tables"])
+def inlined(picture: pathlib.Path) -> str:
+    """A PNG as an address of its own."""
+    return f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}"
+
+
+def page(text: str, folder: pathlib.Path, cards: dict | None = None) -> str:
+    """The report as one HTML page that loads nothing: pictures in it, charts (charts.py) that answer to the pointer, tables that
+    sort and filter, and the cards (cards.py) where the text has CARDS."""
+    charts = {}
 
     def inside(match: re.Match) -> str:
-        data = base64.b64encode((folder / match[1]).read_bytes()).decode()
-        return f'src="data:image/png;base64,{data}"'
+        file = folder / match["file"]
+        if file.with_suffix(".json").exists():
+            charts[file.stem] = json.loads(file.with_suffix(".json").read_text())
+            return f'<div class="chart" data-name="{file.stem}"></div>'
+        return match[0].replace(match["file"], inlined(file))
 
-    body = re.sub(r'src="([^":]+\.png)"', inside, body)
+    body = markdown.markdown(text, extensions=["tables"])
+    body = re.sub(r'<img [^>]*?src="(?P<file>[^":]+\.png)"[^>]*>', inside, body)
+    body = re.sub(r"<table>.*?</table>", r'<div class="wide">\g<0></div>', body, flags=re.DOTALL)
+    if cards:
+        body = body.replace(CARDS, ENVIRONMENT.get_template("cards.html.j2").render())
     title = re.search(r"^# (.*)", text, re.MULTILINE)
-    return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
-            f"<title>{title[1] if title else ''}</title><style>{STYLE}</style></head>\n"
-            f"<body>\n{body}\n</body></html>\n")
+    return ENVIRONMENT.get_template("page.html.j2").render(
+        title=title[1] if title else "", body=body, charts=charts, cards=cards,
+        library=vl_convert.javascript_bundle().replace("</script", "<\\/script") if charts else "")
 
 
-def write(text: str, folder: pathlib.Path, name: str = "report") -> None:
-    """NAME.md and NAME.html."""
-    (folder / f"{name}.md").write_text(text)
-    (folder / f"{name}.html").write_text(page(text, folder))
+def write(text: str, folder: pathlib.Path, cards: dict | None = None) -> None:
+    """report.md and report.html."""
+    (folder / "report.md").write_text(text)
+    (folder / "report.html").write_text(page(text, folder, cards))

@@ -16,7 +16,7 @@ import pandas
 from host.lab.bench import costs, runs
 from host.lab.bench.compare import compare  # noqa: F401  (the driver asks for it)
 from host.lab.machine import processors
-from host.lab.report import plots
+from host.lab.report import cards, charts, plots
 from host.lab.report.statistics import median_seconds
 from host.lab.rows import KEPT, ROOT, grouped, of, read, scene_name
 from host.lab.steps import LAB, Step
@@ -154,16 +154,15 @@ def by_scene(rows: list[dict], folder: pathlib.Path) -> dict:
     pareto = []
     for error, label in ERRORS.items() if scenes else ():
         scene, mine = next(iter(scenes.items()))
-        points = [{**frame, "name": frame["variant"], "error": frame[error]} for frame in mine]
-        known = {cost: text for cost, text in COSTS.items() if sum(bool(point.get(cost)) for point in points) > 1}
-        pareto.append((plots.pareto(points, known, label, f"{scene}: {label}", folder / f"pareto-{error}.png"), label))
+        known = {cost: text for cost, text in COSTS.items() if sum(bool(frame.get(cost)) for frame in mine) > 1}
+        pareto.append((charts.pareto(mine, known, error, label, f"{scene}: {label}", folder / f"pareto-{error}.png"), label))
     differences = []
     for scene, mine in scenes.items():
         shown = [(f"{frame['variant']}: FLIP {frame['flip']:.4f}", ROOT / frame["map"])
                  for frame in mine if frame["flip"] >= LEAST_FLIP]
         if shown:
             differences.append((plots.gallery(shown, folder / f"differences-{scene}.png"), scene))
-    return {"scenes": scenes, "pareto": pareto, "differences": differences}
+    return {"scenes": scenes, "pareto": pareto, "differences": differences, "cards": cards.of_scenes(scenes) if scenes else None}
 
 
 def samples(rows: list[dict], folder: pathlib.Path) -> dict | None:
@@ -172,7 +171,7 @@ def samples(rows: list[dict], folder: pathlib.Path) -> dict | None:
     if not every:
         return None
     mine = [row for row in every if row.get("against")]
-    file, laws = plots.scaling({name: [(row["samples"], row[key]) for row in mine]
+    file, laws = charts.scaling({name: [(row["samples"], row[key]) for row in mine]
                                 for name, key in (("RMSE", "rmse"), ("FLIP", "flip"))},
                                "samples per pixel", "error", "Path tracing, Cornell box", folder / "samples.png")
     shown = [(f"{row['samples']} samples: RMSE {row['rmse']:.3f}", ROOT / f"{row['picture']}.png") for row in mine[::2]]
@@ -185,7 +184,7 @@ def lanes(rows: list[dict], folder: pathlib.Path) -> dict | None:
     mine = of(rows, "pictures", section="lanes", variant="binary32")
     if not mine:
         return None
-    file, laws = plots.scaling({"clocks per frame": [(row["lanes"], row["clocks"]) for row in mine]},
+    file, laws = charts.scaling({"clocks per frame": [(row["lanes"], row["clocks"]) for row in mine]},
                                "lanes", "clocks", "Clocks by lanes, paper's scene", folder / "lanes.png")
     (law,) = laws.values()
     serial = [{**row, "unit": "the paper's"} for row in of(rows, "pictures", section="lanes", variant="serial")]
@@ -205,7 +204,7 @@ def scaling(rows: list[dict], folder: pathlib.Path) -> list[dict]:
         series = {"seconds": [(row["x"], median_seconds(row)) for row in mine]}
         if name == "triangles":
             series["hit tests per ray"] = [(row["x"], row["tests"] / row["rays"]) for row in mine]
-        file, laws = plots.scaling(series, axis, ", ".join(series), f"By {axis}", folder / f"scaling-{name}.png")
+        file, laws = charts.scaling(series, axis, ", ".join(series), f"By {axis}", folder / f"scaling-{name}.png")
         found.append({"axis": axis, "plot": file, "laws": laws, "rows": mine})
     return found
 

@@ -7,7 +7,7 @@ import statistics
 from host.lab.machine import processors
 from host.lab.peers import adaptive
 from host.lab.peers.measure import BEST, COUNT, SCENES, VARIANTS, scene_file
-from host.lab.report import plots
+from host.lab.report import charts, plots
 from host.lab.rows import ROOT, of
 from host.lab.steps import Step
 
@@ -90,7 +90,7 @@ def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> path
     for row in mine:
         if row["renderer"] == "raygate" or row["sampler"] in BEST or row in at_count(mine):
             series.setdefault(name(row), []).append((row["median_seconds"], row["display_rmse"]))
-    plot, _ = plots.scaling(series, "seconds, one thread", "RMSE on a display, 8-bit steps", scene, file)
+    plot, _ = charts.scaling(series, "seconds, one thread", "RMSE on a display, 8-bit steps", scene, file)
     return plot
 
 

@@ -8,8 +8,7 @@ import sys
 
 from host.lab.bench import costs
 from host.lab.machine import processors
-from host.lab.report import plots
-from host.lab.report.document import number
+from host.lab.report import cards, charts
 from host.lab.rows import KEPT, ROOT, of, read, scene_name, write
 from host.lab.steps import Step
 from host.lab.targets import bench
@@ -25,15 +24,6 @@ WORDS = {"EXP_WIDTH": ("exponent_bits", range(3, 9)), "FRAC_WIDTH": ("digits", r
          "UNIT": ("unit", tuple(costs.UNITS)), "ADDER": ("adder", None), **dict.fromkeys(("MULTIPLIER", "DIVIDER_ROW", "ROUNDER"), ("", ()))}
 # In place of a value: a file with a module that is taken in the place of hw/'s.
 FILES = (".sv", ".v")
-# Lines of the card: name, value of a frame, format.
-FIGURES = (("area, OSU 0.35 um units", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
-           ("period with estimated wires, ns", "wired_ns", ".2f"),
-           ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"), ("uJ a frame, cores", "energy_uj", ".3g"),
-           ("wrong tests a million", "wrong", ".1f"), ("doubts a million", "doubtful", ".1f"),
-           ("wrong rays", "decisions.wrong_rays", ",d"), ("P, ulp: median", "decisions.point_ulp.p50", ".3g"),
-           ("P, ulp: 99 %", "decisions.point_ulp.p99", ".3g"), ("P, ulp: largest", "decisions.point_ulp.max", ".3g"),
-           ("t, ulp: 99 %", "decisions.t_ulp.p99", ".3g"), ("RMSE", "rmse", ".3g"), ("SSIM", "ssim", ".4f"),
-           ("FLIP", "flip", ".5f"))
 # Points of the Pareto plots.
 COSTS = {"area": "area, OSU 0.35 um units", "frame_ms": "ms per frame at the clock of synthesis"}
 ERRORS = {"wrong": "wrong hit decisions per million tests", "point": "error of P, 99th percentile, ulp of binary32"}
@@ -141,24 +131,6 @@ def kept_cards(mine: dict) -> list[dict]:
     return [*(card for card in others if card["scene"] == mine["scene"]), mine]
 
 
-def figures(usual: dict, mine: dict, made: dict[str, str] = {}) -> list[dict]:
-    """Lines of the card: both values as text, a dash where there is none, their ratio, and the file in `made` that the variant's
-    is from."""
-    def value(frame: dict, path: str) -> float | None:
-        for key in path.split("."):
-            frame = frame.get(key) if isinstance(frame, dict) else None
-        return frame
-
-    found = []
-    for name, path, form in FIGURES:
-        numbers = [value(usual, path), value(mine, path)]
-        if numbers[1] is not None:
-            found.append({"figure": name, "ratio": numbers[1] / numbers[0] if numbers[0] else None,
-                          "from": made.get(path, made.get("", "")),
-                          **dict(zip(("usual", "mine"), (number(each, form) for each in numbers), strict=True))})
-    return found
-
-
 def standing(cards: list[dict]) -> list[dict]:
     """Whether the last card is on the front of all, by cost and error; else who is better in both."""
     found = []
@@ -181,10 +153,9 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
     record = costs.unit(of(rows, "synthesis"), known[mine["variant"]])
     shown = [(usual["variant"], ROOT / f"{usual['picture']}.png"), (mine["variant"], ROOT / f"{mine['picture']}.png"),
              (f"FLIP {mine['flip']:.5f}", ROOT / mine["map"])]
-    cards = [{**frame, "name": frame["variant"]} for frame in [usual, *kept_cards(mine)]]
-    plots_made = [(plots.pareto([{**card, "error": card[error]} for card in cards], COSTS, label,
-                                f"{mine['scene']}: {label}", folder / f"pareto-{error}.png"), label)
-                  for error, label in ERRORS.items() if all(card.get("area") for card in cards)]
+    made_so_far = [usual, *kept_cards(mine)]
+    pareto = [(charts.pareto(made_so_far, COSTS, error, label, f"{mine['scene']}: {label}", folder / f"pareto-{error}.png"), label)
+              for error, label in ERRORS.items() if all(card.get("area") for card in made_so_far)]
 
     def link(name: str, file: pathlib.Path) -> str:
         return f"[{name}]({os.path.relpath(file, folder)})"
@@ -196,7 +167,8 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
             f"{record['design']}.{record['target']}.{record['flow']}")
         made |= {"area": link("netlist", run / "netlist.v"), "period_ns": link("timing", run / "timing.txt")}
         made |= {"frame_ms": f"{made['period_ns']}, {made['']}", "log": link("log of synthesis", run / "yosys.log")}
-    return {"usual": usual, "mine": mine, "figures": figures(usual, mine, made), "pareto": plots_made, "standing": standing(cards),
+    return {"usual": usual, "mine": mine, "figures": cards.figures(usual, mine, made), "pareto": pareto, "standing": standing(made_so_far),
+            "cards": cards.of_scenes({mine["scene"]: [usual, mine]}),
             "pictures": plots.gallery(shown, folder / "pictures.png", 3), "path": report.path_table(record) if record else "",
             "made": made}
 

@@ -1,5 +1,8 @@
 """Steps that are done are not done again; rows say what found them."""
 
+import contextlib
+import io
+import json
 import pathlib
 import tempfile
 import unittest
@@ -45,6 +48,15 @@ class Steps(unittest.TestCase):
         self.assertEqual(self.measured, ["a", "b, c"])
         self.run_steps()  # which was whole: anew
         self.assertEqual(self.measured, ["a", "b, c"] * 2)
+
+    def test_says_what_is_left(self) -> None:
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            self.run_steps("QUICK=1")
+            (self.kept / "seconds.json").write_text(json.dumps({"QUICK=1: part a": 200, "QUICK=1: part b, c": 400}))
+            self.run_steps("QUICK=1")
+        self.assertEqual(said.getvalue().splitlines(), [
+            "[1/2] part: a", "[2/2] part: b, c", "[1/2] part: a, about 10 min left", "[2/2] part: b, c, about 7 min left"])
 
     def test_another_run_does_not(self) -> None:
         self.fails = "b, c"

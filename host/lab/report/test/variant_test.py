@@ -4,6 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
+from host.lab.report import cards
 from host.lab.targets import variant
 
 
@@ -52,7 +53,7 @@ class Figures(unittest.TestCase):
     def test_both_and_their_ratio(self) -> None:
         usual = {"area": 2000.0, "wrong": 0.0, "decisions": {"wrong_rays": 0, "point_ulp": {"p50": 0.5}}}
         mine = {"area": 500.0, "wrong": 12.0, "decisions": {"wrong_rays": 7, "point_ulp": {"p50": 64.0}}}
-        lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in variant.figures(usual, mine)}
+        lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in cards.figures(usual, mine)}
         self.assertEqual(lines, {"area, OSU 0.35 um units": ("2,000", "500", 0.25), "wrong tests a million": ("0.0", "12.0", None),
                                  "wrong rays": ("0", "7", None), "P, ulp: median": ("0.5", "64", 128.0)})
 
