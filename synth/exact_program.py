@@ -1,7 +1,7 @@
 """Writes the micro-programs of hw/exact, hw/exact/exact_program_pkg.sv, from the polynomials whose signs they take.
 
-`python3 -m synth.exact_program` writes the file, with `--check` it says by exit status 1 that the file is another. An
-instruction makes a number, or takes the sign of one, out of floats or of numbers made before: a difference of two
+`python3 -m synth.exact_program` writes the file, with `--check` it says by exit status 1 that the file is another, with
+`--clocks` how long requests take at most. An instruction makes a number, or takes the sign of one, out of floats or of numbers made before: a difference of two
 floats, or a sum of up to three products. `unsafe` finds where a number is read before it is written: there an
 instruction waits (its fence).
 """
@@ -20,7 +20,7 @@ FLOATS = {"origin": 0, "direction": 3, "triangle": 6, "other": 15, "limit": 24, 
 NUMBERS = {"direction": 0, "a": 3, "b": 6, "c": 9, "normal": 12, "second": 15,
            "distance": 18, "slope": 19, "other_distance": 20, "other_slope": 21}
 KINDS = ("coordinate", "ray", "pair", "cross", "plane", "edge", "compare")  # exact_pkg::kind_e
-WRITE_DELAY = 4  # clocks from a digit's last product to the first that may read it
+WRITE_DELAY = 5  # clocks from a digit's last product to the first that may read it
 
 
 @dataclasses.dataclass
@@ -80,8 +80,8 @@ def programs() -> dict[str, list[Instruction]]:
     start = [*difference("a", t, o), *direction()]
     edges = [*difference("b", t + 3, t), *difference("c", t + 6, t)]
     limit = [*start, *edges, Instruction("pair", NUMBERS["other_distance"], [(FLOATS["limit"], FLOATS["zero"])]),
-             Instruction("pair", NUMBERS["other_slope"], [(FLOATS["one"], FLOATS["zero"])]),
-             *cross("normal", "b", "c"), dot("plane", "a", "normal", "distance"),
+             *cross("normal", "b", "c"),
+             Instruction("pair", NUMBERS["other_slope"], [(FLOATS["one"], FLOATS["zero"])]), dot("plane", "a", "normal", "distance"),
              dot("edge", "direction", "normal", "slope"), compare()]
     order = [*start, *edges, *cross("normal", "b", "c"), *difference("b", u + 3, u), *difference("c", u + 6, u),
              dot("plane", "a", "normal", "distance"), *cross("second", "b", "c"), *difference("a", u, o),
@@ -161,6 +161,26 @@ def fenced() -> dict[str, list[Instruction]]:
     return made
 
 
+def clocks(begin: str, lengths: Lengths, first: int = 5, seen: int = WRITE_DELAY - 1) -> int:
+    """From a request to its answer, where each sign is sure in its last column alone. `first`: to the first step; `seen`: from a
+    step to its sum."""
+    made = fenced()
+    name, entry = ENTRIES[begin]
+    total = first + seen
+    for one in [*(made["Hit"] if begin.endswith("AfterHit") else []), *made[name][entry:]]:
+        x, y, digits = lengths.of(one, lengths.pair if name == "Limit" else lengths.fraction)
+        total += seen * one.fence + sum(max(len(products), 1) for _, products in steps(x, y, len(one.terms), digits, one.decide))
+    return total
+
+
+def table() -> str:
+    """Clocks at most, by digits: for hw/exact's page."""
+    rows = {"does it hit": "Hit", "t against a limit, of a hit": "Limit", "t against another hit's": "Order",
+            "does it hit, and then t against another's": "OrderAfterHit"}
+    lengths = [Lengths(n, n, pair) for n, pair in ((1, 1), (2, 2), (6, 9))]
+    return "".join(f"| {what} | {' | '.join(f'{clocks(begin, one):,}' for one in lengths)} |\n" for what, begin in rows.items())
+
+
 def text() -> str:
     """The package."""
     lines, starts = [], {}
@@ -191,9 +211,12 @@ endpackage
 
 def main() -> int:
     """Runs the command line."""
-    if sys.argv[1:] not in ([], ["--check"]):
-        print(f"found {' '.join(sys.argv[1:])}, expected --check or nothing", file=sys.stderr)
+    if sys.argv[1:] not in ([], ["--check"], ["--clocks"]):
+        print(f"found {' '.join(sys.argv[1:])}, expected --check, --clocks or nothing", file=sys.stderr)
         return 2
+    if sys.argv[1:] == ["--clocks"]:
+        print(table(), end="")
+        return 0
     file = pathlib.Path(FILE)
     if sys.argv[1:]:
         return int(file.read_text() != text())

@@ -170,12 +170,12 @@ def writer_puts_records(width: int) -> tuple[dict, bool]:
                  prepared=f"axi_write_manager {{DataWidth {width}}} {{next_q left_q record_q}}")
 
 
-def exact_accumulator_sums(width: int, products: int) -> tuple[dict, bool]:
-    """exact_accumulator adds without rounding and is sure only where it may be, by induction."""
-    return holds("exact_accumulator_sums", "Bitwuzla", cores.used("exact_accumulator", cores.files("exact")), "open.tcl",
-                 (("DigitWidth", width), ("Products", products)), steps=1, reach=6,
-                 prepared=f"exact_accumulator {{DigitWidth {width} Products {products}}} {{sum_q}}",
-                 name=f"exact_accumulator_{width}")
+def of_exact(top: str, cell: str, name: str = "", steps: int = 0, reach: int = 0, prepared: str = "",
+             **parameters: int) -> tuple[dict, bool]:
+    """What is claimed of a cell of hw/exact, with these parameters; `prepared`: wires that are shown."""
+    opened = f"{cell} {{{' '.join(f'{key} {value}' for key, value in parameters.items())}}} {{{prepared}}}" if prepared else ""
+    return holds(top, "Bitwuzla", cores.used(cell, cores.files("exact")), "open.tcl" if prepared else "", tuple(parameters.items()),
+                 steps, reach, opened, name=name or top)
 
 
 def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
@@ -274,8 +274,24 @@ ALL = [
     Proof("unit.arbiter", "the first request from a place on is picked", "Bitwuzla",
           functools.partial(of_ray_core, "arbiter_is_fair", "rr_arbiter")),
     *(Proof(f"unit.exact_accumulator_{width}", f"sums of {products} products of {width} bits a column, without rounding, and sure only where it may be",
-            "Bitwuzla", functools.partial(exact_accumulator_sums, width, products), width < 48)
+            "Bitwuzla", functools.partial(of_exact, "exact_accumulator_sums", "exact_accumulator", f"exact_accumulator_{width}", 1, 6,
+                                          "sum_q", DigitWidth=width, Products=products), width < 48)
       for width, products in ((24, 72), (48, 36))),
+    *(Proof(f"unit.exact_product_{width}", f"the product of any two digits of {width} bits, or its negative", "Bitwuzla",
+            functools.partial(of_exact, "exact_product_multiplies", "exact_product", f"exact_product_{width}", DigitWidth=width))
+      for width in (6, 8)),
+    Proof("unit.exact_product_rows", "at 48 bits the words that are added up are the digits' multiples", "Bitwuzla",
+          functools.partial(of_exact, "exact_product_rows", "exact_product", prepared="gen_booth.rows gen_booth.turned", DigitWidth=48, Width=103)),
+    Proof("unit.exact_slice", "digits of shifted significands, of any binary32 number", "Bitwuzla",
+          functools.partial(of_exact, "exact_slice_cuts", "exact_slice")),
+    Proof("unit.exact_sequencer", "each product of an instruction goes out once, in its column, columns in order", "Bitwuzla",
+          functools.partial(of_exact, "exact_sequencer_steps", "exact_sequencer", steps=1, reach=40,
+                            prepared="*_q terms_last closes ends fire advance", Digits=6)),
+    *(Proof(f"unit.exact_exponents_{exp}", f"units and digits of {width} bits hold every number of any request in a format of {exp} bits of "
+            f"exponent and {frac} of fraction, and none is needless", "Bitwuzla",
+            functools.partial(of_exact, "exact_exponents_fit", "exact_exponents", f"exact_exponents_{exp}", 6, 7,
+                              ExpWidth=exp, FracWidth=frac, DigitWidth=width))
+      for exp, frac, width in ((3, 2, 6),)),
     Proof("unit.beyond", "words of t are ordered as the numbers that they stand for", "Bitwuzla",
           functools.partial(of_ray_core, "beyond_orders_numbers", "ray_core_pkg")),
     Proof("unit.plane_offset", "ways on a node's grid are products, cut off", "Bitwuzla",

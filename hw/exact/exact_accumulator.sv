@@ -11,50 +11,42 @@
 //              Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) together. A sum beyond is sure of its sign, and one that
 //              is not has room for another column: |sum| < 2**(2 DigitWidth + log2 Products).
 //
-// A step comes in at one clock edge; with the next, sum_o has it, and closed_o says of sum_o that it ends a column.
+// A term comes in two words, sum_i + carry_i modulo 2**Width, at one clock edge; with the next, all outputs have it.
 module exact_accumulator #(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Products = 36,  // in a column, at most
   parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  localparam int unsigned Width = exact_pkg::sum_width(DigitWidth, Products)
 ) (
-  input  logic                    clk_i,
-  input  logic                    opens_i,
-  input  logic                    first_i,
-  input  logic                    down_i,
-  input  logic [2*DigitWidth-1:0] product_i,
-  input  logic                    negate_i,
-  input  logic [DigitWidth-1:0]   second_i,        // of a difference: negate_i is 0 then
-  input  logic                    with_second_i,
-  input  logic                    subtract_second_i,
-  output logic                    negative_o,      // of the digit
-  output logic [DigitWidth-1:0]   magnitude_o,
-  output logic                    sum_negative_o,
-  output logic                    sum_zero_o,
-  output logic                    sure_o           // whatever the columns below
+  input  logic                  clk_i,
+  input  logic                  opens_i,  // a column
+  input  logic                  first_i,  // of them
+  input  logic                  down_i,
+  input  logic [Width-1:0]      sum_i,
+  input  logic [Width-1:0]      carry_i,
+  output logic [DigitWidth-1:0] digit_o,
+  output logic                  negative_o,
+  output logic                  zero_o,
+  output logic                  sure_o          // of its sign, whatever the columns below
 );
 
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);
-  localparam int unsigned Width = 2 * DigitWidth + $clog2(Products) + 1;
 
-  // ---- Sum of what stays, a product and another term
-
-  logic [Width-1:0] sum_q, stays, product, second, partial, carries, sum_d;
+  logic [Width-1:0] sum_q, stays, partial, carries, sum_d;
   logic round, unused_carry;
 
   assign stays = first_i ? '0 : !opens_i ? sum_q
                : down_i ? sum_q << DigitWidth : Width'($signed(sum_q) >>> DigitWidth);
   // The digit that left was balanced: where it was negative, the columns above have one more.
   assign round = opens_i & ~first_i & ~down_i & sum_q[DigitWidth-1];
-  assign product = Width'(product_i) ^ {Width{negate_i}};
-  assign second  = with_second_i ? Width'(second_i) ^ {Width{subtract_second_i}} : '0;
 
   carry_save_adder #(
     .Width(Width)
   ) u_rows (
     .a_i    (stays),
-    .b_i    (product),
-    .c_i    (second),
+    .b_i    (sum_i),
+    .c_i    (carry_i),
     .sum_o  (partial),
     .carry_o(carries)
   );
@@ -65,34 +57,17 @@ module exact_accumulator #(
     .Adder(Adder)
   ) u_adder (
     .a_i    (partial),
-    .b_i    (carries | Width'(round)),
-    .carry_i(with_second_i ? subtract_second_i : negate_i),
+    .b_i    (carries),
+    .carry_i(round),
     .sum_o  (sum_d),
     .carry_o(unused_carry)
   );
 
   always_ff @(posedge clk_i) sum_q <= sum_d;
 
-  // ---- The digit as a sign and a magnitude
-
-  logic [DigitWidth-1:0] digit;
-
-  assign negative_o = sum_q[DigitWidth-1];
-  assign digit      = sum_q[DigitWidth-1:0] ^ {DigitWidth{negative_o}};
-
-  incrementer #(
-    .Width(DigitWidth),
-    .Arith(Arith)
-  ) u_magnitude (
-    .a_i    (digit),
-    .carry_i(negative_o),
-    .sum_o  (magnitude_o)
-  );
-
-  // ---- The sum's sign
-
-  assign sum_negative_o = sum_q[Width-1];
-  assign sum_zero_o     = sum_q == '0;
-  assign sure_o         = (sum_q[Width-1:SureBit] != '0) & ~(&sum_q[Width-1:SureBit]);
+  assign digit_o    = sum_q[DigitWidth-1:0];
+  assign negative_o = sum_q[Width-1];
+  assign zero_o     = sum_q == '0;
+  assign sure_o     = (sum_q[Width-1:SureBit] != '0) & ~(&sum_q[Width-1:SureBit]);
 
 endmodule

@@ -5,7 +5,7 @@
 // S times (limit c): these two factors, `one` and `limit`, are in units of the smaller exponent. D, S and the others keep
 // theirs below exact_pkg's bound: see digits_of.
 //
-// exponents_o, coordinate_digits_o and direction_digits_o come 2 clocks after the request, what is left 3 clocks after.
+// The exponents come 2 clocks after the request, their digits 3, what is left 4 clocks after.
 module exact_exponents #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
@@ -79,46 +79,55 @@ module exact_exponents #(
   localparam int unsigned Direction = exact_pkg::PlaceDirection / 3;
   localparam int unsigned Other = exact_pkg::PlaceOther / 3;
 
-  logic [ExpWidth-1:0] low, high;
+  logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: 2 n and 2 n + 1 below n
+  logic [ExpWidth-1:0] coordinate_high_q, direction_high_q;
 
   always_comb begin
-    low  = '1;
-    high = '0;
+    {lows[0], highs[0]} = '0;
     for (int unsigned v = 0; v < Vectors; v++) begin
+      lows[Vectors+v]  = '1;
+      highs[Vectors+v] = '0;
       if (v != Direction && (v < Other || with_other_i)) begin
-        if (lows_q[v] < low) low = lows_q[v];
-        if (highs_q[v] > high) high = highs_q[v];
+        lows[Vectors+v]  = lows_q[v];
+        highs[Vectors+v] = highs_q[v];
       end
     end
-    // Zeros alone: any unit will do.
-    if (high == '0) {low, high} = {2{ExpWidth'(1)}};
+    for (int unsigned n = Vectors - 1; n > 0; n--) begin
+      lows[n]  = (lows[2*n] < lows[2*n+1]) ? lows[2*n] : lows[2*n+1];
+      highs[n] = (highs[2*n] > highs[2*n+1]) ? highs[2*n] : highs[2*n+1];
+    end
   end
 
   always_ff @(posedge clk_i) begin
-    coordinate_exponent_o <= low;
+    // Zeros alone: any unit will do.
+    coordinate_exponent_o <= (highs[1] == '0) ? ExpWidth'(1) : lows[1];
+    coordinate_high_q     <= (highs[1] == '0) ? ExpWidth'(1) : highs[1];
     direction_exponent_o  <= lows_q[Direction];
-    coordinate_digits_o   <= count(ShiftWidth'(high) - ShiftWidth'(low), Significand);
+    direction_high_q      <= highs_q[Direction];
+    coordinate_digits_o   <= count(
+        ShiftWidth'(coordinate_high_q) - ShiftWidth'(coordinate_exponent_o), Significand);
     direction_digits_o    <= count(
-        ShiftWidth'(highs_q[Direction]) - ShiftWidth'(lows_q[Direction]), Significand);
+        ShiftWidth'(direction_high_q) - ShiftWidth'(direction_exponent_o), Significand);
   end
 
   // ---- Of a limit: b against c times the limit's unit
 
   logic [ShiftWidth:0] one_exponent, limit_exponent;
-  logic [ShiftWidth-1:0] gap;
-  logic less;
+  logic [ShiftWidth-1:0] gap_q;
+  logic less, less_q;
 
   assign one_exponent = (ShiftWidth + 1)'(coordinate_exponent_o) + (ShiftWidth + 1)'(Unit);
   assign limit_exponent = (ShiftWidth + 1)'(direction_exponent_o) + (ShiftWidth + 1)'(
       exponent(floats_i[Width*exact_pkg::PlaceLimit+FracWidth+:ExpWidth]));
   assign less = one_exponent < limit_exponent;
-  assign gap = less ? ShiftWidth'(limit_exponent - one_exponent)
-                    : ShiftWidth'(one_exponent - limit_exponent);
 
   always_ff @(posedge clk_i) begin
-    one_shift_o   <= less ? '0 : gap;
-    limit_shift_o <= less ? gap : '0;
-    pair_digits_o <= less ? count(gap, Significand) : count(gap, 1);
+    less_q <= less;
+    gap_q  <= less ? ShiftWidth'(limit_exponent - one_exponent)
+                   : ShiftWidth'(one_exponent - limit_exponent);
+    one_shift_o   <= less_q ? '0 : gap_q;
+    limit_shift_o <= less_q ? gap_q : '0;
+    pair_digits_o <= less_q ? count(gap_q, Significand) : count(gap_q, 1);
   end
 
 endmodule

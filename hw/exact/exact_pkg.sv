@@ -1,8 +1,8 @@
 // What the parts of the exact unit share: requests, answers, numbers, instructions, steps.
 //
 // A number is a sum of d_k 2**(Width k), k from 0 on, in units of a power of two that its kind has in common. Its digits
-// are balanced, -2**(Width-1) <= d_k < 2**(Width-1), so the highest that is not 0 has the number's sign; each is kept as a
-// sign and a magnitude. n digits hold any number below 2**(Width n - 2).
+// are balanced, -2**(Width-1) <= d_k < 2**(Width-1), in two's complement, so the highest that is not 0 has the number's sign.
+// n digits hold any number below 2**(Width n - 2).
 package exact_pkg;
 
   // verilator lint_off UNUSEDPARAM
@@ -78,6 +78,11 @@ package exact_pkg;
   function automatic int unsigned largest_gap(int unsigned exp_width,
                                               int unsigned significand_width);
     largest_gap = (1 << exp_width) - 2 + (1 << (exp_width - 1)) - 1 + significand_width;
+  endfunction
+
+  // Bits of the accumulator, for `products` of digits in a column: see exact_accumulator.
+  function automatic int unsigned sum_width(int unsigned width, int unsigned products);
+    sum_width = 2 * width + $clog2(products) + 1;
   endfunction
 
   // ---- Instructions, see exact_program_pkg

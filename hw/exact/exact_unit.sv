@@ -8,9 +8,9 @@
 //   order  the sign of t - limit or t - t', for t = D / S, D = A . N, S = I . N: that of D S' - D' S, by those of D and D'
 //
 // All are sums of products of floats, and so whole numbers in units that the exponents give: exact_exponents has the
-// units, exact_program_pkg the programs, exact_accumulator sums without rounding. Clocks, for digits of 48 bits, from the
-// request to the answer, at most: hit 70, limit 56, order 98, hit and order 155, where the exponents are at most 21 apart
-// (one digit holds a difference); 3,650 whatever the words.
+// units, exact_program_pkg the programs, exact_product and exact_accumulator sum without rounding. Clocks, for digits of 48 bits, from the
+// request to the answer, at most: hit 72, limit 60, order 102, hit and order 159, where the exponents are at most 21 apart
+// (one digit holds a difference); 3,654 whatever the words.
 //
 // Coordinates are of magnitude 2**126 at most, the direction is not 0, all are finite; a limit is positive and finite. An
 // order is of hits: for others it is the sign of that formula. hit_i, against_i: what is asked. hit_o is high where it
@@ -46,12 +46,15 @@ module exact_unit #(
   localparam int unsigned MaxShift = exact_pkg::largest_gap(ExpWidth, Significand);
   localparam int unsigned ShiftWidth = $clog2(MaxShift + 1);
   localparam int unsigned PlaceBits = exact_pkg::PlaceWidth;
+  localparam int unsigned Products = 6 * Digits;  // in a column, at most
+  localparam int unsigned SumWidth = exact_pkg::sum_width(DigitWidth, Products);
+  localparam int unsigned Stages = 4;
 
   // ---- Request: the words, then their exponents
 
   logic idle_q, done, asks_hit_q;
   logic [1:0] against_q;
-  logic [2:0] starts_q;
+  logic [3:0] starts_q;
   logic [exact_pkg::Floats*Width-1:0] floats_q;
 
   assign ready_o = idle_q;
@@ -62,7 +65,7 @@ module exact_unit #(
       starts_q <= '0;
     end else begin
       idle_q   <= idle_q ? ~valid_i : valid_o & ready_i;
-      starts_q <= {starts_q[1:0], valid_i & idle_q};
+      starts_q <= {starts_q[2:0], valid_i & idle_q};
     end
   end
   always_ff @(posedge clk_i) begin
@@ -96,14 +99,15 @@ module exact_unit #(
 
   // ---- Issue
 
-  logic [3:1] valid_q;  // of the steps in stages 1 to 3
-  exact_pkg::step_t step, step_1_q, step_2_q;
+  logic [Stages:1] valid_q;  // of the steps in each stage
+  exact_pkg::step_t step, step_1_q, step_2_q, step_3_q;
   // verilator lint_off UNUSEDSIGNAL
   // What only the sum asks for.
-  exact_pkg::step_t step_3_q;
+  exact_pkg::step_t step_4_q;
   // verilator lint_on UNUSEDSIGNAL
-  logic [6:0] address, address_1_q, address_2_q, address_3_q;
-  logic [AddressWidth-1:0] result, result_1_q, result_2_q, result_3_q, x_address, y_address;
+  logic [6:0] address, address_1_q, address_2_q, address_3_q, address_4_q;
+  logic [AddressWidth-1:0] result, result_1_q, result_2_q, result_3_q, result_4_q;
+  logic [AddressWidth-1:0] x_address, y_address;
   logic [CountWidth-1:0] x_digit, x_digit_1_q;
   logic [NumberWidth-1:0] x_place, y_place;
   logic valid, stop, stopped;
@@ -116,13 +120,13 @@ module exact_unit #(
     .begin_i            (starts_q[0]),
     .hit_i              (asks_hit_q),
     .against_i          (against_q),
-    .start_i            (starts_q[2]),
+    .start_i            (starts_q[3]),
     .coordinate_digits_i(coordinate_digits),
     .direction_digits_i (direction_digits),
     .pair_digits_i      (pair_digits),
     .written_i          (valid_q == '0),
     .stop_i             (stop),
-    .stop_address_i     (address_3_q),
+    .stop_address_i     (address_4_q),
     .stopped_o          (stopped),
     .abort_i            (done),
     .valid_o            (valid),
@@ -151,13 +155,14 @@ module exact_unit #(
     if (!rst_ni) begin
       valid_q <= '0;
     end else begin
-      valid_q <= (stopped | done) ? '0 : {valid_q[2:1], valid};
+      valid_q <= (stopped | done) ? '0 : {valid_q[Stages-1:1], valid};
     end
   end
   always_ff @(posedge clk_i) begin
-    {step_3_q, step_2_q, step_1_q}          <= {step_2_q, step_1_q, step};
-    {address_3_q, address_2_q, address_1_q} <= {address_2_q, address_1_q, address};
-    {result_3_q, result_2_q, result_1_q}    <= {result_2_q, result_1_q, result};
+    {step_1_q, address_1_q, result_1_q} <= {step, address, result};
+    {step_2_q, address_2_q, result_2_q} <= {step_1_q, address_1_q, result_1_q};
+    {step_3_q, address_3_q, result_3_q} <= {step_2_q, address_2_q, result_2_q};
+    {step_4_q, address_4_q, result_4_q} <= {step_3_q, address_3_q, result_3_q};
     x_digit_1_q <= x_digit;
     x_word_q    <= word(floats_q, x_place);
     y_word_q    <= word(floats_q, y_place);
@@ -165,50 +170,37 @@ module exact_unit #(
     limit_q     <= 32'(x_place) == exact_pkg::PlaceLimit;
   end
 
-  // ---- Stage 1: digits of numbers and their product; digits of floats
+  // ---- Stage 1: digits of numbers, from memory; digits of floats
 
-  logic write, write_negative, x_negative, y_negative, loads;
-  logic [DigitWidth-1:0] write_magnitude, x_magnitude, y_magnitude;
+  logic write, loads;
+  logic [DigitWidth-1:0] digit, x_digits, y_digits, x_slice, y_slice, x_q, y_q;
+  logic [ShiftWidth-1:0] x_shift, y_shift, unit;
+  logic x_negative_q, y_taken_q, loads_q;
 
   ram #(
-    .Width(1 + DigitWidth),
+    .Width(DigitWidth),
     .Depth(Depth)
   ) u_x (
     .clk_i,
     .write_i        (write),
-    .write_address_i(result_3_q),
-    .data_i         ({write_negative, write_magnitude}),
+    .write_address_i(result_4_q),
+    .data_i         (digit),
     .read_i         (1'b1),
     .read_address_i (x_address),
-    .data_o         ({x_negative, x_magnitude})
+    .data_o         (x_digits)
   );
 
   ram #(
-    .Width(1 + DigitWidth),
+    .Width(DigitWidth),
     .Depth(Depth)
   ) u_y (
     .clk_i,
     .write_i        (write),
-    .write_address_i(result_3_q),
-    .data_i         ({write_negative, write_magnitude}),
+    .write_address_i(result_4_q),
+    .data_i         (digit),
     .read_i         (1'b1),
     .read_address_i (y_address),
-    .data_o         ({y_negative, y_magnitude})
-  );
-
-  logic [2*DigitWidth-1:0] digits_product, product_q;
-  logic [DigitWidth-1:0] x_slice, y_slice, second_q;
-  logic [ShiftWidth-1:0] x_shift, y_shift, unit;
-  logic negate_q, subtract_q, flip_2_q, flip_3_q, loads_q;
-
-  multiplier #(
-    .Width(DigitWidth),
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_multiplier (
-    .a_i      (x_magnitude),
-    .b_i      (y_magnitude),
-    .product_o(digits_product)
+    .data_o         (y_digits)
   );
 
   function automatic logic [ShiftWidth-1:0] exponent(logic [ExpWidth-1:0] field);
@@ -249,96 +241,116 @@ module exact_unit #(
   );
 
   always_ff @(posedge clk_i) begin
-    product_q  <= step_1_q.empty ? '0 : loads ? (2 * DigitWidth)'(x_slice) : digits_product;
-    negate_q   <= ~loads & ~step_1_q.empty & (step_1_q.negate ^ x_negative ^ y_negative);
-    // x - y is x's sign times |x| - |y| or |x| + |y|.
-    second_q   <= y_slice;
-    loads_q    <= loads;
-    subtract_q <= x_word_q[Width-1] == y_word_q[Width-1];
-    flip_2_q   <= loads & x_word_q[Width-1];
-    flip_3_q   <= flip_2_q;
+    x_q          <= loads ? x_slice : x_digits;
+    y_q          <= loads ? y_slice : y_digits;
+    x_negative_q <= x_word_q[Width-1];
+    y_taken_q    <= ~y_word_q[Width-1];
+    loads_q      <= loads;
   end
 
-  // ---- Stage 2: the sum
+  // ---- Stage 2: a product, or a difference, as two words
 
-  logic digit_negative, sum_negative, sum_zero, sure;
-  logic [DigitWidth-1:0] magnitude;
+  logic [SumWidth-1:0] product_sum, product_carry, difference_sum, difference_carry, sum_q, carry_q;
+
+  exact_product #(
+    .DigitWidth(DigitWidth),
+    .Width     (SumWidth),
+    .Arith     (Arith)
+  ) u_product (
+    .a_i     (x_q),
+    .b_i     (y_q),
+    .negate_i(step_2_q.negate),
+    .sum_o   (product_sum),
+    .carry_o (product_carry)
+  );
+
+  carry_save_adder #(
+    .Width(SumWidth)
+  ) u_difference (
+    .a_i    (SumWidth'(x_q) ^ {SumWidth{x_negative_q}}),
+    .b_i    (SumWidth'(y_q) ^ {SumWidth{y_taken_q}}),
+    .c_i    (SumWidth'(x_negative_q)),
+    .sum_o  (difference_sum),
+    .carry_o(difference_carry)
+  );
+
+  always_ff @(posedge clk_i) begin
+    sum_q   <= step_2_q.empty ? '0 : loads_q ? difference_sum : product_sum;
+    carry_q <= step_2_q.empty ? '0
+             : loads_q ? difference_carry | SumWidth'(y_taken_q) : product_carry;
+  end
+
+  // ---- Stage 3: the sum
+
+  logic sum_negative, sum_zero, sure;
 
   exact_accumulator #(
     .DigitWidth(DigitWidth),
-    .Products  (6 * Digits),
+    .Products  (Products),
     .Arith     (Arith),
     .Adder     (Adder)
   ) u_accumulator (
     .clk_i,
-    .opens_i          (step_2_q.opens),
-    .first_i          (step_2_q.first),
-    .down_i           (step_2_q.down),
-    .product_i        (product_q),
-    .negate_i         (negate_q),
-    .second_i         (second_q),
-    .with_second_i    (loads_q),
-    .subtract_second_i(subtract_q),
-    .negative_o       (digit_negative),
-    .magnitude_o      (magnitude),
-    .sum_negative_o   (sum_negative),
-    .sum_zero_o       (sum_zero),
-    .sure_o           (sure)
+    .opens_i   (step_3_q.opens),
+    .first_i   (step_3_q.first),
+    .down_i    (step_3_q.down),
+    .sum_i     (sum_q),
+    .carry_i   (carry_q),
+    .digit_o   (digit),
+    .negative_o(sum_negative),
+    .zero_o    (sum_zero),
+    .sure_o    (sure)
   );
 
-  // ---- Stage 3: a digit is written; the sign of a number is that of its highest digit
+  // ---- Stage 4: a digit is written; the sign of a number is that of its highest digit
 
   logic [exact_pkg::Numbers-1:0] negative_q, nonzero_q;
-  logic write_nonzero;
 
-  assign write           = valid_q[3] & step_3_q.closes & ~step_3_q.down;
-  assign write_negative  = digit_negative ^ flip_3_q;
-  assign write_magnitude = magnitude;
-  assign write_nonzero   = magnitude != '0;
+  assign write = valid_q[4] & step_4_q.closes & ~step_4_q.down;
 
   always_ff @(posedge clk_i) begin
-    if (write && (step_3_q.low || write_nonzero)) begin
-      negative_q[step_3_q.result] <= write_negative & write_nonzero;
-      nonzero_q[step_3_q.result]  <= write_nonzero;
+    if (write && (step_4_q.low || digit != '0)) begin
+      negative_q[step_4_q.result] <= digit[DigitWidth-1];
+      nonzero_q[step_4_q.result]  <= digit != '0;
     end
   end
 
-  // ---- Stage 3: a sign is known
+  // ---- Stage 4: a sign is known
 
   logic decided_q, was_decided;
   exact_pkg::sign_t sum_sign, tie_sign, sign, plane_q;
 
-  assign was_decided = decided_q & ~step_3_q.first;
-  assign stop = valid_q[3] & step_3_q.down & step_3_q.closes & ~was_decided
-              & (sure | step_3_q.ends);
+  assign was_decided = decided_q & ~step_4_q.first;
+  assign stop = valid_q[4] & step_4_q.down & step_4_q.closes & ~was_decided
+              & (sure | step_4_q.ends);
 
   always_ff @(posedge clk_i) begin
-    if (valid_q[3]) decided_q <= was_decided | stop;
+    if (valid_q[4]) decided_q <= was_decided | stop;
   end
 
   // Of an edge that the ray meets, the first component of its normal.
   always_comb begin
     tie_sign = '0;
     for (int unsigned k = 3; k > 0; k--) begin
-      if (step_3_q.second && nonzero_q[exact_pkg::SecondNormal+k-1]) begin
+      if (step_4_q.second && nonzero_q[exact_pkg::SecondNormal+k-1]) begin
         tie_sign = {negative_q[exact_pkg::SecondNormal+k-1], 1'b1};
       end
-      if (!step_3_q.second && nonzero_q[exact_pkg::Normal+k-1]) begin
+      if (!step_4_q.second && nonzero_q[exact_pkg::Normal+k-1]) begin
         tie_sign = {negative_q[exact_pkg::Normal+k-1], 1'b1};
       end
     end
   end
   assign sum_sign = {sum_negative & ~sum_zero, ~sum_zero};
-  assign sign = (step_3_q.kind == exact_pkg::KindEdge && sum_zero) ? tie_sign : sum_sign;
+  assign sign = (step_4_q.kind == exact_pkg::KindEdge && sum_zero) ? tie_sign : sum_sign;
 
   // ---- The answer
 
   logic misses, hits, compares, order_negative, order_nonzero;
 
-  assign misses = stop & ((step_3_q.kind == exact_pkg::KindPlane) ? sum_zero
-                          : (step_3_q.kind == exact_pkg::KindEdge) & (sign != plane_q));
-  assign hits = stop & ~misses & step_3_q.last & (against_q == exact_pkg::AgainstNothing);
-  assign compares = stop & (step_3_q.kind == exact_pkg::KindCompare);
+  assign misses = stop & ((step_4_q.kind == exact_pkg::KindPlane) ? sum_zero
+                          : (step_4_q.kind == exact_pkg::KindEdge) & (sign != plane_q));
+  assign hits = stop & ~misses & step_4_q.last & (against_q == exact_pkg::AgainstNothing);
+  assign compares = stop & (step_4_q.kind == exact_pkg::KindCompare);
   assign done = misses | hits | compares;
   assign order_nonzero = sign.nonzero & nonzero_q[exact_pkg::Distance]
                        & nonzero_q[exact_pkg::OtherDistance];
@@ -350,7 +362,7 @@ module exact_unit #(
     else valid_o <= done | (valid_o & ~ready_i);
   end
   always_ff @(posedge clk_i) begin
-    if (stop && step_3_q.kind == exact_pkg::KindPlane) plane_q <= sum_sign;
+    if (stop && step_4_q.kind == exact_pkg::KindPlane) plane_q <= sum_sign;
     if (done) begin
       hit_o   <= ~misses;
       order_o <= compares ? {order_negative & order_nonzero, order_nonzero} : '0;

@@ -8,38 +8,38 @@ module exact_accumulator_sums #(
   localparam int unsigned Width = 2 * DigitWidth + $clog2(Products) + 1,
   localparam int unsigned Wide = 3 * DigitWidth + 20
 ) (
-  input logic                    clk,
-  input logic                    opens,
-  input logic                    first,
-  input logic                    down,
-  input logic [2*DigitWidth-1:0] product,
-  input logic                    negate,
-  input logic [DigitWidth-1:0]   second,
-  input logic                    with_second,
-  input logic                    subtract_second
+  input logic             clk,
+  input logic             opens,
+  input logic             first,
+  input logic             down,
+  input logic [Width-1:0] sum_word,
+  input logic [Width-1:0] carry_word
 );
 
-  logic negative, sum_negative, sum_zero, sure;
-  logic [DigitWidth-1:0] magnitude;
+  logic negative, zero, sure;
+  logic [DigitWidth-1:0] digit_word;
   logic [Width-1:0] sum_q;
 
   opened_exact_accumulator dut (
-    .clk_i            (clk),
-    .opens_i          (opens),
-    .first_i          (first),
-    .down_i           (down),
-    .product_i        (product),
-    .negate_i         (negate),
-    .second_i         (second),
-    .with_second_i    (with_second),
-    .subtract_second_i(subtract_second),
-    .negative_o       (negative),
-    .magnitude_o      (magnitude),
-    .sum_negative_o   (sum_negative),
-    .sum_zero_o       (sum_zero),
-    .sure_o           (sure),
+    .clk_i     (clk),
+    .opens_i   (opens),
+    .first_i   (first),
+    .down_i    (down),
+    .sum_i     (sum_word),
+    .carry_i   (carry_word),
+    .digit_o   (digit_word),
+    .negative_o(negative),
+    .zero_o    (zero),
+    .sure_o    (sure),
     .sum_q
   );
+
+  // The term, of two digits of magnitude 2**(DigitWidth-1) at most
+  logic [Width-1:0] term_word;
+  logic signed [Wide-1:0] term, largest;
+  assign term_word = sum_word + carry_word;
+  assign term      = $signed(term_word);
+  assign largest   = Wide'(1) << (2 * DigitWidth - 2);
 
   // What the unit asks of it
   logic begun, was_down;
@@ -55,19 +55,13 @@ module exact_accumulator_sums #(
     assume (!first || opens);
     assume (first || down == was_down);
     assume (opens || terms < Products);
-    assume (product >> (2 * DigitWidth - 2) == '0 || product << 2 == '0 && !product[2*DigitWidth-1]);
-    assume (!with_second || (!negate && product >> DigitWidth == '0));
+    assume (-largest <= term && term <= largest);
     assume (!(opens && !first && down && sure));  // it stops there
   end
 
   // The sum, with room for everything
-  logic signed [Wide-1:0] wide_product, wide_second, wide_magnitude, term, digit, left, over, above, sum, size;
-  assign wide_product   = Wide'(product);
-  assign wide_second    = Wide'(second);
-  assign wide_magnitude = Wide'(magnitude);
-  assign term  = with_second ? (subtract_second ? wide_product - wide_second : wide_product + wide_second)
-               : negate ? -wide_product : wide_product;
-  assign digit = negative ? -wide_magnitude : wide_magnitude;
+  logic signed [Wide-1:0] digit, left, over, above, sum, size;
+  assign digit = $signed(digit_word);
   assign left  = sum - digit;
   assign over  = left >>> DigitWidth;
   assign above = sum <<< DigitWidth;
@@ -87,9 +81,8 @@ module exact_accumulator_sums #(
       assert (sum == $signed(sum_q));
       assert ($unsigned(size) <= bound);
       assert (terms != '0 && terms <= Products);
-      assert (sum_negative == sum[Wide-1] && sum_zero == (sum == '0));
+      assert (negative == sum[Wide-1] && zero == (sum == '0));
       assert (left[DigitWidth-1:0] == '0);
-      assert (!magnitude[DigitWidth-1] || magnitude << 1 == '0);
       // Products 2**(2 DigitWidth - 2) of each column below, in its place: the sum of a geometric series
       assert (!sure || $unsigned((size <<< DigitWidth) - size) >= tail);
     end

@@ -141,6 +141,9 @@ class ExactProgram(unittest.TestCase):
             self.assertEqual(run.numbers[NUMBERS["distance"]], distance)
             self.assertEqual(run.numbers[NUMBERS["other_distance"]], other_distance)
 
+    def test_the_page_says_how_long_requests_take(self):
+        self.assertIn(exact_program.table(), (exact_program.FILE.parent / "README.md").read_text())
+
     def test_fences(self):
         """Every fence is needed: without it a digit is read too early."""
         lengths = exact_program.Lengths(1, 1, 1)

@@ -14,7 +14,7 @@ namespace {
 using Wide = __int128;
 
 // Clocks from the request to the first step; from a step to the clock in which its sum is seen.
-constexpr int kFirstStep = 4, kSeen = 3;
+constexpr int kFirstStep = 5, kSeen = 4;
 
 /// A binary32 number as significand 2^(exponent - 150).
 struct Fields {
@@ -174,13 +174,10 @@ class Machine {
     for (int k = 0; k < digits; ++k) {
       const Wide from = slice(a.significand, a.exponent - unit, k);
       const Wide other = slice(b.significand, b.exponent - unit, k);
-      sum += a.negative == b.negative ? from - other : from + other;
+      sum += (a.negative ? -from : from) - (b.negative ? -other : other);
       number.push_back(take_digit(sum));
       ++clock_;
     }
-    // The digits of the other sign are not the negative's, where one is half of 2^width: the unit's
-    // are those of x's magnitude, negated.
-    for (std::int64_t& digit : number) digit = a.negative ? -digit : digit;
     return number;
   }
   Vector difference(const glm::vec3& x, const glm::vec3& y) {

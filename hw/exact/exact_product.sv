@@ -1,0 +1,65 @@
+// Product of two digits for the accumulator: a_i b_i, or its negative, as two words: sum_o + carry_o modulo 2**Width.
+//
+// a_i and b_i are in two's complement. Structural is radix-4 Booth recoding of b_i (its upper half alone has no digit above
+// the sign) and a carry-save tree; the accumulator's adder is the only one. A row of DigitWidth + 1 bits, in two's complement,
+// is the same row with its top bit turned, less 2**DigitWidth: all those together are a constant, which shares a
+// row with the ones that complements lack. Combinational.
+module exact_product #(
+  parameter int unsigned DigitWidth = 48,  // even
+  parameter int unsigned Width = 103,  // from 2 DigitWidth
+  parameter int unsigned Arith = arith_pkg::Structural
+) (
+  input  logic [DigitWidth-1:0] a_i,
+  input  logic [DigitWidth-1:0] b_i,
+  input  logic                  negate_i,
+  output logic [Width-1:0]      sum_o,
+  output logic [Width-1:0]      carry_o
+);
+
+  if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
+    assign sum_o   = (Width'($signed(a_i)) * Width'($signed(b_i))) ^ {Width{negate_i}};
+    assign carry_o = Width'(negate_i);
+  end else begin : gen_booth
+    localparam int unsigned Rows = DigitWidth / 2;
+    localparam logic [Width-1:0] Ones = Width'({Rows{2'b01}});
+    localparam logic [Width-1:0] Signs = (~Ones + 1'b1) << DigitWidth;
+
+    // verilator lint_off UNUSEDSIGNAL
+    // The odd bits belong to no digit, and the last digit is an unsigned number's.
+    logic [DigitWidth+1:0] one, two, negative;
+    // verilator lint_on UNUSEDSIGNAL
+    logic [DigitWidth-1:0] turned;
+    logic [Width*(Rows+1)-1:0] rows;
+
+    booth_encoder #(
+      .Width(DigitWidth)
+    ) u_encoder (
+      .b_i,
+      .one_o     (one),
+      .two_o     (two),
+      .negative_o(negative)
+    );
+
+    assign turned = (negative[DigitWidth-1:0] ^ {DigitWidth{negate_i}}) & Ones[DigitWidth-1:0];
+
+    for (genvar k = 0; k < Rows; k++) begin : gen_row
+      logic [DigitWidth:0] once, twice, row;
+
+      assign once  = {a_i[DigitWidth-1], a_i} & {(DigitWidth + 1) {one[2*k]}};
+      assign twice = {a_i, 1'b0} & {(DigitWidth + 1) {two[2*k]}};
+      assign row   = (once | twice) ^ {(DigitWidth + 1) {turned[2*k]}};
+      assign rows[Width*k+:Width] = Width'({~row[DigitWidth], row[DigitWidth-1:0]}) << 2 * k;
+    end
+    assign rows[Width*Rows+:Width] = Signs | Width'(turned);
+
+    carry_save_tree #(
+      .Width(Width),
+      .Rows (Rows + 1)
+    ) u_tree (
+      .rows_i (rows),
+      .sum_o,
+      .carry_o
+    );
+  end
+
+endmodule
