@@ -1,5 +1,5 @@
-"""host/FEATURES.md and EMBEDDING.md against the code: every test that they name exists, and every option of the programs
-has a row."""
+"""host/FEATURES.md, EMBEDDING.md and hw/ray_core/README.md against the code: every test that they name exists, and every
+option of the programs has a row."""
 
 import pathlib
 import re
@@ -33,6 +33,19 @@ class Features(unittest.TestCase):
             self.assertTrue(named, feature)
             for name in named:
                 self.assertTrue(name in names, f"{feature.strip()}: no test {name}")
+
+    def test_every_test_of_the_ray_core_exists(self) -> None:
+        root = HOST.parent
+        text = (root / "hw/ray_core/README.md").read_text().partition("## What holds it")[2]
+        named = re.findall(r"`([\w.]+\.[\w.]+)`", text.partition("|---")[2])
+        self.assertGreater(len(named), 20)
+        tests = [file for room in ("sim", "host/intersect/core") for file in (root / room).glob("**/test/**/*")
+                 if file.suffix in (".cpp", ".txt")]
+        found = re.findall(r"TEST(?:_F)?\((\w+), (\w+)\)|add_test\(NAME ([\w.]*\w)", "\n".join(file.read_text() for file in tests))
+        names = {f"{suite}.{name}" if suite else other for suite, name, other in found}
+        proofs = (root / "synth/unit_proofs.py").read_text() + (root / "synth/proofs/proofs.csv").read_text()
+        names |= set(re.findall(r"\bunit\.\w+", proofs))
+        self.assertEqual(set(named) - names, set())
 
     def test_every_option_has_a_row(self) -> None:
         listed = set(re.findall(r"`(--[a-z-]+)`", "".join(row[1] for row in self.rows)))

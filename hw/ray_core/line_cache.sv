@@ -193,10 +193,11 @@ module line_cache #(
   // ---- Targets: lists of requests that wait, one for each entry
 
   logic [Targets-1:0] free_q;
-  logic [Targets-1:0] follows_q;  // another target of the same line came before
-  logic [TargetWidth-1:0] target, current, current_q;
-  logic [TargetWidth-1:0] nexts[Targets];  // which that was
+  logic [TargetWidth-1:0] target, current;
+  logic [TargetWidth:0] current_q;
+  logic [TargetWidth:0] nexts[Targets];  // {another came before that one, the one before}
   logic [TargetWidth:0] heads[Lines];  // {there is one, the latest}
+  logic [Lines-1:0] mores_q;  // another came before that one
   logic [TargetWidth:0] head, fill_head;
   logic [RayWidth-1:0] rays[Targets];
   logic some_free, add_target, draining_q, somebody, more;
@@ -228,9 +229,12 @@ module line_cache #(
   always_ff @(posedge clk_i) begin
     if (add_target) begin
       rays[target]  <= ray_q;
-      nexts[target] <= head[TargetWidth-1:0];
+      nexts[target] <= {mores_q[entry], head[TargetWidth-1:0]};
     end
-    if (add_target || allocate) heads[entry] <= {demand_q, target};
+    if (add_target || allocate) begin
+      heads[entry]   <= {demand_q, target};
+      mores_q[entry] <= follow & head[TargetWidth];
+    end
   end
 
   // ---- A line comes, and goes to all its targets
@@ -238,8 +242,8 @@ module line_cache #(
   assign arrive      = fill_i & ~draining_q;
   assign fill_head   = heads[fill_entry_i];
   assign somebody    = draining_q | fill_head[TargetWidth];
-  assign current     = draining_q ? current_q : fill_head[TargetWidth-1:0];
-  assign more        = somebody & follows_q[current];
+  assign {more, current} =
+      draining_q ? current_q : {mores_q[fill_entry_i], fill_head[TargetWidth-1:0]};
   assign fill_done_o = fill_i & ~more;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -247,7 +251,6 @@ module line_cache #(
       valid_q    <= '0;
       pending_q  <= '0;
       free_q     <= '1;
-      follows_q  <= '0;
       draining_q <= 1'b0;
     end else begin
       if (arrive) begin
@@ -261,10 +264,7 @@ module line_cache #(
       if (invalidate_i) valid_q <= '0;
       if (fill_i) draining_q <= more;
       if (fill_i && somebody) free_q[current] <= 1'b1;
-      if (add_target) begin
-        free_q[target]    <= 1'b0;
-        follows_q[target] <= follow & head[TargetWidth];
-      end
+      if (add_target) free_q[target] <= 1'b0;
     end
   end
   always_ff @(posedge clk_i) begin

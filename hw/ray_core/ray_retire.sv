@@ -6,7 +6,7 @@
 //
 // A ray ends a clock at most, a result leaves a clock.
 module ray_retire #(
-  parameter int unsigned Rays = 64,
+  parameter int unsigned Rays = 64,  // a power of two
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                   clk_i,
@@ -35,6 +35,10 @@ module ray_retire #(
 
   localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
   localparam int unsigned Depth = PointDelay + 5;  // for an end a clock
+
+  if (Rays < 2 || 2 ** RayWidth != Rays) begin : gen_check
+    $error("ray_retire: expected Rays to be a power of two, at least 2");
+  end
 
   // ---- The end of a ray
 

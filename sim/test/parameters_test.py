@@ -17,6 +17,7 @@ REFUSED = {
     "ram": ["Depth=1"],
     "ram_fifo": ["Depth=1", "Reserve=64"],
     "rr_arbiter": ["Width=1"],
+    "ray_retire": ["Rays=1", "Rays=48"],
     "line_cache": ["Lines=8", "Lines=48", "Targets=1"],
     "axi_write_manager": ["DataWidth=16", "DataWidth=96", "DataWidth=1024"],
     "axi_read_manager": ["DataWidth=16", "DataWidth=96", "DataWidth=1024"],

@@ -45,9 +45,10 @@ module cache_answers_once #(
   logic [3:0] miss_entry;
   logic [AddressWidth-1:0] miss_number;
   logic [Width-1:0] answer_line;
-  logic [Lines-1:0] line_valid, pending;
-  logic [1:0] free, follows, nexts, rays;
-  logic draining, draining_target, target, current, somebody, leaves, room, queued;
+  logic [Lines-1:0] line_valid, pending, mores;
+  logic [1:0] free, rays;
+  logic [3:0] nexts;
+  logic draining, draining_more, draining_target, target, current, somebody, leaves, room, queued;
   logic [3:0] entry, read_q, write_q;
   logic [4:0] count;
   logic [Lines*Width-1:0] words;
@@ -83,9 +84,9 @@ module cache_answers_once #(
     .valid_q(line_valid),
     .pending_q(pending),
     .free_q(free),
-    .follows_q(follows),
+    .mores_q(mores),
     .draining_q(draining),
-    .current_q(draining_target),
+    .current_q({draining_more, draining_target}),
     .target(target),
     .current(current),
     .somebody(somebody),
@@ -271,18 +272,19 @@ module cache_answers_once #(
           // The list of a entry that waits: who enlisted last, and before
           assert (heads[2*p+1] == ((!free[0] && !coming[0] && entry_0 == 4'(p))
                                    || (!free[1] && !coming[1] && entry_1 == 4'(p))));
-          if (heads[2*p+1]) begin
+          if (!heads[2*p+1]) assert (!mores[p]);
+          else begin
             assert (!free[heads[2*p]] && !coming[heads[2*p]] && (heads[2*p] ? entry_1 : entry_0) == 4'(p));
-            assert (follows[heads[2*p]] == (!free[!heads[2*p]] && !coming[!heads[2*p]]
-                                            && (heads[2*p] ? entry_0 : entry_1) == 4'(p)));
-            if (follows[heads[2*p]]) assert (nexts[heads[2*p]] == !heads[2*p] && !follows[!heads[2*p]]);
+            assert (mores[p] == (!free[!heads[2*p]] && !coming[!heads[2*p]]
+                                     && (heads[2*p] ? entry_0 : entry_1) == 4'(p)));
+            if (mores[p]) assert (nexts[2*heads[2*p]+:2] == {1'b0, !heads[2*p]});
           end
         end
       end
       if (!free[0]) assert (pending[entry_0] || coming[0]);
       if (!free[1]) assert (pending[entry_1] || coming[1]);
       if (draining) begin
-        assert (!free[draining_target] && !follows[draining_target]
+        assert (!free[draining_target] && !draining_more
                 && (draining_target ? entry_1 : entry_0) == entry_q);
       end
       // The queue of hits

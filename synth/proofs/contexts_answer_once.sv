@@ -1,7 +1,7 @@
 // Rays that come into a ray core and leave it, whatever is done for them and however long it takes, from reset
 // and for ever: a context of the table is given to one ray at a time; what ends is a ray that began and had not ended;
 // every ray that came in is in one place, and leaves as one end. No queue overflows, and no end leaves
-// before its P is there.
+// before its P is there: a ray that was marked, any one, leaves with its mark, once, and with P of its own.
 // opened_ray_contexts is contracts/ray_contexts.sv with its registers as outputs.
 module contexts_answer_once #(
   parameter int unsigned Rays = 4,
@@ -9,6 +9,7 @@ module contexts_answer_once #(
 ) (
   input logic            clk,
   input logic            ray,    // one is offered
+  input logic            choose,  // it is the one that is marked
   input logic            begin_walk,
   input logic [Rays-1:0] busy,
   input logic            doubt,
@@ -36,6 +37,13 @@ module contexts_answer_once #(
   logic [Delay-1:0] pointing_q;
   logic [InCountWidth-1:0] rays_count, inverses_count;
   logic [EndCountWidth-1:0] ends_count, points_count;
+  logic [InDepth-1:0] ray_marks;
+  logic [EndDepth-1:0] end_marks, points;
+  logic [Rays-1:0] marks;
+  logic marked, point, answer_mark, answer_point, answer_known;
+  logic [5:0] age;
+  logic [CtxWidth-1:0] marked_ctx, end_ctx;
+  logic [CtxWidth*(Delay-2)-1:0] pointing_ctx;
   logic rays_valid, inverses_valid, ends_valid, points_valid, rays_space, ends_space;
 
   opened_ray_contexts dut (
@@ -43,17 +51,31 @@ module contexts_answer_once #(
     .rst_ni(reset_n),
     .ray_valid_i(ray),
     .ray_ready_o(ready),
+    .ray_mark_i(choose && !chosen),
     .start_i(begin_walk),
     .busy_i(busy),
     .started_o(started),
     .started_ctx_o(started_ctx),
     .ending_o(ending),
     .ending_ctx_o(ending_ctx),
+    .marks_o(marks),
+    .marked_o(marked),
+    .age_o(age),
+    .ctx_o(marked_ctx),
     .doubt_valid_i(doubt),
     .overflow_valid_i(overflow),
     .result_valid_o(valid),
     .result_ready_i(take),
     .result_kind_o(kind),
+    .result_mark_o(answer_mark),
+    .result_point_o(answer_point),
+    .result_known_o(answer_known),
+    .point(point),
+    .end_ctx(end_ctx),
+    .\u_alloc.u_rays.bits_q (ray_marks),
+    .\u_retire.u_ends.bits_q (end_marks),
+    .\u_retire.u_points.bits_q (points),
+    .\u_retire.u_pointing.line_q (pointing_ctx),
     .\u_alloc.free_q (free_q),
     .\u_alloc.dividing_q (dividing_q),
     .\u_alloc.u_rays.count_q (rays_count),
@@ -75,9 +97,14 @@ module contexts_answer_once #(
     for (int unsigned i = 0; i < 32; i++) ones = ones + TotalWidth'(word[i]);
   endfunction
 
+  logic chosen, left;  // a ray was marked, and left
+  initial {chosen, left} = '0;
+
   // ---- What the user sees: rays that came, and ends that left
 
-  logic ended, end_offered;
+  logic ended, end_offered, offered, entering;  // the last two: the marked one's end is, or comes into the queue
+  assign offered  = end_offered && answer_mark;
+  assign entering = marked && age == 6'd1;
   logic [TotalWidth-1:0] in_flight;  // rays that came and have not left
   logic [Rays-1:0] used;          // contexts whose ray began and has not ended
   assign ended       = valid && take && kind == ray_core_pkg::ResultEnd;
@@ -87,7 +114,10 @@ module contexts_answer_once #(
     if (!reset_n) begin
       in_flight <= '0;
       used <= '0;
+      {chosen, left} <= '0;
     end else begin
+      if (ray && ready && choose) chosen <= 1'b1;
+      if (ended && answer_mark) left <= 1'b1;
       in_flight <= in_flight + TotalWidth'(ray && ready) - TotalWidth'(ended);
       if (started) used[started_ctx] <= 1'b1;
       if (ending) used[ending_ctx] <= 1'b0;
@@ -104,6 +134,29 @@ module contexts_answer_once #(
       assert (rays_count <= InCountWidth'(InDepth));
       assert (TotalWidth'(ends_count) + TotalWidth'(pointing_q[0]) <= TotalWidth'(EndDepth));
 
+      if (ended && answer_mark) assert (chosen && !left && (answer_point || !answer_known));
+
+      // Invariants of the marked ray: it is in one place
+      assert (TotalWidth'(chosen) == ones(32'(ray_marks)) + ones(32'(marks)) + TotalWidth'(entering)
+                                     + ones(32'(end_marks)) + TotalWidth'(offered) + TotalWidth'(left));
+      assert (ray_marks >> rays_count == '0 && end_marks >> ends_count == '0 && points >> points_count == '0);
+      assert ((marks & ~used) == '0);
+      assert (marked == (entering || end_marks != '0 || offered || left));
+      if (offered) assert (answer_point || !answer_known);
+      if (marked) begin
+        assert (age != '0);
+        if (age <= 6'(Delay)) assert (pointing_q[age-1] && !offered && !left);
+        if (entering) assert (end_ctx == marked_ctx);
+        else if (age < 6'(Delay)) assert (pointing_ctx[CtxWidth*(age-2)+:CtxWidth] == marked_ctx);
+        if (age == 6'(Delay)) assert (point);
+        // Its P comes into its queue where its end is in the other
+        if (end_marks != '0) begin
+          if (age <= 6'(Delay)) begin
+            assert (end_marks == EndDepth'(1) << (TotalWidth'(points_count) + ones(32'(pointing_q >> age))));
+          end else assert ((end_marks & points) != '0);
+        end
+      end
+
       // Invariants
       assert (free_q == ~used && active_q == used);
       assert (TotalWidth'(rays_count) == TotalWidth'(inverses_count) + ones(32'(dividing_q)));
@@ -117,6 +170,8 @@ module contexts_answer_once #(
       if (points_valid) assert (points_count != '0);
       assert (rays_space == (rays_count < InCountWidth'(InDepth)));
       assert (ends_space == (ends_count < EndCountWidth'(EndDepth - 1)));
+
+      cover (ended && answer_mark && answer_known);
     end
   end
 

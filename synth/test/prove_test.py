@@ -43,6 +43,7 @@ WRITER = [("(axi_wready_i & axi_wlast_o)", "axi_wready_i"),
           ("some_room & address_free", "address_free")]
 
 CONTEXTS = [(".Reserve(1)", ".Reserve(0)"),
+            (".data_i(end_ctx_o)", ".data_i(ending_ctx_o)"),
             ("active_q & ~busy_i", "active_q")]
 
 

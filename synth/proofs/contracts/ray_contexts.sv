@@ -1,5 +1,6 @@
 // A ray core of which nothing is left but rays that come and go: ray_alloc and ray_retire as ray_core joins them.
-// What is to be done for a ray is anything, and so is when its walk begins.
+// What is to be done for a ray is anything, and so is when its walk begins. One ray may be marked: its tag is one bit
+// here, and its P may be read when it is there and no later ray of its context can have one, else it is anything.
 module ray_contexts #(
   parameter int unsigned Rays = 4,
   localparam int unsigned CtxWidth = $clog2(Rays)
@@ -7,6 +8,7 @@ module ray_contexts #(
   input  logic                 clk_i,
   input  logic                 rst_ni,
   input  logic                 ray_valid_i,
+  input  logic                 ray_mark_i,
   output logic                 ray_ready_o,
   input  logic                 start_i,  // the walk takes a ray that is there
   input  logic [Rays-1:0]      busy_i,
@@ -14,11 +16,18 @@ module ray_contexts #(
   output logic [CtxWidth-1:0] started_ctx_o,
   output logic                 ending_o,
   output logic [CtxWidth-1:0] ending_ctx_o,
+  output logic [Rays-1:0]      marks_o,      // of contexts
+  output logic                 marked_o,     // the marked ray ended `age` clocks ago, in context `ctx`
+  output logic [5:0]           age_o,
+  output logic [CtxWidth-1:0]  ctx_o,
   input  logic                 doubt_valid_i,
   input  logic                 overflow_valid_i,
   output logic                 result_valid_o,
   input  logic                 result_ready_i,
-  output logic [1:0]           result_kind_o
+  output logic [1:0]           result_kind_o,
+  output logic                 result_mark_o,
+  output logic                 result_point_o,  // of it, where t is known
+  output logic                 result_known_o
 );
 
   logic start_valid;
@@ -35,7 +44,7 @@ module ray_contexts #(
     .valid_i(ray_valid_i),
     .ready_o(ray_ready_o),
     .direction_i('0),
-    .ray_i(1'b0),
+    .ray_i(ray_mark_i),
     .free_valid_i(ending_o),
     .free_ctx_i(ending_ctx_o),
     .start_valid_o(start_valid),
@@ -45,12 +54,35 @@ module ray_contexts #(
     .start_fire_i(started_o)
   );
 
-  (* anyseq *) ray_core_pkg::end_t ended;
-  (* anyseq *) logic [95:0] point;
+  (* anyseq *) ray_core_pkg::end_t known;
+  (* anyseq *) logic any_point;
   logic [CtxWidth-1:0] end_ctx, point_ctx;
+  logic point;
+
+  // P is there PointDelay clocks after an end, and no later ray of the context has one within as many more.
+  localparam logic [5:0] PointDelay = 6'(hit_test_pkg::divide_latency(23) + 4);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      marks_o  <= '0;
+      marked_o <= 1'b0;
+    end else begin
+      if (ending_o) marks_o[ending_ctx_o] <= 1'b0;
+      if (started_o) marks_o[started_ctx_o] <= ray;
+      if (ending_o && marks_o[ending_ctx_o]) marked_o <= 1'b1;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (ending_o && marks_o[ending_ctx_o]) {age_o, ctx_o} <= {6'd1, ending_ctx_o};
+    else if (age_o != '1) age_o <= age_o + 1'b1;
+    point <= (marked_o && point_ctx == ctx_o && age_o >= PointDelay && age_o < 2 * PointDelay) | any_point;
+  end
   logic doubt_fire, overflow_fire;
   ray_core_pkg::result_t result;
-  assign result_kind_o = result.kind;
+  assign result_kind_o  = result.kind;
+  assign result_mark_o  = result.tag[31];
+  assign result_point_o = result.point[95];
+  assign result_known_o = result.t_error != ray_core_pkg::NoT;
 
   ray_retire #(
     .Rays(Rays)
@@ -63,9 +95,9 @@ module ray_contexts #(
     .ending_o,
     .ending_ctx_o,
     .end_ctx_o(end_ctx),
-    .end_i(ended),
+    .end_i({marked_o && age_o == 6'd1, {$bits(known) - 1{1'b0}}} | (known >> 1)),
     .point_ctx_o(point_ctx),
-    .point_i(point),
+    .point_i({point, 95'd0}),
     .doubt_i({doubt_valid_i, 64'd0}),
     .doubt_fire_o(doubt_fire),
     .overflow_i({overflow_valid_i, {32 + ray_core_pkg::AddressWidth + ray_core_pkg::NodesWidth{1'b0}}}),
@@ -75,6 +107,59 @@ module ray_contexts #(
     .result_o(result)
   );
 
+endmodule
+
+// A queue of which the highest bits of words are kept: unit.ram_fifo has shown that the real one keeps order.
+module ram_fifo #(
+  parameter int unsigned Width   = 32,
+  parameter int unsigned Depth   = 64,
+  parameter int unsigned Reserve = 0,
+  localparam int unsigned CountWidth = $clog2(Depth + 1)
+) (
+  input  logic             clk_i,
+  input  logic             rst_ni,
+  input  logic             push_i,
+  input  logic [Width-1:0] data_i,
+  output logic             space_o,
+  input  logic             pop_i,
+  output logic             valid_o,
+  output logic [Width-1:0] data_o
+);
+  (* anyseq *) logic [Width-1:0] any;
+  logic [CountWidth-1:0] count_q, count_d, last;
+  logic [Depth-1:0] bits_q, bits;  // the next to leave lowest, 0 above the last
+  assign data_o  = Width'({bits_q[0], any} >> 1);
+  assign last    = count_q - CountWidth'(pop_i);
+  assign bits    = pop_i ? bits_q >> 1 : bits_q;
+  assign count_d = last + CountWidth'(push_i);
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      count_q <= '0;
+      valid_o <= 1'b0;
+      space_o <= 1'b1;
+      bits_q  <= '0;
+    end else begin
+      count_q <= count_d;
+      valid_o <= (count_q != CountWidth'(valid_o) & (~valid_o | pop_i)) | (valid_o & ~pop_i);
+      space_o <= count_d < CountWidth'(Depth - Reserve);
+      bits_q  <= bits | (Depth'(push_i & data_i[Width-1]) << last);
+    end
+  end
+endmodule
+
+// A delay line of one register.
+module delay_line #(
+  parameter int unsigned Width = 32,
+  parameter int unsigned Depth = 1
+) (
+  input  logic             clk_i,
+  input  logic             enable_i,
+  input  logic [Width-1:0] data_i,
+  output logic [Width-1:0] data_o
+);
+  logic [Width*Depth-1:0] line_q;
+  assign data_o = line_q[Width*(Depth-1)+:Width];
+  always_ff @(posedge clk_i) if (enable_i) line_q <= {line_q[0+:Width*(Depth-1)], data_i};
 endmodule
 
 // A divider that promises nothing.
