@@ -337,6 +337,8 @@ def report_rows() -> list[Row]:
 # Formats by name: exponent and fraction bits.
 FORMATS = {"binary32": (8, 23), "binary16": (5, 10), "bfloat16": (8, 7)}
 ARITHMETICS = {"structural": 0, "behavioural": 1}  # arith_pkg's
+# ray_core's parameters for an FPGA
+SMALL_CORE = {"Rays": 16, "Depth": 4, "NodeLines": 64, "TriangleLines": 64, "Clocks": 11, "Arith": 1}
 
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
@@ -358,6 +360,8 @@ def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
     rows += [unit("hit_test_unit", "binary16", kind, "ice40") for kind in ARITHMETICS]
     rows.append(unit("hit_test_pipeline", "binary32", "behavioural", "ecp5"))
     rows += [unit("hit_test_pipeline", "bfloat16", kind, "ecp5") for kind in ARITHMETICS]
+    rows.append((design("ray_core", "small_core", **SMALL_CORE), "binary32", "behavioural",
+                 next(fpga for fpga in FPGAS if fpga.name == "ecp5")))
     return rows
 
 

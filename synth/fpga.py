@@ -176,8 +176,10 @@ def main() -> int:
     return 1 if failures else 0
 
 
-def period(top: str) -> int | None:
-    """Clocks a test, as the header of a unit's module has it."""
+def period(top: str, clocks: str = "") -> int | None:
+    """Clocks a test: its parameter, or as the header of a unit's module has it."""
+    if clocks:
+        return int(clocks)
     (file,) = catalogue.HW.glob(f"*/{top}.sv")
     said = re.search(r"Throughput:? (?:a test every (\d+) clocks|one test a clock)", file.read_text())
     return said and int(said[1] or 1)
@@ -194,7 +196,7 @@ def table() -> str:
             cells = ["-" if not cell else got[key] for key, cell in zip(
                 ("luts", "registers", "multipliers", "block RAMs"), fpga.cells, strict=True)]
             rows.append([name, form, kind, fpga.title, *cells, got["least"], got["mhz"], got["most"], got["seeds"],
-                         f"{got['mhz'] / period(design.top):.2f}", got["logic"], got["wires"]])
+                         f"{got['mhz'] / period(design.top, dict(design.parameters).get('Clocks', '')):.2f}", got["logic"], got["wires"]])
     if not rows:
         return ""
     commit = tools.run(["git", "describe", "--always", "--dirty"], store.OUT / "git.log").strip()
@@ -203,7 +205,7 @@ def table() -> str:
 
 # What a parameter makes of a unit, in words.
 NAMES = {("QuotientBits", "21"): "21-bit quotients", ("RowsPerClock", "1"): "a row a clock",
-         ("RowsPerClock", "2"): "two rows a clock"}
+         ("RowsPerClock", "2"): "two rows a clock", ("Clocks", "11"): "small (a node and a triangle in 11 clocks)"}
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ class Features(unittest.TestCase):
         self.assertGreater(len(named), 20)
         tests = [file for room in ("sim", "host/intersect/core") for file in (root / room).glob("**/test/**/*")
                  if file.suffix in (".cpp", ".txt")]
-        found = re.findall(r"TEST(?:_F)?\((\w+), (\w+)\)|add_test\(NAME ([\w.]*\w)", "\n".join(file.read_text() for file in tests))
+        found = re.findall(r"TEST(?:_[FP])?\((\w+), (\w+)\)|add_test\(NAME ([\w.]*\w)", "\n".join(file.read_text() for file in tests))
         names = {f"{suite}.{name}" if suite else other for suite, name, other in found}
         proofs = (root / "synth/unit_proofs.py").read_text() + (root / "synth/proofs/proofs.csv").read_text()
         names |= set(re.findall(r"\bunit\.\w+", proofs))

@@ -11,7 +11,8 @@
 //   enter       largest near plane, smallest far plane                      49 comparators, see slab_test
 //   sort        near first; the group                                       see child_sort, sort7
 //
-// No valid: what belongs to a node is the user's to carry along. Its ray comes a clock later, out of a memory.
+// With Clocks a child is stepped and entered in each clock, and the latency is Children clocks more; start_i is then high
+// with a node. No valid: what belongs to a node is the user's to carry along. Its ray comes a clock later, out of a memory.
 //
 // In:  node_i       a node line, see ray_core_pkg
 //      origin_i     O, binary32; word x lowest, here and below
@@ -43,10 +44,12 @@
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
 // compressed wide BVHs", 2017.
 module box_unit #(
+  parameter int unsigned Clocks = 1,  // of a node, see slab_tests; at least 7 if not 1
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
   input  logic                                clk_i,
+  input  logic                                start_i,
   input  logic [ray_core_pkg::LineWidth-1:0]  node_i,
   input  logic [95:0]                         origin_i,
   input  logic [95:0]                         inverse_i,
@@ -259,14 +262,13 @@ module box_unit #(
 
   // ---- Step and enter: a key for each child, {left out, enter}
 
-  localparam int unsigned BoxWidth = ray_core_pkg::BoxWidth;
   localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
   localparam int unsigned KeyWidth = UnitBits + 2;
 
   logic [Children*KeyWidth-1:0] keys;
   logic [NodeBoxes-1:0] stepped_node, sorted_node;  // base and kinds
   logic [8:0] stepped_exponent;
-  logic stepped_no_cull;
+  logic stepped_no_cull, start;
 
   delay_line #(
     .Width(UnitBits + 1),
@@ -286,29 +288,49 @@ module box_unit #(
     .data_i({children[NodeBoxes-1:0], aligned_exponent, aligned_no_cull}),
     .data_o({stepped_node, stepped_exponent, stepped_no_cull})
   );
-  always_ff @(posedge clk_i) begin
-    sorted_node     <= stepped_node;
-    sorted_exponent <= stepped_exponent;
-  end
-
-  for (genvar i = 0; i < Children; i++) begin : gen_child
-    slab_test #(
-      .Arith(Arith),
-      .Adder(Adder)
-    ) u_child (
+  delay_line #(
+    .Width(NodeBoxes + 9),
+    .Depth((Clocks == 1) ? 1 : 1 + Children)
+  ) u_sideband_sort (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({stepped_node, stepped_exponent}),
+    .data_o({sorted_node, sorted_exponent})
+  );
+  if (Clocks == 1) begin : gen_node_a_clock
+    logic unused_start;
+    assign unused_start = start_i;
+    assign start        = 1'b0;
+  end else begin : gen_node_a_step
+    delay_line #(
+      .Width(1),
+      .Depth(Take + Subtract + Scale + Multiply + Align)
+    ) u_start (
       .clk_i,
-      .box_i(children[NodeBoxes+BoxWidth*i +: BoxWidth]),
-      .back_i(aligned_back),
-      .step_i(step_q),
-      .near_i(step_near_q),
-      .far_i(step_far_q),
-      .next_back_i(stepped_back),
-      .t_max_i(entered_t_max),
-      .kind_i(stepped_node[Kinds+KindWidth*i +: KindWidth]),
-      .no_cull_i(stepped_no_cull),
-      .key_o(keys[KeyWidth*i +: KeyWidth])
+      .enable_i(1'b1),
+      .data_i(start_i),
+      .data_o(start)
     );
   end
+
+  slab_tests #(
+    .Clocks(Clocks),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_children (
+    .clk_i,
+    .start_i(start),
+    .boxes_i(children[NodeBoxes +: Children*ray_core_pkg::BoxWidth]),
+    .back_i(aligned_back),
+    .step_i(step_q),
+    .near_i(step_near_q),
+    .far_i(step_far_q),
+    .next_back_i(stepped_back),
+    .t_max_i(entered_t_max),
+    .kinds_i(stepped_node[Kinds +: Children*KindWidth]),
+    .no_cull_i(stepped_no_cull),
+    .keys_o(keys)
+  );
 
   // ---- Sort
 

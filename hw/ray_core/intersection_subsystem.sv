@@ -4,10 +4,12 @@
 //   box_unit       which children of a node a ray enters
 //   triangle_test  hit, miss or doubt
 //
-// A node and a triangle are taken in each clock; nothing stalls. Boxes are there ray_core_pkg::BoxLatency clocks after
-// their node, a verdict as triangle_test says.
+// A node and a triangle are taken with step_i, in one of Clocks clocks: 1, or few cores that take turns, see slab_tests and
+// shared_triangle_test. Nothing stalls. Boxes are there box_unit's latency after their node, a verdict as
+// (shared_)triangle_test says.
 module intersection_subsystem #(
   parameter int unsigned Rays  = 64,
+  parameter int unsigned Clocks = 1,  // else at least 7
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays)
@@ -23,7 +25,8 @@ module intersection_subsystem #(
   input  logic                         start_fire_i,
   input  logic                         ending_i,
   input  logic [RayWidth-1:0]          ending_ctx_i,
-  // lines for rays
+  // lines for rays, with step_i
+  input  logic                         step_i,
   input  logic [RayWidth-1:0]          node_ctx_i,
   input  ray_core_pkg::node_line_t     node_i,
   input  logic [30:0]                  t_max_i,  // of node_ctx_i, in the clock after
@@ -43,6 +46,7 @@ module intersection_subsystem #(
 
   ray_context #(
     .Rays(Rays),
+    .Clocks(Clocks),
     .Arith(Arith),
     .Adder(Adder)
   ) u_contexts (
@@ -60,6 +64,7 @@ module intersection_subsystem #(
     .node_origin_o(box_origin),
     .node_inverse_o(box_inverse),
     .node_no_cull_o(no_cull),
+    .step_i,
     .triangle_ctx_i,
     .triangle_origin_o(triangle_origin),
     .triangle_skip_id_o(skip_id),
@@ -70,7 +75,8 @@ module intersection_subsystem #(
 
   // ---- Boxes
 
-  localparam int unsigned Latency = ray_core_pkg::BoxLatency;
+  localparam int unsigned Latency = ray_core_pkg::BoxLatency
+                                  + ((Clocks == 1) ? 0 : ray_core_pkg::Children);
   localparam int unsigned KindsWidth = ray_core_pkg::Children * ray_core_pkg::KindWidth;
 
   logic [ray_core_pkg::LineWidth-1:0] node;
@@ -97,10 +103,12 @@ module intersection_subsystem #(
     .data_o(box_ctx_o)
   );
   box_unit #(
+    .Clocks(Clocks),
     .Arith(Arith),
     .Adder(Adder)
   ) u_boxes (
     .clk_i,
+    .start_i(node_i.valid),
     .node_i(node),
     .origin_i(box_origin),
     .inverse_i(box_inverse),
@@ -113,22 +121,44 @@ module intersection_subsystem #(
 
   // ---- Triangles
 
-  triangle_test #(
-    .Rays(Rays),
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_tests (
-    .clk_i,
-    .rst_ni,
-    .ctx_i(triangle_ctx_i),
-    .triangle_i,
-    .origin_i(triangle_origin),
-    .skip_id_i(skip_id),
-    .source_id_i(source_id),
-    .direction_ctx_o(direction_ctx),
-    .direction_i(direction),
-    .ctx_o(verdict_ctx_o),
-    .verdict_o
-  );
+  if (Clocks == 1) begin : gen_pipeline
+    triangle_test #(
+      .Rays(Rays),
+      .Arith(Arith),
+      .Adder(Adder)
+    ) u_tests (
+      .clk_i,
+      .rst_ni,
+      .ctx_i(triangle_ctx_i),
+      .triangle_i,
+      .origin_i(triangle_origin),
+      .skip_id_i(skip_id),
+      .source_id_i(source_id),
+      .direction_ctx_o(direction_ctx),
+      .direction_i(direction),
+      .ctx_o(verdict_ctx_o),
+      .verdict_o
+    );
+  end else begin : gen_turns
+    shared_triangle_test #(
+      .Rays(Rays),
+      .Clocks(Clocks),
+      .Arith(Arith),
+      .Adder(Adder)
+    ) u_tests (
+      .clk_i,
+      .rst_ni,
+      .step_i,
+      .ctx_i(triangle_ctx_i),
+      .triangle_i,
+      .origin_i(triangle_origin),
+      .skip_id_i(skip_id),
+      .source_id_i(source_id),
+      .direction_ctx_o(direction_ctx),
+      .direction_i(direction),
+      .ctx_o(verdict_ctx_o),
+      .verdict_o
+    );
+  end
 
 endmodule

@@ -7,12 +7,15 @@
 // it is forgotten. Its line may come when the last ray has long ended: memory must not change, nor the caches
 // be emptied, while outstanding_o.
 //
+// Lines leave with step_o, which is high in one of Clocks clocks.
+//
 // A line with an error is given to the rays that wait for it, and read again for the next.
 module memory_subsystem #(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
   parameter int unsigned TriangleLines = 256,  // of the triangles'
   parameter bit Exact = 1'b0,  // triangles have ranks, and some are for exact_resolver
+  parameter int unsigned Clocks = 1,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned EntryWidth =
@@ -45,6 +48,7 @@ module memory_subsystem #(
   input  logic                    line_error_i,
   // lines
   input  logic                    tests_allowed_i,  // else no triangle leaves
+  output logic                    step_o,
   output logic [RayWidth-1:0]     node_ctx_o,
   output ray_core_pkg::node_line_t node_o,
   output logic [RayWidth-1:0]     triangle_ctx_o,
@@ -135,7 +139,19 @@ module memory_subsystem #(
     .data_o({line_error, fill_triangle, fill_entry, line})
   );
   assign prefetch_fire = prefetch_valid & ~node_valid & node_ready;
-  assign fill          = line_valid & tests_allowed_i;
+  assign fill          = line_valid & tests_allowed_i & step_o;
+
+  if (Clocks == 1) begin : gen_always
+    assign step_o = 1'b1;
+  end else begin : gen_step
+    logic [Clocks-1:0] turn_q;
+
+    always_ff @(posedge clk_i or negedge rst_ni) begin
+      if (!rst_ni) turn_q <= Clocks'(1);
+      else turn_q <= {turn_q[Clocks-2:0], turn_q[Clocks-1]};
+    end
+    assign step_o = turn_q[0];
+  end
 
   line_cache #(
     .Lines(NodeLines),
@@ -161,7 +177,7 @@ module memory_subsystem #(
     .fill_line_i(line),
     .fill_error_i(line_error),
     .valid_o(node_o.valid),
-    .ready_i(1'b1),
+    .ready_i(step_o),
     .ray_o(node_ctx_o),
     .line_o(node_o.line),
     .error_o(node_o.error)
@@ -191,7 +207,7 @@ module memory_subsystem #(
     .fill_line_i(line[KeptWidth-1:0]),
     .fill_error_i(line_error),
     .valid_o(triangle_o.valid),
-    .ready_i(tests_allowed_i),
+    .ready_i(tests_allowed_i & step_o),
     .ray_o(triangle_who),
     .line_o(triangle_kept),
     .error_o(triangle_o.error)

@@ -1,10 +1,11 @@
 // Entry of rays: computes the reciprocals of a ray's direction and gives the ray a context.
 //
 // A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
-// lowest free one is start_ctx_o. So no context is held by a division. Throughput a ray a clock.
+// lowest free one is start_ctx_o. So no context is held by a division. Throughput a ray in Clocks clocks.
 module ray_alloc #(
   parameter int unsigned Rays  = 64,  // contexts; a power of two
   parameter int unsigned Width = 32,  // of what else there is of a ray
+  parameter int unsigned Clocks = 1,  // of a ray, see reciprocals
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays)
@@ -24,9 +25,7 @@ module ray_alloc #(
   input  logic                start_fire_i
 );
 
-  localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(23);
-  localparam int unsigned Depth = DivideLatency + 3;  // for a ray a clock
-  localparam logic [31:0] One = 32'h3f80_0000;
+  localparam int unsigned Depth = hit_test_pkg::divide_latency(23) + 3;  // for a ray a clock
 
   // ---- Contexts
 
@@ -53,37 +52,25 @@ module ray_alloc #(
 
   // ---- Divide
 
-  logic fire, space, divided;
-  logic [DivideLatency-1:0] dividing_q;
+  logic fire, space, divider_ready, divided;
   logic [95:0] inverse;
 
-  assign ready_o = rst_ni & space;
+  assign ready_o = rst_ni & space & divider_ready;
   assign fire    = valid_i & ready_o;
-  assign divided = dividing_q[DivideLatency-1];
 
-  for (genvar k = 0; k < 3; k++) begin : gen_word
-    fp_pkg::flags_t unused_flags;
-
-    fp_divider_stages #(
-      .Arith(Arith),
-      .Adder(Adder),
-      .PipeRegs(hit_test_pkg::DividerPipeRegs)
-    ) u_divider (
-      .clk_i,
-      .valid_i(fire),
-      .a_i(One),
-      .b_i(direction_i[32*k +: 32]),
-      .rounding_mode_i(fp_pkg::RoundNearestEven),
-      .tininess_after_i(1'b0),
-      .result_o(inverse[32*k +: 32]),
-      .flags_o(unused_flags)
-    );
-  end
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) dividing_q <= '0;
-    else dividing_q <= {dividing_q[DivideLatency-2:0], fire};
-  end
+  reciprocals #(
+    .Clocks(Clocks),
+    .Arith(Arith),
+    .Adder(Adder)
+  ) u_reciprocals (
+    .clk_i,
+    .rst_ni,
+    .valid_i(fire),
+    .ready_o(divider_ready),
+    .vector_i(direction_i),
+    .valid_o(divided),
+    .inverse_o(inverse)
+  );
 
   // ---- Wait: as many inverses at most as there are rays
 

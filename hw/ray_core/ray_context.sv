@@ -4,6 +4,7 @@
 // a test needs is there in the clock after it was asked for.
 module ray_context #(
   parameter int unsigned Rays  = 64,
+  parameter int unsigned Clocks = 1,  // of a ray, see reciprocals
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays)
@@ -25,7 +26,8 @@ module ray_context #(
   output logic [95:0]         node_origin_o,
   output logic [95:0]         node_inverse_o,
   output logic                node_no_cull_o,
-  // for a test: its triangle, then its ray
+  // for a test: its triangle, then its ray; asked for with step_i
+  input  logic                step_i,
   input  logic [RayWidth-1:0] triangle_ctx_i,
   output logic [95:0]         triangle_origin_o,
   output logic [31:0]         triangle_skip_id_o,
@@ -40,6 +42,7 @@ module ray_context #(
   ray_alloc #(
     .Rays(Rays),
     .Width($bits(ray_i)),
+    .Clocks(Clocks),
     .Arith(Arith),
     .Adder(Adder)
   ) u_alloc (
@@ -78,7 +81,7 @@ module ray_context #(
     .write_i(start_fire_i),
     .write_address_i(start_ctx_o),
     .data_i({start.origin, start.skip_id, start.source_id}),
-    .read_i(1'b1),
+    .read_i(step_i),
     .read_address_i(triangle_ctx_i),
     .data_o({triangle_origin_o, triangle_skip_id_o, triangle_source_id_o})
   );
@@ -90,7 +93,7 @@ module ray_context #(
     .write_i(start_fire_i),
     .write_address_i(start_ctx_o),
     .data_i(start.direction),
-    .read_i(1'b1),
+    .read_i(step_i),
     .read_address_i(direction_ctx_i),
     .data_o(direction_o)
   );

@@ -7,12 +7,13 @@
 // Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order, valid/ready;
 // with line_error_i, not to be believed: it is read again for the next ray. Some are prefetched: outstanding_o may be high
 // when the last ray has ended. Memory may change, and invalidate_i be high, while no ray is here and outstanding_o is low.
-// Throughput: a node and a triangle a clock, out of the caches; a line a clock of what they lack.
+// Throughput: a node and a triangle in Clocks clocks, out of the caches; a line of what they lack.
 module ray_core #(
   parameter int unsigned Rays  = 64,  // of the table; a power of two
   parameter int unsigned Depth = 8,   // groups on a ray's stack
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
+  parameter int unsigned Clocks = 1,  // of a node and a triangle: pipelines; or 7 or more, in turns
   parameter bit Exact = 1'b0,  // no doubts; triangles are named by their lines, and have ranks
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
@@ -43,12 +44,13 @@ module ray_core #(
   input  logic                    line_error_i,
   output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
 );
-  logic start_fire, triangle_ready, tests_allowed, ending, doubt_fire, overflow_fire;
+  logic start_fire, triangle_ready, tests_allowed, step, ending, doubt_fire, overflow_fire;
   logic [RayWidth-1:0] start_ctx, node_ctx, triangle_ctx, node_line_ctx, triangle_line_ctx;
   logic [RayWidth-1:0] box_ctx, verdict_ctx, ending_ctx, end_ctx, point_ctx;
   logic [Rays-1:0] busy;
   logic [30:0] t_max;
   logic [95:0] end_point;
+  logic [1:0] reads;
   logic [5:0] events;
   ray_core_pkg::start_t start;
   ray_core_pkg::request_t node, prefetch;
@@ -107,7 +109,8 @@ module ray_core #(
     .Rays(Rays),
     .NodeLines(NodeLines),
     .TriangleLines(TriangleLines),
-    .Exact(Exact)
+    .Exact(Exact),
+    .Clocks(Clocks)
   ) u_memory (
     .clk_i,
     .rst_ni,
@@ -129,6 +132,7 @@ module ray_core #(
     .line_i,
     .line_error_i,
     .tests_allowed_i(tests_allowed),
+    .step_o(step),
     .node_ctx_o(node_line_ctx),
     .node_o(node_line),
     .triangle_ctx_o(triangle_line_ctx),
@@ -137,6 +141,7 @@ module ray_core #(
 
   intersection_subsystem #(
     .Rays(Rays),
+    .Clocks(Clocks),
     .Arith(Arith),
     .Adder(Adder)
   ) u_intersection (
@@ -150,6 +155,7 @@ module ray_core #(
     .start_fire_i(start_fire),
     .ending_i(ending),
     .ending_ctx_i(ending_ctx),
+    .step_i(step),
     .node_ctx_i(node_line_ctx),
     .node_i(node_line),
     .t_max_i(t_max),
@@ -184,17 +190,11 @@ module ray_core #(
     .result_o
   );
 
+  assign reads = {2{read_valid_o}} & {~read_ready_i, read_ready_i};
+
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) events_o <= '0;
-    else
-      events_o <= {
-        events[5],
-        {2{read_valid_o}} & {~read_ready_i, read_ready_i},
-        overflow_fire,
-        events[4:0],
-        node_line.valid,
-        ending
-      };
+    else events_o <= {events[5], reads, overflow_fire, events[4:0], node_line.valid, ending};
   end
 
 endmodule

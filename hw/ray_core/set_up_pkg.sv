@@ -38,6 +38,54 @@ package set_up_pkg;
     t_error_exponent = TErrorExponentWidth'(TErrorUnit) + ((plane > distance) ? plane : distance);
   endfunction
 
+  // ---- What set_up_unit's header derives, from its sums and exponents
+
+  localparam int unsigned LeastField = 27;  // of an exponent that counts: 2**-100
+  localparam int unsigned BoundShift = 20;  // 16 u = 2**-20
+  localparam logic [Width-1:0] NaN = {1'b0, {ExpWidth{1'b1}}, 1'b1, {(FracWidth - 1) {1'b0}}};
+
+  // An edge's bound: 16 u T' where T', the sum of its terms, is neither tiny nor infinite.
+  function automatic logic [Width-1:0] bound(logic [Width-1:0] sum);
+    logic [ExpWidth-1:0] field;
+    field = sum[FracWidth+:ExpWidth];
+    bound = ((field >= ExpWidth'(LeastField)) & ~(&field))
+        ? {sum[Width-1], field - ExpWidth'(BoundShift), sum[FracWidth-1:0]}
+        : {1'b0, {ExpWidth{1'b1}}, {FracWidth{1'b0}}};
+  endfunction
+
+  // The largest exponent of a vector's components.
+  // verilator lint_off UNUSEDSIGNAL
+  function automatic logic [ExpWidth-1:0] largest(logic [3*Width-1:0] vector);
+    // verilator lint_on UNUSEDSIGNAL
+    largest = vector[FracWidth+:ExpWidth];
+    for (int unsigned k = 1; k < 3; k++) begin
+      if (vector[Width*k+FracWidth+:ExpWidth] > largest) begin
+        largest = vector[Width*k+FracWidth+:ExpWidth];
+      end
+    end
+  endfunction
+
+  typedef struct packed {
+    logic                       good;  // d is near enough
+    logic [PlaneErrorWidth-1:0] normal_error;
+    logic [PlaneErrorWidth-1:0] distance_error;
+  } plane_t;
+
+  // Of the largest exponents of A, N and N's terms, and d's.
+  function automatic plane_t plane_of(logic [ExpWidth-1:0] vertex, logic [ExpWidth-1:0] normal,
+                                      logic [ExpWidth-1:0] terms, logic [ExpWidth-1:0] d);
+    localparam logic [ExpWidth+1:0] Bias = (ExpWidth + 2)'(2 ** (ExpWidth - 1) - 1);
+    logic [ExpWidth+1:0] normal_error, distance_error;  // two's complement
+    logic good;
+    normal_error   = (ExpWidth + 2)'(terms) - (ExpWidth + 2)'(normal);
+    distance_error = (ExpWidth + 2)'(vertex) + (ExpWidth + 2)'(terms) - (ExpWidth + 2)'(d) - Bias;
+    good = (terms >= ExpWidth'(LeastField)) & ~(&terms) & ~(&vertex)
+        & (d >= ExpWidth'(LeastField)) & ~(&d) & (normal_error <= (ExpWidth + 2)'(MostPlaneError))
+        & (distance_error[ExpWidth+1] | (distance_error <= (ExpWidth + 2)'(MostPlaneError)));
+    plane_of = {good, PlaneErrorWidth'(normal_error),
+                PlaneErrorWidth'(distance_error[ExpWidth+1] ? '0 : distance_error)};
+  endfunction
+
   // verilator lint_on UNUSEDPARAM
 
 endpackage

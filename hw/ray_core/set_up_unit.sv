@@ -58,8 +58,6 @@ module set_up_unit #(
     $error("set_up_unit: set_up_pkg::Latency is not what the cores' latencies make it");
   end
 
-  localparam int unsigned LeastField = 27;  // of an exponent that counts: 2**-100
-
   // ---- Subtract
 
   logic [9*Width-1:0] corner;  // A, B, C
@@ -157,42 +155,22 @@ module set_up_unit #(
     .sum_o(d)
   );
 
-  // ---- Bounds: 16 u T' where T' is neither tiny nor infinite
+  // ---- Bounds
 
-  localparam int unsigned BoundShift = 20;  // 16 u = 2**-20
   logic [3*Width-1:0] bounds;
 
   for (genvar k = 0; k < 3; k++) begin : gen_bound
-    logic [ExpWidth-1:0] field;
-    logic good;
-    assign field = sums[Width*k+FracWidth +: ExpWidth];
-    assign good  = (field >= ExpWidth'(LeastField)) & ~(&field);
-    assign bounds[Width*k +: Width] = good
-        ? {sums[Width*k+Width-1], field - ExpWidth'(BoundShift), sums[Width*k +: FracWidth]}
-        : {1'b0, {ExpWidth{1'b1}}, {FracWidth{1'b0}}};
+    assign bounds[Width*k+:Width] = set_up_pkg::bound(sums[Width*k+:Width]);
   end
 
   // ---- The plane's errors, from exponents: those of A, N and M go beside d
 
   logic [ExpWidth-1:0] vertex_field, normal_field, terms_field;
-  logic [ExpWidth-1:0] sideband_vertex, sideband_normal, sideband_terms, d_field;
+  logic [ExpWidth-1:0] sideband_vertex, sideband_normal, sideband_terms;
 
-  function automatic logic [ExpWidth-1:0] largest(logic [ExpWidth-1:0] x, logic [ExpWidth-1:0] y,
-                                                  logic [ExpWidth-1:0] z);
-    logic [ExpWidth-1:0] largest_xy;
-    largest_xy = (x > y) ? x : y;
-    largest = (z > largest_xy) ? z : largest_xy;
-  endfunction
-
-  localparam int unsigned X = FracWidth;  // where exponent fields of a vector's components begin
-  localparam int unsigned Y = Width + FracWidth;
-  localparam int unsigned Z = 2 * Width + FracWidth;
-  localparam int unsigned Normal = 9 * Width;
-  assign vertex_field = largest(vertex[X+:ExpWidth], vertex[Y+:ExpWidth], vertex[Z+:ExpWidth]);
-  assign normal_field = largest(product[Normal+X +: ExpWidth], product[Normal+Y +: ExpWidth],
-                                product[Normal+Z +: ExpWidth]);
-  assign terms_field  = largest(normal_terms[X+:ExpWidth], normal_terms[Y+:ExpWidth],
-                                normal_terms[Z+:ExpWidth]);
+  assign vertex_field = set_up_pkg::largest(vertex);
+  assign normal_field = set_up_pkg::largest(product[9*Width +: 3*Width]);
+  assign terms_field  = set_up_pkg::largest(normal_terms);
 
   logic unused;  // of N's terms only the size matters
   assign unused = ^normal_terms;
@@ -206,27 +184,16 @@ module set_up_unit #(
     .data_i({vertex_field, normal_field, terms_field}),
     .data_o({sideband_vertex, sideband_normal, sideband_terms})
   );
-  assign d_field = d[FracWidth+:ExpWidth];
 
-  localparam int unsigned MostError = set_up_pkg::MostPlaneError;
-  localparam logic [ExpWidth+1:0] Bias = (ExpWidth + 2)'(2 ** (ExpWidth - 1) - 1);
-  logic [ExpWidth+1:0] normal_error, distance_error;  // two's complement
-  logic fields_good, plane_good;
+  set_up_pkg::plane_t plane;
 
-  assign normal_error   = (ExpWidth + 2)'(sideband_terms) - (ExpWidth + 2)'(sideband_normal);
-  assign distance_error = (ExpWidth + 2)'(sideband_vertex) + (ExpWidth + 2)'(sideband_terms)
-                        - (ExpWidth + 2)'(d_field) - Bias;
-  assign fields_good = (sideband_terms >= ExpWidth'(LeastField)) & ~(&sideband_terms)
-                     & ~(&sideband_vertex)
-                     & (d_field >= ExpWidth'(LeastField)) & ~(&d_field);
-  assign plane_good = fields_good & (normal_error <= (ExpWidth + 2)'(MostError))
-                    & (distance_error[ExpWidth+1] | (distance_error <= (ExpWidth + 2)'(MostError)));
-  assign normal_error_o   = PlaneErrorWidth'(normal_error);
-  assign distance_error_o = distance_error[ExpWidth+1] ? '0 : PlaneErrorWidth'(distance_error);
+  assign plane = set_up_pkg::plane_of(
+      sideband_vertex, sideband_normal, sideband_terms, d[FracWidth +: ExpWidth]);
+  assign normal_error_o   = plane.normal_error;
+  assign distance_error_o = plane.distance_error;
 
   // ---- The record: edges and N beside their sums
 
-  localparam logic [Width-1:0] NaN = {1'b0, {ExpWidth{1'b1}}, 1'b1, {(FracWidth - 1) {1'b0}}};
   logic [12*Width-1:0] planes;  // the edges, N
   logic [3*Width-1:0] delayed_bounds;
 
@@ -250,7 +217,7 @@ module set_up_unit #(
   );
 
   assign record_o[Width*hit_test_pkg::RecordNormal +: 3*Width] = planes[9*Width +: 3*Width];
-  assign record_o[Width*hit_test_pkg::RecordD +: Width]        = plane_good ? d : NaN;
+  assign record_o[Width*hit_test_pkg::RecordD +: Width]        = plane.good ? d : set_up_pkg::NaN;
   assign record_o[Width*hit_test_pkg::RecordEdges +: 9*Width]  = planes[0 +: 9*Width];
   assign record_o[Width*hit_test_pkg::RecordBounds +: 3*Width] = delayed_bounds;
 

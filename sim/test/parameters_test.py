@@ -23,6 +23,7 @@ REFUSED = {
     "axi_read_manager": ["DataWidth=16", "DataWidth=96", "DataWidth=1024"],
     "fp_divider_stages": ["QuotientBits=25", "FracWidth=55"],
     "srt_divider_iterative": ["RowsPerClock=5"],
+    "shared_triangle_test": ["Clocks=6"],
     "traversal": ["Rays=1", "Depth=0"],
 }
 

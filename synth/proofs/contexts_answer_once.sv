@@ -77,7 +77,7 @@ module contexts_answer_once #(
     .\u_retire.u_points.bits_q (points),
     .\u_retire.u_pointing.line_q (pointing_ctx),
     .\u_alloc.free_q (free_q),
-    .\u_alloc.dividing_q (dividing_q),
+    .\u_alloc.u_reciprocals.gen_dividers.dividing_q (dividing_q),
     .\u_alloc.u_rays.count_q (rays_count),
     .\u_alloc.u_rays.valid_o (rays_valid),
     .\u_alloc.u_rays.space_o (rays_space),

@@ -1,7 +1,8 @@
 // The ray core in simulation finds what CpuIntersector finds, whatever makes it wait.
 // Tests: ray_core, ray_alloc, ray_errors, traversal, primitive_fetch, memory_subsystem
 // Tests: triangle_test, closest_hit, ray_context, ray_retire, rr_arbiter
-// Tests: traversal_subsystem, intersection_subsystem
+// Tests: traversal_subsystem, intersection_subsystem, shared_triangle_test, slab_tests, reciprocals
+// Tests: fp_vector_adder, fp_vector_multiplier
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <limits>
 #include <map>
 
+#include "Vray_core_shared.h"
 #include "Vray_core_small.h"
 #include "Vray_cores_cached.h"
 #include "Vray_cores_small.h"
@@ -53,6 +55,18 @@ class RayCoreTest : public testing::Test {
   CoreCounters counters_;
 };
 
+/// Of pipelines, and of few floating-point cores that take turns (Clocks).
+class EachRayCoreTest : public RayCoreTest, public testing::WithParamInterface<bool> {
+ protected:
+  std::unique_ptr<CoreUnit> core(const MemoryTiming& timing = {}, const CoreStalls& stalls = {}) {
+    if (GetParam()) return std::make_unique<CoreModel<Vray_core_shared>>(timing, stalls);
+    return RayCoreTest::core(Arith::kBehavioural, timing, stalls);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Arithmetic, EachRayCoreTest, testing::Values(false, true),
+                         [](const auto& kind) { return kind.param ? "InTurns" : "InPipelines"; });
+
 TEST_F(RayCoreTest, NearestHitsAreTheCpuIntersectors) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 10'000);
   check(rays, {}, core(Arith::kBehavioural));
@@ -61,6 +75,15 @@ TEST_F(RayCoreTest, NearestHitsAreTheCpuIntersectors) {
   EXPECT_LT(counters_.lines, (counters_.nodes + counters_.triangles) / 8)
       << "caches hold the scene";
   EXPECT_LT(counters_.clocks, counters_.nodes * 5 / 4) << "a node in nearly every clock";
+}
+
+TEST_F(RayCoreTest, ANodeAndATriangleAreTakenInEachOfTheirTurns) {
+  constexpr std::uint64_t kClocks = 11;  // as the model has it
+  check(some_rays(bodies(), random_, 3'000), {},
+        std::make_unique<CoreModel<Vray_core_shared>>(MemoryTiming{}));
+  const std::uint64_t turns = std::max(counters_.nodes, counters_.triangles);
+  EXPECT_GE(counters_.clocks, kClocks * turns);
+  EXPECT_LT(counters_.clocks, kClocks * turns * 5 / 4);
 }
 
 TEST_F(RayCoreTest, CoresShareAMemory) {
@@ -121,6 +144,7 @@ TEST_F(RayCoreTest, ResetsInMidRunLeaveNothing) {
   const CoreStalls stalls{.not_taken = 100};
   for (int round = 0; round < 8; ++round) {
     run(std::make_unique<CoreModel<Vray_core_small>>(timing, stalls));
+    run(std::make_unique<CoreModel<Vray_core_shared>>(timing, stalls));
     run(std::make_unique<CoreModel<Vray_cores_small>>(timing, stalls));
     run(std::make_unique<CoreModel<Vray_cores_cached>>(timing, stalls));
   }
@@ -185,18 +209,18 @@ TEST_F(RayCoreTest, ArithmeticsGiveTheSame) {
   EXPECT_EQ(counters_.triangles, behavioural.triangles);
 }
 
-TEST_F(RayCoreTest, WaitsChangeNothing) {
+TEST_P(EachRayCoreTest, WaitsChangeNothing) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
   for (const MemoryTiming& timing :
        {MemoryTiming{.latency = 1}, MemoryTiming{.latency = 200, .disorder = 300, .seed = 1},
         MemoryTiming{.latency = 50, .bytes = 16, .not_taken = 64, .seed = 2},
         MemoryTiming{.latency = 20, .cache_lines = 16, .cache_latency = 2}}) {
-    check(rays, {}, core(Arith::kBehavioural, timing, {.no_ray = 32, .not_taken = 200, .seed = 3}));
-    check(rays, {}, core(Arith::kBehavioural, timing));
+    check(rays, {}, core(timing, {.no_ray = 32, .not_taken = 200, .seed = 3}));
+    check(rays, {}, core(timing));
   }
 }
 
-TEST_F(RayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
+TEST_P(EachRayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 3'000);
   std::vector<float> limits, enough;
   std::vector<std::uint32_t> ignored;
@@ -207,18 +231,17 @@ TEST_F(RayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
     ignored.push_back(
         static_cast<std::uint32_t>(random_.below(static_cast<int>(bvh_.primitive_count()))));
   }
-  check(rays, {.t_max = limits}, core(Arith::kBehavioural));
-  check(rays, {.t_max = limits, .skip_ids = ignored}, core(Arith::kBehavioural));
+  check(rays, {.t_max = limits}, core());
+  check(rays, {.t_max = limits, .skip_ids = ignored}, core());
   const std::uint64_t triangles = counters_.triangles;
-  check(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = enough},
-        core(Arith::kBehavioural));
+  check(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = enough}, core());
   EXPECT_LT(counters_.triangles, triangles);
 }
 
-TEST_F(RayCoreTest, WithoutCullingEveryTriangleIsTested) {
+TEST_P(EachRayCoreTest, WithoutCullingEveryTriangleIsTested) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 70);
   std::vector<RayWork> work(rays.size());
-  check(rays, {.culling = false, .work = work}, core(Arith::kBehavioural));
+  check(rays, {.culling = false, .work = work}, core());
   for (const RayWork& ray : work) EXPECT_EQ(ray.tests, bvh_.primitive_count());
 }
 
@@ -235,13 +258,13 @@ TEST_F(RayCoreTest, MemoryIsAtRestWhenTheCoreSaysSo) {
 }
 
 /// P of sure hits has the bits that the reference has for the core's own records.
-TEST_F(RayCoreTest, PointsAreTheReferences) {
+TEST_P(EachRayCoreTest, PointsAreTheReferences) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
   std::vector<CoreRay> sent;
   for (const Ray& ray : rays)
     sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
   std::vector<CoreResult> got, expected;
-  core(Arith::kBehavioural)->trace(image_->lines(), sent, got);
+  core()->trace(image_->lines(), sent, got);
   ReferenceCore().trace(image_->lines(), sent, expected);
   const auto ends = [&](const std::vector<CoreResult>& results) {
     std::vector<CoreResult> ends(sent.size());
@@ -264,7 +287,7 @@ TEST_F(RayCoreTest, PointsAreTheReferences) {
 
 /// The walk of a ray that hits nothing depends on no timing: it enters the nodes that the reference
 /// enters, and tests its triangles.
-TEST_F(RayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
+TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
   std::vector<CoreRay> all, sent;
   for (const Ray& ray : some_rays(bodies(), random_, 3'000)) {
     CoreRay& one = all.emplace_back(CoreRay{.ray = ray});
@@ -287,7 +310,7 @@ TEST_F(RayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
     return tests;
   };
   ReferenceCore reference;
-  const std::unique_ptr<CoreUnit> simulated = core(Arith::kBehavioural);
+  const std::unique_ptr<CoreUnit> simulated = core();
   EXPECT_EQ(tests(*simulated), tests(reference));
   EXPECT_EQ(simulated->counters().nodes, reference.counters().nodes);
   EXPECT_EQ(simulated->counters().triangles, reference.counters().triangles);

@@ -1,6 +1,8 @@
 """`make verilog` writes what Icarus Verilog compiles and runs, with the right words.
 
-usage: icarus_test.py TOP CASES [Name=value ...]   beside it: TOP_bench.v, whose last line counts CASES
+usage: icarus_test.py TOP CASES [ecp5] [Name=value ...]   beside it: TOP_bench.v, whose last line counts CASES
+
+With ecp5 the netlist that `make fpga` places runs there, of Yosys' models of that device's cells.
 """
 
 import pathlib
@@ -9,15 +11,36 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent.parent
+sys.path.insert(0, str(ROOT))
+
+from synth import catalogue, mapping, tools  # noqa: E402
+
+
+def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.Path]:
+    """Writes the ECP5's netlist of `top` as `out`; what Icarus is to read."""
+    design = catalogue.design(top, **dict(word.split("=") for word in words))
+    netlist = out.with_suffix(".json")
+    tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], out.with_suffix(".log"),
+              {**mapping.elaboration(design), "FAMILY": "ecp5", "OUT": str(netlist), "WRAPPER": "", "PORTS": ""})
+    tools.run(["yosys", "-p", f"read_json {netlist}; rename -top {top}; write_verilog -noattr {out}"], out.with_suffix(".log"))
+    cells = pathlib.Path(tools.find("yosys")).resolve().parent.parent / "share" / "yosys" / "ecp5"
+    return [f"-I{cells}", out, cells / "cells_sim.v", tools.FLOWS / "ecp5_cells.v"]
 
 
 def main():
     """Writes, compiles, runs; the exit status is 1 where a word is wrong or a case is missing."""
     top, cases, *parameters = sys.argv[1:]
-    subprocess.run(["python3", "-m", "synth.verilog", top, *parameters], check=True, cwd=ROOT)
-    built = ROOT / "build" / "verilog" / f"{top}.vvp"
-    subprocess.run(["iverilog", "-g2001", "-Wall", "-s", "bench", "-o", built, HERE / f"{top}_bench.v",
-                    built.with_suffix(".v")], check=True)
+    out = ROOT / "build" / "verilog" / f"{top}.v"
+    if parameters[:1] == ["ecp5"]:
+        out = out.with_suffix(".ecp5.v")
+        out.parent.mkdir(parents=True, exist_ok=True)
+        files = mapped(top, parameters[1:], out)
+    else:
+        subprocess.run(["python3", "-m", "synth.verilog", top, *parameters], check=True, cwd=ROOT)
+        files = [out]
+    built = out.with_suffix(".vvp")
+    lint = [] if "ecp5" in parameters else ["-Wall"]
+    subprocess.run(["iverilog", "-g2001", *lint, "-s", "bench", "-o", built, HERE / f"{top}_bench.v", *files], check=True)
     said = subprocess.run(["vvp", "-n", built], check=True, capture_output=True, text=True).stdout
     print(said, end="")
     return said.splitlines()[-1:] != [f"{cases} cases, 0 failures"]
