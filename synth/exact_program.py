@@ -70,7 +70,7 @@ def compare() -> Instruction:
 
 
 def programs() -> dict[str, list[Instruction]]:
-    """By name, without fences. What a program makes that another needs stays in memory: see ENTRIES."""
+    """By name, without fences. Limit and Order are of hits, and follow Hit where that is asked for, too."""
     o, t, u = FLOATS["origin"], FLOATS["triangle"], FLOATS["other"]
     hit = [*difference("b", t + 3, o), *difference("c", t + 6, o), *difference("a", t, o), *direction(),
            *cross("normal", "b", "c"), *cross("second", "c", "a"), dot("plane", "a", "normal"),
@@ -79,20 +79,19 @@ def programs() -> dict[str, list[Instruction]]:
     hit[-1].last = True
     start = [*difference("a", t, o), *direction()]
     edges = [*difference("b", t + 3, t), *difference("c", t + 6, t)]
-    limit = [*start, *edges, Instruction("pair", NUMBERS["other_distance"], [(FLOATS["limit"], FLOATS["zero"])]),
+    limit = [*edges, *start, Instruction("pair", NUMBERS["other_distance"], [(FLOATS["limit"], FLOATS["zero"])]),
              *cross("normal", "b", "c"),
              Instruction("pair", NUMBERS["other_slope"], [(FLOATS["one"], FLOATS["zero"])]), dot("plane", "a", "normal", "distance"),
              dot("edge", "direction", "normal", "slope"), compare()]
-    order = [*start, *edges, *cross("normal", "b", "c"), *difference("b", u + 3, u), *difference("c", u + 6, u),
+    order = [*edges, *start, *cross("normal", "b", "c"), *difference("b", u + 3, u), *difference("c", u + 6, u),
              dot("plane", "a", "normal", "distance"), *cross("second", "b", "c"), *difference("a", u, o),
              dot("edge", "direction", "normal", "slope"), dot("plane", "a", "second", "other_distance"),
              dot("edge", "direction", "second", "other_slope"), compare()]
     return {"Hit": hit, "Limit": limit, "Order": order}
 
 
-# Where a program is entered: at its begin, and, with `a` and the direction there from Hit, behind them.
-ENTRIES = {"Hit": ("Hit", 0), "Limit": ("Limit", 0), "LimitAfterHit": ("Limit", 6),
-           "Order": ("Order", 0), "OrderAfterHit": ("Order", 6)}
+# What a request runs: one program, or two.
+RUNS = {"Hit": ("Hit",), "Limit": ("Limit",), "HitLimit": ("Hit", "Limit"), "Order": ("Order",), "HitOrder": ("Hit", "Order")}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -152,23 +151,22 @@ def unsafe(program: list[Instruction], lengths: Lengths, other: int, hasty: bool
 def fenced() -> dict[str, list[Instruction]]:
     """The programs with the fences that they need, whatever the lengths."""
     made = programs()
-    for begin, (name, entry) in ENTRIES.items():
-        whole = [*(made["Hit"] if begin.endswith("AfterHit") else []), *made[name][entry:]]
+    for names in RUNS.values():
+        whole = [one for name in names for one in made[name]]
         for n, ray, pair, hasty in itertools.product((1, 2, 3, 6), (1, 2, 6), (1, 2, 9), (False, True)):
             lengths = Lengths(n, ray, pair)
-            while (place := unsafe(whole, lengths, pair if name == "Limit" else lengths.fraction, hasty)) is not None:
+            while (place := unsafe(whole, lengths, pair if "Limit" in names else lengths.fraction, hasty)) is not None:
                 whole[place].fence = True
     return made
 
 
-def clocks(begin: str, lengths: Lengths, first: int = 5, seen: int = WRITE_DELAY - 1) -> int:
+def clocks(run: str, lengths: Lengths, first: int = 5, seen: int = WRITE_DELAY - 1) -> int:
     """From a request to its answer, where each sign is sure in its last column alone. `first`: to the first step; `seen`: from a
     step to its sum."""
     made = fenced()
-    name, entry = ENTRIES[begin]
     total = first + seen
-    for one in [*(made["Hit"] if begin.endswith("AfterHit") else []), *made[name][entry:]]:
-        x, y, digits = lengths.of(one, lengths.pair if name == "Limit" else lengths.fraction)
+    for one in (one for name in RUNS[run] for one in made[name]):
+        x, y, digits = lengths.of(one, lengths.pair if "Limit" in run else lengths.fraction)
         total += seen * one.fence + sum(max(len(products), 1) for _, products in steps(x, y, len(one.terms), digits, one.decide))
     return total
 
@@ -176,9 +174,9 @@ def clocks(begin: str, lengths: Lengths, first: int = 5, seen: int = WRITE_DELAY
 def table() -> str:
     """Clocks at most, by digits: for hw/exact's page."""
     rows = {"does it hit": "Hit", "t against a limit, of a hit": "Limit", "t against another hit's": "Order",
-            "does it hit, and then t against another's": "OrderAfterHit"}
+            "does it hit, and then t against another's": "HitOrder"}
     lengths = [Lengths(n, n, pair) for n, pair in ((1, 1), (2, 2), (6, 9))]
-    return "".join(f"| {what} | {' | '.join(f'{clocks(begin, one):,}' for one in lengths)} |\n" for what, begin in rows.items())
+    return "".join(f"| {what} | {' | '.join(f'{clocks(run, one):,}' for one in lengths)} |\n" for what, run in rows.items())
 
 
 def text() -> str:
@@ -187,8 +185,7 @@ def text() -> str:
     for name, program in fenced().items():
         starts[name] = len(lines)
         lines += [one.word() for one in program]
-    entries = "\n".join(f"  localparam logic [6:0] {begin} = 7'd{starts[name] + entry};"
-                        for begin, (name, entry) in ENTRIES.items())
+    entries = "\n".join(f"  localparam logic [6:0] {name} = 7'd{start};" for name, start in starts.items())
     words = "\n".join(f"      7'd{place}: instruction = 41'b{word};" for place, word in enumerate(lines))
     return f"""// Micro-programs of the exact unit, as exact_pkg::instruction_t. Written by synth/exact_program.py, which says what they do.
 package exact_program_pkg;

@@ -45,7 +45,7 @@ module exact_sequencer #(
   // ---- Fetch: the next instruction, and how far its digits go
 
   exact_pkg::instruction_t fetched, instruction_q;
-  logic [6:0] next_q, next_d, address_q;
+  logic [6:0] compares, next_q, next_d, address_q;
   logic more_q, more_d, busy_q, advance, finishes;
   logic [CountWidth-1:0] x_last_d, y_last_d, last_d, x_last_q, y_last_q, last_q;
   logic [CountWidth-1:0] normal_digits, fraction_digits;
@@ -87,11 +87,12 @@ module exact_sequencer #(
   end
 
   // What follows the instruction that is fetched.
+  assign compares = (against_i == exact_pkg::AgainstLimit) ? exact_program_pkg::Limit
+                                                           : exact_program_pkg::Order;
   assign finishes = (fetched.kind == exact_pkg::KindCompare)
                   | (fetched.last & (against_i == exact_pkg::AgainstNothing));
   assign next_d = !fetched.last ? next_q + 1'b1
-                : (against_i == exact_pkg::AgainstLimit) ? exact_program_pkg::LimitAfterHit
-                : exact_program_pkg::OrderAfterHit;
+                : compares;
   assign more_d = ~finishes;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -105,9 +106,7 @@ module exact_sequencer #(
   end
   always_ff @(posedge clk_i) begin
     if (begin_i) begin
-      next_q <= hit_i ? exact_program_pkg::Hit
-              : (against_i == exact_pkg::AgainstLimit) ? exact_program_pkg::Limit
-              : exact_program_pkg::Order;
+      next_q <= hit_i ? exact_program_pkg::Hit : compares;
     end else if (start_i | advance) begin
       next_q        <= next_d;
       more_q        <= more_d;

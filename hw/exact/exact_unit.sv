@@ -8,9 +8,9 @@
 //   order  the sign of t - limit or t - t', for t = D / S, D = A . N, S = I . N: that of D S' - D' S, by those of D and D'
 //
 // All are sums of products of floats, and so whole numbers in units that the exponents give: exact_exponents has the
-// units, exact_program_pkg the programs, exact_product and exact_accumulator sum without rounding. Clocks, for digits of 48 bits, from the
-// request to the answer, at most: hit 72, limit 60, order 102, hit and order 159, where the exponents are at most 21 apart
-// (one digit holds a difference); 3,654 whatever the words.
+// units, exact_program_pkg the programs, exact_product and exact_accumulator sum without rounding. Clocks, digits of 48 bits, from the
+// request to the answer, at most: hit 72, limit 56, order 98, hit and order 161, where the exponents are at most 21 apart
+// (one digit holds a difference); 3,686 whatever the words.
 //
 // Coordinates are of magnitude 2**126 at most, the direction is not 0, all are finite; a limit is positive and finite. An
 // order is of hits: for others it is the sign of that formula. hit_i, against_i: what is asked. hit_o is high where it

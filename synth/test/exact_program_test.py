@@ -126,8 +126,8 @@ class ExactProgram(unittest.TestCase):
     def test_limit(self):
         distance, slope = fraction([A, B, C])
         wanted = plus(times(distance, variable("one")), times(slope, L), -1)
-        for entry, before in (("Limit", {}), ("LimitAfterHit", Run("Hit").numbers)):
-            run = Run(entry, before)
+        for before in ({}, Run("Hit").numbers):
+            run = Run("Limit", before)
             self.assertEqual(run.asked, [("compare", wanted)])
             self.assertEqual(run.numbers[NUMBERS["distance"]], distance)
             self.assertEqual(run.numbers[NUMBERS["other_distance"]], L)
@@ -135,8 +135,8 @@ class ExactProgram(unittest.TestCase):
     def test_order(self):
         (distance, slope), (other_distance, other_slope) = fraction([A, B, C]), fraction([D, E, F])
         wanted = plus(times(distance, other_slope), times(slope, other_distance), -1)
-        for entry, before in (("Order", {}), ("OrderAfterHit", Run("Hit").numbers)):
-            run = Run(entry, before)
+        for before in ({}, Run("Hit").numbers):
+            run = Run("Order", before)
             self.assertEqual(run.asked, [("compare", wanted)])
             self.assertEqual(run.numbers[NUMBERS["distance"]], distance)
             self.assertEqual(run.numbers[NUMBERS["other_distance"]], other_distance)

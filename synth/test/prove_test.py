@@ -46,6 +46,23 @@ CONTEXTS = [(".Reserve(1)", ".Reserve(0)"),
             (".data_i(end_ctx_o)", ".data_i(ending_ctx_o)"),
             ("active_q & ~busy_i", "active_q")]
 
+# Each with the module and its proof, by name.
+EXACT = [("exact_accumulator", "unit.exact_accumulator_24", [("& sum_q[DigitWidth-1];", "& sum_q[DigitWidth];"),
+                                                             ("$signed(sum_q) >>> DigitWidth", "sum_q >> DigitWidth"),
+                                                             ("DigitWidth - 1 + $clog2", "DigitWidth - 3 + $clog2")]),
+         ("exact_product", "unit.exact_product_6", [("~row[DigitWidth], row", "row[DigitWidth], row"),
+                                                    ("{DigitWidth{negate_i}}) & Ones", "{DigitWidth{1'b0}}) & Ones"),
+                                                    ("Signs | Width'(turned)", "Signs")]),
+         ("exact_sequencer", "unit.exact_sequencer", [("(i_q == x_last_q || j_q == '0)", "(i_q == x_last_q)"),
+                                                      ("else if (from_i_q != x_last_q) begin", "else if (from_i_q == '0) begin"),
+                                                      ("if (start_i | advance) begin\n      term_q", "if (start_i) begin\n      term_q")]),
+         ("exact_slice", "unit.exact_slice", [("DigitWidth * k <= MaxShift", "DigitWidth * k < MaxShift - DigitWidth"),
+                                              ("quotient + 1'b1) ?", "quotient) ?")]),
+         ("exact_exponents", "unit.exact_exponents_3", [("lows[2*n] < lows[2*n+1]", "lows[2*n] > lows[2*n+1]"),
+                                                        ("v < Other || with_other_i", "v < Other"),
+                                                        ("one_shift_o   <= less_q ?", "one_shift_o   <= ~less_q ?"),
+                                                        ("bits + 3 > DigitWidth", "bits + 2 > DigitWidth")])]
+
 
 class ProofsRefuseFaults(unittest.TestCase):
     def refuse(self, module, faults, proof):
@@ -85,6 +102,11 @@ class ProofsRefuseFaults(unittest.TestCase):
 
     def test_of_contexts(self):
         self.refuse("ray_retire", CONTEXTS, unit_proofs.contexts_answer_once)
+
+    def test_of_exact_decisions(self):
+        proofs = {proof.name: proof.work for proof in unit_proofs.ALL}
+        for module, name, faults in EXACT:
+            self.refuse(module, faults, proofs[name])
 
     def test_of_the_cache(self):
         self.refuse("line_cache", CACHE, unit_proofs.cache_answers_once)

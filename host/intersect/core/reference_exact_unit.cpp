@@ -89,21 +89,18 @@ class Machine {
     if (request_.asks_hit) {
       const bool hit = hits();
       if (!hit || request_.against == Against::kNothing) return {hit, 0, answer_};
-    } else {
-      a_ = difference(t[0], o);
-      direction_ = load_direction();
     }
     Number distance, slope, other_distance, other_slope;
     const Vector b = difference(t[1], t[0]), c = difference(t[2], t[0]);
+    a_ = difference(t[0], o);
+    direction_ = load_direction();
     const auto fraction = static_cast<std::size_t>(fraction_digits());
     if (request_.against == Against::kLimit) {
       load_limit(other_distance, other_slope);
-      fence();
       const Vector normal = cross(b, c);
       distance = dot(a_, normal, fraction);
       slope = dot(direction_, normal, fraction);
     } else {
-      fence();
       const Vector normal = cross(b, c);
       const Vector other_b = difference(request_.other[1], request_.other[0]);
       const Vector other_c = difference(request_.other[2], request_.other[0]);
