@@ -47,10 +47,10 @@ page: ## use: the paper's unit in one file for a browser: its registers, clock b
 render: verilate ## use: render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
 	./render $(SCENE) $(ARGS)
 
-gallery: verilate ## use: render the gallery again, or models on one sheet: make gallery [MODELS='a.obj b.glb' | MODELS=all]
+gallery: verilate ## use: render the gallery again, or models on one sheet: make gallery [MODELS='a.obj b.glb' | all | packages]
 ifdef MODELS
 	@$(SETUP) lab
-	@$(PYTHON) -B scenes/contact_sheet.py ./render build/contact_sheet.png $(filter-out all,$(MODELS))
+	@$(PYTHON) -B scenes/contact_sheet.py ./render build/contact_sheet.png $(if $(filter packages,$(MODELS)),--packages,$(filter-out all,$(MODELS))) $(ARGS)
 else
 	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
 	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done

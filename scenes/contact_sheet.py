@@ -3,10 +3,12 @@
 
   make gallery MODELS=all                               # the models at hand: build/contact_sheet.png
   make gallery MODELS='bunny.ply room.glb'        # these
+  make gallery MODELS=packages                          # 60 models of models.txt, from Debian's packages
 
 The models at hand are those of scenes/ and build/scenes/, without their scene files; one of each format that this
 script writes; and, if Debian's package assimp-testmodels is there, some of its models."""
 import argparse
+import gzip
 import json
 import math
 import pathlib
@@ -98,6 +100,28 @@ def models_at_hand(folder: pathlib.Path) -> list[pathlib.Path]:
         [ASSIMP / name for name in ASSIMP_MODELS if (ASSIMP / name).is_file()]
 
 
+def models_of_packages(folder: pathlib.Path) -> list[pathlib.Path]:
+    """Those of models.txt. Packages are downloaded and unpacked into `folder`, not installed."""
+    folder.mkdir(parents=True, exist_ok=True)
+    models = []
+    for line in (ROOT / "scenes" / "models.txt").read_text().splitlines():
+        if line.startswith("#"):
+            continue
+        package, place, *names = line.split()
+        unpacked = folder / package
+        if not unpacked.exists():
+            subprocess.run(["apt-get", "download", "-qq", package], cwd=folder, check=True)
+            archive, = folder.glob(f"{package}_*.deb")
+            subprocess.run(["dpkg-deb", "-x", archive, unpacked], check=True)
+        for name in names:
+            model = unpacked / place / name
+            if model.suffix == ".gz":
+                model.with_suffix("").write_bytes(gzip.decompress(model.read_bytes()))
+                model = model.with_suffix("")
+            models.append(model)
+    return models
+
+
 def render(program: pathlib.Path, model: pathlib.Path, size: tuple[int, int], options: list[str]) -> Image.Image:
     """Its picture, or what the program says."""
     with tempfile.TemporaryDirectory() as folder:
@@ -113,23 +137,40 @@ def render(program: pathlib.Path, model: pathlib.Path, size: tuple[int, int], op
     return tile
 
 
+def render_by_f3d(model: pathlib.Path, size: tuple[int, int]) -> Image.Image:
+    """What f3d 1.3 shows without options; it needs a display, which xvfb-run gives."""
+    with tempfile.TemporaryDirectory() as folder:
+        picture = pathlib.Path(folder) / "picture.png"
+        subprocess.run(["xvfb-run", "-a", "f3d", "--quiet", f"--resolution={size[0]},{size[1]}", f"--output={picture}",
+                        model], capture_output=True, check=False, timeout=120)
+        if picture.exists():
+            return Image.open(picture).convert("RGB").copy()
+    return Image.new("RGB", size, "white")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path, help="./render")
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("models", type=pathlib.Path, nargs="*", help="default: those at hand")
+    parser.add_argument("--packages", action="store_true", help="those of models.txt instead")
+    parser.add_argument("--f3d", action="store_true", help="f3d's picture beside each")
     parser.add_argument("--size", default="320x240", help="of each picture (320x240)")
     parser.add_argument("--columns", type=making.at_least(1), default=5)
     parser.add_argument("--options", default="", help="more of ./render")
     asked = parser.parse_args()
     size = tuple(int(side) for side in asked.size.split("x"))
     with tempfile.TemporaryDirectory() as folder:
-        models = asked.models or models_at_hand(pathlib.Path(folder))
+        models = models_of_packages(ROOT / "build" / "models") if asked.packages else \
+            asked.models or models_at_hand(pathlib.Path(folder))
         rows = math.ceil(len(models) / asked.columns)
-        sheet = Image.new("RGB", (asked.columns * size[0], rows * (size[1] + 16)), "white")
+        width = (2 if asked.f3d else 1) * size[0]
+        sheet = Image.new("RGB", (asked.columns * width, rows * (size[1] + 16)), "white")
         for i, model in enumerate(models):
-            place = (i % asked.columns * size[0], i // asked.columns * (size[1] + 16))
+            place = (i % asked.columns * width, i // asked.columns * (size[1] + 16))
             sheet.paste(render(asked.program.resolve(), model.resolve(), size, asked.options.split()), place)
+            if asked.f3d:
+                sheet.paste(render_by_f3d(model, size), (place[0] + size[0], place[1]))
             ImageDraw.Draw(sheet).text((place[0] + 4, place[1] + size[1] + 2), model.name, fill="black")
             print(f"{i + 1} of {len(models)}: {model.name}", file=sys.stderr)
     sheet.save(asked.output)

@@ -61,6 +61,10 @@ struct RayQuery {
   std::span<const std::uint32_t> source_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
+  /// With any_hit_before, and without a common origin: whether a hit is enough, of this ray and
+  /// primitive; without such a hit the nearest one is reported. Asked of sure hits, in any order.
+  /// nullptr: any is enough. For intersectors that say filters_hits().
+  const std::function<bool(std::size_t ray, std::uint32_t primitive)>* is_enough = nullptr;
   /// False: every ray is tested against every polygon, whatever the boxes say.
   bool culling = true;
   /// Receives the work done for each ray.
@@ -91,6 +95,9 @@ class Intersector {
 
   /// Whether RayQuery::source_ids are worth an exact decision of who sends a ray.
   [[nodiscard]] virtual bool wants_sources() const { return false; }
+
+  /// Whether RayQuery::is_enough is asked.
+  [[nodiscard]] virtual bool filters_hits() const { return false; }
 
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
 

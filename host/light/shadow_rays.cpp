@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "host/light/bsdf.h"
+#include "host/light/sure_occluder.h"
 #include "host/light/surface.h"
 
 namespace raygate {
@@ -63,8 +64,8 @@ ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
       any_clear_(std::ranges::any_of(materials_, [](const MaterialParameters& material) {
         return material.has_mask || (material.kind & kTransmits) != 0;
       })) {
-  // The first occluder may be a clear one: then the nearest one must be known.
-  first_occluder_ = skips.first_occluder && !any_clear_;
+  // The first occluder may be a clear one: then only a sure one will do.
+  first_occluder_ = skips.first_occluder && (!any_clear_ || intersector.filters_hits());
 }
 
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
@@ -138,8 +139,11 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   spawner_.find(spawn_queries_, origins_);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < next_.size(); ++i) {
-    if (!origins_[i]) {
-      rays[next_[i].index].radiance = glm::vec3(0.0f);
+    ShadowRay& ray = rays[next_[i].index];
+    const glm::dvec3 to(next_[i].to), from(ray.surface);
+    if (!origins_[i] ||
+        strays_from(ray.surface, next_[i].share == kNoEnd ? to : to - from, *origins_[i])) {
+      ray.radiance = glm::vec3(0.0f);
       continue;
     }
     next_[kept] = next_[i];
@@ -181,7 +185,13 @@ void ShadowRays::trace(bool from_light, float enough) {
                   .skip_ids = ignored_,
                   .source_ids = sources_,
                   .culling = culling_};
-  if (first_occluder_) search.any_hit_before = enough_;
+  const std::function is_enough = [this](std::size_t number, std::uint32_t primitive) {
+    return ends_at(number, primitive);
+  };
+  if (first_occluder_ && !(any_clear_ && from_light)) {
+    search.any_hit_before = enough_;
+    if (any_clear_) search.is_enough = &is_enough;
+  }
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
   hits_.resize(batch_.size());
@@ -190,13 +200,23 @@ void ShadowRays::trace(bool from_light, float enough) {
   for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }
 
-glm::vec3 ShadowRays::transmittance(std::size_t number) const {
-  const std::uint32_t primitive = hits_[number].primitive;
+SurfaceHit ShadowRays::place_of(std::size_t number, std::uint32_t primitive) const {
   const FaceRef stored = bvh_.face_of(primitive);
-  const Triangle& face = face_at(scene_, stored);
-  const MaterialParameters& material = materials_[face.material];
-  const SurfaceHit place = {&batch_[number], primitive, &face, nullptr,
-                            instance_at(scene_, stored)};
+  return {&batch_[number], primitive, &face_at(scene_, stored), nullptr,
+          instance_at(scene_, stored)};
+}
+
+bool ShadowRays::ends_at(std::size_t number, std::uint32_t primitive) const {
+  const SurfaceHit place = place_of(number, primitive);
+  const MaterialParameters& material = materials_[place.face->material];
+  const bool is_opaque =
+      (material.kind & kTransmits) == 0 || (material.refracts && !through_refraction_);
+  return is_opaque && is_sure_occluder(scene_, bvh_, place, limits_[number]);
+}
+
+glm::vec3 ShadowRays::transmittance(std::size_t number) const {
+  const SurfaceHit place = place_of(number, hits_[number].primitive);
+  const MaterialParameters& material = materials_[place.face->material];
   if (material.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
   if ((material.kind & kTransmits) == 0) return glm::vec3(0.0f);
   return shadow_transmittance(scene_, bvh_, place, material, through_refraction_);

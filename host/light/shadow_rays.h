@@ -13,6 +13,7 @@
 #include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
 #include "host/light/spawn_ray.h"
+#include "host/light/surface.h"
 
 namespace raygate {
 
@@ -69,6 +70,10 @@ class ShadowRays {
   void trace_from_surface(std::span<ShadowRay> rays);
   void trace(bool from_light, float enough);
   void next_from_surface(const ShadowRay& ray, std::uint32_t index);
+  /// Where ray `number` of the batch hits a primitive.
+  [[nodiscard]] SurfaceHit place_of(std::size_t number, std::uint32_t primitive) const;
+  /// Whether no light comes through there, nor near by.
+  [[nodiscard]] bool ends_at(std::size_t number, std::uint32_t primitive) const;
   /// What is left after the surface that ray `number` of the batch has hit.
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 

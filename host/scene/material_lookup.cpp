@@ -17,6 +17,12 @@ glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Tri
 
 Wrap wrap_of(const TextureMapping& mapping) { return mapping.clamp ? Wrap::kClamp : Wrap::kRepeat; }
 
+bool has_mask(const Scene& scene, const Triangle& triangle) {
+  const Material& material = scene.materials[triangle.material];
+  return material.opacity_map.texture != kNoIndex && !material.opacity_blends &&
+         triangle.texcoords[0] != kNoIndex;
+}
+
 /// The codes of a map, from 0 to 1.
 glm::vec3 codes_of(const MaterialMap& map, const Scene& scene, const Triangle& triangle,
                    const glm::dvec3& weights) {
@@ -48,11 +54,25 @@ glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& 
 }
 
 bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  if (!has_mask(scene, triangle)) return false;
   const Material& material = scene.materials[triangle.material];
-  const MaterialMap& map = material.opacity_map;
-  if (map.texture == kNoIndex || material.opacity_blends || triangle.texcoords[0] == kNoIndex)
-    return false;
-  return codes_of(map, scene, triangle, weights).r < material.opacity_cutoff;
+  return codes_of(material.opacity_map, scene, triangle, weights).r < material.opacity_cutoff;
+}
+
+bool is_nowhere_masked(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights,
+                       const glm::dvec3& change) {
+  if (!has_mask(scene, triangle)) return true;
+  const Material& material = scene.materials[triangle.material];
+  const TextureMapping& mapping = material.opacity_map.mapping;
+  const auto uv = [&](std::size_t k) { return glm::dvec2(scene.texcoords[triangle.texcoords[k]]); };
+  // Changes of weights have the sum 0.
+  const glm::dvec2 reach =
+      (change.y * glm::abs(uv(1) - uv(0)) + change.z * glm::abs(uv(2) - uv(0))) *
+      glm::abs(glm::dvec2(mapping.scale));
+  constexpr double kRounding = 1e-6;
+  return scene.textures[material.opacity_map.texture].min_code_near(
+             place_on(mapping, scene, triangle, weights), reach, wrap_of(mapping)) >
+         material.opacity_cutoff + kRounding;
 }
 
 float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {

@@ -23,6 +23,11 @@ namespace raygate {
 [[nodiscard]] bool is_masked_out(const Scene& scene, const Triangle& triangle,
                                  const glm::dvec3& weights);
 
+/// Whether its mask hides no point whose weights differ from these by no more than `change`. May
+/// say no where there is much of a texture to look at.
+[[nodiscard]] bool is_nowhere_masked(const Scene& scene, const Triangle& triangle,
+                                     const glm::dvec3& weights, const glm::dvec3& change);
+
 /// The normal at that point by the map of the triangle's material, around `normal`, a unit vector
 /// on the side where the vertices, at `corners`, run counter-clockwise: the map's x and y are along
 /// the directions in which u and v grow (their part across the normal). `normal` itself where there

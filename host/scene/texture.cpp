@@ -41,21 +41,25 @@ struct Neighbours {
   double share;
 };
 
-Neighbours neighbours(double coordinate, int size, Wrap wrap) {
+/// Where a coordinate is along an axis of so many texels, in steps from the first one's middle: in
+/// [-0.5, size - 0.5].
+double place_along(double coordinate, int size, Wrap wrap) {
   if (!std::isfinite(coordinate)) coordinate = 0.0;
   coordinate = wrap == Wrap::kRepeat ? coordinate - std::floor(coordinate)
                                      : std::clamp(coordinate, 0.0, 1.0);
-  const double place = coordinate * size - 0.5;  // in [-0.5, size - 0.5]
-  const double below = std::floor(place);
-  Neighbours found{static_cast<int>(below), static_cast<int>(below) + 1, place - below};
-  if (wrap == Wrap::kRepeat) {
-    found.first = (found.first + size) % size;
-    found.second %= size;
-  } else {
-    found.first = std::max(found.first, 0);
-    found.second = std::min(found.second, size - 1);
-  }
-  return found;
+  return coordinate * size - 0.5;
+}
+
+/// The texel that is seen as number i, in [-size, 2 size).
+int wrapped(int i, int size, Wrap wrap) {
+  if (wrap == Wrap::kClamp) return std::clamp(i, 0, size - 1);
+  return i < 0 ? i + size : i >= size ? i - size : i;
+}
+
+Neighbours neighbours(double coordinate, int size, Wrap wrap) {
+  const double place = place_along(coordinate, size, wrap), below = std::floor(place);
+  const int first = static_cast<int>(below);
+  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), place - below};
 }
 
 /// Whether the bytes begin as one of the formats that Texture::load promises. The library knows
@@ -147,6 +151,26 @@ Texture Texture::combine_channels(const Texture* green, const Texture* blue) {
 double Texture::min_code() const {
   std::uint8_t least = 255;
   for (const Texel& codes : texels_) least = std::min(least, codes[0]);
+  return least / 255.0;
+}
+
+double Texture::min_code_near(const glm::dvec2& uv, const glm::dvec2& reach, Wrap wrap) const {
+  constexpr double kMany = 4.0;  // texels to each side
+  const double across = reach.x * width_, up = reach.y * height_;
+  if (!(across < std::min(kMany, 0.5 * width_) && up < std::min(kMany, 0.5 * height_))) return 0.0;
+  const double x = place_along(uv.x, width_, wrap), y = place_along(1.0 - uv.y, height_, wrap);
+  const auto first_column = static_cast<int>(std::floor(x - across)),
+             last_column = static_cast<int>(std::floor(x + across)) + 1;
+  const auto first_row = static_cast<int>(std::floor(y - up)),
+             last_row = static_cast<int>(std::floor(y + up)) + 1;
+  std::uint8_t least = 255;
+  for (int row = first_row; row <= last_row; ++row) {
+    const Texel* const texels = &texels_[static_cast<std::size_t>(wrapped(row, height_, wrap)) *
+                                         static_cast<std::size_t>(width_)];
+    for (int column = first_column; column <= last_column; ++column) {
+      least = std::min(least, texels[wrapped(column, width_, wrap)][0]);
+    }
+  }
   return least / 255.0;
 }
 

@@ -43,6 +43,11 @@ class Texture {
   /// The least of the red codes, from 0 to 1.
   [[nodiscard]] double min_code() const;
 
+  /// The least of the red codes that codes_at reads within `reach` of a point, on both axes; 0
+  /// where these are many texels.
+  [[nodiscard]] double min_code_near(const glm::dvec2& uv, const glm::dvec2& reach,
+                                     Wrap wrap) const;
+
   /// The mean of all texels' scene-linear colours.
   [[nodiscard]] glm::dvec3 mean_color() const;
 

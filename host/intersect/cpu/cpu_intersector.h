@@ -15,6 +15,7 @@ class CpuIntersector : public Intersector {
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
+  [[nodiscard]] bool filters_hits() const override { return true; }
   [[nodiscard]] IntersectCounters counters() const override { return counters_; }
 
  private:

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <optional>
 
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -133,6 +134,68 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     ASSERT_EQ(nearest[i].radiance, questions_[i].radiance) << i;
   }
+}
+
+// Rays through leaves of a mask may end at the first one that surely holds them up: the light of
+// each ray is the same as when its hits are found one by one, by any intersector.
+TEST(ShadowRays, EndAtSureOccludersAmongLeaves) {
+  Random random;
+  Scene scene;
+  std::vector<Texture::Texel> texels;
+  for (int i = 0; i < 32 * 32; ++i) {
+    const bool is_there = (i / 4 + i / 128) % 2 != 0;
+    texels.push_back(is_there ? Texture::Texel{255, 255, 255} : Texture::Texel{});
+  }
+  scene.textures.emplace_back(32, 32, texels);
+  Material leaf = matte(glm::vec3(0.5f)), veil = matte(glm::vec3(0.5f));
+  leaf.opacity_map.texture = 0;
+  veil.opacity = 0.5f;
+  scene.texcoords = {{0, 0}, {1, 0}, {1, 1}};
+  const auto add_some = [&](int count, const Material& material) {
+    std::vector<Corners> faces;
+    for (int i = 0; i < count; ++i) {
+      const glm::vec3 at = random.point(4.0f);
+      faces.push_back({at, at + random.point(), at + random.point()});
+    }
+    add(scene, faces, material);
+  };
+  add_some(1500, leaf);
+  for (Triangle& face : scene.triangles) face.texcoords = {0, 1, 2};
+  add_some(100, veil);
+  add_some(100, matte(glm::vec3(0.5f)));
+  add_some(100, glass(1.5f));
+  const Bvh bvh(scene);
+  const PreparedScene prepared{scene, bvh};
+  const Lights lights(scene, bvh);
+  std::vector<ShadowRay> asked(20000);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    asked[i].radiance = glm::vec3(1.0f);
+    asked[i].surface = random.point(4.5f);
+    asked[i].surface_slot = NearestHit::kNone;
+    asked[i].target = i % 2 == 0 ? random.point(4.5f) : random.point();
+    asked[i].target_slot = i % 2 == 0 ? 0 : NearestHit::kNone;
+  }
+  const auto answers = [&](Intersector& intersector, bool first_occluder) {
+    Skips skips;
+    skips.first_occluder = first_occluder;
+    std::vector<ShadowRay> rays = asked;
+    ShadowRays(prepared, lights, intersector, skips, false).resolve(rays);
+    return rays;
+  };
+  CpuIntersector cpu(bvh), one_by_one(bvh);
+  const std::vector<ShadowRay> expected = answers(one_by_one, false);
+  const std::vector<ShadowRay> found = answers(cpu, true);
+  const std::vector<ShadowRay> of_unit = answers(*pipeline_intersector(bvh), true);
+  int lit = 0, veiled = 0;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    ASSERT_EQ(found[i].radiance, expected[i].radiance) << i;
+    ASSERT_EQ(of_unit[i].radiance, expected[i].radiance) << i;
+    lit += expected[i].radiance == glm::vec3(1.0f) ? 1 : 0;
+    veiled += expected[i].radiance.r > 0.0f && expected[i].radiance.r < 1.0f ? 1 : 0;
+  }
+  EXPECT_GT(lit, 1000);
+  EXPECT_GT(veiled, 100);
+  EXPECT_GT(cpu.counters().ended_early, 2000u);
 }
 
 }  // namespace
