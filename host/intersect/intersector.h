@@ -61,9 +61,9 @@ struct RayQuery {
   std::span<const std::uint32_t> source_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
-  /// With any_hit_before, and without a common origin: whether a hit is enough, of this ray and
-  /// primitive; without such a hit the nearest one is reported. Asked of sure hits, in any order.
-  /// nullptr: any is enough. For intersectors that say filters_hits().
+  /// With any_hit_before, by intersectors that say filters_hits(), without a common origin: which
+  /// hits are enough, by ray and primitive; asked of sure ones, in any order. Without such a hit
+  /// the nearest one is reported. nullptr: any is enough.
   const std::function<bool(std::size_t ray, std::uint32_t primitive)>* is_enough = nullptr;
   /// False: every ray is tested against every polygon, whatever the boxes say.
   bool culling = true;

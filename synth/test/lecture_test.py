@@ -3,6 +3,7 @@
 import argparse
 import html.parser
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -69,6 +70,17 @@ class Page(unittest.TestCase):
 
         Reader().feed(lecture.page(given(groups="3,5")))
         self.assertEqual(opened, [])
+
+    def test_lines_of_readme_and_tutorial_draw(self) -> None:
+        lines = [line for page in ("README.md", "host/docs/hardware.md") for line in
+                 re.findall(r"^make lecture([^#\n]*)", (tools.ROOT / page).read_text(), re.MULTILINE)]
+        self.assertGreaterEqual(len(lines), 2)
+        for line in lines:
+            words = dict(word.split("=") for word in line.split())
+            options = {"width": 12, "carry": 0, "x": 1.5, "y": -0.3} | {name.lower(): float(value) if name in "XY" else int(value)
+                                                                         for name, value in words.items()}
+            page = lecture.page(given(**options))
+            self.assertEqual(page.count(f"{options['a']:,} + {options['b']:,}".replace(",", "")), len(lecture.KINDS))
 
     def test_says_what_it_cannot_draw(self) -> None:
         for options, words in ((["--a", "5000"], "expected numbers of 12 bits"), (["--groups", "3,4"], "expected 12 bits together"),
