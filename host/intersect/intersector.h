@@ -61,9 +61,8 @@ struct RayQuery {
   std::span<const std::uint32_t> source_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
-  /// With any_hit_before, by intersectors that say filters_hits(), without a common origin: which
-  /// hits are enough, by ray and primitive; asked of sure ones, in any order. Without such a hit
-  /// the nearest one is reported. nullptr: any is enough.
+  /// With any_hit_before, if filters_hits() and no common origin: which sure hits are enough, by
+  /// ray and primitive; without any the nearest is reported. nullptr: all are.
   const std::function<bool(std::size_t ray, std::uint32_t primitive)>* is_enough = nullptr;
   /// False: every ray is tested against every polygon, whatever the boxes say.
   bool culling = true;
