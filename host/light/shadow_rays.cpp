@@ -64,8 +64,11 @@ ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
       any_clear_(std::ranges::any_of(materials_, [](const MaterialParameters& material) {
         return material.has_mask || (material.kind & kTransmits) != 0;
       })) {
-  // The first occluder may be a clear one: then only a sure one will do.
-  first_occluder_ = skips.first_occluder && (!any_clear_ || intersector.filters_hits());
+  // The first occluder may be a clear one: then only a sure one will do. Glass alone lets so many
+  // rays by that looking for one costs more tests than it saves.
+  const bool has_masks = std::ranges::any_of(materials_, &MaterialParameters::has_mask);
+  first_occluder_ =
+      skips.first_occluder && (!any_clear_ || (has_masks && intersector.filters_hits()));
 }
 
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
