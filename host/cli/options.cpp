@@ -81,9 +81,7 @@ struct CommandLine {
                                          : PixelRect{0, 0, -1, -1};  // which check_crop refuses
               });
     add_camera_options(table, options.camera);
-    table.number("--smooth", "DEGREES",
-                 "smooth shading over edges up to this angle, of faces without normals (the OBJ's "
-                 "s, or 30; 0: facets)",
+    table.number("--smooth", "DEGREES", "smooth edges up to this angle (the OBJ's s, or 30)",
                  options.smooth, kSmoothRange, kInExr);
     table.number("--frames", "N", "animation: along the scene file's path, or an orbit",
                  options.output.frames, Range{1, 9999});
@@ -96,6 +94,8 @@ struct CommandLine {
     add_run_output_options(table, options.output);
     table.flag("--serve", "show the scene in a page of the browser", options.serve);
     table.number("--port", "N", "of --serve's page (any free one)", options.port, kPortRange);
+    table.text("--display-server", "HOST:PORT", "show the picture in tev, too",
+               options.display_server);
     table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
     table.flag("--no-scene-file", "ignore the .json beside an OBJ", no_scene_file);
     table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
@@ -232,8 +232,8 @@ void check_serve(const OptionTable& table, const Options& options) {
     if (!table.typed("port").empty()) throw InputError("--port: expected with --serve");
     return;
   }
-  for (const char* name : {"crop", "error", "frames", "resume", "samples", "stats", "save-every",
-                           "trace", "dump-image"}) {
+  for (const char* name : {"crop", "display-server", "error", "frames", "resume", "samples",
+                           "stats", "save-every", "trace", "dump-image"}) {
     if (!table.typed(name).empty()) {
       throw InputError("--" + std::string(name) + " and --serve exclude each other");
     }
