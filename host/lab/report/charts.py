@@ -16,7 +16,6 @@ KINDS = {("pipeline", True): ("pipelined unit, doubts resolved", "#4477aa", "cir
 BELOW = 10.0
 SIZE = (400, 300)  # of a panel, pixels
 GRAY = "#999999"
-COLOURS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#bbbbbb")
 
 
 def save(spec: dict, file: pathlib.Path) -> pathlib.Path:
@@ -99,8 +98,9 @@ def scaling(series: dict[str, list[tuple[float, float]]], xlabel: str, ylabel: s
             label += f": exponent {law.exponent:.2f} ± {law.exponent_error:.2f}"
             lines += [{"series": label, "x": x, "y": law.at(x)} for x, _ in points]
         dots += [{"series": label, "x": x, "y": y} for x, y in points]
-    encoding = {"x": axis("x", xlabel, "~s"), "y": axis("y", ylabel, "~g"),
-                "color": {"field": "series", "type": "nominal", "title": None, "scale": {"range": COLOURS},
+    form = "~s" if max((dot["x"] for dot in dots), default=0) >= 1000 else "~g"
+    encoding = {"x": axis("x", xlabel, form), "y": axis("y", ylabel, "~g"),
+                "color": {"field": "series", "type": "nominal", "title": None, "scale": {"scheme": "tableau10" if len(series) <= 10 else "tableau20"},
                           "legend": {"orient": "bottom", "columns": 1, "labelLimit": 500}}}
     tips = [{"field": "series", "type": "nominal"}, *({"field": field, "type": "quantitative", "title": text, "format": ",.4~g"}
                                                      for field, text in (("x", xlabel), ("y", ylabel)))]

@@ -77,6 +77,7 @@ def rate(count: int, of_all: int) -> str:
     return "-" if not of_all else "0" if not count else f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
 
 
+ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": False}  # variants and figures in their order
 ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name": scene_name, "median_seconds": median_seconds,
                         "spread_percent": lambda row: 100 * spread(times(row))}
 

@@ -86,6 +86,7 @@ class Page(unittest.TestCase):
         self.assertIn("500.0", self.find("#figures")[0].text)
 
     def test_two_pictures_under_a_slider(self) -> None:
+        self.assertEqual([option.text for option in Select(self.find("#left")[0]).options], [name for name, *_ in VARIANTS])
         Select(self.find("#left")[0]).select_by_visible_text("e8p20")
         Select(self.find("#right")[0]).select_by_visible_text("e8p16")
         under, over = self.find("#slide img")
