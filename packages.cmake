@@ -3,11 +3,9 @@ set(missing)
 set(pairs
   libglm-dev:glm/glm.hpp libopenexr-dev:OpenEXR/OpenEXRConfig.h libimath-dev:Imath/ImathConfig.h
   libpng-dev:png.h libcli11-dev:CLI/CLI.hpp libstb-dev:stb/stb_image.h
-  nlohmann-json3-dev:nlohmann/json.hpp libtinygltf-dev:tiny_gltf.h)
+  nlohmann-json3-dev:nlohmann/json.hpp libtinygltf-dev:tiny_gltf.h libcivetweb-dev:civetweb.h)
 if(RAYGATE_PYTHON)
   list(APPEND pairs libmpfr-dev:mpfr.h)
-else()
-  list(APPEND pairs libcivetweb-dev:civetweb.h)
 endif()
 foreach(pair ${pairs})
   string(REPLACE ":" ";" pair ${pair})

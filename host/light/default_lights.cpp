@@ -28,6 +28,9 @@ class LightPlaces {
 
   [[nodiscard]] bool is_inside() const { return is_inside_; }
   [[nodiscard]] double size() const { return size_; }
+  /// Of a ball in a light's place: its shadow of an edge is about an eighth as wide as the edge is
+  /// far from what it falls on.
+  [[nodiscard]] double radius() const { return 0.5 * size_; }
 
   /// From the upper left of the camera, or from the camera. Outside, `radiance` is that of a white
   /// wall in the middle of the scene that faces the light; it is not much more in front.
@@ -144,7 +147,9 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
   const LightPlaces places(scene, camera);
   if (is_lit_by_emitters(scene, places.size())) return {};
   CameraLights lights{{places.key(0.6)}, kDimSky, {}};
-  if (!places.is_inside()) lights.studio = studio(camera, kDimSky);
+  if (places.is_inside()) return lights;
+  lights.studio = studio(camera, kDimSky);
+  lights.radius = places.radius();
   return lights;
 }
 
@@ -158,7 +163,7 @@ std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& cam
   if (places.is_inside()) return lights;
   lights.points.push_back(places.fill());
   lights.studio = studio(camera, lights.background);
-  lights.radius = 0.5 * places.size();
+  lights.radius = places.radius();
   return lights;
 }
 

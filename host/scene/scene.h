@@ -189,6 +189,7 @@ struct Scene {
   glm::dvec3 origin{0.0};                     ///< world = origin + position
   std::optional<CameraSetting> camera;        ///< the file's first one, in world coordinates
   std::optional<glm::dvec3> up;               ///< upwards, where the file's format says so
+  bool is_usually_z_up = false;               ///< else: what is usual in the format, z or y
   std::vector<std::filesystem::path> files;   ///< that were read for it: OBJ, MTL and textures
   std::vector<std::string> warnings;          ///< "file:line: ...": of statements, then of faces
 };

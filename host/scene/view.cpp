@@ -1,7 +1,9 @@
 #include "host/scene/view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "host/base/elementary.h"
@@ -28,19 +30,57 @@ struct Face {
   }
 };
 
-/// The share of the box's lower end along `axis` that faces lying flat on it cover.
-double standing(const Scene& scene, const Bounds3& box, int axis) {
+/// How a scene stands on the lower end of one axis.
+struct Stand {
+  /// The tangent of the angle by which it may be tilted before it falls over, to the side where
+  /// that is least; below 0 where it falls by itself.
+  double steadiness = 0.0;
+  double flat_share = 0.0;  ///< of the box's lower end: what faces lying flat on it cover
+};
+
+Stand stand(const Scene& scene, const Bounds3& box, const glm::dvec3& centre_of_mass, int axis) {
+  constexpr int kDirections = 64;  // to which it may fall
+  constexpr double kTouching = 0.01;
   const glm::dvec3 size = box.high - box.low;
-  const double end = box.low[axis] + 0.01 * size[axis];
+  const int right = (axis + 1) % 3, ahead = (axis + 2) % 3;
+  const double ground = box.low[axis] + kTouching * std::max({size.x, size.y, size.z});
+  const double flat = box.low[axis] + kTouching * size[axis];
+  std::array<SineCosine<double>, kDirections> directions;
+  std::array<double, kDirections> reach;  // of what touches the ground, from the centre of mass
+  reach.fill(-std::numeric_limits<double>::infinity());
+  for (int k = 0; k < kDirections; ++k) {
+    directions[k] = sine_cosine(static_cast<double>(k) / kDirections);
+  }
   double area = 0.0;
   for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
     const Face face(triangle);
-    const bool is_low = std::ranges::all_of(
-        face.corners, [&](const glm::dvec3& corner) { return corner[axis] <= end; });
-    if (is_low) area += 0.5 * std::abs(face.normal[axis]);
+    bool is_flat = true;
+    for (const glm::dvec3& corner : face.corners) {
+      is_flat = is_flat && corner[axis] <= flat;
+      if (corner[axis] > ground) continue;
+      const glm::dvec3 way = corner - centre_of_mass;
+      for (int k = 0; k < kDirections; ++k) {
+        reach[k] =
+            std::max(reach[k], way[right] * directions[k].cosine + way[ahead] * directions[k].sine);
+      }
+    }
+    if (is_flat) area += 0.5 * std::abs(face.normal[axis]);
   });
-  const double whole = size[(axis + 1) % 3] * size[(axis + 2) % 3];
-  return whole > 0.0 ? std::min(1.0, area / whole) : 0.0;
+  return {*std::ranges::min_element(reach) / (centre_of_mass[axis] - box.low[axis]),
+          std::min(1.0, area / (size[right] * size[ahead]))};
+}
+
+/// Of the surface, as if it were a sheet.
+glm::dvec3 centre_of_mass(const Scene& scene) {
+  glm::dvec3 sum(0.0);
+  double area = 0.0;
+  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
+    const Face face(triangle);
+    const double weight = glm::length(face.normal);
+    sum += weight / 3.0 * (face.corners[0] + face.corners[1] + face.corners[2]);
+    area += weight;
+  });
+  return sum / area;
 }
 
 /// Of a scene whose up is `up`: right-handed, of length 1.
@@ -52,6 +92,13 @@ struct Axes {
     const glm::dvec3 near = std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, -1, 0);
     front = glm::normalize(near - glm::dot(near, up) * up);
     right = glm::cross(up, front);
+  }
+
+  /// Angles in degrees, as of View.
+  [[nodiscard]] glm::dvec3 direction(double azimuth, double elevation) const {
+    const SineCosine<double> turned = sine_cosine(azimuth / 360.0);
+    const SineCosine<double> raised = sine_cosine(elevation / 360.0);
+    return raised.cosine * (turned.cosine * front + turned.sine * right) + raised.sine * up;
   }
 };
 
@@ -80,15 +127,39 @@ bool is_interior(const Scene& scene) {
 
 View default_view(const Scene& scene, const glm::dvec3& up) {
   if (is_interior(scene)) return front_view(scene, up);
-  return {kDefaultAzimuth, kDefaultElevation, up};
+  // The four sides, and of each how much of the scene's area is seen; a box shows half of it.
+  constexpr double kAzimuths[] = {kDefaultAzimuth, -kDefaultAzimuth, 90.0 + kDefaultAzimuth,
+                                  -90.0 - kDefaultAzimuth};
+  constexpr double kEdgeOn = 0.2;
+  double seen[std::size(kAzimuths)] = {}, area = 0.0;
+  glm::dvec3 towards_eye[std::size(kAzimuths)];
+  for (std::size_t k = 0; k < std::size(kAzimuths); ++k) {
+    towards_eye[k] = Axes(up).direction(kAzimuths[k], kDefaultElevation);
+  }
+  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
+    const Face face(triangle);
+    area += glm::length(face.normal);
+    for (std::size_t k = 0; k < std::size(kAzimuths); ++k) {
+      seen[k] += std::abs(glm::dot(face.normal, towards_eye[k]));
+    }
+  });
+  const bool is_edge_on = seen[0] < kEdgeOn * area;
+  const auto best = is_edge_on ? std::ranges::max_element(seen) - seen : 0;
+  return {kAzimuths[best], kDefaultElevation, up};
 }
 
 glm::dvec3 guess_up_axis(const Scene& scene) {
   if (scene.up) return *scene.up;
+  const glm::dvec3 axes[] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  const int usual = scene.is_usually_z_up ? 2 : 1, other = 3 - usual;
   const Bounds3 box = bounding_box(scene);
-  constexpr double kClearly = 0.2;
-  const bool is_z = standing(scene, box, 2) > standing(scene, box, 1) + kClearly;
-  return is_z ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const glm::dvec3 size = box.high - box.low, mass = centre_of_mass(scene);
+  if (std::min({size.x, size.y, size.z}) <= 0.0 || !is_finite(glm::vec3(mass))) return axes[usual];
+  constexpr double kFalls = 0.035, kStands = 0.09, kClearly = 0.3;  // 2 and 5 degrees
+  const Stand usually = stand(scene, box, mass, usual), else_ = stand(scene, box, mass, other);
+  const bool is_other = (usually.steadiness < kFalls && else_.steadiness > kStands) ||
+                        else_.flat_share > usually.flat_share + kClearly;
+  return axes[is_other ? other : usual];
 }
 
 CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view,
@@ -96,14 +167,11 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
   const Bounds3 box = bounding_box(scene);
   const glm::dvec3 centre = box.middle(), half = box.half_size();
   const Axes axes(view.up);
-  const SineCosine<double> turned = sine_cosine(view.azimuth / 360.0);
-  const SineCosine<double> raised = sine_cosine(view.elevation / 360.0);
-  const glm::dvec3 level = turned.cosine * axes.front + turned.sine * axes.right;
-  const glm::dvec3 towards_eye = raised.cosine * level + raised.sine * axes.up;
+  const glm::dvec3 towards_eye = axes.direction(view.azimuth, view.elevation);
   constexpr double kSteep = 89.0;  // up is along the view, or nearly
   const glm::dvec3 up = std::abs(view.elevation) < kSteep
                             ? axes.up
-                            : glm::dvec3(raised.cosine * axes.up - raised.sine * level);
+                            : axes.direction(view.azimuth, view.elevation + 90.0);
   const double size = std::max({half.x, half.y, half.z});
   const Camera at_centre = Camera::look_at(centre + towards_eye * size, centre, up, fov, aspect);
 

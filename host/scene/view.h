@@ -25,12 +25,14 @@ inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 /// Whether most faces look inwards: the inside of a box, whose floor and walls are there.
 [[nodiscard]] bool is_interior(const Scene& scene);
 
-/// The view of a first look: kDefaultAzimuth and kDefaultElevation; or front_view() of a room,
-/// whose walls would be in the way.
+/// The view of a first look: kDefaultAzimuth and kDefaultElevation, or another side where that
+/// looks along the edges of a flat model; or front_view() of a room, whose walls would be in the
+/// way.
 [[nodiscard]] View default_view(const Scene& scene, const glm::dvec3& up);
 
-/// +y or +z: the file's format says which (Scene::up), or on what the scene seems to stand. +z
-/// where faces that lie flat cover clearly more of its lower z end than of its lower y end.
+/// +y or +z: the file's format says which (Scene::up), or it is what is usual there, but where the
+/// scene would then fall over and stands the other way, or lies clearly flatter on that end. What
+/// lies in one plane of the axes is as usual.
 [[nodiscard]] glm::dvec3 guess_up_axis(const Scene& scene);
 
 /// What fills the picture.

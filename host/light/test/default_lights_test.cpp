@@ -92,8 +92,10 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
 }
 
 // Under the edge of a roof, a floor gets as much light as it sees of a ball's disc: a segment.
-TEST(PreviewLights, CastSoftShadows) {
-  EXPECT_GT(preview_lights(square(matte(glm::vec3(0.5f))), camera_from({0, 0, 5}))->radius, 0.0);
+TEST(DefaultLights, CastSoftShadows) {
+  const Scene wall = square(matte(glm::vec3(0.5f)));
+  EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
+  EXPECT_GT(preview_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
   const auto floor_at = [](double x, IntegratorKind integrator, bool has_roof) {
     Scene scene;
     add(scene, rectangle({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), matte(glm::vec3(0.5f)));

@@ -100,7 +100,7 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
   }
   Scene scene;
   mesh.build_plain(options, scene);
-  scene.up = glm::dvec3(0.0, 0.0, 1.0);
+  scene.is_usually_z_up = true;
   return scene;
 }
 
