@@ -33,7 +33,7 @@ struct Report {
 /// legend and for a view, and with --verbose all there is to say. Every line is ended.
 [[nodiscard]] std::string to_text(const Report& report);
 
-/// The same and some more as a JSON object, for --stats. statistics.md lists the keys.
+/// The same and some more as a JSON object, for --stats. statistics.csv lists the keys.
 [[nodiscard]] std::string to_json(const Report& report);
 
 }  // namespace raygate

@@ -1,6 +1,6 @@
-"""Checks the figures of host/lab/CLAIMS.md: runs each command and looks for the figure in what it prints.
+"""Checks the figures of host/lab/claims.csv: runs each command and looks for the figure in what it prints.
 
-A row of the page is `| what | figure | command |`. The numbers of a figure must stand in the output in
+The numbers of a figure must stand in the output in
 this order, commas aside. A figure that begins with ~ depends on the machine: what its command prints is
 shown, not judged. Exit status 1 where a figure is not there, 2 where no command was asked for.
 
@@ -8,6 +8,7 @@ quotes.csv has what pages quote from published results: `misquoted` finds what i
 """
 
 import argparse
+import csv
 import decimal
 import pathlib
 import re
@@ -15,15 +16,15 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGE = ROOT / "host/lab/CLAIMS.md"
-ROW = re.compile(r"^\| (.+?) \| (.+?) \| `(.+?)` \|$", re.MULTILINE)
+CLAIMS = ROOT / "host/lab/claims.csv"
 QUOTES = ROOT / "host/lab/quotes.csv"
 NUMBER = re.compile(r"0x[0-9A-Fa-f]+|\d[\d,]*\.?\d*")
 
 
 def rows() -> list[tuple[str, str, str]]:
     """What is claimed, the figure, and the command that prints it."""
-    return ROW.findall(PAGE.read_text())
+    with CLAIMS.open(newline="") as file:
+        return [(row["what"], row["figure"], row["command"]) for row in csv.DictReader(file)]
 
 
 def numbers(text: str) -> list[str]:
@@ -70,7 +71,7 @@ def main() -> int:
     wanted = [row for row in rows() if wish.only in row[2]
               and not (wish.judged and row[1].startswith("~"))]
     if not wanted:
-        print("no such command in host/lab/CLAIMS.md", file=sys.stderr)
+        print("no such command in host/lab/claims.csv", file=sys.stderr)
         return 2
     outputs, missing = {}, 0
     for what, figure, command in wanted:

@@ -64,5 +64,5 @@ scaling: ## measure: a picture's time by ranks, and a model up to 1,000: make sc
 dates:
 	@-python3 -B -m host.lab.evidence
 
-claims: dates everything ## measure: how old results are; figures of host/lab/CLAIMS.md by their commands: make claims [ONLY=frame_rates]
+claims: dates everything ## measure: how old results are; figures of host/lab/claims.csv by their commands: make claims [ONLY=frame_rates]
 	@python3 -B host/lab/claims.py --only '$(ONLY)'

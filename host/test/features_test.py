@@ -1,6 +1,7 @@
-"""host/FEATURES.md, EMBEDDING.md and hw/ray_core/README.md against the code: every test that they name exists, and every
+"""host/features.csv, EMBEDDING.md and hw/ray_core/README.md against the code: every test that they name exists, and every
 option of the programs has a row."""
 
+import csv
 import pathlib
 import re
 import unittest
@@ -16,20 +17,18 @@ def sources(pattern: str) -> str:
 
 class Features(unittest.TestCase):
     def setUp(self) -> None:
-        text = (HOST / "FEATURES.md").read_text()
-        rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| ")]
-        self.rows = [row for row in rows if row[0].strip() != "Feature"]
+        with (HOST / "features.csv").open(newline="") as file:
+            self.rows = list(csv.DictReader(file))
         self.assertGreater(len(self.rows), 30)
         text = (HOST / "EMBEDDING.md").read_text()
         rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| ")]
-        self.promises = [row for row in rows if row[1].strip() != "Promise"]
+        self.promises = [(promise, re.findall(r"`([\w.]+)`", tests)) for _, promise, tests in rows if promise.strip() != "Promise"]
         self.assertGreater(len(self.promises), 10)
 
     def test_every_test_exists(self) -> None:
         found = TESTS.findall(sources("**/test/*.cpp") + sources("**/test/*.py"))
         names = {f"{suite}.{name}" if suite else function for suite, name, function in found}
-        for feature, _, tests in self.rows + self.promises:
-            named = re.findall(r"`([\w.]+)`", tests)
+        for feature, named in [(row["feature"], row["tests"].split()) for row in self.rows] + self.promises:
             self.assertTrue(named, feature)
             for name in named:
                 self.assertTrue(name in names, f"{feature.strip()}: no test {name}")
@@ -48,7 +47,7 @@ class Features(unittest.TestCase):
         self.assertEqual(set(named) - names, set())
 
     def test_every_option_has_a_row(self) -> None:
-        listed = set(re.findall(r"`(--[a-z-]+)`", "".join(row[1] for row in self.rows)))
+        listed = set(re.findall(r"--[a-z-]+", " ".join(row["asked for by"] for row in self.rows)))
         real = set(OPTION.findall(sources("cli/*.cpp") + sources("options/*.cpp")))
         self.assertTrue(real)
         self.assertEqual(real - listed, set(), "options without a row")

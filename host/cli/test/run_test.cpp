@@ -44,14 +44,16 @@ std::set<std::string> keys_of(const json& object) {
   return keys;
 }
 
-/// Those in the first column of the table in host/cli/statistics.md.
+/// Those in the first column of host/cli/statistics.csv.
 std::set<std::string> documented_keys() {
-  std::ifstream page(RAYGATE_STATISTICS_PAGE);
+  std::ifstream table(RAYGATE_STATISTICS_TABLE);
   std::set<std::string> keys;
-  for (std::string line; std::getline(page, line);) {
-    if (!line.starts_with("| `")) continue;
-    std::istringstream words(line.substr(1, line.find('|', 1) - 1));
-    for (std::string key; std::getline(std::getline(words, key, '`'), key, '`');) {
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "keys,meaning");
+  while (std::getline(table, line)) {
+    std::istringstream words(line.substr(0, line.find(',')));
+    for (std::string key; words >> key;) {
       EXPECT_TRUE(keys.insert(key).second) << key << " is documented twice";
     }
   }
