@@ -9,7 +9,7 @@ SETUP ?= .ci/setup
 PYTHON := build/venv/bin/python3
 
 # Configured each time, in a third of a second: a library that was missing then may be here now.
-# VARIANTS: of another table than host/lab/variants/variants.json (`make variant`).
+# VARIANTS: of another table than host/variants/variants.json (`make variant`).
 configure = cmake -S . -B build -G Ninja --log-level=WARNING \
   -DRAYGATE_VARIANTS=$(VARIANTS) -DRAYGATE_SIMULATION=ON
 # $(call build,KIND,TARGETS): sets up and builds these programs.

@@ -15,7 +15,7 @@ char* slot(Port& port, int n, std::size_t size) {
   return reinterpret_cast<char*>(&port) + size * static_cast<std::size_t>(n);
 }
 
-/// Floats as they stand. Numbers of other formats are packed otherwise (host/lab/variants).
+/// Floats as they stand. Numbers of other formats are packed otherwise (host/variants).
 struct Binary32Numbers {
   /// `count` numbers of lane `lane`, each of whose slots has as many.
   template <class Port>

@@ -18,6 +18,7 @@
 #include "host/intersect/unit/serial_hit_tester.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/options/light_options.h"
+#include "host/variants/variant_hit_tester.h"
 #include "sim/rtl_burst_unit.h"
 #include "sim/rtl_core.h"
 #include "sim/rtl_plane_unit.h"
@@ -34,6 +35,21 @@ Choices<Engine> engine_choices() {
 }
 Choices<Arith> arith_choices() {
   return {{"structural", Arith::kStructural}, {"behavioural", Arith::kBehavioural}};
+}
+
+/// A name of variants.json, or a format.
+Variant parse_variant(const std::string& option, const std::string& text) {
+  std::vector<std::string> names;
+  for (const Variant& variant : all_variants_of_arithmetic()) {
+    if (variant.name == text) return variant;
+    names.push_back(variant.name);
+  }
+  try {
+    if (const auto variant = variant_of_format(text)) return *variant;
+  } catch (const InputError& error) {
+    throw InputError(option + ": " + text + ": " + error.what());
+  }
+  fail_value(option, text, "exponent bits and digits as in e8p15 or e8p15-raw, " + listed(names));
 }
 
 /// "latency=100,bytes=16,cache=1024", each of them or not.
@@ -61,6 +77,7 @@ MemoryTiming parse_memory(const std::string& option, const std::string& text) {
 
 /// The unit of an engine that has one, with what its host does around it: rtl's, or its model.
 std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips& skips) {
+  if (options.variant) return make_variant_tester(*options.variant);
   if (options.unit == "serial") {
     std::unique_ptr<PlaneUnit> unit = std::make_unique<ReferencePlaneUnit>();
     if (options.simulates()) unit = std::make_unique<RtlPlaneUnit>(options.arith);
@@ -117,14 +134,21 @@ std::string to_string(Arith arith) { return name_of(arith_choices(), arith); }
 
 void add_engine_options(OptionTable& table, EngineOptions& options) {
   if (!has_simulation()) options.engine = Engine::kCpu;
-  table.choice("--engine", "NAME",
-               "rtl: simulated hardware; cpu: identical hits without simulation, much faster; "
-               "model: its reference model; check: rtl and cpu, stopping where they differ ({})",
-               options.engine, engine_choices(), kInStats);
+  table.choice(
+      "--engine", "NAME",
+      "rtl: simulated hardware; model: its model in C++; cpu: the same hits, faster; check: "
+      "rtl and cpu, stopping where they differ ({})",
+      options.engine, engine_choices(), kInStats);
   table.choice<std::string>(
-      "--unit", "NAME",
-      "pipeline: a test per clock; serial: the paper's unit; core: a whole ray core ({})",
-      options.unit, {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}}, kInStats);
+      "--unit", "NAME", "pipeline, serial (the paper's) or core ({})", options.unit,
+      {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}}, kInStats);
+  table.add(
+      "--variant", "NAME",
+      "the model in another format: e8p16 has 16 digits; e8p16-raw: without error bounds",
+      [&options](const std::string& option, const std::string& text) {
+        options.variant = parse_variant(option, text);
+      },
+      [&options] { return options.variant ? options.variant->name : ""; }, kInExr | kInStats);
   table.choice(
       "--arith", "NAME",
       "structural: Booth trees, carry-select; behavioural: + and *, faster to simulate ({})",
@@ -154,6 +178,20 @@ void check_engine_options(const OptionTable& table, EngineOptions& options, unsi
       throw InputError("--" + std::string(name) +
                        ": expected with --unit core and --engine rtl or check, got " + typed);
     }
+  }
+  if (options.variant) {
+    // The unit is the variant's.
+    for (const auto& [name, expected] :
+         {std::pair{"engine", "model"},
+          {"unit", options.variant->unit == Variant::Unit::kSerial ? "serial" : "pipeline"}}) {
+      const std::string typed = table.typed(name);
+      if (!typed.empty() && typed != expected) {
+        throw InputError("--" + std::string(name) + ": expected " + expected + " with --variant " +
+                         options.variant->name + ", got " + typed);
+      }
+    }
+    options.engine = Engine::kModel;
+    options.unit = options.variant->unit == Variant::Unit::kSerial ? "serial" : "pipeline";
   }
   if (options.unit != "pipeline" && options.lanes != 1) {
     throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " +

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "host/intersect/core/memory_image.h"
@@ -9,6 +10,7 @@
 #include "host/light/integrator_options.h"
 #include "host/options/option_table.h"
 #include "host/scene/instances.h"
+#include "host/variants/variant_table.h"
 #include "sim/arith.h"
 #include "sim/memory_timing.h"
 
@@ -25,6 +27,7 @@ enum class Engine {
 struct EngineOptions {
   Engine engine = Engine::kRtl;
   std::string unit = "pipeline";  ///< or "serial", "core"
+  std::optional<Variant> variant;  ///< of the reference model; none: binary32, as the hardware
   Arith arith = Arith::kStructural;
   int lanes = 1;          ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
   MemoryTiming memory{};  ///< of a simulated core

@@ -32,15 +32,13 @@
 namespace raygate {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// The options that a request may have: what needs neither another scene nor files.
 const std::set<std::string>& request_options() {
   static const std::set<std::string> kNames = {
       "ambient",  "aperture",     "arith",       "camera",     "cores", "depth",      "engine",
       "exposure", "false-colour", "filter",      "focus",      "fov",   "integrator", "lanes",
       "memory",   "no-skip",      "point-error", "projection", "seed",  "size",       "spp",
-      "threads",  "threshold",    "tone",        "unit",       "up",    "view"};
+      "threads",  "threshold",    "tone",        "unit",       "up",    "variant",    "view"};
   return kNames;
 }
 
@@ -303,7 +301,11 @@ class PictureServer {
               {"fov", camera.vertical_fov_degrees()},
               {"width", options.render.width},
               {"height", options.render.height},
-              {"samples", options.render.samples}};
+              {"samples", options.render.samples},
+              {"variants", Json::array()}};
+    for (const Variant& variant : all_variants_of_arithmetic()) {
+      json["variants"].push_back(variant.name);
+    }
     for (const auto& [name, value] : cameras.options()) {
       if (name == "view") json["view"] = Json::parse("[" + value + "]");
     }

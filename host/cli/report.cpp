@@ -38,6 +38,7 @@ std::string headline(const Report& report) {
   line += ", engine " + to_string(options.engine);
   if (options.engine != Engine::kCpu) {
     line += " (" + options.unit;
+    if (options.variant) line += ", " + options.variant->name;
     if (options.engine != Engine::kModel) line += ", " + to_string(options.arith);
     if (options.lanes > 1) line += ", " + std::to_string(options.lanes) + " lanes";
     if (options.cores > 1) line += ", " + std::to_string(options.cores) + " cores";

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "host/variants/json_object.h"
 
 namespace raygate::lab {
 
 /// A row: the column `table` says of which table. JSON has no infinity: null stands for it.
-using Row = nlohmann::ordered_json;
+using Row = Json;
 
 /// What a command has found.
 class Results {
@@ -26,13 +27,6 @@ class Results {
   std::vector<Row> rows_;
   std::string head_;  // of the table in the terminal
 };
-
-/// `object` with the values of `usual` where it has none. Throws InputError, "WHAT has ...": an
-/// unknown name, or a value that is not of the usual one's kind.
-[[nodiscard]] Row with_usual(const Row& object, Row usual, const std::string& what);
-
-/// Throws InputError, "NAME is ..., expected LOW to HIGH".
-int in_range(const std::string& name, int value, int low, int high);
 
 /// FNV-1a.
 [[nodiscard]] std::uint64_t digest(std::string_view bytes);

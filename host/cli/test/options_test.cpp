@@ -199,6 +199,12 @@ TEST_F(OptionsOfASceneFile, MayNotBeOverwrittenBeforeItIsThere) {
 
 TEST(Options, OtherValuesThatAreImpossible) {
   expect_error({"a.obj", "--engine", "gpu"}, "--engine: expected rtl, model, cpu or check");
+  expect_error({"a.obj", "--variant", "e8p"}, "--variant: expected exponent bits and digits");
+  expect_error({"a.obj", "--variant", "e8p10"}, "--variant: e8p10: doubts are resolved, expected");
+  expect_error({"a.obj", "--variant", "e8p12", "--engine", "cpu"},
+               "--engine: expected model with --variant e8p12, got cpu");
+  expect_error({"a.obj", "--variant", "serial-paper", "--unit", "core"},
+               "--unit: expected serial with --variant serial-paper, got core");
   expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline, serial or core");
   for (const char* lanes : {"0", "3", "16", "-1", "x"}) {
     expect_error({"a.obj", "--lanes", lanes}, "--lanes: expected 1, 2, 4 or 8");

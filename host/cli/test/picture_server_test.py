@@ -63,7 +63,7 @@ class Http(unittest.TestCase):
         with Served("--spp", "2", "--seed=7") as served:
             for options in ({}, {"spp": 1, "size": "31x17"}, {"view": "30,20"},
                             {"camera": "278,273,1300,100,300,0,30", "up": "y", "engine": "model"},
-                            {"false-colour": "Z=it's.png"}, {"integrator": "path", "exposure": 1}):
+                            {"engine": "model", "variant": "e8p9-raw"}, {"false-colour": "Z=it's.png"}, {"integrator": "path", "exposure": 1}):
                 with self.subTest(options), tempfile.TemporaryDirectory() as folder:
                     status, headers, picture = served.get("/picture", **options)
                     self.assertEqual(status, 200, picture)
@@ -97,6 +97,7 @@ class Http(unittest.TestCase):
                     ("/picture", {"output": "a.png"}, "output: expected an option"),
                     ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
                     ("/picture", {"false-colour": "nothing=a.png"}, "nothing"),
+                    ("/picture", {"variant": "e8p9-raw"}, "--engine: expected model with --variant e8p9-raw, got cpu"),
                     ("/pixel", {"x": 64, "y": 0}, "a pixel of 64x48, got '64'"),
                     ("/pixel", {"x": "1e9", "y": 0}, "a pixel of 64x48, got '1e9'")):
                 status, _, text = served.get(path, **options)
@@ -215,9 +216,18 @@ class Browser(unittest.TestCase):
             ray = json.loads(served.get("/pixel", x=x, y=y)[2])
             self.assertIn(ray["cpu"]["P"]["words"], shown)
 
-            # Two engines under the rule do not differ; two exposures do.
+            # Two engines under the rule do not differ; numbers of nine digits and two exposures do.
             browser.find_element(By.ID, "both").click()
             side = browser.find_element(By.CSS_SELECTOR, "[data-side=b]")
+            side.find_element(By.NAME, "variant").send_keys("e8p9-raw\t")
+            self.wait(lambda _: "--variant=e8p9-raw" in self.command("b"))
+            self.wait_drawn("b")
+            browser.find_element(By.ID, "differ").click()
+            self.assertGreater(sum(self.pixels("difference")), 64 * 48 * 255)
+            browser.find_element(By.ID, "differ").click()
+            side.find_element(By.NAME, "variant").clear()
+            self.wait(lambda _: "--variant" not in self.command("b"))
+            self.wait_drawn("b")
             Select(side.find_element(By.NAME, "engine")).select_by_visible_text("model")
             self.wait(lambda _: "--engine=model" in self.command("b"))
             self.wait_drawn("b")

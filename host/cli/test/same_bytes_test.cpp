@@ -190,6 +190,28 @@ TEST_P(Gallery, PictureIsWhatItsCommandMakes) {
 INSTANTIATE_TEST_SUITE_P(Readme, Gallery, testing::ValuesIn(gallery_commands()),
                          [](const auto& info) { return fs::path(info.param).stem().string(); });
 
+using Variants = Render;
+
+TEST_F(Variants, DrawTheirOwnPictures) {
+  const std::vector<std::string> cornell = {kCornell, "--size", "64x48", "--spp", "1"};
+  const auto picture = [&](const std::string& name, std::vector<std::string> words) {
+    words.insert(words.begin(), cornell.begin(), cornell.end());
+    words.insert(words.end(), {"-o", name + ".png"});
+    (void)render(words);
+    return folder_.read(name + ".png");
+  };
+  const std::string plain = picture("plain", {"--engine", "model"});
+  EXPECT_TRUE(picture("binary32", {"--variant", "binary32"}) == plain);
+  EXPECT_TRUE(picture("serial", {"--variant", "serial"}) ==
+              picture("unit", {"--engine", "model", "--unit", "serial"}));
+  EXPECT_FALSE(picture("raw", {"--variant", "e8p9-raw"}) == plain);
+  EXPECT_EQ(stats_["variant"], "e8p9-raw");
+  EXPECT_EQ(stats_["engine"], "model");
+  // Who decides matters, not digits: the same triangles, but for P and what is behind it.
+  (void)picture("few", {"--variant", "e8p12"});
+  EXPECT_GT(stats_["exact_inside"], 0);
+}
+
 TEST_F(Render, ThreadsChangeNoByte) {
   for (const char* threads : {"1", "2", "8"}) {
     render({kCornell, "--size", "100x75", "--threads", threads, "-o", threads});

@@ -8,8 +8,8 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/timing.h"
-#include "host/lab/variants/variant_hit_tester.h"
-#include "host/lab/variants/variant_units.h"
+#include "host/variants/variant_hit_tester.h"
+#include "host/variants/variant_units.h"
 
 namespace raygate::lab {
 namespace {

@@ -4,7 +4,7 @@
 #include "host/bvh/bvh.h"
 #include "host/intersect/unit/hit_tester.h"
 #include "host/lab/results.h"
-#include "host/lab/variants/variant_table.h"
+#include "host/variants/variant_table.h"
 #include "host/scene/camera.h"
 
 namespace raygate::lab {

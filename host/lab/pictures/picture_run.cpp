@@ -22,7 +22,7 @@
 #include "host/lab/pictures/decision_audit.h"
 #include "host/lab/timing.h"
 #include "host/lab/variants/rtl_variant_units.h"
-#include "host/lab/variants/variant_hit_tester.h"
+#include "host/variants/variant_hit_tester.h"
 #include "host/light/camera_lights.h"
 #include "host/light/default_lights.h"
 #include "host/render/renderer.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/lab/results.h"
-#include "host/lab/variants/variant_table.h"
+#include "host/variants/variant_table.h"
 #include "host/render/renderer.h"
 
 namespace raygate::lab {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "host/lab/variants/variant_hit_tester.h"
+#include "host/variants/variant_hit_tester.h"
 #include "host/lab/variants/variant_models.h"
 #include "sim/array_model.h"
 #include "sim/plane_model.h"

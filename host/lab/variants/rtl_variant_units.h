@@ -8,7 +8,7 @@
 
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/plane_unit.h"
-#include "host/lab/variants/variant_table.h"
+#include "host/variants/variant_table.h"
 
 namespace raygate {
 

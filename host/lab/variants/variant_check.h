@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/lab/variants/variant_table.h"
+#include "host/variants/variant_table.h"
 
 namespace raygate {
 

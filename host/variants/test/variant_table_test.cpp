@@ -1,4 +1,4 @@
-#include "host/lab/variants/variant_table.h"
+#include "host/variants/variant_table.h"
 
 #include <gtest/gtest.h>
 
@@ -67,6 +67,22 @@ TEST(VariantTable, OfThisBuildIsSound) {
   EXPECT_FALSE(all_variants_of_arithmetic().empty());
   EXPECT_EQ(variant_named("binary32").math, Arithmetic{});
   EXPECT_THROW((void)variant_named("binary33"), InputError);
+}
+
+TEST(VariantTable, AnyFormatIsAVariant) {
+  const auto wide = variant_of_format("e8p15"), raw = variant_of_format("e5p9-raw");
+  ASSERT_TRUE(wide && raw);
+  EXPECT_EQ(wide->math, (Arithmetic{.digits = 15}));
+  EXPECT_TRUE(wide->doubts);
+  EXPECT_EQ(raw->math, (Arithmetic{.digits = 9, .exponent_bits = 5}));
+  EXPECT_FALSE(raw->doubts);
+  EXPECT_EQ(wide->name + " " + raw->name, "e8p15 e5p9-raw");
+  for (const char* text : {"", "e8", "e9p15", "e8p15-row", "e8p150"}) {
+    EXPECT_FALSE(variant_of_format(text)) << text;
+  }
+  for (const char* text : {"e8p2-raw", "e8p25", "e8p10", "e3p12-raw"}) {
+    EXPECT_THROW((void)variant_of_format(text), InputError) << text;
+  }
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 #include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/plane_unit.h"
-#include "host/lab/variants/variant_table.h"
-#include "host/lab/variants/variant_units.h"
+#include "host/variants/variant_table.h"
+#include "host/variants/variant_units.h"
 
 namespace raygate {
 

@@ -3,7 +3,7 @@
 
 #include "host/intersect/unit/plane_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
-#include "host/lab/variants/arithmetic.h"
+#include "host/variants/arithmetic.h"
 
 namespace raygate {
 

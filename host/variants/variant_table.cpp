@@ -1,15 +1,14 @@
-#include "host/lab/variants/variant_table.h"
+#include "host/variants/variant_table.h"
 
 #include <algorithm>
+#include <regex>
 #include <utility>
 
 #include "host/base/input_error.h"
-#include "host/lab/variants/variants_text.h"
+#include "host/variants/variants_text.h"
 
 namespace raygate {
 namespace {
-
-using lab::Row;
 
 constexpr const char* kRoundings[] = {"nearest-even", "toward-zero", "down", "up", "nearest-away"};
 
@@ -30,12 +29,12 @@ void require_possible(const Variant& variant) {
   }
 }
 
-Variant parse_variant(const Row& object) {
-  Row usual = Variant{}.row();
+Variant parse_variant(const Json& object) {
+  Json usual = Variant{}.row();
   usual.erase("hardware");  // follows from the others
-  const Row row = lab::with_usual(object, usual, "a variant");
+  const Json row = with_usual(object, usual, "a variant");
   const auto number = [&](const char* column, int low, int high) {
-    return lab::in_range(column, row[column], low, high);
+    return in_range(column, row[column], low, high);
   };
   Variant variant;
   variant.name = row["variant"];
@@ -62,7 +61,7 @@ Variant parse_variant(const Row& object) {
 
 }  // namespace
 
-Row Variant::row() const {
+Json Variant::row() const {
   return {{"variant", name},
           {"unit", unit == Unit::kSerial ? "serial" : "pipeline"},
           {"exponent_bits", math.exponent_bits},
@@ -78,9 +77,9 @@ Row Variant::row() const {
 
 std::vector<Variant> parse_variants(std::string_view text, const std::string& file) {
   std::vector<Variant> variants;
-  const Row objects = Row::parse(text, nullptr, false);
+  const Json objects = Json::parse(text, nullptr, false);
   if (!objects.is_array()) throw InputError(file + ": expected a JSON array of variants");
-  for (const Row& object : objects) {
+  for (const Json& object : objects) {
     try {
       Variant variant = parse_variant(object);
       if (std::ranges::count(variants, variant.name, &Variant::name) != 0) {
@@ -96,8 +95,21 @@ std::vector<Variant> parse_variants(std::string_view text, const std::string& fi
 
 const std::vector<Variant>& all_variants_of_arithmetic() {
   static const std::vector<Variant> variants =
-      parse_variants(kVariantsText, "host/lab/variants/variants.json");
+      parse_variants(kVariantsText, "host/variants/variants.json");
   return variants;
+}
+
+std::optional<Variant> variant_of_format(std::string_view text) {
+  static const std::regex kFormat("e([3-8])p([0-9]{1,2})(-raw)?");
+  std::cmatch words;
+  if (!std::regex_match(text.begin(), text.end(), words, kFormat)) return std::nullopt;
+  Variant variant;
+  variant.name = text;
+  variant.doubts = !words[3].matched;
+  variant.math.exponent_bits = std::stoi(words[1]);
+  variant.math.digits = in_range("digits", std::stoi(words[2]), 3, 24);
+  require_possible(variant);
+  return variant;
 }
 
 const Variant& variant_named(std::string_view name) {

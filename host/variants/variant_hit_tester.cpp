@@ -1,4 +1,4 @@
-#include "host/lab/variants/variant_hit_tester.h"
+#include "host/variants/variant_hit_tester.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "host/intersect/unit/pipeline_hit_tester.h"
 #include "host/intersect/unit/serial_hit_tester.h"
-#include "host/lab/variants/variant_units.h"
+#include "host/variants/variant_units.h"
 
 // The bound of an edge test in a format of u = 2^-digits
 //

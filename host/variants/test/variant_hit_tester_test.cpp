@@ -1,4 +1,4 @@
-#include "host/lab/variants/variant_hit_tester.h"
+#include "host/variants/variant_hit_tester.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/lab/stress/random.h"
-#include "host/lab/variants/variant_units.h"
 #include "host/scene/camera.h"
+#include "host/variants/variant_units.h"
 #include "sim/random_bursts.h"
 
 namespace raygate {

@@ -1,4 +1,4 @@
-#include "host/lab/variants/variant_units.h"
+#include "host/variants/variant_units.h"
 
 #include <cassert>
 

@@ -1,4 +1,4 @@
-#include "host/lab/variants/arithmetic.h"
+#include "host/variants/arithmetic.h"
 
 #include <bit>
 #include <cmath>

@@ -1,12 +1,13 @@
 // The variants of arithmetic that are compared, from variants.json.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "host/lab/results.h"
-#include "host/lab/variants/arithmetic.h"
+#include "host/variants/arithmetic.h"
+#include "host/variants/json_object.h"
 
 namespace raygate {
 
@@ -37,7 +38,7 @@ struct Variant {
   /// Whether hw/ can be given these parameters; else there is the reference model alone.
   [[nodiscard]] bool has_hardware() const { return !math.flush && !math.fused; }
   /// All columns of the object, and `hardware`.
-  [[nodiscard]] lab::Row row() const;
+  [[nodiscard]] Json row() const;
 };
 
 /// Reads such a table. Throws InputError that names `file` and the variant: unknown or wrong
@@ -47,6 +48,10 @@ struct Variant {
 
 /// variants.json as it was when the program was built.
 [[nodiscard]] const std::vector<Variant>& all_variants_of_arithmetic();
+
+/// The pipelined unit in a format such as e8p15: 8 exponent bits, 15 digits; e8p15-raw ignores
+/// doubts. Nothing for other texts. Throws InputError for a format without hardware or bounds.
+[[nodiscard]] std::optional<Variant> variant_of_format(std::string_view text);
 
 /// The one of that name. Throws InputError, with the names that there are.
 [[nodiscard]] const Variant& variant_named(std::string_view name);

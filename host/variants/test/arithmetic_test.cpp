@@ -1,5 +1,5 @@
 // The emulated arithmetic against the machine's, and in narrow formats against its definition.
-#include "host/lab/variants/arithmetic.h"
+#include "host/variants/arithmetic.h"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>
