@@ -134,11 +134,10 @@ std::string to_string(Arith arith) { return name_of(arith_choices(), arith); }
 
 void add_engine_options(OptionTable& table, EngineOptions& options) {
   if (!has_simulation()) options.engine = Engine::kCpu;
-  table.choice(
-      "--engine", "NAME",
-      "rtl: simulated hardware; model: its model in C++; cpu: the same hits, faster; check: "
-      "rtl and cpu, stopping where they differ ({})",
-      options.engine, engine_choices(), kInStats);
+  table.choice("--engine", "NAME",
+               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster; check: "
+               "rtl and cpu ({})",
+               options.engine, engine_choices(), kInStats);
   table.choice<std::string>(
       "--unit", "NAME", "pipeline, serial (the paper's) or core ({})", options.unit,
       {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}}, kInStats);
