@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 
 namespace raygate {
 

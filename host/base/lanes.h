@@ -1,5 +1,5 @@
-// Lanes: vectors of eight floats or integers and operations on them, compiled for each instruction
-// set by in_vectors (host/base/vectors.h).
+// Lanes: the compiler's vectors of any element and count, and operations written once for them and
+// for a single number; compiled for each instruction set by in_vectors (host/base/vectors.h).
 #pragma once
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #if defined(__SSE__)
 #include <immintrin.h>
 #endif
@@ -17,103 +18,255 @@ namespace raygate {
 
 /// Rays are handled eight at a time: one AVX register of floats.
 inline constexpr int kLanes = 8;
+/// Triangles of a leaf are tested four at a time: one SSE register of floats, one AVX register of
+/// doubles.
+inline constexpr int kQuad = 4;
 
 /// A set of lanes: bit k stands for lane k.
 using LaneMask = std::uint32_t;
 
-/// GCC's and Clang's vector types: element-wise arithmetic, and comparisons giving 0 or -1. Passed
-/// around by reference only, so that no calling convention depends on the machine; aligned
-/// explicitly, as the compiler's own choice does.
-using FloatLanes = float __attribute__((vector_size(4 * kLanes), aligned(4 * kLanes)));
-using IntLanes = std::int32_t __attribute__((vector_size(4 * kLanes), aligned(4 * kLanes)));
+/// GCC's and Clang's vector types: element-wise arithmetic, comparisons giving 0 or -1, and
+/// `mask ? a : b`. Never passed to or returned by what is not inlined, so that no calling
+/// convention depends on the machine; aligned explicitly, as the compiler's own choice does.
+template <class Element, int kCount>
+using Vec [[gnu::vector_size(sizeof(Element) * kCount), gnu::aligned(sizeof(Element) * kCount)]] =
+    Element;
 
-RAYGATE_INLINE void load_lanes(const float* from, FloatLanes& to) {
-  std::memcpy(&to, from, sizeof to);
+using FloatLanes = Vec<float, kLanes>;
+using IntLanes = Vec<std::int32_t, kLanes>;
+using FloatQuad = Vec<float, kQuad>;
+using IntQuad = Vec<std::int32_t, kQuad>;
+using DoubleQuad = Vec<double, kQuad>;
+using LongQuad = Vec<std::int64_t, kQuad>;
+
+namespace detail {
+template <class Element, int kCount>
+struct VecOf {
+  using Type = Vec<Element, kCount>;
+};
+template <class Element>
+struct VecOf<Element, 1> {
+  using Type = Element;
+};
+template <class T>
+struct LanesInfo;
+template <class T>
+requires std::is_arithmetic_v<T>
+struct LanesInfo<T> {
+  static constexpr int kCount = 1;
+  using Mask = bool;
+};
+template <class T>
+requires requires(const T& x) { (x < x)[0]; }
+struct LanesInfo<T> {
+  static constexpr int kCount = sizeof(T) / sizeof(std::declval<T&>()[0]);
+  using Mask = std::remove_cvref_t<decltype(std::declval<T>() < std::declval<T>())>;
+};
+}  // namespace detail
+
+// What goes with T, which is a number (one lane) or a vector. Functions over T are written once;
+// what they do to a lane depends on nothing in another lane, so the bits are the same for any
+// count. Comparisons give masks for choose(), & and |; `!` negates them.
+
+/// How many lanes.
+template <class T>
+inline constexpr int kLanesOf = detail::LanesInfo<T>::kCount;
+/// As many lanes of another element.
+template <class T, class Element>
+using Like = typename detail::VecOf<Element, detail::LanesInfo<T>::kCount>::Type;
+template <class T>
+using IntOf = Like<T, std::int32_t>;
+template <class T>
+using WordOf = Like<T, std::uint32_t>;
+template <class T>
+using WideOf = Like<T, double>;
+/// What comparisons of T give.
+template <class T>
+using MaskOf = typename detail::LanesInfo<T>::Mask;
+
+/// The lanes of T from an array or another object, and back.
+template <class T, class From>
+RAYGATE_INLINE T load(const From* from) {
+  T lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+template <class T, class To>
+RAYGATE_INLINE void store(To* to, const T& lanes) {
+  std::memcpy(to, &lanes, sizeof lanes);
 }
 
-/// Lanes where a comparison held, for two comparisons at once: the first in bits 0-7, the second
-/// in bits 8-15.
-RAYGATE_INLINE std::uint32_t mask_of(const IntLanes& first, const IntLanes& second) {
-  constexpr IntLanes kFirst = {1, 2, 4, 8, 16, 32, 64, 128};
-  constexpr IntLanes kSecond = {256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-  IntLanes bits = (first & kFirst) | (second & kSecond);
-  bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
-  bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
-  bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2, 5, 4, 7, 6);
-  return static_cast<std::uint32_t>(bits[0]);
+/// x in all lanes.
+template <class T, class Element>
+RAYGATE_INLINE T spread(Element x) {
+  return T{} + x;
 }
 
-/// The lanes whose sign bit is set; the fitting code is the one it is inlined into.
-template <Vectors kCode = Vectors::kBaseline>
-RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
-#ifdef RAYGATE_AVX2
-  if constexpr (kCode != Vectors::kBaseline) {
-    return static_cast<LaneMask>(__builtin_ia32_movmskps256(reinterpret_cast<FloatLanes>(lanes)));
+/// The same numbers as another kind: rounded to nearest, or cut off where they become integers.
+template <class To, class T>
+RAYGATE_INLINE To convert(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return static_cast<To>(x);
+  } else {
+    return __builtin_convertvector(x, To);
   }
-#endif
-#if defined(__SSE__)
-  const auto low = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
-  const auto high = __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
-  return static_cast<LaneMask>(_mm_movemask_ps(reinterpret_cast<__m128>(low)) |
-                               _mm_movemask_ps(reinterpret_cast<__m128>(high)) << 4);
-#else
-  return mask_of(lanes >> 31, IntLanes{});
-#endif
+}
+template <class T>
+RAYGATE_INLINE WideOf<T> wide(const T& x) {
+  return convert<WideOf<T>>(x);
+}
+template <class T>
+RAYGATE_INLINE Like<T, float> narrow(const T& x) {
+  return convert<Like<T, float>>(x);
+}
+template <class T>
+RAYGATE_INLINE IntOf<T> whole(const T& x) {
+  return convert<IntOf<T>>(x);
 }
 
-/// -1 in the lanes of the mask, 0 in the others.
-RAYGATE_INLINE void lanes_of(LaneMask mask, IntLanes& lanes) {
-  constexpr IntLanes kBit = {1, 2, 4, 8, 16, 32, 64, 128};
-  lanes = ((IntLanes{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
+/// The same bits as another kind of number.
+template <class T>
+RAYGATE_INLINE IntOf<T> bits_in(const T& x) {
+  return __builtin_bit_cast(IntOf<T>, x);
+}
+template <class T>
+RAYGATE_INLINE Like<T, float> float_of(const T& bits) {
+  return __builtin_bit_cast(Like<T, float>, bits);
+}
+
+/// Lanes of a where the mask is set, of b elsewhere. By bits: GCC 12 compares the mask with 0 anew
+/// for `mask ? a : b`.
+template <class Mask, class T>
+RAYGATE_INLINE T choose(const Mask& mask, const T& a, const T& b) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return mask ? a : b;
+  } else {
+    using Bits = MaskOf<T>;
+    const Bits bits = convert<Bits>(mask);
+    return __builtin_bit_cast(
+        T, (__builtin_bit_cast(Bits, a) & bits) | (__builtin_bit_cast(Bits, b) & ~bits));
+  }
+}
+template <class T>
+RAYGATE_INLINE T minimum(const T& a, const T& b) {
+  return a < b ? a : b;
+}
+template <class T>
+RAYGATE_INLINE T maximum(const T& a, const T& b) {
+  return a > b ? a : b;
+}
+template <class T>
+RAYGATE_INLINE T at_least(const T& x, float least) {
+  return maximum(x, spread<T>(least));
+}
+template <class T>
+RAYGATE_INLINE T at_most(const T& x, float most) {
+  return minimum(x, spread<T>(most));
+}
+template <class T>
+RAYGATE_INLINE T absolute(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return std::abs(x);
+  } else {
+    using Word = std::remove_cvref_t<decltype(MaskOf<T>{}[0])>;
+    return reinterpret_cast<T>(reinterpret_cast<MaskOf<T>>(x) & std::numeric_limits<Word>::max());
+  }
+}
+
+/// Square roots, correctly rounded.
+template <class T>
+RAYGATE_INLINE T root(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return std::sqrt(x);
+  } else {
+    T result;
+    for (int k = 0; k < kLanesOf<T>; ++k) result[k] = std::sqrt(x[k]);
+    return result;
+  }
+}
+
+/// A random word as a number in [0, 1): its upper 24 bits, each as they are.
+template <class W>
+RAYGATE_INLINE Like<W, float> unit_interval(const W& word) {
+  return narrow(__builtin_bit_cast(IntOf<W>, word >> 8)) * 0x1p-24f;
 }
 
 /// The largest lane; no NaN.
 RAYGATE_INLINE float largest_of(const FloatLanes& lanes) {
-  FloatLanes x = lanes, other = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
-  x = x > other ? x : other;
-  other = __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
-  x = x > other ? x : other;
-  other = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
-  x = x > other ? x : other;
+  FloatLanes x = maximum(lanes, __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7, 0, 1, 2, 3));
+  x = maximum(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
+  x = maximum(x, __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6));
   return x[0];
 }
 
-/// Four floats at a time: one SSE register, for the triangles of a leaf.
-inline constexpr int kQuad = 4;
-using FloatQuad = float __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
-using IntQuad = std::int32_t __attribute__((vector_size(4 * kQuad), aligned(4 * kQuad)));
+/// Lanes 0 to 3, lanes 4 to 7, and both again.
+template <class Lanes>
+RAYGATE_INLINE auto low_half(const Lanes& x) {
+  return __builtin_shufflevector(x, x, 0, 1, 2, 3);
+}
+template <class Lanes>
+RAYGATE_INLINE auto high_half(const Lanes& x) {
+  return __builtin_shufflevector(x, x, 4, 5, 6, 7);
+}
+template <class Quad>
+RAYGATE_INLINE auto join(const Quad& low, const Quad& high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 
-/// Four doubles at a time: one AVX register.
-using DoubleQuad = double __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
-using LongQuad = std::int64_t __attribute__((vector_size(8 * kQuad), aligned(8 * kQuad)));
+#ifdef RAYGATE_AVX2
+// Instructions that no text of vectors becomes. Not always inlined, as code for these vectors alone
+// may hold them: they are once the body of in_vectors is one function.
+[[gnu::target("avx")]] inline LaneMask avx_sign_mask(const FloatLanes& x) {
+  return static_cast<LaneMask>(__builtin_ia32_movmskps256(x));
+}
+[[gnu::target("avx512f,avx512vl")]] inline void avx512_compress(IntLanes& x, LaneMask mask) {
+  x = __builtin_ia32_compresssi256_mask(x, IntLanes{} - 1, static_cast<unsigned char>(mask));
+}
+#endif
 
-RAYGATE_INLINE void load_quad(const float* from, FloatQuad& to) {
-  std::memcpy(&to, from, sizeof to);
+/// The lanes whose sign bit is set; the fitting code is the one it is inlined into.
+template <Vectors kCode = Vectors::kBaseline>
+RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
+#if defined(__SSE__)
+  return static_cast<LaneMask>(_mm_movemask_ps(reinterpret_cast<__m128>(quad)));
+#else
+  constexpr IntQuad kBit = {1, 2, 4, 8};
+  const IntQuad bits = (quad >> 31) & kBit;
+  return static_cast<LaneMask>((bits[0] | bits[1]) | (bits[2] | bits[3]));
+#endif
+}
+template <Vectors kCode = Vectors::kBaseline>
+RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
+#ifdef RAYGATE_AVX2
+  if constexpr (kCode != Vectors::kBaseline) {
+    return avx_sign_mask(reinterpret_cast<FloatLanes>(lanes));
+  }
+#endif
+  return sign_mask(IntQuad(low_half(lanes))) | sign_mask(IntQuad(high_half(lanes))) << 4;
+}
+
+/// Whether any lane is set.
+RAYGATE_INLINE bool any(bool mask) { return mask; }
+RAYGATE_INLINE bool any(const IntLanes& mask) { return sign_mask(mask) != 0; }
+
+/// -1 in the lanes of the mask, 0 in the others.
+RAYGATE_INLINE IntLanes lanes_of(LaneMask mask) {
+  constexpr IntLanes kBit = {1, 2, 4, 8, 16, 32, 64, 128};
+  return ((IntLanes{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
 }
 
 /// Four floats as doubles: GCC 12 makes four instructions of what is one.
 template <Vectors kCode>
-RAYGATE_INLINE void widen(const FloatQuad& from, DoubleQuad& to) {
-#ifdef RAYGATE_AVX2
-  if constexpr (kCode != Vectors::kBaseline) {
-    to = __builtin_ia32_cvtps2pd256(from);
-    return;
-  }
+RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
+#if defined(RAYGATE_AVX2) && !defined(__clang__)
+  if constexpr (kCode != Vectors::kBaseline) return __builtin_ia32_cvtps2pd256(from);
 #endif
-  to = __builtin_convertvector(from, DoubleQuad);
+  return wide(from);
 }
 
 /// As many floats as fit a register: what is wider, GCC takes apart word by word to compare it.
 template <Vectors kCode>
-struct NativeFloatsOf {
-  using Type = FloatLanes;
-};
-template <>
-struct NativeFloatsOf<Vectors::kBaseline> {
-  using Type = FloatQuad;
-};
-template <Vectors kCode>
-using NativeFloats = typename NativeFloatsOf<kCode>::Type;
+using NativeFloats = Vec<float, kCode == Vectors::kBaseline ? kQuad : kLanes>;
 
 /// Element i of row k becomes element k of row i.
 RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {
@@ -126,7 +279,6 @@ RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {
   rows[2] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
   rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
 }
-
 RAYGATE_INLINE void transpose(DoubleQuad (&rows)[kQuad]) {
   const DoubleQuad ab_even = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
   const DoubleQuad ab_odd = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
@@ -138,54 +290,32 @@ RAYGATE_INLINE void transpose(DoubleQuad (&rows)[kQuad]) {
   rows[3] = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
-/// The elements whose sign bit is set.
-RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
-#if defined(__SSE__)
-  return static_cast<LaneMask>(_mm_movemask_ps(reinterpret_cast<__m128>(quad)));
-#else
-  LaneMask mask = 0;
-  for (int i = 0; i < kQuad; ++i) mask |= static_cast<LaneMask>(quad[i] < 0) << i;
-  return mask;
-#endif
-}
-
-template <Vectors kCode>
-RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
-  return sign_mask(quad);
-}
-
-/// |x|, of a number or of vectors of floats or doubles.
-template <class T>
-RAYGATE_INLINE void magnitude(const T& x, T& result) {
-  if constexpr (std::is_arithmetic_v<T>) {
-    result = std::abs(x);
-  } else {
-    using Bits = decltype(x < x);
-    using Word = std::remove_cvref_t<decltype(Bits{}[0])>;
-    result = reinterpret_cast<T>(reinterpret_cast<Bits>(x) & std::numeric_limits<Word>::max());
-  }
-}
-
 /// u x v, and for each component the sum of the magnitudes of its two products.
 template <class T>
 RAYGATE_INLINE void cross(const T (&u)[3], const T (&v)[3], T (&value)[3], T (&size)[3]) {
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     const T plus = u[i] * v[j], minus = u[j] * v[i];
-    T plus_size, minus_size;
-    magnitude(plus, plus_size);
-    magnitude(minus, minus_size);
     value[k] = plus - minus;
-    size[k] = plus_size + minus_size;
+    size[k] = absolute(plus) + absolute(minus);
   }
 }
 
-/// The same bits as integers, and back.
-RAYGATE_INLINE void bits_of(const FloatLanes& lanes, IntLanes& bits) {
-  bits = reinterpret_cast<IntLanes>(lanes);
-}
-RAYGATE_INLINE void floats_of(const IntLanes& bits, FloatLanes& lanes) {
-  lanes = reinterpret_cast<FloatLanes>(bits);
+/// Lanes to be read one by one.
+template <class Element, int kCount>
+struct LaneArray {
+  alignas(sizeof(Element) * kCount) Element values[kCount];
+  RAYGATE_INLINE Element operator[](int k) const { return values[k]; }
+};
+template <class T>
+RAYGATE_INLINE auto unpack(const T& x) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return LaneArray<T, 1>{{x}};
+  } else {
+    LaneArray<std::remove_cvref_t<decltype(x[0])>, kLanesOf<T>> out;
+    store(out.values, x);
+    return out;
+  }
 }
 
 }  // namespace raygate

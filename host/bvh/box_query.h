@@ -22,9 +22,8 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
     const Bvh::Node& node = bvh.node(waiting[--depth], room);
     IntLanes touches = IntLanes{} - 1;
     for (int k = 0; k < 3; ++k) {
-      FloatLanes lows, highs;
-      load_lanes(node.bounds[0][k], lows);
-      load_lanes(node.bounds[1][k], highs);
+      const FloatLanes lows = load<FloatLanes>(node.bounds[0][k]),
+                       highs = load<FloatLanes>(node.bounds[1][k]);
       touches &= (lows <= high[k]) & (highs >= low[k]);
     }
     for (LaneMask met = sign_mask<kCode>(touches); met != 0; met &= met - 1) {

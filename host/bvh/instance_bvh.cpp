@@ -54,7 +54,7 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   FloatLanes bounds[2][3];
   for (int end = 0; end < 2; ++end) {
-    for (int k = 0; k < 3; ++k) load_lanes(from.bounds[end][k], bounds[end][k]);
+    for (int k = 0; k < 3; ++k) bounds[end][k] = load<FloatLanes>(from.bounds[end][k]);
   }
   // Their bounds are infinite: times 0, no numbers.
   const IntLanes absent = bounds[0][0] > bounds[1][0];
@@ -80,15 +80,12 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const float* from, std::size_t 
   for (std::size_t v = 0; v < 3; ++v) {
     DoubleQuad corner[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      FloatQuad single;
-      load_quad(from + (3 * v + k) * count, single);
-      corner[k] = __builtin_convertvector(single, DoubleQuad);
+      corner[k] = wide(load<FloatQuad>(from + (3 * v + k) * count));
     }
     for (std::size_t k = 0; k < 3; ++k) {  // what is beyond the last triangle is written over
       DoubleQuad coordinate;
       transform_coordinate(at.rows[k], corner, coordinate);
-      const FloatQuad single = __builtin_convertvector(coordinate, FloatQuad);
-      std::memcpy(to + (3 * v + k) * count, &single, sizeof single);
+      store(to + (3 * v + k) * count, narrow(coordinate));
     }
   }
 }

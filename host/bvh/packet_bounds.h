@@ -72,9 +72,8 @@ RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh
   FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
   for (int k = 0; k < 3; ++k) {
     const int negative = bounds.octant >> k & 1;
-    FloatLanes near, far;
-    load_lanes(node.bounds[negative][k], near);
-    load_lanes(node.bounds[negative ^ 1][k], far);
+    const FloatLanes near = load<FloatLanes>(node.bounds[negative][k]),
+                     far = load<FloatLanes>(node.bounds[negative ^ 1][k]);
     const FloatLanes t_near = (near - bounds.origin[k]) * bounds.inverse_near[k];
     const FloatLanes t_far = (far - bounds.origin[k]) * bounds.inverse_far[k];
     enter = t_near > enter ? t_near : enter;

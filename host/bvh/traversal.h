@@ -53,8 +53,7 @@ RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, TraversalStack<
       FloatLanes entry;
       LaneMask met = visitor.intersect_boxes(node, leaf.rays, entry);
       if (met == 0) break;
-      IntLanes keys;
-      bits_of(entry, keys);
+      IntLanes keys = bits_in(entry);
       keys = (keys & ~kNumber) | kNumbers;
       const auto take = [&]() __attribute__((always_inline)) {
         const Key key = keys[std::countr_zero(met)];

@@ -25,9 +25,8 @@ namespace raygate {
 /// The grazing that the unit reports with a hit (BurstHit::t_error), from the largest exponent
 /// field of N's words and V's bits; V is finite. `Bits`: std::int32_t, or a vector of them.
 template <class Bits>
-RAYGATE_INLINE void grazing_of(const Bits& largest, const Bits& v, Bits& grazing) {
-  grazing = largest - (v >> 23 & 0xFF);
-  grazing = grazing > 0 ? grazing : Bits{};
+RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
+  return maximum(Bits(largest - (v >> 23 & 0xFF)), Bits{});
 }
 
 /// The largest exponent field of a normal's words.
@@ -39,13 +38,13 @@ RAYGATE_INLINE void grazing_of(const Bits& largest, const Bits& v, Bits& grazing
 /// The bits of NearestHit::point_error: 2^(grazing - 18), or +infinity where the unit says nothing
 /// about V, or calls it too small; from the bits of the plane's d and of V.
 template <class Bits>
-RAYGATE_INLINE void point_error_of(const Bits& d, const Bits& v, const Bits& grazing, Bits& error) {
+RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& grazing) {
   constexpr std::int32_t kBias = 127, kMaxGrazing = 12, kRange = 102;
   const Bits d_field = d >> 23 & 0xFF, v_field = v >> 23 & 0xFF, apart = d_field - v_field;
   const Bits in_range = (d_field >= kBias - kRange) & (d_field <= kBias + kRange) & (v_field > 0) &
                         (v_field < 0xFF) & ((v ^ d) >= 0) & (grazing <= kMaxGrazing) &
                         (apart <= kRange) & (apart >= -kRange);
-  error = in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
+  return in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
 }
 
 /// P of a plane (N, d) and a direction each lane, and the bits of its error: those of plane_point.
@@ -54,18 +53,16 @@ template <class Floats, class Ints, class Number>
 RAYGATE_INLINE void plane_points(const Number (&n)[3], const Number& d, const Ints& largest,
                                  const Floats (&direction)[3], Floats (&point)[3], Ints& error) {
   const Floats v = 0.0f + ((n[0] * direction[0] + n[1] * direction[1]) + n[2] * direction[2]);
-  Ints d_bits, grazing;
+  Ints d_bits;
   if constexpr (std::is_same_v<Number, float>) {
     d_bits = Ints{} + std::bit_cast<std::int32_t>(d);
   } else {
-    d_bits = reinterpret_cast<Ints>(d);
+    d_bits = bits_in(d);
   }
-  grazing_of(largest, reinterpret_cast<Ints>(v), grazing);
-  point_error_of(d_bits, reinterpret_cast<Ints>(v), grazing, error);
+  error = point_error_of(d_bits, bits_in(v), grazing_of(largest, bits_in(v)));
   for (int k = 0; k < 3; ++k) {
     const Floats p = d * direction[k] / v;
-    const Ints nan = Ints{} + 0x7FC00000;
-    point[k] = p == p ? p : reinterpret_cast<Floats>(nan);
+    point[k] = p == p ? p : float_of(Ints{} + 0x7FC00000);
   }
 }
 

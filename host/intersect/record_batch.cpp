@@ -30,10 +30,7 @@ RAYGATE_INLINE void subtract(const Points& a, const Points& b, Points& result) {
   for (int k = 0; k < 3; ++k) result[k] = a[k] - b[k];
 }
 
-RAYGATE_INLINE void largest_of(const Points& p, Doubles& result) {
-  result = p[0] > p[1] ? p[0] : p[1];
-  result = result > p[2] ? result : p[2];
-}
+RAYGATE_INLINE Doubles largest_of(const Points& p) { return maximum(maximum(p[0], p[1]), p[2]); }
 
 /// The exponent of each is in [-60, 60], or it is 0.
 RAYGATE_INLINE void require_ordinary(const Doubles& size, Longs& good) {
@@ -45,12 +42,9 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
                                    Longs& good) {
   cross(u, v, value, size);
   Points s;
-  for (int k = 0; k < 3; ++k) magnitude(value[k], s[k]);
-  Doubles largest, largest_value;
-  largest_of(size, largest);
-  good &= 8.0 * kU * largest <= 0x1p-34 * (s[0] + s[1] + s[2]);
-  largest_of(s, largest_value);
-  require_ordinary(largest_value, good);
+  for (int k = 0; k < 3; ++k) s[k] = absolute(value[k]);
+  good &= 8.0 * kU * largest_of(size) <= 0x1p-34 * (s[0] + s[1] + s[2]);
+  require_ordinary(largest_of(s), good);
 }
 
 /// Four words of four records each, from four vectors of one word each; words[i] begins record i.
@@ -63,30 +57,22 @@ RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& 
 }
 
 RAYGATE_INLINE void to_floats(const Points& p, Floats (&words)[3]) {
-  for (int k = 0; k < 3; ++k) words[k] = __builtin_convertvector(p[k], Floats);
+  for (int k = 0; k < 3; ++k) words[k] = narrow(p[k]);
 }
 
 /// The bound of an edge: its sum of magnitudes times a constant, rounded up.
-RAYGATE_INLINE void edge_bound(const Floats (&words)[3], Floats& bound) {
+RAYGATE_INLINE Floats edge_bound(const Floats (&words)[3]) {
   Doubles e[3];
-  for (int k = 0; k < 3; ++k) magnitude(__builtin_convertvector(words[k], Doubles), e[k]);
+  for (int k = 0; k < 3; ++k) e[k] = absolute(wide(words[k]));
   const Doubles exact = kEdgeBound * 0x1p-24 * (e[0] + e[1] + e[2]);
-  const Floats nearest = __builtin_convertvector(exact, Floats);
-  const Longs below = __builtin_convertvector(nearest, Doubles) < exact;
-  bound = reinterpret_cast<Floats>(reinterpret_cast<Ints>(nearest) -
-                                   __builtin_convertvector(below, Ints));
-}
-
-RAYGATE_INLINE void to_doubles(const float (&lanes)[kBatch], Doubles& doubles) {
-  Floats floats;
-  std::memcpy(&floats, lanes, sizeof floats);
-  doubles = __builtin_convertvector(floats, Doubles);
+  const Floats nearest = narrow(exact);
+  return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
 }
 
 /// The corners of four triangles.
 RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   for (int v = 0; v < 3; ++v) {
-    for (int k = 0; k < 3; ++k) to_doubles(views.corners[v][k], t[v][k]);
+    for (int k = 0; k < 3; ++k) t[v][k] = wide(load<Floats>(views.corners[v][k]));
   }
 }
 
@@ -99,18 +85,11 @@ RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& n
   subtract(t[2], t[0], to_c);
   accurate_cross(to_b, to_c, normal, size, good);
   d = a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
-  for (int k = 0; k < 3; ++k) magnitude(a[k], far[k]);
+  for (int k = 0; k < 3; ++k) far[k] = absolute(a[k]);
   const Doubles error = 10.0 * kU * (far[0] * size[0] + far[1] * size[1] + far[2] * size[2]);
-  Doubles distance;
-  magnitude(d, distance);
+  const Doubles distance = absolute(d);
   good &= (error <= 0x1p-32 * distance) & (distance > error);
   require_ordinary(distance, good);
-}
-
-RAYGATE_INLINE LaneMask mask_of(const Longs& lanes) {
-  LaneMask mask = 0;
-  for (int i = 0; i < kBatch; ++i) mask |= static_cast<LaneMask>(lanes[i] & 1) << i;
-  return mask;
 }
 
 }  // namespace
@@ -142,13 +121,13 @@ LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&wor
       accurate_cross(start, way, edge, size, good);
       for (int i = 0; i < 3; ++i) edge[i] = lower ? edge[i] : -edge[i];
       to_floats(edge, edges[k]);
-      edge_bound(edges[k], bounds[k]);
+      bounds[k] = edge_bound(edges[k]);
     }
-    store_words(n[0], n[1], n[2], __builtin_convertvector(d, Floats), words);
+    store_words(n[0], n[1], n[2], narrow(d), words);
     store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], words, 4);
     store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], words, 8);
     store_words(edges[2][2], bounds[0], bounds[1], bounds[2], words, 12);
-    return mask_of(good);
+    return sign_mask(whole(good));
   });
 }
 
@@ -158,19 +137,17 @@ LaneMask make_four_planes(const PlaneViews& views, Planes& planes) {
     Points t[3], a, normal;
     load_corners(views, t);
     for (int k = 0; k < 3; ++k) {
-      Doubles origin;
-      to_doubles(views.origins[k], origin);
-      a[k] = t[0][k] - origin;
+      a[k] = t[0][k] - wide(load<Floats>(views.origins[k]));
     }
     Longs good = Longs{} - 1;
     Doubles d;
     find_planes(t, a, normal, d, good);
     Floats words[4];
-    for (int k = 0; k < 3; ++k) words[k] = __builtin_convertvector(normal[k], Floats);
-    words[3] = __builtin_convertvector(d, Floats);
+    for (int k = 0; k < 3; ++k) words[k] = narrow(normal[k]);
+    words[3] = narrow(d);
     static_assert(sizeof words == sizeof planes.words);
     std::memcpy(planes.words, words, sizeof words);
-    return mask_of(good);
+    return sign_mask(whole(good));
   });
 }
 

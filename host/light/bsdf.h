@@ -2,7 +2,7 @@
 #pragma once
 
 #include "host/base/elementary.h"
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/light/material_parameters.h"
 #include "host/light/metallic_roughness.h"
 #include "host/light/sampler.h"
@@ -48,7 +48,7 @@ class Bsdf {
  public:
   Bsdf() = default;
   RAYGATE_INLINE Bsdf(const Surface<T>& surface, HitKind kind,
-                      const MaterialParameters* const (&materials)[LanesOf<T>::kCount]);
+                      const MaterialParameters* const (&materials)[kLanesOf<T>]);
 
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& diffuse() const { return diffuse_; }
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& glossy() const { return glossy_; }
@@ -158,7 +158,7 @@ class Bsdf {
 
 template <class T>
 RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
-                             const MaterialParameters* const (&materials)[LanesOf<T>::kCount])
+                             const MaterialParameters* const (&materials)[kLanesOf<T>])
     : kind_(kind),
       view_(surface.view),
       normal_(surface.normal),

@@ -43,7 +43,7 @@ struct DirectionToLight {
 template <class T>
 RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number, const MaskOf<T>& is_asked,
                                      const Triple<T>& towards, const Triple<T>& light,
-                                     const std::uint32_t (&indices)[LanesOf<T>::kCount],
+                                     const std::uint32_t (&indices)[kLanesOf<T>],
                                      const LightPoint<T>& point) {
   const auto asked = unpack(is_asked);
   const auto radiances = unpack(light), points = unpack(point.position);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/base/elementary.h"
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/light/sampler.h"
 #include "host/scene/scene.h"
 
@@ -47,7 +47,7 @@ class Environment {
   /// The cell around a direction, and where in it that is.
   template <class T>
   struct Place {
-    std::uint32_t columns[LanesOf<T>::kCount], rows[LanesOf<T>::kCount];
+    std::uint32_t columns[kLanesOf<T>], rows[kLanesOf<T>];
     T x, y;  // from the left and the upper edge, of the way between the texels' middles
   };
   template <class T>
@@ -75,7 +75,7 @@ class Environment {
 
 template <class T>
 RAYGATE_INLINE Environment::Place<T> Environment::place(const Triple<T>& direction) const {
-  constexpr int kCount = LanesOf<T>::kCount;
+  constexpr int kCount = kLanesOf<T>;
   const T right = dot(direction, spread<T>(right_)), ahead = dot(direction, spread<T>(ahead_));
   const T up = dot(direction, spread<T>(up_));
   // Cell 0 begins half a texel before the map does.
@@ -93,8 +93,8 @@ RAYGATE_INLINE Environment::Place<T> Environment::place(const Triple<T>& directi
     from_left[k] = xs[k] - static_cast<float>(column);
     from_top[k] = std::min(ys[k] - static_cast<float>(found.rows[k]), 1.0f);
   }
-  found.x = lanes_from<T>(from_left);
-  found.y = lanes_from<T>(from_top);
+  found.x = load<T>(from_left);
+  found.y = load<T>(from_top);
   return found;
 }
 
@@ -127,7 +127,7 @@ RAYGATE_INLINE T Environment::pdf(const Triple<T>& direction) const {
 
 template <class T>
 RAYGATE_INLINE Triple<T> Environment::sample(const SquarePoint<T>& u) const {
-  constexpr int kCount = LanesOf<T>::kCount;
+  constexpr int kCount = kLanesOf<T>;
   const auto xs = unpack(u.x), ys = unpack(u.y);
   std::uint32_t rows[kCount];
   float in_rows[kCount], columns[kCount], in_columns[kCount];
@@ -144,15 +144,13 @@ RAYGATE_INLINE Triple<T> Environment::sample(const SquarePoint<T>& u) const {
     columns[k] = static_cast<float>(
         find(&column_cdf_[std::size_t{rows[k]} * width_], width_, xs[k], in_columns[k]));
   }
-  const T in_row = lanes_from<T>(in_rows);
+  const T in_row = load<T>(in_rows);
   const T upper = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k]]; });
   const T lower = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k] + 1]; });
   const T cosine = upper * (1.0f - in_row) + lower * in_row;
   const T sine = root(at_least(1.0f - cosine * cosine, 0.0f));
-  const auto turn =
-      sine_cosine((wide(lanes_from<T>(columns)) + wide(lanes_from<T>(in_columns)) - 0.5) *
-                      (1.0 / double(width_)) -
-                  0.5);
+  const auto turn = sine_cosine(
+      (wide(load<T>(columns)) + wide(load<T>(in_columns)) - 0.5) * (1.0 / double(width_)) - 0.5);
   return spread<T>(up_) * cosine + spread<T>(right_) * (sine * narrow(turn.sine)) +
          spread<T>(ahead_) * (sine * narrow(turn.cosine));
 }

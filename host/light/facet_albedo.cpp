@@ -54,7 +54,7 @@ FacetAlbedo::FacetAlbedo(float index) {
   constexpr float kLeastCosine = 1e-4f;
   in_vectors([&](auto code) RAYGATE_BODY {
     using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
-    constexpr int kCount = LanesOf<T>::kCount;
+    constexpr int kCount = kLanesOf<T>;
     for (int row = 0; row < kSize; ++row) {
       const float rough = static_cast<float>(row) / (kSize - 1);
       for (int column = 0; column < kSize; column += kCount) {

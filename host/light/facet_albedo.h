@@ -1,7 +1,7 @@
 // Facet albedo: the share of light that leaves a rough surface after one facet, as a table.
 #pragma once
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 
 namespace raygate {
 
@@ -65,7 +65,7 @@ class FacetAlbedo {
   /// A place between two rows or columns.
   template <class T>
   struct Place {
-    LaneArray<std::int32_t, LanesOf<T>::kCount> number;
+    LaneArray<std::int32_t, kLanesOf<T>> number;
     T rest;
 
     RAYGATE_INLINE explicit Place(const T& x) {

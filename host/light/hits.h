@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/intersect/intersector.h"
 #include "host/light/bsdf.h"
 #include "host/light/integrator_options.h"
@@ -115,7 +115,7 @@ RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& a
 /// As many hits of one kind as T has lanes.
 template <class T>
 struct Hits {
-  static constexpr int kCount = LanesOf<T>::kCount;
+  static constexpr int kCount = kLanesOf<T>;
 
   /// `at` says where in the block; where there are fewer than lanes, the last one fills the rest.
   RAYGATE_INLINE Hits(const ShadingScene& shading, HitBlock& hits, HitKind hit_kind,

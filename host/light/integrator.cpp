@@ -148,7 +148,7 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
   const bool is_sampled = kind_ == IntegratorKind::kPath;
   in_vectors([&](auto code) RAYGATE_BODY {
     using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
-    constexpr std::size_t kCount = LanesOf<T>::kCount;
+    constexpr std::size_t kCount = kLanesOf<T>;
     for (std::size_t i = 0; i < escaped_.size(); i += kCount) {
       const std::size_t count = std::min(kCount, escaped_.size() - i);
       const PathState* states[kCount];
@@ -167,7 +167,7 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
       Triple<T> light = gather<T>(states, &PathState::throughput) * environment.radiance(direction);
       if (is_sampled) {
         const T pdf = gather<T>(states, &PathState::pdf);
-        const T light_pdf = environment.pdf(direction) * lanes_from<T>(pmfs);
+        const T light_pdf = environment.pdf(direction) * load<T>(pmfs);
         light = light * choose(pdf > 0.0f, power_heuristic(pdf, light_pdf), spread<T>(1.0f));
         const auto directions = unpack(direction);
         light = light * gather<T>([&](int k) RAYGATE_BODY {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -89,12 +89,12 @@ RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& poi
   constexpr float kMargin = 0x1p-10f;
   constexpr float kLeastSquare = 0x1p-40f;
   const T one = spread<T>(1.0f);
-  for (int k = 0; k < kLanes; k += LanesOf<T>::kCount) {
-    const T nearness = lanes_from<T>(node.nearness + k);
-    const Triple<T> way = {lanes_from<T>(node.x + k) - nearness * point.x,
-                           lanes_from<T>(node.y + k) - nearness * point.y,
-                           lanes_from<T>(node.z + k) - nearness * point.z};
-    const T squared = dot(way, way), radius = lanes_from<T>(node.squared_radius + k);
+  for (int k = 0; k < kLanes; k += kLanesOf<T>) {
+    const T nearness = load<T>(node.nearness + k);
+    const Triple<T> way = {load<T>(node.x + k) - nearness * point.x,
+                           load<T>(node.y + k) - nearness * point.y,
+                           load<T>(node.z + k) - nearness * point.z};
+    const T squared = dot(way, way), radius = load<T>(node.squared_radius + k);
     const auto is_inside = !(squared > radius);
     const T per_distance = 1.0f / root(choose(squared > 0.0f, squared, one));
     // The angle that the ball takes up, from its middle.
@@ -112,12 +112,11 @@ RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& poi
     const T received =
         normal == glm::vec3(0.0f) ? one : less_ball(arriving, sine_of(arriving)) + kMargin;
 
-    const Triple<T> axis = {lanes_from<T>(node.axis_x + k), lanes_from<T>(node.axis_y + k),
-                            lanes_from<T>(node.axis_z + k)};
+    const Triple<T> axis = {load<T>(node.axis_x + k), load<T>(node.axis_y + k),
+                            load<T>(node.axis_z + k)};
     const T leaving = -dot(way, axis) * per_distance, leaving_sine = sine_of(leaving);
-    const T cone_cosine = lanes_from<T>(node.spread + k),
-            cone_sine = lanes_from<T>(node.spread_sine + k);
-    const T reach = lanes_from<T>(node.reach + k);
+    const T cone_cosine = load<T>(node.spread + k), cone_sine = load<T>(node.spread_sine + k);
+    const T reach = load<T>(node.reach + k);
     const auto sent_at = [&](const T& cosine) RAYGATE_BODY {
       const auto is_in_cone = cosine > cone_cosine;
       const T beyond = choose(is_in_cone, one, cosine * cone_cosine + leaving_sine * cone_sine);
@@ -125,10 +124,10 @@ RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& poi
       const T sent = less_ball(beyond, sine) + kMargin;
       return choose(sent > reach, sent, T{});
     };
-    const T sent = maximum(sent_at(leaving), lanes_from<T>(node.back + k) * sent_at(-leaving));
-    const T brought = lanes_from<T>(node.power + k) * received * sent /
+    const T sent = maximum(sent_at(leaving), load<T>(node.back + k) * sent_at(-leaving));
+    const T brought = load<T>(node.power + k) * received * sent /
                       at_least(maximum(squared, radius), kLeastSquare);
-    lanes_to(weights + k, choose(received > 0.0f, brought, T{}));
+    store(weights + k, choose(received > 0.0f, brought, T{}));
   }
   total = 0.0f;
   for (const float weight : weights) total += weight;

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/bvh/bvh.h"
 #include "host/light/camera_lights.h"
 #include "host/light/environment.h"
@@ -145,12 +145,12 @@ class Lights {
 
   /// Points of area lights, uniform in area, for points of the unit square.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(
-      const std::uint32_t (&indices)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
+  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const std::uint32_t (&indices)[kLanesOf<T>],
+                                                    const SquarePoint<T>& u) const;
   /// The same of one patch each.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
-      const std::uint32_t (&numbers)[LanesOf<T>::kCount], const SquarePoint<T>& u) const;
+      const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const;
   /// The middle of a flat light, or very near, as a sample. Its primitive is one of the light's.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
@@ -161,8 +161,8 @@ class Lights {
   /// The radiance of area lights at points of them, one light and one point a lane. Of what is no
   /// area light its emission.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE Triple<T> radiance_at(
-      const Light* const (&lights)[LanesOf<T>::kCount], const LightPoint<T>& at) const {
+  [[nodiscard]] RAYGATE_INLINE Triple<T> radiance_at(const Light* const (&lights)[kLanesOf<T>],
+                                                     const LightPoint<T>& at) const {
     const Triple<T> emission = gather<T>(lights, &Light::emission);
     if (!any(gather<T>(lights, &Light::is_textured))) return emission;
     const auto plain = unpack(emission), points = unpack(at.position);
@@ -256,9 +256,9 @@ class Lights {
 };
 
 template <class T>
-RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&indices)[LanesOf<T>::kCount],
+RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&indices)[kLanesOf<T>],
                                             const SquarePoint<T>& u) const {
-  constexpr int kCount = LanesOf<T>::kCount;
+  constexpr int kCount = kLanesOf<T>;
   const auto wanted = unpack(u.x);
   std::uint32_t numbers[kCount];
   const Patch* patches[kCount];
@@ -274,10 +274,10 @@ RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&indices)[Lanes
 }
 
 template <class T>
-RAYGATE_INLINE LightPoint<T> Lights::sample_patches(
-    const std::uint32_t (&numbers)[LanesOf<T>::kCount], const SquarePoint<T>& u) const {
-  const Patch* patches[LanesOf<T>::kCount];
-  for (int k = 0; k < LanesOf<T>::kCount; ++k) patches[k] = &patches_[numbers[k]];
+RAYGATE_INLINE LightPoint<T> Lights::sample_patches(const std::uint32_t (&numbers)[kLanesOf<T>],
+                                                    const SquarePoint<T>& u) const {
+  const Patch* patches[kLanesOf<T>];
+  for (int k = 0; k < kLanesOf<T>; ++k) patches[k] = &patches_[numbers[k]];
   // The square onto the triangle: sqrt keeps areas.
   const MaskOf<T> is_triangle = gather<T>(patches, &Patch::is_triangle);
   const T far = root(u.x);

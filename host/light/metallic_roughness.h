@@ -2,7 +2,7 @@
 // coat.
 #pragma once
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/light/facet_albedo.h"
 #include "host/light/material_parameters.h"
 #include "host/light/sampler.h"
@@ -64,9 +64,8 @@ struct MetallicRoughnessLobes {
   T under_coat;           ///< what the view sees of all that is under it
 
   MetallicRoughnessLobes() = default;
-  RAYGATE_INLINE MetallicRoughnessLobes(
-      const Surface<T>& surface, HitKind hit_kind,
-      const MaterialParameters* const (&materials)[LanesOf<T>::kCount])
+  RAYGATE_INLINE MetallicRoughnessLobes(const Surface<T>& surface, HitKind hit_kind,
+                                        const MaterialParameters* const (&materials)[kLanesOf<T>])
       : kind(hit_kind), albedo(materials[0]->facet_albedo), view(surface.view) {
     using Material = MaterialParameters;
     const T one = spread<T>(1.0f);

@@ -33,9 +33,8 @@ class Overlaps {
     for (const Boxes& boxes : boxes_) {
       IntLanes touches = IntLanes{} - 1;
       for (int k = 0; k < 3; ++k) {
-        FloatLanes low, high;
-        load_lanes(boxes.low[k], low);
-        load_lanes(boxes.high[k], high);
+        const FloatLanes low = load<FloatLanes>(boxes.low[k]),
+                         high = load<FloatLanes>(boxes.high[k]);
         touches &= (low <= to[k]) & (high >= from[k]);
       }
       for (LaneMask near = sign_mask<kCode>(touches); near != 0; near &= near - 1) {

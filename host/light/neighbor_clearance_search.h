@@ -32,14 +32,12 @@ struct LeafCorners {
     for (std::uint32_t k = 0; k < 3; ++k) {
       FloatQuad corner[3];
       for (std::uint32_t v = 0; v < 3; ++v) {
-        load_quad(leaf_corners + std::size_t{3 * v + k} * count, corner[v]);
-        widen<kCode>(corner[v], y[v][k]);
+        corner[v] = load<FloatQuad>(leaf_corners + std::size_t{3 * v + k} * count);
+        y[v][k] = widen<kCode>(corner[v]);
         y[v][k] -= from[static_cast<int>(k)];
       }
-      const FloatQuad least = corner[0] < corner[1] ? corner[0] : corner[1],
-                      most = corner[0] > corner[1] ? corner[0] : corner[1];
-      low[k] = least < corner[2] ? least : corner[2];
-      high[k] = most > corner[2] ? most : corner[2];
+      low[k] = minimum(minimum(corner[0], corner[1]), corner[2]);
+      high[k] = maximum(maximum(corner[0], corner[1]), corner[2]);
     }
   }
 
@@ -115,9 +113,7 @@ class NeighborClearanceSearch {
     DoubleQuad y[3][2];
     for (std::uint32_t v = 0; v < 3; ++v) {
       for (std::uint32_t k = 0; k < 2; ++k) {
-        FloatQuad coordinate;
-        load_quad(leaf + std::size_t{3 * v + across_[k]} * count, coordinate);
-        widen<kCode>(coordinate, y[v][k]);
+        y[v][k] = widen<kCode>(load<FloatQuad>(leaf + std::size_t{3 * v + across_[k]} * count));
       }
     }
     LongQuad behind = {};
@@ -128,7 +124,7 @@ class NeighborClearanceSearch {
       }
       behind |= all;
     }
-    return sign_mask(__builtin_convertvector(behind, IntQuad));
+    return sign_mask(whole(behind));
   }
 
   /// The triangles of a leaf from which this one is far enough, beyond one of the planes through
@@ -164,7 +160,7 @@ class NeighborClearanceSearch {
       }
       beyond |= all & (sum * sum >= enough);
     }
-    return sign_mask(__builtin_convertvector(beyond, IntQuad));
+    return sign_mask(whole(beyond));
   }
 
   /// Takes another triangle into account that may not be behind an edge.

@@ -77,7 +77,7 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
         lights.pmf<T>(source, state.scattered_at, state.normal) * lights.source(source).per_area;
     min_weights[k] = min_mis_weight(shading, lights.source(source));
   }
-  const T area_pdf = lanes_from<T>(area_pdfs), min_weight = lanes_from<T>(min_weights);
+  const T area_pdf = load<T>(area_pdfs), min_weight = load<T>(min_weights);
   const Triple<T> way = (hits.surface.point - hits.scattered_at) * spread<T>(lights.per_unit());
   const T squared = dot(way, way);
   const T cosine = absolute(dot(hits.surface.flat_normal, way)) / root(squared);
@@ -118,7 +118,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
       gather<T>([&](int k) RAYGATE_BODY { return static_cast<std::uint32_t>(chosen[k]->kind); });
   const auto is_a = [&](Kind kind)
                         RAYGATE_BODY { return kinds == static_cast<std::uint32_t>(kind); };
-  const T pmf = lanes_from<T>(pmfs);
+  const T pmf = load<T>(pmfs);
   const Triple<T> emission = gather<T>(chosen, &Lights::Light::emission);
   const LightPoint<T> place = {gather<T>(chosen, &Lights::Light::position), zero<T>(),
                                WordOf<T>{} + NearestHit::kNone};

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host/base/elementary.h"
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/light/sampler.h"
 
 namespace raygate {

@@ -19,7 +19,7 @@ void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
                     std::span<const std::uint32_t> at, const Shade& shade) {
   in_vectors([&](auto code) RAYGATE_BODY {
     using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
-    constexpr std::size_t kCount = LanesOf<T>::kCount;
+    constexpr std::size_t kCount = kLanesOf<T>;
     for (std::size_t i = 0; i < at.size(); i += kCount) {
       Hits<T> hits(shading, block, kind, at.subspan(i, std::min(kCount, at.size() - i)));
       shade(hits);

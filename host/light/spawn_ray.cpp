@@ -88,31 +88,31 @@ std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t primitiv
   return origin ? std::optional(*origin) : std::nullopt;
 }
 
-template <Vectors kCode, int kWidth>
+template <Vectors kCode, class T>
 RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin* origins) {
+  constexpr int kWidth = kLanesOf<T>;
   const NeighborClearance* triangles[kWidth];
   const Ray* rays[kWidth];
-  typename SpawnNumbers<kWidth>::SingleMask ways;
+  IntOf<T> ways;
 #pragma GCC unroll 8
   for (int i = 0; i < kWidth; ++i) {
     triangles[i] = &clearance_of(queries[i].primitive, i);
     rays[i] = queries[i].ray;
     ways[i] = queries[i].side == SpawnSide::kIncident ? -1 : 1;
   }
-  SpawnHits<kWidth> hits;
+  SpawnHits<T> hits;
   spawn::load(triangles, rays, hits);
-  Triple<typename SpawnNumbers<kWidth>::Single> point;
-  typename SpawnNumbers<kWidth>::Single reach;
-  typename SpawnNumbers<kWidth>::SingleMask is_clear;
-  spawn_lanes<kCode>(hits, __builtin_convertvector(ways, typename SpawnNumbers<kWidth>::Single),
-                     clearances_.margin(), point, reach, is_clear);
+  Triple<T> point;
+  T reach;
+  MaskOf<T> is_clear;
+  spawn_lanes<kCode>(hits, narrow(ways), clearances_.margin(), point, reach, is_clear);
   FloatQuad rows[kWidth];
   spawn::store(point, is_clear, rows);
   static_assert(sizeof(SpawnOrigin) == sizeof(FloatQuad));
   std::memcpy(static_cast<void*>(origins), rows, sizeof rows);
 
   const LaneMask good = sign_mask(is_clear);
-  const LaneMask has_overlaps = sign_mask(reinterpret_cast<decltype(ways)>(hits.length));
+  const LaneMask has_overlaps = sign_mask(bits_in(hits.length));
   constexpr LaneMask kAll = (LaneMask{1} << kWidth) - 1;
   LaneMask rest = (~good & kAll) | has_overlaps;
   if (rest == 0) return;
@@ -138,15 +138,16 @@ RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin
 
 void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins) {
   in_vectors([&](auto code) RAYGATE_BODY {
-    constexpr int kWidth = code() == Vectors::kAvx512 ? kLanes : kQuad;
-    constexpr std::size_t kAhead = std::size_t{2} * kWidth;  // to fetch
+    using T = std::conditional_t<code() == Vectors::kAvx512, FloatLanes, FloatQuad>;
+    constexpr std::size_t kWidth = kLanesOf<T>;
+    constexpr std::size_t kAhead = 2 * kWidth;  // to fetch
     std::size_t first = 0;
     for (; first + kWidth <= queries.size(); first += kWidth) {
       if (first + kAhead + kWidth <= queries.size()) {
         const SpawnQuery* const soon = &queries[first + kAhead];
-        for (int i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].primitive);
+        for (std::size_t i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].primitive);
       }
-      find_some<code(), kWidth>(&queries[first], &origins[first]);
+      find_some<code(), T>(&queries[first], &origins[first]);
     }
     if (first == queries.size()) return;
     // The last ones, and one of them in the lanes that are left.
@@ -155,7 +156,7 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
     for (std::size_t i = 0; i < kWidth; ++i) {
       last[i] = queries[std::min(first + i, queries.size() - 1)];
     }
-    find_some<code(), kWidth>(last, last_origins);
+    find_some<code(), T>(last, last_origins);
     std::copy_n(last_origins, queries.size() - first, &origins[first]);
   });
 }

@@ -82,7 +82,7 @@ class RaySpawner {
                             const glm::vec3& direction) const;
 
  private:
-  template <Vectors kCode, int kWidth>
+  template <Vectors kCode, class T>
   RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
 
   /// Of a query in this lane.

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/light/neighbor_clearance.h"
 
 // Which side
@@ -39,34 +39,13 @@
 
 namespace raygate {
 
-/// Vectors of kWidth numbers, and their masks.
-template <int kWidth>
-struct SpawnNumbers;
-template <>
-struct SpawnNumbers<kQuad> {
-  using Single = FloatQuad;
-  using Real = DoubleQuad;
-  using SingleMask = IntQuad;
-  using RealMask = LongQuad;
-};
-template <>
-struct SpawnNumbers<kLanes> {
-  using Single = FloatLanes;
-  using Real = DoubleLanes;
-  using SingleMask = IntLanes;
-  using RealMask = LongLanes;
-};
-
-/// Hits to spawn rays from, kWidth at a time.
-template <int kWidth>
+/// Hits to spawn rays from; T is FloatQuad or FloatLanes.
+template <class T>
 struct SpawnHits {
-  using Single = typename SpawnNumbers<kWidth>::Single;
-  using Real = typename SpawnNumbers<kWidth>::Real;
-
-  Triple<Real> normal;
-  Single length;
-  Triple<Single> corner, gradient[2];  ///< as NeighborClearance has them
-  Triple<Single> origin, direction;    ///< of the rays
+  Triple<WideOf<T>> normal;
+  T length;
+  Triple<T> corner, gradient[2];  ///< as NeighborClearance has them
+  Triple<T> origin, direction;    ///< of the rays
 };
 
 namespace spawn {
@@ -82,7 +61,7 @@ RAYGATE_INLINE void columns(const Object* const* objects, std::size_t offset, Ro
 }
 
 RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* const* rays,
-                         SpawnHits<kQuad>& hits) {
+                         SpawnHits<FloatQuad>& hits) {
   static_assert(
       offsetof(NeighborClearance, normal) == 0 && offsetof(NeighborClearance, length) == 24 &&
       offsetof(NeighborClearance, corner) == 28 && offsetof(NeighborClearance, gradient) == 40 &&
@@ -108,86 +87,59 @@ RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* c
 
 /// Row i: the point of lane i, and a word of it.
 RAYGATE_INLINE void store(const Triple<FloatQuad>& point, const IntQuad& word, FloatQuad* rows) {
-  FloatQuad columns[kQuad] = {point.x, point.y, point.z, reinterpret_cast<FloatQuad>(word)};
+  FloatQuad columns[kQuad] = {point.x, point.y, point.z, float_of(word)};
   raygate::transpose(columns);
   for (int i = 0; i < kQuad; ++i) rows[i] = columns[i];
 }
-/// One half of eight lanes.
-template <class Quad, int kHalf, class Lanes>
-RAYGATE_INLINE Quad half(const Lanes& both) {
-  constexpr int k = kQuad * kHalf;
-  return __builtin_shufflevector(both, both, k, k + 1, k + 2, k + 3);
-}
-template <int kHalf>
-RAYGATE_INLINE void store_half(const Triple<FloatLanes>& point, const IntLanes& word,
-                               FloatQuad* rows) {
-  store({half<FloatQuad, kHalf>(point.x), half<FloatQuad, kHalf>(point.y),
-         half<FloatQuad, kHalf>(point.z)},
-        half<IntQuad, kHalf>(word), rows + std::ptrdiff_t{kHalf} * kQuad);
-}
 RAYGATE_INLINE void store(const Triple<FloatLanes>& point, const IntLanes& word, FloatQuad* rows) {
-  store_half<0>(point, word, rows);
-  store_half<1>(point, word, rows);
+  store({low_half(point.x), low_half(point.y), low_half(point.z)}, low_half(word), rows);
+  store({high_half(point.x), high_half(point.y), high_half(point.z)}, high_half(word),
+        rows + kQuad);
 }
 
-template <class Quad, class Lanes>
-RAYGATE_INLINE void join(const Quad& a, const Quad& b, Lanes& both) {
-  both = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-template <class Quad, class Lanes>
-RAYGATE_INLINE void join(const Triple<Quad>& a, const Triple<Quad>& b, Triple<Lanes>& both) {
-  join(a.x, b.x, both.x);
-  join(a.y, b.y, both.y);
-  join(a.z, b.z, both.z);
+template <class Quad>
+RAYGATE_INLINE auto join(const Triple<Quad>& a, const Triple<Quad>& b) {
+  using Lanes = decltype(raygate::join(a.x, b.x));
+  return Triple<Lanes>{raygate::join(a.x, b.x), raygate::join(a.y, b.y), raygate::join(a.z, b.z)};
 }
 
 RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* const* rays,
-                         SpawnHits<kLanes>& hits) {
-  SpawnHits<kQuad> a, b;
+                         SpawnHits<FloatLanes>& hits) {
+  SpawnHits<FloatQuad> a, b;
   load(triangles, rays, a);
   load(triangles + kQuad, rays + kQuad, b);
-  join(a.normal, b.normal, hits.normal);
-  join(a.length, b.length, hits.length);
-  join(a.corner, b.corner, hits.corner);
-  for (int v = 0; v < 2; ++v) join(a.gradient[v], b.gradient[v], hits.gradient[v]);
-  join(a.origin, b.origin, hits.origin);
-  join(a.direction, b.direction, hits.direction);
+  hits.normal = join(a.normal, b.normal);
+  hits.length = raygate::join(a.length, b.length);
+  hits.corner = join(a.corner, b.corner);
+  for (int v = 0; v < 2; ++v) hits.gradient[v] = join(a.gradient[v], b.gradient[v]);
+  hits.origin = join(a.origin, b.origin);
+  hits.direction = join(a.direction, b.direction);
 }
 
-template <Vectors kCode, class From, class To>
-RAYGATE_INLINE void convert(const From& from, To& to) {
-  if constexpr (std::is_same_v<From, FloatQuad>) {
-    widen<kCode>(from, to);
+/// As doubles.
+template <Vectors kCode, class T>
+RAYGATE_INLINE WideOf<T> widened(const T& x) {
+  if constexpr (std::is_same_v<T, FloatQuad>) {
+    return widen<kCode>(x);
   } else {
-    to = __builtin_convertvector(from, To);
+    return wide(x);
   }
 }
-template <Vectors kCode, class From, class To>
-RAYGATE_INLINE void convert(const Triple<From>& from, Triple<To>& to) {
-  convert<kCode>(from.x, to.x);
-  convert<kCode>(from.y, to.y);
-  convert<kCode>(from.z, to.z);
+template <Vectors kCode, class T>
+RAYGATE_INLINE Triple<WideOf<T>> widened(const Triple<T>& x) {
+  return {widened<kCode>(x.x), widened<kCode>(x.y), widened<kCode>(x.z)};
 }
 
 /// How far it is from a float that is not negative to the next one.
-template <class Mask, class T>
-RAYGATE_INLINE void step_of(const T& x, T& step) {
-  step = reinterpret_cast<T>(reinterpret_cast<Mask>(x) + 1) - x;
+template <class T>
+RAYGATE_INLINE T step_of(const T& x) {
+  return float_of(bits_in(x) + 1) - x;
 }
 
-template <class T>
-RAYGATE_INLINE Triple<T> magnitudes(const Triple<T>& v) {
-  Triple<T> sizes;
-  magnitude(v.x, sizes.x);
-  magnitude(v.y, sizes.y);
-  magnitude(v.z, sizes.z);
-  return sizes;
-}
+/// The largest magnitude.
 template <class T>
 RAYGATE_INLINE T largest(const Triple<T>& v) {
-  const Triple<T> sizes = magnitudes(v);
-  const T of_two = sizes.x < sizes.y ? sizes.y : sizes.x;
-  return of_two < sizes.z ? sizes.z : of_two;
+  return maximum(absolute(v.z), maximum(absolute(v.y), absolute(v.x)));
 }
 
 }  // namespace spawn
@@ -195,64 +147,42 @@ RAYGATE_INLINE T largest(const Triple<T>& v) {
 /// Makes `point` candidate 0 of each hit, on the side that the ray came from where `way` is -1, on
 /// the other one where it is 1. It is where the ray goes on from if `is_clear` becomes -1, and no
 /// triangle of the overlaps is within `reach` of it.
-template <Vectors kCode, int kWidth>
-RAYGATE_INLINE void spawn_lanes(const SpawnHits<kWidth>& hits,
-                                const typename SpawnNumbers<kWidth>::Single& way, float margin,
-                                Triple<typename SpawnNumbers<kWidth>::Single>& point,
-                                typename SpawnNumbers<kWidth>::Single& reach,
-                                typename SpawnNumbers<kWidth>::SingleMask& is_clear) {
-  using Numbers = SpawnNumbers<kWidth>;
-  using Single = typename Numbers::Single;
-  using Real = typename Numbers::Real;
-  using SingleMask = typename Numbers::SingleMask;
+template <Vectors kCode, class T>
+RAYGATE_INLINE void spawn_lanes(const SpawnHits<T>& hits, const T& way, float margin,
+                                Triple<T>& point, T& reach, MaskOf<T>& is_clear) {
+  using Wide = WideOf<T>;
   // X = O + t I, and u.
-  Triple<Real> corner, origin, direction;
-  spawn::convert<kCode>(hits.corner, corner);
-  spawn::convert<kCode>(hits.origin, origin);
-  spawn::convert<kCode>(hits.direction, direction);
-  const Triple<Real> from_origin = corner - origin;
-  const Real plane = dot(from_origin, hits.normal), slope = dot(direction, hits.normal);
-  Real above, below;
-  magnitude(plane, above);
-  magnitude(slope, below);
-  const Real inverse = 1.0 / below;
-  const Real t = above * inverse;
-  const Triple<Real> x = origin + direction * t;
-  Triple<Single> rounded;
-  Single u;
-  Real step;
-  spawn::convert<kCode>(x, rounded);
-  spawn::step_of<SingleMask>(spawn::largest(rounded), u);
-  spawn::convert<kCode>(u, step);
+  const Triple<Wide> origin = spawn::widened<kCode>(hits.origin),
+                     direction = spawn::widened<kCode>(hits.direction);
+  const Triple<Wide> from_origin = spawn::widened<kCode>(hits.corner) - origin;
+  const Wide plane = dot(from_origin, hits.normal), slope = dot(direction, hits.normal);
+  const Wide below = absolute(slope), inverse = 1.0 / below;
+  const Wide t = absolute(plane) * inverse;
+  const Triple<Wide> x = origin + direction * t;
+  const T u = spawn::step_of(spawn::largest(narrow(x)));
+  const Wide step = spawn::widened<kCode>(u);
 
   // How far off X may be, with |I|_max < 2.
-  Real origin_size;
-  spawn::convert<kCode>(spawn::largest(hits.origin), origin_size);
-  const Real along_ray = t + t;
-  const Real error = 0x1p-50 * (origin_size + along_ray) +
+  const Wide origin_size = spawn::widened<kCode>(spawn::largest(hits.origin)), along_ray = t + t;
+  const Wide error = 0x1p-50 * (origin_size + along_ray) +
                      2.01 * inverse * (spawn::largest(from_origin) + along_ray);
-  const typename Numbers::RealMask is_sure = (below >= 0x1p35) & (16.0 * error <= step);
+  const MaskOf<Wide> is_sure = (below >= 0x1p35) & (16.0 * error <= step);
 
   // Candidate 0: the normal shows where orient3d is -1.
-  Real turn;
-  spawn::convert<kCode>(way, turn);
-  const Real scale = (plane > 0.0 ? turn : -turn) / spawn::largest(hits.normal);
-  spawn::convert<kCode>(x + hits.normal * scale * step, point);
+  const Wide turn = spawn::widened<kCode>(way);
+  const Wide scale = (plane > 0.0 ? turn : -turn) / spawn::largest(hits.normal);
+  point = narrow(x + hits.normal * scale * step);
 
   // c times its least weight.
-  Single length, point_step;
-  magnitude(hits.length, length);
-  const Triple<Single> p = point - hits.corner;
-  const Single second = dot(p, hits.gradient[0]), third = dot(p, hits.gradient[1]);
-  const Single first = length - second - third;
-  Single least = first < second ? first : second;
-  least = least < third ? least : third;
-  const Triple<Single> sizes = spawn::magnitudes(p);
-  const Single error_of_least = 0x1p-20f * (sizes.x + sizes.y + sizes.z + length) + margin;
-  spawn::step_of<SingleMask>(spawn::largest(point), point_step);
+  const T length = absolute(hits.length);
+  const Triple<T> p = point - hits.corner;
+  const T second = dot(p, hits.gradient[0]), third = dot(p, hits.gradient[1]);
+  const T least = minimum(minimum(T(length - second - third), second), third);
+  const T error_of_least =
+      0x1p-20f * (absolute(p.x) + absolute(p.y) + absolute(p.z) + length) + margin;
   reach = 16.0f * u;
-  is_clear = (point_step <= u) & (least > reach + error_of_least) &
-             __builtin_convertvector(is_sure, SingleMask);
+  is_clear = (spawn::step_of(spawn::largest(point)) <= u) & (least > reach + error_of_least) &
+             whole(is_sure);
 }
 
 }  // namespace raygate

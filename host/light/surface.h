@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/light/material_parameters.h"
@@ -140,9 +140,9 @@ RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<
 /// The surfaces at hits of one kind.
 template <class T>
 RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind kind,
-                                     const SurfaceHit (&places)[LanesOf<T>::kCount]) {
+                                     const SurfaceHit (&places)[kLanesOf<T>]) {
   using Wide = WideOf<T>;
-  constexpr int kCount = LanesOf<T>::kCount;
+  constexpr int kCount = kLanesOf<T>;
   const auto ray = [&](int k) RAYGATE_BODY -> const Ray& { return *places[k].ray; };
   const Triple<T> origin =
       gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return ray(k).origin; });

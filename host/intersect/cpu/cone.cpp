@@ -17,12 +17,9 @@ RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) 
   FloatLanes least[3] = {FloatLanes{} + 4.0f, FloatLanes{} + 4.0f, FloatLanes{} + 4.0f};
   for (int g = 0; g < kGroups; ++g) {
     if (active[g] == 0) continue;
-    IntLanes taken;
-    lanes_of(active[g], taken);
+    const IntLanes taken = lanes_of(active[g]);
     for (int k = 0; k < 3; ++k) {
-      FloatLanes size;
-      magnitude(block.direction[k][g], size);
-      size = taken ? size : FloatLanes{} + 4.0f;
+      const FloatLanes size = taken ? absolute(block.direction[k][g]) : FloatLanes{} + 4.0f;
       least[k] = size < least[k] ? size : least[k];
     }
   }
@@ -39,7 +36,7 @@ RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) 
 }
 
 /// Lane g of the result is the largest of all lanes of each[g]; no NaN.
-RAYGATE_INLINE void largest_of_each(const FloatLanes (&each)[kGroups], FloatLanes& result) {
+RAYGATE_INLINE FloatLanes largest_of_each(const FloatLanes (&each)[kGroups]) {
   FloatLanes pairs[4], fours[2];
   for (std::size_t i = 0; i < 4; ++i) {
     const FloatLanes &a = each[2 * i], &b = each[2 * i + 1];
@@ -55,7 +52,7 @@ RAYGATE_INLINE void largest_of_each(const FloatLanes (&each)[kGroups], FloatLane
   }
   const FloatLanes low = __builtin_shufflevector(fours[0], fours[1], 0, 1, 2, 3, 8, 9, 10, 11);
   const FloatLanes high = __builtin_shufflevector(fours[0], fours[1], 4, 5, 6, 7, 12, 13, 14, 15);
-  result = low > high ? low : high;
+  return low > high ? low : high;
 }
 
 /// The directions of four rays, transposed. A direction is loaded with the float before it, which
@@ -64,7 +61,7 @@ RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (
   static_assert(offsetof(Ray, direction) + sizeof(Ray::direction) == sizeof(Ray));
   FloatQuad rows[kQuad];
   for (int i = 0; i < kQuad; ++i)
-    load_quad(reinterpret_cast<const float*>(rays[i] + 1) - kQuad, rows[i]);
+    rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i] + 1) - kQuad);
   transpose(rows);
   for (int k = 0; k < 3; ++k) components[k] = rows[k + 1];
 }
@@ -137,12 +134,10 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
       }
       cones.groups |= 1u << g;
       const int low = std::countr_zero(active), high = 31 - std::countl_zero(active);
-      IntLanes taken;
-      lanes_of(active, taken);
+      const IntLanes taken = lanes_of(active);
       FloatLanes t_scale = FloatLanes{} + 1.0f;
       if (axis >= 0) {
-        FloatLanes size;
-        magnitude(block.direction[axis][g], size);
+        const FloatLanes size = absolute(block.direction[axis][g]);
         t_scale = taken ? size : t_scale;
       }
       cones.t_scale[g] = t_scale;
@@ -151,19 +146,15 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
         const FloatLanes d = block.direction[k][g] * inverse;
         const float middle = 0.5f * (d[low] + d[high]);
         cones.center[k][g] = middle;
-        FloatLanes distance;
-        magnitude(d - middle, distance);
+        const FloatLanes distance = absolute(d - middle);
         off[k][g] = taken ? distance : FloatLanes{};
       }
     }
     cones.whole.octant = octant;
-    IntLanes present;
-    lanes_of(cones.groups, present);
+    const IntLanes present = lanes_of(cones.groups);
     for (int k = 0; k < 3; ++k) {
-      FloatLanes size;
-      largest_of_each(off[k], size);
-      cones.radius[k] = present ? kUp * size + kScaleError : FloatLanes{};
-      magnitude(cones.center[k], size);
+      cones.radius[k] = present ? kUp * largest_of_each(off[k]) + kScaleError : FloatLanes{};
+      const FloatLanes size = absolute(cones.center[k]);
       const FloatLanes largest = (size + cones.radius[k]) * kUp;
       FloatLanes smallest = (size - cones.radius[k]) * kDown;
       smallest = smallest > 0.0f ? smallest : FloatLanes{};

@@ -74,10 +74,10 @@ RAYGATE_INLINE void PacketIntersector::put_with_points(const ConeTraversal& walk
     for (LaneMask groups = groups_of(seen[i].rays); groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
       const auto& from = walk.block->direction;
-      FloatLanes point[3], error;
+      FloatLanes point[3];
       IntLanes error_bits;
       plane_points(n, plane.d, largest, {from[0][g], from[1][g], from[2][g]}, point, error_bits);
-      floats_of(error_bits, error);
+      const FloatLanes error = float_of(error_bits);
       for (LaneMask lanes = rays_of(seen[i].rays, g); lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         hits_[walk.number(g, lane)] = {seen[i].primitive,

@@ -118,34 +118,30 @@ struct RayVerdict {
 /// One direction and two planes of four triangles each.
 RAYGATE_INLINE void sides_of(const float (&direction)[3], const float (&planes)[3][2][kQuad],
                              FloatQuad (&sides)[2]) {
-  FloatLanes x, y, z;
-  load_lanes(planes[0][0], x);
-  load_lanes(planes[1][0], y);
-  load_lanes(planes[2][0], z);
+  const FloatLanes x = load<FloatLanes>(planes[0][0]), y = load<FloatLanes>(planes[1][0]),
+                   z = load<FloatLanes>(planes[2][0]);
   const FloatLanes both = (direction[0] * x + direction[1] * y) + direction[2] * z;
-  sides[0] = __builtin_shufflevector(both, both, 0, 1, 2, 3);
-  sides[1] = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+  sides[0] = low_half(both);
+  sides[1] = high_half(both);
 }
 
 RAYGATE_INLINE void test_ray(const ConeTraversal& walk, const QuadRecord& record, int group,
                              int lane, LaneMask there, RayVerdict& verdict) {
   const auto& from = walk.block->direction;
   const float direction[3] = {from[0][group][lane], from[1][group][lane], from[2][group][lane]};
-  FloatQuad first[2], second[2], bound;
+  FloatQuad first[2], second[2];
   sides_of(direction, record.planes[0], first);
   sides_of(direction, record.planes[1], second);
   FloatQuad worst = first[0] < first[1] ? first[0] : first[1];
   worst = second[0] < worst ? second[0] : worst;
-  load_quad(record.bounds, bound);
+  const FloatQuad bound = load<FloatQuad>(record.bounds);
   verdict.open = there & ~sign_mask(worst < -bound);
   verdict.hit = 0;
   if (verdict.open == 0) return;
   verdict.hit = verdict.open & sign_mask(worst > bound);
   const FloatQuad& v = second[1];
-  FloatQuad v_bound, low, high;
-  load_quad(record.normal_bound, v_bound);
-  load_quad(record.low, low);
-  load_quad(record.high, high);
+  const FloatQuad v_bound = load<FloatQuad>(record.normal_bound);
+  FloatQuad low = load<FloatQuad>(record.low), high = load<FloatQuad>(record.high);
   bound_distance(low, high, v - v_bound, v + v_bound);
   verdict.low = low;
   verdict.high = high;

@@ -15,8 +15,7 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
   const FloatLanes inverse = 1.0f / walk.cones.t_scale[group];
   for (int k = 0; k < 3; ++k) {
-    FloatLanes size;
-    magnitude(walk.block->direction[k][group] * inverse, size);
+    const FloatLanes size = absolute(walk.block->direction[k][group] * inverse);
     bounds8.set(k, walk.cones.whole.octant, size * kDown, size * kUp);
   }
   cutoffs_beyond(walk.high[group], walk.cones.t_scale[group], walk.cones.active[group],
@@ -69,10 +68,9 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const Bvh& tree, const 
     if ((walk.split >> g & 1) == 0) split_group(walk, g);
     const PacketBounds8& bounds8 = walk.ray_bounds8[g];
     FloatLanes its_entry;
-    IntLanes meets;
     met[count] = intersect_children<kCode>(bounds_of(bounds8, lane, walk.cones.whole), node,
                                            bounds8.cutoff[lane], its_entry);
-    lanes_of(met[count], meets);
+    const IntLanes meets = lanes_of(met[count]);
     entry = (meets & (its_entry < entry)) ? its_entry : entry;
     any |= met[count];
     ray[count++] = rays & -rays;

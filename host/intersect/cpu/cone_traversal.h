@@ -73,8 +73,7 @@ struct ConeTraversal {
 RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, const FloatLanes& t_scale, LaneMask active,
                                    FloatLanes& cutoffs) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
-  IntLanes going;
-  lanes_of(active, going);
+  const IntLanes going = lanes_of(active);
   cutoffs = going ? reinterpret_cast<FloatLanes>(high) * t_scale * kGrow : FloatLanes{} - 1.0f;
 }
 

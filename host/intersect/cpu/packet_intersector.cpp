@@ -99,8 +99,7 @@ RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const Qu
       const LaneMask sure = verdict.open & verdict.hit;
       const LaneMask nearer = sure & sign_mask<kCode>(verdict.high < walk.low[g]);
       if (nearer != 0) {
-        IntLanes take;
-        lanes_of(nearer, take);
+        const IntLanes take = lanes_of(nearer);
         walk.low[g] = take ? verdict.low : walk.low[g];
         walk.high[g] = take ? verdict.high : walk.high[g];
         walk.primitive[g] = take ? IntLanes{} + primitive : walk.primitive[g];

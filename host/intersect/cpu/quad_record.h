@@ -51,10 +51,6 @@ struct alignas(sizeof(FloatLanes)) QuadRecord {
 /// A bound is kQuadBound u L, see above.
 inline constexpr float kQuadBound = 14.5f;
 
-RAYGATE_INLINE void join(const FloatQuad& low, const FloatQuad& high, FloatLanes& both) {
-  both = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
 /// The record of 1 to 4 triangles, their corners as test_quad takes them.
 RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corners,
                                      std::uint32_t count, QuadRecord& record) {
@@ -63,7 +59,7 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
   const std::ptrdiff_t stride = count;
   FloatQuad p[3][3], sides[3][3], farthest = {};
   for (int v = 0; v < 3; ++v) {
-    for (int k = 0; k < 3; ++k) load_quad(corners + stride * (3 * v + k), p[v][k]);
+    for (int k = 0; k < 3; ++k) p[v][k] = load<FloatQuad>(corners + stride * (3 * v + k));
   }
   for (int v = 0; v < 3; ++v) {
     for (int k = 0; k < 3; ++k) sides[v][k] = p[(v + 1) % 3][k] - p[v][k];
@@ -71,16 +67,14 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
   for (int v = 0; v < 3; ++v) {
     for (int k = 0; k < 3; ++k) {
       p[v][k] = p[v][k] - origin[k];
-      FloatQuad size;
-      magnitude(p[v][k], size);
-      farthest = size > farthest ? size : farthest;
+      farthest = maximum(absolute(p[v][k]), farthest);
     }
   }
   // A x (B-A) and B x (C-B) side by side; C x (A-C) and (B-A) x (C-B), which is N.
   FloatLanes u[3], v[3], planes[2][3], sizes[2];
   for (int k = 0; k < 3; ++k) {
-    join(p[0][k], p[1][k], u[k]);
-    join(sides[0][k], sides[1][k], v[k]);
+    u[k] = join(p[0][k], p[1][k]);
+    v[k] = join(sides[0][k], sides[1][k]);
   }
   const auto cross_of = [&](FloatLanes(&plane)[3], FloatLanes & sum)
       __attribute__((always_inline)) {
@@ -90,43 +84,32 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
   };
   cross_of(planes[0], sizes[0]);
   for (int k = 0; k < 3; ++k) {
-    join(p[2][k], sides[0][k], u[k]);
-    join(sides[2][k], sides[1][k], v[k]);
+    u[k] = join(p[2][k], sides[0][k]);
+    v[k] = join(sides[2][k], sides[1][k]);
   }
   cross_of(planes[1], sizes[1]);
-  const auto low_of = [](const FloatLanes& x) __attribute__((always_inline)) {
-    return __builtin_shufflevector(x, x, 0, 1, 2, 3);
-  };
-  const auto high_of = [](const FloatLanes& x) __attribute__((always_inline)) {
-    return __builtin_shufflevector(x, x, 4, 5, 6, 7);
-  };
-  FloatQuad largest = low_of(sizes[0]);
-  largest = high_of(sizes[0]) > largest ? high_of(sizes[0]) : largest;
-  largest = low_of(sizes[1]) > largest ? low_of(sizes[1]) : largest;
-  const FloatQuad size = high_of(sizes[1]);
+  FloatQuad largest = low_half(sizes[0]);
+  largest = maximum(high_half(sizes[0]), largest);
+  largest = maximum(low_half(sizes[1]), largest);
+  const FloatQuad size = high_half(sizes[1]);
   const IntQuad small = farthest <= kLargest;
-  const FloatQuad d = (p[0][0] * high_of(planes[1][0]) + p[0][1] * high_of(planes[1][1])) +
-                      p[0][2] * high_of(planes[1][2]);
+  const FloatQuad d = (p[0][0] * high_half(planes[1][0]) + p[0][1] * high_half(planes[1][1])) +
+                      p[0][2] * high_half(planes[1][2]);
   const FloatQuad d_bound = small ? (8.5f * kU) * farthest * size + kTiny : FloatQuad{} + kInfinity;
-  FloatQuad distance;
-  magnitude(d, distance);
+  const FloatQuad distance = absolute(d);
   const IntQuad sure = distance > d_bound;
-  const IntQuad flip = reinterpret_cast<IntQuad>(d) & std::numeric_limits<std::int32_t>::min();
-  const IntLanes flips = __builtin_shufflevector(flip, flip, 0, 1, 2, 3, 0, 1, 2, 3);
+  const IntQuad flip = bits_in(d) & std::numeric_limits<std::int32_t>::min();
+  const IntLanes flips = join(flip, flip);
   for (int pair = 0; pair < 2; ++pair) {
     for (int k = 0; k < 3; ++k) {
-      const IntLanes flipped = reinterpret_cast<IntLanes>(planes[pair][k]) ^ flips;
-      std::memcpy(record.planes[pair][k], &flipped, sizeof flipped);
+      store(record.planes[pair][k], bits_in(planes[pair][k]) ^ flips);
     }
   }
-  const auto put = [&](const FloatQuad& words, float(&to)[kQuad]) __attribute__((always_inline)) {
-    std::memcpy(to, &words, sizeof words);
-  };
-  put(small ? (kQuadBound * kU) * largest + kTiny : FloatQuad{} + kInfinity, record.bounds);
-  put((kQuadBound * kU) * size + kTiny, record.normal_bound);
-  put(sure ? distance - d_bound : FloatQuad{}, record.low);
-  put(small ? distance + d_bound : FloatQuad{} + kInfinity, record.high);
-  std::memcpy(record.flip, &flip, sizeof flip);
+  store(record.bounds, small ? (kQuadBound * kU) * largest + kTiny : FloatQuad{} + kInfinity);
+  store(record.normal_bound, (kQuadBound * kU) * size + kTiny);
+  store(record.low, sure ? distance - d_bound : FloatQuad{});
+  store(record.high, small ? distance + d_bound : FloatQuad{} + kInfinity);
+  store(record.flip, flip);
   record.unsure = ~sign_mask(sure) & ((1u << count) - 1);
 }
 

@@ -85,7 +85,7 @@ struct ShearedRay {
 RAYGATE_INLINE void shear(const FloatQuad (&o)[3], const FloatQuad (&d)[3],
                           FloatQuad (&words)[sizeof(ShearedRay) / sizeof(float)]) {
   FloatQuad size[3];
-  for (int k = 0; k < 3; ++k) magnitude(d[k], size[k]);
+  for (int k = 0; k < 3; ++k) size[k] = absolute(d[k]);
   const IntQuad z_is_z = (size[2] >= size[0]) & (size[2] >= size[1]), z_is_y = size[1] >= size[0];
   const auto pick = [&](const auto& z, const auto& y, const auto& x)
       __attribute__((always_inline)) {
@@ -95,7 +95,7 @@ RAYGATE_INLINE void shear(const FloatQuad (&o)[3], const FloatQuad (&d)[3],
   FloatQuad way[3];
   for (int k = 0; k < 3; ++k) {
     const int of_y = (k + 2) % 3, of_x = (k + 1) % 3;
-    words[k] = reinterpret_cast<FloatQuad>(pick(kAxis[k], kAxis[of_y], kAxis[of_x]));
+    words[k] = float_of(pick(kAxis[k], kAxis[of_y], kAxis[of_x]));
     words[3 + k] = pick(o[k], o[of_y], o[of_x]);
     way[k] = pick(d[k], d[of_y], d[of_x]);
   }
@@ -146,28 +146,22 @@ struct QuadSides {
   FloatQuad x[3], y[3], (&z)[3] = sides.z;
   FloatQuad sum = {}, farthest = {};
   for (std::ptrdiff_t v = 0; v < 3; ++v) {
-    load_quad(along[0] + 3 * v * stride, x[v]);
-    load_quad(along[1] + 3 * v * stride, y[v]);
-    load_quad(along[2] + 3 * v * stride, z[v]);
+    x[v] = load<FloatQuad>(along[0] + 3 * v * stride);
+    y[v] = load<FloatQuad>(along[1] + 3 * v * stride);
+    z[v] = load<FloatQuad>(along[2] + 3 * v * stride);
     z[v] = z[v] - ray.origin[2];
     x[v] = (x[v] - ray.origin[0]) - ray.shear[0] * z[v];
     y[v] = (y[v] - ray.origin[1]) - ray.shear[1] * z[v];
-    FloatQuad size[3];
-    magnitude(x[v], size[0]);
-    magnitude(y[v], size[1]);
-    magnitude(z[v], size[2]);
-    sum += size[0] + size[1];
-    farthest = size[2] > farthest ? size[2] : farthest;
+    sum += absolute(x[v]) + absolute(y[v]);
+    farthest = maximum(absolute(z[v]), farthest);
   }
   const FloatQuad m = farthest + sum;
   const IntQuad bounded = (m >= kSmallest) & (m <= kLargest);
   const FloatQuad bound = m * (kBoundOfSum * sum + kBoundOfSize * m);
   const FloatQuad across[3] = {x[1] * y[2] - y[1] * x[2], x[2] * y[0] - y[2] * x[0],
                                x[0] * y[1] - y[0] * x[1]};
-  FloatQuad lowest = across[0] < across[1] ? across[0] : across[1];
-  FloatQuad highest = across[0] > across[1] ? across[0] : across[1];
-  lowest = lowest < across[2] ? lowest : across[2];
-  highest = highest > across[2] ? highest : across[2];
+  const FloatQuad lowest = minimum(minimum(across[0], across[1]), across[2]);
+  const FloatQuad highest = maximum(maximum(across[0], across[1]), across[2]);
   const IntQuad miss = bounded & (lowest < -bound) & (highest > bound);
   for (int i = 0; i < 3; ++i) sides.across[i] = across[i];
   sides.lowest = lowest;
@@ -187,16 +181,12 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
   const FloatQuad &m = sides.m, &bound = sides.bound;
   FloatQuad z[3];
   for (int v = 0; v < 3; ++v) {
-    z[v] = reinterpret_cast<FloatQuad>(reinterpret_cast<IntQuad>(sides.z[v]) ^ ray.back());
+    z[v] = float_of(bits_in(sides.z[v]) ^ ray.back());
   }
-  FloatQuad near = z[0] < z[1] ? z[0] : z[1], far = z[0] > z[1] ? z[0] : z[1];
-  near = near < z[2] ? near : z[2];
-  far = far > z[2] ? far : z[2];
+  FloatQuad near = minimum(minimum(z[0], z[1]), z[2]), far = maximum(maximum(z[0], z[1]), z[2]);
   const FloatQuad whole = (across[0] + across[1]) + across[2];
   const FloatQuad middle = ((across[0] * z[0] + across[1] * z[1]) + across[2] * z[2]) / whole;
-  FloatQuad sure_whole;
-  magnitude(whole, sure_whole);
-  sure_whole -= 3.2f * bound;
+  const FloatQuad sure_whole = absolute(whole) - 3.2f * bound;
   const IntQuad through =
       sides.bounded & ((lowest > bound) | (highest < -bound)) & (sure_whole > 0.0f);
   const FloatQuad rounding = (16.0f * 0x1p-24f) * farthest, room = rounding + 0x1p-45f * m;

@@ -83,8 +83,8 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   static_assert(offsetof(Bvh::Node, bounds) == 0);
   FloatQuad first[kQuad], last[kQuad];  // the rays' first four words, and their last four
   for (int i = 0; i < kQuad; ++i) {
-    load_quad(reinterpret_cast<const float*>(rays[i]), first[i]);
-    load_quad(reinterpret_cast<const float*>(rays[i] + 1) - kQuad, last[i]);
+    first[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i]));
+    last[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i] + 1) - kQuad);
   }
   transpose(first);
   transpose(last);
@@ -92,20 +92,16 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   // A RayTraversal's words, up to those of `sheared`.
   constexpr std::size_t kBoxWords = 15, kWords = kBoxWords + sizeof(ShearedRay) / sizeof(float);
   static_assert(offsetof(RayTraversal, sheared) == 4 * kBoxWords && kWords % kQuad == 0);
-  FloatQuad words[kWords], sheared[kWords - kBoxWords], longest = {};
+  FloatQuad words[kWords], sheared[kWords - kBoxWords];
   shear(o, d, sheared);
   std::copy(std::begin(sheared), std::end(sheared), words + kBoxWords);
   IntQuad largest = {};
   for (const FloatQuad& component : d) {
-    FloatQuad size;
-    magnitude(component, size);
-    const IntQuad bits = reinterpret_cast<IntQuad>(size);
-    largest = bits > largest ? bits : largest;  // a NaN's are larger than any number's
+    largest = maximum(bits_in(absolute(component)), largest);  // a NaN's exceed any number's
   }
-  longest = reinterpret_cast<FloatQuad>(largest);
+  const FloatQuad longest = float_of(largest);
   for (int k = 0; k < 3; ++k) {
-    FloatQuad size;
-    magnitude(d[k], size);
+    const FloatQuad size = absolute(d[k]);
     const IntQuad small = size < kSmallestComponent, back = d[k] < 0.0f;
     const FloatQuad one = {1.0f, 1.0f, 1.0f, 1.0f}, sign = back ? -one : one;
     const FloatQuad inverse = longest / (small ? sign * kSmallestComponent : d[k]);
@@ -113,8 +109,8 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
     words[k] = o[k];
     words[3 + k] = inverse;
     words[6 + k] = kExitGrowth * (small ? sign * std::numeric_limits<float>::infinity() : inverse);
-    words[9 + k] = reinterpret_cast<FloatQuad>(low_at + to_high);
-    words[12 + k] = reinterpret_cast<FloatQuad>(low_at + 3 * kRow - to_high);
+    words[9 + k] = float_of(low_at + to_high);
+    words[12 + k] = float_of(low_at + 3 * kRow - to_high);
   }
   for (std::size_t word = 0; word < kWords; word += kQuad) {
     FloatQuad rows[kQuad] = {words[word], words[word + 1], words[word + 2], words[word + 3]};
@@ -193,15 +189,13 @@ RAYGATE_INLINE void step_inside(const Bvh& tree, RayTraversal& walk) {
   const auto count = static_cast<std::size_t>(std::popcount(mask));
 #ifdef RAYGATE_AVX2
   if constexpr (kCode == Vectors::kAvx512) {
-    keys =
-        __builtin_ia32_compresssi256_mask(keys, IntLanes{} - 1, static_cast<unsigned char>(mask));
+    avx512_compress(keys, mask);
     sort_falling(keys, count);
     std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
   } else
 #endif
       if (count > 2) {
-    IntLanes met;
-    lanes_of(mask, met);
+    const IntLanes met = lanes_of(mask);
     keys |= ~met;  // negative: they come last
     sort_falling(keys);
     std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);

@@ -237,7 +237,7 @@ void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
     const Ray& ray = rays_[number];
     hits[i] = &hits_[number];
     views.set(i, ray.origin, bvh_.corners_of(hits[i]->primitive));
-    load_quad(reinterpret_cast<const float*>(&ray + 1) - kQuad, d[i]);
+    d[i] = load<FloatQuad>(reinterpret_cast<const float*>(&ray + 1) - kQuad);
   }
   Planes planes;
   make_planes(views, planes);
@@ -245,13 +245,12 @@ void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
   in_vectors([&](auto) RAYGATE_BODY {
     transpose(d);  // of d[0] nothing is wanted: it is the last coordinate of the origins
     IntQuad fields[3], error;
-    for (int k = 0; k < 3; ++k) fields[k] = reinterpret_cast<IntQuad>(n[k]) >> 23 & 0xFF;
-    IntQuad largest = fields[0] > fields[1] ? fields[0] : fields[1];
-    largest = largest > fields[2] ? largest : fields[2];
+    for (int k = 0; k < 3; ++k) fields[k] = bits_in(n[k]) >> 23 & 0xFF;
+    const IntQuad largest = maximum(maximum(fields[0], fields[1]), fields[2]);
     FloatQuad rows[kQuad], point[3];
     plane_points({n[0], n[1], n[2]}, n[3], largest, {d[1], d[2], d[3]}, point, error);
     std::copy_n(point, 3, rows);
-    rows[3] = reinterpret_cast<FloatQuad>(error);
+    rows[3] = float_of(error);
     transpose(rows);
     static_assert(offsetof(NearestHit, point_error) ==
                   offsetof(NearestHit, point) + 3 * sizeof(float));

@@ -17,11 +17,9 @@ UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction) {
 float point_error(const PolygonRecord& record, const glm::vec3& direction,
                   std::optional<std::uint32_t> grazing) {
   const auto v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));
-  std::int32_t g = 0, error = 0;
-  grazing_of(largest_field(record.normal), v, g);
-  if (grazing) g = static_cast<std::int32_t>(*grazing);
-  point_error_of(std::bit_cast<std::int32_t>(record.d), v, g, error);
-  return std::bit_cast<float>(error);
+  const std::int32_t g =
+      grazing ? static_cast<std::int32_t>(*grazing) : grazing_of(largest_field(record.normal), v);
+  return std::bit_cast<float>(point_error_of(std::bit_cast<std::int32_t>(record.d), v, g));
 }
 
 }  // namespace raygate

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/base/elementary.h"
-#include "host/base/lane_math.h"
+#include "host/base/triple.h"
 #include "host/base/vectors.h"
 #include "host/light/sampler.h"
 #include "host/light/scattering.h"
@@ -60,9 +60,9 @@ void compare(const Function& f) {
       expected = c;
       in_vectors([&](auto) RAYGATE_BODY {
         FloatLanes in[kInputs], out[kOutputs] = {};
-        for (int i = 0; i < kInputs; ++i) in[i] = lanes_from<FloatLanes>(c.in[i]);
+        for (int i = 0; i < kInputs; ++i) in[i] = load<FloatLanes>(c.in[i]);
         f(in, out);
-        for (int i = 0; i < kOutputs; ++i) lanes_to(c.out[i], out[i]);
+        for (int i = 0; i < kOutputs; ++i) store(c.out[i], out[i]);
       });
       for (int k = 0; k < kLanes; ++k) {
         float in[kInputs], out[kOutputs] = {};

@@ -1,0 +1,121 @@
+// Triples: places, directions and colours, of one lane or many, and the gathering of their lanes.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <type_traits>
+
+#include "host/base/lanes.h"
+
+namespace raygate {
+
+/// Three numbers: a place, a direction or a colour.
+template <class T>
+struct Triple {
+  T x, y, z;
+};
+
+template <class T>
+RAYGATE_INLINE Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> operator-(const Triple<T>& a) {
+  return {-a.x, -a.y, -a.z};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> operator*(const Triple<T>& a, const Triple<T>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> operator*(const Triple<T>& a, const T& b) {
+  return {a.x * b, a.y * b, a.z * b};
+}
+template <class T>
+RAYGATE_INLINE T dot(const Triple<T>& a, const Triple<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+/// The largest of three numbers that are not negative.
+template <class T>
+RAYGATE_INLINE T largest(const Triple<T>& a) {
+  return maximum(maximum(a.x, a.y), a.z);
+}
+template <class Mask, class T>
+RAYGATE_INLINE Triple<T> choose(const Mask& mask, const Triple<T>& a, const Triple<T>& b) {
+  return {choose(mask, a.x, b.x), choose(mask, a.y, b.y), choose(mask, a.z, b.z)};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> zero() {
+  return {T{}, T{}, T{}};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> spread(const glm::vec3& v) {
+  return {spread<T>(v.x), spread<T>(v.y), spread<T>(v.z)};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> normalized(const Triple<T>& a) {
+  return a * (1.0f / root(dot(a, a)));
+}
+/// A direction scaled as is_scaled wants it: by a power of two, which rounds nothing. Its largest
+/// component is to be a normal number below 2^126.
+template <class T>
+RAYGATE_INLINE Triple<T> scaled(const Triple<T>& a) {
+  constexpr std::int32_t kExponent = 0x7F800000, kOne = 0x3F800000;
+  const T size = maximum(maximum(absolute(a.x), absolute(a.y)), absolute(a.z));
+  return a * float_of(2 * kOne - (bits_in(size) & kExponent));
+}
+template <class D>
+RAYGATE_INLINE auto narrow(const Triple<D>& a) {
+  using T = decltype(narrow(a.x));
+  return Triple<T>{narrow(a.x), narrow(a.y), narrow(a.z)};
+}
+template <class T>
+RAYGATE_INLINE Triple<WideOf<T>> wide(const Triple<T>& a) {
+  return {wide(a.x), wide(a.y), wide(a.z)};
+}
+
+/// What of(k) gives for each lane k: a number, a word, a mask or a triple, as it gives a float, a
+/// std::uint32_t, a bool or a glm::vec3.
+template <class T, class Of>
+RAYGATE_INLINE auto gather(const Of& of) {
+  constexpr int kCount = kLanesOf<T>;
+  using Element = std::remove_cvref_t<decltype(of(0))>;
+  if constexpr (std::is_same_v<Element, glm::vec3>) {
+    alignas(4 * kCount) float x[kCount], y[kCount], z[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      const glm::vec3& v = of(k);
+      x[k] = v.x;
+      y[k] = v.y;
+      z[k] = v.z;
+    }
+    return Triple<T>{load<T>(x), load<T>(y), load<T>(z)};
+  } else if constexpr (std::is_same_v<Element, bool>) {
+    return MaskOf<T>(gather<T>([&](int k) RAYGATE_BODY { return of(k) ? 1.0f : 0.0f; }) > 0.0f);
+  } else {
+    alignas(4 * kCount) Element values[kCount];
+    for (int k = 0; k < kCount; ++k) values[k] = of(k);
+    return load<std::conditional_t<std::is_same_v<Element, float>, T, WordOf<T>>>(values);
+  }
+}
+/// The same member of each lane's object.
+template <class T, class Object, class Member>
+RAYGATE_INLINE auto gather(const Object* const (&objects)[kLanesOf<T>], Member Object::*member) {
+  return gather<T>([&](int k) RAYGATE_BODY -> const Member& { return objects[k]->*member; });
+}
+
+/// Triples to be read one by one.
+template <int kCount>
+struct TripleArray {
+  LaneArray<float, kCount> x, y, z;
+  RAYGATE_INLINE glm::vec3 operator[](int k) const { return {x[k], y[k], z[k]}; }
+};
+template <class T>
+RAYGATE_INLINE TripleArray<kLanesOf<T>> unpack(const Triple<T>& triple) {
+  return {unpack(triple.x), unpack(triple.y), unpack(triple.z)};
+}
+
+}  // namespace raygate
