@@ -14,6 +14,9 @@
 
 #include "host/base/vectors.h"
 
+// All of these are inlined: what registers a call would take them in does not matter.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace raygate {
 
 /// Rays are handled eight at a time: one AVX register of floats.
@@ -128,6 +131,10 @@ RAYGATE_INLINE IntOf<T> whole(const T& x) {
 template <class T>
 RAYGATE_INLINE IntOf<T> bits_in(const T& x) {
   return __builtin_bit_cast(IntOf<T>, x);
+}
+template <class T>
+RAYGATE_INLINE WordOf<T> words_in(const T& x) {
+  return __builtin_bit_cast(WordOf<T>, x);
 }
 template <class T>
 RAYGATE_INLINE Like<T, float> float_of(const T& bits) {
@@ -288,6 +295,59 @@ RAYGATE_INLINE void transpose(DoubleQuad (&rows)[kQuad]) {
   rows[1] = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
   rows[2] = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
   rows[3] = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+}
+
+RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {
+  FloatLanes pairs[kLanes], fours[kLanes];
+  for (int i = 0; i < kLanes; i += 2) {  // elements 0, 1 and 4, 5 of two rows; 2, 3 and 6, 7
+    pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  for (int i = 0; i < kLanes; ++i) {  // elements i % 4 and i % 4 + 4 of four rows
+    const FloatLanes &low = pairs[i / 4 * 4 + i % 4 / 2], &high = pairs[i / 4 * 4 + i % 4 / 2 + 2];
+    fours[i] = i % 2 == 0 ? __builtin_shufflevector(low, high, 0, 1, 8, 9, 4, 5, 12, 13)
+                          : __builtin_shufflevector(low, high, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+  for (int i = 0; i < 4; ++i) {
+    rows[i] = __builtin_shufflevector(fours[i], fours[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    rows[i + 4] = __builtin_shufflevector(fours[i], fours[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+/// Word i of the record of each lane becomes words[i], and back for the first `count` of them.
+/// Records are kWords floats or 32-bit words in a row.
+template <class T, std::size_t kWords, class Record>
+RAYGATE_INLINE void load_records(const Record* const (&records)[kLanesOf<T>], T (&words)[kWords]) {
+  static_assert(sizeof(Record) == 4 * kWords && kWords % kLanes == 0);
+  if constexpr (kLanesOf<T> == 1) {
+    std::memcpy(words, records[0], sizeof words);
+  } else {
+    for (std::size_t first = 0; first < kWords; first += kLanes) {
+      T rows[kLanes];
+      for (int k = 0; k < kLanes; ++k) {
+        rows[k] = load<T>(reinterpret_cast<const float*>(records[k]) + first);
+      }
+      transpose(rows);
+      for (int k = 0; k < kLanes; ++k) words[first + k] = rows[k];
+    }
+  }
+}
+template <class T, std::size_t kWords, class Record>
+RAYGATE_INLINE void store_records(const T (&words)[kWords], Record* const (&records)[kLanesOf<T>],
+                                  int count) {
+  static_assert(sizeof(Record) == 4 * kWords && kWords % kLanes == 0);
+  if constexpr (kLanesOf<T> == 1) {
+    std::memcpy(static_cast<void*>(records[0]), words, sizeof words);
+  } else {
+    for (std::size_t first = 0; first < kWords; first += kLanes) {
+      T rows[kLanes];
+      for (int k = 0; k < kLanes; ++k) rows[k] = words[first + k];
+      transpose(rows);
+      for (int k = 0; k < count; ++k) {
+        store(reinterpret_cast<char*>(records[k]) + 4 * first, rows[k]);
+      }
+    }
+  }
 }
 
 /// u x v, and for each component the sum of the magnitudes of its two products.

@@ -29,7 +29,7 @@ using VectorCode = std::integral_constant<Vectors, kVectors>;
 #define RAYGATE_INLINE inline __attribute__((always_inline))
 #define RAYGATE_BODY __attribute__((always_inline))
 
-// Clang refuses the built-in functions of wider vectors in code that is merely inlined into theirs.
+// The instructions of each kind, as GCC and Clang name them.
 #if defined(__x86_64__) && defined(__GNUC__)
 #define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"
 #define RAYGATE_AVX512 RAYGATE_AVX2 ",avx512f,avx512cd,avx512bw,avx512dq,avx512vl"

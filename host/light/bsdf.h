@@ -83,11 +83,12 @@ class Bsdf {
     return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * phong_lobe(light)
                                                : diffuse_ * per_pi());
   }
-  /// The same with the mirror as a highlight, for point lights.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> eval_for_point_light(const Triple<T>& light) const {
-    if ((kind_ & (kGlossy | kMirrors)) == 0 || (kind_ & kMetallicRoughness) != 0)
-      return eval(light);
-    const Triple<T> shown = choose(exponent_ > 1.0f, mirror_, zero<T>());
+  /// The same, the mirror as a highlight where the light is one point's.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
+                                              const MaskOf<T>& is_from_point) const {
+    const bool has_highlight = (kind_ & kMirrors) != 0 && (kind_ & kMetallicRoughness) == 0;
+    if (!has_highlight || !any(is_from_point)) return eval(light);
+    const Triple<T> shown = choose(is_from_point & (exponent_ > 1.0f), mirror_, zero<T>());
     return above(light, diffuse_ * per_pi() + (glossy_ + shown) * phong_lobe(light));
   }
 

@@ -21,57 +21,107 @@ RAYGATE_INLINE Triple<T> bounded(const Triple<T>& x) {
   return {bounded(x.x), bounded(x.y), bounded(x.z)};
 }
 
-/// The directions from surfaces to points on lights, and the distances in the units of Lights.
+/// Light that is on its way to hits from a point or a direction each, if nothing is between.
 template <class T>
-struct DirectionToLight {
-  Triple<T> direction;  ///< unit vector
-  T distance_squared;
-  T cosine;  ///< as Hits::cosine has it; 0 where they lead nowhere
+struct IncidentLight {
+  MaskOf<T> is_asked = T{} > 0.0f;       ///< hits without this want none
+  MaskOf<T> is_area = is_asked;          ///< it is an area light's
+  MaskOf<T> is_point_light = is_asked;   ///< or one point's
+  Triple<T> direction = zero<T>();       ///< unit vector towards it
+  T distance_squared = spread<T>(1.0f);  ///< in the units of Lights; 1: infinitely far away
+  T cosine = T{};                        ///< of the hit, as Hits::cosine has it; 0: nothing arrives
+  T light_cosine = T{};                  ///< of an area light
+  Triple<T> emission = zero<T>();        ///< radiance, intensity or irradiance
+  T pdf = spread<T>(1.0f);       ///< of the light; times that of its point, per area, or direction
+  Triple<T> target = zero<T>();  ///< as LightSample has them
+  WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
-  RAYGATE_INLINE DirectionToLight(const Lights& lights, const Hits<T>& hits,
-                                  const Triple<T>& place) {
+  IncidentLight() = default;
+  /// From a point.
+  RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
+      : target(position) {
     constexpr float kNear = 1e-30f;  // floats have room for the inverse
-    const Triple<T> way = (place - hits.surface.point) * spread<T>(lights.per_unit());
+    const Triple<T> way = (position - hits.surface.point) * spread<T>(lights.per_unit());
     distance_squared = dot(way, way);
     direction = way * (1.0f / root(distance_squared));
     cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
+  /// From infinitely far away; a unit vector.
+  RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
+      : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
+
+  /// Becomes another one where that is asked.
+  RAYGATE_INLINE void take(const IncidentLight& other) {
+    const auto put = [&](auto& own, const auto& others)
+                         RAYGATE_BODY { own = choose(other.is_asked, others, own); };
+    put(is_area, other.is_area);
+    put(is_point_light, other.is_point_light);
+    put(direction, other.direction);
+    put(distance_squared, other.distance_squared);
+    put(cosine, other.cosine);
+    put(light_cosine, other.light_cosine);
+    put(emission, other.emission);
+    put(pdf, other.pdf);
+    put(target, other.target);
+    put(index, other.index);
+    is_asked = is_asked | other.is_asked;
+  }
 };
 
-/// Asks for light from a direction that is `light` where nothing is between; `number` says which of
-/// its hit's samples it is.
+/// The light of points of area lights, uniform in area.
 template <class T>
-RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number, const MaskOf<T>& is_asked,
-                                     const Triple<T>& towards, const Triple<T>& light,
-                                     const std::uint32_t (&indices)[kLanesOf<T>],
-                                     const LightPoint<T>& point) {
-  const auto asked = unpack(is_asked);
-  const auto radiances = unpack(light), points = unpack(point.position);
-  const auto primitives = unpack(point.primitive);
-  const bool from_behind = hits.bsdf.has_rough_glass();
-  const auto sides = unpack(from_behind ? dot(hits.surface.flat_normal, towards) : T{});
-  for (int k = 0; k < hits.count; ++k) {
-    if (!asked[k]) continue;
-    const bool is_dark = radiances[k] == glm::vec3(0.0f);
-    hits.block.light_sample(hits.place[k], number) = {
-        is_dark ? LightSample::kDark : LightSample::kToTrace,
-        radiances[k],
-        !is_dark && sides[k] < 0.0f ? SpawnSide::kTransmitted : SpawnSide::kIncident,
-        indices[k],
-        points[k],
-        primitives[k]};
-  }
+RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& hits,
+                                           const LightPoint<T>& point, const Triple<T>& radiance) {
+  IncidentLight<T> light(lights, hits, point.position);
+  light.is_area = T{} == 0.0f;
+  light.light_cosine = absolute(dot(point.normal, light.direction));
+  light.emission = radiance;
+  light.index = point.primitive;
+  return light;
 }
 
-/// The light of point lights that surfaces scatter, per chance.
+/// What a hit sends back along its ray of light that it scatters so much of, from its direction.
 template <class T>
-RAYGATE_INLINE Triple<T> point_light_contribution(const Hits<T>& hits, const Lights& lights,
-                                                  const Triple<T>& position,
-                                                  const Triple<T>& intensity, const T& chance) {
-  const DirectionToLight<T> to_light(lights, hits, position);
-  const Triple<T> light = hits.throughput * hits.bsdf.eval_for_point_light(to_light.direction) *
-                          intensity * (to_light.cosine / (to_light.distance_squared * chance));
-  return choose(to_light.cosine > 0.0f, bounded(light), zero<T>());
+RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLight<T>& light,
+                                         const Triple<T>& scattered, const T& mis_weight) {
+  const Triple<T>& throughput = hits.path.throughput;
+  Triple<T> sent = throughput * (scattered * mis_weight) * light.emission *
+                   (light.cosine / (light.distance_squared * light.pdf));
+  if (any(light.is_area)) {
+    const T cosines = light.cosine * light.light_cosine;
+    sent = choose(light.is_area,
+                  throughput * scattered * (cosines / light.distance_squared) *
+                      (light.emission * (mis_weight / light.pdf)),
+                  sent);
+  }
+  return choose(light.cosine > 0.0f, bounded(sent), zero<T>());
+}
+
+/// Asks for light that is `sent` back where nothing is between; `number` says which of its hit's
+/// samples it is.
+template <class T>
+RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
+                                     const IncidentLight<T>& light, const Triple<T>& sent,
+                                     bool is_to_camera = false) {
+  static_assert(sizeof(LightSample) == 32);
+  const auto none = T{} > 0.0f;
+  const auto is_dark = (sent.x == 0.0f) & (sent.y == 0.0f) & (sent.z == 0.0f);
+  const auto is_behind = hits.bsdf.has_rough_glass()
+                             ? MaskOf<T>(dot(hits.surface.flat_normal, light.direction) < 0.0f)
+                             : none;
+  const T words[] = {sent.x,
+                     sent.y,
+                     sent.z,
+                     light.target.x,
+                     light.target.y,
+                     light.target.z,
+                     float_of(light.index),
+                     flag_words<T>(light.is_asked, is_dark, is_behind & !is_dark,
+                                   light.is_point_light, is_to_camera ? !none : none)};
+  LightSample* samples[Hits<T>::kCount];
+  for (int k = 0; k < hits.count; ++k)
+    samples[k] = &hits.block.light_samples_of(hits.place[k])[number];
+  store_records(words, samples, hits.count);
 }
 
 /// a^2 / (a^2 + b^2), where a may be infinite.
@@ -88,37 +138,13 @@ RAYGATE_INLINE Triple<T> sky(const Lights& lights, const Triple<T>& direction) {
   return environment != nullptr ? environment->radiance(direction) : spread<T>(lights.background());
 }
 
-/// The cosine between a spot light's axis and the way from it to the surface.
+/// The share of a spot light's intensity that goes from it towards a surface.
 template <class T>
-RAYGATE_INLINE T spot_cosine(const Hits<T>& hits, const Lights& lights, const Triple<T>& position,
-                             const Triple<T>& axis) {
-  return -dot(DirectionToLight<T>(lights, hits, position).direction, axis);
-}
-
-/// The light of one direction that surfaces scatter, per chance; `towards` is a unit vector, and
-/// `scattered` says how much of it.
-template <class T>
-RAYGATE_INLINE Triple<T> directional_light_contribution(const Hits<T>& hits,
-                                                        const Triple<T>& towards,
-                                                        const Triple<T>& scattered,
-                                                        const Triple<T>& irradiance,
-                                                        const T& chance) {
-  const T cosine = hits.cosine(towards);
-  const Triple<T> light = hits.throughput * scattered * irradiance * (cosine / chance);
-  return choose(cosine > 0.0f, bounded(light), zero<T>());
-}
-
-/// The light of points of lights; `weighted` is radiance over the pdf of the point, per area,
-/// and whatever else it is to be multiplied with.
-template <class T>
-RAYGATE_INLINE Triple<T> area_light_contribution(const Hits<T>& hits,
-                                                 const DirectionToLight<T>& to_light,
-                                                 const LightPoint<T>& point,
-                                                 const Triple<T>& weighted) {
-  const T cosines = to_light.cosine * absolute(dot(point.normal, to_light.direction));
-  const Triple<T> light = hits.throughput * hits.bsdf.eval(to_light.direction) *
-                          (cosines / to_light.distance_squared) * weighted;
-  return choose(to_light.cosine > 0.0f, bounded(light), zero<T>());
+RAYGATE_INLINE T spot_falloff_at(const Hits<T>& hits, const Lights& lights,
+                                 const Triple<T>& position, const Triple<T>& axis, const T& scale,
+                                 const T& offset) {
+  return spot_falloff(-dot(IncidentLight<T>(lights, hits, position).direction, axis), scale,
+                      offset);
 }
 
 }  // namespace raygate

@@ -2,8 +2,11 @@
 // that they sample, and the rays that they scatter.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -23,32 +26,91 @@ namespace raygate {
 class LightPaths;
 
 /// What one light sends to a hit if nothing is between: a shadow ray to trace.
-struct LightSample {
-  enum State : std::uint8_t {
-    kNone,
-    kDark,  ///< nothing would arrive
-    kToTrace,
-  };
-  State state = kNone;
-  glm::vec3 radiance{0.0f};               ///< what arrives if nothing is between
-  SpawnSide side = SpawnSide::kIncident;  ///< transmitted: by rough glass
-  std::uint32_t light_index = 0;          ///< kNoIndex: this goes to the camera's lens
-  glm::vec3 point{0.0f};  ///< of an area light; or, without a primitive, the direction to any
-                          ///< other; or of the lens
-  std::uint32_t primitive = 0;
+struct alignas(16) LightSample {
+  glm::vec3 radiance{0.0f};  ///< what arrives if nothing is between
+  /// Of an area light or of the lens a point; or the direction to what is infinitely far away.
+  glm::vec3 target{0.0f};
+  std::uint32_t index = 0;  ///< of a point light; or of the primitive that the target is on
+  std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: nothing would arrive
+  std::uint32_t is_transmitted : 1 = 0;             ///< by rough glass
+  std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
+
+  [[nodiscard]] SpawnSide side() const {
+    return is_transmitted != 0 ? SpawnSide::kTransmitted : SpawnSide::kIncident;
+  }
 };
 
 /// A ray that a hit sends on: reflected, refracted or scattered.
-struct ScatteredRay {
-  bool is_wanted = false;
-  bool surely_leaves = false;  ///< the triangle, to that side; or else exact arithmetic decides
-  bool has_flat = false;
-  SpawnSide side = SpawnSide::kIncident;
+struct alignas(16) ScatteredRay {
+  PathState state;
   glm::vec3 direction{0.0f};  ///< scaled
   /// Where the direction, made with an interpolated normal, leads to the wrong side: that of the
   /// flat normal.
   glm::vec3 flat{0.0f};
-  PathState state;  ///< but for sample and index, which stay
+  std::uint32_t is_wanted : 1 = 0;
+  std::uint32_t surely_leaves : 1 = 0;  ///< the triangle; or else exact arithmetic decides
+  std::uint32_t has_flat : 1 = 0, is_transmitted : 1 = 0;
+
+  [[nodiscard]] SpawnSide side() const {
+    return is_transmitted != 0 ? SpawnSide::kTransmitted : SpawnSide::kIncident;
+  }
+};
+
+/// The flags of such records, from masks: bit k is set where mask k is.
+template <class T, class... Masks>
+RAYGATE_INLINE T flag_words(const Masks&... masks) {
+  WordOf<T> flags{};
+  std::uint32_t bit = 1;
+  ((flags |= choose(masks, spread<WordOf<T>>(bit), WordOf<T>{}), bit <<= 1), ...);
+  return float_of(flags);
+}
+
+/// The states of paths, field by field, one path a lane.
+template <class T>
+struct PathLanes {
+  Triple<T> throughput;
+  T pdf;
+  Triple<T> scattered_at, normal;
+  WordOf<T> sample, stream, index, vertices;
+  T ratio;
+
+  PathLanes() = default;
+  RAYGATE_INLINE explicit PathLanes(const PathState* const (&states)[kLanesOf<T>]) {
+    T w[16];
+    load_records(states, w);
+    throughput = {w[0], w[1], w[2]};
+    pdf = w[3];
+    scattered_at = {w[4], w[5], w[6]};
+    normal = {w[7], w[8], w[9]};
+    sample = words_in(w[10]);
+    stream = words_in(w[11]);
+    index = words_in(w[12]);
+    vertices = words_in(w[13]);
+    ratio = w[14];
+  }
+  /// The records' words, in their order.
+  RAYGATE_INLINE void put(T* w) const {
+    static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
+                  offsetof(PathState, vertices) == 52 && offsetof(PathState, ratio) == 56 &&
+                  sizeof(PathState) == 64);
+    const T words[] = {throughput.x,
+                       throughput.y,
+                       throughput.z,
+                       pdf,
+                       scattered_at.x,
+                       scattered_at.y,
+                       scattered_at.z,
+                       normal.x,
+                       normal.y,
+                       normal.z,
+                       float_of(sample),
+                       float_of(stream),
+                       float_of(index),
+                       float_of(vertices),
+                       ratio,
+                       T{}};
+    for (int i = 0; i < 16; ++i) w[i] = words[i];
+  }
 };
 
 /// A part of a batch, its hits, and their results: lists by the ray's place in the part.
@@ -65,11 +127,13 @@ struct HitBlock {
   SkipCounters skipped;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
-  [[nodiscard]] LightSample& light_sample(std::size_t i, std::size_t number) {
-    return light_samples[i * light_samples_per_hit + number];
+  /// Of the hit at place i, and of so many.
+  [[nodiscard]] std::span<LightSample> light_samples_of(std::size_t i, std::size_t hits = 1) {
+    return std::span(light_samples)
+        .subspan(i * light_samples_per_hit, hits * light_samples_per_hit);
   }
-  [[nodiscard]] ScatteredRay& scattered_ray(std::size_t i, std::size_t number) {
-    return scattered[i * scattered_per_hit + number];
+  [[nodiscard]] std::span<ScatteredRay> scattered_of(std::size_t i, std::size_t hits = 1) {
+    return std::span(scattered).subspan(i * scattered_per_hit, hits * scattered_per_hit);
   }
 };
 
@@ -129,14 +193,7 @@ struct Hits {
       places[k] = hits.places[place[k]];
       materials[k] = hits.materials[place[k]];
     }
-    throughput = gather<T>(states, &PathState::throughput);
-    pdf = gather<T>(states, &PathState::pdf);
-    scattered_at = gather<T>(states, &PathState::scattered_at);
-    scattering_normal = gather<T>(states, &PathState::normal);
-    stream = gather<T>(states, &PathState::stream);
-    index = gather<T>(states, &PathState::index);
-    ratio = gather<T>(states, &PathState::ratio);
-    vertices = gather<T>(states, &PathState::vertices);
+    path = PathLanes<T>(states);
     surface = surface_at<T>(shading.scene, shading.bvh, kind, places);
     if ((kind & kShadowCatcher) != 0) {
       surface.colour = catcher_colour(shading.lights, shading.ambient, surface);
@@ -159,7 +216,7 @@ struct Hits {
 
   /// A point of the rays' own random streams for this purpose.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
-    return sobol_point<T>(index, hash(stream, purpose));
+    return sobol_point<T>(path.index, hash(path.stream, purpose));
   }
 
   /// The BSDF seen from another direction on the same side, and the normal there.
@@ -181,9 +238,7 @@ struct Hits {
   HitKind kind;
   int count;
   std::uint32_t place[kCount];  ///< in the block
-  Triple<T> throughput, scattered_at, scattering_normal;
-  T pdf, ratio;
-  WordOf<T> stream, index, vertices;
+  PathLanes<T> path;
   const MaterialParameters* materials[kCount];
   Surface<T> surface;
   Bsdf<T> bsdf;
@@ -200,40 +255,31 @@ struct Hits {
 /// Rays that go on where `is_wanted`; `number` says which of their hits' rays they are.
 template <class T>
 struct ScatteredRays {
-  Triple<T> direction, flat, throughput, scattered_at, normal;
-  T pdf, ratio = T{};
-  WordOf<T> stream, vertices = WordOf<T>{};
+  PathLanes<T> path;
+  Triple<T> direction, flat;
   MaskOf<T> is_wanted, has_flat, is_transmitted;
 
+  RAYGATE_INLINE explicit ScatteredRays(const Hits<T>& hits) : path(hits.path) {}
+
   RAYGATE_INLINE void send(Hits<T>& hits, std::size_t number) const {
-    const Triple<T> ahead = scaled(direction);
+    const Triple<T> ahead = scaled(direction), aside = scaled(flat);
     const auto leaving = hits.surface.leaving(ahead, is_transmitted);
-    const auto wanted = unpack(is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat));
-    const auto sure = unpack(leaving.leaves & leaving.is_sure);
-    const auto flats = unpack(has_flat);
-    const auto transmitted = unpack(is_transmitted);
-    const auto directions = unpack(ahead), flat_ones = unpack(scaled(flat)),
-               throughputs = unpack(throughput), points = unpack(scattered_at),
-               normals = unpack(normal);
-    const auto pdfs = unpack(pdf), ratios = unpack(ratio);
-    const auto streams = unpack(stream), counts = unpack(vertices);
-    for (int k = 0; k < hits.count; ++k) {
-      if (!wanted[k]) continue;
-      ScatteredRay& ray = hits.block.scattered_ray(hits.place[k], number);
-      ray.is_wanted = true;
-      ray.surely_leaves = sure[k];
-      ray.has_flat = flats[k];
-      ray.side = transmitted[k] ? SpawnSide::kTransmitted : SpawnSide::kIncident;
-      ray.direction = directions[k];
-      ray.flat = flat_ones[k];
-      ray.state.throughput = throughputs[k];
-      ray.state.pdf = pdfs[k];
-      ray.state.scattered_at = points[k];
-      ray.state.normal = normals[k];
-      ray.state.stream = streams[k];
-      ray.state.ratio = ratios[k];
-      ray.state.vertices = counts[k];
-    }
+    const auto wanted = is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat);
+    static_assert(offsetof(ScatteredRay, direction) == 64 && sizeof(ScatteredRay) == 96);
+    T words[24] = {};
+    path.put(words);
+    const T rest[] = {
+        ahead.x,
+        ahead.y,
+        ahead.z,
+        aside.x,
+        aside.y,
+        aside.z,
+        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted)};
+    std::copy(std::begin(rest), std::end(rest), words + 16);
+    ScatteredRay* rays[Hits<T>::kCount];
+    for (int k = 0; k < hits.count; ++k) rays[k] = &hits.block.scattered_of(hits.place[k])[number];
+    store_records(words, rays, hits.count);
   }
 };
 

@@ -19,7 +19,7 @@ constexpr std::size_t kMostLightSamples = 1 << 16;  // of a block: 3 MB
 void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.pdf)>;
+    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     const T facing = at_least(dot(hits.surface.normal, hits.surface.view), 0.0f);
     const bool is_seen = (hits.kind & kShadowCatcher) == 0;
     const Triple<T> colour = is_seen ? hits.surface.colour : zero<T>();
@@ -54,6 +54,8 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
   block_.places.resize(block_size_);
   block_.materials.resize(block_size_);
   block_.radiance.resize(block_size_);
+  block_.light_samples.resize(block_size_ * block_.light_samples_per_hit);
+  block_.scattered.resize(block_size_ * block_.scattered_per_hit);
   kinds_.resize(block_size_);
 }
 
@@ -63,10 +65,8 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   block_.batch = &batch;
   block_.begin = begin;
   block_.first_surfaces = batch.depth == 0 ? output.first_surface.data() : nullptr;
-  block_.light_samples.resize(count * block_.light_samples_per_hit);
-  block_.scattered.resize(count * block_.scattered_per_hit);
-  for (LightSample& light_sample : block_.light_samples) light_sample.state = LightSample::kNone;
-  for (ScatteredRay& scattered : block_.scattered) scattered.is_wanted = false;
+  for (LightSample& sample : block_.light_samples_of(0, count)) sample.is_asked = 0;
+  for (ScatteredRay& scattered : block_.scattered_of(0, count)) scattered.is_wanted = 0;
   sort(hits, count, output);
   ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary   ? shade_primary
                                     : kind_ == IntegratorKind::kWhitted ? shade_whitted
@@ -163,12 +163,13 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
                                   states[k]->normal);
         }
       }
+      const PathLanes<T> path(states);
       const Triple<T> direction = normalized(gather<T>(rays, &Ray::direction));
-      Triple<T> light = gather<T>(states, &PathState::throughput) * environment.radiance(direction);
+      Triple<T> light = path.throughput * environment.radiance(direction);
       if (is_sampled) {
-        const T pdf = gather<T>(states, &PathState::pdf);
         const T light_pdf = environment.pdf(direction) * load<T>(pmfs);
-        light = light * choose(pdf > 0.0f, power_heuristic(pdf, light_pdf), spread<T>(1.0f));
+        light =
+            light * choose(path.pdf > 0.0f, power_heuristic(path.pdf, light_pdf), spread<T>(1.0f));
         const auto directions = unpack(direction);
         light = light * gather<T>([&](int k) RAYGATE_BODY {
                   return caustic_weight(*states[k], [&] {
@@ -189,93 +190,78 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
 /// place i have to be spawned.
 void Integrator::list_spawn_queries(std::size_t i) {
   const SurfaceHit& place = block_.places[i];
-  bool any_incident = false, any_transmitted = false;
-  for (std::size_t number = 0; number < block_.light_samples_per_hit; ++number) {
-    LightSample& light_sample = block_.light_sample(i, number);
-    if (light_sample.state == LightSample::kDark && skips_.light_behind) {
+  bool any_at[2] = {};  // by side
+  for (LightSample& sample : block_.light_samples_of(i)) {
+    if (sample.is_asked == 0) continue;
+    if (sample.is_dark != 0 && skips_.light_behind) {
       ++block_.skipped.lights_behind;
-      light_sample.state = LightSample::kNone;
-    }
-    (light_sample.side == SpawnSide::kIncident ? any_incident : any_transmitted) |=
-        light_sample.state != LightSample::kNone;
-  }
-  for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {
-    ScatteredRay& scattered = block_.scattered_ray(i, number);
-    if (!scattered.is_wanted) continue;
-    if (scattered.state.throughput == glm::vec3(0.0f) && skips_.weightless) {
-      ++block_.skipped.weightless;
-      scattered.is_wanted = false;
+      sample.is_asked = 0;
       continue;
     }
-    scattered.is_wanted = leaves(place, scattered);
-    (scattered.side == SpawnSide::kIncident ? any_incident : any_transmitted) |=
-        scattered.is_wanted;
+    any_at[sample.is_transmitted] = true;
   }
-  if (any_incident || any_transmitted) spawner_.prefetch(place.primitive);
-  if (any_incident) spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kIncident});
-  if (any_transmitted)
-    spawn_queries_.push_back({place.ray, place.primitive, SpawnSide::kTransmitted});
+  for (ScatteredRay& scattered : block_.scattered_of(i)) {
+    if (scattered.is_wanted == 0) continue;
+    if (scattered.state.throughput == glm::vec3(0.0f) && skips_.weightless) {
+      ++block_.skipped.weightless;
+      scattered.is_wanted = 0;
+    } else if (leaves(place, scattered)) {
+      any_at[scattered.is_transmitted] = true;
+    } else {
+      scattered.is_wanted = 0;
+    }
+  }
+  if (any_at[0] || any_at[1]) spawner_.prefetch(place.primitive);
+  for (const SpawnSide side : {SpawnSide::kIncident, SpawnSide::kTransmitted}) {
+    if (any_at[static_cast<int>(side)])
+      spawn_queries_.push_back({place.ray, place.primitive, side});
+  }
 }
 
 /// Whether a scattered ray leads away from its triangle, if need be along the flat normal's
 /// direction.
 bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const {
   const auto leaves = [&](const glm::vec3& direction) {
-    return spawner_.leaves(*place.ray, place.primitive, scattered.side, direction);
+    return spawner_.leaves(*place.ray, place.primitive, scattered.side(), direction);
   };
-  if (scattered.surely_leaves || leaves(scattered.direction)) return true;
+  if (scattered.surely_leaves != 0 || leaves(scattered.direction)) return true;
   scattered.direction = scattered.flat;
   scattered.state.ratio = 0.0f;  // no light path goes this way
-  return scattered.has_flat && leaves(scattered.flat);
+  return scattered.has_flat != 0 && leaves(scattered.flat);
 }
 
 /// Passes on what the hit at place i gives. `origins` are those of its spawn queries and of the
 /// hits after it; a hit without an origin on a side sends nothing there.
 void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
-  const PathState& state = block_.state(i);
+  const std::uint32_t sample = block_.state(i).sample;
   const SurfaceHit& place = block_.places[i];
-  output.radiance[state.sample] += block_.radiance[i];
-  const SpawnOrigin* points[2] = {nullptr, nullptr};
-  const auto origin_on = [&](SpawnSide side) -> const SpawnOrigin& {
-    return *points[side == SpawnSide::kIncident ? 0 : 1];
-  };
+  output.radiance[sample] += block_.radiance[i];
+  const SpawnOrigin* points[2] = {};  // by side
   const auto* const end = spawn_queries_.data() + spawn_queries_.size();
   for (const auto* asked = spawn_queries_.data() + (origins - origins_.data());
        asked != end && asked->ray == place.ray; ++asked) {
-    points[asked->side == SpawnSide::kIncident ? 0 : 1] = origins++;
+    points[static_cast<int>(asked->side)] = origins++;
   }
-  for (std::size_t number = 0; number < block_.light_samples_per_hit; ++number) {
-    const LightSample& light_sample = block_.light_sample(i, number);
-    if (light_sample.state == LightSample::kNone) continue;
-    const auto& origin = origin_on(light_sample.side);
-    if (!origin) continue;
+  for (const LightSample& light : block_.light_samples_of(i)) {
+    if (light.is_asked == 0 || !*points[light.is_transmitted]) continue;
     ShadowRay& shadow = output.shadows.emplace_back();
-    shadow.sample = state.sample;
-    shadow.radiance = light_sample.radiance;
-    shadow.surface = *origin;
+    shadow.sample = sample;
+    shadow.radiance = light.radiance;
+    shadow.surface = **points[light.is_transmitted];
     shadow.surface_slot = place.primitive;
-    shadow.is_to_camera = light_sample.light_index == kNoIndex;
-    const Lights::Light* const light =
-        shadow.is_to_camera ? nullptr : &shading_.lights.light(light_sample.light_index);
-    if (light != nullptr && light->kind == Lights::Kind::kPoint && light->radius == 0.0f) {
-      shadow.point_light = light_sample.light_index;
+    shadow.is_to_camera = light.is_to_camera != 0;
+    if (light.is_point_light != 0) {
+      shadow.point_light = light.index;
     } else {
-      shadow.target = light_sample.point;
-      shadow.target_slot = light_sample.primitive;
+      shadow.target = light.target;
+      shadow.target_slot = light.index;
     }
   }
-  for (std::size_t number = 0; number < block_.scattered_per_hit; ++number) {
-    const ScatteredRay& scattered = block_.scattered_ray(i, number);
-    if (!scattered.is_wanted) continue;
-    const auto& origin = origin_on(scattered.side);
-    if (!origin) continue;
-    Ray& ray = output.next.rays.emplace_back();
-    ray.origin = *origin;
-    ray.direction = scattered.direction;
+  for (const ScatteredRay& scattered : block_.scattered_of(i)) {
+    if (scattered.is_wanted == 0 || !*points[scattered.is_transmitted]) continue;
+    output.next.rays.push_back({**points[scattered.is_transmitted], scattered.direction});
     output.next.sources.push_back(place.primitive);
-    PathState& next = output.next.states.emplace_back(scattered.state);
-    next.sample = state.sample;
-    next.index = state.index;
+    output.next.states.push_back(scattered.state);
   }
 }
 

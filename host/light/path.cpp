@@ -11,8 +11,6 @@ constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChoose
 constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
 constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
 
-const Lights::Source kNoSource{.per_area = 1.0f};
-
 /// How likely each lobe is to be sampled, in proportion to what it reflects; rough glass scatters.
 template <class T>
 struct LobeProbabilities {
@@ -78,111 +76,142 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
     min_weights[k] = min_mis_weight(shading, lights.source(source));
   }
   const T area_pdf = load<T>(area_pdfs), min_weight = load<T>(min_weights);
-  const Triple<T> way = (hits.surface.point - hits.scattered_at) * spread<T>(lights.per_unit());
+  const Triple<T> way =
+      (hits.surface.point - hits.path.scattered_at) * spread<T>(lights.per_unit());
   const T squared = dot(way, way);
   const T cosine = absolute(dot(hits.surface.flat_normal, way)) / root(squared);
   const T light_pdf = choose(cosine > 0.0f, area_pdf * squared / cosine, T{});
   const T mis_weight =
-      choose((area_pdf > 0.0f) & (hits.pdf > 0.0f),
-             maximum(power_heuristic(hits.pdf, light_pdf), min_weight), spread<T>(1.0f));
-  return hits.throughput *
+      choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
+             maximum(power_heuristic(hits.path.pdf, light_pdf), min_weight), spread<T>(1.0f));
+  return hits.path.throughput *
          (hits.bsdf.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
 }
+
+/// One light for each hit, chosen by what it may bring there.
+template <class T>
+struct ChosenLights {
+  static constexpr int kCount = kLanesOf<T>;
+  using Kind = Lights::Kind;
+
+  const Lights::Source* sources[kCount];
+  const Lights::Light* lights[kCount];
+  T pmf;
+  WordOf<T> kinds;
+
+  RAYGATE_INLINE ChosenLights(const Lights& all, const Hits<T>& hits) {
+    static const Lights::Source no_source{.per_area = 1.0f};
+    static const Lights::Light no_light{.kind = Kind::kNone, .spot = {}};
+    const SquarePoint<T> u = hits.random(kChooseLight);
+    const auto high = unpack(u.x), low = unpack(u.y);
+    const auto points = unpack(hits.surface.point), normals = unpack(hits.lit_normal());
+    LightTree::Sample samples[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      // Twice 24 bits: enough for a probability of one in many millions.
+      samples[k] =
+          all.sample_source<T>(points[k], normals[k], double{high[k]} + double{low[k]} * 0x1p-24);
+      const bool is_any = samples[k].source != kNoIndex;
+      sources[k] = is_any ? &all.source(samples[k].source) : &no_source;
+      lights[k] = is_any ? &all.light(sources[k]->light) : &no_light;
+    }
+    pmf = gather<T>(
+        [&](int k) RAYGATE_BODY { return samples[k].source != kNoIndex ? samples[k].pmf : 1.0f; });
+    kinds =
+        gather<T>([&](int k) RAYGATE_BODY { return static_cast<std::uint32_t>(lights[k]->kind); });
+  }
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are(Kind kind) const {
+    return kinds == static_cast<std::uint32_t>(kind);
+  }
+  template <class Member>
+  [[nodiscard]] RAYGATE_INLINE auto get(Member Lights::Light::*member) const {
+    return gather<T>(lights, member);
+  }
+
+  [[nodiscard]] RAYGATE_INLINE IncidentLight<T> points(const Lights& all,
+                                                       const Hits<T>& hits) const {
+    const Triple<T> middle = get(&Lights::Light::position);
+    const T radius = get(&Lights::Light::radius);
+    const bool any_ball = any(radius > 0.0f);
+    const Triple<T> position =
+        any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point, hits.random(kLightPoint))
+                 : middle;
+    IncidentLight<T> light(all, hits, position);
+    light.emission = get(&Lights::Light::emission);
+    if (any(get(&Lights::Light::is_spot))) {
+      const auto cone = [&](auto SpotFalloff::*member) RAYGATE_BODY {
+        return gather<T>([&](int k) RAYGATE_BODY { return lights[k]->spot.*member; });
+      };
+      light.emission =
+          light.emission * spot_falloff_at(hits, all, middle, cone(&SpotFalloff::axis),
+                                           cone(&SpotFalloff::scale), cone(&SpotFalloff::offset));
+    }
+    light.is_asked = are(Kind::kPoint);
+    light.pdf = pmf;
+    light.target = position - hits.surface.point;
+    light.is_point_light = !(radius > 0.0f);
+    light.index =
+        choose(light.is_point_light, gather<T>(sources, &Lights::Source::light), light.index);
+    return light;
+  }
+  [[nodiscard]] RAYGATE_INLINE IncidentLight<T> directions(const Hits<T>& hits) const {
+    IncidentLight<T> light(hits, get(&Lights::Light::position));
+    light.is_asked = are(Kind::kDirection);
+    light.emission = get(&Lights::Light::emission);
+    light.pdf = pmf;
+    return light;
+  }
+  [[nodiscard]] RAYGATE_INLINE IncidentLight<T> environment(const Environment& all,
+                                                            const Hits<T>& hits) const {
+    IncidentLight<T> light(hits, all.sample<T>(hits.random(kLightPoint)));
+    light.emission = all.radiance(light.direction);
+    light.pdf = all.pdf(light.direction) * pmf;
+    const MaskOf<T> is_chosen = are(Kind::kEnvironment), scatters = hits.bsdf.scatters();
+    light.is_asked = (light.pdf > kMinPdf) & is_chosen & scatters;
+    return light;
+  }
+  [[nodiscard]] RAYGATE_INLINE IncidentLight<T> areas(const Lights& all,
+                                                      const Hits<T>& hits) const {
+    std::uint32_t patches[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      // A lane without an area light samples one nevertheless, and nothing comes of it.
+      patches[k] = sources[k]->patch == kNoIndex ? 0 : sources[k]->patch;
+    }
+    const LightPoint<T> point = all.sample_patches<T>(patches, hits.random(kLightPoint));
+    IncidentLight<T> light = area_light(all, hits, point, all.radiance_at<T>(lights, point));
+    const MaskOf<T> is_chosen = are(Kind::kArea), scatters = hits.bsdf.scatters();
+    light.is_asked = (light.light_cosine > 0.0f) & is_chosen & scatters;
+    light.pdf = pmf * gather<T>(sources, &Lights::Source::per_area);
+    return light;
+  }
+};
 
 /// Next-event estimation: chooses one light for each hit, and samples it.
 template <class T>
 RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {
-  constexpr int kCount = Hits<T>::kCount;
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
-  const SquarePoint<T> u = hits.random(kChooseLight);
-  const auto high = unpack(u.x), low = unpack(u.y);
-  const auto points = unpack(hits.surface.point), normals = unpack(hits.lit_normal());
-  const Lights::Source* sources[kCount];
-  const Lights::Light* chosen[kCount];
-  std::uint32_t indices[kCount];
-  float pmfs[kCount];
-  static const Lights::Light no_light{.kind = Lights::Kind::kNone, .spot = {}};
-  for (int k = 0; k < kCount; ++k) {
-    // Twice 24 bits: enough for a probability of one in many millions.
-    const LightTree::Sample sample =
-        lights.sample_source<T>(points[k], normals[k], double{high[k]} + double{low[k]} * 0x1p-24);
-    const bool is_any = sample.source != kNoIndex;
-    sources[k] = is_any ? &lights.source(sample.source) : &kNoSource;
-    indices[k] = sources[k]->light;
-    chosen[k] = is_any ? &lights.light(indices[k]) : &no_light;
-    pmfs[k] = is_any ? sample.pmf : 1.0f;
+  const ChosenLights<T> chosen(lights, hits);
+  IncidentLight<T> light;
+  if (any(chosen.are(Kind::kPoint))) light.take(chosen.points(lights, hits));
+  if (any(chosen.are(Kind::kDirection))) light.take(chosen.directions(hits));
+  const MaskOf<T> is_delta = light.is_asked;
+  if (any(chosen.are(Kind::kEnvironment))) {
+    light.take(chosen.environment(*lights.environment(), hits));
   }
-  const WordOf<T> kinds =
-      gather<T>([&](int k) RAYGATE_BODY { return static_cast<std::uint32_t>(chosen[k]->kind); });
-  const auto is_a = [&](Kind kind)
-                        RAYGATE_BODY { return kinds == static_cast<std::uint32_t>(kind); };
-  const T pmf = load<T>(pmfs);
-  const Triple<T> emission = gather<T>(chosen, &Lights::Light::emission);
-  const LightPoint<T> place = {gather<T>(chosen, &Lights::Light::position), zero<T>(),
-                               WordOf<T>{} + NearestHit::kNone};
-  if (any(is_a(Kind::kPoint))) {
-    Triple<T> intensity = emission;
-    const T radius = gather<T>(chosen, &Lights::Light::radius);
-    Triple<T> position = place.position;
-    if (any(radius > 0.0f)) {
-      position =
-          Lights::point_on<T>(position, radius, hits.surface.point, hits.random(kLightPoint));
-    }
-    if (any(gather<T>(chosen, &Lights::Light::is_spot))) {
-      const auto axis = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.axis; });
-      const T scale = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.scale; });
-      const T offset = gather<T>([&](int k) RAYGATE_BODY { return chosen[k]->spot.offset; });
-      intensity =
-          intensity * spot_falloff(spot_cosine(hits, lights, place.position, axis), scale, offset);
-    }
-    const Triple<T> towards = position - hits.surface.point;
-    add_light_sample<T>(hits, 0, is_a(Kind::kPoint), towards,
-                        point_light_contribution(hits, lights, position, intensity, pmf), indices,
-                        {towards, zero<T>(), place.primitive});
+  if (any(chosen.are(Kind::kArea))) light.take(chosen.areas(lights, hits));
+
+  T mis_weight = spread<T>(1.0f);
+  if (any(light.is_asked & !is_delta)) {  // scattered rays find it, too
+    const T light_pdf =
+        choose(light.is_area, light.pdf * light.distance_squared / light.light_cosine, light.pdf);
+    const T bsdf_pdf = hits.bsdf.pdf(light.direction) * lobes.scatter_probability();
+    const T least = shading.path.limits_mis_weight ? chosen.get(&Lights::Light::sky) : T{};
+    mis_weight = choose((bsdf_pdf > kMinPdf) & !is_delta,
+                        minimum(power_heuristic(light_pdf, bsdf_pdf), T(1.0f - least)), mis_weight);
   }
-  if (any(is_a(Kind::kDirection))) {
-    const Triple<T> light = directional_light_contribution(
-        hits, place.position, hits.bsdf.eval_for_point_light(place.position), emission, pmf);
-    add_light_sample<T>(hits, 0, is_a(Kind::kDirection), place.position, light, indices, place);
-  }
-  const auto scatters = hits.bsdf.scatters();
-  if (const auto is_environment = is_a(Kind::kEnvironment); any(is_environment)) {
-    const Environment& environment = *lights.environment();
-    const Triple<T> towards = environment.sample<T>(hits.random(kLightPoint));
-    const T light_pdf = environment.pdf(towards) * pmf;
-    const T bsdf_pdf = hits.bsdf.pdf(towards) * lobes.scatter_probability();
-    const Triple<T> light = directional_light_contribution(
-        hits, towards, hits.bsdf.eval(towards) * power_heuristic(light_pdf, bsdf_pdf),
-        environment.radiance(towards), light_pdf);
-    const auto is_valid = scatters & is_environment & (light_pdf > kMinPdf);
-    add_light_sample<T>(hits, 0, is_valid, towards, light, indices,
-                        {towards, zero<T>(), place.primitive});
-  }
-  const auto is_area = is_a(Kind::kArea);
-  if (!any(is_area)) return;
-  std::uint32_t patches[kCount];
-  for (int k = 0; k < kCount; ++k) {
-    // A lane without an area light samples one nevertheless, and nothing comes of it.
-    patches[k] = sources[k]->patch == kNoIndex ? 0 : sources[k]->patch;
-  }
-  const LightPoint<T> point = lights.sample_patches<T>(patches, hits.random(kLightPoint));
-  const DirectionToLight<T> to_light(lights, hits, point.position);
-  const T area_pdf = pmf * gather<T>(sources, &Lights::Source::per_area);
-  const T cosine = absolute(dot(point.normal, to_light.direction));
-  const T light_pdf = area_pdf * to_light.distance_squared / cosine;
-  const T bsdf_pdf = hits.bsdf.pdf(to_light.direction) * lobes.scatter_probability();
-  const T min_bsdf_weight =
-      gather<T>([&](int k) RAYGATE_BODY { return min_mis_weight(shading, *sources[k]); });
-  const T mis_weight = choose(bsdf_pdf > kMinPdf,
-                              minimum(power_heuristic(light_pdf, bsdf_pdf), 1.0f - min_bsdf_weight),
-                              spread<T>(1.0f));
-  add_light_sample<T>(
-      hits, 0, is_area & scatters & (cosine > 0.0f), to_light.direction,
-      area_light_contribution(hits, to_light, point,
-                              lights.radiance_at<T>(chosen, point) * (mis_weight / area_pdf)),
-      indices, point);
+  const Triple<T> scattered = hits.bsdf.eval(light.direction, is_delta);
+  add_light_sample(hits, 0, light, scattered_light(hits, light, scattered, mis_weight));
 }
 
 /// The ways of a hit back from where its rays go: what light paths and camera paths need to know of
@@ -195,11 +224,11 @@ struct WaysBack {
   MaskOf<T> is_first;
 
   RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
-      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.vertices == 0u) {
-    arrived = hits.ratio / in;
+      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.vertices == 0u) {
+    arrived = hits.path.ratio / in;
     if (kFromLight) return;
     const Triple<T> way =
-        (hits.surface.point - hits.scattered_at) * spread<T>(shading.lights.per_unit());
+        (hits.surface.point - hits.path.scattered_at) * spread<T>(shading.lights.per_unit());
     arrived = arrived * choose(is_first, dot(way, way), spread<T>(1.0f));
   }
 
@@ -211,12 +240,12 @@ struct WaysBack {
         seen.bsdf.pdf(hits.surface.view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
     const T out = edge_cosine(hits, next.direction);
     const T known = kFromLight ? back : choose(is_first, spread<T>(1.0f), back);
-    next.ratio = bounded(arrived * known * (out / next.pdf));
+    next.path.ratio = bounded(arrived * known * (out / next.path.pdf));
     if (!kFromLight) return;
     const T cosine = at_least(dot(seen.normal, hits.surface.view), 0.0f);
     const Triple<T> flux =
-        throughput * seen.bsdf.eval(hits.surface.view) * (cosine * out / (in * next.pdf));
-    next.throughput = choose(largest(next.throughput) > 0.0f, bounded(flux), zero<T>());
+        throughput * seen.bsdf.eval(hits.surface.view) * (cosine * out / (in * next.path.pdf));
+    next.path.throughput = choose(largest(next.path.throughput) > 0.0f, bounded(flux), zero<T>());
   }
 
   /// After a mirror or glass that bends, where `is_specular`; `eta` is 1 of mirrors. Where the
@@ -226,12 +255,13 @@ struct WaysBack {
     const T out = edge_cosine(hits, next.direction);
     const auto has_back = !hits.surface.is_tilted();
     const T ratio = choose(has_back & (kFromLight ? has_back : !is_first), arrived * out, T{});
-    next.ratio = choose(is_specular, ratio, next.ratio);
+    next.path.ratio = choose(is_specular, ratio, next.path.ratio);
     if (!kFromLight) return;
     const T facing = absolute(dot(hits.surface.normal, hits.surface.view));
     const T leaving = at_least(absolute(dot(hits.surface.normal, next.direction)), kLeastCosine);
     const T scale = out * facing / (in * leaving * eta * eta);
-    next.throughput = choose(is_specular, bounded(next.throughput * scale), next.throughput);
+    next.path.throughput =
+        choose(is_specular, bounded(next.path.throughput * scale), next.path.throughput);
     next.has_flat = next.has_flat & !is_specular;
     next.is_wanted = next.is_wanted & (has_back | !is_specular);
   }
@@ -244,8 +274,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
   const SquarePoint<T> choice = hits.random(kChooseLobe);
-  Triple<T> throughput = hits.throughput;
-  ScatteredRays<T> next;
+  Triple<T> throughput = hits.path.throughput;
+  ScatteredRays<T> next(hits);
   next.is_wanted = lobes.sum > 0.0f;
   // Russian roulette comes before the lobe is chosen: no work is lost on rays that end.
   if (hits.block.batch->depth >= kRouletteDepth && shading.path.roulette_threshold > 0.0f) {
@@ -260,23 +290,25 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const auto is_mirrored = u < lobes.mirror;
   next.is_transmitted = (!is_mirrored) & (u < lobes.mirror + lobes.transmission);
   next.has_flat = is_mirrored | next.is_transmitted;
-  next.stream = hash(hits.stream, kNextRay);
+  next.path.stream = hash(hits.path.stream, kNextRay);
 
   const bool has_rough_glass = bsdf.has_rough_glass();
   const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
   next.direction = bsdf.sample(hits.random(kDirection), has_choice ? hits.random(kFacet).x : T{});
   next.flat = next.direction;
-  next.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
-  next.scattered_at = surface.point;
-  next.normal = hits.lit_normal();
+  next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
+  next.path.scattered_at = surface.point;
+  next.path.normal = hits.lit_normal();
   const T cosine = hits.cosine(next.direction);
-  const auto brings = (next.pdf > kMinPdf) & (cosine > 0.0f);
-  next.throughput = choose(
-      brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.pdf)), zero<T>());
+  const auto brings = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
+  next.path.throughput =
+      choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
+             zero<T>());
   if (has_rough_glass) {  // no light path goes through: PathState::ratio is 0 from here on
     if (kFromLight) return;
     next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
     next.is_wanted = next.is_wanted & brings;
+    next.path.ratio = T{};
     next.send(hits, 0);
     return;
   }
@@ -287,8 +319,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     const Triple<T> reflected_throughput = throughput * bsdf.mirror() * (lobes.sum / lobes.mirror);
     next.direction = choose(is_mirrored, reflected, next.direction);
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
-    next.throughput = choose(is_mirrored, reflected_throughput, next.throughput);
-    next.pdf = choose(is_mirrored, T{}, next.pdf);
+    next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
+    next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
     const auto shows_background = next.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
     radiance = choose(shows_background,
                       radiance + reflected_throughput * sky(shading.lights, reflected), radiance);
@@ -305,22 +337,23 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.is_wanted = next.is_wanted & ((!is_bent) | bent.exists);
     const Triple<T> transmitted_throughput =
         throughput * bsdf.transmission() * (lobes.sum / lobes.transmission);
-    next.throughput = choose(next.is_transmitted, transmitted_throughput, next.throughput);
-    next.pdf = choose(is_bent, T{}, next.pdf);
+    next.path.throughput =
+        choose(next.is_transmitted, transmitted_throughput, next.path.throughput);
+    next.path.pdf = choose(is_bent, T{}, next.path.pdf);
     // Straight on as if there were nothing.
     next.direction = choose(is_straight, -surface.view, next.direction);
     next.flat = choose(is_straight, -surface.view, next.flat);
-    next.pdf = choose(is_straight, hits.pdf, next.pdf);
-    next.scattered_at = choose(is_straight, hits.scattered_at, next.scattered_at);
-    next.normal = choose(is_straight, hits.scattering_normal, next.normal);
+    next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);
+    next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
+    next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
   }
   if (has_ways_back) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
     const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
     const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
     WaysBack<kFromLight, T>(shading, hits).mirror(hits, is_mirrored | is_bent, eta, next);
-    next.ratio = choose(is_straight, hits.ratio, next.ratio);
-    next.vertices = choose(is_straight, hits.vertices, hits.vertices + 1u);
+    next.path.ratio = choose(is_straight, hits.path.ratio, next.path.ratio);
+    next.path.vertices = choose(is_straight, hits.path.vertices, hits.path.vertices + 1u);
   }
   next.send(hits, 0);
 }
@@ -330,7 +363,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;
-  const auto scatters = hits.bsdf.scatters() & (hits.vertices != 0u);
+  const auto scatters = hits.bsdf.scatters() & (hits.path.vertices != 0u);
   if (!any(scatters) || hits.bsdf.has_rough_glass()) return;
   const SquarePoint<T> u = hits.random(kLens);
   const auto x = unpack(u.x), y = unpack(u.y);
@@ -340,21 +373,19 @@ RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits
   const Triple<T> lens =
       gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return views[k].lens; });
   const T per_area = gather<T>([&](int k) RAYGATE_BODY { return views[k].per_area; });
-  const DirectionToLight<T> way(shading.lights, hits, lens);
+  IncidentLight<T> way(shading.lights, hits, lens);
   const auto seen = hits.seen_from(way.direction);
   const Triple<T>& view = hits.surface.view;
   const T pixels = per_area * edge_cosine(hits, way.direction);
   const T in = edge_cosine(hits, view);
   const T pdf = seen.bsdf.pdf(view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
-  const T ratio = hits.ratio / in * pdf * pixels;
+  const T ratio = hits.path.ratio / in * pdf * pixels;
   const T mis_weight = 1.0f / (1.0f + ratio * ratio);
   const T cosine = at_least(dot(seen.normal, view), 0.0f);
   const Triple<T> light =
-      hits.throughput * seen.bsdf.eval(view) * (cosine / in * pixels * mis_weight);
-  std::uint32_t indices[kCount];
-  for (std::uint32_t& index : indices) index = kNoIndex;
-  add_light_sample<T>(hits, 0, scatters & (way.cosine > 0.0f) & (per_area > 0.0f), way.direction,
-                      bounded(light), indices, {lens, view, WordOf<T>{} + NearestHit::kNone});
+      hits.path.throughput * seen.bsdf.eval(view) * (cosine / in * pixels * mis_weight);
+  way.is_asked = scatters & (way.cosine > 0.0f) & (per_area > 0.0f);
+  add_light_sample(hits, 0, way, bounded(light), true);
 }
 
 }  // namespace
@@ -362,7 +393,7 @@ RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits
 void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
                 std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.pdf)>;
+    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     Triple<T> radiance = zero<T>();
     if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
     if (block.batch->depth <= shading.max_depth) {
@@ -377,13 +408,13 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
 void shade_light_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
                       std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.pdf)>;
+    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     connect_to_camera(shading, hits);
     hits.set_radiance(zero<T>());
     if (block.batch->depth > shading.max_depth) return;
     Triple<T> none = zero<T>();
-    sample_scattered_ray<true>(shading, hits, LobeProbabilities<T>(hits.bsdf, hits.vertices == 0u),
-                               none);
+    sample_scattered_ray<true>(shading, hits,
+                               LobeProbabilities<T>(hits.bsdf, hits.path.vertices == 0u), none);
   });
 }
 

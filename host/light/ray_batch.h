@@ -10,9 +10,10 @@
 
 namespace raygate {
 
-/// The state of a path along its ray: 60 bytes in a row, since hits are shaded in another order
-/// than rays are traced in, and one cache line is fetched for a ray, not ten.
-struct PathState {
+/// The state of a path along its ray: a record of 16 words, since hits are shaded in another order
+/// than rays are traced in, and one cache line is fetched for a ray, not ten. PathLanes has the
+/// fields of several.
+struct alignas(16) PathState {
   glm::vec3 throughput{1.0f};  ///< what light along the ray is multiplied by
   /// Per steradian, of sampling this direction where a surface scattered the ray; 0 where there was
   /// no choice (camera, mirror, glass).

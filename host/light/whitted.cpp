@@ -20,59 +20,69 @@ RAYGATE_INLINE Triple<T> if_narrow(const Ggx<T>& ggx, const Triple<T>& reflected
   return choose(ggx.squared > kNarrow * kNarrow, zero<T>(), reflected);
 }
 
+/// The light of light number i, and whether it is one point's, or has one direction.
+template <class T>
+RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits<T>& hits,
+                                         std::uint32_t i) {
+  using Kind = Lights::Kind;
+  const Lights& lights = shading.lights;
+  const Lights::Light& own = lights.light(i);
+  const Triple<T> middle = spread<T>(own.position);
+  Triple<T> emission = spread<T>(own.emission);
+  if (own.kind == Kind::kArea) {
+    std::uint32_t indices[Hits<T>::kCount];
+    std::ranges::fill(indices, i);
+    const auto number = static_cast<std::uint32_t>(i - lights.points().size());
+    const AreaLight& area = lights.areas()[number];
+    const bool in_middle = shading.single_sample && area.is_flat;
+    const LightPoint<T> point =
+        in_middle ? Lights::middle<T>(area)
+                  : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
+    if (own.is_textured && !in_middle) {
+      const Lights::Light* same[Hits<T>::kCount];
+      std::ranges::fill(same, &own);
+      emission = lights.radiance_at<T>(same, point);
+    }
+    IncidentLight<T> light = area_light(lights, hits, point, emission * spread<T>(own.area));
+    light.is_asked = hits.bsdf.scatters();
+    return light;
+  }
+  const bool is_ball = own.radius > 0.0f;
+  const Triple<T> position =
+      is_ball && !shading.single_sample
+          ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
+                                hits.random(kFirstPointLight + i))
+          : middle;
+  IncidentLight<T> light = own.kind == Kind::kPoint ? IncidentLight<T>(lights, hits, position)
+                                                    : IncidentLight<T>(hits, middle);
+  light.is_asked = T{} == 0.0f;
+  light.emission = emission;
+  if (own.is_spot) {
+    light.emission =
+        emission * spot_falloff_at(hits, lights, middle, spread<T>(own.spot.axis),
+                                   spread<T>(own.spot.scale), spread<T>(own.spot.offset));
+  }
+  if (own.kind == Kind::kPoint) {
+    light.target = position - hits.surface.point;
+    if (!is_ball) {
+      light.is_point_light = light.is_asked;
+      light.index = WordOf<T>{} + i;
+    }
+  }
+  return light;
+}
+
 /// A light sample of each hit for every light but the environment, which is the ambient light.
 template <class T>
 RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits) {
   using Kind = Lights::Kind;
-  const Lights& lights = shading.lights;
-  const T one = spread<T>(1.0f);
-  const std::size_t points = lights.points().size();
-  for (std::uint32_t i = 0; i < lights.count(); ++i) {
-    const Lights::Light& light = lights.light(i);
-    std::uint32_t indices[Hits<T>::kCount];
-    for (std::uint32_t& index : indices) index = i;
-    const LightPoint<T> place = {spread<T>(light.position), zero<T>(),
-                                 WordOf<T>{} + NearestHit::kNone};
-    Triple<T> emission = spread<T>(light.emission);
-    if (light.kind == Kind::kPoint) {
-      if (light.is_spot) {
-        const T cosine = spot_cosine(hits, lights, place.position, spread<T>(light.spot.axis));
-        emission = emission *
-                   spot_falloff(cosine, spread<T>(light.spot.scale), spread<T>(light.spot.offset));
-      }
-      Triple<T> position = place.position;
-      if (light.radius > 0.0f && !shading.single_sample) {
-        position = Lights::point_on<T>(position, spread<T>(light.radius), hits.surface.point,
-                                       hits.random(kFirstPointLight + i));
-      }
-      const Triple<T> towards = position - hits.surface.point;
-      add_light_sample<T>(hits, i, one > 0.0f, towards,
-                          point_light_contribution(hits, lights, position, emission, one), indices,
-                          {towards, zero<T>(), place.primitive});
-    } else if (light.kind == Kind::kDirection) {
-      const Triple<T> scattered = hits.bsdf.eval_for_point_light(place.position);
-      add_light_sample<T>(
-          hits, i, one > 0.0f, place.position,
-          directional_light_contribution(hits, place.position, scattered, emission, one), indices,
-          place);
-    } else if (light.kind == Kind::kArea && any(hits.bsdf.scatters())) {
-      const auto number = static_cast<std::uint32_t>(i - points);
-      const AreaLight& area = lights.areas()[number];
-      const LightPoint<T> point =
-          shading.single_sample && area.is_flat
-              ? Lights::middle<T>(area)
-              : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
-      const DirectionToLight<T> to_light(lights, hits, point.position);
-      if (light.is_textured && !(shading.single_sample && area.is_flat)) {
-        const Lights::Light* same[Hits<T>::kCount];
-        std::ranges::fill(same, &light);
-        emission = lights.radiance_at<T>(same, point);
-      }
-      add_light_sample<T>(
-          hits, i, hits.bsdf.scatters(), to_light.direction,
-          area_light_contribution(hits, to_light, point, emission * spread<T>(light.area)), indices,
-          point);
-    }
+  for (std::uint32_t i = 0; i < shading.lights.count(); ++i) {
+    const Kind kind = shading.lights.light(i).kind;
+    const bool is_area = kind == Kind::kArea;
+    if (kind == Kind::kEnvironment || (is_area && !any(hits.bsdf.scatters()))) continue;
+    const IncidentLight<T> light = light_of(shading, hits, i);
+    const Triple<T> scattered = hits.bsdf.eval(light.direction, !light.is_area);
+    add_light_sample(hits, i, light, scattered_light(hits, light, scattered, spread<T>(1.0f)));
   }
 }
 
@@ -99,10 +109,10 @@ template <class T>
 RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hits, bool goes_on) {
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
-  ScatteredRays<T> next;
-  next.pdf = T{};
-  next.scattered_at = next.normal = zero<T>();
-  next.throughput = hits.throughput * bsdf.mirror();
+  ScatteredRays<T> next(hits);
+  next.path.pdf = T{};
+  next.path.scattered_at = next.path.normal = zero<T>();
+  next.path.throughput = hits.path.throughput * bsdf.mirror();
   Triple<T> facet = surface.normal, mirror_facet = facet, transmitted = bsdf.transmission();
   if (has_rough_facets(hits)) {
     // By chance, as the facets lie (Cook, Porter and Carpenter 1984), of the coat or under it.
@@ -139,26 +149,26 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
           choose(is_coat, facets.grey(share), reflected * (facets.under_coat / (1.0f - chance)));
       mirror_facet = choose(is_coat, own, facet);
     }
-    next.throughput = hits.throughput * reflected;
+    next.path.throughput = hits.path.throughput * reflected;
     // Lights are asked for what these facets show of them.
-    next.pdf = spread<T>(1.0f);
+    next.path.pdf = spread<T>(1.0f);
   }
   next.is_wanted = bsdf.mirror_is_traced();
   if (!goes_on) next.is_wanted = next.is_wanted & !next.is_wanted;
   if (any(next.is_wanted)) {
-    next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.throughput);
+    next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.path.throughput);
   }
   if (any(next.is_wanted)) {
     next.direction = reflect(surface.view, mirror_facet);
     next.flat = reflect(surface.view, surface.flat_normal);
     next.has_flat = next.is_wanted;
     next.is_transmitted = next.is_wanted & !next.is_wanted;
-    next.stream = hash(hits.stream, kMirror);
+    next.path.stream = hash(hits.path.stream, kMirror);
     next.send(hits, 0);
   }
-  if (!bsdf.has_rough_glass()) next.pdf = T{};
-  next.throughput = hits.throughput * transmitted;
-  next.is_wanted = worthwhile(shading, hits, next.throughput);
+  if (!bsdf.has_rough_glass()) next.path.pdf = T{};
+  next.path.throughput = hits.path.throughput * transmitted;
+  next.is_wanted = worthwhile(shading, hits, next.path.throughput);
   if (!goes_on) {
     const T least = minimum(minimum(transmitted.x, transmitted.y), transmitted.z);
     next.is_wanted = next.is_wanted & !bsdf.is_refracting() & !(least < 1.0f);
@@ -172,7 +182,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.has_flat = (!is_bent) | flat.exists;
     next.is_wanted = next.is_wanted & ((!is_bent) | bent.exists);
     next.is_transmitted = next.is_wanted;
-    next.stream = hash(hits.stream, kTransmission);
+    next.path.stream = hash(hits.path.stream, kTransmission);
     next.send(hits, 1);
   }
 }
@@ -182,12 +192,12 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
 void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.pdf)>;
+    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     const Bsdf<T>& bsdf = hits.bsdf;
     const bool goes_on = block.batch->depth < shading.max_depth;
     Triple<T> emission = bsdf.emission(), glossy = bsdf.glossy();
     // What a light was asked for is not counted again where it is met.
-    if ((kind & kEmits) != 0) emission = choose(hits.pdf > 0.0f, zero<T>(), emission);
+    if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {
       const MetallicRoughnessLobes<T>& facets = bsdf.facets();
       const auto rest = [](const Ggx<T>& ggx, const Triple<T>& reflected)
@@ -203,7 +213,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
       const Triple<T> way = reflect(hits.surface.view, hits.surface.normal);
       background = bsdf.mirror() * sky(shading.lights, way);
     }
-    hits.set_radiance(hits.throughput *
+    hits.set_radiance(hits.path.throughput *
                       (shown + choose(bsdf.mirror_is_traced(), zero<T>(), background)));
     sample_all_lights(shading, hits);
     if (goes_on || (kind & kTransmits) != 0) spawn_specular_rays(shading, hits, goes_on);
