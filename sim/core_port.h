@@ -46,17 +46,12 @@ class PortFields {
 /// A result's record of eight words at the ports of ray_core_axi: hw/ray_core/registers.md.
 inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
   CoreResult result;
-  result.kind = static_cast<CoreResult::Kind>(words[0] & 3);
-  result.found = (words[0] >> 2 & 1) != 0;
-  result.error = static_cast<CoreResult::Error>(words[0] >> 3 & 7);
-  result.t_error = words[0] >> 6 & 31;
+  result.kind = static_cast<CoreResult::Kind>(words[0] & 1);
+  result.found = (words[0] >> 1 & 1) != 0;
+  result.error = static_cast<CoreResult::Error>(words[0] >> 2 & 7);
+  result.t_error = words[0] >> 5 & 31;
   result.tag = words[1];
   result.tests = words[7];
-  if (result.kind == CoreResult::Kind::kOverflow) {
-    result.line = words[2];
-    result.nodes = std::uint64_t{words[4]} << 32 | words[3];
-    return result;
-  }
   result.triangle = words[2];
   result.t = std::bit_cast<float>(words[3]);
   for (int k = 0; k < 3; ++k) result.point[k] = std::bit_cast<float>(words[4 + k]);
@@ -71,7 +66,6 @@ void put_ray(Top& top, const CoreRay& ray) {
   fields.put(ray.tag);
   fields.put(ray.no_cull, 1);
   fields.put(ray.any_hit, 1);
-  fields.put(ray.start, 28);
   fields.put(ray.source_id);
   fields.put(ray.skip_id);
   fields.put(std::bit_cast<std::uint32_t>(ray.t_max), 31);
@@ -85,9 +79,6 @@ template <class Top>
 CoreResult result_at(const Top& top) {
   PortFields fields(top.result_o);  // ray_core_pkg::result_t
   CoreResult result;
-  result.nodes = fields.take();
-  result.nodes |= std::uint64_t{fields.take(17)} << 32;
-  result.line = fields.take(28);
   result.error = static_cast<CoreResult::Error>(fields.take(3));
   result.tests = fields.take(28);
   for (int k = 0; k < 3; ++k) result.point[k] = fields.take_float();
@@ -96,7 +87,7 @@ CoreResult result_at(const Top& top) {
   result.triangle = fields.take();
   result.found = fields.take(1) != 0;
   result.tag = fields.take();
-  result.kind = static_cast<CoreResult::Kind>(fields.take(2));
+  result.kind = static_cast<CoreResult::Kind>(fields.take(1));
   return result;
 }
 

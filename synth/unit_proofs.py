@@ -98,14 +98,15 @@ def contexts_answer_once() -> tuple[dict, bool]:
 
 
 def stack_keeps_nodes() -> tuple[dict, bool]:
-    """What a ray's stack holds is asked for once, or beyond, by induction: of two rays and two levels."""
+    """What a ray's stack holds is asked for once, or beyond, by induction: of two rays, with two levels each and two
+    shared."""
     wires = ("busy_q waiting_q ready_q picked_q ray_q choosing_q choosing_ray_q level_q t_max_q "
              "ended_q asked_q asking_ray_q asked_level_q mask_q remaining_q next_valid_q next_started_q next_ray_q "
-             "next_level_q next_remaining_q next_enter_q base_q offset_q group *.next_q u_overflows.push_i u_overflows.data_i "
-             "u_overflows.count_q")
-    memories = "levels 2 2 u_groups.words 4 224 " + " ".join(f"gen_level[{d}].nexts 2 26" for d in range(2))
+             "next_level_q next_remaining_q next_enter_q base_q offset_q group *.next_q push left "
+             "shared_q shared_ray_q refused_q shared_mask_q")
+    memories = "levels 2 3 shared_masks 2 7 u_groups.words 6 224 " + " ".join(f"gen_level[{d}].nexts 2 26" for d in range(2))
     return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=18, prepared=f"traversal {{Rays 2 Depth 2}} {{{wires}}} {{{memories}}}")
+                 steps=1, reach=18, prepared=f"traversal {{Rays 2 Depth 2 Levels 4}} {{{wires}}} {{{memories}}}")
 
 
 def hits_keep_nearest() -> tuple[dict, bool]:

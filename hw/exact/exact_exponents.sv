@@ -52,19 +52,19 @@ module exact_exponents #(
       highs_d[v] = '0;
       for (int unsigned k = 0; k < 3; k++) begin
         if (floats_i[Width*(3*v+k)+:Width-1] != '0) begin
-          if (exponent(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]) < lows_d[v]) begin
-            lows_d[v] = exponent(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]);
+          if (effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]) < lows_d[v]) begin
+            lows_d[v] = effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]);
           end
-          if (exponent(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]) > highs_d[v]) begin
-            highs_d[v] = exponent(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]);
+          if (effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]) > highs_d[v]) begin
+            highs_d[v] = effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]);
           end
         end
       end
     end
   end
 
-  function automatic logic [ExpWidth-1:0] exponent(logic [ExpWidth-1:0] field);
-    exponent = (field == '0) ? ExpWidth'(1) : field;
+  function automatic logic [ExpWidth-1:0] effective(logic [ExpWidth-1:0] field);
+    effective = (field == '0) ? ExpWidth'(1) : field;
   endfunction
 
   always_ff @(posedge clk_i) begin
@@ -118,7 +118,7 @@ module exact_exponents #(
 
   assign one_exponent = (ShiftWidth + 1)'(coordinate_exponent_o) + (ShiftWidth + 1)'(Unit);
   assign limit_exponent = (ShiftWidth + 1)'(direction_exponent_o) + (ShiftWidth + 1)'(
-      exponent(floats_i[Width*exact_pkg::PlaceLimit+FracWidth+:ExpWidth]));
+      effective(floats_i[Width*exact_pkg::PlaceLimit+FracWidth+:ExpWidth]));
   assign less = one_exponent < limit_exponent;
 
   always_ff @(posedge clk_i) begin

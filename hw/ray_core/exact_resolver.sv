@@ -6,14 +6,15 @@
 //   settling  when nothing else of the ray is to be done: the candidate against closest_hit's nearest sure hit, or, where there is
 //             none, against the user's t_max. Where the candidate is nearer, its triangle is tested once more, for t and P
 //
-// Of hits at the same t the one of lower rank is nearer. Corners come by line, as for tests. One question at a time:
-// exact_unit's clocks, some seven more, and twice the way to the triangles' cache. Doubts of a ray that has ended
-// (ended_i) are dropped.
+// Of hits at the same t the one of lower rank is nearer. Corners come by line, as for tests. A question takes exact_unit's
+// clocks, some eight more, and twice the way to the triangles' cache. Questions of a ray follow each other, those of several rays
+// are asked of Units exact_units. Doubts of a ray that has ended (ended_i) are dropped.
 //
 // Tests on their way and doubts that wait are Queue together at most, so that each doubt has room and tests
 // never wait for the resolver: it waits for lines that come behind them.
 module exact_resolver #(
   parameter int unsigned Rays  = 64,
+  parameter int unsigned Units = 1,
   parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be on its way
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
@@ -46,20 +47,25 @@ module exact_resolver #(
   output ray_core_pkg::triangle_request_t request_o,
   input  logic                    request_ready_i,
   input  ray_core_pkg::triangle_line_t line_i,
-  output logic                    computing_o  // exact_unit has a question
+  output logic                    computing_o  // an exact_unit has a question
 );
 
   localparam int unsigned CountWidth = $clog2(Queue + 1);
   localparam int unsigned CornersWidth = 9 * 32;
+  localparam int unsigned AboutWidth = 1 + RayWidth + AddressWidth;  // {settling, context, line}
   localparam logic [30:0] Infinity = 31'h7f80_0000;
 
+  if (Units < 1) begin : gen_check
+    $error("exact_resolver: expected Units to be 1 or more");
+  end
+
   typedef enum logic [2:0] {
-    StateIdle   = 3'd0,
+    StateIdle   = 3'd0,  // an answer is taken, or, where a unit is free, a question begins
     StateLook   = 3'd1,  // what is to be asked
     StateFetch  = 3'd2,  // a line is asked for
     StateWait   = 3'd3,  // it is on its way
     StateAsk    = 3'd4,
-    StateAnswer = 3'd5,
+    StateAnswer = 3'd5,  // what it means
     StateTest   = 3'd6   // the candidate is the hit
   } state_e;
 
@@ -96,13 +102,13 @@ module exact_resolver #(
     else here_q <= here_q + CountWidth'(test_i) - CountWidth'(freed) - CountWidth'(pop);
   end
 
-  // ---- Of each ray: how many doubts it has, and its candidate
+  // ---- Of each ray: how many doubts it has, its candidate, and whether a question of it is open
 
   logic [CountWidth-1:0] counts[Rays];
   logic [AddressWidth-1:0] candidates[Rays];  // lines
-  logic [Rays-1:0] doubtful_q, candidate_q, ready_q;
+  logic [Rays-1:0] doubtful_q, candidate_q, open_q, ready_q;
   logic [RayWidth-1:0] ready_ctx, ctx_q;
-  logic settle, doubt_done, same, keep, drop;
+  logic settle, begin_any, done, doubt_done, same, keep, drop;
   logic settling_q, is_hit_q;  // what is asked; of the doubt that it is surely hit
   logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
 
@@ -123,13 +129,16 @@ module exact_resolver #(
     if (!rst_ni) begin
       doubtful_q  <= '0;
       candidate_q <= '0;
+      open_q      <= '0;
       ready_q     <= '0;
     end else begin
       if (doubt_done && !same && counts[ctx_q] == CountWidth'(1)) doubtful_q[ctx_q] <= 1'b0;
       if (push) doubtful_q[open_ctx_i] <= 1'b1;
       if (keep) candidate_q[ctx_q] <= 1'b1;
       if (drop) candidate_q[ctx_q] <= 1'b0;
-      ready_q <= candidate_q & ~doubtful_q & idle_i;
+      if (begin_any) open_q[settle ? ready_ctx : queued_ctx] <= 1'b1;
+      if (done) open_q[ctx_q] <= 1'b0;
+      ready_q <= candidate_q & ~doubtful_q & ~open_q & idle_i;
     end
   end
   always_ff @(posedge clk_i) begin
@@ -141,14 +150,16 @@ module exact_resolver #(
 
   // ---- The question
 
-  logic has_candidate, simple, lacks_q;
+  logic has_candidate, simple, lacks_q, nearer_q;
   logic [1:0] against, against_q;  // exact_pkg::against_e
   logic [AddressWidth-1:0] other_line_q, candidate;
   logic [CornersWidth-1:0] corners_q, other_q;
   logic [31:0] rank_q, other_rank_q;
   logic [95:0] origin, direction;
-  logic fetch, line_here, unit_ready, answered, hit, nearer;
-  exact_pkg::sign_t order;
+  logic fetch, line_here;
+  logic [Units-1:0] unit_ready, free, unit_valid, answered, nearer;  // free, answered: the first
+  logic [Units*AboutWidth-1:0] abouts;
+  logic [AboutWidth-1:0] about;  // of the one that has answered
 
   assign candidate     = candidates[ctx_q];
   assign has_candidate = candidate_q[ctx_q];
@@ -162,14 +173,13 @@ module exact_resolver #(
   assign simple = (against == exact_pkg::AgainstNothing) & (settling_q | is_hit_q);
 
   assign line_here = line_i.valid & line_i.exact;
-  assign nearer = hit & ((against_q == exact_pkg::AgainstNothing) | order.negative
-                         | (~order.nonzero & (against_q == exact_pkg::AgainstOther)
-                            & (rank_q < other_rank_q)));
 
   always_comb begin
     state_d = state_q;
     case (state_q)
-      StateIdle:  if (settle || queued) state_d = StateLook;
+      StateIdle:
+        if (answered != '0) state_d = StateAnswer;
+        else if (begin_any) state_d = StateLook;
       StateLook:
         if (ended_i) state_d = StateIdle;
         else if (simple) state_d = settling_q ? StateTest : StateIdle;
@@ -179,32 +189,36 @@ module exact_resolver #(
         if (line_here) begin
           state_d = line_i.error ? StateIdle : lacks_q ? StateFetch : StateAsk;
         end
-      StateAsk:   if (unit_ready) state_d = StateAnswer;
-      StateAnswer:
-        if (answered) state_d = (settling_q && nearer) ? StateTest : StateIdle;
-      StateTest:  if (request_ready_i) state_d = StateIdle;
-      default:    state_d = StateIdle;
+      StateAsk:    state_d = StateIdle;
+      StateAnswer: state_d = (settling_q && nearer_q) ? StateTest : StateIdle;
+      StateTest:   if (request_ready_i) state_d = StateIdle;
+      default:     state_d = StateIdle;
     endcase
   end
 
-  assign pop        = (state_q == StateIdle) & ~settle & queued;
-  assign doubt_done = (state_q != StateIdle) & (state_d == StateIdle) & ~settling_q;
-  assign drop       = (state_q != StateIdle) & (state_d == StateIdle) & settling_q;
+  assign begin_any  = (state_q == StateIdle) & (answered == '0) & (free != '0)
+                    & (settle | (queued & ~open_q[queued_ctx]));
+  assign pop        = begin_any & ~settle;
+  assign done       = (state_q != StateIdle) & (state_q != StateAsk) & (state_d == StateIdle);
+  assign doubt_done = done & ~settling_q;
+  assign drop       = done & settling_q;
   assign keep       = doubt_done & (((state_q == StateLook) & ~ended_i)
-                                    | ((state_q == StateAnswer) & nearer));
+                                    | ((state_q == StateAnswer) & nearer_q));
 
   assign fetch           = state_q == StateFetch;
   assign request_o.valid = fetch | (state_q == StateTest);
   assign request_o.exact = fetch;
   assign request_o.line  = (fetch & lacks_q) ? other_line_q : line_q;
-  assign computing_o     = state_q == StateAnswer;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) state_q <= StateIdle;
     else state_q <= state_d;
   end
   always_ff @(posedge clk_i) begin
-    if (state_q == StateIdle) begin
+    if (state_q == StateIdle && answered != '0) begin
+      {settling_q, ctx_q, line_q} <= about;
+      nearer_q <= (nearer & answered) != '0;
+    end else if (begin_any) begin
       settling_q <= settle;
       ctx_q      <= settle ? ready_ctx : queued_ctx;
       is_hit_q   <= settle | queued_hit;
@@ -236,21 +250,52 @@ module exact_resolver #(
     .data_o({direction, origin})
   );
 
-  exact_unit #(
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_unit (
-    .clk_i,
-    .rst_ni,
-    .valid_i(state_q == StateAsk),
-    .ready_o(unit_ready),
-    .hit_i(~is_hit_q),
-    .against_i(against_q),
-    .floats_i({1'b0, t_max_i, other_q, corners_q, direction, origin}),
-    .valid_o(answered),
-    .ready_i(1'b1),
-    .hit_o(hit),
-    .order_o(order)
-  );
+  // ---- Units, and what each was asked about
+
+  assign free        = unit_ready & -unit_ready;
+  assign answered    = unit_valid & -unit_valid;
+  assign computing_o = unit_ready != '1;
+
+  always_comb begin
+    about = '0;
+    for (int unsigned u = 0; u < Units; u++) begin
+      if (answered[u]) about = abouts[AboutWidth*u +: AboutWidth];
+    end
+  end
+
+  for (genvar u = 0; u < Units; u++) begin : gen_unit
+    logic ask, wins_tie_q, hit;
+    exact_pkg::sign_t order;
+    logic [AboutWidth-1:0] about_q;
+
+    assign ask       = (state_q == StateAsk) & free[u];
+    assign nearer[u] = hit & (order.negative | (~order.nonzero & wins_tie_q));
+    assign abouts[AboutWidth*u +: AboutWidth] = about_q;
+
+    always_ff @(posedge clk_i) begin
+      if (ask) begin
+        about_q    <= {settling_q, ctx_q, line_q};
+        wins_tie_q <= (against_q == exact_pkg::AgainstNothing)
+                    | ((against_q == exact_pkg::AgainstOther) & (rank_q < other_rank_q));
+      end
+    end
+
+    exact_unit #(
+      .Arith(Arith),
+      .Adder(Adder)
+    ) u_unit (
+      .clk_i,
+      .rst_ni,
+      .valid_i(ask),
+      .ready_o(unit_ready[u]),
+      .hit_i(~is_hit_q),
+      .against_i(against_q),
+      .floats_i({1'b0, t_max_i, other_q, corners_q, direction, origin}),
+      .valid_o(unit_valid[u]),
+      .ready_i((state_q == StateIdle) & answered[u]),
+      .hit_o(hit),
+      .order_o(order)
+    );
+  end
 
 endmodule

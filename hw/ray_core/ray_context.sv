@@ -102,7 +102,6 @@ module ray_context #(
   assign start_o.origin    = start.origin;
   assign start_o.direction = start.direction;
   assign start_o.t_max     = start.t_max;
-  assign start_o.line      = start.start;
   assign start_o.any_hit   = start.any_hit;
   assign start_o.is_scaled = ray_core_pkg::is_scaled(start.direction);
 

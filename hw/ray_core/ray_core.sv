@@ -1,7 +1,6 @@
 // Ray core: rays in, nearest hits out, or, without Exact, nearest sure hits and doubts; it traverses a tree in memory.
 //
-// Rays and results: valid/ready. A ray begins at the inner node of line `start` (the root's, as a rule). Its direction
-// is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangles `skip_id`
+// Rays and results: valid/ready. A ray's direction is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangles `skip_id`
 // and `source_id`, the one that it leaves, do not count. With `any_hit` it ends at its first sure hit, with `no_cull` it enters all boxes. Words about rays come
 // mixed, by tag, and rays end in any order: see ray_core_pkg::result_e. With an error they say nothing, see error_e.
 // Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order, valid/ready;
@@ -10,11 +9,12 @@
 // Throughput: a node and a triangle in Clocks clocks, out of the caches; a line of what they lack.
 module ray_core #(
   parameter int unsigned Rays  = 64,  // of the table; a power of two
-  parameter int unsigned Depth = 8,   // groups on a ray's stack
+  parameter int unsigned Depth = 8,   // groups on a ray's own stack
+  parameter int unsigned Levels = ray_core_pkg::Levels,  // with those that it may share, see traversal
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
   parameter int unsigned Clocks = 1,  // of a node and a triangle: pipelines; or 7 or more, in turns
-  parameter bit Exact = 1'b0,  // no doubts; triangles are named by their lines, and have ranks
+  parameter int unsigned Exact = 0,  // exact_units; with some no doubts leave: triangles are named by their lines, have ranks
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -44,14 +44,14 @@ module ray_core #(
   input  logic                    line_error_i,
   output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
 );
-  logic start_fire, triangle_ready, tests_allowed, step, ending, doubt_fire, overflow_fire;
+  logic start_fire, triangle_ready, tests_allowed, step, ending, doubt_fire;
   logic [RayWidth-1:0] start_ctx, node_ctx, triangle_ctx, node_line_ctx, triangle_line_ctx;
   logic [RayWidth-1:0] box_ctx, verdict_ctx, ending_ctx, end_ctx, point_ctx;
   logic [Rays-1:0] busy;
   logic [30:0] t_max;
   logic [95:0] end_point;
   logic [1:0] reads;
-  logic [5:0] events;
+  logic [6:0] events;
   ray_core_pkg::start_t start;
   ray_core_pkg::request_t node, prefetch;
   ray_core_pkg::triangle_request_t triangle;
@@ -60,12 +60,12 @@ module ray_core #(
   ray_core_pkg::boxes_t boxes;
   ray_core_pkg::verdict_t verdict;
   ray_core_pkg::doubt_t doubt;
-  ray_core_pkg::overflow_t overflow;
   ray_core_pkg::end_t ended;
 
   traversal_subsystem #(
     .Rays(Rays),
     .Depth(Depth),
+    .Levels(Levels),
     .Exact(Exact),
     .Arith(Arith),
     .Adder(Adder)
@@ -96,8 +96,6 @@ module ray_core #(
     .busy_o(busy),
     .doubt_o(doubt),
     .doubt_fire_i(doubt_fire),
-    .overflow_o(overflow),
-    .overflow_fire_i(overflow_fire),
     .events_o(events),
     .end_ctx_i(end_ctx),
     .end_o(ended),
@@ -109,7 +107,7 @@ module ray_core #(
     .Rays(Rays),
     .NodeLines(NodeLines),
     .TriangleLines(TriangleLines),
-    .Exact(Exact),
+    .Exact(Exact != 0),
     .Clocks(Clocks)
   ) u_memory (
     .clk_i,
@@ -183,8 +181,6 @@ module ray_core #(
     .point_i(end_point),
     .doubt_i(doubt),
     .doubt_fire_o(doubt_fire),
-    .overflow_i(overflow),
-    .overflow_fire_o(overflow_fire),
     .result_valid_o,
     .result_ready_i,
     .result_o
@@ -194,7 +190,7 @@ module ray_core #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) events_o <= '0;
-    else events_o <= {events[5], reads, overflow_fire, events[4:0], node_line.valid, ending};
+    else events_o <= {events[6], reads, events[5:0], node_line.valid, ending};
   end
 
 endmodule

@@ -13,7 +13,7 @@ module ray_core_axi #(
   parameter int unsigned Depth = 8,
   parameter int unsigned NodeLines     = 256,
   parameter int unsigned TriangleLines = 256,
-  parameter bit Exact = 1'b0,
+  parameter int unsigned Exact = 0,
   parameter int unsigned DataWidth = 128,  // of the AXI4 port
   parameter int unsigned IdWidth   = 6,
   parameter int unsigned Arith = arith_pkg::Structural,
@@ -192,7 +192,7 @@ module ray_core_axi #(
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
   assign generated = {
-    camera[0+:96], camera_direction, Infinity, {2{NoTriangle}}, AddressWidth'(0), 2'b00, pixel
+    camera[0+:96], camera_direction, Infinity, {2{NoTriangle}}, 2'b00, pixel
   };
   assign ray_ready_o  = core_ready & ~closed_q;
   assign ray_fire     = core_valid & core_ready;
@@ -284,15 +284,11 @@ module ray_core_axi #(
 
   // ---- Results: a record each, to memory or by the stream
 
-  logic is_overflow, to_memory, record_ready;
-  logic [127:0] place;  // words 2 to 5
+  logic to_memory, record_ready;
   logic [255:0] record;
 
-  assign is_overflow = result.kind == ray_core_pkg::ResultOverflow;
-  assign place       = is_overflow ? 128'({result.nodes, 32'(result.line)})
-                     : {result.point[0+:64], result.t, result.triangle};
   assign record = {
-    32'(result.tests), result.point[64+:32], place, result.tag,
+    32'(result.tests), result.point, result.t, result.triangle, result.tag,
     32'({result.t_error, result.error, result.found, result.kind})
   };
   assign to_memory       = length != '0;

@@ -27,6 +27,7 @@ package ray_core_pkg;
   localparam int unsigned BoxWidth = 48;
   localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of so many triangles
   localparam logic [KindWidth-1:0] KindInner = 4'd8;
+  localparam int unsigned Levels = 48;  // nodes at most on a way from the root to a leaf
 
   // ---- Triangle line
 
@@ -77,7 +78,6 @@ package ray_core_pkg;
     logic [30:0]             t_max;
     logic [31:0]             skip_id;
     logic [31:0]             source_id;
-    logic [AddressWidth-1:0] start;
     logic                    any_hit;
     logic                    no_cull;
     logic [31:0]             tag;
@@ -85,20 +85,18 @@ package ray_core_pkg;
 
   // ---- Results: what the core says of a ray
 
-  typedef enum logic [1:0] {
-    ResultEnd      = 2'd0,  // the ray's last word: the nearest sure hit, if there is one
-    ResultDoubt    = 2'd1,  // a triangle that may be the nearest hit: exact arithmetic must say
-    ResultOverflow = 2'd2  // subtrees for which the stack had no room: the host sends the ray there
+  typedef enum logic {
+    ResultEnd   = 1'd0,  // the ray's last word: the nearest sure hit, if there is one
+    ResultDoubt = 1'd1   // a triangle that may be the nearest hit: exact arithmetic must say
   } result_e;
 
-  localparam int unsigned NodesWidth = 7 * Children;  // of an overflow: bit i: the node at line + i
   localparam int unsigned TestsWidth = AddressWidth;  // a ray tests each triangle line once
 
   // Why a ray's hits must not be believed
   typedef enum logic [2:0] {
     ErrorNone      = 3'd0,
     ErrorMemory    = 3'd1,  // a line for it came with an error
-    ErrorCycle     = 3'd2,  // it meets a node again: see traversal
+    ErrorCycle     = 3'd2,  // it meets a node again, or is below more than Levels: see traversal
     ErrorDirection = 3'd3,  // its direction is not scaled
     ErrorAbort     = 3'd4   // the user gave it up
   } error_e;
@@ -118,7 +116,7 @@ package ray_core_pkg;
   localparam int unsigned VerdictErrorWidth = 4;
 
   typedef struct packed {
-    logic [1:0]              kind;      // result_e
+    logic                    kind;      // result_e
     logic [31:0]             tag;
     logic                    found;     // ResultEnd: a sure hit, and so on to tests
     logic [31:0]             triangle;  // ResultDoubt: that one
@@ -127,8 +125,6 @@ package ray_core_pkg;
     logic [95:0]             point;
     logic [TestsWidth-1:0]   tests;
     logic [2:0]              error;     // ResultEnd: error_e
-    logic [AddressWidth-1:0] line;      // ResultOverflow, with nodes
-    logic [NodesWidth-1:0]   nodes;
   } result_t;
 
   // ---- Links between the parts of the core; beside each goes the number of a ray's context
@@ -139,7 +135,6 @@ package ray_core_pkg;
     logic [95:0]             origin;
     logic [95:0]             direction;
     logic [30:0]             t_max;
-    logic [AddressWidth-1:0] line;
     logic                    any_hit;
     logic                    is_scaled;
   } start_t;
@@ -217,13 +212,6 @@ package ray_core_pkg;
     logic [AddressWidth-1:0] line;
   } open_t;
 
-  typedef struct packed {
-    logic                    valid;
-    logic [31:0]             tag;
-    logic [AddressWidth-1:0] line;
-    logic [NodesWidth-1:0]   nodes;
-  } overflow_t;
-
   // ---- Events of a clock, for counters
 
   typedef enum logic [3:0] {
@@ -234,7 +222,7 @@ package ray_core_pkg;
     EventMiss     = 4'd4,  // surely missed, or the triangle that the ray ignores,
     EventDoubt    = 4'd5,  // or neither
     EventNearTie  = 4'd6,  // a sure hit leaves as a doubt
-    EventOverflow = 4'd7,
+    EventOverflow = 4'd7,  // a ray's own stack is full: it takes the shared groups
     EventRead     = 4'd8,  // a line is asked for
     EventWait     = 4'd9,  // memory does not take what is asked for
     EventExact    = 4'd10  // exact_unit has a question

@@ -10,7 +10,7 @@ module ray_cores #(
   parameter int unsigned Depth = 8,
   parameter int unsigned NodeLines     = 256,
   parameter int unsigned TriangleLines = 256,
-  parameter bit Exact = 1'b0,
+  parameter int unsigned Exact = 0,
   parameter int unsigned SharedLines   = 0,  // or a power of two, at least 16
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,

@@ -2,7 +2,7 @@
 //
 // A ray has ended when it has no node, no leaf and no test left. Its context is free at once: its nearest hit waits
 // in a queue for P, which comes PointDelay clocks later at most, before another ray in the context could have
-// one. A ray's doubts and overflows leave before its end.
+// one. A ray's doubts leave before its end.
 //
 // A ray ends a clock at most, a result leaves a clock.
 module ray_retire #(
@@ -22,11 +22,9 @@ module ray_retire #(
   // the P of a context's last ray, in the clock after
   output logic [RayWidth-1:0]    point_ctx_o,
   input  logic [95:0]            point_i,
-  // doubts and overflows
+  // doubts
   input  ray_core_pkg::doubt_t   doubt_i,
   output logic                   doubt_fire_o,
-  input  ray_core_pkg::overflow_t overflow_i,
-  output logic                   overflow_fire_o,
   // results
   output logic                   result_valid_o,
   input  logic                   result_ready_i,
@@ -118,31 +116,25 @@ module ray_retire #(
 
   logic load;
 
-  assign load            = ~result_valid_o | result_ready_i;
-  assign doubt_fire_o    = load & doubt_i.valid;
-  assign overflow_fire_o = load & overflow_i.valid & ~doubt_i.valid;
-  assign end_fire        = load & end_valid & ~doubt_i.valid & ~overflow_i.valid;
+  assign load         = ~result_valid_o | result_ready_i;
+  assign doubt_fire_o = load & doubt_i.valid;
+  assign end_fire     = load & end_valid & ~doubt_i.valid;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) result_valid_o <= 1'b0;
-    else if (load) result_valid_o <= doubt_i.valid | overflow_i.valid | end_valid;
+    else if (load) result_valid_o <= doubt_i.valid | end_valid;
   end
   always_ff @(posedge clk_i) begin
     if (load) begin
-      result_o.kind     <= doubt_i.valid ? ray_core_pkg::ResultDoubt
-                         : overflow_i.valid ? ray_core_pkg::ResultOverflow
-                         : ray_core_pkg::ResultEnd;
-      result_o.tag      <= doubt_i.valid ? doubt_i.tag
-                         : overflow_i.valid ? overflow_i.tag : ended.tag;
-      result_o.found    <= ended.hit.found & ~doubt_i.valid & ~overflow_i.valid;
+      result_o.kind     <= doubt_i.valid ? ray_core_pkg::ResultDoubt : ray_core_pkg::ResultEnd;
+      result_o.tag      <= doubt_i.valid ? doubt_i.tag : ended.tag;
+      result_o.found    <= ended.hit.found & ~doubt_i.valid;
       result_o.triangle <= doubt_i.valid ? doubt_i.triangle : ended.hit.triangle;
       result_o.t        <= ended.hit.t;
       result_o.t_error  <= ended.hit.t_error;
       result_o.point    <= (ended.hit.t_error == ray_core_pkg::NoT) ? '0 : end_point;
       result_o.tests    <= ended.hit.tests;
       result_o.error    <= ended.error;
-      result_o.line     <= overflow_i.line;
-      result_o.nodes    <= overflow_i.nodes;
     end
   end
 

@@ -5,12 +5,13 @@
 // beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for. Rays without
 // tests in flight come first: what they ask for is needed as far as anybody knows.
 //
-// A tree's ray enters each node once. One that is about to enter more than lines_i nodes meets a node again: its
-// stack is dropped, cycle_o says so.
+// A ray has Depth groups of its own. Levels - Depth more are shared: one ray at a time has them, on top of its own, from
+// when it asks for a node with its own stack full until it has room there again; overflow_o tells of each that takes them.
+// A ray that wants them meanwhile waits. The one that has them needs no other ray, so each gets them. Few rays do: of
+// shared groups only the topmost is looked at, and not dropped for t_max (box_unit leaves out what is inside).
 //
-// Where a stack has no room for a group, the group leaves as an overflow: the host sends the ray there. Overflows
-// are few; from two clocks after one has come until it has left no node is asked for: room for two more than there are
-// rays is enough.
+// A tree's ray enters each node once, and has a group at most for each node above the one that it enters. A ray that is about
+// to enter more than lines_i nodes, or has Levels groups, meets a node again: its stack is dropped, cycle_o says so.
 //
 //   gather   the rays that may be picked
 //   pick     one of them
@@ -22,24 +23,22 @@
 // A ray that starts goes before those that have tests in flight.
 module traversal #(
   parameter int unsigned Rays  = 64,
-  parameter int unsigned Depth = 8,  // groups on a stack, at least 1
+  parameter int unsigned Depth = 8,  // groups on a ray's own stack, at least 1
+  parameter int unsigned Levels = ray_core_pkg::Levels,  // with the shared ones, at least Depth + 2
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
-  localparam int unsigned Children = ray_core_pkg::Children,
-  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth
+  localparam int unsigned Children = ray_core_pkg::Children
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
   // a ray begins
   input  logic                    start_valid_i,
   input  logic [RayWidth-1:0]     start_ray_i,
-  input  logic [AddressWidth-1:0] start_line_i,
   output logic                    start_fire_o,
   // what box_unit says of a node
   input  logic                    box_valid_i,
   input  logic [RayWidth-1:0]     box_ray_i,
-  input  logic [31:0]             box_tag_i,  // the ray's, for overflows
   input  ray_core_pkg::group_t    box_group_i,
   input  logic [Children-1:0]     box_inner_i,
   // what is known of rays
@@ -56,33 +55,40 @@ module traversal #(
   output logic [RayWidth-1:0]     node_ray_o,
   output ray_core_pkg::request_t  node_o,
   output ray_core_pkg::request_t  prefetch_o,  // the next of the same group, where there is one
-  output ray_core_pkg::overflow_t overflow_o,
-  input  logic                    overflow_fire_i
+  output logic                    overflow_o   // a ray takes the shared groups
 );
 
   localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
   localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth;
   localparam int unsigned CountWidth = ray_core_pkg::CountWidth;
   localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth;
-  localparam int unsigned LevelWidth = $clog2(Depth + 1);
-  localparam int unsigned StackAddressWidth = $clog2(Rays * Depth);
+  localparam int unsigned LevelWidth = $clog2(Levels + 1);
+  localparam int unsigned Shared = Levels - Depth;
+  localparam int unsigned SharedWidth = $clog2(Shared);
+  localparam int unsigned StackWidth = $clog2(Rays * Depth + Shared);
 
   localparam int unsigned NextWidth = Children + EnterWidth;
 
-  if (Depth < 1) begin : gen_check
-    $error("traversal: expected a Depth of 1 or more");
+  if (Depth < 1 || Levels < Depth + 2) begin : gen_check
+    $error("traversal: expected a Depth of 1 or more, and Levels of Depth + 2 or more");
   end
 
   logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
   logic [AddressWidth-1:0] entered[Rays];  // nodes
   logic [Rays-1:0] busy_q;     // waits for a node
   logic [Rays-1:0] waiting_q;  // levels is not 0
+  logic [Rays-1:0] refused_q;  // waits for the shared groups
 
   assign traversing_o = busy_q | waiting_q;
 
-  function automatic logic [StackAddressWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
-                                                                 logic [LevelWidth-1:0] depth);
-    stack_address = StackAddressWidth'(ctx) * StackAddressWidth'(Depth) + StackAddressWidth'(depth);
+  // Of a group of a ray, and of a shared one by itself.
+  function automatic logic [StackWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
+                                                          logic [LevelWidth-1:0] level);
+    stack_address = StackWidth'(level) + ((level < LevelWidth'(Depth))
+        ? StackWidth'(ctx) * StackWidth'(Depth) : StackWidth'((Rays - 1) * Depth));
+  endfunction
+  function automatic logic [SharedWidth-1:0] shared_address(logic [LevelWidth-1:0] level);
+    shared_address = SharedWidth'(level - LevelWidth'(Depth));
   endfunction
 
   // The nearest of the entries that are among `which`, 0 for none: {enter, offset}.
@@ -100,7 +106,7 @@ module traversal #(
 
   logic [Rays-1:0] ready, sure, ready_q;
 
-  assign ready = waiting_q & ~busy_q & ~leaf_pending_i;
+  assign ready = waiting_q & ~busy_q & ~leaf_pending_i & ~refused_q;
   assign sure  = ready & ~testing_i;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -110,17 +116,15 @@ module traversal #(
 
   // ---- Pick
 
-  logic some, pick, picked_q, go;
+  logic pick, picked_q, go;
   logic [RayWidth-1:0] picked_ray, ray_q;
-
-  assign pick = some & ~overflow_o.valid;
 
   rr_arbiter #(
     .Width(Rays)
   ) u_pick (
     .requests_i(ready_q & ~busy_q),
     .start_i(ray_q),
-    .valid_o(some),
+    .valid_o(pick),
     .index_o(picked_ray)
   );
 
@@ -142,6 +146,7 @@ module traversal #(
   logic [AddressWidth-1:0] entered_q;
   logic [30:0] t_max_q;
   logic [Depth-1:0] open;  // levels that have a child within the t_max
+  logic [Children-1:0] shared_masks[Shared], shared_mask_q;
   logic [Depth*Children-1:0] masks;
   logic [Children-1:0] mask, remaining, mask_q, remaining_q, next_remaining_q;
   logic [EnterWidth-1:0] box_enter, next_enter_q;
@@ -158,6 +163,14 @@ module traversal #(
     entered_q      <= entered[ray_q];
     t_max_q        <= t_max_i;
     ended_q        <= ended_i;
+
+    if (next_valid_q && next_level_q >= LevelWidth'(Depth)) begin
+      shared_masks[shared_address(next_level_q)] <= next_remaining_q;
+    end
+    if (push && box_level >= LevelWidth'(Depth)) begin
+      shared_masks[shared_address(box_level)] <= box_inner_i;
+    end
+    shared_mask_q <= shared_masks[shared_address(levels[ray_q] - 1'b1)];
   end
 
   for (genvar d = 0; d < Depth; d++) begin : gen_level
@@ -179,22 +192,51 @@ module traversal #(
 
   // ---- Choose
 
+  logic is_shared, some, full, shared_q, free;
+  logic [RayWidth-1:0] shared_ray_q;
+  logic [Children-1:0] own_top;  // of a ray whose own stack is full
+
+  assign is_shared = level_q > LevelWidth'(Depth);
+  assign own_top   = masks[Children*(Depth-1) +: Children];
+
   always_comb begin
-    chosen = '0;
-    mask   = '0;
-    for (int unsigned d = 0; d < Depth; d++) begin
-      if (open[d]) begin
-        chosen = LevelWidth'(d);
-        mask   = masks[Children*d +: Children];
+    some   = is_shared ? ~ended_q : open != '0;
+    chosen = level_q - 1'b1;
+    mask   = shared_mask_q;
+    if (!is_shared) begin
+      chosen = '0;
+      mask   = '0;
+      for (int unsigned d = 0; d < Depth; d++) begin
+        if (open[d]) begin
+          chosen = LevelWidth'(d);
+          mask   = masks[Children*d +: Children];
+        end
       end
     end
   end
 
   assign remaining   = mask & (mask - 1'b1);
-  assign cycle_o     = choosing_q & (open != '0) & (entered_q == lines_i);
+  assign cycle_o     = choosing_q & some & ((entered_q == lines_i) | (level_q == LevelWidth'(Levels)));
   assign cycle_ray_o = choosing_ray_q;
-  assign go          = choosing_q & (open != '0) & ~cycle_o;
-  assign left        = ~go ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
+  assign left        = (~some | cycle_o) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
+  // That is: left is Depth or more. It is known before.
+  assign full        = ~cycle_o & (is_shared ? ~ended_q
+                     : open[Depth-1] & ((own_top & (own_top - 1'b1)) != '0));
+  assign free        = ~shared_q | (shared_ray_q == choosing_ray_q);
+  assign go          = choosing_q & some & ~cycle_o & (~full | free);
+  assign overflow_o  = go & full & ~shared_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      shared_q  <= 1'b0;
+      refused_q <= '0;
+    end else if (choosing_q) begin
+      if (free) shared_q <= full;
+      if (free && !full) refused_q <= '0;
+      if (!free && full) refused_q[choosing_ray_q] <= 1'b1;
+    end
+  end
+  always_ff @(posedge clk_i) if (overflow_o) shared_ray_q <= choosing_ray_q;
 
   // ---- Fetch
 
@@ -205,7 +247,7 @@ module traversal #(
   logic [EnterWidth-1:0] unused_enter;
   logic [OffsetWidth-1:0] unused_box_offset;
 
-  assign start_fire_o = start_valid_i & ~asked_q & ~overflow_o.valid;
+  assign start_fire_o = start_valid_i & ~asked_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -223,7 +265,7 @@ module traversal #(
     next_ray_q       <= asked_q ? asking_ray_q : start_ray_i;
     next_level_q     <= asked_level_q;
     next_remaining_q <= remaining_q;
-    base_q           <= asked_q ? group.base : start_line_i;
+    base_q           <= asked_q ? group.base : '0;  // of the root
     {unused_enter, offset_q}        <= nearest(group.entries, mask_q);
     {next_enter_q, prefetch_offset_q} <= nearest(group.entries, remaining_q);
   end
@@ -238,16 +280,13 @@ module traversal #(
 
   // ---- Push what box_unit found
 
-  logic room;
-
   assign box_level = levels[box_ray_i];
-  assign room      = box_level != LevelWidth'(Depth);
-  assign push      = box_valid_i & (box_inner_i != '0) & room;
+  assign push      = box_valid_i & (box_inner_i != '0);
   assign {box_enter, unused_box_offset} = nearest(box_group_i.entries, box_inner_i);
 
   ram #(
     .Width(GroupWidth),
-    .Depth(Rays * Depth)
+    .Depth(Rays * Depth + Shared)
   ) u_groups (
     .clk_i,
     .write_i(push),
@@ -280,31 +319,5 @@ module traversal #(
     if (choosing_q) levels[choosing_ray_q] <= left;
     if (push) levels[box_ray_i] <= box_level + 1'b1;
   end
-
-  // ---- Overflows
-
-  logic [NodesWidth-1:0] nodes;
-  logic unused_space;
-
-  always_comb begin
-    nodes = '0;
-    for (int unsigned n = 0; n < Children; n++) begin
-      if (box_inner_i[n]) nodes[box_group_i.entries[EntryWidth*n+CountWidth+:OffsetWidth]] = 1'b1;
-    end
-  end
-
-  ram_fifo #(
-    .Width(32 + AddressWidth + NodesWidth),
-    .Depth(Rays + 2)
-  ) u_overflows (
-    .clk_i,
-    .rst_ni,
-    .push_i(box_valid_i & (box_inner_i != '0) & ~room),
-    .data_i({box_tag_i, box_group_i.base, nodes}),
-    .space_o(unused_space),
-    .pop_i(overflow_fire_i),
-    .valid_o(overflow_o.valid),
-    .data_o({overflow_o.tag, overflow_o.line, overflow_o.nodes})
-  );
 
 endmodule

@@ -8,7 +8,8 @@
 module traversal_subsystem #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,
-  parameter bit Exact = 1'b0,
+  parameter int unsigned Levels = ray_core_pkg::Levels,
+  parameter int unsigned Exact = 0,  // exact_units; 0: doubts leave
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -48,9 +49,7 @@ module traversal_subsystem #(
   output logic [Rays-1:0]         busy_o,  // rays that have something to be done
   output ray_core_pkg::doubt_t    doubt_o,
   input  logic                    doubt_fire_i,
-  output ray_core_pkg::overflow_t overflow_o,
-  input  logic                    overflow_fire_i,
-  output logic [5:0]              events_o,  // EventExact, EventNearTie to EventTriangle
+  output logic [6:0]              events_o,  // EventExact, EventOverflow to EventTriangle
   input  logic [RayWidth-1:0]     end_ctx_i,
   output ray_core_pkg::end_t      end_o,  // in the same clock
   input  logic [RayWidth-1:0]     point_ctx_i,
@@ -67,22 +66,21 @@ module traversal_subsystem #(
 
   logic [RayWidth-1:0] traversal_ray, leaf_ray, cycle_ray;
   logic [30:0] traversal_t_max, leaf_t_max;
-  logic traversal_ended, leaf_ended, leaf_counter_full, cycle;
+  logic traversal_ended, leaf_ended, leaf_counter_full, cycle, overflow;
   logic [Rays-1:0] leaf_pending, testing, traversing, failed;
 
   traversal #(
     .Rays(Rays),
-    .Depth(Depth)
+    .Depth(Depth),
+    .Levels(Levels)
   ) u_traversal (
     .clk_i,
     .rst_ni,
     .start_valid_i(start_i.valid),
     .start_ray_i(start_ctx_i),
-    .start_line_i(start_i.line),
     .start_fire_o,
     .box_valid_i(boxes_i.valid),
     .box_ray_i(box_ctx_i),
-    .box_tag_i(tags[box_ctx_i]),
     .box_group_i(boxes_i.group),
     .box_inner_i(boxes_i.inner),
     .leaf_pending_i(leaf_pending),
@@ -97,8 +95,7 @@ module traversal_subsystem #(
     .node_ray_o(node_ctx_o),
     .node_o,
     .prefetch_o,
-    .overflow_o,
-    .overflow_fire_i
+    .overflow_o(overflow)
   );
 
   // ---- Triangles asked for: for doubts first
@@ -124,6 +121,7 @@ module traversal_subsystem #(
       : {verdict_i.doubt, ~verdict_i.found & ~verdict_i.doubt, verdict_i.found};
   assign events_o = {
     computing,
+    overflow,
     near_tie,
     {3{verdict_i.valid}} & verdict_kind,
     triangle_line_i.valid & ~triangle_line_i.exact
@@ -154,7 +152,7 @@ module traversal_subsystem #(
 
   closest_hit #(
     .Rays(Rays),
-    .Exact(Exact)
+    .Exact(Exact != 0)
   ) u_closest_hit (
     .clk_i,
     .rst_ni,
@@ -197,9 +195,10 @@ module traversal_subsystem #(
     .near_tie_o(near_tie)
   );
 
-  if (Exact) begin : gen_exact
+  if (Exact != 0) begin : gen_exact
     exact_resolver #(
       .Rays(Rays),
+      .Units(Exact),
       .Arith(Arith),
       .Adder(Adder)
     ) u_resolver (

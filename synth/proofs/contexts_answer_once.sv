@@ -13,7 +13,6 @@ module contexts_answer_once #(
   input logic            begin_walk,
   input logic [Rays-1:0] busy,
   input logic            doubt,
-  input logic            overflow,
   input logic            take    // ready for results
 );
 
@@ -30,7 +29,7 @@ module contexts_answer_once #(
   always_ff @(posedge clk) reset_n <= 1'b1;
 
   logic ready, started, ending, valid;
-  logic [1:0] kind;
+  logic kind;
   logic [CtxWidth-1:0] started_ctx, ending_ctx;
   logic [Rays-1:0] free_q, active_q;
   logic [Divide-1:0] dividing_q;
@@ -63,7 +62,6 @@ module contexts_answer_once #(
     .age_o(age),
     .ctx_o(marked_ctx),
     .doubt_valid_i(doubt),
-    .overflow_valid_i(overflow),
     .result_valid_o(valid),
     .result_ready_i(take),
     .result_kind_o(kind),

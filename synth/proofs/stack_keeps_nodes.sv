@@ -1,12 +1,13 @@
 // A ray's stack, whatever box_unit says, whichever rays wait, from reset and for ever: a node that was pushed is
 // asked for, once, by the line that its group gives, unless it was beyond the ray's t_max, or the ray had ended or met a node again, in
-// a clock in which its stack was looked at; until then the ray counts as traversing. A group without room, and no other, goes
-// into the queue of overflows, with its ray's tag, its line and the mask of its nodes, and the queue has room for it (that it keeps
-// order is ram_fifo_keeps_order's). No more nodes wait than there are rays.
-// opened_traversal is traversal of two rays, with stacks of two groups, with its registers and memories as outputs.
+// a clock in which its stack was looked at; until then the ray counts as traversing. No group is pushed without room for it, on
+// the ray's own stack or on the shared one, which one ray at a time has, as long as it needs it; a ray that is refused it
+// waits for another that has it and traverses, and is no longer refused when that one gives it back.
+// opened_traversal is traversal of two rays, with stacks of two groups and two shared ones, with its registers and memories as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
   localparam int unsigned Depth = 2,
+  localparam int unsigned Levels = 4,
   localparam int unsigned Children = ray_core_pkg::Children,
   localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
   localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth,
@@ -14,8 +15,6 @@ module stack_keeps_nodes #(
   localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth,
   localparam int unsigned CountWidth = ray_core_pkg::CountWidth,
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned NodesWidth = ray_core_pkg::NodesWidth,
-  localparam int unsigned OverflowWidth = 32 + AddressWidth + NodesWidth,
   localparam int unsigned NextWidth = Children + EnterWidth
 ) (
   input logic                  clk,
@@ -28,7 +27,6 @@ module stack_keeps_nodes #(
   input logic [Rays-1:0]       testing,
   input logic [30:0]           t_max,
   input logic                  ended,
-  input logic                  overflow_fire,
   input logic                  choose,  // the child `which` of the group pushed now is the one that is watched
   input logic [2:0]            which
 );
@@ -37,15 +35,11 @@ module stack_keeps_nodes #(
   initial reset_n = 1'b0;
   always_ff @(posedge clk) reset_n <= 1'b1;
 
-  (* anyseq *) logic [AddressWidth-1:0] start_line;
   (* anyconst *) logic [AddressWidth-1:0] lines;
   (* anyseq *) logic [GroupWidth-1:0] box_group;
-  (* anyseq *) logic [31:0] box_tag;
 
-  logic start_fire, node, node_ray, overflow, cycle;
-  logic [OverflowWidth-1:0] overflow_word, pushed;
-  logic push_overflow;
-  logic [2:0] overflows;  // in the queue
+  logic start_fire, node, node_ray, overflow, cycle, push, shared_q, shared_ray_q;
+  logic [Rays-1:0] refused_q;
   logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
   logic [Rays-1:0] traversing, busy_q, waiting_q;
@@ -55,15 +49,16 @@ module stack_keeps_nodes #(
   logic [Rays-1:0] ready_q;
   logic ended_q;
   logic [30:0] t_max_q;
-  logic [1:0] level_q, asked_level_q, next_level_q;
-  logic [Children-1:0] mask_q, remaining_q, next_remaining_q;
+  logic [2:0] level_q, asked_level_q, next_level_q, left;
+  logic [Children-1:0] shared_mask_q, mask_q, remaining_q, next_remaining_q;
   logic [EnterWidth-1:0] next_enter_q;
   logic [AddressWidth-1:0] base_q;
   logic [OffsetWidth-1:0] offset_q;
-  logic [Rays*2-1:0] levels;
+  logic [Rays*3-1:0] levels;
   logic [NextWidth-1:0] next_q_0, next_q_1;
   logic [Rays*NextWidth-1:0] nexts_0, nexts_1;
-  logic [Rays*Depth*GroupWidth-1:0] groups;
+  logic [(Levels-Depth)*Children-1:0] shared_masks;
+  logic [(Rays*Depth+Levels-Depth)*GroupWidth-1:0] groups;
   logic [GroupWidth-1:0] group_q;  // of the level that is asked
 
   opened_traversal dut (
@@ -71,11 +66,9 @@ module stack_keeps_nodes #(
     .rst_ni(reset_n),
     .start_valid_i(start),
     .start_ray_i(start_ray),
-    .start_line_i(start_line),
     .start_fire_o(start_fire),
     .box_valid_i(box),
     .box_ray_i(box_ray),
-    .box_tag_i(box_tag),
     .box_group_i(box_group),
     .box_inner_i(box_inner),
     .leaf_pending_i(leaf_pending),
@@ -88,11 +81,14 @@ module stack_keeps_nodes #(
     .traversing_o(traversing),
     .node_ray_o(node_ray),
     .node_o({node, node_line}),
-    .overflow_o({overflow, overflow_word}),
-    .overflow_fire_i(overflow_fire),
-    .\u_overflows.push_i (push_overflow),
-    .\u_overflows.data_i (pushed),
-    .\u_overflows.count_q (overflows),
+    .overflow_o(overflow),
+    .push(push),
+    .left(left),
+    .shared_q(shared_q),
+    .shared_ray_q(shared_ray_q),
+    .refused_q(refused_q),
+    .shared_mask_q(shared_mask_q),
+    .shared_masks(shared_masks),
     .busy_q(busy_q),
     .waiting_q(waiting_q),
     .ready_q(ready_q),
@@ -158,18 +154,18 @@ module stack_keeps_nodes #(
     if (reset_n) begin
       assume (!start || !traversing[start_ray]);
       assume (!box || (wanted[box_ray] && is_sorted(box_group)));
-      assume (!overflow_fire || overflow);
     end else begin
-      assume (!start && !box && !overflow_fire);
+      assume (!start && !box);
     end
   end
 
   // ---- The watched node
 
-  logic watching, done, w_ray, w_level, dropped;
+  logic watching, done, w_ray, w_own, dropped;
+  logic [1:0] w_level;
   logic [2:0] w_entry;
   logic [GroupWidth-1:0] w_group;
-  logic [1:0] box_level, w_levels;
+  logic [2:0] box_level, w_levels;
   logic asked, present, push_here;
   logic [Children-1:0] w_mask, next_mask;
   logic [EnterWidth-1:0] w_next;
@@ -177,11 +173,14 @@ module stack_keeps_nodes #(
   initial watching = 1'b0;
   initial done = 1'b0;
 
-  assign box_level = levels[2*box_ray+:2];
-  assign w_levels  = levels[2*w_ray+:2];
-  assign {next_mask, w_next} = w_level ? nexts_1[NextWidth*w_ray+:NextWidth]
-                                       : nexts_0[NextWidth*w_ray+:NextWidth];
-  assign kept = groups[GroupWidth*{w_ray, w_level}+:GroupWidth];
+  assign box_level = levels[3*box_ray+:3];
+  assign w_levels  = levels[3*w_ray+:3];
+  assign w_own     = w_level < 2'(Depth);
+  assign w_next    = w_level[0] ? nexts_1[NextWidth*w_ray+:EnterWidth] : nexts_0[NextWidth*w_ray+:EnterWidth];
+  assign next_mask = !w_own ? shared_masks[Children*w_level[0]+:Children]
+                   : w_level[0] ? nexts_1[NextWidth*w_ray+EnterWidth+:Children]
+                                : nexts_0[NextWidth*w_ray+EnterWidth+:Children];
+  assign kept = groups[GroupWidth*(w_own ? {1'b0, w_ray, w_level[0]} : {2'b10, w_level[0]})+:GroupWidth];
 
   logic asking, leaving;  // its group's level is being asked, and its node leaves
   logic [Children-1:0] leaving_mask;
@@ -196,16 +195,15 @@ module stack_keeps_nodes #(
 
   always_ff @(posedge clk) begin
     dropped <= choosing_q && choosing_ray_q == w_ray
-               && (ended_q || cycle || ray_core_pkg::is_beyond(enter_of(w_group, w_entry), t_max_q));
+               && (ended_q || cycle || (w_own && ray_core_pkg::is_beyond(enter_of(w_group, w_entry), t_max_q)));
     if (!reset_n) begin
       watching <= 1'b0;
       done <= 1'b0;
     end else begin
-      if (!watching && !done && choose && box && box_inner[which] && which < 3'd7
-          && box_level < 2'd2) begin
+      if (!watching && !done && choose && box && box_inner[which] && which < 3'd7) begin
         watching <= 1'b1;
         w_ray <= box_ray;
-        w_level <= box_level[0];
+        w_level <= box_level[1:0];
         w_entry <= which;
         w_group <= box_group;
       end else if (watching && !present) begin
@@ -217,23 +215,32 @@ module stack_keeps_nodes #(
     end
   end
 
-  // The nodes of box_group that box_inner has, by their offsets
-  logic [NodesWidth-1:0] inner_nodes;
+  // Of each ray that it has been asked for a node, which has not come
+  logic [Rays-1:0] away, was_refused;
+  logic was_released;
   always_comb begin
-    inner_nodes = '0;
-    for (int unsigned n = 0; n < Children; n++) begin
-      if (box_inner[n]) inner_nodes = inner_nodes | NodesWidth'(1) << box_group[EntryWidth*n+CountWidth+:OffsetWidth];
+    for (int unsigned r = 0; r < Rays; r++) begin
+      away[r] = wanted[r] || (asked_q && asking_ray_q == 1'(r))
+                || ((next_valid_q || next_started_q) && next_ray_q == 1'(r));
     end
   end
+  logic shared_last;
+  always_ff @(posedge clk) begin
+    was_refused <= refused_q;
+    shared_last <= shared_q;
+  end
+  assign was_released = shared_last && !shared_q;
 
   // ---- Claims
 
   always_comb begin
     if (reset_n) begin
-      assert (push_overflow == (box && box_inner != '0 && box_level == 2'(Depth)));
-      if (push_overflow) begin
-        assert (pushed == {box_tag, box_group[GroupWidth-1-:AddressWidth], inner_nodes});
-        assert (overflows < 3'(Rays + 2));
+      assert (push == (box && box_inner != '0));
+      if (push) assert (box_level < 3'(Levels));
+      if (push && box_level >= 3'(Depth)) assert (shared_q && shared_ray_q == box_ray);
+      for (int unsigned r = 0; r < Rays; r++) begin
+        if (refused_q[r]) assert (shared_q && shared_ray_q != 1'(r) && traversing[shared_ray_q] && waiting_q[r] && !busy_q[r] && !ready_q[r]);
+        if (was_released) assert (!refused_q[r]);
       end
       if (watching) begin
         assert (present || asked || dropped);
@@ -243,34 +250,38 @@ module stack_keeps_nodes #(
       if (done) assert (!asked && !present);
 
       // Invariants
-      assert (overflow ? overflows != '0 : overflows <= 3'd1);
-      assert (5'(overflows) + 5'(busy_q[0]) + 5'(busy_q[1]) <= 5'(Rays + 1));
+      if (shared_q) assert (waiting_q[shared_ray_q] && levels[3*shared_ray_q+:3] >= 3'(Depth));
       for (int unsigned r = 0; r < Rays; r++) begin
         assert (3'(busy_q[r]) == 3'(wanted[r]) + 3'(picked_q && ray_q == 1'(r))
                                  + 3'(choosing_q && choosing_ray_q == 1'(r)) + 3'(asked_q && asking_ray_q == 1'(r))
                                  + 3'((next_valid_q || next_started_q) && next_ray_q == 1'(r)));
         if (ready_q[r] && !busy_q[r]) assert (waiting_q[r]);
         if (traversing[r]) begin
-          assert (levels[2*r+:2] <= 2'd2);
-          assert (waiting_q[r] == (levels[2*r+:2] != 2'd0));
+          assert (levels[3*r+:3] <= 3'(Levels));
+          assert (waiting_q[r] == (levels[3*r+:3] != 3'd0));
+          if (levels[3*r+:3] > 3'(Depth) || (away[r] && levels[3*r+:3] == 3'(Depth))) begin
+            assert (shared_q && shared_ray_q == 1'(r));
+          end
+          if (away[r]) assert (levels[3*r+:3] < 3'(Levels));
         end
       end
       assert (!(next_valid_q && next_started_q));
       if (picked_q) assert (waiting_q[ray_q]);
       if (choosing_q) begin
-        assert (waiting_q[choosing_ray_q] && level_q == levels[2*choosing_ray_q+:2]);
+        assert (waiting_q[choosing_ray_q] && level_q == levels[3*choosing_ray_q+:3]);
+        if (level_q > 3'(Depth)) assert (shared_mask_q == shared_masks[Children*(level_q-3)+:Children]);
         assert (next_q_0 == nexts_0[NextWidth*choosing_ray_q+:NextWidth]
                 && next_q_1 == nexts_1[NextWidth*choosing_ray_q+:NextWidth]);
       end
       if (asked_q) begin
-        assert (levels[2*asking_ray_q+:2] == asked_level_q + 2'(remaining_q != '0));
+        assert (levels[3*asking_ray_q+:3] == asked_level_q + 3'(remaining_q != '0));
         assert (remaining_q == (mask_q & (mask_q - 1'b1)));
       end
       if (next_valid_q) begin
-        assert (levels[2*next_ray_q+:2] == next_level_q + 2'(next_remaining_q != '0));
+        assert (levels[3*next_ray_q+:3] == next_level_q + 3'(next_remaining_q != '0));
         assert (next_remaining_q == (leaving_mask & (leaving_mask - 1'b1)));
       end
-      if (next_started_q) assert (levels[2*next_ray_q+:2] == 2'd0);
+      if (next_started_q) assert (levels[3*next_ray_q+:3] == 3'd0);
       if (watching && (present || asked)) begin
         assert (kept == w_group && w_entry < 3'd7 && is_sorted(w_group));
         if (asking) assert (group_q == w_group);
@@ -278,15 +289,17 @@ module stack_keeps_nodes #(
         if (leaving) begin
           assert (leaving_mask == next_mask);
           if (asked) assert (base_q + AddressWidth'(offset_q) == line_of(w_group, w_entry));
-          if (next_remaining_q[w_entry]) assert (next_enter_q <= enter_of(w_group, w_entry));
+          if (w_own && next_remaining_q[w_entry]) assert (next_enter_q <= enter_of(w_group, w_entry));
         end
-        assert (w_next <= enter_of(w_group, w_entry));
+        if (w_own) assert (w_next <= enter_of(w_group, w_entry));
       end
 
       cover (watching && asked);
       cover (watching && dropped && !asked);
       cover (done && push_here);
-      cover (push_overflow);
+      cover (overflow);
+      cover (watching && !w_own && asked);
+      cover (was_released && was_refused != '0);
     end
   end
 

@@ -35,8 +35,9 @@ CACHE = [("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_f
          ("valid_q[fill_entry_i]   <= ~fill_error_i;", "valid_q[fill_entry_i]   <= 1'b1;"),
          (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})")]
 
-STACK = [("pick = some & ~overflow_o.valid", "pick = some"),
-         ("(box_inner_i != '0) & ~room)", "~room)")]
+STACK = [("& (~full | free);", ";"),
+         ("| (level_q == LevelWidth'(Levels))", ""),
+         ("if (free && !full) refused_q <= '0;", "")]
 
 WRITER = [("(axi_wready_i & axi_wlast_o)", "axi_wready_i"),
           ("next_q[0], 5'd0}", "1'b0, 5'd0}"),

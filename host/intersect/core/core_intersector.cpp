@@ -1,7 +1,6 @@
 #include "host/intersect/core/core_intersector.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <stdexcept>
 #include <string>
@@ -29,7 +28,8 @@ CoreRay core_ray(const MemoryImage& image, const Ray& ray, const RayQuery& query
   if (end.error == CoreResult::Error::kMemory) {
     throw InputError("ray core's memory: no line " + std::to_string(end.line));
   }
-  throw InputError("ray core's memory: a node is below itself");
+  throw InputError("ray core's memory: a node is below itself, or below more than " +
+                   std::to_string(MemoryImage::kMostDepth - 1) + " others");
 }
 
 }  // namespace
@@ -60,40 +60,24 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
     if (!is_scaled(rays[i].direction)) throw_unscaled(rays[i]);
     sent_.push_back(core_ray(*image_, rays[i], query, i));
   }
-  // Each walk that had no room goes on at least a level below its start.
-  for (int level = 0; !sent_.empty(); ++level) {
-    if (level > Bvh::kMaxDepth) {
-      throw std::runtime_error("ray core: found subtrees without room again and again, expected " +
-                               std::to_string(Bvh::kMaxDepth) + " levels at most");
+  results_.clear();
+  core_->trace(image_->lines(), sent_, results_);
+  for (const CoreResult& result : results_) {
+    if (result.error != CoreResult::Error::kNone) throw_broken_memory(result);
+    const bool is_doubt = result.kind == CoreResult::Kind::kDoubt;
+    if (result.tag >= rays.size() ||
+        ((is_doubt || result.found) &&
+         image_->primitive_at(result.triangle) == MemoryImage::kNoTriangle) ||
+        (core_->is_exact() && is_doubt)) {
+      throw std::runtime_error("ray core: found triangle " + std::to_string(result.triangle) +
+                               " for ray " + std::to_string(result.tag) +
+                               ", expected some that it was given");
     }
-    results_.clear();
-    core_->trace(image_->lines(), sent_, results_);
-    sent_.clear();
-    for (const CoreResult& result : results_) {
-      if (result.error != CoreResult::Error::kNone) throw_broken_memory(result);
-      const bool has_triangle = result.kind == CoreResult::Kind::kDoubt ||
-                                (result.kind == CoreResult::Kind::kEnd && result.found);
-      if (result.tag >= rays.size() ||
-          (has_triangle && image_->primitive_at(result.triangle) == MemoryImage::kNoTriangle) ||
-          (core_->is_exact() && result.kind == CoreResult::Kind::kDoubt)) {
-        throw std::runtime_error("ray core: found triangle " + std::to_string(result.triangle) +
-                                 " for ray " + std::to_string(result.tag) +
-                                 ", expected some that it was given");
-      }
-      const Ray& ray = rays[result.tag];
-      if (!query.work.empty()) {
-        query.work[result.tag].tests += result.kind == CoreResult::Kind::kEnd ? result.tests : 0;
-        query.work[result.tag].doubts += result.kind == CoreResult::Kind::kDoubt;
-      }
-      if (result.kind != CoreResult::Kind::kOverflow) {
-        resolve(ray, query, result, hits[result.tag]);
-        continue;
-      }
-      for (std::uint64_t left = result.nodes; left != 0; left &= left - 1) {
-        CoreRay& again = sent_.emplace_back(core_ray(*image_, ray, query, result.tag));
-        again.start = result.line + static_cast<std::uint32_t>(std::countr_zero(left));
-      }
+    if (!query.work.empty()) {
+      query.work[result.tag].tests += is_doubt ? 0 : result.tests;
+      query.work[result.tag].doubts += is_doubt;
     }
+    resolve(rays[result.tag], query, result, hits[result.tag]);
   }
   counters_.traverse += watch.lap();
   if (query.any_hit_before.empty()) {
@@ -118,11 +102,11 @@ void CoreIntersector::resolve(const Ray& ray, const RayQuery& query, const CoreR
     resolve_doubt(bvh_, ray, limit, hit, best, counters_);
   } else if (result.found) {
     hit.t = hit_distance(ray, bvh_.corners_of(hit.primitive));
-    if (core_->is_exact() && best.primitive == NearestHit::kNone) {
+    if (core_->is_exact()) {
       best = hit;
-      return;
+    } else {
+      take_if_nearer(bvh_, ray, limit, hit, best, counters_);
     }
-    take_if_nearer(bvh_, ray, limit, hit, best, counters_);
   }
 }
 

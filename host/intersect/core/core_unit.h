@@ -23,7 +23,6 @@ struct CoreRay {
   float t_max = std::numeric_limits<float>::infinity();
   std::uint32_t skip_id = kNoTriangle;       ///< a triangle that does not count, by its name
   std::uint32_t source_id = kNoTriangle;     ///< another: the one that the ray leaves
-  std::uint32_t start = MemoryImage::kRoot;  ///< the line of the inner node where its walk begins
   std::uint32_t tag = 0;                     ///< comes back with all that concerns the ray
   bool any_hit = false;                      ///< the first sure hit that is found will do
   bool no_cull = false;                      ///< it enters all boxes
@@ -33,15 +32,14 @@ struct CoreRay {
 struct CoreResult {
   enum class Kind : std::uint8_t {
     kEnd = 0,  ///< of the walk; with the nearest sure hit, if there is one
-    kDoubt =
-        1,  ///< a triangle that may be hit, nearer than the sure hit: exact arithmetic must say
-    kOverflow = 2,  ///< inner nodes for which the stack had no room: a walk must begin at each
+    /// A triangle that may be hit, nearer than the sure hit: exact arithmetic must say.
+    kDoubt = 1,
   };
 
   enum class Error : std::uint8_t {
     kNone = 0,
     kMemory = 1,     ///< memory answered a read of a line with an error
-    kCycle = 2,      ///< the ray met a node twice: it is below itself
+    kCycle = 2,      ///< the ray met a node twice, or one below more than MemoryImage::kMostDepth
     kDirection = 3,  ///< its direction is not scaled
     kAbort = 4,      ///< the user of the core gave it up
   };
@@ -57,9 +55,7 @@ struct CoreResult {
   glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
   Error error = Error::kNone;  ///< kEnd: if not kNone, the ray was given up: nothing else holds
-  /// kOverflow: of the node that is bit 0 of `nodes`. kEnd, kMemory: one that memory lacks.
-  std::uint32_t line = 0;
-  std::uint64_t nodes = 0;  ///< kOverflow: bit i: the node at line + i
+  std::uint32_t line = 0;      ///< kEnd, kMemory: one that memory lacks
 };
 
 /// What a core has done since it was made. Clocks are 0 where nothing is simulated.
@@ -71,7 +67,7 @@ struct CoreCounters {
   std::uint64_t triangles = 0;                     ///< triangle lines that the set-up unit took
   std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< of tests
   std::uint64_t near_ties = 0;                     ///< sure hits that leave as doubts
-  std::uint64_t overflows = 0;                     ///< words of kind kOverflow
+  std::uint64_t overflows = 0;                     ///< rays whose stack took the shared groups
   std::uint64_t lines = 0;                         ///< read from memory
   std::uint64_t waits = 0;         ///< clocks in which memory did not take what was asked for
   std::uint64_t exact_clocks = 0;  ///< of an exact core's exact unit, with a question
@@ -92,10 +88,9 @@ struct CoreCounters {
 /// Walks rays through a memory image.
 ///
 /// Promises: the ray's nearest hit, in exact arithmetic, is the sure hit of its end, or a triangle
-/// of its doubts, or below a node of its overflows; with any_hit the first that is found may be in
-/// its place. A ray whose end has an error has no hit that counts. What is a doubt may differ
+/// of its doubts; with any_hit the first that is found may be in its place. A ray whose end has an error has no hit that counts. What is a doubt may differ
 /// between cores, and for a core that waits for memory from run to run. A core that is_exact has
-/// no doubts: the nearest hit is that of its end, or below a node of its overflows.
+/// no doubts: the nearest hit is that of its end.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;

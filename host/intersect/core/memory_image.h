@@ -15,6 +15,7 @@ namespace raygate {
 class MemoryImage {
  public:
   static constexpr std::uint32_t kRoot = 0;
+  static constexpr int kMostDepth = Bvh::kMaxDepth;  ///< ray_core_pkg::Levels
 
   /// Throws std::invalid_argument for a tree with instances: they are to be written out.
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
@@ -33,7 +34,7 @@ class MemoryImage {
   }
   /// The memory byte by byte, as --dump-image writes it: line n is at byte 64 n.
   [[nodiscard]] std::string_view bytes() const;
-  /// Nodes on the longest way from the root to a leaf; 1 at least.
+  /// Nodes on the longest way from the root to a leaf; 1 at least, kMostDepth at most.
   [[nodiscard]] int depth() const { return depth_; }
 
  private:

@@ -114,6 +114,8 @@ struct StackEntry {
   int next = 0;  // entry
 };
 
+int depth_of(const std::vector<StackEntry>& stack) { return static_cast<int>(stack.size()); }
+
 }  // namespace
 
 void ReferenceCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
@@ -171,8 +173,9 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
   };
 
   std::vector<StackEntry> stack;
-  std::uint32_t line = ray.start;
+  std::uint32_t line = MemoryImage::kRoot;
   std::size_t entered = 0;
+  bool shared = false;  // has groups that rays share, see traversal.sv
   CoreResult end{.tag = ray.tag};
   const auto is_read = [&](std::uint32_t number) {
     if (number < lines.size()) return true;
@@ -205,28 +208,18 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
         if (is_read(triangle)) test(TriangleLine(lines[triangle]), false);
       }
     }
-    if (inside.group.size != 0) {
-      if (static_cast<int>(stack.size()) < stack_depth_) {
-        stack.push_back(inside);
-      } else {
-        CoreResult overflow{
-            .kind = CoreResult::Kind::kOverflow, .tag = ray.tag, .line = group.base};
-        for (int n = 0; n < inside.group.size; ++n) {
-          overflow.nodes |= std::uint64_t{1}
-                            << inside.group.entry[static_cast<std::size_t>(n)].offset;
-        }
-        results.push_back(overflow);
-        ++counters_.overflows;
-      }
-    }
+    if (inside.group.size != 0) stack.push_back(inside);
     const auto is_done = [&](const StackEntry& top) {
-      return ended || top.next == top.group.size ||
-             is_beyond(top.group, top.group.entry[static_cast<std::size_t>(top.next)],
+      return is_beyond(top.group, top.group.entry[static_cast<std::size_t>(top.next)],
                        nearest.limit());
     };
-    while (!stack.empty() && is_done(stack.back())) stack.pop_back();
+    if (ended) break;
+    // Of those that are shared all have a turn.
+    while (!stack.empty() && depth_of(stack) <= stack_depth_ && is_done(stack.back())) {
+      stack.pop_back();
+    }
     if (stack.empty()) break;
-    if (entered == lines.size()) {
+    if (entered == lines.size() || depth_of(stack) == MemoryImage::kMostDepth) {
       end.error = CoreResult::Error::kCycle;
       break;
     }
@@ -234,6 +227,9 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     line = top.group.base + top.group.entry[static_cast<std::size_t>(top.next++)].offset;
     // A group that has given its last node makes room.
     if (top.next == top.group.size) stack.pop_back();
+    const bool shares = depth_of(stack) >= stack_depth_;
+    counters_.overflows += shares && !shared;
+    shared = shares;
   }
   if (exact_ && !ended && end.error == CoreResult::Error::kNone) {
     const std::uint32_t settled = resolver.settle(nearest);

@@ -39,27 +39,25 @@ class ExactResolverTest : public testing::Test {
     return mesh;
   }
 
-  /// By ray; of one that overflowed its last overflow.
+  /// By ray.
   static std::vector<CoreResult> words(CoreUnit& unit, std::span<const MemoryLine> lines,
                                        std::span<const CoreRay> rays) {
     std::vector<CoreResult> results, words(rays.size());
     unit.trace(lines, rays, results);
     for (const CoreResult& result : results) {
-      EXPECT_NE(result.kind, CoreResult::Kind::kDoubt);
-      CoreResult& word = words.at(result.tag);
-      if (word.kind != CoreResult::Kind::kOverflow) word = result;
+      EXPECT_EQ(result.kind, CoreResult::Kind::kEnd);
+      words.at(result.tag) = result;
     }
     return words;
   }
 
-  /// Triangle, t, its bound and P, of rays without overflows.
+  /// Triangle, t, its bound and P.
   void compare(Core& core, std::vector<CoreRay> rays) {
     for (std::uint32_t i = 0; i < rays.size(); ++i) rays[i].tag = i;
     ReferenceCore reference(ReferenceCore::kStackDepth, true);
     const std::vector<CoreResult> got = words(core, image_->lines(), rays),
                                   expected = words(reference, image_->lines(), rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (got[i].kind == CoreResult::Kind::kOverflow) continue;
       ASSERT_EQ(got[i].error, CoreResult::Error::kNone) << i;
       ASSERT_EQ(got[i].found, expected[i].found) << i;
       if (!got[i].found || rays[i].any_hit) continue;
@@ -124,7 +122,6 @@ TEST_F(ExactResolverTest, LimitsAndFirstHitsAreTheReferences) {
   EXPECT_GT(found_, 250);
 }
 
-/// Overflows and all: CpuIntersector's hits, with the host's help where a stack had no room.
 TEST_F(ExactResolverTest, NearestHitsAreTheCpuIntersectors) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 500);
   std::vector<NearestHit> found(rays.size()), expected(rays.size());
@@ -166,7 +163,6 @@ TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   core.trace(image.lines(), rays, results);
   int found = 0;
   for (const CoreResult& result : results) {
-    if (result.kind != CoreResult::Kind::kEnd) continue;
     NearestHit expected;
     CpuIntersector(bvh).intersect({&rays[result.tag].ray, 1}, {}, {&expected, 1});
     found += result.found && result.triangle == image.line_of(expected.primitive);
@@ -188,7 +184,6 @@ TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
   core.invalidate(image_->lines().size());
   core.set_read_ready(true);
   std::deque<std::pair<std::uint32_t, std::uint64_t>> reads;  // lines and their tags
-  std::vector<bool> overflowed(rays.size());
   std::size_t sent = 0, ended = 0;
   int compared = 0, broken = 0, aborted = 0;
   for (int clock = 0; ended < rays.size(); ++clock) {
@@ -196,18 +191,14 @@ TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
     if (sent < rays.size() && !core.is_offering()) core.offer(rays[sent++]);
     if (core.take_result(true)) {
       const CoreResult result = core.result();
-      ASSERT_NE(result.kind, CoreResult::Kind::kDoubt);
-      overflowed.at(result.tag) =
-          overflowed[result.tag] || result.kind == CoreResult::Kind::kOverflow;
-      if (result.kind == CoreResult::Kind::kEnd) {
-        ++ended;
-        broken += result.error == CoreResult::Error::kMemory;
-        aborted += result.error == CoreResult::Error::kAbort;
-        if (result.error == CoreResult::Error::kNone && !overflowed[result.tag]) {
-          ASSERT_EQ(result.found, expected[result.tag].found) << result.tag;
-          if (result.found) ASSERT_EQ(result.triangle, expected[result.tag].triangle) << result.tag;
-          ++compared;
-        }
+      ASSERT_EQ(result.kind, CoreResult::Kind::kEnd);
+      ++ended;
+      broken += result.error == CoreResult::Error::kMemory;
+      aborted += result.error == CoreResult::Error::kAbort;
+      if (result.error == CoreResult::Error::kNone) {
+        ASSERT_EQ(result.found, expected.at(result.tag).found) << result.tag;
+        if (result.found) ASSERT_EQ(result.triangle, expected[result.tag].triangle) << result.tag;
+        ++compared;
       }
     }
     if (core.is_reading()) reads.emplace_back(core.line(), core.tag());

@@ -21,10 +21,9 @@ module ray_contexts #(
   output logic [5:0]           age_o,
   output logic [CtxWidth-1:0]  ctx_o,
   input  logic                 doubt_valid_i,
-  input  logic                 overflow_valid_i,
   output logic                 result_valid_o,
   input  logic                 result_ready_i,
-  output logic [1:0]           result_kind_o,
+  output logic                 result_kind_o,
   output logic                 result_mark_o,
   output logic                 result_point_o,  // of it, where t is known
   output logic                 result_known_o
@@ -77,7 +76,7 @@ module ray_contexts #(
     else if (age_o != '1) age_o <= age_o + 1'b1;
     point <= (marked_o && point_ctx == ctx_o && age_o >= PointDelay && age_o < 2 * PointDelay) | any_point;
   end
-  logic doubt_fire, overflow_fire;
+  logic doubt_fire;
   ray_core_pkg::result_t result;
   assign result_kind_o  = result.kind;
   assign result_mark_o  = result.tag[31];
@@ -100,8 +99,6 @@ module ray_contexts #(
     .point_i({point, 95'd0}),
     .doubt_i({doubt_valid_i, 64'd0}),
     .doubt_fire_o(doubt_fire),
-    .overflow_i({overflow_valid_i, {32 + ray_core_pkg::AddressWidth + ray_core_pkg::NodesWidth{1'b0}}}),
-    .overflow_fire_o(overflow_fire),
     .result_valid_o,
     .result_ready_i,
     .result_o(result)

@@ -64,11 +64,11 @@ TEST_F(CoreIntersectorTest, NearestHitsAreTheCpuIntersectors) {
   EXPECT_LT(counters_.triangles, rays.size() * mesh_.size() / 16) << "boxes cull";
 }
 
-TEST_F(CoreIntersectorTest, AShortStackCostsWalksAndNoHits) {
+TEST_F(CoreIntersectorTest, AShortStackCostsNoHits) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
   check(rays, {}, 1);
   EXPECT_GT(counters_.overflows, 1'000u);
-  EXPECT_GT(counters_.rays, rays.size());
+  EXPECT_EQ(counters_.rays, rays.size());
 }
 
 TEST_F(CoreIntersectorTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
@@ -151,7 +151,7 @@ TEST_F(CoreIntersectorTest, ErrorsOfTheCoreAreInputErrors) {
   };
   EXPECT_EQ(said(false),
             "ray core's memory: no line " + std::to_string(image_->lines().size() - 1));
-  EXPECT_EQ(said(true), "ray core's memory: a node is below itself");
+  EXPECT_EQ(said(true), "ray core's memory: a node is below itself, or below more than 47 others");
 }
 
 TEST(MemoryImage, OfNothingIsANodeWithoutChildren) {
@@ -203,7 +203,6 @@ TEST_F(CoreIntersectorTest, RefusesWordsAboutWhatItDidNotGive) {
   };
   EXPECT_NO_THROW(take({.kind = Kind::kEnd, .tag = 0}));
   EXPECT_THROW(take({.kind = Kind::kEnd, .tag = 1}), std::runtime_error);
-  EXPECT_THROW(take({.kind = Kind::kOverflow, .nodes = 1}), std::runtime_error) << "for ever";
   for (const std::uint32_t triangle :
        {MemoryImage::kRoot, static_cast<std::uint32_t>(image_->lines().size()), ~0u}) {
     EXPECT_THROW(take({.kind = Kind::kDoubt, .triangle = triangle}), std::runtime_error);
