@@ -107,7 +107,7 @@ module exact_resolver #(
   logic [CountWidth-1:0] counts[Rays];
   logic [AddressWidth-1:0] candidates[Rays];  // lines
   logic [Rays-1:0] doubtful_q, candidate_q, open_q, ready_q;
-  logic [RayWidth-1:0] ready_ctx, ctx_q;
+  logic [RayWidth-1:0] ready_ctx, next_ctx, ctx_q;
   logic settle, begin_any, done, doubt_done, same, keep, drop;
   logic settling_q, is_hit_q;  // what is asked; of the doubt that it is surely hit
   logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
@@ -136,7 +136,7 @@ module exact_resolver #(
       if (push) doubtful_q[open_ctx_i] <= 1'b1;
       if (keep) candidate_q[ctx_q] <= 1'b1;
       if (drop) candidate_q[ctx_q] <= 1'b0;
-      if (begin_any) open_q[settle ? ready_ctx : queued_ctx] <= 1'b1;
+      if (begin_any) open_q[next_ctx] <= 1'b1;
       if (done) open_q[ctx_q] <= 1'b0;
       ready_q <= candidate_q & ~doubtful_q & ~open_q & idle_i;
     end
@@ -198,6 +198,7 @@ module exact_resolver #(
 
   assign begin_any  = (state_q == StateIdle) & (answered == '0) & (free != '0)
                     & (settle | (queued & ~open_q[queued_ctx]));
+  assign next_ctx   = settle ? ready_ctx : queued_ctx;
   assign pop        = begin_any & ~settle;
   assign done       = (state_q != StateIdle) & (state_q != StateAsk) & (state_d == StateIdle);
   assign doubt_done = done & ~settling_q;
@@ -220,7 +221,7 @@ module exact_resolver #(
       nearer_q <= (nearer & answered) != '0;
     end else if (begin_any) begin
       settling_q <= settle;
-      ctx_q      <= settle ? ready_ctx : queued_ctx;
+      ctx_q      <= next_ctx;
       is_hit_q   <= settle | queued_hit;
       line_q     <= settle ? candidates[ready_ctx] : queued_line;
     end
@@ -259,7 +260,7 @@ module exact_resolver #(
   always_comb begin
     about = '0;
     for (int unsigned u = 0; u < Units; u++) begin
-      if (answered[u]) about = abouts[AboutWidth*u +: AboutWidth];
+      if (answered[u]) about = abouts[AboutWidth*u+:AboutWidth];
     end
   end
 

@@ -10,11 +10,11 @@
 module ray_core #(
   parameter int unsigned Rays  = 64,  // of the table; a power of two
   parameter int unsigned Depth = 8,   // groups on a ray's own stack
-  parameter int unsigned Levels = ray_core_pkg::Levels,  // with those that it may share, see traversal
+  parameter int unsigned Levels = ray_core_pkg::Levels,  // with those shared, see traversal
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
   parameter int unsigned Clocks = 1,  // of a node and a triangle: pipelines; or 7 or more, in turns
-  parameter int unsigned Exact = 0,  // exact_units; with some no doubts leave: triangles are named by their lines, have ranks
+  parameter int unsigned Exact = 0,  // exact_units, for which triangles have ranks; 0: doubts leave
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RayWidth = $clog2(Rays),

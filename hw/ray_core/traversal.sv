@@ -170,7 +170,7 @@ module traversal #(
     if (push && box_level >= LevelWidth'(Depth)) begin
       shared_masks[shared_address(box_level)] <= box_inner_i;
     end
-    shared_mask_q <= shared_masks[shared_address(levels[ray_q] - 1'b1)];
+    shared_mask_q <= shared_masks[shared_address(levels[ray_q]-1'b1)];
   end
 
   for (genvar d = 0; d < Depth; d++) begin : gen_level
@@ -216,7 +216,8 @@ module traversal #(
   end
 
   assign remaining   = mask & (mask - 1'b1);
-  assign cycle_o     = choosing_q & some & ((entered_q == lines_i) | (level_q == LevelWidth'(Levels)));
+  assign cycle_o     = choosing_q & some
+                     & ((entered_q == lines_i) | (level_q == LevelWidth'(Levels)));
   assign cycle_ray_o = choosing_ray_q;
   assign left        = (~some | cycle_o) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
   // That is: left is Depth or more. It is known before.

@@ -250,6 +250,7 @@ module stack_keeps_nodes #(
       if (done) assert (!asked && !present);
 
       // Invariants
+      if (done && !traversing[w_ray]) assert (w_levels == 3'd0);
       if (shared_q) assert (waiting_q[shared_ray_q] && levels[3*shared_ray_q+:3] >= 3'(Depth));
       for (int unsigned r = 0; r < Rays; r++) begin
         assert (3'(busy_q[r]) == 3'(wanted[r]) + 3'(picked_q && ray_q == 1'(r))
@@ -274,11 +275,11 @@ module stack_keeps_nodes #(
                 && next_q_1 == nexts_1[NextWidth*choosing_ray_q+:NextWidth]);
       end
       if (asked_q) begin
-        assert (levels[3*asking_ray_q+:3] == asked_level_q + 3'(remaining_q != '0));
+        assert (asked_level_q < 3'(Levels) && levels[3*asking_ray_q+:3] == asked_level_q + 3'(remaining_q != '0));
         assert (remaining_q == (mask_q & (mask_q - 1'b1)));
       end
       if (next_valid_q) begin
-        assert (levels[3*next_ray_q+:3] == next_level_q + 3'(next_remaining_q != '0));
+        assert (next_level_q < 3'(Levels) && levels[3*next_ray_q+:3] == next_level_q + 3'(next_remaining_q != '0));
         assert (next_remaining_q == (leaving_mask & (leaving_mask - 1'b1)));
       end
       if (next_started_q) assert (levels[3*next_ray_q+:3] == 3'd0);

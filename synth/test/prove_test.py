@@ -36,7 +36,7 @@ CACHE = [("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_f
          (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})")]
 
 STACK = [("& (~full | free);", ";"),
-         ("| (level_q == LevelWidth'(Levels))", ""),
+         (" | (level_q == LevelWidth'(Levels))", ""),
          ("if (free && !full) refused_q <= '0;", "")]
 
 WRITER = [("(axi_wready_i & axi_wlast_o)", "axi_wready_i"),

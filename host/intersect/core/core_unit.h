@@ -21,11 +21,11 @@ struct CoreRay {
   Ray ray;  ///< the direction scaled (see is_scaled)
   /// Positive, +infinity for none: hits at t >= limit do not count. The exact t.
   float t_max = std::numeric_limits<float>::infinity();
-  std::uint32_t skip_id = kNoTriangle;       ///< a triangle that does not count, by its name
-  std::uint32_t source_id = kNoTriangle;     ///< another: the one that the ray leaves
-  std::uint32_t tag = 0;                     ///< comes back with all that concerns the ray
-  bool any_hit = false;                      ///< the first sure hit that is found will do
-  bool no_cull = false;                      ///< it enters all boxes
+  std::uint32_t skip_id = kNoTriangle;    ///< a triangle that does not count, by its name
+  std::uint32_t source_id = kNoTriangle;  ///< another: the one that the ray leaves
+  std::uint32_t tag = 0;                  ///< comes back with all that concerns the ray
+  bool any_hit = false;                   ///< the first sure hit that is found will do
+  bool no_cull = false;                   ///< it enters all boxes
 };
 
 /// A word of the core about a ray. Words of several rays come mixed; a ray's end is its last one.
@@ -88,9 +88,10 @@ struct CoreCounters {
 /// Walks rays through a memory image.
 ///
 /// Promises: the ray's nearest hit, in exact arithmetic, is the sure hit of its end, or a triangle
-/// of its doubts; with any_hit the first that is found may be in its place. A ray whose end has an error has no hit that counts. What is a doubt may differ
-/// between cores, and for a core that waits for memory from run to run. A core that is_exact has
-/// no doubts: the nearest hit is that of its end.
+/// of its doubts; with any_hit the first that is found may be in its place. A ray whose end has an
+/// error has no hit that counts. What is a doubt may differ between cores, and for a core that
+/// waits for memory from run to run. A core that is_exact has no doubts: the nearest hit is that of
+/// its end.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
