@@ -266,11 +266,11 @@ module exact_resolver #(
 
   for (genvar u = 0; u < Units; u++) begin : gen_unit
     logic ask, wins_tie_q, hit;
-    exact_pkg::sign_t order;
+    logic negative, nonzero;  // of the order: a struct's fields are not found here by Yosys 0.23
     logic [AboutWidth-1:0] about_q;
 
     assign ask       = (state_q == StateAsk) & free[u];
-    assign nearer[u] = hit & (order.negative | (~order.nonzero & wins_tie_q));
+    assign nearer[u] = hit & (negative | (~nonzero & wins_tie_q));
     assign abouts[AboutWidth*u +: AboutWidth] = about_q;
 
     always_ff @(posedge clk_i) begin
@@ -295,7 +295,7 @@ module exact_resolver #(
       .valid_o(unit_valid[u]),
       .ready_i((state_q == StateIdle) & answered[u]),
       .hit_o(hit),
-      .order_o(order)
+      .order_o({negative, nonzero})
     );
   end
 
