@@ -34,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--look-ahead", type=whole(0, 1), help="1: groups add by carry look-ahead, 0: by ripple carry, as those of an adder do if not given")
     parser.add_argument("--exp-width", type=whole(2, 15), help="exponent bits of a float core")
     parser.add_argument("--frac-width", type=whole(1, 112), help="fraction bits of a float core")
+    parser.add_argument("--exact", type=whole(0, 64), help="exact_units of the ray core")
 
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
@@ -46,7 +47,7 @@ def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
 
 def design(given: argparse.Namespace) -> catalogue.Design:
     """The design that `given.top` and the options describe."""
-    parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width}
+    parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width, "Exact": given.exact}
     widths = [int(width) for width in given.groups.split(",")] if given.groups else None
     kind = given.adder or ("graded" if widths else "")
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]

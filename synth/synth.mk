@@ -10,7 +10,7 @@ synth: $(if $(TOP),,verilate) ## hardware: area and time: make synth [TOP=adder 
 	$(if $(TOP),,$(call build,build,table_1 worked_example))
 	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
+	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
 	  --jobs '$(SYNTH_JOBS)'
 
 cells: ## hardware: SkyWater 130 cells measured with ngspice: make cells [CORNERS=tt,ss,ff]

@@ -106,7 +106,7 @@ def stack_keeps_nodes() -> tuple[dict, bool]:
              "shared_q shared_ray_q refused_q shared_mask_q")
     memories = "levels 2 3 shared_masks 2 7 u_groups.words 6 224 " + " ".join(f"gen_level[{d}].nexts 2 26" for d in range(2))
     return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=18, prepared=f"traversal {{Rays 2 Depth 2 Levels 4}} {{{wires}}} {{{memories}}}")
+                 steps=1, reach=26, prepared=f"traversal {{Rays 2 Depth 2 Levels 4}} {{{wires}}} {{{memories}}}")
 
 
 def hits_keep_nearest() -> tuple[dict, bool]:

@@ -13,6 +13,7 @@ yosys flatten
 yosys rename -top opened_$name
 yosys cd opened_$name
 foreach wire $wires { yosys expose w:$wire }
+yosys opt_reduce  ;# one enable for all bits of a word
 yosys memory -nordff  ;# a register of an address stays one of its own
 yosys opt_clean
 foreach {memory depth width} $memories {
