@@ -258,7 +258,7 @@ TEST_F(RayCoreAxiTest, RaysAtThePortAreTraced) {
   write(0x018, static_cast<std::uint32_t>(kBase >> 32));
   test::Random random;
   std::vector<CoreRay> rays;
-  for (const Ray& ray : test::some_rays(test::bodies(), random, 1'000)) {
+  for (const Ray& ray : test::some_rays(test::bodies(), random, 1'300)) {
     CoreRay& sent = rays.emplace_back(CoreRay{.ray = ray});
     sent.tag = static_cast<std::uint32_t>(rays.size() * 0x00F1'1F05 + 0x8000'0000);
     if (random_() % 4 == 0) sent.t_max = random.uniform(0.01f, 3.0f);

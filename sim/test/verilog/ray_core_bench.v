@@ -6,22 +6,20 @@ module bench;
   reg [31:0] skip = 0, source = 0, tag = 0;
   reg [4:0] line_id = 0;
   reg [511:0] line = 0;
-  wire ray_ready, result, found, read, line_ready, outstanding;
-  wire [1:0] kind;
+  wire ray_ready, result, kind, found, read, line_ready, outstanding;
   wire [31:0] result_tag, triangle, t;
   wire [4:0] t_error, read_id;
   wire [95:0] point;
-  wire [27:0] tests, result_line, read_line;
+  wire [27:0] tests, read_line;
   wire [2:0] error;
-  wire [48:0] nodes;
   wire [10:0] events;
 
   ray_core dut (
     .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .outstanding_o(outstanding), .abort_i(1'b0), .lines_i(28'd5),
     .ray_valid_i(ray), .ray_ready_o(ray_ready),
-    .ray_i({origin, 64'd0, 32'h3f800000, 31'h7f800000, skip, source, 28'd0, 2'd0, tag}), .result_valid_o(result),
+    .ray_i({origin, 64'd0, 32'h3f800000, 31'h7f800000, skip, source, 2'd0, tag}), .result_valid_o(result),
     .result_ready_i(result_ready),
-    .result_o({kind, result_tag, found, triangle, t, t_error, point, tests, error, result_line, nodes}),
+    .result_o({kind, result_tag, found, triangle, t, t_error, point, tests, error}),
     .read_valid_o(read),
     .read_ready_i(read_ready), .read_line_o(read_line), .read_id_o(read_id), .line_valid_i(line_valid),
     .line_ready_o(line_ready), .line_id_i(line_id), .line_i(line), .line_error_i(1'b0), .events_o(events)
