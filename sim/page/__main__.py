@@ -59,7 +59,7 @@ def compile_unit(folder: pathlib.Path) -> str:
     # Debian's Emscripten finds its own parts only where Node.js is Debian's, or is told.
     environment = {"NODE_PATH": "/usr/share/nodejs", **os.environ}
     subprocess.run(
-        ["em++", "-O2", "-std=c++20", "-w", "-include", "cstdint", "-DVL_IGNORE_UNKNOWN_ARCH", "-DVM_TRACE=0", f"-I{ROOT}",
+        ["em++", "-O2", "-std=c++20", "-w", "-include", "cstdint", "-DVL_IGNORE_UNKNOWN_ARCH", "-DVM_TRACE=0", "-iquote", str(ROOT),
          f"-I{folder / 'unit'}", f"-I{VERILATOR}", f"-I{VERILATOR / 'vltstd'}", *map(str, sources), "-sSINGLE_FILE=1",
          "-sMODULARIZE=1", "-sEXPORT_NAME=loadUnit", "-sEXPORTED_FUNCTIONS=_run_unit",
          "-sEXPORTED_RUNTIME_METHODS=ccall,HEAPU32", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0", "-sENVIRONMENT=web",
