@@ -7,41 +7,10 @@
 #include <cstring>
 
 #include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/core_words.h"
 #include "sim/model.h"
 
 namespace raygate {
-
-/// Fields of a packed struct at a port of Verilator's, the struct's last field first.
-template <class Port>
-class PortFields {
- public:
-  explicit PortFields(Port& port) : port_(port) {}
-
-  /// Writes the next field of `width` bits, 32 at most, into bits that are 0.
-  void put(std::uint32_t value, unsigned width = 32) {
-    const std::uint64_t two = std::uint64_t{value} << at_ % 32;
-    port_[at_ / 32] |= static_cast<std::uint32_t>(two);
-    if (two >> 32 != 0) port_[at_ / 32 + 1] |= static_cast<std::uint32_t>(two >> 32);
-    at_ += width;
-  }
-  void put(const glm::vec3& vector) {
-    for (int k = 0; k < 3; ++k) put(std::bit_cast<std::uint32_t>(vector[k]));
-  }
-
-  /// Reads the next field.
-  std::uint32_t take(unsigned width = 32) {
-    std::uint64_t two = port_[at_ / 32];
-    if (at_ % 32 + width > 32) two |= std::uint64_t{port_[at_ / 32 + 1]} << 32;
-    two >>= at_ % 32;
-    at_ += width;
-    return static_cast<std::uint32_t>(two & ((std::uint64_t{1} << width) - 1));
-  }
-  float take_float() { return std::bit_cast<float>(take()); }
-
- private:
-  Port& port_;
-  unsigned at_ = 0;
-};
 
 /// A result's record of eight words at the ports of ray_core_axi: hw/ray_core/registers.md.
 inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
@@ -62,7 +31,7 @@ inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
 template <class Top>
 void put_ray(Top& top, const CoreRay& ray) {
   std::memset(&top.ray_i, 0, sizeof top.ray_i);
-  PortFields fields(top.ray_i);  // ray_core_pkg::ray_t
+  PackedFields fields(top.ray_i);  // ray_core_pkg::ray_t
   fields.put(ray.tag);
   fields.put(ray.no_cull, 1);
   fields.put(ray.any_hit, 1);
@@ -77,18 +46,7 @@ void put_ray(Top& top, const CoreRay& ray) {
 /// The word at the result port of `top`, of ray_core or ray_cores.
 template <class Top>
 CoreResult result_at(const Top& top) {
-  PortFields fields(top.result_o);  // ray_core_pkg::result_t
-  CoreResult result;
-  result.error = static_cast<CoreResult::Error>(fields.take(3));
-  result.tests = fields.take(28);
-  for (int k = 0; k < 3; ++k) result.point[k] = fields.take_float();
-  result.t_error = fields.take(5);
-  result.t = fields.take_float();
-  result.triangle = fields.take();
-  result.found = fields.take(1) != 0;
-  result.tag = fields.take();
-  result.kind = static_cast<CoreResult::Kind>(fields.take(1));
-  return result;
+  return unpack_result(top.result_o);
 }
 
 /// The core `Top` (a class that Verilator made of ray_core or ray_cores), held by a `Holder`:

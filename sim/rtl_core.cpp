@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "host/intersect/core/linked_core.h"
 #include "sim/model_loader.h"
 
 namespace raygate {
@@ -15,6 +16,7 @@ constexpr ModelFile kBehavioural{"ray_core_behavioural",
                                  "the simulated ray core of behavioural arithmetic", 40};
 constexpr ModelFile kWide{"ray_core_wide", "the simulated ray core of 256 rays", 40};
 constexpr ModelFile kOpen{"ray_core_open", "the simulated ray core that writes waveforms", 40};
+constexpr ModelFile kBoard{"board_core", "the simulated board", 40};
 
 }  // namespace
 
@@ -34,6 +36,11 @@ std::unique_ptr<CoreUnit> make_core_wave(const std::filesystem::path& file,
                                          const MemoryTiming& timing) {
   const auto make = load_model<CoreUnit*(const char*, const MemoryTiming&)>(kOpen);
   return std::unique_ptr<CoreUnit>(make(file.c_str(), timing));
+}
+
+std::unique_ptr<CoreUnit> make_rtl_board() {
+  const auto make = load_model<WordLink*()>(kBoard);
+  return std::make_unique<LinkedCore>(std::unique_ptr<WordLink>(make()), kBoardRays);
 }
 
 }  // namespace raygate

@@ -18,6 +18,8 @@ struct CoreStalls {
 
 /// Rays in the table of a core; of a core of behavioural arithmetic that is asked for more.
 inline constexpr int kTableRays = 64, kWideRays = 256;
+/// In a board's.
+inline constexpr int kBoardRays = 16;
 
 /// Cores behind one port to memory.
 struct CoreSet {
@@ -38,5 +40,9 @@ struct CoreSet {
 /// core is gone. Throws InputError where the file can't be written or the model can't be built.
 [[nodiscard]] std::unique_ptr<CoreUnit> make_core_wave(const std::filesystem::path& file,
                                                        const MemoryTiming& timing);
+
+/// The small core of a board (hw/board) and its SDRAM, Verilated, as a board behind a link as fast
+/// as its clock. Throws InputError where the model can't be built.
+[[nodiscard]] std::unique_ptr<CoreUnit> make_rtl_board();
 
 }  // namespace raygate

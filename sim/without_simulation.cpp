@@ -49,5 +49,6 @@ std::unique_ptr<CoreUnit> make_core_wave(const std::filesystem::path& /*file*/,
                                          const MemoryTiming& /*timing*/) {
   fail("the simulated ray core that writes waveforms");
 }
+std::unique_ptr<CoreUnit> make_rtl_board() { fail("the simulated board"); }
 
 }  // namespace raygate

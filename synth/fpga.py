@@ -12,6 +12,7 @@ import json
 import pathlib
 import re
 import sys
+from collections.abc import Callable
 
 from synth import catalogue, mapping, runner, store, tables, tools
 from synth.catalogue import Design, Fpga
@@ -23,10 +24,18 @@ MOST_PINS = 150  # what every package here has
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     """LUTs, registers, multipliers, block RAMs, and the slowest path between registers as MHz: the median of the seeds."""
     folder, wanted = _keys(design, fpga)
-    netlist, mapped = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
-    runs = [store.cached(folder / f"seed-{seed}", _seed_key(fpga, netlist), lambda s=seed: _place(fpga, folder, s))
-            for seed in fpga.seeds]
+    netlist, mapped = store.cached(folder, wanted, lambda: _step("mapping", folder / "yosys.log",
+                                                                 lambda: _map(design, fpga, folder)))
+    runs = [store.cached(folder / f"seed-{seed}", _seed_key(fpga, netlist),
+                         lambda s=seed: _step("placing, routing", folder / f"seed-{s}" / "nextpnr.log",
+                                              lambda: _place(fpga, folder, s))) for seed in fpga.seeds]
     return median([run for run, _ in runs]), mapped and all(there for _, there in runs)
+
+
+def _step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
+    """What `work` gives, after a line that says what has begun and where to watch it."""
+    print(f"{what}: {log.relative_to(tools.ROOT)}", file=sys.stderr, flush=True)
+    return work()
 
 
 def placed(design: Design, fpga: Fpga) -> dict | None:
@@ -81,8 +90,12 @@ def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
         wrapper.write_text(registered(design, sides))
         environment["WRAPPER"] = str(wrapper)
     tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "yosys.log", environment)
-    text = re.sub(r'"src": "[^"]*"', "", (folder / "netlist.json").read_text())
-    return {"digest": hashlib.sha256(text.encode()).hexdigest()}
+    return {"digest": digest(folder / "netlist.json")}
+
+
+def digest(netlist: pathlib.Path) -> str:
+    """Of what Yosys wrote, without the lines of RTL that it names."""
+    return hashlib.sha256(re.sub(r'"src": "[^"]*"', "", netlist.read_text()).encode()).hexdigest()
 
 
 def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
@@ -90,18 +103,23 @@ def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
     netlist, report, written = ((folder / name).relative_to(tools.ROOT) for name in (
         "netlist.json", f"seed-{seed}/placed.json", f"seed-{seed}/written.json"))
     tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz,
-               "--timing-allow-fail", "--report", report, "--write", written, "--quiet"], folder / f"seed-{seed}" / "nextpnr.log")
-    placed = json.loads((tools.ROOT / report).read_text())
-    used = {name: count["used"] for name, count in placed["utilization"].items() if count["used"]}
-    luts, registers, multipliers, memories = (used.get(cell, 0) for cell in fpga.cells)
-    return {"mhz": round(max(clock["achieved"] for clock in placed["fmax"].values()), 1), "luts": luts,
+               "--timing-allow-fail", "--report", report, "--write", written], folder / f"seed-{seed}" / "nextpnr.log")
+    return reported(json.loads((tools.ROOT / report).read_text()), cells=fpga.cells)
+
+
+def reported(report: dict, clock: str = "", cells: tuple[str, ...] = catalogue.ECP5_CELLS) -> dict:
+    """Of nextpnr's report: cells, MHz of the fastest clock, or of `clock`, and its slowest path."""
+    used = {name: count["used"] for name, count in report["utilization"].items() if count["used"]}
+    luts, registers, multipliers, memories = (used.get(cell, 0) for cell in cells)
+    rates = [found["achieved"] for name, found in report["fmax"].items() if clock in name]
+    return {"mhz": round(max(rates), 1), "luts": luts,
             "registers": registers, "multipliers": multipliers, "block RAMs": memories, "used": used,
-            **slowest_path(placed["critical_paths"])}
+            **slowest_path(report["critical_paths"], clock)}
 
 
-def slowest_path(paths: list[dict]) -> dict:
-    """Where the slowest path between registers begins and ends, and its ns in logic (registers included) and in wires."""
-    path = next(path["path"] for path in paths if path["from"] == path["to"])
+def slowest_path(paths: list[dict], clock: str = "") -> dict:
+    """Where the slowest path between registers (of `clock`) begins and ends, and its ns in logic (registers included) and in wires."""
+    path = next(path["path"] for path in paths if path["from"] == path["to"] and clock in path["from"])
     ns = {kind: sum(step["delay"] for step in path if (step["type"] == "routing") == (kind == "wires"))
           for kind in ("logic", "wires")}
     return {"from": register(path[0]["from"]["cell"]), "to": register(path[-1]["to"]["cell"]),

@@ -30,9 +30,15 @@ verilog: ## hardware: a module in one file of plain Verilog: make verilog TOP=fp
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
 
-fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [FLOORPLAN=1: draw them]
+fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [FLOORPLAN=1: draw them] [TOP=small_core BOARD=ulx3s: a bitstream]
 	@$(SETUP) synth
-	@$(PYTHON) -m synth.$(if $(FLOORPLAN),floorplan,fpga) $(if $(FLOORPLAN),,$(if $(SEEDS),--seeds $(SEEDS))) $(UNITS)
+ifdef FLOORPLAN
+	@$(PYTHON) -m synth.floorplan $(or $(BOARD),$(UNITS))
+else ifdef BOARD
+	@$(PYTHON) -m synth.board '$(TOP)' '$(BOARD)' $(if $(SEEDS),--seed $(SEEDS))
+else
+	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(UNITS)
+endif
 
 datasheet: ## hardware: the table of modules and the diagrams of hw
 	$(call build,build,worked_example)

@@ -9,7 +9,9 @@
 #include "host/base/input_error.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
+#include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
+#include "host/intersect/core/serial_link.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/pipeline_hit_tester.h"
 #include "host/intersect/unit/plane_unit.h"
@@ -100,6 +102,11 @@ IntersectorFactory make_core_factory(const EngineOptions& options, const Bvh& bv
     std::unique_ptr<CoreUnit> core;
     if (options.engine == Engine::kModel) {
       core = std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);
+    } else if (!options.board_port.empty()) {
+      core = std::make_unique<LinkedCore>(std::make_unique<SerialLink>(options.board_port),
+                                          kBoardRays);
+    } else if (options.unit == "board") {
+      core = make_rtl_board();
     } else {
       core =
           make_rtl_core(options.arith, options.memory, {}, {.cores = options.cores, .exact = true});
@@ -111,7 +118,7 @@ IntersectorFactory make_core_factory(const EngineOptions& options, const Bvh& bv
 /// Of the unit in `options`.
 IntersectorFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh,
                                      const Skips& skips, std::shared_ptr<const MemoryImage> image) {
-  if (options.unit == "core") return make_core_factory(options, bvh, std::move(image));
+  if (options.has_core()) return make_core_factory(options, bvh, std::move(image));
   const auto caches = std::make_shared<RecordCaches>(bvh, skips.records);
   return [options, &bvh, skips, caches] {
     return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips), caches);
@@ -122,7 +129,9 @@ IntersectorFactory make_unit_factory(const EngineOptions& options, const Bvh& bv
 
 void prepare_engine(const EngineOptions& options) {
   if (!options.simulates()) return;
-  if (options.unit == "core") {
+  if (options.unit == "board") {
+    if (options.board_port.empty()) (void)make_rtl_board();
+  } else if (options.unit == "core") {
     (void)make_rtl_core(options.arith, {}, {}, {.exact = true});
   } else {
     (void)make_tester(options, {});
@@ -139,8 +148,9 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
                "rtl and cpu ({})",
                options.engine, engine_choices(), kInStats);
   table.choice<std::string>(
-      "--unit", "NAME", "pipeline, serial (the paper's) or core ({})", options.unit,
-      {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}}, kInStats);
+      "--unit", "NAME", "pipeline, serial (the paper's), core, board ({})", options.unit,
+      {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}, {"board", "board"}},
+      kInStats);
   table.add(
       "--variant", "NAME",
       "the model in another format: e8p16 has 16 digits; e8p16-raw: without error bounds",
@@ -161,6 +171,11 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
             });
   table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
                Range{1, 64, "a whole number, 1 to 64"}, kInStats);
+  table.add("--board-port", "PATH",
+            "a board's serial port, for --unit board in place of a simulated one",
+            [&options](const std::string& /*option*/, const std::string& text) {
+              options.board_port = text;
+            });
   table.number("--threads", "N", "threads (one per processor)", options.threads, kThreadRange,
                kInStats);
   table.choice<InstanceMode>("--instances", "auto|keep|write",
@@ -173,7 +188,7 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
 void check_engine_options(const OptionTable& table, EngineOptions& options, unsigned processors) {
   for (const char* name : {"memory", "cores"}) {
     const std::string typed = table.typed(name);
-    if (!typed.empty() && !(options.has_core() && options.simulates())) {
+    if (!typed.empty() && !(options.unit == "core" && options.simulates())) {
       throw InputError("--" + std::string(name) +
                        ": expected with --unit core and --engine rtl or check, got " + typed);
     }
@@ -192,15 +207,24 @@ void check_engine_options(const OptionTable& table, EngineOptions& options, unsi
     options.engine = Engine::kModel;
     options.unit = options.variant->unit == Variant::Unit::kSerial ? "serial" : "pipeline";
   }
+  if (!options.board_port.empty() && !(options.unit == "board" && options.engine == Engine::kRtl)) {
+    throw InputError("--board-port: expected with --unit board and --engine rtl, got " +
+                     options.board_port);
+  }
   if (options.unit != "pipeline" && options.lanes != 1) {
     throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " +
                      table.typed("lanes"));
   }
   if (processors == 0) processors = std::max(1u, std::thread::hardware_concurrency());
+  if (!options.board_port.empty()) processors = 1;  // there is one board
   if (table.typed("threads").empty()) options.threads = static_cast<int>(processors);
+  if (!options.board_port.empty() && options.threads != 1) {
+    throw InputError("--threads: expected 1 with --board-port, got " + table.typed("threads"));
+  }
   if (!options.has_core()) return;
   if (options.instances == InstanceMode::kKeep) {
-    throw InputError("--instances: expected auto or write with --unit core, got keep");
+    throw InputError("--instances: expected auto or write with --unit " + options.unit +
+                     ", got keep");
   }
   options.instances = InstanceMode::kFlatten;  // its memory holds one tree
 }

@@ -26,17 +26,20 @@ enum class Engine {
 
 struct EngineOptions {
   Engine engine = Engine::kRtl;
-  std::string unit = "pipeline";  ///< or "serial", "core"
+  std::string unit = "pipeline";   ///< or "serial", "core", "board"
   std::optional<Variant> variant;  ///< of the reference model; none: binary32, as the hardware
   Arith arith = Arith::kStructural;
-  int lanes = 1;          ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
-  MemoryTiming memory{};  ///< of a simulated core
-  int cores = 1;          ///< behind one memory, for each thread; 1 for other units
+  int lanes = 1;             ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
+  MemoryTiming memory{};     ///< of a simulated core
+  std::string board_port{};  ///< of a board, for "board"; empty: it is simulated
+  int cores = 1;             ///< behind one memory, for each thread; 1 for other units
   int threads = 1;
   InstanceMode instances = InstanceMode::kAutomatic;  ///< what is in the tree
 
   /// Whether rays go to ray cores, simulated or not.
-  [[nodiscard]] bool has_core() const { return unit == "core" && engine != Engine::kCpu; }
+  [[nodiscard]] bool has_core() const {
+    return (unit == "core" || unit == "board") && engine != Engine::kCpu;
+  }
   [[nodiscard]] bool simulates() const {
     return engine == Engine::kRtl || engine == Engine::kCheck;
   }

@@ -19,8 +19,11 @@ class Reading(unittest.TestCase):
 
     def test_parts(self):
         """By the core at the top of a name."""
-        self.assertEqual([floorplan.part(name) for name in ("u_divider.u_x", "u_adder.y", "state_q")],
+        self.assertEqual([floorplan.part(name, floorplan.PARTS) for name in ("u_divider.u_x", "u_adder.y", "state_q")],
                          ["divider", "adder", "registers, multiplexers, control"])
+        self.assertEqual([floorplan.part(f"u_board.u_core.{name}", floorplan.CORE_PARTS)
+                          for name in ("u_memory.u_node_cache.x", "u_traversal.u_closest_hit.y", "u_traversal.u_traversal.z")],
+                         ["caches", "closest hit", "traversal"])
 
     def test_slowest(self):
         """The path between registers, and none from or to a pin."""
@@ -34,7 +37,7 @@ class Reading(unittest.TestCase):
         """A picture comes out."""
         with tempfile.TemporaryDirectory() as name:
             out = pathlib.Path(name) / "plan"
-            floorplan.draw([("u_adder.y", 1, 2), ("u_adder.z", 1, 2)], [(1, 2), (3, 4)], "", out)
+            floorplan.draw([("u_adder.y", 1, 2), ("u_adder.z", 1, 2)], [(1, 2), (3, 4)], floorplan.PARTS, "", out)
             self.assertEqual(out.with_suffix(".png").read_bytes()[:4], b"\x89PNG")
 
 

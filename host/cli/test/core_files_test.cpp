@@ -71,6 +71,24 @@ TEST_F(CoreFiles, CoresBehindOneMemoryDrawTheSamePicture) {
   EXPECT_LT(clocks[1], clocks[0]);
 }
 
+TEST_F(CoreFiles, ABoardDrawsTheSamePicture) {
+  const std::string scene = RAYGATE_SCENES "/paper.obj";
+  render({scene, "--size", "32x24", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
+  render(
+      {scene, "--size", "32x24", "--spp", "1", "--unit", "board", "--threads", "1", "-o", "board"});
+  expect_same_pictures("cpu", "board");
+  EXPECT_GT(stats_.at("clocks"), 11 * stats_.at("unit_tests").get<int>());
+}
+
+TEST_F(CoreFiles, APortThatIsNoneIsAnInputError) {
+  const Outcome outcome = run_program(
+      {.arguments = {kCornell, "--unit", "board", "--board-port", "/dev/null", "-o", "out"},
+       .folder = folder_.path()});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("/dev/null: expected a serial port"), std::string::npos)
+      << outcome.err;
+}
+
 TEST_F(CoreFiles, TheWaveOfAPixelsRay) {
   const Outcome outcome = run({"--trace-pixel", "8,8", "--trace", "pixel.vcd"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;

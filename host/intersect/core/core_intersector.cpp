@@ -37,7 +37,7 @@ CoreRay core_ray(const MemoryImage& image, const Ray& ray, const RayQuery& query
 IntersectCounters CoreIntersector::counters() const {
   IntersectCounters counters = counters_;
   const CoreCounters core = core_->counters();
-  counters.hit.tests = counters.hit.unit_tests = core.hits + core.misses + core.doubts;
+  counters.hit.tests = counters.hit.unit_tests = core.triangles;
   counters.hit.misses = core.misses;
   counters.hit.hits = core.hits;
   counters.hit.edge_doubts = core.doubts;

@@ -257,8 +257,10 @@ TEST_F(RayCoreTest, MemoryIsAtRestWhenTheCoreSaysSo) {
   }
 }
 
-/// P of sure hits has the bits that the reference has for the core's own records.
-TEST_P(EachRayCoreTest, PointsAreTheReferences) {
+/// The end of a ray is the reference's, word by word, but for its tests, where neither core left a
+/// doubt (which depends on the order of tests). P has the bits that the reference has for the
+/// core's own records.
+TEST_P(EachRayCoreTest, EndsAreTheReferences) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
   std::vector<CoreRay> sent;
   for (const Ray& ray : rays)
@@ -266,17 +268,24 @@ TEST_P(EachRayCoreTest, PointsAreTheReferences) {
   std::vector<CoreResult> got, expected;
   core()->trace(image_->lines(), sent, got);
   ReferenceCore().trace(image_->lines(), sent, expected);
+  std::vector<bool> open(sent.size());
   const auto ends = [&](const std::vector<CoreResult>& results) {
     std::vector<CoreResult> ends(sent.size());
     for (const CoreResult& result : results) {
-      if (result.kind == CoreResult::Kind::kEnd) ends[result.tag] = result;
+      if (result.kind == CoreResult::Kind::kEnd) {
+        ends[result.tag] = result;
+      } else {
+        open[result.tag] = true;
+      }
     }
     return ends;
   };
   const auto a = ends(got), b = ends(expected);
   int same = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!a[i].found || !b[i].found || a[i].triangle != b[i].triangle) continue;
+    const bool agree = a[i].found == b[i].found && (!a[i].found || a[i].triangle == b[i].triangle);
+    ASSERT_TRUE(agree || open[i]) << i;
+    if (!agree || !a[i].found) continue;
     ++same;
     ASSERT_EQ(a[i].t, b[i].t) << i;
     ASSERT_EQ(a[i].t_error, b[i].t_error) << i;

@@ -1,6 +1,7 @@
 """`make verilog` writes what Icarus Verilog compiles and runs, with the right words.
 
-usage: icarus_test.py TOP CASES [ecp5] [Name=value ...]   beside it: TOP_bench.v, whose last line counts CASES
+usage: icarus_test.py TOP CASES [ecp5] [bench.Name=value ...] [Name=value ...]
+beside it: TOP_bench.v, with parameters of its own, whose last line counts CASES
 
 With ecp5 the netlist that `make fpga` places runs there, of Yosys' models of that device's cells.
 """
@@ -22,7 +23,9 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
     netlist = out.with_suffix(".json")
     tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], out.with_suffix(".log"),
               {**mapping.elaboration(design), "FAMILY": "ecp5", "OUT": str(netlist), "WRAPPER": "", "PORTS": ""})
-    tools.run(["yosys", "-p", f"read_json {netlist}; rename -top {top}; write_verilog -noattr {out}"], out.with_suffix(".log"))
+    empty = " ".join(f"-unset INITVAL_{row:02X}" for row in range(64))
+    tools.run(["yosys", "-p", f"read_json {netlist}; chtype -set block_ram t:DP16KD; setparam {empty} t:block_ram; "
+               f"rename -top {top}; write_verilog -noattr {out}"], out.with_suffix(".log"))
     cells = pathlib.Path(tools.find("yosys")).resolve().parent.parent / "share" / "yosys" / "ecp5"
     return [f"-I{cells}", out, cells / "cells_sim.v", tools.FLOWS / "ecp5_cells.v"]
 
@@ -30,6 +33,8 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
 def main():
     """Writes, compiles, runs; the exit status is 1 where a word is wrong or a case is missing."""
     top, cases, *parameters = sys.argv[1:]
+    bench = [word for word in parameters if word.startswith("bench.")]
+    parameters = [word for word in parameters if word not in bench]
     out = ROOT / "build" / "verilog" / f"{top}.v"
     if parameters[:1] == ["ecp5"]:
         out = out.with_suffix(".ecp5.v")
@@ -40,7 +45,8 @@ def main():
         files = [out]
     built = out.with_suffix(".vvp")
     lint = [] if "ecp5" in parameters else ["-Wall"]
-    subprocess.run(["iverilog", "-g2001", *lint, "-s", "bench", "-o", built, HERE / f"{top}_bench.v", *files], check=True)
+    subprocess.run(["iverilog", "-g2001", *lint, "-s", "bench", *(f"-P{word}" for word in bench), "-o", built,
+                    HERE / f"{top}_bench.v", *files], check=True)
     said = subprocess.run(["vvp", "-n", built], check=True, capture_output=True, text=True).stdout
     print(said, end="")
     return said.splitlines()[-1:] != [f"{cases} cases, 0 failures"]

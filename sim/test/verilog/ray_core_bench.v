@@ -1,14 +1,16 @@
 // ray_core with four-state values, as it wakes up and after resets in mid-run: nothing that it says is unknown, and rays hit
 // what they should. Its memory has two nodes and three triangles across the x axis.
 module bench;
+  parameter IdWidth = 5;  // of a line's request
   reg clk = 0, reset_n = 0, ray = 0, result_ready = 0, read_ready = 0, line_valid = 0;
   reg [95:0] origin = 0;
   reg [31:0] skip = 0, source = 0, tag = 0;
-  reg [4:0] line_id = 0;
+  reg [IdWidth-1:0] line_id = 0;
   reg [511:0] line = 0;
   wire ray_ready, result, kind, found, read, line_ready, outstanding;
   wire [31:0] result_tag, triangle, t;
-  wire [4:0] t_error, read_id;
+  wire [4:0] t_error;
+  wire [IdWidth-1:0] read_id;
   wire [95:0] point;
   wire [27:0] tests, read_line;
   wire [2:0] error;
@@ -36,7 +38,7 @@ module bench;
   endfunction
 
   reg [511:0] lines[0:4];
-  reg [32:0] asked[0:63];  // {line, id}
+  reg [28+IdWidth-1:0] asked[0:63];  // {line, id}
   integer first, last;     // of those that are to be answered
 
   task known(input value, input is_known);
@@ -62,7 +64,7 @@ module bench;
       end
       if (!line_valid && first != last && $random(seed) % 4 == 0) begin
         line_valid = 1;
-        {line, line_id} = {lines[asked[first][7:5]], asked[first][4:0]};
+        {line, line_id} = {lines[asked[first][IdWidth+:3]], asked[first][IdWidth-1:0]};
         first = (first + 1) % 64;
       end
       #1;

@@ -1,0 +1,168 @@
+// A board's small core finds, behind its link and its SDRAM, what CpuIntersector finds.
+// Tests: board_core, core_link
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <thread>
+
+#include "host/base/input_error.h"
+#include "host/intersect/check_intersector.h"
+#include "host/intersect/core/core_intersector.h"
+#include "host/intersect/core/reference_core.h"
+#include "host/intersect/core/serial_link.h"
+#include "host/intersect/core/test/core_cases.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "sim/model_loader.h"
+#include "sim/rtl_core.h"
+
+namespace raygate {
+namespace {
+
+using test::bodies;
+using test::Random;
+using test::some_rays;
+
+TEST(BoardCore, HitsAreTheCpuIntersectors) {
+  const Bvh bvh{test::scene_of(bodies())};
+  Random random;
+  const std::vector<Ray> rays = some_rays(bodies(), random, 1'500);
+  std::vector<float> limits;
+  std::vector<std::uint32_t> ignored;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    limits.push_back(random.uniform(0.01f, 3.0f));
+    ignored.push_back(
+        static_cast<std::uint32_t>(random.below(static_cast<int>(bvh.primitive_count()))));
+  }
+  std::unique_ptr<CoreUnit> board = make_rtl_board();
+  const CoreUnit& unit = *board;
+  CheckIntersector check(
+      bvh,
+      std::make_unique<CoreIntersector>(bvh, std::make_shared<MemoryImage>(bvh), std::move(board)),
+      std::make_unique<CpuIntersector>(bvh));
+  std::vector<NearestHit> hits(rays.size());
+  check.intersect(rays, {}, hits);
+  check.intersect(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = limits}, hits);
+  check.intersect(std::span(rays).first(20), {.culling = false}, std::span(hits).first(20));
+  EXPECT_GT(unit.counters().doubts, 0u);
+  EXPECT_GT(unit.counters().clocks, 11 * unit.counters().triangles);
+}
+
+/// Scenes of other images, one after the other: a board keeps no line of an earlier one.
+TEST(BoardCore, ScenesFollowEachOther) {
+  const Bvh one{test::scene_of(bodies())};
+  const Bvh other{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
+  Random random;
+  std::vector<CoreRay> rays;
+  for (const Ray& ray : some_rays(bodies(), random, 300)) {
+    rays.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(rays.size())});
+  }
+  const std::unique_ptr<CoreUnit> board = make_rtl_board();
+  for (const Bvh* bvh : {&one, &other, &one}) {
+    const MemoryImage image(*bvh);
+    std::vector<CoreResult> got, expected;
+    board->trace(image.lines(), rays, got);
+    ReferenceCore().trace(image.lines(), rays, expected);
+    std::vector<bool> is_plain(rays.size(), true), hits(rays.size());
+    for (const CoreResult& result : expected) {
+      if (result.kind == CoreResult::Kind::kEnd) {
+        hits[result.tag] = result.found;
+      } else {
+        is_plain[result.tag] = false;
+      }
+    }
+    for (const CoreResult& result : got) {
+      if (result.kind != CoreResult::Kind::kEnd) is_plain[result.tag] = false;
+    }
+    int compared = 0;
+    for (const CoreResult& result : got) {
+      if (result.kind != CoreResult::Kind::kEnd || !is_plain[result.tag]) continue;
+      ASSERT_EQ(result.found, hits[result.tag]) << result.tag;
+      ++compared;
+    }
+    EXPECT_GT(compared, 150);
+  }
+}
+
+/// A simulated board behind a pseudoterminal, as behind a serial port: its bytes are those of
+/// uart_receiver and uart_transmitter.
+class BoardAtAPort {
+ public:
+  BoardAtAPort() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) {
+      throw std::runtime_error("no pseudoterminal");
+    }
+    board_ = std::thread([this] { run(); });
+  }
+  BoardAtAPort(const BoardAtAPort&) = delete;
+  BoardAtAPort& operator=(const BoardAtAPort&) = delete;
+  ~BoardAtAPort() {
+    is_over_ = true;
+    board_.join();
+    close(master_);
+  }
+
+  [[nodiscard]] std::string port() const { return ptsname(master_); }
+
+ private:
+  void run() {
+    const std::unique_ptr<WordLink> link(
+        load_model<WordLink*()>({"board_core", "the simulated board", 40})());
+    std::vector<unsigned char> in;
+    int idle = 0;  // clocks since a byte came or went
+    while (!is_over_) {
+      unsigned char byte = 0;
+      // It asks for bytes now and then, and always when it has nothing to do.
+      while (in.size() < 4 && read(master_, &byte, 1) == 1) in.push_back(byte);
+      if (in.size() >= 4 && link->send(in[0] | in[1] << 8 | in[2] << 16 | unsigned{in[3]} << 24)) {
+        in.erase(in.begin(), in.begin() + 4);
+        idle = 0;
+      }
+      while (const std::optional<std::uint32_t> word = link->receive()) {
+        for (unsigned k = 0; k < 4; ++k) {
+          const auto out = static_cast<unsigned char>(*word >> 8 * k);
+          while (write(master_, &out, 1) != 1) std::this_thread::yield();
+        }
+        idle = 0;
+      }
+      if (++idle < 20'000) {
+        link->wait();
+      } else {
+        pollfd ready{.fd = master_, .events = POLLIN, .revents = 0};
+        if (poll(&ready, 1, 10) > 0) idle = 0;
+      }
+    }
+  }
+
+  int master_;
+  std::atomic<bool> is_over_{false};
+  std::thread board_;
+};
+
+TEST(SerialLink, HitsAreTheCpuIntersectors) {
+  const Bvh bvh{test::scene_of(bodies())};
+  Random random;
+  const std::vector<Ray> rays = some_rays(bodies(), random, 200);
+  const BoardAtAPort board;
+  for (int opened = 0; opened < 2; ++opened) {
+    CheckIntersector check(
+        bvh,
+        std::make_unique<CoreIntersector>(
+            bvh, std::make_shared<MemoryImage>(bvh),
+            std::make_unique<LinkedCore>(std::make_unique<SerialLink>(board.port()), kBoardRays)),
+        std::make_unique<CpuIntersector>(bvh));
+    std::vector<NearestHit> hits(rays.size());
+    check.intersect(rays, {}, hits);
+  }
+}
+
+TEST(SerialLink, WhatIsNoPortIsAnInputError) {
+  EXPECT_THROW(SerialLink("/dev/null"), InputError);
+  EXPECT_THROW(SerialLink("/nowhere/ttyUSB0"), InputError);
+}
+
+}  // namespace
+}  // namespace raygate
