@@ -26,8 +26,8 @@ enum class Engine {
 
 struct EngineOptions {
   Engine engine = Engine::kRtl;
-  std::string unit = "pipeline";   ///< or "serial", "core", "board"
-  std::optional<Variant> variant;  ///< of the reference model; none: binary32, as the hardware
+  std::string unit = "pipeline";     ///< or "serial", "core", "board"
+  std::optional<Variant> variant{};  ///< of the reference model; none: binary32, as the hardware
   Arith arith = Arith::kStructural;
   int lanes = 1;             ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
   MemoryTiming memory{};     ///< of a simulated core

@@ -197,7 +197,9 @@ TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
       aborted += result.error == CoreResult::Error::kAbort;
       if (result.error == CoreResult::Error::kNone) {
         ASSERT_EQ(result.found, expected.at(result.tag).found) << result.tag;
-        if (result.found) ASSERT_EQ(result.triangle, expected[result.tag].triangle) << result.tag;
+        if (result.found) {
+          ASSERT_EQ(result.triangle, expected[result.tag].triangle) << result.tag;
+        }
         ++compared;
       }
     }

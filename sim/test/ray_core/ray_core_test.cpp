@@ -536,7 +536,9 @@ TEST_F(RayCoreTest, TreesAreAsDeepAsTheImagesOrAnError) {
                                                               : CoreResult::Error::kCycle);
         ASSERT_EQ(end.error, expected.at(ray.tag).error);
         ASSERT_EQ(end.found, nodes == MemoryImage::kMostDepth);
-        if (end.found) ASSERT_EQ(end.triangle, expected.at(ray.tag).triangle);
+        if (end.found) {
+          ASSERT_EQ(end.triangle, expected.at(ray.tag).triangle);
+        }
       }
       EXPECT_EQ(unit->counters().overflows, rays.size());
     }

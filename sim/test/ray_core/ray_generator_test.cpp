@@ -141,7 +141,9 @@ TYPED_TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
       model.clock();
     }
     broken_off += model->busy_o;
-    if (whole) ASSERT_EQ(given, model->width_i * model->height_i);
+    if (whole) {
+      ASSERT_EQ(given, model->width_i * model->height_i);
+    }
   }
   EXPECT_GT(broken_off, 20);
 }
