@@ -58,10 +58,10 @@ def draw(placed: list[tuple[str, int, int]], path: list[tuple[int, int]], parts:
         counts = collections.Counter(mine)
         if not mine:
             continue
-        axes.scatter([x for x, _ in counts], [y for _, y in counts], s=side ** 2, marker="s", linewidths=0,
-                     color=plt.get_cmap("tab10").colors[place],
-                     alpha=[min(1.0, 0.25 + count / 10) for count in counts.values()],
-                     label=f"{label}: {len(mine):,} cells")
+        color = plt.get_cmap("tab10").colors[place]
+        axes.scatter([x for x, _ in counts], [y for _, y in counts], s=side ** 2, marker="s", linewidths=0, color=color,
+                     alpha=[min(1.0, 0.25 + count / 10) for count in counts.values()])
+        axes.scatter([], [], marker="s", color=color, label=f"{label}: {len(mine):,} cells")
     axes.plot(*zip(*path), color="black", linewidth=1, label=f"the slowest path, {len(path):,} steps")
     axes.invert_yaxis()
     axes.set(title=title, xlabel="column of tiles", ylabel="row of tiles", aspect="equal")
