@@ -152,16 +152,13 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
       {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}, {"board", "board"}},
       kInStats);
   table.add(
-      "--variant", "NAME",
-      "the model in another format: e8p16 has 16 digits; e8p16-raw: without error bounds",
+      "--variant", "NAME", "the model's format: e8p16; e8p16-raw: without bounds",
       [&options](const std::string& option, const std::string& text) {
         options.variant = parse_variant(option, text);
       },
-      [&options] { return options.variant ? options.variant->name : ""; }, kInExr | kInStats);
-  table.choice(
-      "--arith", "NAME",
-      "structural: Booth trees, carry-select; behavioural: + and *, faster to simulate ({})",
-      options.arith, arith_choices(), kInStats);
+      [&options] { return options.variant ? options.variant->name : ""; }, kInExr);
+  table.choice("--arith", "NAME", "structural, or behavioural: + and * ({})", options.arith,
+               arith_choices(), kInStats);
   table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
                     options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats);
   table.add("--memory", "latency=N,bytes=N,cache=N",
@@ -171,8 +168,7 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
             });
   table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
                Range{1, 64, "a whole number, 1 to 64"}, kInStats);
-  table.add("--board-port", "PATH",
-            "a board's serial port, for --unit board in place of a simulated one",
+  table.add("--board-port", "PATH", "the serial port of a real board (--unit board)",
             [&options](const std::string& /*option*/, const std::string& text) {
               options.board_port = text;
             });

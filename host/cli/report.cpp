@@ -223,11 +223,15 @@ std::string to_json(const Report& report) {
   const PixelRect& window = options.render.window;
   ordered_json pictures = ordered_json::array();
   for (const auto& path : report.pictures) pictures.push_back(path.string());
-  ordered_json json = {
-      {"software", kSoftware},           {"scene", options.obj().string()},
-      {"triangles", report.triangles},   {"width", options.render.width},
-      {"height", options.render.height}, {"window", {window.x0, window.y0, window.x1, window.y1}},
-      {"ranks", report.ranks},           {"pictures", pictures}};
+  ordered_json json = {{"software", kSoftware},
+                       {"scene", options.obj().string()},
+                       {"triangles", report.triangles},
+                       {"width", options.render.width},
+                       {"height", options.render.height},
+                       {"window", {window.x0, window.y0, window.x1, window.y1}},
+                       {"ranks", report.ranks},
+                       {"pictures", pictures},
+                       {"variant", options.variant ? options.variant->name : "binary32"}};
   for (const auto& [name, value] : option_values(options, kInStats)) {
     json[name] = ordered_json::accept(value) ? ordered_json::parse(value) : ordered_json(value);
   }

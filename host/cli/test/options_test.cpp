@@ -205,7 +205,7 @@ TEST(Options, OtherValuesThatAreImpossible) {
                "--engine: expected model with --variant e8p12, got cpu");
   expect_error({"a.obj", "--variant", "serial-paper", "--unit", "core"},
                "--unit: expected serial with --variant serial-paper, got core");
-  expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline, serial or core");
+  expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline, serial, core or board");
   for (const char* lanes : {"0", "3", "16", "-1", "x"}) {
     expect_error({"a.obj", "--lanes", lanes}, "--lanes: expected 1, 2, 4 or 8");
   }

@@ -4,8 +4,8 @@
 #include "host/bvh/bvh.h"
 #include "host/intersect/unit/hit_tester.h"
 #include "host/lab/results.h"
-#include "host/variants/variant_table.h"
 #include "host/scene/camera.h"
+#include "host/variants/variant_table.h"
 
 namespace raygate::lab {
 

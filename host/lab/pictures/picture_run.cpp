@@ -22,13 +22,13 @@
 #include "host/lab/pictures/decision_audit.h"
 #include "host/lab/timing.h"
 #include "host/lab/variants/rtl_variant_units.h"
-#include "host/variants/variant_hit_tester.h"
 #include "host/light/camera_lights.h"
 #include "host/light/default_lights.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
+#include "host/variants/variant_hit_tester.h"
 
 namespace raygate::lab {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/lab/results.h"
-#include "host/variants/variant_table.h"
 #include "host/render/renderer.h"
+#include "host/variants/variant_table.h"
 
 namespace raygate::lab {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <utility>
 
-#include "host/variants/variant_hit_tester.h"
 #include "host/lab/variants/variant_models.h"
+#include "host/variants/variant_hit_tester.h"
 #include "sim/array_model.h"
 #include "sim/plane_model.h"
 #include "sim/rtl_plane_unit.h"
