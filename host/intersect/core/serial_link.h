@@ -23,7 +23,7 @@ class SerialLink : public WordLink {
   void wait() override;
 
  private:
-  static constexpr int kPatience = 10;
+  static constexpr int kPatience = 30;
   static constexpr std::size_t kBuffer = 4096;  ///< bytes that wait to be written
 
   [[noreturn]] void fail(const std::string& what) const;
