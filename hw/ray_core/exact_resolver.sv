@@ -187,7 +187,7 @@ module exact_resolver #(
       StateFetch: if (request_ready_i) state_d = StateWait;
       StateWait:
         if (line_here) begin
-          state_d = line_i.error ? StateIdle : lacks_q ? StateFetch : StateAsk;
+          state_d = line_i.error ? StateAnswer : lacks_q ? StateFetch : StateAsk;
         end
       StateAsk:    state_d = StateIdle;
       StateAnswer: state_d = (settling_q && nearer_q) ? StateTest : StateIdle;
@@ -231,7 +231,8 @@ module exact_resolver #(
       lacks_q      <= against == exact_pkg::AgainstOther;  // the other's line comes first
     end
     if (state_q == StateWait && line_here) begin
-      lacks_q <= 1'b0;
+      lacks_q  <= 1'b0;
+      nearer_q <= 1'b0;  // where the line has an error
       {other_q, other_rank_q} <= {corners_q, rank_q};
       corners_q <= line_i.line[ray_core_pkg::TriangleCorners+:CornersWidth];
       rank_q    <= line_i.rank;
