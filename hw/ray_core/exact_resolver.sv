@@ -65,7 +65,7 @@ module exact_resolver #(
     StateFetch  = 3'd2,  // a line is asked for
     StateWait   = 3'd3,  // it is on its way
     StateAsk    = 3'd4,
-    StateAnswer = 3'd5,  // what it means
+    StateAnswer = 3'd5,  // what it means; the end
     StateTest   = 3'd6   // the candidate is the hit
   } state_e;
 
@@ -191,7 +191,7 @@ module exact_resolver #(
         end
       StateAsk:    state_d = StateIdle;
       StateAnswer: state_d = (settling_q && nearer_q) ? StateTest : StateIdle;
-      StateTest:   if (request_ready_i) state_d = StateIdle;
+      StateTest:   if (request_ready_i) state_d = StateAnswer;
       default:     state_d = StateIdle;
     endcase
   end
@@ -200,7 +200,8 @@ module exact_resolver #(
                     & (settle | (queued & ~open_q[queued_ctx]));
   assign next_ctx   = settle ? ready_ctx : queued_ctx;
   assign pop        = begin_any & ~settle;
-  assign done       = (state_q != StateIdle) & (state_q != StateAsk) & (state_d == StateIdle);
+  assign done       = ((state_q == StateLook) & (ended_i | (simple & ~settling_q)))
+                    | ((state_q == StateAnswer) & ~(settling_q & nearer_q));
   assign doubt_done = done & ~settling_q;
   assign drop       = done & settling_q;
   assign keep       = doubt_done & (((state_q == StateLook) & ~ended_i)
@@ -225,14 +226,16 @@ module exact_resolver #(
       is_hit_q   <= settle | queued_hit;
       line_q     <= settle ? candidates[ready_ctx] : queued_line;
     end
+    // A line with an error, and a candidate that is tested, end in StateAnswer a clock later: what the cache says
+    // is taken into state_q, and goes no further in its clock.
+    if (state_q == StateWait || state_q == StateTest) nearer_q <= 1'b0;
     if (state_q == StateLook) begin
       against_q    <= against;
       other_line_q <= settling_q ? found_line_i : candidate;
       lacks_q      <= against == exact_pkg::AgainstOther;  // the other's line comes first
     end
     if (state_q == StateWait && line_here) begin
-      lacks_q  <= 1'b0;
-      nearer_q <= 1'b0;  // where the line has an error
+      lacks_q <= 1'b0;
       {other_q, other_rank_q} <= {corners_q, rank_q};
       corners_q <= line_i.line[ray_core_pkg::TriangleCorners+:CornersWidth];
       rank_q    <= line_i.rank;
