@@ -75,7 +75,7 @@ module sdram_controller #(
 
   state_e state_q;
   logic [WaitWidth-1:0] wait_q, refresh_q;
-  logic go, refresh_due_q, writing_q, last_word, read_fire, write_fire;
+  logic go, word_goes, refresh_due_q, writing_q, last_word, read_fire, write_fire;
   logic [2:0] command, reading_q;  // reading_q: clocks since a read left
   logic [4:0] word_q;
   logic [5:0] left_q;  // words of a line that are to come
@@ -85,6 +85,7 @@ module sdram_controller #(
   logic [LineWidth-1:0] data_q;
 
   assign go            = wait_q == '0;
+  assign word_goes     = go & (state_q == StateWords);  // a read's or a write's command
   assign last_word     = word_q == 5'(Words - 1);
   assign write_ready_o = go & (state_q == StateIdle) & ~refresh_due_q;
   assign read_ready_o  = write_ready_o & ~write_valid_i & ~line_valid_o & (left_q == '0);
@@ -120,7 +121,7 @@ module sdram_controller #(
       {sdram_ras_no, sdram_cas_no, sdram_we_no} <= CommandNone;
     end else begin
       {sdram_ras_no, sdram_cas_no, sdram_we_no} <= command;
-      sdram_drive_o <= command == CommandWrite;
+      sdram_drive_o <= word_goes & writing_q;
       refresh_q     <= (refresh_q == '0) ? WaitWidth'(Refresh) : refresh_q - 1'b1;
       refresh_due_q <= (refresh_q == '0) | (refresh_due_q & (command != CommandRefresh));
       case (command)
@@ -153,7 +154,7 @@ module sdram_controller #(
       columns_q    <= number[3:0];
       sdram_bank_o <= number[5:4];
       data_q       <= write_data_i;
-    end else if (command == CommandRead || command == CommandWrite) begin
+    end else if (word_goes) begin
       word_q <= word_q + 1'b1;
       data_q <= data_q >> 16;
     end
@@ -174,7 +175,7 @@ module sdram_controller #(
       left_q       <= '0;
       line_valid_o <= 1'b0;
     end else begin
-      reading_q    <= {reading_q[1:0], command == CommandRead};
+      reading_q    <= {reading_q[1:0], word_goes & ~writing_q};
       left_q       <= read_fire ? 6'(Words) : left_q - 6'(reading_q[2]);
       line_valid_o <= (reading_q[2] & (left_q == 6'd1)) | (line_valid_o & ~line_ready_i);
     end
