@@ -23,7 +23,7 @@ namespace {
 
 using Ref = BinaryBvh::Ref;
 
-constexpr std::uint32_t kTaskSize = 4096;  // primitives below a node that is one thread's work
+constexpr std::uint32_t kTreeTask = 4096;  // primitives below a node that is one thread's work
 constexpr float kNodeCost = 1.0f;
 /// Of a leaf of 1 to 4 triangles, which are tested at once.
 constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.95f, 1.0f, 1.05f, 1.1f};
@@ -160,7 +160,7 @@ class BvhWriter {
   }
 
   void collect_tasks(Ref ref, std::vector<Ref>& large, std::vector<Ref>& tasks) const {
-    if (tree_.count(ref) <= kTaskSize) {
+    if (tree_.count(ref) <= kTreeTask) {
       tasks.push_back(ref);
       return;
     }
@@ -237,7 +237,7 @@ class BvhWriter {
     for (int i = 0; i < count; ++i) {
       put_child(nodes[index], i, children[i]);
       if (is_leaf(children[i])) continue;
-      if (tasks != nullptr && tree_.count(children[i]) <= kTaskSize) {
+      if (tasks != nullptr && tree_.count(children[i]) <= kTreeTask) {
         tasks->push_back({children[i], index, i, {}, 0});
         continue;
       }

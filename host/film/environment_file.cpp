@@ -18,8 +18,6 @@
 namespace raygate {
 namespace {
 
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
-
 using Rgbe = std::array<std::uint8_t, 4>;
 
 /// Reads one file from its beginning to its end.

@@ -85,8 +85,6 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
   return header;
 }
 
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
-
 std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
 
 /// "R, G, B, Z".

@@ -18,6 +18,9 @@ namespace raygate {
 /// The primitive or object of a pixel whose ray hits nothing.
 inline constexpr std::uint32_t kNoPrimitive = std::numeric_limits<std::uint32_t>::max();
 
+/// The most pixels of one picture, read or rendered: its film and encodings stay below about 5 GB.
+inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
+
 /// Pixels [x0, x1) x [y0, y1) of a larger picture, row 0 at the top.
 struct PixelRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -5,7 +5,7 @@ namespace raygate {
 namespace {
 
 // Streams of random numbers.
-constexpr std::uint32_t kMirror = 1, kTransmission = 2, kFacet = 3, kCoat = 4, kFirstAreaLight = 16,
+constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kCoat = 4, kFirstAreaLight = 16,
                         kFirstPointLight = 1u << 16;
 constexpr float kNarrow = 0.25f;  // alpha: what wider facets reflect counts as ambient light
 
@@ -117,7 +117,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   if (has_rough_facets(hits)) {
     // By chance, as the facets lie (Cook, Porter and Carpenter 1984), of the coat or under it.
     const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-    const SquarePoint<T> u = hits.random(kFacet);
+    const SquarePoint<T> u = hits.random(kRoughFacet);
     const auto cosine_at = [&](const Triple<T>& at) RAYGATE_BODY {
       return at_most(at_least(dot(surface.view, at), 0.0f), 1.0f);
     };

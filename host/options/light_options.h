@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "host/film/film.h"
 #include "host/light/integrator_options.h"
 #include "host/options/option_table.h"
 #include "host/render/render_options.h"
@@ -18,8 +19,6 @@ inline constexpr Range<int> kThreadRange{1, 1024}, kSideRange{1, 65536};
 inline constexpr Range<double> kFovRange{0x1p-1022, 180.0 - 0x1p-45,
                                          "degrees above 0 and below 180"},
     kSmoothRange{0.0, 180.0, "degrees from 0 to 180"};
-/// The most pixels in one run: the film and its encodings then stay below about 5 GB.
-inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 
 /// Adds to a table what sets `options`: integrator, samples, filter, depth and the like.
 void add_light_options(OptionTable& table, RenderOptions& options);

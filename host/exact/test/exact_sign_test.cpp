@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <random>
 
+#include "host/exact/test/rational_oracle.h"
+
 namespace raygate {
 namespace {
 
-int sign_of(__int128 x) { return (x > 0) - (x < 0); }
+using test::sign_of;
 
 // Points of a coarse grid, moved by tiny amounts: many exactly or nearly in line. Coordinates are
 // multiples of 2^-30 below 2^3, so that __int128 holds the determinant.

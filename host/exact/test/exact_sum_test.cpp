@@ -5,11 +5,12 @@
 #include <random>
 
 #include "host/exact/expansion.h"
+#include "host/exact/test/rational_oracle.h"
 
 namespace raygate {
 namespace {
 
-int sign_of(__int128 x) { return (x > 0) - (x < 0); }
+using test::sign_of;
 
 TEST(ExactSum, KeepsWhatADoubleLoses) {
   ExactSum sum;

@@ -17,6 +17,11 @@
 
 namespace raygate::test {
 
+/// I . E as the unit rounds it.
+inline float float_dot(const glm::vec3& i, const glm::vec3& e) {
+  return (i.x * e.x + i.y * e.y) + i.z * e.z;
+}
+
 /// A generator whose seed is on record: RAYGATE_SEED, or 1.
 class Random {
  public:

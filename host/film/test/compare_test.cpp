@@ -16,7 +16,7 @@
 namespace raygate {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 const std::vector<std::string> kColors{"R", "G", "B"};
 
 ChannelPicture picture_of(int width, int height, std::vector<std::vector<double>> channels) {
@@ -45,27 +45,27 @@ TEST(Compare, MeasuresAreAsDefined) {
 }
 
 TEST(Compare, EqualPicturesAreEqual) {
-  const ChannelPicture a = picture_of(2, 1, {{NAN, kInfinity}, {-kInfinity, 1e300}, {0.0, -0.0}});
+  const ChannelPicture a = picture_of(2, 1, {{NAN, kInfinite}, {-kInfinite, 1e300}, {0.0, -0.0}});
   const Comparison c = compare(a, a);
   EXPECT_EQ(c.differing, 0u);
   EXPECT_EQ(c.not_finite, 0u);
   EXPECT_EQ(c.mse, 0.0);
   EXPECT_EQ(c.max, 0.0);
-  EXPECT_EQ(c.psnr, kInfinity);
+  EXPECT_EQ(c.psnr, kInfinite);
 }
 
 TEST(Compare, WhatIsNotFiniteInOneAloneIsInfinitelyWrong) {
-  for (const double odd : {static_cast<double>(NAN), kInfinity, -kInfinity}) {
+  for (const double odd : {static_cast<double>(NAN), kInfinite, -kInfinite}) {
     const ChannelPicture a = picture_of(3, 1, {{0.0, odd, 1.0}});
     const ChannelPicture b = picture_of(3, 1, {{0.0, 0.5, 0.5}});
     for (const Comparison& c : {compare(a, b), compare(b, a)}) {
       EXPECT_EQ(c.differing, 2u);
       EXPECT_EQ(c.not_finite, 1u);
-      EXPECT_EQ(c.mse, kInfinity);
-      EXPECT_EQ(c.rmse, kInfinity);
-      EXPECT_EQ(c.max, kInfinity);
-      EXPECT_EQ(c.psnr, -kInfinity);
-      EXPECT_EQ(c.difference[1], kInfinity);
+      EXPECT_EQ(c.mse, kInfinite);
+      EXPECT_EQ(c.rmse, kInfinite);
+      EXPECT_EQ(c.max, kInfinite);
+      EXPECT_EQ(c.psnr, -kInfinite);
+      EXPECT_EQ(c.difference[1], kInfinite);
       EXPECT_EQ(c.difference[2], 0.5);
     }
   }

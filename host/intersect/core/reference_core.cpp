@@ -109,12 +109,12 @@ class DoubtResolver {
 };
 
 /// Inner nodes of a group that wait.
-struct StackEntry {
+struct OpenGroup {
   BoxGroup group;
   int next = 0;  // entry
 };
 
-int depth_of(const std::vector<StackEntry>& stack) { return static_cast<int>(stack.size()); }
+int depth_of(const std::vector<OpenGroup>& stack) { return static_cast<int>(stack.size()); }
 
 }  // namespace
 
@@ -172,7 +172,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     }
   };
 
-  std::vector<StackEntry> stack;
+  std::vector<OpenGroup> stack;
   std::uint32_t line = MemoryImage::kRoot;
   std::size_t entered = 0;
   bool shared = false;  // has groups that rays share, see traversal.sv
@@ -194,7 +194,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.no_cull};
     const BoxGroup group = enter_boxes(NodeLine(lines[line]), box_ray);
     // Leaves first, then what is inside: as the core does.
-    StackEntry inside{group};
+    OpenGroup inside{group};
     inside.group.size = 0;
     for (int n = 0; n < group.size; ++n) {
       const BoxGroup::Entry& entry = group.entry[static_cast<std::size_t>(n)];
@@ -209,7 +209,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
       }
     }
     if (inside.group.size != 0) stack.push_back(inside);
-    const auto is_done = [&](const StackEntry& top) {
+    const auto is_done = [&](const OpenGroup& top) {
       return is_beyond(top.group, top.group.entry[static_cast<std::size_t>(top.next)],
                        nearest.limit());
     };
@@ -223,7 +223,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
       end.error = CoreResult::Error::kCycle;
       break;
     }
-    StackEntry& top = stack.back();
+    OpenGroup& top = stack.back();
     line = top.group.base + top.group.entry[static_cast<std::size_t>(top.next++)].offset;
     // A group that has given its last node makes room.
     if (top.next == top.group.size) stack.pop_back();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "host/exact/binary32.h"
+#include "host/intersect/point_error.h"
 
 namespace raygate {
 namespace {
@@ -40,11 +41,6 @@ CrossProduct cross_product(const glm::vec3& a, const glm::vec3& b) {
 }
 
 float sum(const glm::vec3& v) { return Binary32::add(Binary32::add(v.x, v.y), v.z); }
-
-int largest_field(const glm::vec3& v) {
-  return std::max({Binary32::exponent_field(v.x), Binary32::exponent_field(v.y),
-                   Binary32::exponent_field(v.z)});
-}
 
 bool is_in_range(int field) { return field >= kLeastField && field < 255; }
 

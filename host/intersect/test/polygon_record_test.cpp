@@ -10,11 +10,8 @@
 namespace raygate {
 namespace {
 
+using test::float_dot;
 using test::Random;
-
-float float_dot(const glm::vec3& i, const glm::vec3& e) {
-  return (i.x * e.x + i.y * e.y) + i.z * e.z;
-}
 
 TEST(PolygonRecord, IsWhatThePaperSays) {
   const PolygonRecord record =

@@ -15,13 +15,14 @@ namespace raygate {
 namespace {
 
 using test::seen;
+using test::triple;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // The formulas in angles (Born and Wolf 1.5.2): sines and tangents, not the cosines of the code.
 TEST(Fresnel, IsTheFormulaInAngles) {
   for (const double eta : {1.5, 1.0 / 1.5, 1.33, 2.4, 1.0 / 2.4}) {
-    for (double angle = 0.01; angle < kPi / 2; angle += 0.01) {
+    for (double angle = 0.01; angle < pi / 2; angle += 0.01) {
       const double sine = std::sin(angle) / eta;
       const float reflectance = fresnel_reflectance(float(std::cos(angle)), float(eta));
       if (std::abs(sine - 1.0) < 1e-6) continue;  // the border of total reflection
@@ -44,14 +45,13 @@ TEST(Fresnel, IsTheFormulaInAngles) {
               0.5 * std::pow(std::sin(brewster - beyond) / std::sin(brewster + beyond), 2), 1e-6);
 }
 
-Triple<float> triple(const glm::dvec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
 glm::dvec3 vector(const Triple<float>& v) { return {v.x, v.y, v.z}; }
 
 TEST(Fresnel, RefractionIsSnellsLaw) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, -0.5));
   const glm::dvec3 tangent = glm::normalize(glm::cross(normal, glm::dvec3(0, 0, 1)));
   for (const double eta : {1.5, 1.0 / 1.5, 1.0}) {
-    for (double angle = 0.0; angle < kPi / 2; angle += 0.05) {
+    for (double angle = 0.0; angle < pi / 2; angle += 0.05) {
       const glm::dvec3 in = std::sin(angle) * tangent - std::cos(angle) * normal;
       const Refraction<float> refraction(triple(-in), triple(normal), float(eta));
       ASSERT_EQ(refraction.exists, std::sin(angle) < eta) << eta << " " << angle;
@@ -95,10 +95,10 @@ TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
         if (way.z > 0.0f) sampled += bsdf.eval(way).x * way.z / bsdf.pdf(way);
         const SquarePoint<float> u = sampler(i, 1);
         const double sine = std::sqrt(1.0 - double(u.x) * u.x);
-        const Triple<float> uniform = {float(sine * std::cos(2 * kPi * u.y)),
-                                       float(sine * std::sin(2 * kPi * u.y)), u.x};
-        integral += bsdf.eval(uniform).x * uniform.z * 2 * kPi;
-        pdf += bsdf.pdf(uniform) * 2 * kPi;
+        const Triple<float> uniform = {float(sine * std::cos(2 * pi * u.y)),
+                                       float(sine * std::sin(2 * pi * u.y)), u.x};
+        integral += bsdf.eval(uniform).x * uniform.z * 2 * pi;
+        pdf += bsdf.pdf(uniform) * 2 * pi;
       }
       EXPECT_NEAR(sampled / kCount, integral / kCount, 2e-3);
       EXPECT_NEAR(pdf / kCount, above / kCount, 5e-3);
@@ -116,7 +116,7 @@ TEST(Bsdf, NarrowLobesKeepTheirShape) {
     for (const double angle : {0.0, 1e-4, 3e-4, 1e-3}) {
       const double away = 0.6 + angle;
       const Triple<float> light = triple({-std::sin(away), 0.0, std::cos(away)});
-      const double expected = (exponent + 2) / (2 * kPi) * std::pow(std::cos(angle), exponent);
+      const double expected = (exponent + 2) / (2 * pi) * std::pow(std::cos(angle), exponent);
       EXPECT_NEAR(bsdf.eval(light).x, expected, 2e-2 * expected + 1e-30) << angle;
     }
     for (int i = 0; i < 1000; ++i) {

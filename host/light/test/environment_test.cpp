@@ -8,13 +8,14 @@
 #include <random>
 
 #include "host/light/test/light_scenes.h"
+#include "host/light/test/seen.h"
 
 namespace raygate {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Dim noise, a sun of one texel, a black part.
 EnvironmentMap noisy(int width, int height) {
@@ -37,23 +38,21 @@ template <class F>
 void for_all_directions(const F& f) {
   constexpr int kRows = 500, kColumns = 1000;
   for (int i = 0; i < kRows; ++i) {
-    const double angle = kPi * (i + 0.5) / kRows, sine = std::sin(angle);
+    const double angle = pi * (i + 0.5) / kRows, sine = std::sin(angle);
     for (int k = 0; k < kColumns; ++k) {
-      const double turn = 2 * kPi * (k + 0.5) / kColumns;
+      const double turn = 2 * pi * (k + 0.5) / kColumns;
       const glm::dvec3 way(sine * std::sin(turn), std::cos(angle), -sine * std::cos(turn));
-      f(way, 2 * kPi * kPi * sine / (double(kRows) * kColumns));
+      f(way, 2 * pi * pi * sine / (double(kRows) * kColumns));
     }
   }
 }
-
-Triple<float> triple(const glm::dvec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 TEST(Environment, ShowsItsTexelsWhereTheyAre) {
   const EnvironmentMap map = noisy(16, 8);
   const Environment environment(map);
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 16; ++x) {
-      const double turn = 2 * kPi * ((x + 0.5) / 16 - 0.5), angle = kPi * (y + 0.5) / 8;
+      const double turn = 2 * pi * ((x + 0.5) / 16 - 0.5), angle = pi * (y + 0.5) / 8;
       const glm::dvec3 way(std::sin(angle) * std::sin(turn), std::cos(angle),
                            -std::sin(angle) * std::cos(turn));
       const Triple<float> seen = environment.radiance(triple(way));
@@ -84,7 +83,7 @@ TEST(Environment, DensityIsOneInAllAndNowhereFarFromTheBrightness) {
       }
     });
     EXPECT_NEAR(pdf, 1.0, 2e-3) << width;
-    const glm::dvec3 mean = environment.mean_radiance() * (4 * kPi);
+    const glm::dvec3 mean = environment.mean_radiance() * (4 * pi);
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(radiance[k], mean[k], (width < 16 ? 0.05 : 0.02) * mean[k]) << width;
   }
@@ -115,7 +114,7 @@ TEST(Environment, SamplesHaveTheDensityThatIsClaimed) {
   });
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(sampled[k], integral[k], 5e-3);
   const glm::dvec3 mean = environment.mean_radiance();
-  EXPECT_LE(ideal, 4.01 * 4 * kPi * (mean.x + mean.y + mean.z) / 3);
+  EXPECT_LE(ideal, 4.01 * 4 * pi * (mean.x + mean.y + mean.z) / 3);
 }
 
 /// A floor whose normal is +y under an environment, as a path tracer sees it.
@@ -135,7 +134,7 @@ TEST(Environment, LightsAFloorAsItsIntegralSays) {
     const Environment environment(map);
     double integral = 0.0;
     for_all_directions([&](const glm::dvec3& way, double size) {
-      integral += environment.radiance(triple(way)).x * std::max(0.0, way.y) * size / kPi;
+      integral += environment.radiance(triple(way)).x * std::max(0.0, way.y) * size / pi;
     });
     EXPECT_NEAR(floor_under(map, matte(glm::vec3(1.0f)), 4096), integral, 0.01 * integral);
     Material rough = matte(glm::vec3(1.0f));

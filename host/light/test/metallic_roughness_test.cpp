@@ -15,7 +15,7 @@ namespace {
 
 using test::seen;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 const Triple<float> kUp = {0.0f, 0.0f, 1.0f};
 
 Triple<float> at_angles(double angle, double turn) {
@@ -53,9 +53,9 @@ Balance balance(const Bsdf<float>& bsdf) {
       sum.chosen += 1.0 / kCount;
     }
     const SquarePoint<float> u = sampler(i, 3);
-    const Triple<float> fixed = at_angles(std::acos(2 * u.x - 1), 2 * kPi * u.y);
-    sum.integral += bsdf.eval(fixed).x * std::abs(fixed.z) * 4 * kPi / kCount;
-    sum.density += bsdf.pdf(fixed) * 4 * kPi / kCount;
+    const Triple<float> fixed = at_angles(std::acos(2 * u.x - 1), 2 * pi * u.y);
+    sum.integral += bsdf.eval(fixed).x * std::abs(fixed.z) * 4 * pi / kCount;
+    sum.density += bsdf.pdf(fixed) * 4 * pi / kCount;
   }
   return sum;
 }
@@ -72,7 +72,7 @@ TEST(Ggx, FacetsAddUpToTheSurface) {
       const double angle = std::atan(tangent), slope = alpha / ((1 - t) * (1 - t));
       const Triple<float> normal = at_angles(angle, 1.0);
       const double height = ggx.pair(normal, normal).d;
-      sum += height * std::cos(angle) * std::sin(angle) * 2 * kPi * slope /
+      sum += height * std::cos(angle) * std::sin(angle) * 2 * pi * slope /
              (1 + tangent * tangent) / kSteps;
     }
     EXPECT_NEAR(sum, 1.0, 1e-4) << alpha;
@@ -97,8 +97,8 @@ TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
         };
         add(sampled, reflect(view, ggx.sample(view, sampler(i, 0))), 1.0);
         const SquarePoint<float> u = sampler(i, 1);
-        const Triple<float> way = at_angles(std::acos(u.x), 2 * kPi * u.y);
-        add(integral, way, 2 * kPi * ggx.reflection_pdf(view.z, ggx.pair(view, way).d));
+        const Triple<float> way = at_angles(std::acos(u.x), 2 * pi * u.y);
+        add(integral, way, 2 * pi * ggx.reflection_pdf(view.z, ggx.pair(view, way).d));
       }
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(sampled[k] / kCount, integral[k] / kCount, 6e-3) << alpha << " " << angle;
@@ -259,7 +259,7 @@ double walter(const glm::dvec3& in, const glm::dvec3& out, double alpha, double 
   const double ih = glm::dot(in, half), oh = glm::dot(out, half);
   if (ih <= 0.0 || oh >= 0.0) return 0.0;
   const double squared = (half.z * half.z) * (alpha * alpha - 1.0) + 1.0;
-  const double height = alpha * alpha / (kPi * squared * squared);
+  const double height = alpha * alpha / (pi * squared * squared);
   const auto masking = [&](double z) {
     const double tangent2 = (1.0 - z * z) / (z * z);
     return 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tangent2));
@@ -282,7 +282,7 @@ TEST(MetallicRoughnessLobes, RoughGlassIsThatOfWalterAndOthers) {
         int count = 0;
         for (int i = 0; i < 400; ++i) {
           const SquarePoint<float> u = Sampler(1, 2, 4)(i, 0);
-          const Triple<float> way = at_angles(std::acos(-0.01 - 0.99 * u.x), 2 * kPi * u.y);
+          const Triple<float> way = at_angles(std::acos(-0.01 - 0.99 * u.x), 2 * pi * u.y);
           const double expected = walter(in, {way.x, way.y, way.z}, 0.36, lobes.eta) / -way.z;
           const Triple<float> value = bsdf.eval(way);
           ASSERT_NEAR(value.y, 0.5 * lobes.glass_gain * expected, 2e-4 * expected + 1e-6);
@@ -309,10 +309,10 @@ TEST(FacetAlbedo, IsTheIntegralOfTheLobe) {
         for (int k = 0; k < kSteps; ++k) {
           // Denser around what a mirror shows, at (angle, pi): by cubes.
           const double t = 2 * (i + 0.5) / kSteps - 1, u = (k + 0.5) / kSteps;
-          const double reach = t < 0 ? angle : kPi / 2 - angle;
-          const double theta = angle + reach * t * t * t, turn = kPi * (1 - u * u * u);
+          const double reach = t < 0 ? angle : pi / 2 - angle;
+          const double theta = angle + reach * t * t * t, turn = pi * (1 - u * u * u);
           const double area =
-              3 * t * t * reach * 2.0 / kSteps * 3 * u * u * kPi * 2.0 / kSteps * std::sin(theta);
+              3 * t * t * reach * 2.0 / kSteps * 3 * u * u * pi * 2.0 / kSteps * std::sin(theta);
           const Triple<float> light = at_angles(theta, turn);
           const auto pair = ggx.pair(view, light);
           const double value = double(pair.d) * ggx.visibility(view.z, light.z) * light.z * area;

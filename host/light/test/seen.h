@@ -9,6 +9,8 @@
 
 namespace raygate::test {
 
+inline Triple<float> triple(const glm::dvec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
 /// A triangle of this material seen at an angle to +z, where its outside is, or its inside.
 inline Bsdf<float> seen(const Material& material, double angle, bool outside = true) {
   Scene scene = scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}});

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Film caustics_of(const Scene& scene, const Camera& camera, RenderOptions options) {
   RenderStats stats;
@@ -45,17 +45,17 @@ Scene slab() {
   return scene;
 }
 Camera above_floor() {
-  return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / kPi * std::atan(0.25));
+  return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / pi * std::atan(0.25));
 }
 
 // Every reflection inside the slab sends a little more through.
 TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
   for (const double degrees : {0.0, 5.0}) {
-    const double angle = degrees * kPi / 180.0, bent = std::asin(std::sin(angle) / 1.5);
+    const double angle = degrees * pi / 180.0, bent = std::asin(std::sin(angle) / 1.5);
     Scene scene = slab();
     scene.directional_lights.push_back({{std::sin(angle), -std::cos(angle), 0.0}, glm::vec3(3.0f)});
     const double r = reflectance(angle, bent);
-    const double expected = 3.0 * std::cos(angle) * (1.0 - r) / (1.0 + r) * 0.1 / kPi;
+    const double expected = 3.0 * std::cos(angle) * (1.0 - r) / (1.0 + r) * 0.1 / pi;
     const double found = mean_colour(caustics_of(scene, above_floor(), options_of(16, 1024))).x;
     EXPECT_NEAR(found, expected, 0.01 * expected) << degrees;
     EXPECT_EQ(mean_colour(caustics_of(scene, above_floor(), options_of(16, 4, Caustics::kOff))).x,
@@ -90,7 +90,7 @@ TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
       expected +=
-          irradiance(std::hypot((x + 0.5) / 32 - 0.5, (y + 0.5) / 32 - 0.5)) / 1024 * 0.1 / kPi;
+          irradiance(std::hypot((x + 0.5) / 32 - 0.5, (y + 0.5) / 32 - 0.5)) / 1024 * 0.1 / pi;
     }
   }
   RenderOptions options = options_of(16, 8192);

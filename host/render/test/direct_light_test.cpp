@@ -12,15 +12,15 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-constexpr double kPi = std::numbers::pi;
-constexpr auto kWhitted = IntegratorKind::kWhitted, kPath = IntegratorKind::kPath;
+using std::numbers::pi;
+using enum IntegratorKind;
 
 TEST(DirectLight, PointLightFallsOffWithTheSquare) {
   for (const glm::dvec3& at : {glm::dvec3(0, 2, 0), glm::dvec3(1, 2, -3), glm::dvec3(40, 9, 0)}) {
     Scene scene;
     scene.lights.push_back({glm::vec3(at), glm::vec3(5.0f)});
     const double squared = glm::dot(at, at), cosine = at.y / std::sqrt(squared);
-    const double expected = 5.0 * cosine / squared / kPi;
+    const double expected = 5.0 * cosine / squared / pi;
     EXPECT_NEAR(floor_radiance(scene, kWhitted, 1), expected, 1e-5 * expected);
     EXPECT_NEAR(floor_radiance(scene, kPath, 1), expected, 1e-5 * expected);
   }
@@ -31,7 +31,7 @@ TEST(DirectLight, ADirectionalLightFallsOffWithTheCosineAlone) {
        {glm::dvec3(0, -1, 0), glm::dvec3(1, -0.3, 2), glm::dvec3(1, 1, 0)}) {
     Scene scene;
     scene.directional_lights.push_back({glm::normalize(way), glm::vec3(3.0f)});
-    const double expected = 3.0 * std::max(0.0, -glm::normalize(way).y) / kPi;
+    const double expected = 3.0 * std::max(0.0, -glm::normalize(way).y) / pi;
     EXPECT_NEAR(floor_radiance(scene, kWhitted, 1), expected, 1e-6);
     EXPECT_NEAR(floor_radiance(scene, kPath, 1), expected, 1e-6);
   }
@@ -40,7 +40,7 @@ TEST(DirectLight, ADirectionalLightFallsOffWithTheCosineAlone) {
 // KHR_lights_punctual: the square of a ramp of the cosine.
 TEST(DirectLight, ASpotLightFadesBetweenItsAngles) {
   const auto seen = [](double degrees, IntegratorKind integrator) {
-    const double angle = degrees * kPi / 180.0;
+    const double angle = degrees * pi / 180.0;
     Scene scene;
     PointLight& light = scene.lights.emplace_back();
     light.position = {0, 2, 0};
@@ -49,11 +49,11 @@ TEST(DirectLight, ASpotLightFadesBetweenItsAngles) {
     return floor_radiance(scene, integrator, 1);
   };
   for (const IntegratorKind integrator : {kWhitted, kPath}) {
-    const double full = 5.0 / 4.0 / kPi;
+    const double full = 5.0 / 4.0 / pi;
     EXPECT_NEAR(seen(0.0, integrator), full, 1e-6);
     EXPECT_NEAR(seen(19.9, integrator), full, 1e-6);
-    const double inner = std::cos(kPi / 9), outer = std::cos(kPi / 4.5);
-    const double ramp = (std::cos(kPi / 6) - outer) / (inner - outer);
+    const double inner = std::cos(pi / 9), outer = std::cos(pi / 4.5);
+    const double ramp = (std::cos(pi / 6) - outer) / (inner - outer);
     EXPECT_NEAR(seen(30.0, integrator), full * ramp * ramp, 1e-5);
     EXPECT_EQ(seen(40.1, integrator), 0.0f);
     EXPECT_EQ(seen(180.0, integrator), 0.0f);
@@ -117,7 +117,7 @@ TEST(DirectLight, ALightBeforeASkyAddsUp) {
     RenderOptions options = light(kPath, 1, 1, 1 << 14);
     options.max_depth = 0;
     // The form factor of a square of side 1 at distance 1, of four quarters.
-    const double x = 0.5, r = std::sqrt(1 + x * x), form = 4 * x / r * std::atan(x / r) / kPi;
+    const double x = 0.5, r = std::sqrt(1 + x * x), form = 4 * x / r * std::atan(x / r) / pi;
     const double expected = radiance * form + (1.0 - form);
     for (const bool limits_mis_weight : {false, true}) {
       options.path.limits_mis_weight = limits_mis_weight;
@@ -134,7 +134,7 @@ TEST(DirectLight, RectangularLightHasItsFormFactor) {
       emitter(glm::vec3(3.0f)));
   const double x = a / height, y = b / height;
   const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
-  const double form = (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
+  const double form = (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * pi);
   EXPECT_NEAR(floor_radiance(scene, kWhitted, 4096), 3.0 * form, 3e-4 * form);
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 3.0 * form, 3e-3 * form);
 }
@@ -267,7 +267,7 @@ TEST(DirectLight, DiscLightHasItsFormFactor) {
   std::vector<Corners> disc;
   constexpr int kParts = 512;
   const auto rim = [](int i) {
-    const double angle = 2 * kPi * i / kParts;
+    const double angle = 2 * pi * i / kParts;
     return glm::vec3(0.7 * std::cos(angle), 1.1, 0.7 * std::sin(angle));
   };
   for (int i = 0; i < kParts; ++i) disc.push_back({glm::vec3(0, 1.1f, 0), rim(i), rim(i + 1)});

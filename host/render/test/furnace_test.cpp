@@ -8,7 +8,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-constexpr auto kWhitted = IntegratorKind::kWhitted, kPath = IntegratorKind::kPath;
+using enum IntegratorKind;
 
 // White things in a white world cannot be seen: what absorbs nothing sends on all that arrives.
 TEST(Furnace, WhiteThingsInAWhiteWorld) {

@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-constexpr double kPi = std::numbers::pi;
-constexpr auto kWhitted = IntegratorKind::kWhitted, kPath = IntegratorKind::kPath;
+using std::numbers::pi;
+using enum IntegratorKind;
 
 // What a mirror shows is what a camera behind it sees, mirrored: the scene without the mirror.
 TEST(MirrorGlass, AMirrorShowsTheMirroredScene) {
@@ -135,7 +135,7 @@ TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
     Scene by_point = scene, by_area = scene;
     by_point.lights.push_back({{0, 2, 0}, {1, 1, 1}});
     add(by_area, rectangle({-0.1f, 2, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}), emitter(glm::vec3(9)));
-    const double share = std::pow(0.5, panes), point = 1.0 / 4.0 / kPi;
+    const double share = std::pow(0.5, panes), point = 1.0 / 4.0 / pi;
     EXPECT_NEAR(floor_radiance(by_point, kWhitted, 1), share * point, 1e-6);
     EXPECT_NEAR(floor_radiance(by_point, kPath, 1), share * point, 1e-6);
     const float whitted = floor_radiance(by_area, kWhitted, 256);

@@ -10,6 +10,7 @@
 namespace raygate {
 namespace {
 
+using test::float_dot;
 using test::Random;
 
 /// A triangle and an origin: of any shape, or a sliver, far away, or with an origin near its plane.
@@ -42,10 +43,6 @@ Ray aimed(Random& random, const View& view) {
   const auto off = glm::dvec3(random.point()) * std::ldexp(largest(aim), -random.below(26));
   const glm::vec3 direction = scaled_direction(aim + off);
   return {view.origin, direction};
-}
-
-float float_dot(const glm::vec3& i, const glm::vec3& e) {
-  return (i.x * e.x + i.y * e.y) + i.z * e.z;
 }
 
 TEST(SetUp, IsWhatThePaperSays) {
