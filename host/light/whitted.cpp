@@ -5,8 +5,8 @@ namespace raygate {
 namespace {
 
 // Streams of random numbers.
-constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kCoat = 4, kFirstAreaLight = 16,
-                        kFirstPointLight = 1u << 16;
+constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kCoat = 4,
+                        kFirstAreaLight = 16, kFirstPointLight = 1u << 16;
 constexpr float kNarrow = 0.25f;  // alpha: what wider facets reflect counts as ambient light
 
 /// Whether rays are sent for what rough facets reflect.

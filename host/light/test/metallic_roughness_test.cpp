@@ -72,8 +72,8 @@ TEST(Ggx, FacetsAddUpToTheSurface) {
       const double angle = std::atan(tangent), slope = alpha / ((1 - t) * (1 - t));
       const Triple<float> normal = at_angles(angle, 1.0);
       const double height = ggx.pair(normal, normal).d;
-      sum += height * std::cos(angle) * std::sin(angle) * 2 * pi * slope /
-             (1 + tangent * tangent) / kSteps;
+      sum += height * std::cos(angle) * std::sin(angle) * 2 * pi * slope / (1 + tangent * tangent) /
+             kSteps;
     }
     EXPECT_NEAR(sum, 1.0, 1e-4) << alpha;
   }

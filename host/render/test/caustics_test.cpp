@@ -44,9 +44,7 @@ Scene slab() {
   add(scene, box({-1.5f, kHigh - kThick, -1.5f}, {1.5f, kHigh, 1.5f}), glass(1.5f));
   return scene;
 }
-Camera above_floor() {
-  return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / pi * std::atan(0.25));
-}
+Camera above_floor() { return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / pi * std::atan(0.25)); }
 
 // Every reflection inside the slab sends a little more through.
 TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
