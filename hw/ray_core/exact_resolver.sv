@@ -102,19 +102,21 @@ module exact_resolver #(
     else here_q <= here_q + CountWidth'(test_i) - CountWidth'(freed) - CountWidth'(pop);
   end
 
-  // ---- Of each ray: how many doubts it has, its candidate, and whether a question of it is open
+  // ---- Of each ray: whether doubts of it wait, its candidate, and whether a question of it is open
 
-  logic [CountWidth-1:0] counts[Rays];
+  // Doubts are numbered as they come and go in the same order, so a ray has no others when its last one has gone.
+  logic [CountWidth-1:0] pushed_q, popped_q;  // how many
+  logic [CountWidth-1:0] lasts[Rays];  // the number of its last doubt
   logic [AddressWidth-1:0] candidates[Rays];  // lines
   logic [Rays-1:0] doubtful_q, candidate_q, open_q, ready_q;
   logic [RayWidth-1:0] ready_ctx, next_ctx, ctx_q;
-  logic settle, begin_any, done, doubt_done, same, keep, drop;
+  logic settle, begin_any, done, doubt_done, is_last, keep, drop;
   logic settling_q, is_hit_q;  // what is asked; of the doubt that it is surely hit
   logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
 
-  assign busy_o = doubtful_q | candidate_q;
-  assign ctx_o  = ctx_q;
-  assign same   = push & doubt_done & (open_ctx_i == ctx_q);
+  assign busy_o  = doubtful_q | open_q | candidate_q;
+  assign ctx_o   = ctx_q;
+  assign is_last = (state_q == StateLook) & ~settling_q & (lasts[ctx_q] == popped_q);
 
   rr_arbiter #(
     .Width(Rays)
@@ -127,12 +129,16 @@ module exact_resolver #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      pushed_q    <= '0;
+      popped_q    <= '0;
       doubtful_q  <= '0;
       candidate_q <= '0;
       open_q      <= '0;
       ready_q     <= '0;
     end else begin
-      if (doubt_done && !same && counts[ctx_q] == CountWidth'(1)) doubtful_q[ctx_q] <= 1'b0;
+      pushed_q <= pushed_q + CountWidth'(push);
+      popped_q <= popped_q + CountWidth'(pop);
+      if (is_last) doubtful_q[ctx_q] <= 1'b0;
       if (push) doubtful_q[open_ctx_i] <= 1'b1;
       if (keep) candidate_q[ctx_q] <= 1'b1;
       if (drop) candidate_q[ctx_q] <= 1'b0;
@@ -142,9 +148,7 @@ module exact_resolver #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (load_i) counts[load_ctx_i] <= '0;
-    if (push && !same) counts[open_ctx_i] <= counts[open_ctx_i] + 1'b1;
-    if (doubt_done && !same) counts[ctx_q] <= counts[ctx_q] - 1'b1;
+    if (push) lasts[open_ctx_i] <= pushed_q + 1'b1;
     if (keep) candidates[ctx_q] <= line_q;
   end
 
