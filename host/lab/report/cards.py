@@ -4,7 +4,7 @@ from host.lab.report.document import inlined, number
 from host.lab.rows import ROOT
 
 # Lines: name, value of a frame (targets/bench.py), format.
-FIGURES = (("area, OSU 0.35 um units", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
+FIGURES = (("area, um2 in OSU 0.35 um", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
            ("period with estimated wires, ns", "wired_ns", ".2f"),
            ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"), ("uJ a frame, cores", "energy_uj", ".3g"),
            ("wrong tests a million", "wrong", ".1f"), ("doubts a million", "doubtful", ".1f"),

@@ -23,7 +23,7 @@ from host.lab.steps import LAB, Step
 
 # The axes of the Pareto plots: key of a frame, label.
 COSTS = {"clocks": "clocks per frame", "frame_ms": "ms per frame at the clock of synthesis",
-         "area": "area, OSU 0.35 um units", "area_time": "area x ms per frame",
+         "area": "area, um2 in OSU 0.35 um", "area_time": "area x ms per frame",
          "energy_uj": "uJ per frame in the cores, OSU 0.35 um"}
 ERRORS = {"point": "error of P, 99th percentile, ulp of binary32",
           "wrong": "wrong hit decisions per million tests",

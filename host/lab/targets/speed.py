@@ -185,8 +185,12 @@ PARTS = {"rays": rays_steps, "predicates": predicates_steps, "skips": skips_step
 
 
 def values(rows: list[dict], _: pathlib.Path) -> dict:
-    """The phase times of two programs side by side."""
-    return {"phases": PHASES, "phase_times": grouped(of(rows, "phase_times"), ("scene",), "program")}
+    """Rays beside Embree's, the skips of two scenes, and the phase times of two programs side by side."""
+    rays, skips = of(rows, "rays"), of(rows, "skips")
+    return {"rays_by_peer": grouped(rays, ("scene", "rays"), "by"),
+            "peers": list(dict.fromkeys(row["by"] for row in rays if row["by"] != "raygate")),
+            "skips_of_two": [row for row in skips if row["scene"] in (skips[0]["scene"], skips[-1]["scene"])],
+            "phases": PHASES, "phase_times": grouped(of(rows, "phase_times"), ("scene",), "program")}
 
 
 def failures(rows: list[dict]) -> list[str]:

@@ -25,7 +25,7 @@ WORDS = {"EXP_WIDTH": ("exponent_bits", range(3, 9)), "FRAC_WIDTH": ("digits", r
 # In place of a value: a file with a module that is taken in the place of hw/'s.
 FILES = (".sv", ".v")
 # Points of the Pareto plots.
-COSTS = {"area": "area, OSU 0.35 um units", "frame_ms": "ms per frame at the clock of synthesis"}
+COSTS = {"area": "area, um2 in OSU 0.35 um", "frame_ms": "ms per frame at the clock of synthesis"}
 ERRORS = {"wrong": "wrong hit decisions per million tests", "point": "error of P, 99th percentile, ulp of binary32"}
 
 

@@ -97,7 +97,7 @@ class Page(unittest.TestCase):
         self.find("#differ")[0].click()
         self.assertEqual(over.get_attribute("src"), document.inlined(self.folder / "e8p16-flip.png"))
         rows = [row.text for row in self.find("#figures tr")]
-        self.assertEqual(rows[:2], ["figure e8p20 e8p16", "area, OSU 0.35 um units 3,000 2,000"])
+        self.assertEqual(rows[:2], ["figure e8p20 e8p16", "area, um2 in OSU 0.35 um 3,000 2,000"])
 
     def test_dark_light_and_nothing_from_elsewhere(self) -> None:
         paper = self.browser.execute_script("return getComputedStyle(document.body).backgroundColor")
