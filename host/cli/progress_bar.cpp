@@ -22,7 +22,7 @@ int terminal_columns() {
   return known ? size.ws_col : 80;
 }
 
-void print(std::string_view text) {
+void show(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -66,7 +66,7 @@ ProgressBar::ProgressBar(bool enabled, Style style)
       style_(style) {}
 
 void ProgressBar::erase() {
-  if (drawn_) print(kEraseLine);
+  if (drawn_) show(kEraseLine);
   drawn_ = false;
 }
 
@@ -77,13 +77,13 @@ void ProgressBar::update(double fraction) {
   if (style_ == Style::kLines) {
     const int tenths = static_cast<int>(10.0 * fraction);
     if (tenths > std::exchange(tenths_, tenths))
-      print("rendering: " + state_of(fraction, elapsed) + "\n");
+      show("rendering: " + state_of(fraction, elapsed) + "\n");
     return;
   }
   if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   drawn_ = true;
-  print(std::string(kEraseLine) + progress_line(fraction, elapsed, terminal_columns()));
+  show(std::string(kEraseLine) + progress_line(fraction, elapsed, terminal_columns()));
 }
 
 }  // namespace raygate

@@ -25,18 +25,18 @@ void require(bool success, const char* what) {
 }
 
 /// Both ends of a pipe, or of a terminal.
-struct Channel {
+struct Stream {
   int read_end = -1, write_end = -1;
 };
 
-Channel make_pipe() {
+Stream make_pipe() {
   int ends[2];
   require(::pipe2(ends, O_CLOEXEC) == 0, "pipe");
   return {ends[0], ends[1]};
 }
 
-Channel make_terminal() {
-  Channel channel;
+Stream make_terminal() {
+  Stream channel;
   const winsize size{24, 80, 0, 0};
   require(::openpty(&channel.read_end, &channel.write_end, nullptr, nullptr, &size) == 0,
           "openpty");
@@ -97,8 +97,8 @@ bool read_some(int fd, std::string& text) {
 }  // namespace
 
 Outcome run_program(const Invocation& invocation) {
-  const Channel out = make_pipe();
-  const Channel err = invocation.terminal ? make_terminal() : make_pipe();
+  const Stream out = make_pipe();
+  const Stream err = invocation.terminal ? make_terminal() : make_pipe();
   const pid_t child = ::fork();
   require(child >= 0, "fork");
   if (child == 0) become_program(invocation, out.write_end, err.write_end);
