@@ -104,7 +104,8 @@ module exact_resolver #(
 
   // ---- Of each ray: whether doubts of it wait, its candidate, and whether a question of it is open
 
-  // Doubts are numbered as they come and go in the same order, so a ray has no others when its last one has gone.
+  // Doubts are numbered as they come, and go in that order: when its last one goes, no other of a ray waits. There
+  // are more numbers than doubts that wait.
   logic [CountWidth-1:0] pushed_q, popped_q;  // how many
   logic [CountWidth-1:0] lasts[Rays];  // the number of its last doubt
   logic [AddressWidth-1:0] candidates[Rays];  // lines

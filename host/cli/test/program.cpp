@@ -36,11 +36,11 @@ Stream make_pipe() {
 }
 
 Stream make_terminal() {
-  Stream channel;
+  Stream terminal;
   const winsize size{24, 80, 0, 0};
-  require(::openpty(&channel.read_end, &channel.write_end, nullptr, nullptr, &size) == 0,
+  require(::openpty(&terminal.read_end, &terminal.write_end, nullptr, nullptr, &size) == 0,
           "openpty");
-  return channel;
+  return terminal;
 }
 
 /// In the child: never returns.

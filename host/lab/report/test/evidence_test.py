@@ -52,6 +52,16 @@ class Evidence(unittest.TestCase):
             for promised in re.findall(r"`(\w+\.csv)`", file.read_text()):
                 self.assertTrue((file.parent / promised).exists(), f"{file}: {promised}")
 
+    def test_was_measured_at_a_commit_of_this_history(self) -> None:
+        try:
+            shallow = evidence.git("rev-parse", "--is-shallow-repository")
+        except (FileNotFoundError, subprocess.CalledProcessError):
+            self.skipTest("no history")
+        if shallow != ["false"]:
+            self.skipTest("not the whole history")
+        for row in rows.read(evidence.FILE):
+            evidence.git("merge-base", "--is-ancestor", row["commit"], "HEAD")
+
     def test_code_that_changed_makes_it_stale(self) -> None:
         with tempfile.TemporaryDirectory() as name:
             root = pathlib.Path(name)
