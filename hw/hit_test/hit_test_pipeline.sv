@@ -1,15 +1,14 @@
 // The pipelined hit-test unit: a ray direction and a polygon record in each clock; hit, miss or doubt
 // of each test, and the nearest hit of each burst of tests with its t and P.
 //
-//   take     I, record                        registers
-//   scale    each coordinate of I times five  15 multipliers, see vec_scale
+//   scale    each coordinate of I times five  15 multipliers, see vec_scale; their first registers take the test
 //   add      V = N . I, U_k = E_k . I         8 adders, see fp_add3
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
 //   point    P_k = (d I_k) / V, equation 10   3 dividers, see point_unit
 //
-// Throughput one test a clock. Latency DotLatency + divide_latency + 4 clocks (see hit_test_pkg): from
+// Throughput one test a clock. Latency DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from
 // the clock edge that takes a test to the one after which its report, or its burst's end, is there.
 // A test whose I differs from that of its burst's others is a mistake of the user.
 //
@@ -67,23 +66,11 @@ module hit_test_pipeline #(
 
   // ---- Take
 
-  logic [3*Width-1:0] direction_q;
-  logic [hit_test_pkg::RecordWords*Width-1:0] record_q;
-  logic [TagWidth-1:0] tag_q;
-  logic first_q, last_q;
-  logic [DotLatency:0] test_q;  // in the take register and the stages of the dot products
+  logic [DotLatency-1:0] test_q;  // in the stages of the dot products
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) test_q <= '0;
-    else test_q <= {test_q[DotLatency-1:0], valid_i & ready_o};
-  end
-
-  always_ff @(posedge clk_i) begin
-    direction_q <= direction_i;
-    record_q    <= record_i;
-    tag_q       <= tag_i;
-    first_q     <= first_i;
-    last_q      <= last_i;
+    else test_q <= {test_q[DotLatency-2:0], valid_i & ready_o};
   end
 
   // ---- Scale: all that a coordinate of I is multiplied by, and d for the point
@@ -105,12 +92,12 @@ module hit_test_pipeline #(
       .Words(ScaledWords)
     ) u_scale (
       .clk_i,
-      .words_i({record_q[Width*hit_test_pkg::RecordD +: Width],
-                record_q[Width*(hit_test_pkg::RecordEdges+6+k) +: Width],
-                record_q[Width*(hit_test_pkg::RecordEdges+3+k) +: Width],
-                record_q[Width*(hit_test_pkg::RecordEdges+k) +: Width],
-                record_q[Width*(hit_test_pkg::RecordNormal+k) +: Width]}),
-      .factor_i(direction_q[Width*k +: Width]),
+      .words_i({record_i[Width*hit_test_pkg::RecordD +: Width],
+                record_i[Width*(hit_test_pkg::RecordEdges+6+k) +: Width],
+                record_i[Width*(hit_test_pkg::RecordEdges+3+k) +: Width],
+                record_i[Width*(hit_test_pkg::RecordEdges+k) +: Width],
+                record_i[Width*(hit_test_pkg::RecordNormal+k) +: Width]}),
+      .factor_i(direction_i[Width*k +: Width]),
       .products_o(scaled[ScaledWords*Width*k +: ScaledWords*Width])
     );
   end
@@ -143,9 +130,9 @@ module hit_test_pipeline #(
   // What goes beside: the largest exponent of N instead of N itself.
   logic [ExpWidth-1:0] nx_exponent, ny_exponent, nz_exponent, nxy_exponent, normal_exponent;
 
-  assign nx_exponent     = record_q[Width*hit_test_pkg::RecordNormal+FracWidth +: ExpWidth];
-  assign ny_exponent     = record_q[Width*(hit_test_pkg::RecordNormal+1)+FracWidth +: ExpWidth];
-  assign nz_exponent     = record_q[Width*(hit_test_pkg::RecordNormal+2)+FracWidth +: ExpWidth];
+  assign nx_exponent     = record_i[Width*hit_test_pkg::RecordNormal+FracWidth +: ExpWidth];
+  assign ny_exponent     = record_i[Width*(hit_test_pkg::RecordNormal+1)+FracWidth +: ExpWidth];
+  assign nz_exponent     = record_i[Width*(hit_test_pkg::RecordNormal+2)+FracWidth +: ExpWidth];
   assign nxy_exponent    = (nx_exponent > ny_exponent) ? nx_exponent : ny_exponent;
   assign normal_exponent = (nz_exponent > nxy_exponent) ? nz_exponent : nxy_exponent;
 
@@ -161,9 +148,9 @@ module hit_test_pipeline #(
   ) u_sideband_dot (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({normal_exponent, first_q, last_q, tag_q,
-             record_q[Width*hit_test_pkg::RecordBounds +: 3*Width],
-             record_q[Width*hit_test_pkg::RecordD +: Width]}),
+    .data_i({normal_exponent, first_i, last_i, tag_i,
+             record_i[Width*hit_test_pkg::RecordBounds +: 3*Width],
+             record_i[Width*hit_test_pkg::RecordD +: Width]}),
     .data_o({dot_exponent, dot_first, dot_last, dot_tag, dot_bounds, dot_d})
   );
   delay_line #(
@@ -205,7 +192,7 @@ module hit_test_pipeline #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) decided_q <= 1'b0;
-    else decided_q <= test_q[DotLatency];
+    else decided_q <= test_q[DotLatency-1];
   end
 
   always_ff @(posedge clk_i) begin
@@ -369,7 +356,7 @@ module hit_test_pipeline #(
 
   // ---- Events
 
-  logic stalled_q;  // when the take register was loaded
+  logic stalled_q;  // in the clock before
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) stalled_q <= 1'b0;

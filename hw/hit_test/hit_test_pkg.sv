@@ -40,10 +40,10 @@ package hit_test_pkg;
 
   // ---- Pipeline stages: where the cores are cut (see them), and how many clocks that makes
 
-  localparam bit [2:0] MultiplierPipeRegs = 3'b011;
+  localparam bit [2:0] MultiplierPipeRegs = 3'b111;
   localparam bit [2:0] AdderPipeRegs = 3'b111;
   localparam bit [31:0] DividerPipeRegs = 32'hffff_ffff;
-  localparam int unsigned MultiplierLatency = 2;
+  localparam int unsigned MultiplierLatency = 3;
   localparam int unsigned AdderLatency = 3;
   localparam int unsigned DotLatency = MultiplierLatency + 2 * AdderLatency;
 
@@ -54,7 +54,7 @@ package hit_test_pkg;
 
   // From the clock edge that takes a test to that after which its P is there, if it has one.
   function automatic int unsigned point_latency(int unsigned frac_width);
-    point_latency = DotLatency + 2 * divide_latency(frac_width) + 4;
+    point_latency = DotLatency + 2 * divide_latency(frac_width) + 3;
   endfunction
 
   // ---- Counters of hit_test_array, by the number that selects them

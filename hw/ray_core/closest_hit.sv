@@ -18,7 +18,7 @@ module closest_hit #(
   // Tests on their way when tests_allowed_o falls: from the clock in which a triangle line leaves memory to that in
   // which its test is over, and one more
   parameter int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
-                                  + hit_test_pkg::divide_latency(23) + 9,
+                                  + hit_test_pkg::divide_latency(23) + 8,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
   localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth

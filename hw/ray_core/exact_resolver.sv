@@ -7,7 +7,7 @@
 //             none, against the user's t_max. Where the candidate is nearer, its triangle is tested once more, for t and P
 //
 // Of hits at the same t the one of lower rank is nearer. Corners come by line, as for tests. A question takes exact_unit's
-// clocks, some eight more, and twice the way to the triangles' cache. Questions of a ray follow each other, those of several rays
+// clocks, some nine more, and twice the way to the triangles' cache. Questions of a ray follow each other, those of several rays
 // are asked of Units exact_units. Doubts of a ray that has ended (ended_i) are dropped.
 //
 // Tests on their way and doubts that wait are Queue together at most, so that each doubt has room and tests
@@ -61,12 +61,13 @@ module exact_resolver #(
 
   typedef enum logic [2:0] {
     StateIdle   = 3'd0,  // an answer is taken, or, where a unit is free, a question begins
-    StateLook   = 3'd1,  // what is to be asked
-    StateFetch  = 3'd2,  // a line is asked for
-    StateWait   = 3'd3,  // it is on its way
-    StateAsk    = 3'd4,
-    StateAnswer = 3'd5,  // what it means; the end
-    StateTest   = 3'd6   // the candidate is the hit
+    StateLook   = 3'd1,  // what is known of its ray
+    StateChoose = 3'd2,  // what is to be asked
+    StateFetch  = 3'd3,  // a line is asked for
+    StateWait   = 3'd4,  // it is on its way
+    StateAsk    = 3'd5,
+    StateAnswer = 3'd6,  // what it means; the end
+    StateTest   = 3'd7   // the candidate is the hit
   } state_e;
 
   state_e state_q, state_d;
@@ -156,6 +157,7 @@ module exact_resolver #(
   // ---- The question
 
   logic has_candidate, simple, lacks_q, nearer_q;
+  logic ended_q, found_q;  // of the ray whose turn it is
   logic [1:0] against, against_q;  // exact_pkg::against_e
   logic [AddressWidth-1:0] other_line_q, candidate;
   logic [CornersWidth-1:0] corners_q, other_q;
@@ -171,7 +173,7 @@ module exact_resolver #(
 
   always_comb begin
     against = exact_pkg::AgainstNothing;
-    if (settling_q ? found_i : has_candidate) against = exact_pkg::AgainstOther;
+    if (settling_q ? found_q : has_candidate) against = exact_pkg::AgainstOther;
     else if (settling_q && t_max_i != Infinity) against = exact_pkg::AgainstLimit;
   end
   // Nothing is to be asked.
@@ -185,8 +187,9 @@ module exact_resolver #(
       StateIdle:
         if (answered != '0) state_d = StateAnswer;
         else if (begin_any) state_d = StateLook;
-      StateLook:
-        if (ended_i) state_d = StateIdle;
+      StateLook:  state_d = StateChoose;
+      StateChoose:
+        if (ended_q) state_d = StateIdle;
         else if (simple) state_d = settling_q ? StateTest : StateIdle;
         else state_d = StateFetch;
       StateFetch: if (request_ready_i) state_d = StateWait;
@@ -205,11 +208,11 @@ module exact_resolver #(
                     & (settle | (queued & ~open_q[queued_ctx]));
   assign next_ctx   = settle ? ready_ctx : queued_ctx;
   assign pop        = begin_any & ~settle;
-  assign done       = ((state_q == StateLook) & (ended_i | (simple & ~settling_q)))
+  assign done       = ((state_q == StateChoose) & (ended_q | (simple & ~settling_q)))
                     | ((state_q == StateAnswer) & ~(settling_q & nearer_q));
   assign doubt_done = done & ~settling_q;
   assign drop       = done & settling_q;
-  assign keep       = doubt_done & (((state_q == StateLook) & ~ended_i)
+  assign keep       = doubt_done & (((state_q == StateChoose) & ~ended_q)
                                     | ((state_q == StateAnswer) & nearer_q));
 
   assign fetch           = state_q == StateFetch;
@@ -235,9 +238,13 @@ module exact_resolver #(
     // is taken into state_q, and goes no further in its clock.
     if (state_q == StateWait || state_q == StateTest) nearer_q <= 1'b0;
     if (state_q == StateLook) begin
-      against_q    <= against;
+      ended_q      <= ended_i;
+      found_q      <= found_i;
       other_line_q <= settling_q ? found_line_i : candidate;
-      lacks_q      <= against == exact_pkg::AgainstOther;  // the other's line comes first
+    end
+    if (state_q == StateChoose) begin
+      against_q <= against;
+      lacks_q   <= against == exact_pkg::AgainstOther;  // the other's line comes first
     end
     if (state_q == StateWait && line_here) begin
       lacks_q <= 1'b0;

@@ -62,7 +62,7 @@ package ray_core_pkg;
   endfunction
 
   // From the clock edge that takes a node to the one after which its group is there, see box_unit.
-  localparam int unsigned BoxLatency = 20;
+  localparam int unsigned BoxLatency = 21;
 
   // ---- Numbers inside box_unit, in units of 2**(E - UnitBits): E is how far the ray may go in the node
 

@@ -10,7 +10,7 @@ package set_up_pkg;
 
   // From the clock edge that takes a triangle to that after which its record is there: two differences,
   // a product between them, and a dot product.
-  localparam int unsigned Latency = 16;
+  localparam int unsigned Latency = 18;
 
   // ---- How far off N and d are: see set_up_unit
 

@@ -23,8 +23,8 @@ module pipeline_computes #(
 );
 
   localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(FracWidth);
-  // Take register, dot products, decision, division
-  localparam int unsigned Latency = 2 + hit_test_pkg::DotLatency + DivideLatency;
+  // Dot products, decision, division
+  localparam int unsigned Latency = 1 + hit_test_pkg::DotLatency + DivideLatency;
 
   logic found, divided, hit, doubt, point_asked;
   logic [Width-1:0] t;

@@ -29,7 +29,7 @@ module pipeline_keeps_credits #(
 
   logic ready, offered, closed, point_valid, push;
   logic [1:0] report;
-  logic [Dot:0] test_q;
+  logic [Dot-1:0] test_q;
   logic decided_q;
   logic [Divide-1:0] dividing_q, point_q;
   logic [CountWidth-1:0] count_q;

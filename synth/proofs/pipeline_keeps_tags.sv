@@ -16,8 +16,8 @@ module pipeline_keeps_tags #(
   input logic                take
 );
 
-  // Take register, dot products, decision, division
-  localparam int unsigned Latency = 2 + hit_test_pkg::DotLatency
+  // Dot products, decision, division
+  localparam int unsigned Latency = 1 + hit_test_pkg::DotLatency
                                     + hit_test_pkg::divide_latency(FracWidth);
 
   logic first_clock;

@@ -10,8 +10,8 @@ namespace raygate {
 namespace {
 
 // hit_test_pkg, in binary32
-constexpr int kDotLatency = 8, kDivideLatency = 17;
-constexpr int kClosedLatency = kDotLatency + kDivideLatency + 4;
+constexpr int kDotLatency = 9, kDivideLatency = 17;
+constexpr int kClosedLatency = kDotLatency + kDivideLatency + 3;
 constexpr int kPointLatency = kClosedLatency + kDivideLatency;
 
 /// Puts a burst of one test in and counts the clocks, that which takes it included, until its end

@@ -18,7 +18,7 @@ class BoxUnitTest : public testing::Test {};
 using Tops = testing::Types<Vbox_unit_behavioural, Vbox_unit_structural>;
 TYPED_TEST_SUITE(BoxUnitTest, Tops);
 
-constexpr std::size_t kLatency = 20;  // ray_core_pkg::BoxLatency
+constexpr std::size_t kLatency = 21;  // ray_core_pkg::BoxLatency
 
 /// Bits of a port.
 template <class Port>

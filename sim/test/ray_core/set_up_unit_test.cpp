@@ -15,7 +15,7 @@ namespace raygate {
 namespace {
 
 constexpr std::uint32_t kSeed = 20261122;
-constexpr std::size_t kLatency = 16;
+constexpr std::size_t kLatency = 18;
 
 struct Triangle {
   glm::vec3 origin;
