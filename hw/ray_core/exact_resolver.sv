@@ -246,11 +246,12 @@ module exact_resolver #(
       against_q <= against;
       lacks_q   <= against == exact_pkg::AgainstOther;  // the other's line comes first
     end
-    if (state_q == StateWait && line_here) begin
-      lacks_q <= 1'b0;
-      {other_q, other_rank_q} <= {corners_q, rank_q};
+    // Whether a line is here says the cache late in its clock: too late to let so many registers change.
+    if (state_q == StateFetch) {other_q, other_rank_q} <= {corners_q, rank_q};
+    if (state_q == StateWait) begin
       corners_q <= line_i.line[ray_core_pkg::TriangleCorners+:CornersWidth];
       rank_q    <= line_i.rank;
+      if (line_here) lacks_q <= 1'b0;
     end
   end
 

@@ -104,9 +104,9 @@ def sizes(_: list[dict], quick: bool) -> list[dict]:
 
 
 def threads(_: list[dict], quick: bool) -> list[dict]:
-    """One picture, by 1 thread up to twice as many as there are processors."""
+    """One picture, by 1 thread up to as many as there are processors."""
     scene = SCENES / "teapot.obj" if quick else MADE / "sphere.obj"
-    counts = [count for count in (1, 2, 4, 8, 16, 32, 64) if count <= 2 * processors()]
+    counts = [count for count in (1, 2, 4, 8, 16, 32, 64) if count <= processors()]
     return [{"scene": _path(scene), "width": 640, "height": 480, "threads": count,
              "repeats": 5 if quick else 9} for count in counts]
 

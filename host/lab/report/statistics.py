@@ -27,7 +27,7 @@ class PowerLaw:
 
     factor: float
     exponent: float
-    exponent_error: float  # standard error; 0 where two points leave no freedom
+    exponent_error: float  # standard error
     largest_miss: float  # the largest ratio of a point to the law, or of the law to a point
 
     def at(self, x: float) -> float:
@@ -36,16 +36,16 @@ class PowerLaw:
 
 
 def power_law(xs: list[float], ys: list[float]) -> PowerLaw | None:
-    """The law through positive points; None for fewer than two different x."""
+    """The law through positive points; None for fewer than three different x."""
     points = [(math.log(x), math.log(y)) for x, y in zip(xs, ys, strict=True) if x > 0 and y > 0]
-    if len({x for x, _ in points}) < 2:
+    if len({x for x, _ in points}) < 3:
         return None
     logs = [x for x, _ in points]
     line = statistics.linear_regression(logs, [y for _, y in points])
     misses = [y - (line.intercept + line.slope * x) for x, y in points]
     freedom = len(points) - 2
     square = sum((x - statistics.fmean(logs)) ** 2 for x in logs)
-    error = math.sqrt(sum(miss ** 2 for miss in misses) / freedom / square) if freedom else 0.0
+    error = math.sqrt(sum(miss ** 2 for miss in misses) / freedom / square)
     return PowerLaw(math.exp(line.intercept), line.slope, error,
                     math.exp(max(abs(miss) for miss in misses)))
 
