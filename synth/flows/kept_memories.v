@@ -1,5 +1,6 @@
 // Arrays of more than 2,048 bits stay memories, with the registers at their read ports. Their ports become the
 // design's: nobody here has SRAM to map them to. Smaller ones become registers; tables that nothing writes, gates.
+// Each bit of a port is a cell, for Yosys's `expose -evert` makes ports as wide as a black box's default.
 (* techmap_celltype = "$mem_v2" *)
 module keep_large_memory #(
   parameter MEMID = "",
@@ -39,19 +40,31 @@ module keep_large_memory #(
   wire _TECHMAP_FAIL_ = SIZE * WIDTH <= 2048 || WR_PORTS == 0;
 
   kept_memory #(
-    .BITS(SIZE * WIDTH),
-    .READ_ENABLE(RD_PORTS),
-    .READ_ADDRESS(RD_PORTS * ABITS),
-    .READ_DATA(RD_PORTS * WIDTH),
-    .WRITE_ENABLE(WR_PORTS * WIDTH),
-    .WRITE_ADDRESS(WR_PORTS * ABITS)
-  ) _TECHMAP_REPLACE_ (
-    .read_enable_i  (RD_EN),
-    .read_address_i (RD_ADDR),
-    .read_data_o    (RD_DATA),
-    .write_enable_i (WR_EN),
-    .write_address_i(WR_ADDR),
-    .write_data_i   (WR_DATA)
-  );
+    .BITS(SIZE * WIDTH)
+  ) _TECHMAP_REPLACE_ ();
+
+  genvar i;
+  generate
+    if (1) begin : _TECHMAP_REPLACE_
+      for (i = 0; i < RD_PORTS; i = i + 1) begin : read_enable_i
+        kept_input u_bit (.bit_i(RD_EN[i]));
+      end
+      for (i = 0; i < RD_PORTS * ABITS; i = i + 1) begin : read_address_i
+        kept_input u_bit (.bit_i(RD_ADDR[i]));
+      end
+      for (i = 0; i < RD_PORTS * WIDTH; i = i + 1) begin : read_data_o
+        kept_output u_bit (.bit_o(RD_DATA[i]));
+      end
+      for (i = 0; i < WR_PORTS * WIDTH; i = i + 1) begin : write_enable_i
+        kept_input u_bit (.bit_i(WR_EN[i]));
+      end
+      for (i = 0; i < WR_PORTS * ABITS; i = i + 1) begin : write_address_i
+        kept_input u_bit (.bit_i(WR_ADDR[i]));
+      end
+      for (i = 0; i < WR_PORTS * WIDTH; i = i + 1) begin : write_data_i
+        kept_input u_bit (.bit_i(WR_DATA[i]));
+      end
+    end
+  endgenerate
 
 endmodule

@@ -68,7 +68,10 @@ yosys abc -liberty $::env(LIBERTY) -constr $::env(CONSTRAINTS) {*}$::env(ABC_SCR
 yosys setattr -mod -unset keep_hierarchy *
 if {$::env(FLOW) eq "blocks"} { yosys tee -q -o $::env(OUT).blocks stat -liberty $::env(LIBERTY) }
 yosys flatten
-if {$::env(FLOW) eq "blocks"} { yosys expose -evert $::env(TOP)/t:kept_memory }
+if {$::env(FLOW) eq "blocks"} {
+  yosys expose -evert $::env(TOP)/t:kept_input $::env(TOP)/t:kept_output
+  yosys delete $::env(TOP)/t:kept_memory
+}
 yosys splitnets
 yosys opt_clean -purge
 yosys tee -q -o $::env(OUT).stat stat -liberty $::env(LIBERTY)
