@@ -36,7 +36,7 @@ class Pin:
 def measure(job: Job) -> tuple[dict, bool]:
     """pJ an operation of a layout that was made, toggles, and when the last net settles, ns; whether kept."""
     folder = job.folder / "energy"
-    wanted = store.key(_files(job.library), (job.folder / "result.json").read_text(), *_versions())
+    wanted = store.key(files(job.library), (job.folder / "result.json").read_text(), *versions())
 
     def work() -> dict:
         made = flow.load(job)
@@ -50,8 +50,8 @@ def measure(job: Job) -> tuple[dict, bool]:
 def of_cells(design: Design, library: Library, how: str) -> tuple[dict, bool]:
     """The same of a netlist of make synth by the flow `how`, without wires."""
     folder = store.OUT / "energies" / f"{design.name}.{library.name}.{how}"
-    files = [*_files(library), *design.sources(how == "cells"), *mapping.scripts(), HERE / "netlist.py"]
-    wanted = store.key(files, mapping.flow_facts(), *_versions(), design.facts, library, how)
+    sources = [*files(library), *design.sources(how == "cells"), *mapping.scripts(), HERE / "netlist.py"]
+    wanted = store.key(sources, mapping.flow_facts(), *versions(), design.facts, library, how)
 
     def work() -> dict:
         mapping.synthesise(design, library, how)
@@ -62,18 +62,35 @@ def of_cells(design: Design, library: Library, how: str) -> tuple[dict, bool]:
     return store.cached(folder, wanted, tools.measured(work))
 
 
-def _files(library: Library) -> list[pathlib.Path]:
+def files(library: Library) -> list[pathlib.Path]:
+    """What any energy depends on, besides the design."""
     return [*(HERE / name for name in ("energy.py", "tests.py", "sdf.tcl")), tests.SCENE, library.models,
             library.liberty, tools.FLOWS / "constraints.sdc"]
 
 
-def _versions() -> tuple[str, ...]:
+def versions() -> tuple[str, ...]:
+    """Of the tools that simulate."""
     return tools.version("iverilog"), tools.version("sta")
 
 
 def _spent(design: Design, library: Library, nets: Netlist, farads: dict[str, float], folder: pathlib.Path,
            spef: pathlib.Path | None = None) -> dict:
     words = tests.words(design)
+    simulate(design, library, nets, bench(nets, words), folder, spef)
+    with (folder / "toggles.vcd").open() as trace:
+        counts, settled = toggles(trace, 100_000)
+    (folder / "toggles.vcd").unlink()
+    joules = energies(nets, counts, farads, pins(library), library)
+    return {"operations": len(words), "pj": round(sum(joules.values()) / len(words), 4),
+            "wires_pj": round(wires(counts, farads, library) / len(words), 4),
+            "toggles": round(sum(sum(count) for count in counts.values()) / len(words), 1),
+            "settled_ns": settled / 1000}
+
+
+def simulate(design: Design, library: Library, nets: Netlist, text: str, folder: pathlib.Path,
+             spef: pathlib.Path | None = None) -> None:
+    """Runs the test bench `text` around the netlist's cells with their delays; what it writes is in `folder`, what it says in
+    vvp.log there."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "netlist.v").write_text(nets.verilog())
     tools.run(["sta", "-exit", HERE / "sdf.tcl"], folder / "sta.log", {
@@ -84,18 +101,10 @@ def _spent(design: Design, library: Library, nets: Netlist, farads: dict[str, fl
     delays = (folder / "delays.sdf").read_text()
     (folder / "delays.sdf").write_text(re.sub(r"\(([\d.]+)::([\d.]+)\)", r"(\2)", delays))
     (folder / "cells.v").write_text(re.sub(r"`timescale.*", "`timescale 1ns/1ps", library.models.read_text()))
-    (folder / "bench.v").write_text(bench(nets, words))
+    (folder / "bench.v").write_text(text)
     tools.run(["iverilog", "-g2012", "-gspecify", "-Ttyp", "-o", "bench", "bench.v", "netlist.v", "cells.v"],
               folder / "iverilog.log", folder=folder)
     tools.run(["vvp", "-n", "bench"], folder / "vvp.log", folder=folder)
-    with (folder / "toggles.vcd").open() as trace:
-        counts, settled = toggles(trace, 100_000)
-    (folder / "toggles.vcd").unlink()
-    joules = energies(nets, counts, farads, pins(library), library)
-    return {"operations": len(words), "pj": round(sum(joules.values()) / len(words), 4),
-            "wires_pj": round(wires(counts, farads, library) / len(words), 4),
-            "toggles": round(sum(sum(count) for count in counts.values()) / len(words), 1),
-            "settled_ns": settled / 1000}
 
 
 def bench(nets: Netlist, words: list[dict[str, int]]) -> str:
