@@ -14,7 +14,7 @@ namespace raygate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kSoon = 1.0;  // seconds
+constexpr double kSoon = 10.0;  // seconds, on a busy machine; what is interrupted takes minutes
 
 TEST_F(Render, InterruptedRunsWriteWhatThereIs) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
