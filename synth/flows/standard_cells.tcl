@@ -40,6 +40,11 @@ switch $::env(FLOW) {
     yosys opt_clean
     if {$::env(FLOW) eq "blocks"} {
       yosys memory -nomap
+      # An enable of all bits of a word is one net: not a multiplexer of ones and zeros.
+      yosys simplemap t:\$mem_v2 %ci1:+\[WR_EN\] %ci1:+\[Y\] t:\$mux %i
+      yosys opt_expr -mux_bool
+      yosys opt_merge
+      yosys opt_clean
       yosys read_verilog -lib [file join $flows kept_memory.v]
       yosys techmap -map [file join $flows kept_memories.v]
       yosys tee -q -o $::env(OUT).memories dump t:kept_memory

@@ -21,7 +21,7 @@ class Memories(unittest.TestCase):
             ports = mapping.top_module(netlist)["ports"]
         bits = collections.Counter(name.partition(".words.")[2].partition("[")[0] for name in ports)
         self.assertEqual(found["blocks"]["the rest"]["bits"], 48 * 64)
-        self.assertEqual((bits["read_data_o"], bits["write_data_i"], bits["read_address_i"]), (48, 48, 6))
+        self.assertEqual((bits["read_data_o"], bits["write_data_i"], bits["read_address_i"], bits["write_enable_i"]), (48, 48, 6, 1))
 
 
 if __name__ == "__main__":

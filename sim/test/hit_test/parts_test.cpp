@@ -29,7 +29,7 @@ class PartsTest : public testing::Test {
 };
 
 TEST_F(PartsTest, ProductsSumsAndPointsEqualFloatArithmetic) {
-  constexpr std::size_t kProduct = 2, kSum = 6, kPoint = 17;  // latencies
+  constexpr std::size_t kProduct = 3, kSum = 6, kPoint = 17;  // latencies
   struct Operands {
     float words[5], factor;
     bool valid;
