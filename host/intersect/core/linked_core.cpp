@@ -56,18 +56,20 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
   const std::uint64_t begin = link_->clocks();
   std::size_t sent = 0, ended = 0;
   std::vector<std::uint32_t> out;  // words of the ray that is being sent, the last first
-  while (ended < rays.size()) {
-    if (out.empty() && sent < rays.size() && sent - ended < most_) {
-      const RayMessage message = ray_message(rays[sent++]);
-      out.assign(message.rbegin(), message.rend());
-    }
-    if (!out.empty() && link_->send(out.back())) out.pop_back();
+  for (;;) {
+    // Results first: what they make room for is sent before there is any waiting.
     while (const std::optional<CoreResult> result = take_result()) {
       count(*result);
       ended += result->kind == CoreResult::Kind::kEnd;
       results.push_back(*result);
     }
-    if (ended < rays.size()) link_->wait();
+    if (ended == rays.size()) break;
+    if (out.empty() && sent < rays.size() && sent - ended < most_) {
+      const RayMessage message = ray_message(rays[sent++]);
+      out.assign(message.rbegin(), message.rend());
+    }
+    if (!out.empty() && link_->send(out.back())) out.pop_back();
+    link_->wait();
   }
   counters_.clocks += link_->clocks() - begin;
 }

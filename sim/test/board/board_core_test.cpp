@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <deque>
 #include <thread>
+#include <utility>
 
 #include "host/base/input_error.h"
 #include "host/intersect/check_intersector.h"
@@ -85,6 +87,56 @@ TEST(BoardCore, ScenesFollowEachOther) {
     }
     EXPECT_GT(compared, 150);
   }
+}
+
+/// A board whose words come all at once, when it has no more of them: as a serial port's do to a
+/// busy host, which then must not wait for another.
+class BurstLink : public WordLink {
+ public:
+  bool send(std::uint32_t word) override {
+    has_sent_ = true;
+    return board_->send(word);
+  }
+  std::optional<std::uint32_t> receive() override {
+    if (came_.empty()) return std::nullopt;
+    const std::uint32_t word = came_.front();
+    came_.pop_front();
+    return word;
+  }
+  void wait() override {
+    if (std::exchange(has_sent_, false)) return board_->wait();
+    std::deque<std::uint32_t> words;
+    for (int quiet = 0; quiet < 5'000; ++quiet) {
+      board_->wait();
+      while (const std::optional<std::uint32_t> word = board_->receive()) {
+        words.push_back(*word);
+        quiet = 0;
+      }
+    }
+    if (words.empty())
+      throw std::runtime_error("the host waits for a board that has nothing to do");
+    came_ = std::move(words);
+  }
+
+ private:
+  std::unique_ptr<WordLink> board_{
+      load_model<WordLink*()>({"board_core", "the simulated board", 40})()};
+  std::deque<std::uint32_t> came_;
+  bool has_sent_ = false;
+};
+
+TEST(BoardCore, AHostThatHasAllResultsSendsTheNextRays) {
+  const Bvh bvh{test::scene_of(bodies())};
+  Random random;
+  const std::vector<Ray> rays = some_rays(bodies(), random, 3 * kBoardRays);
+  CheckIntersector check(
+      bvh,
+      std::make_unique<CoreIntersector>(
+          bvh, std::make_shared<MemoryImage>(bvh),
+          std::make_unique<LinkedCore>(std::make_unique<BurstLink>(), kBoardRays)),
+      std::make_unique<CpuIntersector>(bvh));
+  std::vector<NearestHit> hits(rays.size());
+  check.intersect(rays, {}, hits);
 }
 
 /// A simulated board behind a pseudoterminal, as behind a serial port: its bytes are those of
