@@ -28,7 +28,7 @@ def flow_facts() -> tuple[str, ...]:
 def scripts() -> list[pathlib.Path]:
     """The files that say how a netlist is made and timed."""
     names = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "structure.v",
-             "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "timing.tcl", "constraints.sdc",
+             "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "kept_enables.v", "timing.tcl", "constraints.sdc",
              *set(ABC_SCRIPTS.values()))
     return sorted(tools.FLOWS / name for name in names)
 

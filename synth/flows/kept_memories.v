@@ -1,7 +1,7 @@
 // Arrays of more than 2,048 bits stay memories, with the registers at their read ports. Their ports become the
 // design's: nobody here has SRAM to map them to. Smaller ones become registers; tables that nothing writes, gates.
-// Each bit of a port is a cell, for Yosys's `expose -evert` makes ports as wide as a black box's default; bits of a word that
-// are written together have one enable.
+// Each bit of a port is a cell, for Yosys's `expose -evert` makes ports as wide as a black box's default. Enables: see
+// kept_enables.v.
 (* techmap_celltype = "$mem_v2" *)
 module keep_large_memory #(
   parameter MEMID = "",
@@ -38,10 +38,6 @@ module keep_large_memory #(
   input  [WR_PORTS*WIDTH-1:0] WR_DATA
 );
 
-  parameter _TECHMAP_BITS_CONNMAP_ = 0;
-  localparam Bits = _TECHMAP_BITS_CONNMAP_;
-  parameter [WR_PORTS*WIDTH*_TECHMAP_BITS_CONNMAP_-1:0] _TECHMAP_CONNMAP_WR_EN_ = 0;  // numbers of the enables' nets
-
   wire _TECHMAP_FAIL_ = SIZE * WIDTH <= 2048 || WR_PORTS == 0;
 
   kept_memory #(
@@ -60,10 +56,7 @@ module keep_large_memory #(
       for (i = 0; i < RD_PORTS * WIDTH; i = i + 1) begin : read_data_o
         kept_output u_bit (.bit_o(RD_DATA[i]));
       end
-      for (i = 0; i < WR_PORTS * WIDTH; i = i + 1) begin : write_enable_i
-        if (i == 0 || _TECHMAP_CONNMAP_WR_EN_[Bits*i+:Bits] != _TECHMAP_CONNMAP_WR_EN_[Bits*(i-1)+:Bits])
-          kept_input u_bit (.bit_i(WR_EN[i]));
-      end
+      kept_enables #(.WIDTH(WR_PORTS * WIDTH)) write_enable_i (.bits_i(WR_EN));
       for (i = 0; i < WR_PORTS * ABITS; i = i + 1) begin : write_address_i
         kept_input u_bit (.bit_i(WR_ADDR[i]));
       end

@@ -11,6 +11,14 @@ module kept_input (
 );
 endmodule
 
+(* blackbox, keep *)
+module kept_enables #(
+  parameter WIDTH = 1
+) (
+  input [WIDTH-1:0] bits_i
+);
+endmodule
+
 (* blackbox *)
 module kept_output (
   output bit_o

@@ -40,11 +40,6 @@ switch $::env(FLOW) {
     yosys opt_clean
     if {$::env(FLOW) eq "blocks"} {
       yosys memory -nomap
-      # An enable of all bits of a word is one net: not a multiplexer of ones and zeros.
-      yosys simplemap t:\$mem_v2 %ci1:+\[WR_EN\] %ci1:+\[Y\] t:\$mux %i
-      yosys opt_expr -mux_bool
-      yosys opt_merge
-      yosys opt_clean
       yosys read_verilog -lib [file join $flows kept_memory.v]
       yosys techmap -map [file join $flows kept_memories.v]
       yosys tee -q -o $::env(OUT).memories dump t:kept_memory
@@ -74,6 +69,7 @@ yosys setattr -mod -unset keep_hierarchy *
 if {$::env(FLOW) eq "blocks"} { yosys tee -q -o $::env(OUT).blocks stat -liberty $::env(LIBERTY) }
 yosys flatten
 if {$::env(FLOW) eq "blocks"} {
+  yosys techmap -map [file join $flows kept_enables.v]
   yosys expose -evert $::env(TOP)/t:kept_input $::env(TOP)/t:kept_output
   yosys delete $::env(TOP)/t:kept_memory
 }
