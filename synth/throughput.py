@@ -74,4 +74,4 @@ def ray_table(record: dict, rows: list[dict] | None = None) -> str:
         [row["scene"], row["rays"], f"{row['latency']}", f"{row['clocks_per_ray']:.2f}",
          f"{clock / row['clocks_per_ray'] / 1e6:.2f}",
          f"{clock / row['clocks_per_ray'] / record['area']:.3f}"]
-        for row in rows if row.get("latency") == 50])
+        for row in rows if row.get("part", "scenes") == "scenes" and row.get("latency") == 50])

@@ -102,8 +102,7 @@ def bench(nets: Netlist, library: Library, given: list[list[np.ndarray]], agains
                   f"  initial for (i = 0; i < {2 ** buses[at + 'read_address_i']}; i = i + 1) {memory}[i] = 0;",
                   "  always @(posedge clk_i) begin",
                   f"    if ({at}read_enable_i) {at}read_data_o <= #{library.access_ns} {memory}[{at}read_address_i];",
-                  f"    {memory}[{at}write_address_i] <= ({at}write_data_i & {at}write_enable_i)",
-                  f"      | ({memory}[{at}write_address_i] & ~{at}write_enable_i);", "  end"]
+                  f"    if ({at}write_enable_i_pin) {memory}[{at}write_address_i] <= {at}write_data_i;", "  end"]
     lines += ["  initial begin", '    $sdf_annotate("delays.sdf", dut);', f"    hit_i = 1; ready_i = 1; against_i = {against};",
               f"    #{4 * PERIOD} rst_ni = 1;"]
     for place, (origin, i, triangle, other) in enumerate([given[0], *given]):
