@@ -20,25 +20,20 @@ DESIGN = catalogue.design("exact_unit")
 FLOW = "blocks"
 COUNT = 8  # doubts
 PERIOD = 20  # ns
-HIT, ORDER = ("does it hit", 0), ("does it hit, and is it nearer than another", 1)  # exact_pkg::against_e
-NOTHING, OTHER = 0, 2
+QUESTIONS = {"does it hit": 0, "does it hit, and is it nearer than another": 2}  # exact_pkg::against_e
 
 
 def doubts(file: pathlib.Path = tests.SCENE, count: int = COUNT) -> list[list[np.ndarray]]:
     """O, I, a triangle's corners and another's; the triangles share an edge, through which the ray goes."""
     scene = tests.triangles(file)
-    low, high = scene.min(axis=(0, 1)), scene.max(axis=(0, 1))
-    origin = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + (high[2] - low[2])], np.float32)
-    edges, found = {}, []
+    origin, edges, found = tests.eye(scene), {}, []
     for number, triangle in enumerate(scene):
         for a, b in itertools.combinations(map(tuple, triangle.tolist()), 2):
             edges.setdefault(frozenset((a, b)), []).append(number)
     shared = [(sorted(edge), sides) for edge, sides in edges.items() if len(edge) == 2 and len(sides) == 2]
     for (a, b), (one, other) in shared[::len(shared) // count][:count]:
         point = (np.array(a) * 5 + np.array(b) * 3) / 8
-        i = (point - origin).astype(np.float32)
-        i = np.ldexp(i, 1 - np.frexp(np.abs(i).max())[1]).astype(np.float32)
-        found.append([origin, i, scene[one], scene[other]])
+        found.append([origin, tests.towards(origin, point), scene[one], scene[other]])
     return found
 
 
@@ -57,20 +52,20 @@ def is_hit(doubt: list[np.ndarray]) -> bool | None:
 def measure(library: Library) -> tuple[dict, bool]:
     """nJ and clocks of each question, and whether they were kept."""
     folder = store.OUT / "energies" / f"{DESIGN.name}.{library.name}.{FLOW}"
-    files = [*energy.files(library), *DESIGN.sources(), *mapping.scripts(), pathlib.Path(__file__)]
+    files = [*energy.files(library), *DESIGN.sources(), *mapping.scripts(), pathlib.Path(__file__), pathlib.Path(netlist.__file__)]
     wanted = store.key(files, mapping.flow_facts(), *energy.versions(), DESIGN.facts, library)
 
     def work() -> dict:
         mapping.synthesise(DESIGN, library, FLOW)
         nets = netlist.parse(mapping.top_module(store.OUT / "runs" / folder.name / "netlist.json"), DESIGN.top)
         given = [doubt for doubt in doubts() if is_hit(doubt) is not None]
-        return {name: _spent(nets, library, folder, given, against) for name, against in (HIT, ORDER)}
+        return {name: _spent(nets, library, folder, given, against) for name, against in QUESTIONS.items()}
 
     return store.cached(folder, wanted, tools.measured(work))
 
 
-def _spent(nets: Netlist, library: Library, folder: pathlib.Path, given: list[list[np.ndarray]], question: int) -> dict:
-    energy.simulate(DESIGN, library, nets, bench(nets, library, given, OTHER if question else NOTHING), folder)
+def _spent(nets: Netlist, library: Library, folder: pathlib.Path, given: list[list[np.ndarray]], against: int) -> dict:
+    energy.simulate(DESIGN, library, nets, bench(nets, library, given, against), folder)
     answers = re.findall(r"^doubt (\d+) clocks, hit (.)$", (folder / "vvp.log").read_text(), re.M)
     if [hit for _, hit in answers] != [f"{is_hit(doubt):d}" for doubt in given]:
         raise tools.ToolFailed(f"exact_unit's cells: found {answers}, expected the fractions' answers")

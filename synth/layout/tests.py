@@ -36,19 +36,29 @@ def triangles(file: pathlib.Path) -> np.ndarray:
     return np.array(found, np.float32)
 
 
+def eye(scene: np.ndarray) -> np.ndarray:
+    """The rays' origin: before the middle of the scene's box."""
+    low, high = scene.min(axis=(0, 1)), scene.max(axis=(0, 1))
+    return np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + (high[2] - low[2])], np.float32)
+
+
+def towards(origin: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """The direction, its largest component in [1, 2)."""
+    i = (point - origin).astype(np.float32)
+    return np.ldexp(i, 1 - np.frexp(np.abs(i).max())[1]).astype(np.float32)
+
+
 def operands(file: pathlib.Path = SCENE, count: int = COUNT) -> dict[str, list[tuple[np.float32, np.float32]]]:
     """The operand pairs of each core, in the order of the tests: "multiply", "add", "divide"."""
     scene = triangles(file)
     low, high = scene.min(axis=(0, 1)), scene.max(axis=(0, 1))
-    # From before the middle of the scene's box, over a square of directions.
-    origin = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + (high[2] - low[2])], np.float32)
+    origin = eye(scene)
     side = int(np.ceil(count ** 0.5))
     found: dict[str, list] = {"multiply": [], "add": [], "divide": []}
     for test in range(count):
         aim = np.array([low[0] + (high[0] - low[0]) * (test % side + 0.5) / side,
                         low[1] + (high[1] - low[1]) * (test // side + 0.5) / side, (low[2] + high[2]) / 2])
-        i = (aim - origin).astype(np.float32)
-        i = np.ldexp(i, 1 - np.frexp(np.abs(i).max())[1]).astype(np.float32)
+        i = towards(origin, aim)
         a, b, c = scene[test * 7 % len(scene)] - origin
         n = np.cross(b - a, c - a).astype(np.float32)
         d = np.float32(np.dot(n, a))

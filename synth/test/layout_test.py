@@ -1,13 +1,16 @@
 """Layouts: what is read from LEF, DEF and magic, and one adder from netlist to delay with wires."""
 
+import itertools
 import pathlib
 import tempfile
 import unittest
 from unittest import mock
 
+import numpy as np
+
 from synth import catalogue, mapping, store, tools
 from synth.layout import __main__ as command
-from synth.layout import energy, estimate, flow, lef, netlist, parasitics, parts, place, route, spread, tests
+from synth.layout import doubts, energy, estimate, flow, lef, netlist, parasitics, parts, place, route, spread, tests
 from synth.layout.lef import Layer, Rect, Technology
 from synth.layout.netlist import Cell, Netlist, Port
 from synth.layout.route import Wire
@@ -225,6 +228,19 @@ x"
         self.assertEqual(sums[0]["b_i"], factors[1]["a_i"] * factors[1]["b_i"])
         with self.assertRaisesRegex(ValueError, "no tests for adder-Width8"):
             tests.words(catalogue.design("adder", Width=8))
+
+
+class Doubts(unittest.TestCase):
+    """What exact_unit's energy is simulated with."""
+
+    def test_rays_pass_on_either_side_of_an_edge(self):
+        given = doubts.doubts()
+        self.assertEqual(len(given), doubts.COUNT)
+        self.assertEqual({doubts.is_hit(doubt) for doubt in given}, {True, False})
+        for doubt in given:  # steps of 2**-20 of the direction change the answer
+            moved = [doubts.is_hit([doubt[0], doubt[1] + np.array(step, np.float32) * 2.0 ** -20, *doubt[2:]])
+                     for step in itertools.product((-1, 0, 1), repeat=3)]
+            self.assertEqual(set(moved), {True, False})
 
 
 class Parts(unittest.TestCase):
