@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <list>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -97,24 +98,30 @@ class MpiRanks : public Ranks {
     });
   }
 
-  static std::optional<Message> taken() {
+  /// Never waits for the rest of a message: who sent its beginning may have died since.
+  std::optional<Message> taken() {
     int there = 0;
-    MPI_Message handle = MPI_MESSAGE_NULL;
-    MPI_Status status;
-    MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &handle, &status);
-    if (there == 0) return std::nullopt;
-    int size = 0;
-    MPI_Get_count(&status, MPI_BYTE, &size);
-    Message message{status.MPI_SOURCE, static_cast<About>(status.MPI_TAG),
-                    std::string(static_cast<std::size_t>(size), '\0')};
-    MPI_Mrecv(message.bytes.data(), size, MPI_BYTE, &handle, MPI_STATUS_IGNORE);
-    return message;
+    if (!coming_) {
+      MPI_Message handle = MPI_MESSAGE_NULL;
+      MPI_Status status;
+      MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &handle, &status);
+      if (there == 0) return std::nullopt;
+      int size = 0;
+      MPI_Get_count(&status, MPI_BYTE, &size);
+      coming_.emplace(status.MPI_SOURCE, static_cast<About>(status.MPI_TAG),
+                      std::string(static_cast<std::size_t>(size), '\0'));
+      MPI_Imrecv(coming_->bytes.data(), size, MPI_BYTE, &handle, &receiving_);
+    }
+    MPI_Test(&receiving_, &there, MPI_STATUS_IGNORE);
+    return there == 0 ? std::nullopt : std::exchange(coming_, std::nullopt);
   }
 
   int index_ = 0, count_ = 1;
   unsigned processors_ = 1;
   bool is_over_ = false, has_left_ = false;
-  std::list<Sending> sending_;  // whose bytes MPI still reads
+  std::list<Sending> sending_;     // whose bytes MPI still reads
+  std::optional<Message> coming_;  // whose bytes MPI still writes
+  MPI_Request receiving_ = MPI_REQUEST_NULL;
 };
 
 }  // namespace

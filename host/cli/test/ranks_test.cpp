@@ -296,6 +296,18 @@ TEST_F(KilledRanks, AtTheirMessages) {
               all_broken);
 }
 
+/// Rank 0 doesn't wait for the rest of what a dead rank began to send; it saves what it has.
+TEST_F(KilledRanks, InTheMiddleOfAMessage) {
+  const Words arguments = {kCornell, "--size",    "200x150", "--spp", "32",   "--engine",
+                           "cpu",    "--threads", "1",       "-o",    "a.exr"};
+  const Outcome outcome = on_ranks(
+      2, arguments, {},
+      {"RAYGATE_FAULT_RANK=1", "RAYGATE_FAULT_BYTES=65536", "LD_PRELOAD=" RAYGATE_FAULTS_LIBRARY});
+  EXPECT_NE(outcome.status, 0) << "no message was that long";
+  EXPECT_NE(outcome.err.find("--resume a.exr goes on from there"), std::string::npos)
+      << outcome.err;
+}
+
 TEST_F(KilledRanks, OneOfThem) { kill_at_random(Who::kWorker, {}); }
 TEST_F(KilledRanks, Rank0) { kill_at_random(Who::kRank0, {"--save-every", "0.2"}); }
 TEST_F(KilledRanks, AllAndTheLauncher) { kill_at_random(Who::kAll, {"--save-every", "0.2"}); }

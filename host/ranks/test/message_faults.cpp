@@ -2,7 +2,8 @@
 // where it would send or take a message.
 //
 //   RAYGATE_FAULT_RANK=R, RAYGATE_FAULT_MESSAGE=N    rank R, at its message number N
-//   RAYGATE_FAULT_COUNT=FILE    at the end, how many messages rank 0 had
+//   RAYGATE_FAULT_RANK=R, RAYGATE_FAULT_BYTES=N      rank R, in the middle of its first message of
+//   N bytes or more RAYGATE_FAULT_COUNT=FILE    at the end, how many messages rank 0 had
 //
 // By MPI's profiling interface (MPI 3.1, chapter 14).
 #include <mpi.h>
@@ -21,13 +22,17 @@ int rank() {
   return index;
 }
 
-void count() {
-  ++messages;
-  const char* const who = std::getenv("RAYGATE_FAULT_RANK");
-  const char* const when = std::getenv("RAYGATE_FAULT_MESSAGE");
-  if (who == nullptr || when == nullptr) return;
-  if (std::atol(when) == messages && std::atoi(who) == rank()) std::raise(SIGKILL);
+/// -1: none is.
+long number_in(const char* variable) {
+  const char* const text = std::getenv(variable);
+  return text == nullptr ? -1 : std::atol(text);
 }
+
+void end_if(bool is_time) {
+  if (is_time && number_in("RAYGATE_FAULT_RANK") == rank()) std::raise(SIGKILL);
+}
+
+void count() { end_if(++messages == number_in("RAYGATE_FAULT_MESSAGE")); }
 
 }  // namespace
 
@@ -36,12 +41,17 @@ extern "C" {
 int MPI_Isend(const void* bytes, int size, MPI_Datatype type, int to, int tag, MPI_Comm world,
               MPI_Request* request) {
   count();
-  return PMPI_Isend(bytes, size, type, to, tag, world, request);
+  const int status = PMPI_Isend(bytes, size, type, to, tag, world, request);
+  // Of a long message only the beginning is on its way by now.
+  const long least = number_in("RAYGATE_FAULT_BYTES");
+  end_if(least >= 0 && size >= least);
+  return status;
 }
 
-int MPI_Mrecv(void* bytes, int size, MPI_Datatype type, MPI_Message* message, MPI_Status* status) {
+int MPI_Imrecv(void* bytes, int size, MPI_Datatype type, MPI_Message* message,
+               MPI_Request* request) {
   count();
-  return PMPI_Mrecv(bytes, size, type, message, status);
+  return PMPI_Imrecv(bytes, size, type, message, request);
 }
 
 int MPI_Finalize() {
