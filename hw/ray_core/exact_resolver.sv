@@ -7,7 +7,7 @@
 //             none, against the user's t_max. Where the candidate is nearer, its triangle is tested once more, for t and P
 //
 // Of hits at the same t the one of lower rank is nearer. Corners come by line, as for tests. A question takes exact_unit's
-// clocks, some nine more, and twice the way to the triangles' cache. Questions of a ray follow each other, those of several rays
+// clocks, eight more, and twice the way to the triangles' cache. Questions of a ray follow each other, those of several rays
 // are asked of Units exact_units. Doubts of a ray that has ended (ended_i) are dropped.
 //
 // Tests on their way and doubts that wait are Queue together at most, so that each doubt has room and tests
