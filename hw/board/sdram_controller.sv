@@ -5,6 +5,7 @@
 // left, and the word of a read (CAS latency 2) is taken two clocks after its command left. So clk_i's half period must
 // hold the ways out and back and the SDRAM's access time: 6 ns and some 6 of pads, 40 MHz.
 // Reads that wait go after writes, both after refreshing. A line comes with its request's id and stays until it is taken.
+// A line to be written stays at the port until its last word leaves: it is not kept a second time here.
 //
 // Latency: 36 clocks at 40 MHz, from the clock that takes a read to line_valid_o. Throughput: a line in 37 clocks.
 // Source: data sheets of MT48LC16M16A2 (Micron) and AS4C16M16 (Alliance): 4 banks, 8,192 rows, 512 columns, 256 Mbit.
@@ -75,21 +76,20 @@ module sdram_controller #(
 
   state_e state_q;
   logic [WaitWidth-1:0] wait_q, refresh_q;
-  logic go, word_goes, refresh_due_q, writing_q, last_word, read_fire, write_fire;
+  logic go, word_goes, refresh_due_q, writing_q, last_word, idle, read_fire;
   logic [2:0] command, reading_q;  // reading_q: clocks since a read left
   logic [4:0] word_q;
   logic [5:0] left_q;  // words of a line that are to come
   logic [3:0] columns_q;  // the line's place in its row
   logic [18:0] number;
   logic [15:0] word_i_q;
-  logic [LineWidth-1:0] data_q;
 
   assign go            = wait_q == '0;
   assign word_goes     = go & (state_q == StateWords);  // a read's or a write's command
   assign last_word     = word_q == 5'(Words - 1);
-  assign write_ready_o = go & (state_q == StateIdle) & ~refresh_due_q;
-  assign read_ready_o  = write_ready_o & ~write_valid_i & ~line_valid_o & (left_q == '0);
-  assign write_fire    = write_valid_i & write_ready_o;
+  assign idle          = go & (state_q == StateIdle) & ~refresh_due_q;
+  assign write_ready_o = word_goes & writing_q & last_word;
+  assign read_ready_o  = idle & ~write_valid_i & ~line_valid_o & (left_q == '0);
   assign read_fire     = read_valid_i & read_ready_o;
   assign number        = write_valid_i ? write_line_i[18:0] : read_line_i[18:0];
 
@@ -102,7 +102,7 @@ module sdram_controller #(
         StateMode: command = CommandMode;
         StateIdle: begin
           if (refresh_due_q) command = CommandRefresh;
-          else if (write_fire | read_fire) command = CommandActivate;
+          else if (write_valid_i | read_fire) command = CommandActivate;
         end
         default: command = writing_q ? CommandWrite : CommandRead;
       endcase
@@ -139,7 +139,7 @@ module sdram_controller #(
           StateRefreshOnce:  state_q <= StateRefreshTwice;
           StateRefreshTwice: state_q <= StateMode;
           StateMode:         state_q <= StateIdle;
-          StateIdle:         if (write_fire | read_fire) state_q <= StateWords;
+          StateIdle:         if (idle & (write_valid_i | read_fire)) state_q <= StateWords;
           default:           if (last_word) state_q <= StateIdle;
         endcase
       end
@@ -150,15 +150,13 @@ module sdram_controller #(
     // Whether a line goes is known late: what it would be is taken all the time.
     if (state_q == StateIdle) begin
       word_q       <= '0;
-      writing_q    <= write_fire;
+      writing_q    <= write_valid_i;
       columns_q    <= number[3:0];
       sdram_bank_o <= number[5:4];
-      data_q       <= write_data_i;
     end else if (word_goes) begin
       word_q <= word_q + 1'b1;
-      data_q <= data_q >> 16;
     end
-    sdram_data_o <= data_q[15:0];
+    sdram_data_o <= write_data_i[16*word_q+:16];
     case (state_q)
       StateIdle:  sdram_address_o <= number[18:6];
       StateWords: sdram_address_o <= (last_word ? All : '0) | 13'({columns_q, word_q});

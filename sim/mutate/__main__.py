@@ -43,19 +43,21 @@ def run(command: list[object], **options: object) -> str:
 
 def equivalent(netlist: pathlib.Path, fault: str) -> bool:
     """Whether the module in NETLIST.il gives the same outputs with this fault as without, by Yosys and ABC
-    within 20 s each. False where that is not known."""
-    # Registers, matched by their order, are cut open: their inputs must be the same functions too. So must those
-    # of the modules that the netlist is around.
-    gates = ("memory_map; async2sync; dffunmap; expose -evert; techmap; setundef -undriven -zero; opt_expr; "
-             "opt_merge; aigmap; opt_clean; write_aiger")
+    within 60 s each. False where that is not known."""
+    # Registers and the modules that the netlist is around are cut open: what goes into them must be the same, whatever
+    # comes out. Only what the fault's mux leads to is compared.
+    number, module = re.search(r"-ctrl mutant \d+ (\d+) .*-module (\S+)", fault).groups()
+    gates = (f"memory_map; async2sync; dffunmap; expose -evert-dff -evert; cd {module}; "
+             "select -set reached w:mutant %co*; delete -output o:* @reached %d; opt_clean; techmap; "
+             "setundef -undriven -zero; aigmap; delete -input w:mutant; design -save both")
     with tempfile.TemporaryDirectory() as folder:
-        mutate = re.sub(r" -ctrl mutant \d+ \d+", "", fault)
+        write = "; ".join(f"design -load both; connect -set mutant 16'd{mutant}; write_aiger {folder}/{name}.aig"
+                          for name, mutant in (("sound", 0), ("broken", number)))
         try:
-            run(["yosys", "-q", "-p", f"read_rtlil {netlist}.il; {gates} {folder}/sound.aig; design -reset; "
-                 f"read_rtlil {netlist}.il; {mutate}; {gates} {folder}/broken.aig"], timeout=20)
+            run(["yosys", "-q", "-p", f"read_rtlil {netlist}.il; {fault}; {gates}; {write}"], timeout=60)
         except subprocess.TimeoutExpired:
             return False
-        said = run(["yosys-abc", "-c", f"cec -T 20 {folder}/sound.aig {folder}/broken.aig"])
+        said = run(["yosys-abc", "-c", f"cec -T 60 {folder}/sound.aig {folder}/broken.aig"])
     return "Networks are equivalent" in said
 
 

@@ -22,38 +22,48 @@ struct Triangle {
   Corners corners;
 };
 
-/// Words of all kinds, or an ordinary triangle: flat, thin, far away or near the origin's plane.
+/// Words of all kinds, or an ordinary triangle: flat, thin, far away or near the origin's plane,
+/// also where its products leave the range in which a plane is good.
 class Triangles {
  public:
   Triangle operator()() {
-    floats_.next_test();
     Triangle next{};
-    const auto word = [&] { return floats_(); };
-    for (int k = 0; k < 3; ++k) next.origin[k] = word();
-    for (glm::vec3& corner : next.corners) {
-      for (int k = 0; k < 3; ++k) corner[k] = word();
+    if (one_in(8)) {
+      floats_.next_test();
+      for (int k = 0; k < 3; ++k) next.origin[k] = floats_();
+      for (glm::vec3& corner : next.corners) {
+        for (int k = 0; k < 3; ++k) corner[k] = floats_();
+      }
+      return next;
     }
-    switch (random_() % 4) {
-      case 0:
-        return next;
-      case 1:
-        next.corners[2] = glm::mix(next.corners[0], next.corners[1], 0.375f);
-        return next;
-      case 2:
-        next.origin = glm::mix(next.corners[0], next.corners[2], 1.25f);
-        return next;
-      default:
-        break;
+    // At these N or d is as small or as large as it may be.
+    constexpr int kEnds[] = {-50, -33, 43, 63};
+    const int scale = one_in(2) ? 0 : kEnds[random_() % 4] + between(-4, 4);
+    for (glm::vec3& corner : next.corners) corner = point(scale - smaller(30));
+    if (one_in(3)) {
+      next.corners[2] = glm::mix(next.corners[0], next.corners[1], 0.375f);
+      if (one_in(2)) next.corners[2] += point(scale - between(0, 24));
     }
-    std::uniform_real_distribution<float> near(-1.0f, 1.0f);
-    for (int k = 0; k < 3; ++k) next.origin[k] = near(random_);
-    for (glm::vec3& corner : next.corners) {
-      for (int k = 0; k < 3; ++k) corner[k] = near(random_);
+    if (one_in(3)) {
+      next.origin = glm::mix(next.corners[0], next.corners[2], 1.25f);
+      if (one_in(2)) next.origin += point(scale - between(0, 24));
+    } else {
+      next.origin = point(scale - smaller(40));
     }
     return next;
   }
 
  private:
+  bool one_in(unsigned n) { return random_() % n == 0; }
+  int between(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
+  int smaller(int most) { return one_in(3) ? between(0, most) : 0; }
+  glm::vec3 point(int exponent) {
+    std::uniform_real_distribution<float> near(-1.0f, 1.0f);
+    glm::vec3 at;
+    for (int k = 0; k < 3; ++k) at[k] = std::ldexp(near(random_), exponent);
+    return at;
+  }
+
   FloatStream floats_{kSeed};
   std::mt19937 random_{kSeed};
 };
@@ -68,7 +78,7 @@ TYPED_TEST(SetUpUnit, EqualsItsReference) {
   Triangles triangles;
   std::deque<Triangle> taken;  // the latest first
   long planes = 0, bounds = 0;
-  for (int clock = 0; clock < 60'000; ++clock) {
+  for (int clock = 0; clock < 200'000; ++clock) {
     taken.push_front(triangles());
     for (int k = 0; k < 3; ++k) {
       model->origin_i[k] = std::bit_cast<std::uint32_t>(taken[0].origin[k]);
@@ -97,8 +107,8 @@ TYPED_TEST(SetUpUnit, EqualsItsReference) {
     ASSERT_EQ(model->distance_error_o, expected.distance_error) << "clock " << clock;
     ++planes;
   }
-  EXPECT_GT(planes, 10'000);
-  EXPECT_GT(bounds, 60'000);
+  EXPECT_GT(planes, 30'000);
+  EXPECT_GT(bounds, 200'000);
 }
 
 }  // namespace

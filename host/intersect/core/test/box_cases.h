@@ -67,6 +67,16 @@ class BoxCases {
     if (one_in(3))
       box.limit = std::abs(distance * 64.0f * std::ldexp(1.0f, node.exponent[0] - 127) * size *
                            (one_in(2) ? 1.0f : number()));
+    if (one_in(3)) {  // near a plane of a box
+      const NodeLine::Child& child = node.child[random_() % NodeLine::kChildren];
+      const int k = between(0, 2);
+      const auto at = static_cast<std::size_t>(k);
+      const float cell = std::ldexp(1.0f, node.exponent[at] - 127);
+      const float plane = node.origin[k] + static_cast<float>(child.low[at]) * cell;
+      const float t = (plane - box.ray.origin[k]) / box.ray.direction[k];
+      if (std::isfinite(t))
+        box.limit = std::abs(t) * (1.0f + std::ldexp(number(), -between(8, 22)));
+    }
     if (one_in(64)) box.limit = std::ldexp(1.0f, between(-149, 127));
     if (box.limit == 0.0f) box.limit = 1.0f;
     box.no_cull = one_in(16);

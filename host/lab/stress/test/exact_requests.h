@@ -33,7 +33,7 @@ inline ExactCase case_of(const ExactRequest& request) {
 /// Makes cases shot by shot. Each triangle that a ray hits is compared with a limit near it and
 /// with the next that the ray hits (or itself, turned round), and asked for alone; some that it
 /// misses are asked for, too. Of every case a fourth has no suite: random bits, whose exponents are
-/// as far apart as they can be.
+/// as far apart as they can be, or near each other.
 class ExactCases {
  public:
   ExactCases(const Suite& suite, std::uint64_t seed) : generate_(suite.make()), random_(seed) {}
@@ -85,9 +85,9 @@ class ExactCases {
   }
 
   void add_bits(std::vector<ExactCase>& cases) {
+    const int span = random_.one_in(2) ? 276 : 12, least = random_.below(277 - span) - 149;
     const auto any = [&] {
-      const int exponent = random_.below(random_.one_in(2) ? 276 : 12) - 149;
-      return static_cast<float>(std::ldexp(random_.uniform(-1, 1), exponent));
+      return static_cast<float>(std::ldexp(random_.uniform(-1, 1), least + random_.below(span)));
     };
     const auto point = [&] { return glm::vec3(any(), any(), any()); };
     ExactRequest request{.ray = {point(), point()}};
