@@ -65,7 +65,8 @@ def place(fault: str) -> str:
     """mode, port and bit, and the innermost line of hw/."""
     words = dict(re.findall(r"-(mode|port|portbit) (\S+)", fault))
     lines = re.findall(r"-src \S*?(hw/\S+?):(\d+)", fault) or [("?", "0")]
-    file, line = lines[-1] if "wire" not in fault else lines[0]
+    named = re.search(r"-cell \S*?(hw/[^\s$]+):([1-9]\d*)\$", fault)  # by the line that the cell is of
+    file, line = named.groups() if named else lines[-1] if "wire" not in fault else lines[0]
     return f"{file}:{line} {words['mode']} {words['port']}[{words['portbit']}]"
 
 
