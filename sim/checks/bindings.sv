@@ -103,8 +103,8 @@ bind axi_read_manager axi_read_checks #(
   .left_q()
 );
 bind ray_core_axi axi_read_checks #(
-  .IdWidth(IdWidth),
-  .DataWidth(DataWidth)
+  .IdWidth($bits(mem_arid_o)),
+  .DataWidth($bits(mem_rdata_i))
 ) u_read_checks (
   .clk_i,
   .rst_ni,
