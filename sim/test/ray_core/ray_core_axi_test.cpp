@@ -64,6 +64,9 @@ class RayCoreAxiTest : public testing::Test {
       const MemoryImage& image = is_other ? other_image_ : image_;
       ASSERT_LT(line, image.lines().size());
       ASSERT_EQ(model_->mem_arlen_o, 7);
+      ASSERT_EQ(model_->mem_arsize_o, 3);
+      ASSERT_EQ(model_->mem_arburst_o, 1);
+      ASSERT_EQ(model_->mem_arprot_o, 0);
       for (unsigned beat = 0; beat < 8; ++beat) {
         const auto& words = image.lines()[line].words;
         const std::uint64_t data = std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat];
@@ -81,8 +84,14 @@ class RayCoreAxiTest : public testing::Test {
     }
     if ((model_->mem_awvalid_o & model_->mem_awready_i) != 0) {
       ASSERT_EQ(model_->mem_awaddr_o, kResults + 32 * bursts_++);
+      ASSERT_EQ(model_->mem_awlen_o, 3);
+      ASSERT_EQ(model_->mem_awsize_o, 3);
+      ASSERT_EQ(model_->mem_awburst_o, 1);
+      ASSERT_EQ(model_->mem_awprot_o, 0);
     }
     if ((model_->mem_wvalid_o & model_->mem_wready_i) != 0) {
+      ASSERT_EQ(model_->mem_wstrb_o, 0xFF);
+      ASSERT_EQ(model_->mem_wlast_o, written_.size() % 8 == 6);
       written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o));
       written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o >> 32));
     }
@@ -123,6 +132,7 @@ class RayCoreAxiTest : public testing::Test {
     model_->reg_arvalid_i = 0;
     const std::uint32_t data = model_->reg_rdata_o;
     EXPECT_EQ(model_->reg_rvalid_o, 1);
+    EXPECT_EQ(model_->reg_rresp_o, 0);
     clock();
     return data;
   }
