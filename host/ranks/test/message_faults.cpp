@@ -1,9 +1,10 @@
 // A library to be preloaded (LD_PRELOAD) into the ranks of a run: one of them ends, as by kill -9,
 // where it would send or take a message.
 //
-//   RAYGATE_FAULT_RANK=R, RAYGATE_FAULT_MESSAGE=N    rank R, at its message number N
-//   RAYGATE_FAULT_RANK=R, RAYGATE_FAULT_BYTES=N      rank R, in the middle of its first message of
-//   N bytes or more RAYGATE_FAULT_COUNT=FILE    at the end, how many messages rank 0 had
+//   RAYGATE_FAULT_RANK=R           rank R, where one of these says
+//   RAYGATE_FAULT_MESSAGE=N        at its message number N
+//   RAYGATE_FAULT_BYTES=N          in the middle of its first message of N bytes or more
+//   RAYGATE_FAULT_COUNT=FILE       at the end, how many messages rank 0 had
 //
 // By MPI's profiling interface (MPI 3.1, chapter 14).
 #include <mpi.h>

@@ -1,0 +1,40 @@
+"""sim.mutate: faults that change nothing are told from those that do, also behind registers."""
+
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+from sim.mutate.__main__ import equivalent
+
+# Two registers in a row, and a part whose tie is held at 0.
+SOURCE = """
+(* blackbox *) module part(input tie_i, input a_i, output y_o); endmodule
+module top(input clk_i, input [1:0] a_i, b_i, output reg [1:0] y_o, output z_o);
+  reg [1:0] q;
+  always @(posedge clk_i) begin
+    q <= a_i ^ b_i;
+    y_o <= q;
+  end
+  part u_part(.tie_i(1'b0), .a_i(q[0]), .y_o(z_o));
+endmodule
+"""
+
+
+class Equivalent(unittest.TestCase):
+    """equivalent."""
+
+    def test_tells_faults_from_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            netlist = pathlib.Path(folder) / "top"
+            netlist.with_suffix(".v").write_text(SOURCE)
+            subprocess.run(["yosys", "-q", "-p", f"read_verilog {netlist}.v; hierarchy -top top; proc; write_rtlil {netlist}.il"], check=True)
+            faults = {"const0 -module top -cell u_part -port tie_i": True, "const1 -module top -cell u_part -port tie_i": False,
+                      "inv -module top -cell u_part -port a_i": False}
+            for number, (fault, same) in enumerate(faults.items(), 1):
+                with self.subTest(fault):
+                    self.assertEqual(equivalent(netlist, f"mutate -ctrl mutant 16 {number} -mode {fault} -portbit 0"), same)
+
+
+if __name__ == "__main__":
+    unittest.main()
