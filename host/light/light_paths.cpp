@@ -18,7 +18,7 @@ constexpr double kBeyondLight = 0x1p-16;  // of the way from a light: off its ow
 
 // Light paths are aimed where they count, so that few of them are less noisy than what chance is
 // left with: with one for so many pixels, time times mean square error was least.
-constexpr std::uint64_t kPixelsOfPath = 4;
+constexpr std::uint64_t kPixelsOfPath = 8;
 
 std::uint64_t pixels_of(const FrameView& frame) {
   return static_cast<std::uint64_t>(frame.width) * static_cast<std::uint64_t>(frame.height);

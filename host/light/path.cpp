@@ -8,8 +8,9 @@ namespace {
 // Streams of random numbers.
 constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                         kDirection = 5, kFacet = 6, kLens = 9;
-constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
-constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
+constexpr int kRouletteDepth = 3;      // surfaces before Russian roulette begins
+constexpr float kMinPdf = 1e-20f;      // of a direction: floats have room for the inverse
+constexpr float kLampInMirror = 8.0f;  // times its share of reflection
 
 /// How likely each lobe is to be sampled, in proportion to what it reflects; rough glass scatters.
 template <class T>
@@ -25,6 +26,18 @@ struct LobeProbabilities {
   RAYGATE_INLINE LobeProbabilities(const Bsdf<T>& bsdf, const MaskOf<T>& is_specular)
       : LobeProbabilities(bsdf) {
     scatter = choose(is_specular, T{}, scatter);
+    sum = mirror + transmission + scatter;
+  }
+  /// Of a camera path's first surface, seen along the unit vector `view`: mirrors that show a lamp
+  /// are sampled more often, for they bring more than their share of reflection says.
+  RAYGATE_INLINE LobeProbabilities(const ShadingScene& shading, const Hits<T>& hits,
+                                   const Bsdf<T>& bsdf, const Triple<T>& normal,
+                                   const Triple<T>& view, const MaskOf<T>& is_first)
+      : LobeProbabilities(bsdf) {
+    if ((hits.kind & kMirrors) == 0 || !any(is_first)) return;
+    const auto shows_lamp =
+        shading.lights.point_at_areas(hits.surface.point, reflect(view, normal));
+    mirror = choose(is_first & shows_lamp, kLampInMirror * mirror, mirror);
     sum = mirror + transmission + scatter;
   }
 
@@ -299,6 +312,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
+  next.path.vertices = hits.path.vertices + 1u;
   const T cosine = hits.cosine(next.direction);
   const auto brings = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
   next.path.throughput =
@@ -346,6 +360,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);
     next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
     next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
+    next.path.vertices = choose(is_straight, hits.path.vertices, next.path.vertices);
   }
   if (has_ways_back) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
@@ -353,7 +368,6 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
     WaysBack<kFromLight, T>(shading, hits).mirror(hits, is_mirrored | is_bent, eta, next);
     next.path.ratio = choose(is_straight, hits.path.ratio, next.path.ratio);
-    next.path.vertices = choose(is_straight, hits.path.vertices, hits.path.vertices + 1u);
   }
   next.send(hits, 0);
 }
@@ -378,7 +392,8 @@ RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits
   const Triple<T>& view = hits.surface.view;
   const T pixels = per_area * edge_cosine(hits, way.direction);
   const T in = edge_cosine(hits, view);
-  const T pdf = seen.bsdf.pdf(view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
+  const LobeProbabilities<T> lobes(shading, hits, seen.bsdf, seen.normal, way.direction, scatters);
+  const T pdf = seen.bsdf.pdf(view) * lobes.scatter_probability();
   const T ratio = hits.path.ratio / in * pdf * pixels;
   const T mis_weight = 1.0f / (1.0f + ratio * ratio);
   const T cosine = at_least(dot(seen.normal, view), 0.0f);
@@ -397,7 +412,8 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
     Triple<T> radiance = zero<T>();
     if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
     if (block.batch->depth <= shading.max_depth) {
-      const LobeProbabilities<T> lobes(hits.bsdf);
+      const LobeProbabilities<T> lobes(shading, hits, hits.bsdf, hits.surface.normal,
+                                       hits.surface.view, hits.path.vertices == 0u);
       if (shading.lights.any_power()) sample_one_light(shading, hits, lobes);
       sample_scattered_ray<false>(shading, hits, lobes, radiance);
     }

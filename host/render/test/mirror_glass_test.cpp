@@ -145,5 +145,25 @@ TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
   }
 }
 
+// A lamp that covers all that a pond mirrors: few samples are enough to know what it reflects, for
+// they are not shared as the light is, most of which goes down into the dark.
+TEST(MirrorGlass, ALampInAPondIsAsBrightAsFresnelSays) {
+  Scene scene;
+  add(scene, rectangle({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}), glass(1.5f));
+  add(scene, rectangle({-20, 10, -20}, {40, 0, 0}, {0, 0, 40}), emitter(glm::vec3(10.0f)));
+  const Camera camera = camera_at({0, 3, 0.3}, {0, 0, 0}, 20.0);
+  RenderOptions options = light(kPath, 16, 16, 16);
+  options.filter = ReconstructionFilter::kBox;
+  const Film film = film_of(scene, camera, options);
+  double sum = 0.0, squares = 0.0;
+  for (const glm::vec4& colour : film.color) {
+    sum += double{colour.x};
+    squares += double{colour.x} * double{colour.x};
+  }
+  const double mean = sum / 256.0, deviation = std::sqrt(squares / 256.0 - mean * mean);
+  EXPECT_NEAR(mean, 0.4, 0.004);  // nearly straight down: 4 %
+  EXPECT_LT(deviation, 0.2 * mean);
+}
+
 }  // namespace
 }  // namespace raygate
