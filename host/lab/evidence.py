@@ -15,8 +15,8 @@ from synth.tables import markdown
 
 FILE = ROOT / "host" / "lab" / "results" / "evidence.jsonl"
 PAGE = FILE.with_name("README.md")
-# Words, tables of figures and tests change no figure; single faults and boards' bitstreams are on none of these pages.
-WITHOUT = (":(exclude)*.md", ":(exclude)*.csv", ":(exclude)*/test/*", ":(exclude)sim/mutate/*", ":(exclude)synth/flows/board.tcl")
+# Words, tables of figures, tests and assertions change no figure; single faults and boards are on none of these pages.
+WITHOUT = tuple(f":(exclude){path}" for path in ("*.md", "*.csv", "*/test/*", "sim/checks/*", "sim/mutate/*", "hw/board/*", "synth/flows/board.tcl"))
 
 
 def git(*words: str, root: pathlib.Path = ROOT) -> list[str]:
