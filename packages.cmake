@@ -1,9 +1,17 @@
-# Names the Debian packages of all libraries that are missing, at once, rather than one by one as each is looked for.
+# Names the Debian packages of the compiler and of all libraries that are missing, at once, rather than one by one as each
+# is looked for: before CMake looks for a compiler in words of its own.
+include(CheckLanguage)
 set(missing)
-set(pairs
-  libglm-dev:glm/glm.hpp libopenexr-dev:OpenEXR/OpenEXRConfig.h libimath-dev:Imath/ImathConfig.h
-  libpng-dev:png.h libcli11-dev:CLI/CLI.hpp libstb-dev:stb/stb_image.h
-  nlohmann-json3-dev:nlohmann/json.hpp libtinygltf-dev:tiny_gltf.h libcivetweb-dev:civetweb.h)
+check_language(CXX)
+if(NOT CMAKE_CXX_COMPILER)
+  list(APPEND missing g++)
+endif()
+set(pairs libglm-dev:glm/glm.hpp)
+if(NOT RAYGATE_LIBRARY)
+  list(APPEND pairs
+    libopenexr-dev:OpenEXR/OpenEXRConfig.h libimath-dev:Imath/ImathConfig.h libpng-dev:png.h libcli11-dev:CLI/CLI.hpp
+    libstb-dev:stb/stb_image.h nlohmann-json3-dev:nlohmann/json.hpp libtinygltf-dev:tiny_gltf.h libcivetweb-dev:civetweb.h)
+endif()
 if(RAYGATE_PYTHON)
   list(APPEND pairs libmpfr-dev:mpfr.h)
 endif()
@@ -12,7 +20,7 @@ foreach(pair ${pairs})
   list(GET pair 0 package)
   list(GET pair 1 header)
   string(MAKE_C_IDENTIFIER raygate_has_${package} found)
-  find_path(${found} ${header})
+  find_path(${found} ${header} PATHS /usr/include /usr/local/include)
   mark_as_advanced(${found})
   if(NOT ${found})
     list(APPEND missing ${package})
@@ -25,5 +33,5 @@ if(NOT raygate_has_pkg_config)
 endif()
 if(missing)
   list(JOIN missing " " missing)
-  message(FATAL_ERROR "Libraries are missing. On Debian: apt-get install --no-install-recommends ${missing}")
+  message(FATAL_ERROR "Packages are missing. On Debian:\n  apt-get install --no-install-recommends ${missing}\n")
 endif()

