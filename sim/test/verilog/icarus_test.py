@@ -22,7 +22,7 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
     design = catalogue.design(top, **dict(word.split("=") for word in words))
     netlist = out.with_suffix(".json")
     tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], out.with_suffix(".log"),
-              {**mapping.elaboration(design), "FAMILY": "ecp5", "OUT": str(netlist), "WRAPPER": "", "PORTS": ""})
+              {**mapping.elaboration(design), "FAMILY": "ecp5", "LUTS": "", "OUT": str(netlist), "WRAPPER": "", "PORTS": ""})
     empty = " ".join(f"-unset INITVAL_{row:02X}" for row in range(64))
     tools.run(["yosys", "-p", f"read_json {netlist}; chtype -set block_ram t:DP16KD; setparam {empty} t:block_ram; "
                f"rename -top {top}; write_verilog -noattr {out}"], out.with_suffix(".log"))
