@@ -166,8 +166,8 @@ configure += -DRAYGATE_MPI=$(if $(filter 0,$(MPI)),OFF,ON)
 endif
 
 cpu: configure += -DRAYGATE_SIMULATION=OFF
-# The first build of a folder takes two thirds of the time with several sources at once; who goes on to change them starts
-# with `make everything`.
+# The first build of a folder is faster with several sources at once; who goes on to change them starts with
+# `make everything`.
 ifeq ($(wildcard build/CMakeCache.txt),)
 cpu verilate: configure += -DCMAKE_UNITY_BUILD=ON
 endif

@@ -17,7 +17,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kBeyondLight = 0x1p-16;  // of the way from a light: off its own triangle
 
 // Light paths are aimed where they count, so that few of them are less noisy than what chance is
-// left with: with one for so many pixels, time times mean square error was least.
+// left with. Fewer pay where chance finds caustics, too, more where it does not.
 constexpr std::uint64_t kPixelsOfPath = 8;
 
 std::uint64_t pixels_of(const FrameView& frame) {
