@@ -50,6 +50,18 @@ class Bsdf {
   RAYGATE_INLINE Bsdf(const Surface<T>& surface, HitKind kind,
                       const MaterialParameters* const (&materials)[kLanesOf<T>]);
 
+  /// The same hits' BSDF where the surface is seen from another direction on the same side.
+  [[nodiscard]] RAYGATE_INLINE Bsdf
+  seen_from(const Surface<T>& seen, const MaterialParameters* const (&materials)[kLanesOf<T>]) const {
+    if ((kind_ & (kMirrors | kTransmits | kMetallicRoughness)) != 0) {
+      return Bsdf(seen, kind_, materials);
+    }
+    Bsdf other = *this;  // no lobe's share depends on the view
+    other.view_ = seen.view;
+    other.normal_ = seen.normal;
+    return other;
+  }
+
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& diffuse() const { return diffuse_; }
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& glossy() const { return glossy_; }
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& mirror() const { return mirror_; }
@@ -67,6 +79,11 @@ class Bsdf {
   /// Whether light from a direction of its own is scattered: diffuse or glossy, or by rough glass.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
     return largest(diffuse_) + glossy_sum() > 0.0f;
+  }
+  /// The same, or shows a highlight of what is one point.
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> answers_lights() const {
+    if (!has_highlight()) return scatters();
+    return scatters() | (largest(highlight()) > 0.0f);
   }
   /// What all of that brings, about.
   [[nodiscard]] RAYGATE_INLINE T scattered_share() const {
@@ -86,9 +103,8 @@ class Bsdf {
   /// The same, the mirror as a highlight where the light is one point's.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
                                               const MaskOf<T>& is_from_point) const {
-    const bool has_highlight = (kind_ & kMirrors) != 0 && (kind_ & kMetallicRoughness) == 0;
-    if (!has_highlight || !any(is_from_point)) return eval(light);
-    const Triple<T> shown = choose(is_from_point & (exponent_ > 1.0f), mirror_, zero<T>());
+    if (!has_highlight() || !any(is_from_point)) return eval(light);
+    const Triple<T> shown = choose(is_from_point, highlight(), zero<T>());
     return above(light, diffuse_ * per_pi() + (glossy_ + shown) * phong_lobe(light));
   }
 
@@ -125,6 +141,13 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE Triple<T> above(const Triple<T>& light,
                                                const Triple<T>& value) const {
     return choose(dot(normal_, light) > 0.0f, value, zero<T>());
+  }
+  [[nodiscard]] RAYGATE_INLINE bool has_highlight() const {
+    return (kind_ & kMirrors) != 0 && (kind_ & kMetallicRoughness) == 0;
+  }
+  /// What the mirror shows of a light that is one point.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> highlight() const {
+    return choose(exponent_ > 1.0f, mirror_, zero<T>());
   }
   [[nodiscard]] RAYGATE_INLINE T glossy_sum() const {
     const T glossy = largest(glossy_);

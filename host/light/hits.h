@@ -226,7 +226,7 @@ struct Hits {
   };
   [[nodiscard]] RAYGATE_INLINE Seen seen_from(const Triple<T>& direction) const {
     const Surface<T> seen = surface.seen_from(direction);
-    return {Bsdf<T>(seen, kind, materials), seen.normal};
+    return {bsdf.seen_from(seen, materials), seen.normal};
   }
 
   RAYGATE_INLINE void set_radiance(const Triple<T>& radiance) {

@@ -204,10 +204,13 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
+  const MaskOf<T> answers = hits.bsdf.answers_lights();
+  if (!lights.any_power() || !any(answers)) return;
   const ChosenLights<T> chosen(lights, hits);
   IncidentLight<T> light;
   if (any(chosen.are(Kind::kPoint))) light.take(chosen.points(lights, hits));
   if (any(chosen.are(Kind::kDirection))) light.take(chosen.directions(hits));
+  light.is_asked = light.is_asked & answers;
   const MaskOf<T> is_delta = light.is_asked;
   if (any(chosen.are(Kind::kEnvironment))) {
     light.take(chosen.environment(*lights.environment(), hits));
@@ -305,29 +308,34 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.has_flat = is_mirrored | next.is_transmitted;
   next.path.stream = hash(hits.path.stream, kNextRay);
 
+  const bool has_ways_back = kFromLight || shading.light_paths != nullptr;
+  std::optional<WaysBack<kFromLight, T>> ways_back;
+  if (has_ways_back) ways_back.emplace(shading, hits);
   const bool has_rough_glass = bsdf.has_rough_glass();
   const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
-  next.direction = bsdf.sample(hits.random(kDirection), has_choice ? hits.random(kFacet).x : T{});
-  next.flat = next.direction;
-  next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
   next.path.vertices = hits.path.vertices + 1u;
-  const T cosine = hits.cosine(next.direction);
-  const auto brings = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
-  next.path.throughput =
-      choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
-             zero<T>());
-  if (has_rough_glass) {  // no light path goes through: PathState::ratio is 0 from here on
-    if (kFromLight) return;
-    next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
-    next.is_wanted = next.is_wanted & brings;
-    next.path.ratio = T{};
-    next.send(hits, 0);
-    return;
+  next.direction = next.flat = zero<T>();
+  if (any(bsdf.scatters())) {
+    next.direction = bsdf.sample(hits.random(kDirection), has_choice ? hits.random(kFacet).x : T{});
+    next.flat = next.direction;
+    next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
+    const T cosine = hits.cosine(next.direction);
+    const auto brings = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
+    next.path.throughput =
+        choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
+               zero<T>());
+    if (has_rough_glass) {  // no light path goes through: PathState::ratio is 0 from here on
+      if (kFromLight) return;
+      next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
+      next.is_wanted = next.is_wanted & brings;
+      next.path.ratio = T{};
+      next.send(hits, 0);
+      return;
+    }
+    if (has_ways_back) ways_back->scatter(hits, throughput, next);
   }
-  const bool has_ways_back = kFromLight || shading.light_paths != nullptr;
-  if (has_ways_back) WaysBack<kFromLight, T>(shading, hits).scatter(hits, throughput, next);
   if ((hits.kind & kMirrors) != 0) {
     const Triple<T> reflected = reflect(surface.view, surface.normal);
     const Triple<T> reflected_throughput = throughput * bsdf.mirror() * (lobes.sum / lobes.mirror);
@@ -366,7 +374,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
     const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
     const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
-    WaysBack<kFromLight, T>(shading, hits).mirror(hits, is_mirrored | is_bent, eta, next);
+    ways_back->mirror(hits, is_mirrored | is_bent, eta, next);
     next.path.ratio = choose(is_straight, hits.path.ratio, next.path.ratio);
   }
   next.send(hits, 0);
@@ -414,7 +422,7 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
     if (block.batch->depth <= shading.max_depth) {
       const LobeProbabilities<T> lobes(shading, hits, hits.bsdf, hits.surface.normal,
                                        hits.surface.view, hits.path.vertices == 0u);
-      if (shading.lights.any_power()) sample_one_light(shading, hits, lobes);
+      sample_one_light(shading, hits, lobes);
       sample_scattered_ray<false>(shading, hits, lobes, radiance);
     }
     hits.set_radiance(radiance);
