@@ -39,10 +39,6 @@ template <class T>
 RAYGATE_INLINE T dot(const Triple<T>& a, const Triple<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-template <class T>
-RAYGATE_INLINE Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 /// The largest of three numbers that are not negative.
 template <class T>
 RAYGATE_INLINE T largest(const Triple<T>& a) {

@@ -51,8 +51,8 @@ class Bsdf {
                       const MaterialParameters* const (&materials)[kLanesOf<T>]);
 
   /// The same hits' BSDF where the surface is seen from another direction on the same side.
-  [[nodiscard]] RAYGATE_INLINE Bsdf
-  seen_from(const Surface<T>& seen, const MaterialParameters* const (&materials)[kLanesOf<T>]) const {
+  [[nodiscard]] RAYGATE_INLINE Bsdf seen_from(
+      const Surface<T>& seen, const MaterialParameters* const (&materials)[kLanesOf<T>]) const {
     if ((kind_ & (kMirrors | kTransmits | kMetallicRoughness)) != 0) {
       return Bsdf(seen, kind_, materials);
     }

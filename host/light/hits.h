@@ -71,8 +71,9 @@ struct PathLanes {
   Triple<T> throughput;
   T pdf;
   Triple<T> scattered_at, normal;
-  WordOf<T> sample, stream, index, vertices;
+  WordOf<T> sample, stream, index, way;
   T ratio;
+  WordOf<T> emitters;
 
   PathLanes() = default;
   RAYGATE_INLINE explicit PathLanes(const PathState* const (&states)[kLanesOf<T>]) {
@@ -85,30 +86,28 @@ struct PathLanes {
     sample = words_in(w[10]);
     stream = words_in(w[11]);
     index = words_in(w[12]);
-    vertices = words_in(w[13]);
+    way = words_in(w[13]);
     ratio = w[14];
+    emitters = words_in(w[15]);
+  }
+  /// The way on, in a mirror (0) or through glass (1).
+  [[nodiscard]] RAYGATE_INLINE WordOf<T> way_on(std::uint32_t step) const {
+    return choose((way > 0u) & (way < kSpecularWays / 2), 2u * way + step, WordOf<T>{});
+  }
+  /// Whether the set `ways` has a way.
+  [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& ways, const WordOf<T>& way) {
+    return ((ways >> way) & 1u) != 0u;
   }
   /// The records' words, in their order.
   RAYGATE_INLINE void put(T* w) const {
     static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
-                  offsetof(PathState, vertices) == 52 && offsetof(PathState, ratio) == 56 &&
+                  offsetof(PathState, way) == 52 && offsetof(PathState, ratio) == 56 &&
                   sizeof(PathState) == 64);
-    const T words[] = {throughput.x,
-                       throughput.y,
-                       throughput.z,
-                       pdf,
-                       scattered_at.x,
-                       scattered_at.y,
-                       scattered_at.z,
-                       normal.x,
-                       normal.y,
-                       normal.z,
-                       float_of(sample),
-                       float_of(stream),
-                       float_of(index),
-                       float_of(vertices),
-                       ratio,
-                       T{}};
+    const T words[] = {
+        throughput.x,      throughput.y,     throughput.z,    pdf,           scattered_at.x,
+        scattered_at.y,    scattered_at.z,   normal.x,        normal.y,      normal.z,
+        float_of(sample),  float_of(stream), float_of(index), float_of(way), ratio,
+        float_of(emitters)};
     for (int i = 0; i < 16; ++i) w[i] = words[i];
   }
 };
@@ -212,6 +211,17 @@ struct Hits {
   /// What chooses lights: the normal, or 0 where light from both sides counts.
   [[nodiscard]] RAYGATE_INLINE Triple<T> lit_normal() const {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
+  }
+
+  /// Whether they emit the same everywhere, on ways that are in PathState::emitters.
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_looked_at() const {
+    return gather<T>(materials, &MaterialParameters::emits_evenly) &
+           PathLanes<T>::has(path.emitters, path.way);
+  }
+  /// What they emit, but for what is looked at apart.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
+    if ((kind & kEmits) == 0) return bsdf.emission();
+    return choose(are_looked_at(), zero<T>(), bsdf.emission());
   }
 
   /// A point of the rays' own random streams for this purpose.

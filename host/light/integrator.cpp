@@ -23,7 +23,7 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
     const T facing = at_least(dot(hits.surface.normal, hits.surface.view), 0.0f);
     const bool is_seen = (hits.kind & kShadowCatcher) == 0;
     const Triple<T> colour = is_seen ? hits.surface.colour : zero<T>();
-    hits.set_radiance(colour * facing + hits.bsdf.emission());
+    hits.set_radiance(colour * facing + hits.emission());
   });
 }
 
@@ -47,8 +47,9 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
       point_error_(options.point_error),
       materials_(prepared.materials) {
   const bool is_whitted = kind == IntegratorKind::kWhitted;
+  const bool splits = is_whitted || kind == IntegratorKind::kEmitters;
   block_.light_samples_per_hit = is_whitted ? lights.count() : is_path() ? 1 : 0;
-  block_.scattered_per_hit = is_whitted ? 2 : is_path() ? 1 : 0;
+  block_.scattered_per_hit = splits ? 2 : is_path() ? 1 : 0;
   block_size_ = std::clamp<std::size_t>(
       kMostLightSamples / std::max<std::size_t>(1, block_.light_samples_per_hit), 1, kMostHits);
   block_.places.resize(block_size_);
@@ -64,14 +65,16 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   const std::size_t count = end - begin;
   block_.batch = &batch;
   block_.begin = begin;
-  block_.first_surfaces = batch.depth == 0 ? output.first_surface.data() : nullptr;
+  block_.first_surfaces =
+      batch.depth == 0 && !output.first_surface.empty() ? output.first_surface.data() : nullptr;
   for (LightSample& sample : block_.light_samples_of(0, count)) sample.is_asked = 0;
   for (ScatteredRay& scattered : block_.scattered_of(0, count)) scattered.is_wanted = 0;
   sort(hits, count, output);
-  ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary   ? shade_primary
-                                    : kind_ == IntegratorKind::kWhitted ? shade_whitted
-                                    : kind_ == IntegratorKind::kLight   ? shade_light_path
-                                                                        : shade_path;
+  ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary    ? shade_primary
+                                    : kind_ == IntegratorKind::kWhitted  ? shade_whitted
+                                    : kind_ == IntegratorKind::kLight    ? shade_light_path
+                                    : kind_ == IntegratorKind::kEmitters ? shade_emitters
+                                                                         : shade_path;
   for (HitKind kind = 0; kind < kHitKinds; ++kind) {
     const std::span<const std::uint32_t> at(order_.data() + first_[kind],
                                             first_[kind + 1] - first_[kind]);

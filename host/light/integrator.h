@@ -61,7 +61,7 @@ class Integrator {
     return kind_ == IntegratorKind::kPath || kind_ == IntegratorKind::kLight;
   }
   [[nodiscard]] bool sees_background() const {
-    return kind_ != IntegratorKind::kPrimary && kind_ != IntegratorKind::kLight;
+    return kind_ == IntegratorKind::kWhitted || kind_ == IntegratorKind::kPath;
   }
   void sort(std::span<const NearestHit> hits, std::size_t count, ShadingOutput& output);
   void add_infinite_light(ShadingOutput& output);

@@ -10,7 +10,9 @@ enum class IntegratorKind {
   kPrimary,  ///< camera rays alone, lit from the camera: diffuse colour times cosine, and emission
   kWhitted,  ///< reflection, refraction and shadows, as in the paper
   kPath,     ///< full global illumination: Monte Carlo path tracing
-  kLight,    ///< paths from the lights to the camera: a part of kPath, not to be asked for
+  // Parts of others, not to be asked for:
+  kLight,     ///< paths from the lights to the camera
+  kEmitters,  ///< emitters that the camera sees: directly, in mirrors and through glass
 };
 
 /// How one of many lights is chosen.

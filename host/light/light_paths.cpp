@@ -28,12 +28,6 @@ std::uint64_t pixels_of(const FrameView& frame) {
 constexpr std::uint32_t kLightPaths = 0x6C696768;
 constexpr std::uint32_t kSource = 10, kPlace = 11, kBall = 12, kTowards = 13;
 
-bool is_mirror_or_glass(const MaterialParameters& material) {
-  constexpr HitKind kRoughGlass = kMetallicRoughness | kGlossy | kMirrors;
-  return (material.kind & kMirrors) != 0 && (~material.kind & kRoughGlass) != 0 &&
-         (material.mirror_is_traced || material.refracts);
-}
-
 glm::dvec3 wide(const Triple<float>& v) { return {v.x, v.y, v.z}; }
 Triple<float> narrow(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -68,7 +62,9 @@ LightPaths::LightPaths(const PreparedScene& prepared, const Lights& lights, cons
     : lights_(lights),
       count_((pixels_of(frame) + kPixelsOfPath - 1) / kPixelsOfPath),
       frame_(frame) {
-  if (!lights.any_power() || std::ranges::none_of(prepared.materials, is_mirror_or_glass)) return;
+  if (!lights.any_power() ||
+      std::ranges::none_of(prepared.materials, &MaterialParameters::is_mirror_or_glass))
+    return;
   find_balls(prepared);
   if (balls_.empty()) return;
   const Bounds3 box = position_bounds(prepared.scene);
@@ -80,7 +76,8 @@ void LightPaths::find_balls(const PreparedScene& prepared) {
   const auto visit = [&](const auto& each) {
     for (std::uint32_t primitive = 0; primitive < prepared.bvh.primitive_count(); ++primitive) {
       const FaceRef face = prepared.bvh.face_of(primitive);
-      if (!is_mirror_or_glass(prepared.materials[face_at(prepared.scene, face).material])) continue;
+      if (!prepared.materials[face_at(prepared.scene, face).material].is_mirror_or_glass())
+        continue;
       for (const glm::vec3& corner : prepared.bvh.corners_of(primitive)) {
         each(object_at(prepared.scene, face), glm::dvec3(corner));
       }

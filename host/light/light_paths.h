@@ -18,7 +18,7 @@ namespace raygate {
 /// from that place of the light against its ray as densely as `density()` says.
 template <class Density>
 RAYGATE_INLINE float caustic_weight(const PathState& state, const Density& density) {
-  if (!(state.ratio > 0.0f) || state.pdf > 0.0f || state.vertices == 0) return 1.0f;
+  if (!(state.ratio > 0.0f) || state.pdf > 0.0f || state.way == 1) return 1.0f;
   const float ratio = state.ratio * density();
   return 1.0f / (1.0f + ratio * ratio);
 }

@@ -183,12 +183,6 @@ class Lights {
                                           narrow(turn.sine));
   }
 
-  /// Which rays point at an area light, whatever is between. None of them where area lights are of
-  /// more than kFewPatches patches.
-  template <class T>
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> point_at_areas(const Triple<T>& origin,
-                                                        const Triple<T>& direction) const;
-
   // For sampling one light at a time:
 
   /// What the light tree chooses: a light, or a patch (a triangle or two) of an area light.
@@ -245,8 +239,6 @@ class Lights {
   [[nodiscard]] static LightBounds light_bounds(const Patch& patch, const AreaLight& light,
                                                 double unit, OuterSide side);
 
-  static constexpr std::size_t kFewPatches = 8;
-
   const Scene& scene_;
   const Bvh& bvh_;
   CameraLights own_;
@@ -296,26 +288,6 @@ RAYGATE_INLINE LightPoint<T> Lights::sample_patches(const std::uint32_t (&number
           gather<T>(patches, &Patch::normal),
           choose(is_triangle | (along_u > along_v), gather<T>(patches, &Patch::primitive),
                  gather<T>(patches, &Patch::slot_beyond))};
-}
-
-template <class T>
-RAYGATE_INLINE MaskOf<T> Lights::point_at_areas(const Triple<T>& origin,
-                                                const Triple<T>& direction) const {
-  const T one = spread<T>(1.0f);
-  MaskOf<T> found = one < 0.0f;
-  if (patches_.size() > kFewPatches) return found;
-  for (const Patch& patch : patches_) {
-    // origin + t direction = corner + a u + b v by Cramer's rule, all times the determinant.
-    const Triple<T> u = spread<T>(patch.u), v = spread<T>(patch.v);
-    const Triple<T> way = origin - spread<T>(patch.corner);
-    const Triple<T> beside_v = cross(direction, v), beside_u = cross(way, u);
-    const T determinant = dot(beside_v, u), sign = choose(determinant < 0.0f, -one, one);
-    const T a = sign * dot(beside_v, way), b = sign * dot(beside_u, direction);
-    const T most = patch.is_triangle ? a + b : maximum(a, b);
-    found = found | ((sign * dot(beside_u, v) > 0.0f) & (a >= 0.0f) & (b >= 0.0f) &
-                     (most <= sign * determinant));
-  }
-  return found;
 }
 
 }  // namespace raygate

@@ -40,6 +40,7 @@ struct MaterialParameters {
   bool refracts = false;
   bool is_fresnel = false;  ///< the mirror is Fresnel's
   bool mirror_is_traced = true;
+  bool emits_evenly = false;  ///< the same everywhere on it
   /// Of a metallic-roughness material, which has the textures' colours in all its shares:
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
   float specular = 1.0f;         ///< of what is not metallic, at grazing angles; and, times this,
@@ -53,6 +54,12 @@ struct MaterialParameters {
       false;  ///< is_masked_out may say that it is not there: hits have transparent() then
 
   explicit MaterialParameters(const Material& material);
+
+  /// A smooth one, whose directions are no matter of chance.
+  [[nodiscard]] bool is_mirror_or_glass() const {
+    constexpr HitKind kRoughGlass = kMetallicRoughness | kGlossy | kMirrors;
+    return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0 && (mirror_is_traced || refracts);
+  }
 
   /// A material that is not there: all light goes straight on.
   [[nodiscard]] static MaterialParameters transparent() {

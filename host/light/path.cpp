@@ -8,9 +8,8 @@ namespace {
 // Streams of random numbers.
 constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                         kDirection = 5, kFacet = 6, kLens = 9;
-constexpr int kRouletteDepth = 3;      // surfaces before Russian roulette begins
-constexpr float kMinPdf = 1e-20f;      // of a direction: floats have room for the inverse
-constexpr float kLampInMirror = 8.0f;  // times its share of reflection
+constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
+constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
 
 /// How likely each lobe is to be sampled, in proportion to what it reflects; rough glass scatters.
 template <class T>
@@ -26,18 +25,6 @@ struct LobeProbabilities {
   RAYGATE_INLINE LobeProbabilities(const Bsdf<T>& bsdf, const MaskOf<T>& is_specular)
       : LobeProbabilities(bsdf) {
     scatter = choose(is_specular, T{}, scatter);
-    sum = mirror + transmission + scatter;
-  }
-  /// Of a camera path's first surface, seen along the unit vector `view`: mirrors that show a lamp
-  /// are sampled more often, for they bring more than their share of reflection says.
-  RAYGATE_INLINE LobeProbabilities(const ShadingScene& shading, const Hits<T>& hits,
-                                   const Bsdf<T>& bsdf, const Triple<T>& normal,
-                                   const Triple<T>& view, const MaskOf<T>& is_first)
-      : LobeProbabilities(bsdf) {
-    if ((hits.kind & kMirrors) == 0 || !any(is_first)) return;
-    const auto shows_lamp =
-        shading.lights.point_at_areas(hits.surface.point, reflect(view, normal));
-    mirror = choose(is_first & shows_lamp, kLampInMirror * mirror, mirror);
     sum = mirror + transmission + scatter;
   }
 
@@ -98,7 +85,7 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
       choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
              maximum(power_heuristic(hits.path.pdf, light_pdf), min_weight), spread<T>(1.0f));
   return hits.path.throughput *
-         (hits.bsdf.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
+         (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
 }
 
 /// One light for each hit, chosen by what it may bring there.
@@ -240,7 +227,7 @@ struct WaysBack {
   MaskOf<T> is_first;
 
   RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
-      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.vertices == 0u) {
+      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.way == 1u) {
     arrived = hits.path.ratio / in;
     if (kFromLight) return;
     const Triple<T> way =
@@ -315,7 +302,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
-  next.path.vertices = hits.path.vertices + 1u;
+  next.path.way = WordOf<T>{};
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
     next.direction = bsdf.sample(hits.random(kDirection), has_choice ? hits.random(kFacet).x : T{});
@@ -343,6 +330,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
     next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
     next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
+    next.path.way = choose(is_mirrored, hits.path.way_on(0), next.path.way);
     const auto shows_background = next.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
     radiance = choose(shows_background,
                       radiance + reflected_throughput * sky(shading.lights, reflected), radiance);
@@ -368,7 +356,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);
     next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
     next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
-    next.path.vertices = choose(is_straight, hits.path.vertices, next.path.vertices);
+    next.path.way =
+        choose(is_straight, hits.path.way, choose(is_bent, hits.path.way_on(1), next.path.way));
   }
   if (has_ways_back) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
@@ -385,7 +374,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;
-  const auto scatters = hits.bsdf.scatters() & (hits.path.vertices != 0u);
+  const auto scatters = hits.bsdf.scatters() & (hits.path.way != 1u);
   if (!any(scatters) || hits.bsdf.has_rough_glass()) return;
   const SquarePoint<T> u = hits.random(kLens);
   const auto x = unpack(u.x), y = unpack(u.y);
@@ -400,8 +389,7 @@ RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits
   const Triple<T>& view = hits.surface.view;
   const T pixels = per_area * edge_cosine(hits, way.direction);
   const T in = edge_cosine(hits, view);
-  const LobeProbabilities<T> lobes(shading, hits, seen.bsdf, seen.normal, way.direction, scatters);
-  const T pdf = seen.bsdf.pdf(view) * lobes.scatter_probability();
+  const T pdf = seen.bsdf.pdf(view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
   const T ratio = hits.path.ratio / in * pdf * pixels;
   const T mis_weight = 1.0f / (1.0f + ratio * ratio);
   const T cosine = at_least(dot(seen.normal, view), 0.0f);
@@ -420,8 +408,7 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
     Triple<T> radiance = zero<T>();
     if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
     if (block.batch->depth <= shading.max_depth) {
-      const LobeProbabilities<T> lobes(shading, hits, hits.bsdf, hits.surface.normal,
-                                       hits.surface.view, hits.path.vertices == 0u);
+      const LobeProbabilities<T> lobes(hits.bsdf);
       sample_one_light(shading, hits, lobes);
       sample_scattered_ray<false>(shading, hits, lobes, radiance);
     }
@@ -437,8 +424,8 @@ void shade_light_path(const ShadingScene& shading, HitBlock& block, HitKind kind
     hits.set_radiance(zero<T>());
     if (block.batch->depth > shading.max_depth) return;
     Triple<T> none = zero<T>();
-    sample_scattered_ray<true>(shading, hits,
-                               LobeProbabilities<T>(hits.bsdf, hits.path.vertices == 0u), none);
+    sample_scattered_ray<true>(shading, hits, LobeProbabilities<T>(hits.bsdf, hits.path.way == 1u),
+                               none);
   });
 }
 

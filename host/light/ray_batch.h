@@ -23,11 +23,20 @@ struct alignas(16) PathState {
   std::uint32_t sample = 0;      ///< of those that are traced together: whose radiance it adds to
   std::uint32_t stream = 0;      ///< of random numbers, its own in the picture
   std::uint32_t index = 0;       ///< of its points in such streams
-  std::uint32_t vertices = 0;    ///< surfaces that have scattered it
+  /// What the camera sees by: 1 for a ray of its own, 2w for what w sees in a mirror, 2w + 1 for
+  /// what it sees through glass that bends. 0: beyond kSpecularWays, or after a surface that
+  /// scatters. Light paths begin with 1, too.
+  std::uint32_t way = 1;
   /// How dense light paths are here over how dense camera paths are, or on light paths the other
   /// way round (LightPaths); 0: there is one kind alone.
   float ratio = 0.0f;
+  /// By which ways emitters are not counted, for they are looked at apart: bit w for way w; and,
+  /// of those looks, bit 16 + w: there is a ray that goes this way (EmitterLooks).
+  std::uint32_t emitters = 0;
 };
+
+/// PathState::way is less: three mirrors or borders of glass.
+inline constexpr std::uint32_t kSpecularWays = 16;
 
 /// Rays with the same number of surfaces behind them.
 struct RayBatch {

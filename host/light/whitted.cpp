@@ -164,6 +164,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.has_flat = next.is_wanted;
     next.is_transmitted = next.is_wanted & !next.is_wanted;
     next.path.stream = hash(hits.path.stream, kMirror);
+    next.path.way = hits.path.way_on(0);
     next.send(hits, 0);
   }
   if (!bsdf.has_rough_glass()) next.path.pdf = T{};
@@ -183,6 +184,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.is_wanted = next.is_wanted & ((!is_bent) | bent.exists);
     next.is_transmitted = next.is_wanted;
     next.path.stream = hash(hits.path.stream, kTransmission);
+    next.path.way = choose(is_bent, hits.path.way_on(1), hits.path.way);
     next.send(hits, 1);
   }
 }
@@ -195,7 +197,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     const Bsdf<T>& bsdf = hits.bsdf;
     const bool goes_on = block.batch->depth < shading.max_depth;
-    Triple<T> emission = bsdf.emission(), glossy = bsdf.glossy();
+    Triple<T> emission = hits.emission(), glossy = bsdf.glossy();
     // What a light was asked for is not counted again where it is met.
     if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {

@@ -23,9 +23,8 @@ class Coordinator : public TileWorkers {
   Coordinator(const RenderJob& job, const Tiles& tiles,
               std::unique_ptr<Intersector> first_intersector,
               const IntersectorFactory& make_intersector, const RenderMonitor& monitor, Film& film,
-              std::span<EmitterEdge> emitter_edges, RenderStats& stats)
-      : TileWorkers(job, std::move(first_intersector), make_intersector, film, emitter_edges,
-                    stats),
+              std::span<EmitterWays> emitter_ways, RenderStats& stats)
+      : TileWorkers(job, std::move(first_intersector), make_intersector, film, emitter_ways, stats),
         tiles_(tiles),
         monitor_(monitor),
         queue_(tiles.count, tiles.passes(), job.options.unfinished != nullptr) {
@@ -208,9 +207,9 @@ class Coordinator : public TileWorkers {
 void run_coordinator(const RenderJob& job, const Tiles& tiles,
                      std::unique_ptr<Intersector> first_intersector,
                      const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
-                     Film& film, std::span<EmitterEdge> emitter_edges, RenderStats& stats) {
+                     Film& film, std::span<EmitterWays> emitter_ways, RenderStats& stats) {
   Coordinator(job, tiles, std::move(first_intersector), make_intersector, monitor, film,
-              emitter_edges, stats)
+              emitter_ways, stats)
       .run();
 }
 

@@ -21,19 +21,10 @@ struct RenderJob {
   const Lights& lights;
   glm::dvec3 ambient;                       ///< as IntegratorOptions has it
   const LightPaths* light_paths = nullptr;  ///< none: caustics are found by chance
-
-  /// What a triangle, or kNone, sends out as a light whose edges are worth more rays: it is one
-  /// colour.
-  [[nodiscard]] glm::vec3 emission_of(std::uint32_t primitive) const {
-    if (primitive == NearestHit::kNone) return glm::vec3(0.0f);
-    const Triangle& face = face_at(prepared.scene, prepared.bvh.face_of(primitive));
-    const Material& material = prepared.scene.materials[face.material];
-    return material.emission_map.texture == kNoIndex ? material.emission : glm::vec3(0.0f);
-  }
 };
 
 // Streams of random numbers; the integrators' are made from others.
-inline constexpr std::uint32_t kFilterStream = 0, kEmitterEdgeStream = 7, kLensStream = 8;
+inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStream = 8;
 
 /// Sample `index` of the pixel that `sampler` is of, where `stream` has it in the filter. With one
 /// sample a pixel its ray goes through the middles of pixel and lens.

@@ -11,7 +11,7 @@
 #include "host/light/lights.h"
 #include "host/ranks/ranks.h"
 #include "host/render/coordinator.h"
-#include "host/render/emitter_edges.h"
+#include "host/render/emitter_looks.h"
 #include "host/render/tiles.h"
 #include "host/scene/camera.h"
 
@@ -77,9 +77,9 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   }
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lights
   // have no edges.
-  std::vector<EmitterEdge> emitter_edges;
+  std::vector<EmitterWays> emitter_ways;
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
-    emitter_edges.assign(film.color.size(), EmitterEdge::kUnknown);
+    emitter_ways.assign(film.color.size(), kUnknownWays);
   }
   const RenderJob job{prepared,
                       camera,
@@ -91,11 +91,11 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
                       light_paths ? &*light_paths : nullptr};
   if (ranks > 1 && options.ranks->index() != 0) {
     run_worker(*options.ranks, job, std::move(first_intersector), make_intersector, monitor, film,
-               emitter_edges, stats);
+               emitter_ways, stats);
     return film;
   }
   run_coordinator(job, tiles, std::move(first_intersector), make_intersector, monitor, film,
-                  emitter_edges, stats);
+                  emitter_ways, stats);
   if (stats.intersect.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
     const std::uint64_t every_record = bvh.primitive_count() * origins * std::uint64_t(ranks);

@@ -12,7 +12,6 @@
 namespace raygate {
 namespace {
 
-constexpr int kEdgeSamples = 8;                   // at a light's edge, for each sample
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
 IntegratorOptions integrator_options(const RenderJob& job) {
@@ -29,16 +28,17 @@ IntegratorOptions integrator_options(const RenderJob& job) {
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
-                           std::span<EmitterEdge> emitter_edges)
+                           std::span<EmitterWays> emitter_ways)
     : job_(job),
       intersector_(intersector),
       film_(film),
-      emitter_edges_(emitter_edges),
+      emitter_ways_(emitter_ways),
       integrator_(job.options.integrator, job.prepared, job.lights, job.options.skips,
                   integrator_options(job)),
       shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
+  if (!emitter_ways.empty()) emitter_looks_.emplace(job, intersector, is_counting_);
   if (job.light_paths == nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options.skips,
                             integrator_options(job));
@@ -55,6 +55,7 @@ void TileRenderer::make_camera_rays() {
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
       state.stream = sampler.key();
       state.index = index;
+      if (!emitter_ways_.empty()) state.emitters = emitter_ways_[pixel.index];
       const Ray& ray = batch_.rays.emplace_back(
           camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
       if (job_.light_paths == nullptr) continue;
@@ -78,9 +79,10 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   output_.first_surface.assign(samples_, {});
   output_.shadows.clear();
   direct_light_.assign(samples_, glm::vec3(0.0f));
-  edge_emission_.assign(pixels_.size(), {});
+  emitter_sums_.assign(pixels_.size(), {});
   tile_ = tile;
-  edge_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
+  emitter_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0,
+                       {});
   stats_.shade_seconds += watch.lap();
   return trace_camera_rays(tile, keep_going) && trace_light_paths(keep_going);
 }
@@ -96,11 +98,15 @@ bool TileRenderer::trace_camera_rays(const PixelRect& tile,
     stats_.shade_seconds += watch.lap();
     return true;
   }
+  if (emitter_looks_ && emitter_ways_[pixels_[0].index] == kUnknownWays) {
+    emitter_looks_->find(film_, tile, emitter_ways_, emitter_work_);
+  }
+  watch.lap();
   make_camera_rays();
   stats_.camera_rays += samples_;
   stats_.shade_seconds += watch.lap();
   if (!trace_batch(integrator_, keep_going)) return false;
-  supersample_emitter_edges(tile);
+  look_at_emitters();
   return true;
 }
 
@@ -142,56 +148,12 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   return trace_batch(*light_integrator_, keep_going);
 }
 
-/// Where a light's edge runs through a pixel, looks more often what camera rays see of lights: the
-/// mean of that takes the place of what the samples have first_hit. A light's own light is all that
-/// is exchanged, whatever else the samples brought; and that is so whatever emission_of() says.
-void TileRenderer::supersample_emitter_edges(const PixelRect& tile) {
-  if (emitter_edges_.empty()) return;
-  Stopwatch watch;
-  std::size_t rays = 0;
-  if (emitter_edges_[pixels_[0].index] == EmitterEdge::kUnknown) {
-    rays = find_emitter_edges(job_, intersector_, film_, tile, emitter_edges_, edge_work_);
-  }
-  batch_.clear();
-  for (const PixelSamples& pixel : pixels_) {
-    if (emitter_edges_[pixel.index] == EmitterEdge::kNo) continue;
-    const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
-    for (int look = pixel.first * kEdgeSamples; look < pixel.end * kEdgeSamples; ++look) {
-      batch_.rays.push_back(camera_ray(job_, pixel.x, pixel.y, sampler,
-                                       static_cast<std::uint32_t>(look), kEmitterEdgeStream));
-    }
-  }
-  rays += batch_.rays.size();
-  stats_.rays += rays;
-  stats_.camera_rays += rays;
-  if (batch_.rays.empty()) return;
-  hits_.resize(batch_.rays.size());
-  work_.resize(is_counting_ ? batch_.rays.size() : 0);
-  stats_.shade_seconds += watch.lap();
-  intersector_.intersect(batch_.rays,
-                         {.common_origin = job_.camera.has_common_origin(),
-                          .culling = job_.options.skips.culling,
-                          .work = work_},
-                         hits_);
-  watch.lap();
-  std::size_t ray = 0;
-  std::size_t sample = 0;
-  for (std::size_t p = 0; p < pixels_.size(); ++p) {
-    const PixelSamples& pixel = pixels_[p];
-    const std::size_t first = sample;
-    sample += static_cast<std::size_t>(pixel.end - pixel.first);
-    if (emitter_edges_[pixel.index] == EmitterEdge::kNo) continue;
-    const auto add = [&](std::uint32_t primitive, double share) {
-      const glm::vec3 emission = job_.emission_of(primitive);
-      for (int k = 0; k < 3; ++k) edge_emission_[p][k].add(share * double{emission[k]});
-    };
-    for (std::size_t i = first * kEdgeSamples; i < sample * kEdgeSamples; ++i, ++ray) {
-      add(hits_[ray].primitive, 1.0 / kEdgeSamples);
-      if (is_counting_) edge_work_[place_in_tile(pixel)] += work_[ray];
-    }
-    for (std::size_t i = first; i < sample; ++i) add(first_hits_[i].primitive, -1.0);
-  }
-  stats_.shade_seconds += watch.lap();
+/// See EmitterLooks.
+void TileRenderer::look_at_emitters() {
+  if (!emitter_looks_) return;
+  std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
+  emitter_looks_->look(pixels_, emitter_ways_, emitter_sums_, work);
+  for (std::size_t p = 0; p < work.size(); ++p) emitter_work_[place_in_tile(pixels_[p])] += work[p];
 }
 
 /// The rays of one depth, and the shadow rays from where they end: these in several batches where
@@ -298,8 +260,8 @@ void TileRenderer::write() {
       count(first_hit.work);
     }
     color[3].add(hits);
-    for (int k = 0; k < 3; ++k) color[k] += edge_emission_[p][k];
-    if (is_counting_) count(edge_work_[place_in_tile(pixel)]);
+    for (int k = 0; k < 3; ++k) color[k] += emitter_sums_[p][k];
+    if (is_counting_) count(emitter_work_[place_in_tile(pixel)]);
     const int samples = pixel.end - job_.options.first_sample;
     if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
     if (!kept.color.empty()) kept.color[at] = color;
@@ -347,6 +309,7 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.intersect += intersector_.counters();
   stats.skipped += stats_.skipped;
   stats.skipped += integrator_.skipped();
+  if (emitter_looks_) emitter_looks_->add_to(stats);
   if (light_integrator_) {
     stats.point_doubts += light_integrator_->point_doubts();
     stats.skipped += light_integrator_->skipped();

@@ -16,7 +16,7 @@
 #include "host/light/ray_batch.h"
 #include "host/light/shadow_rays.h"
 #include "host/render/adaptive_sampling.h"
-#include "host/render/emitter_edges.h"
+#include "host/render/emitter_looks.h"
 #include "host/render/render_job.h"
 #include "host/render/splat_layer.h"
 
@@ -27,9 +27,9 @@ namespace raygate {
 /// the tile: each sample's light is added up by itself, depth by depth.
 class TileRenderer {
  public:
-  /// `emitter_edges`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
+  /// `emitter_ways`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
   TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
-               std::span<EmitterEdge> emitter_edges);
+               std::span<EmitterWays> emitter_ways);
 
   /// Traces the samples that samples_to_trace() names. `keep_going` is asked between batches; when
   /// it says no, what was traced is not worth writing, and false is returned.
@@ -52,7 +52,7 @@ class TileRenderer {
   };
 
   void make_camera_rays();
-  void supersample_emitter_edges(const PixelRect& tile);
+  void look_at_emitters();
   bool trace_camera_rays(const PixelRect& tile, const std::function<bool()>& keep_going);
   bool trace_light_paths(const std::function<bool()>& keep_going);
   bool trace_batch(Integrator& integrator, const std::function<bool()>& keep_going);
@@ -67,7 +67,8 @@ class TileRenderer {
   RenderJob job_;
   Intersector& intersector_;
   Film& film_;
-  std::span<EmitterEdge> emitter_edges_;
+  std::span<EmitterWays> emitter_ways_;
+  std::optional<EmitterLooks> emitter_looks_;
   Integrator integrator_;
   std::optional<Integrator> light_integrator_;  // of light paths
   ShadowRays shadow_rays_;
@@ -84,11 +85,9 @@ class TileRenderer {
   bool is_counting_;
   ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by sample: what shadow rays have brought
-  std::vector<std::array<ExactAccumulator, 3>>
-      edge_emission_;  // by pixel: see supersample_emitter_edges()
+  std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;  // by pixel, of emitter_looks_
   PixelRect tile_;
-  std::vector<RayWork>
-      edge_work_;  // by pixel of the tile: of what supersample_emitter_edges() traced
+  std::vector<RayWork> emitter_work_;  // by pixel of the tile: of the same
   RayBatch batch_;
   std::vector<NearestHit> hits_;  // of the batch
   std::vector<RayWork> work_;     // of the batch, if it is counted

@@ -12,7 +12,7 @@
 
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
-#include "host/render/emitter_edges.h"
+#include "host/render/emitter_looks.h"
 #include "host/render/render_job.h"
 #include "host/render/tile_renderer.h"
 
@@ -33,13 +33,13 @@ class TileWorkers {
  public:
   TileWorkers(const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
               const IntersectorFactory& make_intersector, Film& film,
-              std::span<EmitterEdge> emitter_edges, RenderStats& stats)
+              std::span<EmitterWays> emitter_ways, RenderStats& stats)
       : job_(job),
         film_(film),
         stats_(stats),
         first_intersector_(std::move(first_intersector)),
         make_intersector_(make_intersector),
-        emitter_edges_(emitter_edges) {}
+        emitter_ways_(emitter_ways) {}
   TileWorkers(const TileWorkers&) = delete;
   TileWorkers& operator=(const TileWorkers&) = delete;
   virtual ~TileWorkers() = default;
@@ -83,7 +83,7 @@ class TileWorkers {
 
   std::unique_ptr<Intersector> first_intersector_;  // of the thread that begins first
   const IntersectorFactory& make_intersector_;
-  std::span<EmitterEdge> emitter_edges_;
+  std::span<EmitterWays> emitter_ways_;
 };
 
 }  // namespace raygate

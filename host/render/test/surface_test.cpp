@@ -107,7 +107,9 @@ TEST(Surface, ManyMasksHideNothing) {
   const auto center = [&](int squares, IntegratorKind integrator) {
     Scene scene;
     scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{0, 0, 0}});
-    add(scene, rectangle({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}), matte(glm::vec3(0.8f)));
+    add(scene, rectangle({-3, -3, -1}, {3, 0, 0}, {0, 6, 0}), matte(glm::vec3(0.8f)));
+    add(scene, rectangle({0, -3, -1}, {3, 0, 0}, {0, 6, 0}),
+        integrator == kWhitted ? emitter(glm::vec3(1.0f)) : matte(glm::vec3(0.8f)));
     for (int i = 0; i < squares; ++i) {
       const std::size_t first = scene.positions.size();
       add_picture(scene, masked);
@@ -115,7 +117,7 @@ TEST(Surface, ManyMasksHideNothing) {
         scene.positions[k].z += 0.1f * static_cast<float>(i);
     }
     scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
-    RenderOptions options = light(integrator, 1, 1, integrator == kPath ? 256 : 1);
+    RenderOptions options = light(integrator, 1, 1, integrator == kPath ? 256 : 4);
     options.ambient = 0.0;
     return film_of(scene, camera_at({0, 0, 6}, {0, 0, 0}, 1e-2), options).color[0].r;
   };

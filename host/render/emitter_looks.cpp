@@ -1,0 +1,193 @@
+#include "host/render/emitter_looks.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "host/base/stopwatch.h"
+#include "host/render/tile_frustum.h"
+
+namespace raygate {
+namespace {
+
+constexpr int kLooks = 8;                    // for each sample
+constexpr std::size_t kManyLooks = 1 << 12;  // at once
+constexpr float kLeastShare = 1.0f / 64.0f;  // of the brightest emitter
+
+constexpr EmitterWays kDirect = 1u << 1;
+
+/// Those ways, and the rays that lead there.
+EmitterWays with_rays(EmitterWays counted) {
+  EmitterWays ways = counted;
+  for (std::uint32_t way = 1; way < kSpecularWays; ++way) {
+    if ((counted >> way & 1) == 0) continue;
+    for (std::uint32_t w = way; w != 0; w /= 2) ways |= 1u << (kSpecularWays + w);
+  }
+  return ways;
+}
+
+IntegratorOptions integrator_options(const RenderJob& job) {
+  // Whitted's last rays scatter nothing; those of paths see what emits.
+  const bool is_path = job.options.integrator == IntegratorKind::kPath;
+  const int depth = job.options.integrator == IntegratorKind::kPrimary ? 0 : job.options.depth();
+  return {.max_depth = is_path ? depth : depth - 1, .point_error = job.options.point_error};
+}
+
+}  // namespace
+
+EmitterLooks::EmitterLooks(const RenderJob& job, Intersector& intersector, bool counts_work)
+    : job_(job),
+      intersector_(intersector),
+      integrator_(IntegratorKind::kEmitters, job.prepared, job.lights, job.options.skips,
+                  integrator_options(job)),
+      counts_work_(counts_work),
+      all_(kDirect) {
+  // Elsewhere a ray to each mirror's end for each pixel is more than the noise that it saves.
+  if (job.options.integrator == IntegratorKind::kPath &&
+      std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
+    all_ = (1u << kSpecularWays) - kDirect;
+  }
+  for (const AreaLight& light : job.lights.areas()) {
+    least_ = std::max(least_, kLeastShare * largest(glm::vec3(light.radiance)));
+  }
+}
+
+void EmitterLooks::add(const Ray& ray, EmitterWays ways) {
+  PathState& state = batch_.states.emplace_back();
+  state.sample = static_cast<std::uint32_t>(batch_.rays.size() * kSpecularWays + state.way);
+  state.emitters = ways;
+  batch_.rays.push_back(ray);
+}
+
+/// Of all looks that were added.
+void EmitterLooks::trace() {
+  const std::size_t looks = batch_.rays.size();
+  output_.radiance.assign(looks * kSpecularWays, glm::vec3(0.0f));
+  look_work_.assign(counts_work_ ? looks : 0, {});
+  stats_.camera_rays += looks;
+  Stopwatch watch;
+  for (batch_.depth = 0; !batch_.rays.empty(); std::swap(batch_, output_.next)) {
+    const std::size_t rays = batch_.rays.size();
+    stats_.rays += rays;
+    hits_.resize(rays);
+    work_.resize(counts_work_ ? rays : 0);
+    intersector_.intersect(batch_.rays,
+                           {.common_origin = batch_.depth == 0 && job_.camera.has_common_origin(),
+                            .source_ids = batch_.sources,
+                            .culling = job_.options.skips.culling,
+                            .work = work_},
+                           hits_);
+    watch.lap();
+    for (std::size_t i = 0; i < work_.size(); ++i) {
+      look_work_[batch_.states[i].sample / kSpecularWays] += work_[i];
+    }
+    output_.next.clear();
+    output_.next.depth = batch_.depth + 1;
+    for (std::size_t i = 0; i < rays; i += integrator_.block_size()) {
+      integrator_.shade(batch_, hits_, i, std::min(rays, i + integrator_.block_size()), output_);
+    }
+    stats_.shade_seconds += watch.lap();
+  }
+}
+
+void EmitterLooks::find(const Film& film, const PixelRect& tile, std::span<EmitterWays> ways,
+                        std::span<RayWork> work) {
+  // Corners of pixels, up to so many beyond the tile's own.
+  const int beyond = static_cast<int>(std::ceil(filter_radius(job_.options.filter) - 0.5));
+  const auto may_see = [&](const AreaLight& light) {
+    return may_see_box(light.low, light.high, job_.camera, film, tile, beyond + 1.0);
+  };
+  if (all_ == kDirect && std::ranges::none_of(job_.lights.areas(), may_see)) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      const auto row = ways.subspan(film.index_of(tile.x0, y), std::size_t(tile.width()));
+      std::ranges::fill(row, 0);
+    }
+    return;
+  }
+  const int columns = tile.width() + 1 + 2 * beyond, rows = tile.height() + 1 + 2 * beyond;
+  batch_.clear();
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      add(job_.camera.ray(double(tile.x0 - beyond + x) / film.width,
+                          double(tile.y0 - beyond + y) / film.height, {}),
+          with_rays(all_));
+    }
+  }
+  trace();
+  for (std::size_t i = 0; i < look_work_.size(); ++i) {  // to the nearest pixel
+    const int x = static_cast<int>(i % std::size_t(columns)) - beyond;
+    const int y = static_cast<int>(i / std::size_t(columns)) - beyond;
+    const int column = std::clamp(x, 0, tile.width() - 1);
+    const int row = std::clamp(y, 0, tile.height() - 1);
+    work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += look_work_[i];
+  }
+  std::vector<EmitterWays> seen(std::size_t(columns) * std::size_t(rows));  // by corner
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::uint32_t way = 1; way < kSpecularWays; ++way) {
+      if (largest(radiance(i, way)) >= least_) seen[i] |= 1u << way;
+    }
+  }
+  for (int y = 0; y < tile.height(); ++y) {
+    for (int x = 0; x < tile.width(); ++x) {
+      const auto corner = [&](int dx, int dy) {
+        return std::size_t(y + dy) * std::size_t(columns) + std::size_t(x + dx);
+      };
+      const auto for_corners = [&](const auto& visit) {
+        for (int dy = 0; dy <= 1 + 2 * beyond; ++dy) {
+          for (int dx = 0; dx <= 1 + 2 * beyond; ++dx) visit(corner(dx, dy));
+        }
+      };
+      EmitterWays near = 0, different = 0;
+      for_corners([&](std::size_t at) { near |= seen[at]; });
+      for (EmitterWays left = near; left != 0; left &= left - 1) {
+        const auto way = static_cast<std::uint32_t>(std::countr_zero(left));
+        const glm::vec3& first = radiance(corner(0, 0), way);
+        for_corners([&](std::size_t at) {
+          if (radiance(at, way) != first) different |= 1u << way;
+        });
+      }
+      ways[film.index_of(tile.x0 + x, tile.y0 + y)] = with_rays(different);
+    }
+  }
+}
+
+void EmitterLooks::look(std::span<const PixelSamples> pixels, std::span<const EmitterWays> ways,
+                        std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work) {
+  std::vector<std::size_t> pixel_of;
+  const auto trace_them = [&] {
+    trace();
+    for (std::size_t i = 0; i < pixel_of.size(); ++i) {
+      for (std::uint32_t way = 1; way < kSpecularWays; ++way) {
+        const glm::dvec3 light(radiance(i, way));
+        for (int k = 0; k < 3; ++k) sums[pixel_of[i]][k].add(light[k] / kLooks);
+      }
+      if (counts_work_) work[pixel_of[i]] += look_work_[i];
+    }
+    batch_.clear();
+    pixel_of.clear();
+  };
+  batch_.clear();
+  for (std::size_t p = 0; p < pixels.size(); ++p) {
+    const PixelSamples& pixel = pixels[p];
+    if (ways[pixel.index] == 0) continue;
+    const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
+    for (int look = pixel.first * kLooks; look < pixel.end * kLooks; ++look) {
+      add(camera_ray(job_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(look),
+                     kEmitterStream),
+          ways[pixel.index]);
+      pixel_of.push_back(p);
+      if (pixel_of.size() == kManyLooks) trace_them();
+    }
+  }
+  trace_them();
+}
+
+void EmitterLooks::add_to(RenderStats& stats) const {
+  stats.rays += stats_.rays;
+  stats.camera_rays += stats_.camera_rays;
+  stats.shade_seconds += stats_.shade_seconds;
+  stats.point_doubts += integrator_.point_doubts();
+  stats.skipped += integrator_.skipped();
+}
+
+}  // namespace raygate
