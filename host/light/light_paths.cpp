@@ -61,7 +61,9 @@ bool LightPaths::Ball::meets(const glm::dvec3& point, const glm::dvec3& directio
 LightPaths::LightPaths(const PreparedScene& prepared, const Lights& lights, const FrameView& frame)
     : lights_(lights),
       count_((pixels_of(frame) + kPixelsOfPath - 1) / kPixelsOfPath),
-      frame_(frame) {
+      frame_(frame),
+      area_per_pixel_(finite_float(frame.camera.picture_area() /
+                                   static_cast<double>(pixels_of(frame)))) {
   if (!lights.any_power() ||
       std::ranges::none_of(prepared.materials, &MaterialParameters::is_mirror_or_glass))
     return;
@@ -267,13 +269,6 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
   state.throughput = finite_floats(flux);
   start.ray = {glm::vec3(origin), scaled_direction(direction)};
   return start;
-}
-
-float LightPaths::camera_ratio(const Ray& ray) const {
-  const glm::dvec3 direction = glm::normalize(glm::dvec3(ray.direction));
-  const double cosine = glm::dot(direction, frame_.camera.forward());
-  return finite_float(cosine * cosine * cosine * frame_.camera.picture_area() /
-                      static_cast<double>(pixels_of(frame_)));
 }
 
 LightPaths::View LightPaths::view_of(const glm::vec3& point, const glm::vec2& lens) const {

@@ -76,8 +76,13 @@ class LightPaths {
   /// through `point`, per area across that.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
 
-  /// PathState::ratio of a camera ray, which lacks the squared distance of what it meets.
-  [[nodiscard]] float camera_ratio(const Ray& ray) const;
+  /// PathState::ratio of camera rays with these unit directions, which lacks the squared distance
+  /// of what they meet.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE T camera_ratio(const Triple<T>& direction) const {
+    const T cosine = dot(direction, spread<T>(glm::vec3(frame_.camera.forward())));
+    return cosine * cosine * cosine * area_per_pixel_;
+  }
 
   /// How the camera sees a point.
   struct View {
@@ -114,6 +119,7 @@ class LightPaths {
   const Lights& lights_;
   std::uint64_t count_;
   FrameView frame_;
+  float area_per_pixel_;  // of the picture at distance 1
   std::vector<Ball> balls_;
   double discs_ = 0.0;              // the areas of all, in square units
   double reach_ = 0.0;              // from any point of the scene beyond all others

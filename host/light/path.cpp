@@ -228,11 +228,14 @@ struct WaysBack {
 
   RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
       : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.way == 1u) {
-    arrived = hits.path.ratio / in;
-    if (kFromLight) return;
-    const Triple<T> way =
-        (hits.surface.point - hits.path.scattered_at) * spread<T>(shading.lights.per_unit());
-    arrived = arrived * choose(is_first, dot(way, way), spread<T>(1.0f));
+    T ratio = hits.path.ratio;
+    if (!kFromLight) {
+      const Triple<T> way =
+          (hits.surface.point - hits.path.scattered_at) * spread<T>(shading.lights.per_unit());
+      const T seen = shading.light_paths->camera_ratio(-hits.surface.view) * dot(way, way);
+      ratio = choose(is_first, seen, ratio);
+    }
+    arrived = ratio / in;
   }
 
   /// After diffuse or glossy reflection.

@@ -58,9 +58,7 @@ void TileRenderer::make_camera_rays() {
       if (!emitter_ways_.empty()) state.emitters = emitter_ways_[pixel.index];
       const Ray& ray = batch_.rays.emplace_back(
           camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
-      if (job_.light_paths == nullptr) continue;
       state.scattered_at = ray.origin;
-      state.ratio = job_.light_paths->camera_ratio(ray);
     }
   }
 }
@@ -235,6 +233,7 @@ void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
 void TileRenderer::write() {
   Stopwatch watch;
   FilmSums& kept = film_.sums;
+  const bool has_albedo = !film_.albedo.empty();
   std::size_t i = 0;  // a sample
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     const PixelSamples& pixel = pixels_[p];
@@ -254,7 +253,7 @@ void TileRenderer::write() {
       const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(direct_light_[i]);
       for (int k = 0; k < 3; ++k) {
         color[k].add(light[k]);
-        albedo[k].add(output_.first_surface[i].albedo[k]);
+        if (has_albedo) albedo[k].add(output_.first_surface[i].albedo[k]);
       }
       hits += first_hit.primitive != NearestHit::kNone;
       count(first_hit.work);
@@ -267,7 +266,7 @@ void TileRenderer::write() {
     if (!kept.color.empty()) kept.color[at] = color;
     if (!kept.albedo.empty()) kept.albedo[at] = albedo;
     film_.color[at] = mean_of(color, samples);
-    if (!film_.albedo.empty()) film_.albedo[at] = mean_of(albedo, samples);
+    if (has_albedo) film_.albedo[at] = mean_of(albedo, samples);
   }
   if (job_.options.error > 0.0) update_errors();
   stats_.shade_seconds += watch.lap();
