@@ -148,7 +148,6 @@ void check_caustics(const RenderOptions& options) {
   if (options.integrator != IntegratorKind::kPath) {
     throw InputError("--caustics on: expected --integrator path");
   }
-  if (options.error > 0.0) throw InputError("--caustics on and --error exclude each other");
   if (options.samples == 1) throw InputError("--caustics on: expected --spp 2 or more");
 }
 

@@ -62,8 +62,8 @@ LightPaths::LightPaths(const PreparedScene& prepared, const Lights& lights, cons
     : lights_(lights),
       count_((pixels_of(frame) + kPixelsOfPath - 1) / kPixelsOfPath),
       frame_(frame),
-      area_per_pixel_(finite_float(frame.camera.picture_area() /
-                                   static_cast<double>(pixels_of(frame)))) {
+      area_per_pixel_(
+          finite_float(frame.camera.picture_area() / static_cast<double>(pixels_of(frame)))) {
   if (!lights.any_power() ||
       std::ranges::none_of(prepared.materials, &MaterialParameters::is_mirror_or_glass))
     return;

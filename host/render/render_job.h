@@ -14,6 +14,8 @@
 
 namespace raygate {
 
+class SplatLayer;
+
 struct RenderJob {
   const PreparedScene& prepared;
   const Camera& camera;
@@ -21,6 +23,8 @@ struct RenderJob {
   const Lights& lights;
   glm::dvec3 ambient;                       ///< as IntegratorOptions has it
   const LightPaths* light_paths = nullptr;  ///< none: caustics are found by chance
+  bool only_light_paths = false;            ///< no camera paths
+  const SplatLayer* splats = nullptr;       ///< of all light paths; none: these go with the samples
 };
 
 // Streams of random numbers; the integrators' are made from others.

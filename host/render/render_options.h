@@ -47,7 +47,7 @@ struct RenderOptions {
   std::optional<CameraLights> lights{};  ///< in place of the scene's
   std::optional<double> ambient{};       ///< Whitted: radiance; none: see Lights::ambient
   PathOptions path{};                    ///< path
-  /// Path: not with a single sample, `error`, `lights`, or a camera that is not perspective.
+  /// Path: not with a single sample, `lights`, or a camera that is not perspective.
   Caustics caustics = Caustics::kAuto;
   Skips skips{};  ///< the film does not depend on them
   /// The unit's P is used where it is off by no more of the distance than that, in all else the

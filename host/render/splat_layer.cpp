@@ -6,8 +6,17 @@
 
 namespace raygate {
 
-SplatLayer::SplatLayer(const Film& film, ReconstructionFilter filter)
-    : window_(film.window), filter_(filter), sums_(film.color.size()) {}
+SplatLayer::SplatLayer(const PixelRect& window, ReconstructionFilter filter)
+    : window_(window),
+      filter_(filter),
+      sums_(std::size_t(window.width()) * std::size_t(window.height())) {}
+
+SplatLayer::SplatLayer(const FilmSums& sums, const PixelRect& window, ReconstructionFilter filter)
+    : SplatLayer(window, filter) {
+  for (std::size_t i = 0; i < sums_.size(); ++i)
+    std::copy_n(sums.color[i].begin(), 3, sums_[i].begin());
+  samples_ = sums.samples;
+}
 
 void SplatLayer::add(std::span<const Splat> splats) {
   const double radius = filter_radius(filter_);
@@ -28,11 +37,18 @@ void SplatLayer::add(std::span<const Splat> splats) {
   }
 }
 
-void SplatLayer::add_to(Film& film) const {
+void SplatLayer::add_to(Film& film, double times) const {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) film.sums.color[i][k] += sums_[i][k];
-    if (film.sums.samples[i] == 0) continue;
-    film.color[i] = mean_of(film.sums.color[i], film.sums.samples[i]);
+    const std::uint32_t samples = film.sums.samples[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      ExactAccumulator& sum = film.sums.color[i][k];
+      if (samples_.empty()) {
+        sum += times < 0.0 ? -sums_[i][k] : sums_[i][k];
+      } else {
+        sum.add(times * (sums_[i][k].value() / samples_[i] * samples));
+      }
+    }
+    if (samples != 0) film.color[i] = mean_of(film.sums.color[i], samples);
   }
 }
 

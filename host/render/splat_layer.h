@@ -23,17 +23,28 @@ struct Splat {
 class SplatLayer {
  public:
   SplatLayer() = default;
-  SplatLayer(const Film& film, ReconstructionFilter filter);
+  SplatLayer(const PixelRect& window, ReconstructionFilter filter);
+  /// One whose pixels have the light paths of so many samples each: those of a film's sums.
+  SplatLayer(const FilmSums& sums, const PixelRect& window, ReconstructionFilter filter);
 
   void add(std::span<const Splat> splats);
 
-  /// Adds all to a film with sums, whose samples have as many light paths, and to its means.
-  void add_to(Film& film) const;
+  /// Adds the light of as many samples as each pixel of a film with sums has to these, and to its
+  /// means; or takes it away again, exactly.
+  void add_to(Film& film) const { add_to(film, 1.0); }
+  void take_from(Film& film) const { add_to(film, -1.0); }
+  /// Of a pixel, where there are samples: the light of one.
+  [[nodiscard]] glm::vec4 mean(std::size_t pixel) const {
+    return glm::vec4(mean_of(sums_[pixel], samples_[pixel]), 0.0f);
+  }
 
  private:
+  void add_to(Film& film, double times) const;
+
   PixelRect window_;
   ReconstructionFilter filter_ = ReconstructionFilter::kBox;
   std::vector<std::array<ExactAccumulator, 3>> sums_;
+  std::vector<std::uint32_t> samples_;  // none: as many as the film has
 };
 
 }  // namespace raygate

@@ -39,7 +39,7 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
   if (!emitter_ways.empty()) emitter_looks_.emplace(job, intersector, is_counting_);
-  if (job.light_paths == nullptr) return;
+  if (job.light_paths == nullptr || job.splats != nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options.skips,
                             integrator_options(job));
 }
@@ -82,7 +82,8 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   emitter_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0,
                        {});
   stats_.shade_seconds += watch.lap();
-  return trace_camera_rays(tile, keep_going) && trace_light_paths(keep_going);
+  return (job_.only_light_paths || trace_camera_rays(tile, keep_going)) &&
+         trace_light_paths(keep_going);
 }
 
 bool TileRenderer::trace_camera_rays(const PixelRect& tile,
@@ -266,6 +267,7 @@ void TileRenderer::write() {
     if (!kept.color.empty()) kept.color[at] = color;
     if (!kept.albedo.empty()) kept.albedo[at] = albedo;
     film_.color[at] = mean_of(color, samples);
+    if (job_.splats != nullptr) film_.color[at] += job_.splats->mean(at);
     if (has_albedo) film_.albedo[at] = mean_of(albedo, samples);
   }
   if (job_.options.error > 0.0) update_errors();

@@ -241,5 +241,50 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   EXPECT_TRUE(same(picture(options, cpu), whole));
 }
 
+// Light paths come first then, and no block's depend on another's.
+TEST(Caustics, OfAdaptiveSamplesAreTheSameBytesWhoeverTraces) {
+  Scene scene = everything();
+  const Bvh bvh(scene);
+  const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
+  const auto picture = [&](const RenderOptions& options) {
+    RenderStats stats;
+    return render(scene, bvh, into_room(), options, cpu, stats);
+  };
+  RenderOptions options = options_of(40, 64);
+  options.error = 4.0;
+  const Film whole = picture(options);
+  options.threads = 4;
+  EXPECT_TRUE(same(picture(options), whole));
+  options.window = {8, 12, 32, 40};
+  const Film crop = picture(options);
+  for (int y = 12; y < 40; ++y) {
+    for (int x = 8; x < 32; ++x) {
+      ASSERT_EQ(crop.color[crop.index_of(x, y)], whole.color[whole.index_of(x, y)])
+          << x << " " << y;
+    }
+  }
+  options.window = {};
+  options.channels.sums = true;
+  options.samples = 20;
+  const Film begun = picture(options);
+  options.samples = 64;
+  options.unfinished = &begun;
+  EXPECT_TRUE(same(picture(options), whole));
+  options.unfinished = nullptr;
+  options.caustics = Caustics::kOff;
+  EXPECT_FALSE(same(picture(options), whole));
+}
+
+TEST(Caustics, OfAdaptiveSamplesAreAsBrightAsFresnelSays) {
+  Scene scene = slab();
+  scene.directional_lights.push_back({{0, -1, 0}, glm::vec3(3.0f)});
+  RenderOptions options = options_of(16, 64);
+  options.error = 0.05;
+  const double r = reflectance(0.0, 0.0);
+  const double expected = 3.0 * (1.0 - r) / (1.0 + r) * 0.1 / pi;
+  const double found = mean_colour(caustics_of(scene, above_floor(), options)).x;
+  EXPECT_NEAR(found, expected, 0.01 * expected);
+}
+
 }  // namespace
 }  // namespace raygate
