@@ -6,7 +6,7 @@ import pathlib
 
 import vl_convert
 
-from host.lab.report import cards, statistics
+from host.lab.report import cards, plots, statistics
 
 # What a variant is, by its unit and whether doubts are resolved: label, colour, mark.
 KINDS = {("pipeline", True): ("pipelined unit, doubts resolved", "#4477aa", "circle"),
@@ -23,7 +23,7 @@ def save(spec: dict, file: pathlib.Path) -> pathlib.Path:
     spec = {"$schema": "https://vega.github.io/schema/vega-lite/v6.json", **spec,
             "config": {"axis": {"gridOpacity": 0.4}, "legend": {"symbolOpacity": 1}}}
     file.with_suffix(".json").write_text(json.dumps(spec))
-    file.write_bytes(vl_convert.vegalite_to_png(spec, scale=1.5))
+    plots.write_png(vl_convert.vegalite_to_png(spec, scale=1.5), file)
     return file
 
 
