@@ -9,44 +9,31 @@ namespace {
 /// only where a mask says that nothing is there.
 template <class T>
 RAYGATE_INLINE void spawn_by_ways(Hits<T>& hits, bool goes_on) {
-  const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
-  const auto is_asked = [&](const WordOf<T>& way) RAYGATE_BODY {
-    return PathLanes<T>::has(hits.path.emitters, way + kSpecularWays) & (way > 0u);
-  };
+  const Triple<T>& normal = hits.surface.normal;
   ScatteredRays<T> next(hits);
   const WordOf<T> look = hits.path.sample - hits.path.way;
-  if (goes_on && (hits.kind & kMirrors) != 0) {
-    next.path.way = hits.path.way_on(0);
+  const auto send = [&](std::size_t number, const Triple<T>& share,
+                        const MaskOf<T>& is_way) RAYGATE_BODY {
     next.path.sample = look + next.path.way;
-    next.path.throughput = hits.path.throughput * bsdf.mirror();
-    next.direction = reflect(surface.view, surface.normal);
-    next.flat = reflect(surface.view, surface.flat_normal);
-    next.has_flat = T{} == 0.0f;
-    next.is_transmitted = T{} > 0.0f;
-    const auto shows = bsdf.mirror_is_traced() & (largest(next.path.throughput) > 0.0f);
-    next.is_wanted = is_asked(next.path.way) & shows;
-    next.send(hits, 0);
+    next.path.throughput = hits.path.throughput * share;
+    const auto is_asked = PathLanes<T>::has(hits.path.emitters, next.path.way + kSpecularWays);
+    next.is_wanted =
+        is_way & is_asked & (next.path.way > 0u) & (largest(next.path.throughput) > 0.0f);
+    next.send(hits, number);
+  };
+  if (goes_on && (hits.kind & kMirrors) != 0) {
+    next.reflect_off(hits, normal);
+    send(0, bsdf.mirror(), bsdf.mirror_is_traced());
   }
   if ((hits.kind & kTransmits) != 0) {
-    const MaskOf<T>& is_bent = bsdf.is_refracting();
-    const Refraction<T> bent(surface.view, surface.normal, bsdf.eta());
-    const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
-    const Triple<T> through = bsdf.transmission();
-    next.path.way = choose(is_bent, hits.path.way_on(1), hits.path.way);
-    next.path.sample = look + next.path.way;
-    next.path.throughput = hits.path.throughput * through;
-    next.direction = choose(is_bent, bent.direction, -surface.view);
-    next.flat = choose(is_bent, flat.direction, -surface.view);
-    next.has_flat = (!is_bent) | flat.exists;
-    next.is_transmitted = T{} == 0.0f;
-    auto shows = ((!is_bent) | bent.exists) & (largest(next.path.throughput) > 0.0f);
+    const Triple<T>& share = bsdf.transmission();
+    MaskOf<T> is_way = next.pass_through(hits, normal);
     if (!goes_on) {
-      const T least = minimum(minimum(through.x, through.y), through.z);
-      shows = shows & (!is_bent) & !(least < 1.0f);
+      const auto is_all = !(minimum(minimum(share.x, share.y), share.z) < 1.0f);
+      is_way = is_way & (!bsdf.is_refracting()) & is_all;
     }
-    next.is_wanted = is_asked(next.path.way) & shows;
-    next.send(hits, 1);
+    send(1, share, is_way);
   }
 }
 

@@ -271,6 +271,30 @@ struct ScatteredRays {
 
   RAYGATE_INLINE explicit ScatteredRays(const Hits<T>& hits) : path(hits.path) {}
 
+  /// Sets where a mirror with that normal sends them.
+  RAYGATE_INLINE void reflect_off(const Hits<T>& hits, const Triple<T>& normal) {
+    direction = reflect(hits.surface.view, normal);
+    flat = reflect(hits.surface.view, hits.surface.flat_normal);
+    has_flat = T{} == 0.0f;
+    is_transmitted = !has_flat;
+    path.way = hits.path.way_on(0);
+  }
+  /// Sets where they go through the surface: bent at that normal where it refracts, else straight
+  /// on. The result says where there is such a way.
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> pass_through(const Hits<T>& hits,
+                                                      const Triple<T>& normal) {
+    const Surface<T>& surface = hits.surface;
+    const MaskOf<T>& is_bent = hits.bsdf.is_refracting();
+    const Refraction<T> bent(surface.view, normal, hits.bsdf.eta());
+    const Refraction<T> flat_bent(surface.view, surface.flat_normal, hits.bsdf.eta());
+    direction = choose(is_bent, bent.direction, -surface.view);
+    flat = choose(is_bent, flat_bent.direction, -surface.view);
+    has_flat = (!is_bent) | flat_bent.exists;
+    is_transmitted = T{} == 0.0f;
+    path.way = choose(is_bent, hits.path.way_on(1), hits.path.way);
+    return (!is_bent) | bent.exists;
+  }
+
   RAYGATE_INLINE void send(Hits<T>& hits, std::size_t number) const {
     const Triple<T> ahead = scaled(direction), aside = scaled(flat);
     const auto leaving = hits.surface.leaving(ahead, is_transmitted);

@@ -159,12 +159,8 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.path.throughput);
   }
   if (any(next.is_wanted)) {
-    next.direction = reflect(surface.view, mirror_facet);
-    next.flat = reflect(surface.view, surface.flat_normal);
-    next.has_flat = next.is_wanted;
-    next.is_transmitted = next.is_wanted & !next.is_wanted;
+    next.reflect_off(hits, mirror_facet);
     next.path.stream = hash(hits.path.stream, kMirror);
-    next.path.way = hits.path.way_on(0);
     next.send(hits, 0);
   }
   if (!bsdf.has_rough_glass()) next.path.pdf = T{};
@@ -175,16 +171,9 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.is_wanted = next.is_wanted & !bsdf.is_refracting() & !(least < 1.0f);
   }
   if (any(next.is_wanted)) {
-    const Refraction<T> bent(surface.view, facet, bsdf.eta());
-    const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
-    const MaskOf<T>& is_bent = bsdf.is_refracting();
-    next.direction = choose(is_bent, bent.direction, -surface.view);
-    next.flat = choose(is_bent, flat.direction, -surface.view);
-    next.has_flat = (!is_bent) | flat.exists;
-    next.is_wanted = next.is_wanted & ((!is_bent) | bent.exists);
-    next.is_transmitted = next.is_wanted;
+    const MaskOf<T> is_way = next.pass_through(hits, facet);
+    next.is_wanted = next.is_wanted & is_way;
     next.path.stream = hash(hits.path.stream, kTransmission);
-    next.path.way = choose(is_bent, hits.path.way_on(1), hits.path.way);
     next.send(hits, 1);
   }
 }

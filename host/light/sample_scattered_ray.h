@@ -1,0 +1,206 @@
+// Where paths go on: a lobe of the BSDF is sampled, then a direction of it.
+#pragma once
+
+#include <optional>
+
+#include "host/light/direct_light.h"
+#include "host/light/hits.h"
+#include "host/light/light_paths.h"
+
+namespace raygate {
+
+/// Streams of random numbers of a path's surface.
+namespace streams {
+inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
+                               kDirection = 5, kFacet = 6, kLens = 9;
+}  // namespace streams
+
+inline constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
+inline constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
+
+/// How likely each lobe is to be sampled, in proportion to what it reflects; rough glass scatters.
+template <class T>
+struct LobeProbabilities {
+  T mirror, transmission, scatter, sum;
+
+  RAYGATE_INLINE explicit LobeProbabilities(const Bsdf<T>& bsdf)
+      : mirror(bsdf.has_rough_glass() ? T{} : largest(bsdf.mirror())),
+        transmission(bsdf.has_rough_glass() ? T{} : largest(bsdf.transmission())),
+        scatter(bsdf.scattered_share()),
+        sum(mirror + transmission + scatter) {}
+  /// Without diffuse and glossy reflection where `is_specular`.
+  RAYGATE_INLINE LobeProbabilities(const Bsdf<T>& bsdf, const MaskOf<T>& is_specular)
+      : LobeProbabilities(bsdf) {
+    scatter = choose(is_specular, T{}, scatter);
+    sum = mirror + transmission + scatter;
+  }
+
+  /// Of diffuse and glossy reflection together; 0 where nothing is reflected at all.
+  [[nodiscard]] RAYGATE_INLINE T scatter_probability() const {
+    return choose(sum > 0.0f, scatter / sum, T{});
+  }
+};
+
+/// The cosine of a direction with the surface, as ratios of densities have it.
+template <class T>
+RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
+  return at_least(absolute(dot(hits.surface.flat_normal, direction)), kLeastCosine);
+}
+
+/// The ways of a hit back from where its rays go: what light paths and camera paths need to know of
+/// each other (LightPaths). Light paths carry flux, whose throughput has the cosines of the other
+/// sides of edges, and the BSDF as the camera's paths see it ("Robust Monte Carlo methods", 5.3).
+template <bool kFromLight, class T>
+struct WaysBack {
+  T arrived;  ///< PathState::ratio at the hit
+  T in;       ///< the cosine of the way there
+  MaskOf<T> is_first;
+
+  RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
+      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.way == 1u) {
+    T ratio = hits.path.ratio;
+    if (!kFromLight) {
+      const Triple<T> way =
+          (hits.surface.point - hits.path.scattered_at) * spread<T>(shading.lights.per_unit());
+      const T seen = shading.light_paths->camera_ratio(-hits.surface.view) * dot(way, way);
+      ratio = choose(is_first, seen, ratio);
+    }
+    arrived = ratio / in;
+  }
+
+  /// After diffuse or glossy reflection.
+  RAYGATE_INLINE void scatter(const Hits<T>& hits, const Triple<T>& throughput,
+                              ScatteredRays<T>& next) const {
+    const auto seen = hits.seen_from(next.direction);
+    const T back =
+        seen.bsdf.pdf(hits.surface.view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
+    const T out = edge_cosine(hits, next.direction);
+    const T known = kFromLight ? back : choose(is_first, spread<T>(1.0f), back);
+    next.path.ratio = bounded(arrived * known * (out / next.path.pdf));
+    if (!kFromLight) return;
+    const T cosine = at_least(dot(seen.normal, hits.surface.view), 0.0f);
+    const Triple<T> flux =
+        throughput * seen.bsdf.eval(hits.surface.view) * (cosine * out / (in * next.path.pdf));
+    next.path.throughput = choose(largest(next.path.throughput) > 0.0f, bounded(flux), zero<T>());
+  }
+
+  /// After a mirror or glass that bends, where `is_specular`; `eta` is 1 of mirrors. Where the
+  /// normal was tilted for the view, there is no way back.
+  RAYGATE_INLINE void mirror(const Hits<T>& hits, const MaskOf<T>& is_specular, const T& eta,
+                             ScatteredRays<T>& next) const {
+    const T out = edge_cosine(hits, next.direction);
+    const auto has_back = !hits.surface.is_tilted();
+    const T ratio = choose(has_back & (kFromLight ? has_back : !is_first), arrived * out, T{});
+    next.path.ratio = choose(is_specular, ratio, next.path.ratio);
+    if (!kFromLight) return;
+    const T facing = absolute(dot(hits.surface.normal, hits.surface.view));
+    const T leaving = at_least(absolute(dot(hits.surface.normal, next.direction)), kLeastCosine);
+    const T scale = out * facing / (in * leaving * eta * eta);
+    next.path.throughput =
+        choose(is_specular, bounded(next.path.throughput * scale), next.path.throughput);
+    next.has_flat = next.has_flat & !is_specular;
+    next.is_wanted = next.is_wanted & (has_back | !is_specular);
+  }
+};
+
+/// Sends one ray on: a lobe of the BSDF is chosen by its probability, then a direction of it.
+template <bool kFromLight, class T>
+RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& hits,
+                                         const LobeProbabilities<T>& lobes, Triple<T>& radiance) {
+  const Surface<T>& surface = hits.surface;
+  const Bsdf<T>& bsdf = hits.bsdf;
+  const SquarePoint<T> choice = hits.random(streams::kChooseLobe);
+  Triple<T> throughput = hits.path.throughput;
+  ScatteredRays<T> next(hits);
+  next.is_wanted = lobes.sum > 0.0f;
+  // Russian roulette comes before the lobe is chosen: no work is lost on rays that end.
+  if (hits.block.batch->depth >= kRouletteDepth && shading.path.roulette_threshold > 0.0f) {
+    const float per_threshold = 1.0f / shading.path.roulette_threshold;
+    const T weight = kFromLight ? spread<T>(1.0f) : largest(throughput) * per_threshold;
+    const T survival = at_most(weight * lobes.sum, 1.0f);
+    next.is_wanted = next.is_wanted & (choice.y < survival);
+    throughput = choose(next.is_wanted, throughput * (1.0f / survival), throughput);
+  }
+  if (!any(next.is_wanted)) return;
+  const T u = choice.x * lobes.sum;
+  const auto is_mirrored = u < lobes.mirror;
+  next.is_transmitted = (!is_mirrored) & (u < lobes.mirror + lobes.transmission);
+  next.has_flat = is_mirrored | next.is_transmitted;
+  next.path.stream = hash(hits.path.stream, streams::kNextRay);
+
+  const bool has_ways_back = kFromLight || shading.light_paths != nullptr;
+  std::optional<WaysBack<kFromLight, T>> ways_back;
+  if (has_ways_back) ways_back.emplace(shading, hits);
+  const bool has_rough_glass = bsdf.has_rough_glass();
+  const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
+  next.path.scattered_at = surface.point;
+  next.path.normal = hits.lit_normal();
+  next.path.way = WordOf<T>{};
+  next.direction = next.flat = zero<T>();
+  if (any(bsdf.scatters())) {
+    next.direction = bsdf.sample(hits.random(streams::kDirection),
+                                 has_choice ? hits.random(streams::kFacet).x : T{});
+    next.flat = next.direction;
+    next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
+    const T cosine = hits.cosine(next.direction);
+    const auto brings = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
+    next.path.throughput =
+        choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
+               zero<T>());
+    if (has_rough_glass) {  // no light path goes through: PathState::ratio is 0 from here on
+      if (kFromLight) return;
+      next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
+      next.is_wanted = next.is_wanted & brings;
+      next.path.ratio = T{};
+      next.send(hits, 0);
+      return;
+    }
+    if (has_ways_back) ways_back->scatter(hits, throughput, next);
+  }
+  if ((hits.kind & kMirrors) != 0) {
+    const Triple<T> reflected = reflect(surface.view, surface.normal);
+    const Triple<T> reflected_throughput = throughput * bsdf.mirror() * (lobes.sum / lobes.mirror);
+    next.direction = choose(is_mirrored, reflected, next.direction);
+    next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
+    next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
+    next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
+    next.path.way = choose(is_mirrored, hits.path.way_on(0), next.path.way);
+    const auto shows_background = next.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
+    radiance = choose(shows_background,
+                      radiance + reflected_throughput * sky(shading.lights, reflected), radiance);
+    next.is_wanted = next.is_wanted & !shows_background;
+  }
+  if ((hits.kind & kTransmits) != 0) {
+    const auto is_bent = next.is_transmitted & bsdf.is_refracting();
+    const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
+    const Refraction<T> bent(surface.view, surface.normal, bsdf.eta());
+    const Refraction<T> flat(surface.view, surface.flat_normal, bsdf.eta());
+    next.direction = choose(is_bent, bent.direction, next.direction);
+    next.flat = choose(is_bent, flat.direction, next.flat);
+    next.has_flat = next.has_flat & ((!is_bent) | flat.exists);
+    next.is_wanted = next.is_wanted & ((!is_bent) | bent.exists);
+    const Triple<T> transmitted_throughput =
+        throughput * bsdf.transmission() * (lobes.sum / lobes.transmission);
+    next.path.throughput =
+        choose(next.is_transmitted, transmitted_throughput, next.path.throughput);
+    next.path.pdf = choose(is_bent, T{}, next.path.pdf);
+    // Straight on as if there were nothing.
+    next.direction = choose(is_straight, -surface.view, next.direction);
+    next.flat = choose(is_straight, -surface.view, next.flat);
+    next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);
+    next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
+    next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
+    next.path.way =
+        choose(is_straight, hits.path.way, choose(is_bent, hits.path.way_on(1), next.path.way));
+  }
+  if (has_ways_back) {
+    const auto is_bent = next.is_transmitted & bsdf.is_refracting();
+    const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
+    const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
+    ways_back->mirror(hits, is_mirrored | is_bent, eta, next);
+    next.path.ratio = choose(is_straight, hits.path.ratio, next.path.ratio);
+  }
+  next.send(hits, 0);
+}
+
+}  // namespace raygate
