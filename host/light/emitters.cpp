@@ -12,10 +12,10 @@ RAYGATE_INLINE void spawn_by_ways(Hits<T>& hits, bool goes_on) {
   const Bsdf<T>& bsdf = hits.bsdf;
   const Triple<T>& normal = hits.surface.normal;
   ScatteredRays<T> next(hits);
-  const WordOf<T> look = hits.path.sample - hits.path.way;
+  const WordOf<T> first = hits.path.sample - hits.path.way;
   const auto send = [&](std::size_t number, const Triple<T>& share,
                         const MaskOf<T>& is_way) RAYGATE_BODY {
-    next.path.sample = look + next.path.way;
+    next.path.sample = first + next.path.way;
     next.path.throughput = hits.path.throughput * share;
     const auto is_asked = PathLanes<T>::has(hits.path.emitters, next.path.way + kSpecularWays);
     next.is_wanted =
@@ -45,7 +45,8 @@ void shade_emitters(const ShadingScene& shading, HitBlock& block, HitKind kind,
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     Triple<T> emitted = zero<T>();
     if ((kind & kEmits) != 0) {
-      emitted = choose(hits.are_looked_at(), hits.path.throughput * hits.bsdf.emission(), emitted);
+      emitted =
+          choose(hits.are_supersampled(), hits.path.throughput * hits.bsdf.emission(), emitted);
     }
     hits.set_radiance(emitted);
     if (hits.bsdf.has_rough_glass()) return;

@@ -214,14 +214,14 @@ struct Hits {
   }
 
   /// Whether they emit the same everywhere, on ways that are in PathState::emitters.
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_looked_at() const {
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
     return gather<T>(materials, &MaterialParameters::emits_evenly) &
            PathLanes<T>::has(path.emitters, path.way);
   }
-  /// What they emit, but for what is looked at apart.
+  /// What they emit, but for what is supersampled.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
     if ((kind & kEmits) == 0) return bsdf.emission();
-    return choose(are_looked_at(), zero<T>(), bsdf.emission());
+    return choose(are_supersampled(), zero<T>(), bsdf.emission());
   }
 
   /// A point of the rays' own random streams for this purpose.

@@ -30,8 +30,8 @@ struct alignas(16) PathState {
   /// How dense light paths are here over how dense camera paths are, or on light paths the other
   /// way round (LightPaths); 0: there is one kind alone.
   float ratio = 0.0f;
-  /// By which ways emitters are not counted, for they are looked at apart: bit w for way w; and,
-  /// of those looks, bit 16 + w: there is a ray that goes this way (EmitterLooks).
+  /// By which ways emitters are not counted, for other rays see them: bit w for way w; and,
+  /// of those rays, bit 16 + w: there is a ray that goes this way (EmitterSupersampler).
   std::uint32_t emitters = 0;
 };
 

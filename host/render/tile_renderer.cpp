@@ -38,7 +38,7 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
       shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
-  if (!emitter_ways.empty()) emitter_looks_.emplace(job, intersector, is_counting_);
+  if (!emitter_ways.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
   if (job.light_paths == nullptr || job.splats != nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options.skips,
                             integrator_options(job));
@@ -97,15 +97,15 @@ bool TileRenderer::trace_camera_rays(const PixelRect& tile,
     stats_.shade_seconds += watch.lap();
     return true;
   }
-  if (emitter_looks_ && emitter_ways_[pixels_[0].index] == kUnknownWays) {
-    emitter_looks_->find(film_, tile, emitter_ways_, emitter_work_);
+  if (emitter_supersampler_ && emitter_ways_[pixels_[0].index] == kUnknownWays) {
+    emitter_supersampler_->find(film_, tile, emitter_ways_, emitter_work_);
   }
   watch.lap();
   make_camera_rays();
   stats_.camera_rays += samples_;
   stats_.shade_seconds += watch.lap();
   if (!trace_batch(integrator_, keep_going)) return false;
-  look_at_emitters();
+  supersample_emitters();
   return true;
 }
 
@@ -147,11 +147,11 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   return trace_batch(*light_integrator_, keep_going);
 }
 
-/// See EmitterLooks.
-void TileRenderer::look_at_emitters() {
-  if (!emitter_looks_) return;
+/// See EmitterSupersampler.
+void TileRenderer::supersample_emitters() {
+  if (!emitter_supersampler_) return;
   std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
-  emitter_looks_->look(pixels_, emitter_ways_, emitter_sums_, work);
+  emitter_supersampler_->supersample(pixels_, emitter_ways_, emitter_sums_, work);
   for (std::size_t p = 0; p < work.size(); ++p) emitter_work_[place_in_tile(pixels_[p])] += work[p];
 }
 
@@ -310,7 +310,7 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.intersect += intersector_.counters();
   stats.skipped += stats_.skipped;
   stats.skipped += integrator_.skipped();
-  if (emitter_looks_) emitter_looks_->add_to(stats);
+  if (emitter_supersampler_) emitter_supersampler_->add_to(stats);
   if (light_integrator_) {
     stats.point_doubts += light_integrator_->point_doubts();
     stats.skipped += light_integrator_->skipped();

@@ -16,7 +16,7 @@
 #include "host/light/ray_batch.h"
 #include "host/light/shadow_rays.h"
 #include "host/render/adaptive_sampling.h"
-#include "host/render/emitter_looks.h"
+#include "host/render/emitter_supersampler.h"
 #include "host/render/render_job.h"
 #include "host/render/splat_layer.h"
 
@@ -52,7 +52,7 @@ class TileRenderer {
   };
 
   void make_camera_rays();
-  void look_at_emitters();
+  void supersample_emitters();
   bool trace_camera_rays(const PixelRect& tile, const std::function<bool()>& keep_going);
   bool trace_light_paths(const std::function<bool()>& keep_going);
   bool trace_batch(Integrator& integrator, const std::function<bool()>& keep_going);
@@ -68,7 +68,7 @@ class TileRenderer {
   Intersector& intersector_;
   Film& film_;
   std::span<EmitterWays> emitter_ways_;
-  std::optional<EmitterLooks> emitter_looks_;
+  std::optional<EmitterSupersampler> emitter_supersampler_;
   Integrator integrator_;
   std::optional<Integrator> light_integrator_;  // of light paths
   ShadowRays shadow_rays_;
@@ -85,7 +85,7 @@ class TileRenderer {
   bool is_counting_;
   ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by sample: what shadow rays have brought
-  std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;  // by pixel, of emitter_looks_
+  std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;  // by pixel, of emitter_supersampler_
   PixelRect tile_;
   std::vector<RayWork> emitter_work_;  // by pixel of the tile: of the same
   RayBatch batch_;

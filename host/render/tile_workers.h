@@ -12,7 +12,7 @@
 
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
-#include "host/render/emitter_looks.h"
+#include "host/render/emitter_supersampler.h"
 #include "host/render/render_job.h"
 #include "host/render/tile_renderer.h"
 

@@ -1,6 +1,6 @@
 // Emitters that the camera sees begin and end where they do, to a fraction of what a sample is:
 // directly, in mirrors and through glass.
-#include "host/render/emitter_looks.h"
+#include "host/render/emitter_supersampler.h"
 
 #include <gtest/gtest.h>
 
@@ -76,10 +76,10 @@ Found find(const Scene& scene, const Camera& camera, const RenderOptions& asked)
   Found found;
   found.ways.resize(std::size_t{kSide} * kSide, kUnknownWays);
   const RenderJob job{prepared, camera, asked, lights, {}};
-  EmitterLooks looks(job, intersector, false);
-  looks.find(film, film.window, found.ways, {});
+  EmitterSupersampler emitters(job, intersector, false);
+  emitters.find(film, film.window, found.ways, {});
   RenderStats stats;
-  looks.add_to(stats);
+  emitters.add_to(stats);
   found.rays = stats.rays;
   return found;
 }
@@ -99,14 +99,14 @@ void expect_around(const std::vector<EmitterWays>& ways, EmitterWays expected) {
   }
 }
 
-TEST(EmitterLooks, AreOfPixelsWithCornersOnBothSides) {
+TEST(EmitterSupersampler, AreOfPixelsWithCornersOnBothSides) {
   const Panel panel(2.5f, 1.5f, 6.5f, 5.5f);
   const Found found = find(panel.scene, panel.camera, options(4));
   EXPECT_EQ(found.rays, std::size_t{kSide + 1} * (kSide + 1));
   expect_around(found.ways, kDirect);
 }
 
-TEST(EmitterLooks, GoByMirrorsOfPathTracers) {
+TEST(EmitterSupersampler, GoByMirrorsOfPathTracers) {
   const Panel panel(2.5f, 1.5f, 6.5f, 5.5f, Projection::kPerspective, true);
   expect_around(find(panel.scene, panel.camera, options(4)).ways, kInMirror);
   const Found of_whitted = find(panel.scene, panel.camera,
@@ -115,7 +115,7 @@ TEST(EmitterLooks, GoByMirrorsOfPathTracers) {
   EXPECT_EQ(of_whitted.ways, std::vector<EmitterWays>(std::size_t{kSide} * kSide, 0));
 }
 
-TEST(EmitterLooks, GoStraightThroughWhatIsClear) {
+TEST(EmitterSupersampler, GoStraightThroughWhatIsClear) {
   Panel panel(2.5f, 1.5f, 6.5f, 5.5f);
   Material pane = test::matte(glm::vec3(0.0f));
   pane.opacity = 0.25f;
@@ -132,7 +132,7 @@ Scene ball() {
   return scene;
 }
 
-TEST(EmitterLooks, GoThroughGlass) {
+TEST(EmitterSupersampler, GoThroughGlass) {
   const Found found = find(ball(), camera_of(), options(4));
   EmitterWays all = 0;
   for (const EmitterWays ways : found.ways) all |= ways;
@@ -141,8 +141,8 @@ TEST(EmitterLooks, GoThroughGlass) {
   EXPECT_NE(all >> (16 + 0b110) & 1, 0u) << "there is a ray on the way to that";
 }
 
-// Behind a lens there are no looks: a tiny one is the same camera without.
-TEST(EmitterLooks, HaveTheSameMean) {
+// Behind a lens nothing is supersampled: a tiny one is the same camera without.
+TEST(EmitterSupersampler, HaveTheSameMean) {
   const Scene scene = ball();
   const Bvh bvh(scene);
   constexpr int kSeeds = 16;
@@ -165,12 +165,12 @@ TEST(EmitterLooks, HaveTheSameMean) {
     variance[lens] = (squares / kSeeds - mean[lens] * mean[lens]) / (kSeeds - 1);
   }
   EXPECT_GT(mean[1], 0.1);
-  EXPECT_LT(variance[1], 2e-4 * mean[1] * mean[1]) << "of looks alone 5 % more would show";
+  EXPECT_LT(variance[1], 2e-4 * mean[1] * mean[1]) << "5 % more of what is supersampled would show";
   EXPECT_LT(variance[0], variance[1]);
   EXPECT_NEAR(mean[0], mean[1], 4.0 * std::sqrt(variance[0] + variance[1]));
 }
 
-TEST(EmitterLooks, GoAsFarAsTheFilterReaches) {
+TEST(EmitterSupersampler, GoAsFarAsTheFilterReaches) {
   const Panel panel(2.5f, -9.0f, 20.0f, 20.0f);
   const Found found =
       find(panel.scene, panel.camera, options(4, ReconstructionFilter::kBlackmanHarris));
@@ -178,7 +178,7 @@ TEST(EmitterLooks, GoAsFarAsTheFilterReaches) {
     EXPECT_EQ(found.ways[std::size_t(x)], x >= 1 && x <= 3 ? kDirect : 0) << x;
 }
 
-TEST(EmitterLooks, AreNotMadeWhereNoLightCanBe) {
+TEST(EmitterSupersampler, AreNotMadeWhereNoLightCanBe) {
   const Panel panel(20.0f, 2.0f, 22.0f, 3.0f);
   EXPECT_EQ(find(panel.scene, panel.camera, options(4)).rays, 0u);
 }
@@ -208,7 +208,7 @@ double error(const Panel& panel, float left, float upper, float right, float low
 
 // Of an edge along an axis, n samples alone are off by 0.4 / n in the mean. Eight times as many are
 // off by an eighth, and by a little more at corners, and where their number is no power of two.
-TEST(EmitterLooks, AreSharperThanTheSamplesAlone) {
+TEST(EmitterSupersampler, AreSharperThanTheSamplesAlone) {
   const struct {
     Projection projection;
     bool in_mirror;

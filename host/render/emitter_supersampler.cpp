@@ -1,4 +1,4 @@
-#include "host/render/emitter_looks.h"
+#include "host/render/emitter_supersampler.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,8 +10,8 @@
 namespace raygate {
 namespace {
 
-constexpr int kLooks = 8;                    // for each sample
-constexpr std::size_t kManyLooks = 1 << 12;  // at once
+constexpr int kRaysPerSample = 8;            // for each sample
+constexpr std::size_t kManyRays = 1 << 12;   // at once
 constexpr float kLeastShare = 1.0f / 64.0f;  // of the brightest emitter
 
 constexpr EmitterWays kDirect = 1u << 1;
@@ -35,7 +35,8 @@ IntegratorOptions integrator_options(const RenderJob& job) {
 
 }  // namespace
 
-EmitterLooks::EmitterLooks(const RenderJob& job, Intersector& intersector, bool counts_work)
+EmitterSupersampler::EmitterSupersampler(const RenderJob& job, Intersector& intersector,
+                                         bool counts_work)
     : job_(job),
       intersector_(intersector),
       integrator_(IntegratorKind::kEmitters, job.prepared, job.lights, job.options.skips,
@@ -52,19 +53,19 @@ EmitterLooks::EmitterLooks(const RenderJob& job, Intersector& intersector, bool 
   }
 }
 
-void EmitterLooks::add(const Ray& ray, EmitterWays ways) {
+void EmitterSupersampler::add(const Ray& ray, EmitterWays ways) {
   PathState& state = batch_.states.emplace_back();
   state.sample = static_cast<std::uint32_t>(batch_.rays.size() * kSpecularWays + state.way);
   state.emitters = ways;
   batch_.rays.push_back(ray);
 }
 
-/// Of all looks that were added.
-void EmitterLooks::trace() {
-  const std::size_t looks = batch_.rays.size();
-  output_.radiance.assign(looks * kSpecularWays, glm::vec3(0.0f));
-  look_work_.assign(counts_work_ ? looks : 0, {});
-  stats_.camera_rays += looks;
+/// Of all rays that were added.
+void EmitterSupersampler::trace() {
+  const std::size_t count = batch_.rays.size();
+  output_.radiance.assign(count * kSpecularWays, glm::vec3(0.0f));
+  ray_work_.assign(counts_work_ ? count : 0, {});
+  stats_.camera_rays += count;
   Stopwatch watch;
   for (batch_.depth = 0; !batch_.rays.empty(); std::swap(batch_, output_.next)) {
     const std::size_t rays = batch_.rays.size();
@@ -79,7 +80,7 @@ void EmitterLooks::trace() {
                            hits_);
     watch.lap();
     for (std::size_t i = 0; i < work_.size(); ++i) {
-      look_work_[batch_.states[i].sample / kSpecularWays] += work_[i];
+      ray_work_[batch_.states[i].sample / kSpecularWays] += work_[i];
     }
     output_.next.clear();
     output_.next.depth = batch_.depth + 1;
@@ -90,8 +91,8 @@ void EmitterLooks::trace() {
   }
 }
 
-void EmitterLooks::find(const Film& film, const PixelRect& tile, std::span<EmitterWays> ways,
-                        std::span<RayWork> work) {
+void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::span<EmitterWays> ways,
+                               std::span<RayWork> work) {
   // Corners of pixels, up to so many beyond the tile's own.
   const int beyond = static_cast<int>(std::ceil(filter_radius(job_.options.filter) - 0.5));
   const auto may_see = [&](const AreaLight& light) {
@@ -114,12 +115,12 @@ void EmitterLooks::find(const Film& film, const PixelRect& tile, std::span<Emitt
     }
   }
   trace();
-  for (std::size_t i = 0; i < look_work_.size(); ++i) {  // to the nearest pixel
+  for (std::size_t i = 0; i < ray_work_.size(); ++i) {  // to the nearest pixel
     const int x = static_cast<int>(i % std::size_t(columns)) - beyond;
     const int y = static_cast<int>(i / std::size_t(columns)) - beyond;
     const int column = std::clamp(x, 0, tile.width() - 1);
     const int row = std::clamp(y, 0, tile.height() - 1);
-    work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += look_work_[i];
+    work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += ray_work_[i];
   }
   std::vector<EmitterWays> seen(std::size_t(columns) * std::size_t(rows));  // by corner
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -151,17 +152,19 @@ void EmitterLooks::find(const Film& film, const PixelRect& tile, std::span<Emitt
   }
 }
 
-void EmitterLooks::look(std::span<const PixelSamples> pixels, std::span<const EmitterWays> ways,
-                        std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work) {
+void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
+                                      std::span<const EmitterWays> ways,
+                                      std::span<std::array<ExactAccumulator, 3>> sums,
+                                      std::span<RayWork> work) {
   std::vector<std::size_t> pixel_of;
   const auto trace_them = [&] {
     trace();
     for (std::size_t i = 0; i < pixel_of.size(); ++i) {
       for (std::uint32_t way = 1; way < kSpecularWays; ++way) {
         const glm::dvec3 light(radiance(i, way));
-        for (int k = 0; k < 3; ++k) sums[pixel_of[i]][k].add(light[k] / kLooks);
+        for (int k = 0; k < 3; ++k) sums[pixel_of[i]][k].add(light[k] / kRaysPerSample);
       }
-      if (counts_work_) work[pixel_of[i]] += look_work_[i];
+      if (counts_work_) work[pixel_of[i]] += ray_work_[i];
     }
     batch_.clear();
     pixel_of.clear();
@@ -171,18 +174,18 @@ void EmitterLooks::look(std::span<const PixelSamples> pixels, std::span<const Em
     const PixelSamples& pixel = pixels[p];
     if (ways[pixel.index] == 0) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
-    for (int look = pixel.first * kLooks; look < pixel.end * kLooks; ++look) {
-      add(camera_ray(job_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(look),
+    for (int i = pixel.first * kRaysPerSample; i < pixel.end * kRaysPerSample; ++i) {
+      add(camera_ray(job_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(i),
                      kEmitterStream),
           ways[pixel.index]);
       pixel_of.push_back(p);
-      if (pixel_of.size() == kManyLooks) trace_them();
+      if (pixel_of.size() == kManyRays) trace_them();
     }
   }
   trace_them();
 }
 
-void EmitterLooks::add_to(RenderStats& stats) const {
+void EmitterSupersampler::add_to(RenderStats& stats) const {
   stats.rays += stats_.rays;
   stats.camera_rays += stats_.camera_rays;
   stats.shade_seconds += stats_.shade_seconds;
