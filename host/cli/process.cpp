@@ -88,6 +88,10 @@ void flush_standard_output() {
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
   if (!failed) return;
   const int why = why_output_failed != 0 ? why_output_failed : errno;
+  if (why == EPIPE) {  // `| head` ends it without a word
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
   const std::string reason = why != 0 ? std::strerror(why) : "an earlier write failed";
   throw InputError("standard output: cannot write: " + reason);
 }

@@ -21,7 +21,8 @@ void print(std::string_view text, std::FILE* stream = stdout);
 /// Prints "warning: WHAT" on standard error, one line, made printable.
 void print_warning(std::string_view what);
 
-/// Throws InputError if what was printed cannot reach standard output: a full disk.
+/// Throws InputError if what was printed cannot reach standard output: a full disk. A pipe that
+/// nobody reads any more ends the program as SIGPIPE does.
 void flush_standard_output();
 
 /// What a program ends with that has thrown `error`: status 2 for InputError and where memory is

@@ -82,8 +82,10 @@ class Bsdf {
   }
   /// The same, or shows a highlight of what is one point.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> answers_lights() const {
-    if (!has_highlight()) return scatters();
-    return scatters() | (largest(highlight()) > 0.0f);
+    const MaskOf<T> scatters = this->scatters();
+    if (!has_highlight()) return scatters;
+    const auto has_one = largest(highlight()) > 0.0f;
+    return scatters | has_one;
   }
   /// What all of that brings, about.
   [[nodiscard]] RAYGATE_INLINE T scattered_share() const {

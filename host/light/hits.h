@@ -215,8 +215,9 @@ struct Hits {
 
   /// Whether they emit the same everywhere, on ways that are in PathState::emitters.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
-    return gather<T>(materials, &MaterialParameters::emits_evenly) &
-           PathLanes<T>::has(path.emitters, path.way);
+    const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
+    const auto are_wanted = PathLanes<T>::has(path.emitters, path.way);
+    return are_even & are_wanted;
   }
   /// What they emit, but for what is supersampled.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {

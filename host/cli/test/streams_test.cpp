@@ -59,6 +59,14 @@ TEST_F(Render, APipeThatNobodyReadsIsRefused) {
   EXPECT_EQ(outcome.err, "error: p.png: cannot write: nobody reads it\n");
 }
 
+TEST_F(Render, HelpThatNobodyReadsOnEndsWithoutAWord) {
+  const Outcome outcome = run_program({.arguments = {"-c", RAYGATE_PROGRAM " --help | true"},
+                                       .folder = folder_.path(),
+                                       .program = "/bin/sh"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+}
+
 /// "\x1b]0;gotcha\a" sets a terminal's title; U+009B begins a sequence, too.
 TEST_F(Render, ControlCharactersDoNotReachTheTerminal) {
   const std::string name = "a\x1b]0;gotcha\a\x7f\xc2\x9b.obj";
