@@ -10,7 +10,7 @@
 namespace raygate {
 namespace {
 
-constexpr int kRaysPerSample = 8;            // for each sample
+constexpr int kRaysPerSample = 8;
 constexpr std::size_t kManyRays = 1 << 12;   // at once
 constexpr float kLeastShare = 1.0f / 64.0f;  // of the brightest emitter
 
@@ -26,7 +26,7 @@ EmitterWays with_rays(EmitterWays counted) {
   return ways;
 }
 
-IntegratorOptions integrator_options(const RenderJob& job) {
+IntegratorOptions emitter_options(const RenderJob& job) {
   // Whitted's last rays scatter nothing; those of paths see what emits.
   const bool is_path = job.options.integrator == IntegratorKind::kPath;
   const int depth = job.options.integrator == IntegratorKind::kPrimary ? 0 : job.options.depth();
@@ -40,10 +40,10 @@ EmitterSupersampler::EmitterSupersampler(const RenderJob& job, Intersector& inte
     : job_(job),
       intersector_(intersector),
       integrator_(IntegratorKind::kEmitters, job.prepared, job.lights, job.options.skips,
-                  integrator_options(job)),
+                  emitter_options(job)),
       counts_work_(counts_work),
       all_(kDirect) {
-  // Elsewhere a ray to each mirror's end for each pixel is more than the noise that it saves.
+  // Whitted's pictures have few samples: to find the ways would take longer than they save.
   if (job.options.integrator == IntegratorKind::kPath &&
       std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
     all_ = (1u << kSpecularWays) - kDirect;
