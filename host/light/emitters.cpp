@@ -5,10 +5,9 @@ namespace raygate {
 namespace {
 
 /// Sends rays on by the ways that are asked for: in mirrors, through glass, and through what is not
-/// there or clear, where the way is the same. Without `goes_on` the depth is reached: rays go on
-/// only where a mask says that nothing is there.
+/// there or clear, where the way is the same.
 template <class T>
-RAYGATE_INLINE void spawn_by_ways(Hits<T>& hits, bool goes_on) {
+RAYGATE_INLINE void spawn_by_ways(Hits<T>& hits) {
   const Bsdf<T>& bsdf = hits.bsdf;
   const Triple<T>& normal = hits.surface.normal;
   ScatteredRays<T> next(hits);
@@ -22,18 +21,13 @@ RAYGATE_INLINE void spawn_by_ways(Hits<T>& hits, bool goes_on) {
         is_way & is_asked & (next.path.way > 0u) & (largest(next.path.throughput) > 0.0f);
     next.send(hits, number);
   };
-  if (goes_on && (hits.kind & kMirrors) != 0) {
+  if ((hits.kind & kMirrors) != 0) {
     next.reflect_off(hits, normal);
     send(0, bsdf.mirror(), bsdf.mirror_is_traced());
   }
   if ((hits.kind & kTransmits) != 0) {
-    const Triple<T>& share = bsdf.transmission();
-    MaskOf<T> is_way = next.pass_through(hits, normal);
-    if (!goes_on) {
-      const auto is_all = !(minimum(minimum(share.x, share.y), share.z) < 1.0f);
-      is_way = is_way & (!bsdf.is_refracting()) & is_all;
-    }
-    send(1, share, is_way);
+    const MaskOf<T> is_way = next.pass_through(hits, normal);
+    send(1, bsdf.transmission(), is_way);
   }
 }
 
@@ -49,8 +43,8 @@ void shade_emitters(const ShadingScene& shading, HitBlock& block, HitKind kind,
           choose(hits.are_supersampled(), hits.path.throughput * hits.bsdf.emission(), emitted);
     }
     hits.set_radiance(emitted);
-    if (hits.bsdf.has_rough_glass()) return;
-    spawn_by_ways(hits, block.batch->depth <= shading.max_depth);
+    if (block.batch->depth > shading.max_depth || hits.bsdf.has_rough_glass()) return;
+    spawn_by_ways(hits);
   });
 }
 

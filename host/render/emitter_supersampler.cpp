@@ -27,7 +27,7 @@ EmitterWays with_rays(EmitterWays counted) {
 }
 
 IntegratorOptions emitter_options(const RenderJob& job) {
-  // Whitted's last rays scatter nothing; those of paths see what emits.
+  // Paths go one ray deeper, which sees what emits; the primary integrator's rays end at once.
   const bool is_path = job.options.integrator == IntegratorKind::kPath;
   const int depth = job.options.integrator == IntegratorKind::kPrimary ? 0 : job.options.depth();
   return {.max_depth = is_path ? depth : depth - 1, .point_error = job.options.point_error};

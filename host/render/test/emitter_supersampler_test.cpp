@@ -123,6 +123,17 @@ TEST(EmitterSupersampler, GoStraightThroughWhatIsClear) {
   expect_around(find(panel.scene, panel.camera, options(4)).ways, kDirect);
 }
 
+// Whose rays end at the first surface, clear or not.
+TEST(EmitterSupersampler, SeesOfThePrimaryIntegratorWhatThatSees) {
+  Panel panel(2.5f, 1.5f, 6.5f, 5.5f);
+  const RenderOptions asked = options(4, ReconstructionFilter::kBox, IntegratorKind::kPrimary);
+  expect_around(find(panel.scene, panel.camera, asked).ways, kDirect);
+  Material pane = test::matte(glm::vec3(0.0f));
+  pane.opacity = 0.0f;
+  test::add(panel.scene, test::rectangle({-9, -9, 0.5}, {18, 0, 0}, {0, 18, 0}), pane);
+  expect_around(find(panel.scene, panel.camera, asked).ways, 0);
+}
+
 /// A glass ball, which shows an emitter behind the camera.
 Scene ball() {
   Scene scene;
