@@ -65,6 +65,13 @@ RAYGATE_INLINE T flag_words(const Masks&... masks) {
   return float_of(flags);
 }
 
+/// Whether a path counts what shines, by PathState::way: what comes by mirrors or glass to where
+/// caustic rays begin, these count, and nothing else.
+template <class W>
+RAYGATE_INLINE auto sees_lights(const W& way) {
+  return (way < (kFromSeen | kBySpecular)) | (way > kCausticRay);
+}
+
 /// The states of paths, field by field, one path a lane.
 template <class T>
 struct PathLanes {
@@ -92,8 +99,11 @@ struct PathLanes {
   }
   /// The way on, in a mirror (0) or through glass (1).
   [[nodiscard]] RAYGATE_INLINE WordOf<T> way_on(std::uint32_t step) const {
-    return choose((way > 0u) & (way < kSpecularWays / 2), 2u * way + step, WordOf<T>{});
+    const auto has_next = (way > 0u) & (way < kSpecularWays / 2);
+    return choose(way >= kFromSeen, way | kBySpecular,
+                  choose(has_next, 2u * way + step, WordOf<T>{}));
   }
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_caustic_rays() const { return way >= kCausticRay; }
   /// Whether the set `ways` has a way.
   [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& ways, const WordOf<T>& way) {
     return ((ways >> way) & 1u) != 0u;
@@ -120,7 +130,8 @@ struct HitBlock {
   std::vector<const MaterialParameters*> materials;  ///< of the hits
   std::vector<glm::vec3> radiance;                   ///< along the ray, already weighted
   std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` of each hit
-  std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` of each hit
+  std::vector<ScatteredRay> scattered;               ///< room for `scattered_per_hit` of each hit
+  std::vector<std::uint8_t> scattered_counts;        ///< and how many of these it has
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
   FirstSurface* first_surfaces = nullptr;  ///< by sample; none after the camera's rays
   SkipCounters skipped;
@@ -131,8 +142,8 @@ struct HitBlock {
     return std::span(light_samples)
         .subspan(i * light_samples_per_hit, hits * light_samples_per_hit);
   }
-  [[nodiscard]] std::span<ScatteredRay> scattered_of(std::size_t i, std::size_t hits = 1) {
-    return std::span(scattered).subspan(i * scattered_per_hit, hits * scattered_per_hit);
+  [[nodiscard]] std::span<ScatteredRay> scattered_of(std::size_t i) {
+    return std::span(scattered).subspan(i * scattered_per_hit, scattered_counts[i]);
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "host/base/vectors.h"
 #include "host/light/light_paths.h"
+#include "host/light/seen_caustics.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
@@ -49,7 +50,9 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
   const bool is_whitted = kind == IntegratorKind::kWhitted;
   const bool splits = is_whitted || kind == IntegratorKind::kEmitters;
   block_.light_samples_per_hit = is_whitted ? lights.count() : is_path() ? 1 : 0;
-  block_.scattered_per_hit = splits ? 2 : is_path() ? 1 : 0;
+  scattered_count_ = splits ? 2 : is_path() ? 1 : 0;
+  const bool has_caustic_rays = kind == IntegratorKind::kPath && options.light_paths != nullptr;
+  block_.scattered_per_hit = scattered_count_ + (has_caustic_rays ? kCausticRays : 0);
   block_size_ = std::clamp<std::size_t>(
       kMostLightSamples / std::max<std::size_t>(1, block_.light_samples_per_hit), 1, kMostHits);
   block_.places.resize(block_size_);
@@ -57,6 +60,7 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
   block_.radiance.resize(block_size_);
   block_.light_samples.resize(block_size_ * block_.light_samples_per_hit);
   block_.scattered.resize(block_size_ * block_.scattered_per_hit);
+  block_.scattered_counts.resize(block_size_);
   kinds_.resize(block_size_);
 }
 
@@ -68,7 +72,10 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   block_.first_surfaces =
       batch.depth == 0 && !output.first_surface.empty() ? output.first_surface.data() : nullptr;
   for (LightSample& sample : block_.light_samples_of(0, count)) sample.is_asked = 0;
-  for (ScatteredRay& scattered : block_.scattered_of(0, count)) scattered.is_wanted = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    block_.scattered_counts[i] = scattered_count_;
+    for (ScatteredRay& scattered : block_.scattered_of(i)) scattered.is_wanted = 0;
+  }
   sort(hits, count, output);
   ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary    ? shade_primary
                                     : kind_ == IntegratorKind::kWhitted  ? shade_whitted
@@ -114,6 +121,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     if (hit.primitive == NearestHit::kNone) {
       if (is_dark) continue;
       const PathState& state = block_.state(i);
+      if (!sees_lights(state.way)) continue;
       output.radiance[state.sample] += state.throughput * behind;
       continue;
     }
@@ -180,6 +188,7 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
                                                                      directions[k]);
                   });
                 });
+        light = choose(sees_lights(path.way), light, zero<T>());
       }
       const auto lights_out = unpack(light);
       for (std::size_t k = 0; k < count; ++k) {

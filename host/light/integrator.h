@@ -79,6 +79,7 @@ class Integrator {
   std::span<const MaterialParameters> materials_;
   const MaterialParameters transparent_ = MaterialParameters::transparent();
   HitBlock block_;
+  std::uint8_t scattered_count_;           // of a hit without caustic rays
   std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in their order
   std::vector<SpawnOrigin> origins_;
   std::vector<HitKind> kinds_;          // by place in the block; kHitKinds: nothing is hit

@@ -75,6 +75,10 @@ class LightPaths {
   /// The same of paths that come from infinitely far away, against the unit vector `towards`
   /// through `point`, per area across that.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
+  /// Whether a mirror or glass may be in that direction, a unit vector.
+  [[nodiscard]] bool may_meet(const glm::vec3& point, const glm::vec3& direction) const {
+    return meetings(glm::dvec3(point), glm::dvec3(direction), false) > 0.0;
+  }
 
   /// PathState::ratio of camera rays with these unit directions, which lacks the squared distance
   /// of what they meet.

@@ -1,6 +1,7 @@
 // Path tracing: next-event estimation and BSDF sampling, combined by multiple importance sampling.
 #include "host/light/light_paths.h"
 #include "host/light/sample_scattered_ray.h"
+#include "host/light/seen_caustics.h"
 #include "host/light/shade.h"
 
 namespace raygate {
@@ -157,18 +158,19 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
-  const MaskOf<T> answers = hits.bsdf.answers_lights();
+  const MaskOf<T> answers_lights = hits.bsdf.answers_lights();
+  const MaskOf<T> answers = answers_lights & !hits.path.are_caustic_rays();
   if (!lights.any_power() || !any(answers)) return;
   const ChosenLights<T> chosen(lights, hits);
   IncidentLight<T> light;
   if (any(chosen.are(Kind::kPoint))) light.take(chosen.points(lights, hits));
   if (any(chosen.are(Kind::kDirection))) light.take(chosen.directions(hits));
-  light.is_asked = light.is_asked & answers;
   const MaskOf<T> is_delta = light.is_asked;
   if (any(chosen.are(Kind::kEnvironment))) {
     light.take(chosen.environment(*lights.environment(), hits));
   }
   if (any(chosen.are(Kind::kArea))) light.take(chosen.areas(lights, hits));
+  light.is_asked = light.is_asked & answers;
 
   T mis_weight = spread<T>(1.0f);
   if (any(light.is_asked & !is_delta)) {  // scattered rays find it, too
@@ -190,10 +192,13 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     Triple<T> radiance = zero<T>();
-    if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
+    if ((kind & kEmits) != 0) {
+      radiance = choose(sees_lights(hits.path.way), emitted_radiance(shading, hits), radiance);
+    }
     if (block.batch->depth <= shading.max_depth) {
-      const LobeProbabilities<T> lobes(hits.bsdf);
+      const LobeProbabilities<T> lobes(hits.bsdf, hits.path.are_caustic_rays());
       sample_one_light(shading, hits, lobes);
+      sample_seen_caustics(shading, hits);
       sample_scattered_ray<false>(shading, hits, lobes, radiance);
     }
     hits.set_radiance(radiance);

@@ -24,8 +24,8 @@ struct alignas(16) PathState {
   std::uint32_t stream = 0;      ///< of random numbers, its own in the picture
   std::uint32_t index = 0;       ///< of its points in such streams
   /// What the camera sees by: 1 for a ray of its own, 2w for what w sees in a mirror, 2w + 1 for
-  /// what it sees through glass that bends. 0: beyond kSpecularWays, or after a surface that
-  /// scatters. Light paths begin with 1, too.
+  /// what it sees through glass that bends; below kSpecularWays. Light paths begin with 1, too.
+  /// Then one of those below, or 0.
   std::uint32_t way = 1;
   /// How dense light paths are here over how dense camera paths are, or on light paths the other
   /// way round (LightPaths); 0: there is one kind alone.
@@ -35,8 +35,14 @@ struct alignas(16) PathState {
   std::uint32_t emitters = 0;
 };
 
-/// PathState::way is less: three mirrors or borders of glass.
+/// PathState::way of what the camera sees by three mirrors and borders of glass at most is less.
 inline constexpr std::uint32_t kSpecularWays = 16;
+
+/// PathState::way after a surface that scatters and that the camera sees in mirrors or through
+/// glass: of the path, and of the rays that look for caustics there (sample_seen_caustics).
+inline constexpr std::uint32_t kFromSeen = 16, kCausticRay = 18;
+/// The same after a mirror or glass behind it.
+inline constexpr std::uint32_t kBySpecular = 1;
 
 /// Rays with the same number of surfaces behind them.
 struct RayBatch {

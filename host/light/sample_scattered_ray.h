@@ -12,7 +12,8 @@ namespace raygate {
 /// Streams of random numbers of a path's surface.
 namespace streams {
 inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
-                               kDirection = 5, kFacet = 6, kLens = 9;
+                               kDirection = 5, kFacet = 6, kLens = 9, kCausticRay = 14,
+                               kCausticDirection = 15, kCausticFacet = 16;
 }  // namespace streams
 
 inline constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
@@ -40,6 +41,17 @@ struct LobeProbabilities {
     return choose(sum > 0.0f, scatter / sum, T{});
   }
 };
+
+/// Where the path counts no caustics, for caustic rays do: on surfaces that scatter, seen in
+/// mirrors or through glass.
+template <bool kFromLight, class T>
+RAYGATE_INLINE MaskOf<T> has_seen_caustics(const ShadingScene& shading, const Hits<T>& hits) {
+  const auto scatters = hits.bsdf.scatters();
+  const auto is_seen = (hits.path.way > 1u) & (hits.path.way < kSpecularWays);
+  if (kFromLight || shading.light_paths == nullptr || hits.bsdf.has_rough_glass())
+    return T{} > 0.0f;
+  return is_seen & scatters;
+}
 
 /// The cosine of a direction with the surface, as ratios of densities have it.
 template <class T>
@@ -135,7 +147,10 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
-  next.path.way = WordOf<T>{};
+  const WordOf<T> none{};
+  next.path.way =
+      choose(has_seen_caustics<kFromLight>(shading, hits), spread<WordOf<T>>(kFromSeen), none);
+  next.path.emitters = choose(next.has_flat, hits.path.emitters, none);
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
     next.direction = bsdf.sample(hits.random(streams::kDirection),
@@ -166,7 +181,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
     next.path.way = choose(is_mirrored, hits.path.way_on(0), next.path.way);
     const auto shows_background = next.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
-    radiance = choose(shows_background,
+    const auto counts_background = shows_background & sees_lights(hits.path.way);
+    radiance = choose(counts_background,
                       radiance + reflected_throughput * sky(shading.lights, reflected), radiance);
     next.is_wanted = next.is_wanted & !shows_background;
   }
