@@ -16,7 +16,7 @@ RAYGATE_INLINE void spawn_by_ways(Hits<T>& hits) {
                         const MaskOf<T>& is_way) RAYGATE_BODY {
     next.path.sample = first + next.path.way;
     next.path.throughput = hits.path.throughput * share;
-    const auto is_asked = PathLanes<T>::has(hits.path.emitters, next.path.way + kSpecularWays);
+    const auto is_asked = PathLanes<T>::has(hits.path.emitters, next.path.way);
     next.is_wanted =
         is_way & is_asked & (next.path.way > 0u) & (largest(next.path.throughput) > 0.0f);
     next.send(hits, number);

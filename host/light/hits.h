@@ -104,9 +104,9 @@ struct PathLanes {
                   choose(has_next, 2u * way + step, WordOf<T>{}));
   }
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_caustic_rays() const { return way >= kCausticRay; }
-  /// Whether the set `ways` has a way.
+  /// Whether the set `ways` has a way; of those from kSpecularWays on it is to have none.
   [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& ways, const WordOf<T>& way) {
-    return ((ways >> way) & 1u) != 0u;
+    return ((ways >> (way & (kSpecularWays - 1))) & 1u) != 0u;
   }
   /// The records' words, in their order.
   RAYGATE_INLINE void put(T* w) const {

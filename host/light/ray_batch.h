@@ -30,17 +30,17 @@ struct alignas(16) PathState {
   /// How dense light paths are here over how dense camera paths are, or on light paths the other
   /// way round (LightPaths); 0: there is one kind alone.
   float ratio = 0.0f;
-  /// By which ways emitters are not counted, for other rays see them: bit w for way w; and,
-  /// of those rays, bit 16 + w: there is a ray that goes this way (EmitterSupersampler).
+  /// By which ways emitters are not counted, for other rays see them: bit w for way w. Of those
+  /// rays: by which ways they go (EmitterSupersampler).
   std::uint32_t emitters = 0;
 };
 
-/// PathState::way of what the camera sees by three mirrors and borders of glass at most is less.
-inline constexpr std::uint32_t kSpecularWays = 16;
+/// PathState::way of what the camera sees by four mirrors and borders of glass at most is less.
+inline constexpr std::uint32_t kSpecularWays = 32;
 
 /// PathState::way after a surface that scatters and that the camera sees in mirrors or through
 /// glass: of the path, and of the rays that look for caustics there (sample_seen_caustics).
-inline constexpr std::uint32_t kFromSeen = 16, kCausticRay = 18;
+inline constexpr std::uint32_t kFromSeen = 32, kCausticRay = 34;
 /// The same after a mirror or glass behind it.
 inline constexpr std::uint32_t kBySpecular = 1;
 

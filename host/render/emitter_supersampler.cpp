@@ -11,19 +11,23 @@ namespace raygate {
 namespace {
 
 constexpr int kRaysPerSample = 8;
-constexpr std::size_t kManyRays = 1 << 12;   // at once
+constexpr std::size_t kManyRays = 1 << 11;   // at once
 constexpr float kLeastShare = 1.0f / 64.0f;  // of the brightest emitter
 
-constexpr EmitterWays kDirect = 1u << 1;
+constexpr EmitterWays kDirect = 1u << 1, kAllWays = ~1u;
 
-/// Those ways, and the rays that lead there.
-EmitterWays with_rays(EmitterWays counted) {
-  EmitterWays ways = counted;
-  for (std::uint32_t way = 1; way < kSpecularWays; ++way) {
-    if ((counted >> way & 1) == 0) continue;
-    for (std::uint32_t w = way; w != 0; w /= 2) ways |= 1u << (kSpecularWays + w);
-  }
-  return ways;
+template <class Visit>
+void for_each(EmitterWays ways, const Visit& visit) {
+  for (; ways != 0; ways &= ways - 1) visit(static_cast<std::uint32_t>(std::countr_zero(ways)));
+}
+
+/// Those ways, and all that lead there.
+EmitterWays with_beginnings(EmitterWays ways) {
+  EmitterWays all = ways;
+  for_each(ways, [&](std::uint32_t way) {
+    for (; way != 0; way /= 2) all |= 1u << way;
+  });
+  return all;
 }
 
 IntegratorOptions emitter_options(const RenderJob& job) {
@@ -46,7 +50,7 @@ EmitterSupersampler::EmitterSupersampler(const RenderJob& job, Intersector& inte
   // Whitted's pictures have few samples: to find the ways would take longer than they save.
   if (job.options.integrator == IntegratorKind::kPath &&
       std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
-    all_ = (1u << kSpecularWays) - kDirect;
+    all_ = kAllWays;
   }
   for (const AreaLight& light : job.lights.areas()) {
     least_ = std::max(least_, kLeastShare * largest(glm::vec3(light.radiance)));
@@ -56,7 +60,7 @@ EmitterSupersampler::EmitterSupersampler(const RenderJob& job, Intersector& inte
 void EmitterSupersampler::add(const Ray& ray, EmitterWays ways) {
   PathState& state = batch_.states.emplace_back();
   state.sample = static_cast<std::uint32_t>(batch_.rays.size() * kSpecularWays + state.way);
-  state.emitters = ways;
+  state.emitters = with_beginnings(ways);
   batch_.rays.push_back(ray);
 }
 
@@ -111,7 +115,7 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::spa
     for (int x = 0; x < columns; ++x) {
       add(job_.camera.ray(double(tile.x0 - beyond + x) / film.width,
                           double(tile.y0 - beyond + y) / film.height, {}),
-          with_rays(all_));
+          all_);
     }
   }
   trace();
@@ -124,9 +128,9 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::spa
   }
   std::vector<EmitterWays> seen(std::size_t(columns) * std::size_t(rows));  // by corner
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    for (std::uint32_t way = 1; way < kSpecularWays; ++way) {
+    for_each(all_, [&](std::uint32_t way) {
       if (largest(radiance(i, way)) >= least_) seen[i] |= 1u << way;
-    }
+    });
   }
   for (int y = 0; y < tile.height(); ++y) {
     for (int x = 0; x < tile.width(); ++x) {
@@ -140,14 +144,13 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::spa
       };
       EmitterWays near = 0, different = 0;
       for_corners([&](std::size_t at) { near |= seen[at]; });
-      for (EmitterWays left = near; left != 0; left &= left - 1) {
-        const auto way = static_cast<std::uint32_t>(std::countr_zero(left));
+      for_each(near, [&](std::uint32_t way) {
         const glm::vec3& first = radiance(corner(0, 0), way);
         for_corners([&](std::size_t at) {
           if (radiance(at, way) != first) different |= 1u << way;
         });
-      }
-      ways[film.index_of(tile.x0 + x, tile.y0 + y)] = with_rays(different);
+      });
+      ways[film.index_of(tile.x0 + x, tile.y0 + y)] = different;
     }
   }
 }
@@ -160,10 +163,10 @@ void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
   const auto trace_them = [&] {
     trace();
     for (std::size_t i = 0; i < pixel_of.size(); ++i) {
-      for (std::uint32_t way = 1; way < kSpecularWays; ++way) {
+      for_each(ways[pixels[pixel_of[i]].index], [&](std::uint32_t way) {
         const glm::dvec3 light(radiance(i, way));
         for (int k = 0; k < 3; ++k) sums[pixel_of[i]][k].add(light[k] / kRaysPerSample);
-      }
+      });
       if (counts_work_) work[pixel_of[i]] += ray_work_[i];
     }
     batch_.clear();

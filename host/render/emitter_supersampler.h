@@ -21,7 +21,7 @@ using EmitterWays = std::uint32_t;
 inline constexpr EmitterWays kUnknownWays = 0xFFFFFFFF;
 
 /// An emitter is as a rule far brighter than all around it, and the pixels at its edges are the
-/// noisiest of a picture, wherever the camera sees it: directly, or by up to three mirrors and
+/// noisiest of a picture, wherever the camera sees it: directly, or by up to four mirrors and
 /// borders of glass (PathState::way). What is seen of it costs little to know: no light, no shadow,
 /// no choice of a lobe. So in these pixels more rays see emitters and nothing else, and the
 /// pixel's samples leave out what emitters send by these ways.
