@@ -70,7 +70,7 @@ class Set {
   }
 
  private:
-  static Options options_of(const std::string& file, const Plan& plan) {
+  static raygate::Options options_of(const std::string& file, const Plan& plan) {
     const std::string size = std::to_string(plan.side) + "x" + std::to_string(plan.side);
     const char* const words[] = {"lab",          file.c_str(), "--engine", "cpu",
                                  "--integrator", "path",       "--size",   size.c_str()};
@@ -78,7 +78,7 @@ class Set {
   }
 
   const Plan& plan_;
-  Options options_;
+  raygate::Options options_;
   Scene scene_;
   std::unique_ptr<CameraSequence> cameras_;
   std::unique_ptr<Bvh> bvh_;

@@ -14,7 +14,7 @@
 namespace raygate::lab {
 namespace {
 
-struct Options {
+struct RaysOptions {
   std::vector<std::string> scenes;
   int size = 1024, repeats = 7;
   bool alone = false;
@@ -55,7 +55,7 @@ void measure(const RaySet& set, const std::string& scene,
   }
 }
 
-void run(const Options& options, Results& results) {
+void run(const RaysOptions& options, Results& results) {
   for (const std::filesystem::path file : options.scenes) {
     const Scene scene = load_obj(file);
     std::vector<std::unique_ptr<Peer>> peers;
@@ -72,7 +72,7 @@ void run(const Options& options, Results& results) {
 
 void add_rays(CLI::App& lab, Outcome& outcome) {
   auto* app = lab.add_subcommand("rays", "rays per second of the cpu engine and of Embree 3");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RaysOptions>();
   app->add_option("scenes", options->scenes, "OBJ files")->required();
   app->add_option("--size", options->size, "pixels along each side; a multiple of 128")
       ->check(CLI::Range(128, 8192));
