@@ -165,15 +165,18 @@ ifdef MPI
 configure += -DRAYGATE_MPI=$(if $(filter 0,$(MPI)),OFF,ON)
 endif
 
-cpu: configure += -DRAYGATE_SIMULATION=OFF
-# The first build of a folder is faster with several sources at once; who goes on to change them starts with
-# `make everything`.
+# The first build of a folder is faster with several sources at once; who goes on to change them: `make everything UNITY=0`.
 ifeq ($(wildcard build/CMakeCache.txt),)
-cpu verilate: configure += -DCMAKE_UNITY_BUILD=ON
+UNITY ?= 1
+endif
+ifdef UNITY
+configure += -DCMAKE_UNITY_BUILD=$(if $(filter 0,$(UNITY)),OFF,ON)
 endif
 
+cpu: configure += -DRAYGATE_SIMULATION=OFF
+
 .PHONY: everything
-everything test: configure += -DBUILD_TESTING=ON -DCMAKE_UNITY_BUILD=OFF
+everything test: configure += -DBUILD_TESTING=ON
 everything:
 	$(call build,test,all)
 
