@@ -17,7 +17,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{1};  // between looks for messages that are waited for
+constexpr std::chrono::milliseconds kPoll{1};  // between looks for messages that are waited for
 
 /// Those that this process may run on, among the ranks of this machine that may run on the same.
 unsigned count_processors() {
@@ -55,7 +55,7 @@ class MpiRanks : public Ranks {
     while (index_ == 0 ? !sending_.empty() : !is_over_) {
       if (index_ != 0) is_over_ = taken().value_or(Message{}).about == About::kEnd;
       forget_sent();
-      std::this_thread::sleep_for(kLook);
+      std::this_thread::sleep_for(kPoll);
     }
     MPI_Finalize();
   }
