@@ -190,8 +190,8 @@ TEST_F(ExrFile, BadFilesAreRefusedInOneLine) {
 
 /// Before memory is taken for it: fuzzing found a file of 2,634 bytes that took two gigabytes.
 TEST_F(ExrFile, HeadersAreNoLongerThanTheFile) {
-  std::string bytes =
-      encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}), {.scene = "cornell.obj"});
+  std::string bytes = encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}),
+                                 {.software = {}, .scene = "cornell.obj"});
   const std::size_t length = bytes.find(std::string("scene\0string\0", 13)) + 13;
   ASSERT_EQ(bytes[length], 11);
   bytes.replace(length, 4, "ring");
