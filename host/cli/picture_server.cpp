@@ -66,6 +66,7 @@ struct Request {
   }
 };
 
+constexpr int kNoContent = 204;
 constexpr const char* kText = "text/plain; charset=utf-8";
 
 struct Reply {
@@ -98,9 +99,11 @@ Request request_of(mg_connection* connection) {
 
 void send(mg_connection* connection, const Reply& reply) {
   mg_response_header_start(connection, reply.status);
-  mg_response_header_add(connection, "Content-Type", reply.type, -1);
-  mg_response_header_add(connection, "Content-Length", std::to_string(reply.body.size()).c_str(),
-                         -1);
+  if (reply.status != kNoContent) {
+    mg_response_header_add(connection, "Content-Type", reply.type, -1);
+    mg_response_header_add(connection, "Content-Length", std::to_string(reply.body.size()).c_str(),
+                           -1);
+  }
   mg_response_header_add(connection, "Cache-Control", "no-store", -1);
   for (const auto& [name, value] : reply.headers) {
     mg_response_header_add(connection, name, value.c_str(), static_cast<int>(value.size()));
@@ -194,7 +197,7 @@ class PictureServer {
       erase_option(command.words, "view");
     }
     for (const auto& [name, value] : request.parameters) {
-      if (name == "slot" || name == "x" || name == "y") continue;
+      if (name == "slot" || name == "turn" || name == "x" || name == "y") continue;
       if (!request_options().contains(name)) {
         throw InputError(name +
                          ": expected an option of ./render that changes neither the scene "
@@ -241,7 +244,7 @@ class PictureServer {
 
   Reply picture(const Request& request) {
     const std::string slot = request.value("slot");
-    const std::uint64_t turn = next_turn(slot);
+    const std::uint64_t turn = slot.empty() ? 0 : take_turn(slot, request.value("turn"));
     const Command command = command_of(request);
     const Options& options = command.options;
     const CameraSequence cameras(options, scene_.unframed);
@@ -266,7 +269,7 @@ class PictureServer {
                 {{"X-Command", printable(command.text())}, {"X-Statistics", text_of(stats)}}};
       }
     }
-    return {409, kText, "a newer request took its place\n"};
+    return {kNoContent};
   }
 
   /// The picture itself, or the last of its channels in false colours.
@@ -368,9 +371,14 @@ class PictureServer {
     return json;
   }
 
-  std::uint64_t next_turn(const std::string& slot) {
+  /// The number of a slot's request. Requests may come in another order than they were sent in.
+  std::uint64_t take_turn(const std::string& slot, const std::string& number) {
+    const auto turn = parse_number<std::uint64_t>(number);
+    if (!turn) fail_value("turn", number, "the number of the slot's request");
     const std::lock_guard<std::mutex> lock(turns_mutex_);
-    return ++turns_[slot];
+    std::uint64_t& newest = turns_[slot];
+    newest = std::max(newest, *turn);
+    return *turn;
   }
   [[nodiscard]] bool is_current(const std::string& slot, std::uint64_t turn) {
     if (slot.empty()) return true;
@@ -392,7 +400,7 @@ class PictureServer {
   std::mutex rendering_;            // one picture has all threads
   std::shared_ptr<const MemoryImage> image_;
   std::mutex turns_mutex_;
-  std::map<std::string, std::uint64_t> turns_;  // the last request of each slot
+  std::map<std::string, std::uint64_t> turns_;  // the newest request of each slot
 };
 
 }  // namespace

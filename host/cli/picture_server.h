@@ -29,9 +29,9 @@ struct ServedScene {
 ///                            and as binary32 words, found by the options' engine and in place
 ///
 /// OPTIONS are those of ./render that change neither the scene nor files, without dashes:
-/// engine=cpu&size=80x60. They take the place of what `options` has. `slot=NAME` ends the picture
-/// that is being rendered for an older request of that slot (status 409). A bad option is one line
-/// of text, status 400. Throws InputError where the port cannot be had.
+/// engine=cpu&size=80x60. They take the place of what `options` has. `slot=NAME&turn=N` ends the
+/// pictures of that slot with a smaller N (status 204, no picture). A bad option is one line of
+/// text, status 400. Throws InputError where the port cannot be had.
 void serve_pictures(const Options& options, const ServedScene& scene);
 
 }  // namespace raygate

@@ -96,6 +96,7 @@ class Http(unittest.TestCase):
                     ("/picture", {"width": 3}, "width: expected an option"),
                     ("/picture", {"output": "a.png"}, "output: expected an option"),
                     ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
+                    ("/picture", {"slot": "left"}, "turn: expected the number"),
                     ("/picture", {"false-colour": "nothing=a.png"}, "nothing"),
                     ("/picture", {"variant": "e8p9-raw"}, "--engine: expected model with --variant e8p9-raw, got cpu"),
                     ("/pixel", {"x": 64, "y": 0}, "a pixel of 64x48, got '64'"),
@@ -120,14 +121,16 @@ class Http(unittest.TestCase):
         with Served() as served:
             old = []
             thread = threading.Thread(target=lambda: old.append(
-                served.get("/picture", spp=60000, size="640x480", slot="left")[0]))
+                served.get("/picture", spp=60000, size="640x480", slot="left", turn=3)[0]))
             thread.start()
             time.sleep(0.3)
             begin = time.monotonic()
-            self.assertEqual(served.get("/picture", spp=1, slot="left")[0], 200)
+            self.assertEqual(served.get("/picture", spp=1, slot="left", turn=4)[0], 200)
             self.assertLess(time.monotonic() - begin, 30)
             thread.join(60)
-            self.assertEqual(old, [409])
+            self.assertEqual(old, [204])
+            # One that was sent earlier and comes later.
+            self.assertEqual(served.get("/picture", spp=1, slot="left", turn=3)[0], 204)
 
     def test_command_lines_that_are_refused(self):
         with Served() as served:
@@ -193,7 +196,7 @@ class Browser(unittest.TestCase):
             frame = browser.find_element(By.ID, "frame")
 
             # Turned, approached, moved: the command has a camera, and the picture is another one.
-            # A fast wheel ends the pictures before the last, without a word on the browser's console.
+            # A fast wheel ends the pictures before the last.
             before = self.pixels("canvas-a")
             ActionChains(browser).drag_and_drop_by_offset(frame, 60, 10).perform()
             self.wait(lambda _: "--camera=" in self.command())
