@@ -269,7 +269,7 @@ class PictureServer {
                 {{"X-Command", printable(command.text())}, {"X-Statistics", text_of(stats)}}};
       }
     }
-    return {kNoContent};
+    return {kNoContent, kText, ""};
   }
 
   /// The picture itself, or the last of its channels in false colours.
