@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <type_traits>
 
 #include "host/base/lanes.h"
 
@@ -48,18 +47,12 @@ RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& gra
 }
 
 /// P of a plane (N, d) and a direction each lane, and the bits of its error: those of plane_point.
-/// `Number`: float, one plane for all lanes, or Floats. `largest`: the largest exponent field of N.
-template <class Floats, class Ints, class Number>
-RAYGATE_INLINE void plane_points(const Number (&n)[3], const Number& d, const Ints& largest,
+/// `largest`: the largest exponent field of N.
+template <class Floats, class Ints>
+RAYGATE_INLINE void plane_points(const Floats (&n)[3], const Floats& d, const Ints& largest,
                                  const Floats (&direction)[3], Floats (&point)[3], Ints& error) {
   const Floats v = 0.0f + ((n[0] * direction[0] + n[1] * direction[1]) + n[2] * direction[2]);
-  Ints d_bits;
-  if constexpr (std::is_same_v<Number, float>) {
-    d_bits = Ints{} + std::bit_cast<std::int32_t>(d);
-  } else {
-    d_bits = bits_in(d);
-  }
-  error = point_error_of(d_bits, bits_in(v), grazing_of(largest, bits_in(v)));
+  error = point_error_of(bits_in(d), bits_in(v), grazing_of(largest, bits_in(v)));
   for (int k = 0; k < 3; ++k) {
     const Floats p = d * direction[k] / v;
     point[k] = p == p ? p : float_of(Ints{} + 0x7FC00000);

@@ -69,10 +69,14 @@ RAYGATE_INLINE Floats edge_bound(const Floats (&words)[3]) {
   return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
 }
 
-/// The corners of four triangles.
+/// The corners of four triangles. (Lane by lane: words that were stored one by one do not reach a
+/// vector's load before they are in the cache.)
 RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
+  const Corners(&of)[kBatch] = views.triangles;
   for (int v = 0; v < 3; ++v) {
-    for (int k = 0; k < 3; ++k) t[v][k] = wide(load<Floats>(views.corners[v][k]));
+    for (int k = 0; k < 3; ++k) {
+      t[v][k] = wide(Floats{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]});
+    }
   }
 }
 
@@ -137,7 +141,8 @@ LaneMask make_four_planes(const PlaneViews& views, Planes& planes) {
     Points t[3], a, normal;
     load_corners(views, t);
     for (int k = 0; k < 3; ++k) {
-      a[k] = t[0][k] - wide(load<Floats>(views.origins[k]));
+      const glm::vec3(&from)[kBatch] = views.origins;
+      a[k] = t[0][k] - wide(Floats{from[0][k], from[1][k], from[2][k], from[3][k]});
     }
     Longs good = Longs{} - 1;
     Doubles d;
@@ -155,7 +160,7 @@ void make_planes(const PlaneViews& views, Planes& planes) {
   const LaneMask good = make_four_planes(views, planes);
   for (LaneMask left = ~good & ((1u << kPlanes) - 1); left != 0; left &= left - 1) {
     const int i = std::countr_zero(left);
-    const PolygonRecord plane = make_plane(views.origin(i), views.triangle(i));
+    const PolygonRecord plane = make_plane(views.origins[i], views.triangles[i]);
     for (int k = 0; k < 3; ++k) planes.words[k][i] = plane.normal[k];
     planes.words[3][i] = plane.d;
   }
@@ -168,7 +173,7 @@ void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
     const std::size_t count = std::min<std::size_t>(kBatch, triangles.size() - first);
     PlaneViews batch;
     for (std::size_t i = 0; i < kBatch; ++i) {
-      batch.set(i, origin, triangles[first + std::min(i, count - 1)]);
+      batch.triangles[i] = triangles[first + std::min(i, count - 1)];
     }
     float words[kBatch][16];
     const LaneMask good = make_four(origin, batch, words);

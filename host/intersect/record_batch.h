@@ -16,27 +16,10 @@ void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
 /// How many planes are made at once.
 inline constexpr int kPlanes = 4;
 
-/// Triangles, and whence they are seen, lane by lane.
+/// Triangles, and whence they are seen.
 struct PlaneViews {
-  alignas(16) float origins[3][kPlanes];
-  alignas(16) float corners[3][3][kPlanes];  ///< [corner][axis]
-
-  void set(std::size_t i, const glm::vec3& origin, const Corners& triangle) {
-    for (int k = 0; k < 3; ++k) {
-      origins[k][i] = origin[k];
-      for (int v = 0; v < 3; ++v) corners[v][k][i] = triangle[v][k];
-    }
-  }
-  [[nodiscard]] glm::vec3 origin(std::size_t i) const {
-    return {origins[0][i], origins[1][i], origins[2][i]};
-  }
-  [[nodiscard]] Corners triangle(std::size_t i) const {
-    Corners triangle;
-    for (int v = 0; v < 3; ++v) {
-      for (int k = 0; k < 3; ++k) triangle[v][k] = corners[v][k][i];
-    }
-    return triangle;
-  }
+  glm::vec3 origins[kPlanes];
+  Corners triangles[kPlanes];
 };
 
 /// N and d of polygon records, lane by lane.
@@ -52,7 +35,7 @@ struct Planes {
   }
 };
 
-/// planes.record(i) = make_plane(views.origin(i), views.triangle(i)), bit for bit.
+/// planes.record(i) = make_plane(views.origins[i], views.triangles[i]), bit for bit.
 void make_planes(const PlaneViews& views, Planes& planes);
 
 }  // namespace raygate

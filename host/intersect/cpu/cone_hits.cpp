@@ -1,6 +1,9 @@
 // Writes the nearest hits of a finished packet, with their points P.
 #include <algorithm>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 #include "host/intersect/cpu/packet_intersector.h"
 #include "host/intersect/point_error.h"
@@ -8,36 +11,49 @@
 
 namespace raygate {
 
-/// Hands the nearest hits over, with their P where that is asked for: triangle by triangle, as rays
-/// that hit one share its plane.
+/// Planes of the triangles that a packet's rays hit.
+struct PacketIntersector::SeenPlanes {
+  static constexpr int kMost = RayPacket::kRays;
+
+  int count = 0;
+  std::uint32_t primitives[kMost + 1] = {};
+  std::uint8_t of_rays[kMost] = {};  ///< the number of each ray's
+  LaneMask even = 0;                 ///< the groups with one plane
+  float words[4][kMost];             ///< as Planes has them
+  std::int32_t largest[kMost];       ///< exponent field of N
+
+  /// What the planes that a group's rays hit have.
+  template <class Word>
+  [[nodiscard]] RAYGATE_INLINE auto get(const Word (&of)[kMost], int group) const {
+    const std::uint8_t* const at = of_rays + kLanes * group;
+    if ((even >> group & 1) != 0) return Vec<Word, kLanes>{} + of[at[0]];
+    return Vec<Word, kLanes>{of[at[0]], of[at[1]], of[at[2]], of[at[3]],
+                             of[at[4]], of[at[5]], of[at[6]], of[at[7]]};
+  }
+};
+
+/// pairs[i] = first[i], second[i].
+RAYGATE_INLINE void pair_up(const DoubleQuad& first, const DoubleQuad& second,
+                            Vec<double, 2>* pairs) {
+  pairs[0] = __builtin_shufflevector(first, second, 0, 4);
+  pairs[1] = __builtin_shufflevector(first, second, 1, 5);
+  pairs[2] = __builtin_shufflevector(first, second, 2, 6);
+  pairs[3] = __builtin_shufflevector(first, second, 3, 7);
+}
+
+/// Hands the nearest hits over, with their P where that is asked for.
 void PacketIntersector::finish(const ConeTraversal& walk) {
   in_vectors([&](auto) RAYGATE_BODY {
     if (!query_.work.empty()) put_work(walk);
-    std::uint64_t left = 0;
+    std::uint64_t rays = 0;  // that hit something
     for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
-      left |= std::uint64_t{0xFF & ~sign_mask(walk.primitive[g])} << (8 * g);
+      rays |= std::uint64_t{0xFF & ~sign_mask(walk.primitive[g])} << (8 * g);
     }
-    Seen seen[kPlanes];
-    int count = 0;
-    while (left != 0) {
-      const int first = std::countr_zero(left);
-      const std::int32_t primitive = walk.primitive[first / kLanes][first % kLanes];
-      std::uint64_t same = 0;
-      for (LaneMask groups = groups_of(left); groups != 0; groups &= groups - 1) {
-        const int g = std::countr_zero(groups);
-        same |= std::uint64_t{sign_mask(walk.primitive[g] == primitive)} << (8 * g);
-      }
-      same &= left;
-      left &= ~same;
-      seen[count++] = {static_cast<std::uint32_t>(primitive), same};
-      if (count < kPlanes && left != 0) continue;
-      if (query_.with_points()) {
-        put_with_points(walk, std::span(seen, static_cast<std::size_t>(count)));
-      } else {
-        for (int i = 0; i < count; ++i) put(walk, seen[i]);
-      }
-      count = 0;
+    if (query_.with_points()) {
+      put_with_points(walk, rays);
+    } else {
+      put(walk, rays);
     }
   });
 }
@@ -51,41 +67,101 @@ void PacketIntersector::put_work(const ConeTraversal& walk) {
   }
 }
 
-RAYGATE_INLINE void PacketIntersector::put(const ConeTraversal& walk, const Seen& seen) {
-  for (std::uint64_t rays = seen.rays; rays != 0; rays &= rays - 1) {
+RAYGATE_INLINE void PacketIntersector::put(const ConeTraversal& walk, std::uint64_t rays) {
+  for (; rays != 0; rays &= rays - 1) {
     const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
-    hits_[walk.number(g, lane)] = {.primitive = seen.primitive, .t = walk.t(g, lane)};
+    hits_[walk.number(g, lane)] = {.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]),
+                                   .t = walk.t(g, lane)};
+  }
+}
+
+/// The planes of what these rays hit, few of them twice.
+RAYGATE_INLINE void PacketIntersector::find_planes(const ConeTraversal& walk, std::uint64_t rays,
+                                                   SeenPlanes& planes) const {
+  std::uint8_t last[SeenPlanes::kMost] = {};  // by hash: the last plane of such a primitive
+  const auto number_of = [&](std::int32_t hit) __attribute__((always_inline)) {
+    const auto primitive = static_cast<std::uint32_t>(hit);
+    std::uint8_t& number = last[primitive % SeenPlanes::kMost];
+    // Without a branch, which would be a guess.
+    const int known =
+        (number < planes.count ? 1 : 0) & (planes.primitives[number] == primitive ? 1 : 0);
+    number = static_cast<std::uint8_t>(known != 0 ? number : planes.count);
+    planes.primitives[planes.count] = primitive;
+    planes.count += 1 - known;
+    return number;
+  };
+  for (LaneMask groups = groups_of(rays); groups != 0; groups &= groups - 1) {
+    const int g = std::countr_zero(groups);
+    const IntLanes& hits = walk.primitive[g];
+    std::uint8_t* const of = planes.of_rays + kLanes * g;
+    if (sign_mask(hits == hits[0]) == 0xFF) {
+      planes.even |= 1u << g;
+      of[0] = number_of(hits[0]);
+      continue;
+    }
+    for (LaneMask lanes = rays_of(rays, g); lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      of[lane] = number_of(hits[lane]);
+    }
+  }
+  for (int first = 0; first < planes.count; first += kPlanes) {
+    PlaneViews views;
+    for (int i = 0; i < kPlanes; ++i) {
+      views.origins[i] = origin_;
+      views.triangles[i] =
+          bvh_.corners_of(planes.primitives[std::min(first + i, planes.count - 1)]);
+    }
+    Planes four;
+    make_planes(views, four);
+    IntQuad largest = {};
+    for (int k = 0; k < 4; ++k) {
+      const auto words = load<FloatQuad>(four.words[k]);
+      std::memcpy(&planes.words[k][first], &words, sizeof words);
+      if (k < 3) largest = maximum(largest, bits_in(words) >> 23 & 0xFF);
+    }
+    std::memcpy(&planes.largest[first], &largest, sizeof largest);
   }
 }
 
 /// P has the bits of plane_point.
 RAYGATE_INLINE void PacketIntersector::put_with_points(const ConeTraversal& walk,
-                                                       std::span<const Seen> seen) {
-  PlaneViews views;
-  for (std::size_t i = 0; i < kPlanes; ++i) {
-    views.set(i, origin_, bvh_.corners_of(seen[std::min(i, seen.size() - 1)].primitive));
-  }
-  Planes planes;
-  make_planes(views, planes);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const PolygonRecord plane = planes.record(i);
-    const float n[3] = {plane.normal.x, plane.normal.y, plane.normal.z};
-    const IntLanes largest = IntLanes{} + largest_field(plane.normal);
-    for (LaneMask groups = groups_of(seen[i].rays); groups != 0; groups &= groups - 1) {
-      const int g = std::countr_zero(groups);
-      const auto& from = walk.block->direction;
-      FloatLanes point[3];
-      IntLanes error_bits;
-      plane_points(n, plane.d, largest, {from[0][g], from[1][g], from[2][g]}, point, error_bits);
-      const FloatLanes error = float_of(error_bits);
-      for (LaneMask lanes = rays_of(seen[i].rays, g); lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        hits_[walk.number(g, lane)] = {seen[i].primitive,
-                                       glm::vec3(point[0][lane], point[1][lane], point[2][lane]),
-                                       error[lane], walk.t(g, lane)};
-      }
+                                                       std::uint64_t rays) {
+  SeenPlanes planes;
+  find_planes(walk, rays, planes);
+  counters_.hit.plane_tests += static_cast<std::uint64_t>(std::popcount(rays));
+  for (LaneMask groups = groups_of(rays); groups != 0; groups &= groups - 1) {
+    const int g = std::countr_zero(groups);
+    const FloatLanes n[3] = {planes.get(planes.words[0], g), planes.get(planes.words[1], g),
+                             planes.get(planes.words[2], g)};
+    const auto& from = walk.block->direction;
+    FloatLanes point[3];
+    IntLanes error_bits;
+    plane_points(n, planes.get(planes.words[3], g), planes.get(planes.largest, g),
+                 {from[0][g], from[1][g], from[2][g]}, point, error_bits);
+    // What is to be written for each ray.
+    const FloatLanes error = float_of(error_bits), primitive = float_of(walk.primitive[g]);
+    FloatQuad rows[2][kQuad] = {
+        {low_half(primitive), low_half(point[0]), low_half(point[1]), low_half(point[2])},
+        {high_half(primitive), high_half(point[0]), high_half(point[1]), high_half(point[2])}};
+    transpose(rows[0]);
+    transpose(rows[1]);
+    const FloatLanes low = float_of(walk.low[g]), high = float_of(walk.high[g]);
+    Vec<double, 2> t[kLanes];
+    pair_up(wide(low_half(low)), wide(low_half(high)), t);
+    pair_up(wide(high_half(low)), wide(high_half(high)), t + kQuad);
+    NearestHit* const hits = &hits_[walk.number(g, 0)];
+    const auto write = [&](int lane) __attribute__((always_inline)) {
+      static_assert(offsetof(NearestHit, primitive) == 0 && offsetof(NearestHit, point) == 4);
+      std::memcpy(static_cast<void*>(&hits[lane]), &rows[lane / kQuad][lane % kQuad], 16);
+      hits[lane].point_error = error[lane];
+      std::memcpy(&hits[lane].t, &t[lane], sizeof t[lane]);
+    };
+    LaneMask lanes = rays_of(rays, g);
+    if (lanes == 0xFF) {
+      for (int lane = 0; lane < kLanes; ++lane) write(lane);
+    } else {
+      for (; lanes != 0; lanes &= lanes - 1) write(std::countr_zero(lanes));
     }
-    counters_.hit.plane_tests += static_cast<std::uint64_t>(std::popcount(seen[i].rays));
   }
 }
 

@@ -23,11 +23,7 @@ class PacketIntersector {
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
  private:
-  /// A triangle that is the nearest hit of some rays.
-  struct Seen {
-    std::uint32_t primitive;
-    std::uint64_t rays;
-  };
+  struct SeenPlanes;
 
   void begin(ConeTraversal& walk) const;
   void traverse(ConeTraversal& walk);
@@ -40,9 +36,10 @@ class PacketIntersector {
   void resolve_sides(const Bvh::Child& leaf, QuadRecord& record, LaneMask& there) const;
   bool resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive,
                const Interval* sure);
-  void put(const ConeTraversal& walk, const Seen& seen);
+  void put(const ConeTraversal& walk, std::uint64_t rays);
   void put_work(const ConeTraversal& walk);
-  void put_with_points(const ConeTraversal& walk, std::span<const Seen> seen);
+  void find_planes(const ConeTraversal& walk, std::uint64_t rays, SeenPlanes& planes) const;
+  void put_with_points(const ConeTraversal& walk, std::uint64_t rays);
 
   const Bvh& bvh_;
   IntersectCounters& counters_;

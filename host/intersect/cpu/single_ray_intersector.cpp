@@ -236,7 +236,8 @@ void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
     const std::uint32_t number = numbers[std::min(i, numbers.size() - 1)];
     const Ray& ray = rays_[number];
     hits[i] = &hits_[number];
-    views.set(i, ray.origin, bvh_.corners_of(hits[i]->primitive));
+    views.origins[i] = ray.origin;
+    views.triangles[i] = bvh_.corners_of(hits[i]->primitive);
     d[i] = load<FloatQuad>(reinterpret_cast<const float*>(&ray + 1) - kQuad);
   }
   Planes planes;

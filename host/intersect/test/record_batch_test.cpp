@@ -26,7 +26,8 @@ void expect_same(const glm::vec3& origin, const std::vector<Corners>& triangles)
     // Four origins, four triangles.
     PlaneViews views;
     for (std::size_t k = 0; k < kPlanes; ++k) {
-      views.set(k, origin * static_cast<float>(k + 1), triangles[(i + k) % triangles.size()]);
+      views.origins[k] = origin * static_cast<float>(k + 1);
+      views.triangles[k] = triangles[(i + k) % triangles.size()];
     }
     Planes planes;
     make_planes(views, planes);
