@@ -5,7 +5,7 @@
 
 namespace raygate {
 
-inline constexpr std::uint32_t kCausticRays = 4;  // more cost as much as they gain
+inline constexpr std::uint32_t kCausticRays = 4;  // of a hit
 
 /// Sends rays from the surfaces of has_seen_caustics() towards mirrors and glass. Light paths end
 /// at the lens, and there is no way of theirs to the lens by a mirror: these caustics are found by
