@@ -17,15 +17,15 @@ struct PacketIntersector::SeenPlanes {
 
   int count = 0;
   std::uint32_t primitives[kMost + 1] = {};
-  std::uint8_t of_rays[kMost] = {};  ///< the number of each ray's
-  LaneMask even = 0;                 ///< the groups with one plane
-  float words[4][kMost];             ///< as Planes has them
-  std::int32_t largest[kMost];       ///< exponent field of N
+  std::uint8_t of_rays[RayPacket::kGroups][kLanes] = {};  ///< the number of each ray's
+  LaneMask even = 0;                                      ///< the groups with one plane
+  float words[4][kMost];                                  ///< as Planes has them
+  std::int32_t largest[kMost];                            ///< exponent field of N
 
   /// What the planes that a group's rays hit have.
   template <class Word>
   [[nodiscard]] RAYGATE_INLINE auto get(const Word (&of)[kMost], int group) const {
-    const std::uint8_t* const at = of_rays + kLanes * group;
+    const std::uint8_t(&at)[kLanes] = of_rays[group];
     if ((even >> group & 1) != 0) return Vec<Word, kLanes>{} + of[at[0]];
     return Vec<Word, kLanes>{of[at[0]], of[at[1]], of[at[2]], of[at[3]],
                              of[at[4]], of[at[5]], of[at[6]], of[at[7]]};
@@ -93,7 +93,7 @@ RAYGATE_INLINE void PacketIntersector::find_planes(const ConeTraversal& walk, st
   for (LaneMask groups = groups_of(rays); groups != 0; groups &= groups - 1) {
     const int g = std::countr_zero(groups);
     const IntLanes& hits = walk.primitive[g];
-    std::uint8_t* const of = planes.of_rays + kLanes * g;
+    std::uint8_t(&of)[kLanes] = planes.of_rays[g];
     if (sign_mask(hits == hits[0]) == 0xFF) {
       planes.even |= 1u << g;
       of[0] = number_of(hits[0]);
