@@ -1,7 +1,6 @@
 // Makes polygon records and planes, four at a time.
 #pragma once
 
-#include <cstddef>
 #include <glm/glm.hpp>
 #include <span>
 
@@ -22,20 +21,12 @@ struct PlaneViews {
   Corners triangles[kPlanes];
 };
 
-/// N and d of polygon records, lane by lane.
+/// N and d of polygon records, as make_plane has them, lane by lane.
 struct Planes {
   alignas(16) float words[4][kPlanes];
-
-  /// As make_plane has it.
-  [[nodiscard]] PolygonRecord record(std::size_t i) const {
-    PolygonRecord record;
-    record.normal = {words[0][i], words[1][i], words[2][i]};
-    record.d = words[3][i];
-    return record;
-  }
 };
 
-/// planes.record(i) = make_plane(views.origins[i], views.triangles[i]), bit for bit.
+/// Lane i is make_plane(views.origins[i], views.triangles[i]), bit for bit.
 void make_planes(const PlaneViews& views, Planes& planes);
 
 }  // namespace raygate
