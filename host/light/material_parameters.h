@@ -60,6 +60,8 @@ struct MaterialParameters {
     constexpr HitKind kRoughGlass = kMetallicRoughness | kGlossy | kMirrors;
     return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0 && (mirror_is_traced || refracts);
   }
+  /// The same of glass at whose borders light is bent.
+  [[nodiscard]] bool is_bending_glass() const { return is_mirror_or_glass() && refracts; }
 
   /// A material that is not there: all light goes straight on.
   [[nodiscard]] static MaterialParameters transparent() {

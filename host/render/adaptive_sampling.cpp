@@ -112,7 +112,8 @@ std::vector<PixelSamples> samples_to_trace(const RenderOptions& options, const F
         if (first >= end) return;
         const int last =
             std::max(end, std::min({first + ahead, next_error_check(first), options.samples}));
-        pixels.push_back({pixel.x0, pixel.y0, index, first, last});
+        pixels.push_back(
+            {.x = pixel.x0, .y = pixel.y0, .index = index, .first = first, .end = last});
       });
     });
   });

@@ -13,6 +13,7 @@ namespace raygate {
 namespace {
 
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
+constexpr int kGlassPaths = 2;                    // of a sample
 
 IntegratorOptions integrator_options(const RenderJob& job) {
   const RenderOptions& options = job.options;
@@ -37,11 +38,41 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
                   integrator_options(job)),
       shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
-      is_counting_(!film.tests.empty() || !film.doubts.empty()) {
+      is_counting_(!film.tests.empty() || !film.doubts.empty()),
+      has_glass_(
+          std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_bending_glass)) {
   if (!emitter_ways.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
   if (job.light_paths == nullptr || job.splats != nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options.skips,
                             integrator_options(job));
+}
+
+/// Glass is the noisiest that a camera sees: at each of its borders chance chooses between mirror
+/// and way through, and caustics seen in it are smaller than pixels. Where light paths leave no
+/// greater noise elsewhere, samples of pixels whose middles see glass are means of several paths.
+/// That depends on no sample, so that it favours nothing.
+void TileRenderer::choose_path_counts() {
+  if (!has_glass_ || job_.light_paths == nullptr || job_.options.samples == 1) return;
+  Stopwatch watch;
+  batch_.clear();
+  batch_.depth = 0;
+  for (const PixelSamples& pixel : pixels_) {
+    batch_.rays.push_back(job_.camera.ray((pixel.x + 0.5) / job_.options.width,
+                                          (pixel.y + 0.5) / job_.options.height, {}));
+  }
+  stats_.camera_rays += pixels_.size();
+  stats_.shade_seconds += watch.lap();
+  intersect_batch();
+  watch.lap();
+  for (std::size_t i = 0; i < work_.size(); ++i) pixel_work_[place_in_tile(pixels_[i])] += work_[i];
+  for (std::size_t i = 0; i < hits_.size(); ++i) {
+    if (hits_[i].primitive == NearestHit::kNone) continue;
+    const FaceRef face = job_.prepared.bvh.face_of(hits_[i].primitive);
+    const MaterialParameters& material =
+        job_.prepared.materials[face_at(job_.prepared.scene, face).material];
+    if (material.is_bending_glass()) pixels_[i].paths = kGlassPaths;
+  }
+  stats_.shade_seconds += watch.lap();
 }
 
 void TileRenderer::make_camera_rays() {
@@ -49,7 +80,7 @@ void TileRenderer::make_camera_rays() {
   batch_.depth = 0;
   for (const PixelSamples& pixel : pixels_) {
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
-    for (int i = pixel.first; i < pixel.end; ++i) {
+    for (int i = pixel.first * pixel.paths; i < pixel.end * pixel.paths; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
       PathState& state = batch_.states.emplace_back();
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
@@ -68,41 +99,42 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   splats_.clear();
   pixels_ = samples_to_trace(job_.options, film_, tile, end);
   if (pixels_.empty()) return true;
-  samples_ = 0;
-  for (const PixelSamples& pixel : pixels_) {
-    samples_ += static_cast<std::size_t>(pixel.end - pixel.first);
-  }
-  first_hits_.assign(samples_, {});
-  output_.radiance.assign(samples_, glm::vec3(0.0f));
-  output_.first_surface.assign(samples_, {});
-  output_.shadows.clear();
-  direct_light_.assign(samples_, glm::vec3(0.0f));
-  emitter_sums_.assign(pixels_.size(), {});
   tile_ = tile;
-  emitter_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0,
-                       {});
+  pixel_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
+  const bool is_empty = !job_.only_light_paths && is_empty_tile();
+  const bool has_camera_paths = !job_.only_light_paths && !is_empty;
   stats_.shade_seconds += watch.lap();
-  return (job_.only_light_paths || trace_camera_rays(tile, keep_going)) &&
-         trace_light_paths(keep_going);
+  if (has_camera_paths) choose_path_counts();
+  watch.lap();
+  paths_ = 0;
+  for (const PixelSamples& pixel : pixels_) paths_ += pixel.path_count();
+  first_hits_.assign(paths_, {});
+  output_.radiance.assign(paths_, is_empty ? integrator_.background() : glm::vec3(0.0f));
+  output_.first_surface.assign(paths_, {});
+  output_.shadows.clear();
+  direct_light_.assign(paths_, glm::vec3(0.0f));
+  emitter_sums_.assign(pixels_.size(), {});
+  if (is_empty) stats_.skipped.empty_tile_rays += paths_;
+  stats_.shade_seconds += watch.lap();
+  return (!has_camera_paths || trace_camera_rays(keep_going)) && trace_light_paths(keep_going);
 }
 
-bool TileRenderer::trace_camera_rays(const PixelRect& tile,
-                                     const std::function<bool()>& keep_going) {
+/// Whether camera rays can meet nothing but the background.
+bool TileRenderer::is_empty_tile() const {
+  const RenderOptions& options = job_.options;
+  const double margin = 1.0 + (options.samples > 1 ? filter_radius(options.filter) : 0.0);
+  return options.skips.empty_tiles && !integrator_.sees_environment(0) &&
+         !may_see_anything(job_.prepared.bvh, job_.camera, film_, tile_, margin);
+}
+
+bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   Stopwatch watch;
-  const double margin = 1.0 + (job_.options.samples > 1 ? filter_radius(job_.options.filter) : 0.0);
-  if (job_.options.skips.empty_tiles && !integrator_.sees_environment(0) &&
-      !may_see_anything(job_.prepared.bvh, job_.camera, film_, tile, margin)) {
-    output_.radiance.assign(samples_, integrator_.background());
-    stats_.skipped.empty_tile_rays += samples_;
-    stats_.shade_seconds += watch.lap();
-    return true;
-  }
   if (emitter_supersampler_ && emitter_ways_[pixels_[0].index] == kUnknownWays) {
-    emitter_supersampler_->find(film_, tile, emitter_ways_, emitter_work_);
+    emitter_supersampler_->find(film_, tile_, emitter_ways_, pixel_work_);
   }
   watch.lap();
   make_camera_rays();
-  stats_.camera_rays += samples_;
+  stats_.camera_rays += paths_;
   stats_.shade_seconds += watch.lap();
   if (!trace_batch(integrator_, keep_going)) return false;
   supersample_emitters();
@@ -124,10 +156,10 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   if (!light_integrator_) return true;
   constexpr std::size_t kManyPaths = 1 << 16;  // at once
   const std::uint64_t paths = job_.light_paths->count(), window = film_.color.size();
-  std::uint32_t sample = 0;
+  std::size_t camera_path = 0;  // the work is counted with
   batch_.clear();
   for (const PixelSamples& pixel : pixels_) {
-    for (int i = pixel.first; i < pixel.end; ++i, ++sample) {
+    for (int i = pixel.first; i < pixel.end; ++i, camera_path += std::size_t(pixel.paths)) {
       for (std::uint64_t path = pixel.index * paths / window;
            path < (pixel.index + 1) * paths / window; ++path) {
         const auto start = job_.light_paths->start(static_cast<std::uint64_t>(i) * paths + path,
@@ -135,7 +167,7 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
         if (!start) continue;
         batch_.rays.push_back(start->ray);
         batch_.states.push_back(start->state);
-        batch_.states.back().sample = sample;
+        batch_.states.back().sample = static_cast<std::uint32_t>(camera_path);
         if (batch_.rays.size() < kManyPaths) continue;
         batch_.depth = 1;
         if (!trace_batch(*light_integrator_, keep_going)) return false;
@@ -152,25 +184,29 @@ void TileRenderer::supersample_emitters() {
   if (!emitter_supersampler_) return;
   std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
   emitter_supersampler_->supersample(pixels_, emitter_ways_, emitter_sums_, work);
-  for (std::size_t p = 0; p < work.size(); ++p) emitter_work_[place_in_tile(pixels_[p])] += work[p];
+  for (std::size_t p = 0; p < work.size(); ++p) pixel_work_[place_in_tile(pixels_[p])] += work[p];
+}
+
+/// Sets hits_ and work_.
+void TileRenderer::intersect_batch() {
+  stats_.rays += batch_.rays.size();
+  hits_.resize(batch_.rays.size());
+  work_.resize(is_counting_ ? batch_.rays.size() : 0);
+  intersector_.intersect(batch_.rays,
+                         {.common_origin = batch_.depth == 0 && job_.camera.has_common_origin(),
+                          .source_ids = batch_.sources,
+                          .culling = job_.options.skips.culling,
+                          .work = work_},
+                         hits_);
 }
 
 /// The rays of one depth, and the shadow rays from where they end: these in several batches where
 /// there are many lights. Light from lights is added up apart from other light, so that the order
 /// of a sample's sums does not depend on the batches.
 void TileRenderer::trace_wave(Integrator& integrator) {
+  intersect_batch();
   Stopwatch watch;
   const std::vector<Ray>& rays = batch_.rays;
-  stats_.rays += rays.size();
-  hits_.resize(rays.size());
-  work_.resize(is_counting_ ? rays.size() : 0);
-  intersector_.intersect(rays,
-                         {.common_origin = batch_.depth == 0 && job_.camera.has_common_origin(),
-                          .source_ids = batch_.sources,
-                          .culling = job_.options.skips.culling,
-                          .work = work_},
-                         hits_);
-  watch.lap();
   output_.next.clear();
   output_.next.depth = batch_.depth + 1;
   for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], batch_.states[i].sample);
@@ -235,7 +271,7 @@ void TileRenderer::write() {
   Stopwatch watch;
   FilmSums& kept = film_.sums;
   const bool has_albedo = !film_.albedo.empty();
-  std::size_t i = 0;  // a sample
+  std::size_t i = 0;  // a path
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     const PixelSamples& pixel = pixels_[p];
     const std::size_t at = pixel.index;
@@ -248,20 +284,22 @@ void TileRenderer::write() {
     std::array<ExactAccumulator, 3> albedo{};
     if (!kept.color.empty()) color = kept.color[at];
     if (!kept.albedo.empty()) albedo = kept.albedo[at];
-    int hits = 0;
-    for (int index = pixel.first; index < pixel.end; ++index, ++i) {
+    double hits = 0.0;
+    for (const std::size_t end = i + pixel.path_count(); i < end; ++i) {
       const FirstHit& first_hit = first_hits_[i];
       const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(direct_light_[i]);
       for (int k = 0; k < 3; ++k) {
-        color[k].add(light[k]);
-        if (has_albedo) albedo[k].add(output_.first_surface[i].albedo[k]);
+        color[k].add(light[k] / pixel.paths);
+        if (has_albedo) {
+          albedo[k].add(double{output_.first_surface[i].albedo[k]} / pixel.paths);
+        }
       }
-      hits += first_hit.primitive != NearestHit::kNone;
+      if (first_hit.primitive != NearestHit::kNone) hits += 1.0 / pixel.paths;
       count(first_hit.work);
     }
     color[3].add(hits);
     for (int k = 0; k < 3; ++k) color[k] += emitter_sums_[p][k];
-    if (is_counting_) count(emitter_work_[place_in_tile(pixel)]);
+    if (is_counting_) count(pixel_work_[place_in_tile(pixel)]);
     const int samples = pixel.end - job_.options.first_sample;
     if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
     if (!kept.color.empty()) kept.color[at] = color;

@@ -48,20 +48,23 @@ class TileRenderer {
     std::uint32_t primitive = NearestHit::kNone;
     glm::vec3 origin{0.0f};  // of the ray
     glm::vec3 point{0.0f};   // relative to it
-    RayWork work;            // of all rays of the sample
+    RayWork work;            // of all rays of the path
   };
 
+  void choose_path_counts();
   void make_camera_rays();
   void supersample_emitters();
-  bool trace_camera_rays(const PixelRect& tile, const std::function<bool()>& keep_going);
+  [[nodiscard]] bool is_empty_tile() const;
+  bool trace_camera_rays(const std::function<bool()>& keep_going);
   bool trace_light_paths(const std::function<bool()>& keep_going);
   bool trace_batch(Integrator& integrator, const std::function<bool()>& keep_going);
+  void intersect_batch();
   void trace_wave(Integrator& integrator);
   void trace_shadows();
   void add_splat(const ShadowRay& way);
   void record_first_hits();
   void count_work(const RayWork& work, std::uint32_t sample);
-  void write_channels(std::size_t pixel, std::size_t sample);
+  void write_channels(std::size_t pixel, std::size_t path);
   void update_errors();
 
   RenderJob job_;
@@ -80,14 +83,14 @@ class TileRenderer {
   }
 
   std::vector<PixelSamples> pixels_;
-  std::size_t samples_ = 0;           // of all of them
-  std::vector<FirstHit> first_hits_;  // by sample
-  bool is_counting_;
+  std::size_t paths_ = 0;             // of all of them
+  std::vector<FirstHit> first_hits_;  // by path
+  bool is_counting_, has_glass_;
   ShadingOutput output_;
-  std::vector<glm::vec3> direct_light_;  // by sample: what shadow rays have brought
+  std::vector<glm::vec3> direct_light_;  // by path: what shadow rays have brought
   std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;  // by pixel, of emitter_supersampler_
   PixelRect tile_;
-  std::vector<RayWork> emitter_work_;  // by pixel of the tile: of the same
+  std::vector<RayWork> pixel_work_;  // by pixel of the tile: of rays that are of no path
   RayBatch batch_;
   std::vector<NearestHit> hits_;  // of the batch
   std::vector<RayWork> work_;     // of the batch, if it is counted
