@@ -1,26 +1,20 @@
 #include "host/cli/picture_server.h"
 
-#include <civetweb.h>
-
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <cstring>
-#include <future>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "host/base/input_error.h"
 #include "host/cli/camera_sequence.h"
+#include "host/cli/http_server.h"
 #include "host/cli/picture_page.h"
 #include "host/cli/process.h"
 #include "host/film/display.h"
@@ -55,63 +49,6 @@ std::string quoted(const std::string& word) {
 
 Json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-/// What a browser asks.
-struct Request {
-  std::string host;
-  std::multimap<std::string, std::string> parameters;
-
-  [[nodiscard]] std::string value(const std::string& name) const {
-    const auto at = parameters.find(name);
-    return at == parameters.end() ? "" : at->second;
-  }
-};
-
-constexpr int kNoContent = 204;
-constexpr const char* kText = "text/plain; charset=utf-8";
-
-struct Reply {
-  int status = 200;
-  const char* type = kText;
-  std::string body;
-  std::vector<std::pair<const char*, std::string>> headers{};
-};
-
-std::string decoded(const std::string& text) {
-  std::string result(text.size() + 1, '\0');
-  const int size = mg_url_decode(text.data(), static_cast<int>(text.size()), result.data(),
-                                 static_cast<int>(result.size()), 1);
-  result.resize(static_cast<std::size_t>(std::max(0, size)));
-  return result;
-}
-
-Request request_of(mg_connection* connection) {
-  Request request;
-  if (const char* host = mg_get_header(connection, "Host")) request.host = host;
-  const char* query = mg_get_request_info(connection)->query_string;
-  std::istringstream words(query == nullptr ? "" : query);
-  for (std::string word; std::getline(words, word, '&');) {
-    const std::size_t equals = std::min(word.find('='), word.size());
-    request.parameters.emplace(decoded(word.substr(0, equals)),
-                               decoded(word.substr(std::min(equals + 1, word.size()))));
-  }
-  return request;
-}
-
-void send(mg_connection* connection, const Reply& reply) {
-  mg_response_header_start(connection, reply.status);
-  if (reply.status != kNoContent) {
-    mg_response_header_add(connection, "Content-Type", reply.type, -1);
-    mg_response_header_add(connection, "Content-Length", std::to_string(reply.body.size()).c_str(),
-                           -1);
-  }
-  mg_response_header_add(connection, "Cache-Control", "no-store", -1);
-  for (const auto& [name, value] : reply.headers) {
-    mg_response_header_add(connection, name, value.c_str(), static_cast<int>(value.size()));
-  }
-  mg_response_header_send(connection);
-  mg_write(connection, reply.body.data(), reply.body.size());
-}
-
 /// A command line that a request stands for.
 struct Command {
   std::vector<std::string> words;
@@ -134,63 +71,16 @@ class PictureServer {
   }
 
   void serve() {
-    const std::string port = "127.0.0.1:" + std::to_string(options_.port);
-    const char* settings[] = {"listening_ports",   port.c_str(), "num_threads", "8",
-                              "enable_keep_alive", "yes",        nullptr};
-    const mg_callbacks none{};
-    const std::unique_ptr<mg_context, void (*)(mg_context*)> server(mg_start(&none, this, settings),
-                                                                    mg_stop);
-    mg_server_port bound{};
-    if (!server || mg_get_server_ports(server.get(), 1, &bound) != 1) {
-      fail_value("--port", std::to_string(options_.port),
-                 "a port that no other program listens at");
-    }
-    const std::string number = std::to_string(bound.port);
-    names_ = {"127.0.0.1:" + number, "localhost:" + number};
-    note_interruptions();
-    for (const Route& route : kRoutes) {
-      mg_set_request_handler(server.get(), route.path, route.handler, this);
-    }
-    print("http://127.0.0.1:" + number + "/ shows the scene; Ctrl-C ends it\n");
-    flush_standard_output();
-    while (interruption() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    serve_http(options_.port,
+               {{"/", [](const HttpRequest&) { return page(); }},
+                {"/picture", [this](const HttpRequest& request) { return picture(request); }},
+                {"/camera", [this](const HttpRequest& request) { return camera(request); }},
+                {"/pixel", [this](const HttpRequest& request) { return pixel(request); }}});
   }
 
  private:
-  struct Route {
-    const char* path;
-    mg_request_handler handler;
-  };
-
-  using Answer = Reply (PictureServer::*)(const Request&);
-
-  template <Answer kAnswer>
-  static int handle(mg_connection* connection, void* server) {
-    // The library's threads have stacks of 100 kB, which parsing a command line nearly fills.
-    const Reply reply = std::async(std::launch::async, &PictureServer::answered,
-                                   static_cast<PictureServer*>(server), connection, kAnswer)
-                            .get();
-    send(connection, reply);
-    return reply.status;
-  }
-
-  Reply answered(mg_connection* connection, Answer answer) {
-    try {
-      const Request request = request_of(connection);
-      // A page of another site may know our port, but not call us by our name.
-      if (!names_.contains(request.host)) {
-        return {403, kText, "expected the host 127.0.0.1 or localhost, and this port\n"};
-      }
-      return (this->*answer)(request);
-    } catch (const InputError& error) {
-      return {400, kText, printable(error.what()) + "\n"};
-    } catch (const std::exception& error) {
-      return {500, kText, printable(error.what()) + "\n"};
-    }
-  }
-
   /// What was typed, with the request's options in place of those.
-  [[nodiscard]] Command command_of(const Request& request) const {
+  [[nodiscard]] Command command_of(const HttpRequest& request) const {
     Command command{words_, {}};
     if (request.parameters.contains("camera") || request.parameters.contains("view")) {
       erase_option(command.words, "camera");
@@ -240,9 +130,9 @@ class PictureServer {
     return make_intersector_factory(options, scene_.prepared.bvh, options.render.skips, image_);
   }
 
-  Reply page(const Request& /*request*/) { return {200, "text/html; charset=utf-8", kPicturePage}; }
+  static HttpReply page() { return {.type = "text/html; charset=utf-8", .body = kPicturePage}; }
 
-  Reply picture(const Request& request) {
+  HttpReply picture(const HttpRequest& request) {
     const std::string slot = request.value("slot");
     const std::uint64_t turn = slot.empty() ? 0 : take_turn(slot, request.value("turn"));
     const Command command = command_of(request);
@@ -263,13 +153,13 @@ class PictureServer {
       const Film film = render(scene_.prepared, cameras.frame(1).camera, render_options,
                                intersectors_of(options), stats, monitor);
       if (!stats.cancelled) {
-        return {200,
-                "image/png",
-                encode_png(shown(film, options.output)),
-                {{"X-Command", printable(command.text())}, {"X-Statistics", text_of(stats)}}};
+        return {.type = "image/png",
+                .body = encode_png(shown(film, options.output)),
+                .headers = {{"X-Command", printable(command.text())},
+                            {"X-Statistics", text_of(stats)}}};
       }
     }
-    return {kNoContent, kText, ""};
+    return {.status = HttpReply::kNoContent, .body = {}};
   }
 
   /// The picture itself, or the last of its channels in false colours.
@@ -292,7 +182,7 @@ class PictureServer {
         .dump();
   }
 
-  Reply camera(const Request& request) {
+  HttpReply camera(const HttpRequest& request) {
     const Options options = command_of(request).options;
     const CameraSequence cameras(options, scene_.unframed);
     const Camera& camera = cameras.frame(1).camera;
@@ -312,10 +202,10 @@ class PictureServer {
     for (const auto& [name, value] : cameras.options()) {
       if (name == "view") json["view"] = Json::parse("[" + value + "]");
     }
-    return {200, kJson, json.dump()};
+    return {.type = HttpReply::kJson, .body = json.dump()};
   }
 
-  Reply pixel(const Request& request) {
+  HttpReply pixel(const HttpRequest& request) {
     const Command command = command_of(request);
     const Options& options = command.options;
     const glm::ivec2 size{options.render.width, options.render.height};
@@ -338,7 +228,7 @@ class PictureServer {
               {"direction", words(ray.direction)},
               {"engine", found(ray, *intersectors_of(options)())},
               {"cpu", found(ray, CpuIntersector(bvh))}};
-    return {200, kJson, json.dump()};
+    return {.type = HttpReply::kJson, .body = json.dump()};
   }
 
   /// A vector, in decimal and as binary32 words.
@@ -386,17 +276,9 @@ class PictureServer {
     return turns_[slot] == turn;
   }
 
-  // "$": the path alone, and nothing below it.
-  static constexpr Route kRoutes[] = {{"/$", handle<&PictureServer::page>},
-                                      {"/picture$", handle<&PictureServer::picture>},
-                                      {"/camera$", handle<&PictureServer::camera>},
-                                      {"/pixel$", handle<&PictureServer::pixel>}};
-  static constexpr const char* kJson = "application/json";
-
   const Options& options_;
   const ServedScene scene_;
   std::vector<std::string> words_;  // of the command line, but for --serve and --port
-  std::set<std::string> names_;     // that we go by
   std::mutex rendering_;            // one picture has all threads
   std::shared_ptr<const MemoryImage> image_;
   std::mutex turns_mutex_;
