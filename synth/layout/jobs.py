@@ -6,7 +6,8 @@ from synth import adder_study, catalogue, final_adder, grading
 from synth.catalogue import Design, Library
 from synth.layout.flow import Job
 
-SPARSE = 0.45, 1.3  # density and aspect with which a multiplier's nets all find their way
+SPARSE = 0.45, 1.3  # density and aspect with which a multiplier's nets all find their way,
+SPARSER = 0.42, 1.3  # and binary32's
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,12 +53,12 @@ def rows(section: str, seeds: int = 3, budget: int = 16, workers: int = 2) -> li
                 *(Row(section, design, "fast", *SPARSE) for design in (graded, *kinds, plain))]
     if section == "cores":
         small = catalogue.FORMATS["binary16"]
-        tops = ("fp_adder", "fp_multiplier", "fp_divider")
+        tops = {"fp_adder": SPARSE, "fp_multiplier": SPARSER, "fp_divider": SPARSE}
         return [*(Row(section, catalogue.design(top, f"{top.replace('_', '-')}-binary16", "graded",
                                                 ExpWidth=small[0], FracWidth=small[1]), "modules", *SPARSE)
                   for top in tops),
-                *(Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *SPARSE)
-                  for top in tops)]
+                *(Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *sparse)
+                  for top, sparse in tops.items())]
     if section == "unit":  # whether qrouter routes 18,000 nets has not been tried
         return [Row(section, catalogue.design("hit_test_unit"), flow, *SPARSE, routed=False)
                 for flow in ("parts", "small")]
