@@ -48,9 +48,9 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
 }
 
 /// Glass is the noisiest that a camera sees: at each of its borders chance chooses between mirror
-/// and way through, and caustics seen in it are smaller than pixels. Where light paths leave no
-/// greater noise elsewhere, samples of pixels whose middles see glass are means of several paths.
-/// That depends on no sample, so that it favours nothing.
+/// and way through, and caustics seen in it are smaller than pixels. So a sample of a pixel whose
+/// middle sees glass is the mean of several paths; not without light paths, for then caustics
+/// elsewhere are noisier. That depends on no sample, so that it favours nothing.
 void TileRenderer::choose_path_counts() {
   if (!has_glass_ || job_.light_paths == nullptr || job_.options.samples == 1) return;
   Stopwatch watch;

@@ -23,8 +23,8 @@
 namespace raygate {
 
 /// Renders tiles into a film. All rays of one depth are one batch, and all shadow rays of a depth
-/// another: intersectors like many at once. What a pixel gets does not depend on
-/// the tile: each sample's light is added up by itself, depth by depth.
+/// another: intersectors like many at once. What a pixel gets does not depend on the tile: each
+/// path's light is added up by itself, depth by depth.
 class TileRenderer {
  public:
   /// `emitter_ways`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
@@ -66,6 +66,10 @@ class TileRenderer {
   void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, std::size_t path);
   void update_errors();
+  [[nodiscard]] std::size_t place_in_tile(const PixelSamples& pixel) const {
+    return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +
+           std::size_t(pixel.x - tile_.x0);
+  }
 
   RenderJob job_;
   Intersector& intersector_;
@@ -77,11 +81,6 @@ class TileRenderer {
   ShadowRays shadow_rays_;
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.
-  [[nodiscard]] std::size_t place_in_tile(const PixelSamples& pixel) const {
-    return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +
-           std::size_t(pixel.x - tile_.x0);
-  }
-
   std::vector<PixelSamples> pixels_;
   std::size_t paths_ = 0;             // of all of them
   std::vector<FirstHit> first_hits_;  // by path
