@@ -14,6 +14,7 @@ from host.lab.peers.scene import Material, Mesh, Scene, colour
 
 # Mitsuba's samplers; the first is its default.
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
+LIGHT_TRACER = "ptracer"  # in place of a sampler: Mitsuba's integrator of that name, which has the first one
 # Rays that chance may end begin after this many surfaces, and a path has at most so many: raygate's path does the same.
 SURE_SURFACES = 3
 DEPTH = 64
@@ -108,8 +109,9 @@ def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
 def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
     """mitsuba.json, a PLY file for each mesh, and a camera for each sampler."""
     everything = numpy.concatenate([mesh.positions for mesh in scene.meshes])
-    found: dict = {"type": "scene", "integrator": {"type": "path", "rr_depth": SURE_SURFACES + 1,
-                                                   "max_depth": DEPTH + 2}}
+    depths = {"rr_depth": SURE_SURFACES + 1, "max_depth": DEPTH + 2}
+    found: dict = {"type": "scene", "integrator": {"type": "path"} | depths,
+                   LIGHT_TRACER: {"type": LIGHT_TRACER} | depths}
     for sampler in SAMPLERS:
         found[f"camera_{sampler}"] = {
             "type": "perspective", "fov_axis": "y", "fov": scene.camera["fov"],

@@ -5,6 +5,7 @@
 namespace raygate::lab {
 
 std::vector<std::unique_ptr<Peer>> make_embrees(const Scene&) { return {}; }
+std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene&, const std::string&) { return {}; }
 std::vector<SubjectKind> embree_subjects() { return {}; }
 
 }  // namespace raygate::lab

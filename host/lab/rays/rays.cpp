@@ -1,4 +1,4 @@
-// Rays per second of the `cpu` engine and of Embree 3, one thread, medians of processor time. The
+// Rays per second of the `cpu` engine and of Embree, one thread, medians of processor time. The
 // peers take turns, so that whatever else the machine does meets them alike; compare the rows of
 // one run.
 #include "host/lab/rays/rays.h"
@@ -18,7 +18,8 @@ struct RaysOptions {
   std::vector<std::string> scenes;
   int size = 1024, repeats = 7;
   bool alone = false;
-  std::string only;  // one set of rays; empty: all
+  std::string only;     // one set of rays; empty: all
+  std::string embree4;  // its library; empty: not asked
 };
 
 /// The part of the rays about which two peers say the same: which triangle, or whether any.
@@ -61,6 +62,9 @@ void run(const RaysOptions& options, Results& results) {
     std::vector<std::unique_ptr<Peer>> peers;
     peers.push_back(make_raygate(scene));
     if (!options.alone) std::ranges::move(make_embrees(scene), std::back_inserter(peers));
+    if (!options.embree4.empty()) {
+      std::ranges::move(make_embrees4(scene, options.embree4), std::back_inserter(peers));
+    }
     for (const RaySet& set : ray_sets(scene, options.size - options.size % 128)) {
       if (!options.only.empty() && options.only != set.name) continue;
       measure(set, file.stem().string(), peers, options.repeats, results);
@@ -71,7 +75,7 @@ void run(const RaysOptions& options, Results& results) {
 }  // namespace
 
 void add_rays(CLI::App& lab, Outcome& outcome) {
-  auto* app = lab.add_subcommand("rays", "rays per second of the cpu engine and of Embree 3");
+  auto* app = lab.add_subcommand("rays", "rays per second of the cpu engine and of Embree");
   const auto options = std::make_shared<RaysOptions>();
   app->add_option("scenes", options->scenes, "OBJ files")->required();
   app->add_option("--size", options->size, "pixels along each side; a multiple of 128")
@@ -80,6 +84,8 @@ void add_rays(CLI::App& lab, Outcome& outcome) {
       ->check(CLI::Range(1, 1000));
   app->add_option("--only", options->only, "camera, light or scattered; all, if not given")
       ->check(CLI::IsMember({"camera", "light", "scattered"}));
+  app->add_option("--embree4", options->embree4, "the shared library of Embree 4, to compare, too")
+      ->check(CLI::ExistingFile);
   app->add_flag("--alone", options->alone, "leave Embree out");
   app->callback([options, &outcome] { run(*options, outcome.results); });
 }

@@ -67,5 +67,8 @@ class Peer {
 /// Embree 3, single rays and eight coherent ones at once, each in its default and its robust mode;
 /// none where this was built without Embree.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene);
+/// The same of Embree 4, a shared library. Throws InputError where `file` is none.
+[[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene,
+                                                               const std::string& file);
 
 }  // namespace raygate::lab

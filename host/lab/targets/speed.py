@@ -5,6 +5,7 @@ import collections
 import pathlib
 import re
 import subprocess
+import sysconfig
 import tempfile
 
 import numpy
@@ -137,11 +138,18 @@ def trace_rates(program: pathlib.Path, scene: str, count: int) -> list[dict]:
     return found
 
 
+def embree4() -> list[pathlib.Path]:
+    """Its library, from embreex of PyPI, if that is there."""
+    return sorted(pathlib.Path(sysconfig.get_path("platlib")).glob("embreex.libs/libembree4*"))[:1]
+
+
 def rays_steps(given: argparse.Namespace) -> list[Step]:
-    """Rays per second next to Embree 3."""
+    """Rays per second next to Embree's."""
     scenes = SMALL[:1] if given.quick else (*SMALL, "scenes/paper.obj", *LARGE)
-    size = ("--size", 128, "--repeats", 1) if given.quick else ()
-    return [Step("rays", scene, ("rays", scene, *size)) for scene in scenes]
+    words = ("--size", 128, "--repeats", 1) if given.quick else ()
+    for library in embree4():
+        words += ("--embree4", library)
+    return [Step("rays", scene, ("rays", scene, *words)) for scene in scenes]
 
 
 def predicates_steps(_: argparse.Namespace) -> list[Step]:
@@ -187,8 +195,10 @@ PARTS = {"rays": rays_steps, "predicates": predicates_steps, "skips": skips_step
 def values(rows: list[dict], _: pathlib.Path) -> dict:
     """Rays beside Embree's, the skips of two scenes, and the phase times of two programs side by side."""
     rays, skips = of(rows, "rays"), of(rows, "skips")
+    peers = list(dict.fromkeys(row["by"] for row in rays if row["by"] != "raygate"))
     return {"rays_by_peer": grouped(rays, ("scene", "rays"), "by"),
-            "peers": list(dict.fromkeys(row["by"] for row in rays if row["by"] != "raygate")),
+            "peers": [peer for peer in peers if not peer.startswith("Embree 4")],
+            "newer_peers": [peer for peer in peers if peer.startswith("Embree 4")],
             "skips_of_two": [row for row in skips if row["scene"] in (skips[0]["scene"], skips[-1]["scene"])],
             "phases": PHASES, "phase_times": grouped(of(rows, "phase_times"), ("scene",), "program")}
 

@@ -89,7 +89,9 @@ class Peers(unittest.TestCase):
 
     def test_both_get_the_same_light_and_rules(self):
         found = self.converted()
-        self.assertEqual(found["integrator"], {"type": "path", "rr_depth": 4, "max_depth": 66})
+        depths = {"rr_depth": 4, "max_depth": 66}
+        self.assertEqual(found["integrator"], {"type": "path"} | depths)
+        self.assertEqual(found["ptracer"], {"type": "ptracer"} | depths)
         self.assertEqual(found["background"]["radiance"]["value"], [0.25] * 3)
         mine = json.loads((self.folder / "out" / "scene.json").read_text())
         self.assertEqual((mine["background"], mine["area_lights"]), ([0.25] * 3, JSON["area_lights"]))
