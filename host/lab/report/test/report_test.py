@@ -75,6 +75,11 @@ class Profile(unittest.TestCase):
 
 
 class Rows(unittest.TestCase):
+    def test_each_embree_has_its_table(self):
+        rows = [{"table": "rays", "scene": "a", "rays": "light", "by": by} for by in ("raygate", "Embree 8", "Embree 4 8")]
+        found = speed.values(rows, pathlib.Path())
+        self.assertEqual((found["peers"], found["newer_peers"]), (["Embree 8"], ["Embree 4 8"]))
+
     def test_quantiles_of_bins_of_several_runs(self):
         parts = [{"max": 3.0, "bins": [[1.0, 60], [4.0, 38]]}, {"max": 7.0, "bins": [[8.0, 2]]}]
         self.assertEqual(stress.summary(parts), {"count": 100, "median": 1.0, "p99": 7.0, "max": 7.0})
