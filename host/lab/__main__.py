@@ -60,7 +60,7 @@ def make_command(given: argparse.Namespace) -> str:
 def publish(name: str, folder: pathlib.Path, text: str, about: dict) -> None:
     """Into host/lab/results, with plots and long tables; those that no report shows any more go. `about`: when and where it was measured."""
     (PUBLISHED / f"{name}.md").write_text(text)
-    evidence.renew(f"host/lab/results/{name}.md", about["command"], about)
+    evidence.renew(f"host/lab/results/{name}.md", about, about["command"])
     for file in [*folder.glob("*.png"), *folder.glob("*.csv")]:
         shutil.copy(file, PUBLISHED)
     shown = "".join(page.read_text() for page in [PUBLISHED.parent / "README.md", *PUBLISHED.glob("*.md")])

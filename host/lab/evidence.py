@@ -1,8 +1,9 @@
-"""`python3 -m host.lab.evidence`: how old the published results are, and what they depend on has changed since.
+"""`python3 -m host.lab.evidence [PAGE]`: how old the published results are, and what they depend on has changed since.
 
 results/evidence.jsonl has a row for each published page: its command, the commit that it was measured at (of pages that did not
-say so: the one that published the figures), date, machine, and the paths whose change makes it stale; those of its own target's
-come from `publish`. Prints the table and writes it into results/README.md. Exit status 1 where something is stale.
+say so: the one that published the figures), date, machine, and the paths whose change makes it stale, ":(exclude)..." among them
+for what does not; those of its own target's come from `publish`. Prints the table and writes it into results/README.md. PAGE's
+figures are noted as this commit's, measured here, first. Exit status 1 where something is stale, 2 for a page without a row.
 """
 
 import datetime
@@ -10,13 +11,14 @@ import pathlib
 import subprocess
 import sys
 
+from host.lab import machine
 from host.lab.rows import ROOT, read, write
 from synth.tables import markdown
 
 FILE = ROOT / "host" / "lab" / "results" / "evidence.jsonl"
 PAGE = FILE.with_name("README.md")
-# Words, tables of figures, tests and assertions change no figure; single faults and boards are on none of these pages.
-WITHOUT = tuple(f":(exclude){path}" for path in ("*.md", "*.csv", "*/test/*", "sim/checks/*", "sim/mutate/*", "hw/board/*", "synth/flows/board.tcl"))
+# Words, tables of figures, tests and assertions change no figure.
+WITHOUT = tuple(f":(exclude){path}" for path in ("*.md", "*.csv", "*/test/*", "sim/checks/*"))
 
 
 def git(*words: str, root: pathlib.Path = ROOT) -> list[str]:
@@ -29,12 +31,14 @@ def changes(row: dict, root: pathlib.Path = ROOT) -> list[str]:
     return git("log", "--format=%h %s", f"{row['commit']}..HEAD", "--", *row["paths"], *WITHOUT, root=root)
 
 
-def renew(page: str, command: str, machine: dict) -> None:
-    """Notes that a page was published now, measured as `machine` (machine.describe) says."""
+def renew(page: str, about: dict, command: str = "") -> None:
+    """Notes that a page was published now, measured as `about` (machine.describe) says, by the last command if none is given."""
     rows = read(FILE)
-    (row,) = [row for row in rows if row["page"] == page]
-    row |= {"command": command, "commit": machine["commit"], "date": machine["date"],
-            "machine": f"{machine['processor']}, {machine['processors']} processors"}
+    row = next((row for row in rows if row["page"] == page), None)
+    if row is None:
+        raise ValueError(f"{page}: expected one of " + ", ".join(row["page"] for row in rows))
+    row |= {"command": command or row["command"], "commit": about["commit"], "date": about["date"],
+            "machine": f"{about['processor']}, {about['processors']} processors"}
     write(FILE, rows)
 
 
@@ -49,8 +53,14 @@ def table(rows: list[dict], today: datetime.date) -> str:
     return markdown(["page", "command", "date", "age, days", "commit", "commits to its paths since", "the last", "machine"], cells)
 
 
-def main() -> int:
-    """Prints and writes the table."""
+def main(page: str = "") -> int:
+    """Prints and writes the table; `page` is renewed first."""
+    if page:
+        try:
+            renew(page, machine.describe(ROOT))
+        except ValueError as error:
+            print(f"dates: {error}", file=sys.stderr)
+            return 2
     rows = read(FILE)
     try:
         text = table(rows, datetime.date.today())
@@ -66,4 +76,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(*sys.argv[1:2]))

@@ -61,8 +61,8 @@ scaling: ## measure: a picture's time by ranks, and a model up to 1,000: make sc
 	$(call build,lab,render scenes)
 	$(measure)
 
-dates:
-	@-python3 -B -m host.lab.evidence
+dates: ## measure: how old results are: make dates [RENEWED=sim/README.md: its figures are this commit's]
+	@python3 -B -m host.lab.evidence $(RENEWED) || test $$? -eq 1
 
 claims: dates everything ## measure: how old results are; figures of host/lab/claims.csv by their commands: make claims [ONLY=frame_rates]
 	@python3 -B host/lab/claims.py --only '$(ONLY)'

@@ -46,7 +46,7 @@ class Evidence(unittest.TestCase):
         self.assertLessEqual({str(file.relative_to(rows.ROOT)) for file in published}, {row["page"] for row in known})
         for row in known:
             self.assertTrue((rows.ROOT / row["page"]).exists(), row)
-            self.assertEqual([path for path in row["paths"] if not (rows.ROOT / path).exists()], [])
+            self.assertEqual([path for path in row["paths"] if not (rows.ROOT / path.removeprefix(":(exclude)")).exists()], [])
             self.assertRegex(f"{row['commit']} {row['date']} {row['command']}", r"^[0-9a-f]{12} \d{4}-\d\d-\d\d make ")
         for file in published:
             for promised in re.findall(r"`(\w+\.csv)`", file.read_text()):
@@ -81,13 +81,16 @@ class Evidence(unittest.TestCase):
             self.assertEqual(evidence.changes(row, root), [])
             commit("hw/b.sv", "another adder")
             self.assertEqual([line.split(" ", 1)[1] for line in evidence.changes(row, root)], ["another adder"])
+            self.assertEqual(evidence.changes(row | {"paths": ["hw", ":(exclude)hw/b.sv"]}, root), [])
 
     def test_publishing_renews_the_row(self) -> None:
         with tempfile.TemporaryDirectory() as name:
             file = pathlib.Path(name) / "evidence.jsonl"
             rows.write(file, [{"page": "a.md", "commit": "1", "paths": ["hw"]}, {"page": "b.md", "commit": "1"}])
             with unittest.mock.patch.object(evidence, "FILE", file):
-                evidence.renew("a.md", "make a", {"commit": "2", "date": "2026-01-02", "processor": "P", "processors": 3})
+                evidence.renew("a.md", {"commit": "2", "date": "2026-01-02", "processor": "P", "processors": 3}, "make a")
+                with self.assertRaisesRegex(ValueError, "c.md: expected one of a.md, b.md"):
+                    evidence.renew("c.md", {})
             self.assertEqual(rows.read(file), [{"page": "a.md", "commit": "2", "paths": ["hw"], "command": "make a", "date": "2026-01-02",
                                                 "machine": "P, 3 processors"}, {"page": "b.md", "commit": "1"}])
 
