@@ -76,12 +76,7 @@ void EmitterSupersampler::trace() {
     stats_.rays += rays;
     hits_.resize(rays);
     work_.resize(counts_work_ ? rays : 0);
-    intersector_.intersect(batch_.rays,
-                           {.common_origin = batch_.depth == 0 && job_.camera.has_common_origin(),
-                            .source_ids = batch_.sources,
-                            .culling = job_.options.skips.culling,
-                            .work = work_},
-                           hits_);
+    intersector_.intersect(batch_.rays, query_of(job_, batch_, work_), hits_);
     watch.lap();
     for (std::size_t i = 0; i < work_.size(); ++i) {
       ray_work_[batch_.states[i].sample / kSpecularWays] += work_[i];

@@ -3,11 +3,14 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 
 #include "host/film/reconstruction_filter.h"
+#include "host/intersect/intersector.h"
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/light/prepared_scene.h"
+#include "host/light/ray_batch.h"
 #include "host/light/sampler.h"
 #include "host/render/render_options.h"
 #include "host/scene/camera.h"
@@ -26,6 +29,15 @@ struct RenderJob {
   bool only_light_paths = false;            ///< no camera paths
   const SplatLayer* splats = nullptr;       ///< of all light paths; none: these go with the samples
 };
+
+/// What is asked about a batch of rays; `work` is empty or of its size.
+[[nodiscard]] inline RayQuery query_of(const RenderJob& job, const RayBatch& batch,
+                                       std::span<RayWork> work) {
+  return {.common_origin = batch.depth == 0 && job.camera.has_common_origin(),
+          .source_ids = batch.sources,
+          .culling = job.options.skips.culling,
+          .work = work};
+}
 
 // Streams of random numbers; the integrators' are made from others.
 inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStream = 8;

@@ -52,7 +52,7 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
 /// middle sees glass is the mean of several paths; not without light paths, for then caustics
 /// elsewhere are noisier. That depends on no sample, so that it favours nothing.
 void TileRenderer::choose_path_counts() {
-  if (!has_glass_ || job_.light_paths == nullptr || job_.options.samples == 1) return;
+  if (!has_glass_ || job_.light_paths == nullptr) return;
   Stopwatch watch;
   batch_.clear();
   batch_.depth = 0;
@@ -192,12 +192,7 @@ void TileRenderer::intersect_batch() {
   stats_.rays += batch_.rays.size();
   hits_.resize(batch_.rays.size());
   work_.resize(is_counting_ ? batch_.rays.size() : 0);
-  intersector_.intersect(batch_.rays,
-                         {.common_origin = batch_.depth == 0 && job_.camera.has_common_origin(),
-                          .source_ids = batch_.sources,
-                          .culling = job_.options.skips.culling,
-                          .work = work_},
-                         hits_);
+  intersector_.intersect(batch_.rays, query_of(job_, batch_, work_), hits_);
 }
 
 /// The rays of one depth, and the shadow rays from where they end: these in several batches where

@@ -28,34 +28,35 @@
 
 namespace raygate {
 
-/// One ray on its way.
-struct RayTraversal {
+/// One ray on its way. Many take turns, so that what a step needs of one is kept in few cache
+/// lines: the first for a node, the second for a leaf, the third for either, with the bottom of
+/// `keys`.
+struct alignas(64) RayTraversal {
   // Against boxes, by axis: see PacketBounds. A node has the planes to which the ray comes first,
   // and last, so many bytes from its beginning.
   float origin[3], inverse_near[3], inverse_far[3];
   std::uint32_t near_at[3], far_at[3];
-  ShearedRay sheared;  ///< against triangles
+  float cutoff;  ///< cutoff_beyond the nearest hit
 
-  std::uint32_t number;     ///< of the ray
-  float cutoff;             ///< cutoff_beyond the nearest hit
+  ShearedRay sheared;       ///< against triangles
   float low, high;          ///< bounds of the nearest hit's depth; without one, the limit's
   float enough;             ///< a hit whose depth is surely less is enough
   std::uint32_t primitive;  ///< of the nearest hit
   std::uint32_t skip_id, source_id;  ///< primitives
-  RayWork work;
+  std::uint32_t number;              ///< of the ray
 
   Bvh::Child at;  ///< what is visited next
+  RayWork work;
   // What waits: children of nodes, the nearest last, as far as one node knows. A key is where the
   // ray enters a child's box, a little less at most, with the child's number in the last bits. At
   // the bottom is one that always matters: there the way ends.
-  static constexpr std::size_t kBottom = Bvh::kWidth - 1;
   std::size_t depth;
-  std::int32_t keys[Bvh::kWidth + Bvh::kStackSize + Bvh::kWidth];
-  std::uint32_t nodes[Bvh::kWidth + Bvh::kStackSize + Bvh::kWidth];
+  std::int32_t keys[1 + Bvh::kStackSize + Bvh::kWidth];
+  std::uint32_t nodes[1 + Bvh::kStackSize + Bvh::kWidth];
 
   RayTraversal() {
-    std::fill_n(keys, Bvh::kWidth, std::numeric_limits<std::int32_t>::min());
-    nodes[kBottom] = 0;
+    keys[0] = std::numeric_limits<std::int32_t>::min();
+    nodes[0] = 0;
   }
 
   [[nodiscard]] double t_scale() const { return std::abs(sheared.way); }
@@ -70,8 +71,8 @@ struct RayTraversal {
   }
   [[nodiscard]] Interval t() const { return {low / t_scale(), high / t_scale()}; }
   /// Nothing that waits matters any more.
-  void end() { depth = kBottom + 1; }
-  [[nodiscard]] bool has_ended() const { return depth == kBottom; }
+  void end() { depth = 1; }
+  [[nodiscard]] bool has_ended() const { return depth == 0; }
 };
 
 /// Sends rays from the root on their ways, to no limit; bit i of the result where ray i is scaled,
@@ -89,12 +90,24 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   transpose(first);
   transpose(last);
   const FloatQuad o[3] = {first[0], first[1], first[2]}, d[3] = {last[1], last[2], last[3]};
-  // A RayTraversal's words, up to those of `sheared`.
-  constexpr std::size_t kBoxWords = 15, kWords = kBoxWords + sizeof(ShearedRay) / sizeof(float);
-  static_assert(offsetof(RayTraversal, sheared) == 4 * kBoxWords && kWords % kQuad == 0);
-  FloatQuad words[kWords], sheared[kWords - kBoxWords];
+  // A RayTraversal's words, up to those of `at`.
+  constexpr std::size_t kBoxWords = 16, kWords = 32;
+  static_assert(offsetof(RayTraversal, sheared) == 4 * kBoxWords);
+  static_assert(offsetof(RayTraversal, at) == 4 * kWords && kWords % kQuad == 0);
+  FloatQuad words[kWords], sheared[sizeof(ShearedRay) / sizeof(float)];
+  const auto word = [&](std::size_t offset) __attribute__((always_inline))->FloatQuad& {
+    return words[offset / sizeof(float)];
+  };
   shear(o, d, sheared);
   std::copy(std::begin(sheared), std::end(sheared), words + kBoxWords);
+  const FloatQuad zero = {}, infinity = zero + std::numeric_limits<float>::infinity();
+  word(offsetof(RayTraversal, cutoff)) = zero + std::numeric_limits<float>::max();
+  word(offsetof(RayTraversal, low)) = word(offsetof(RayTraversal, high)) = infinity;
+  word(offsetof(RayTraversal, enough)) = zero - 1.0f;
+  const FloatQuad none = float_of(IntQuad{} + static_cast<std::int32_t>(NearestHit::kNone));
+  word(offsetof(RayTraversal, primitive)) = none;
+  word(offsetof(RayTraversal, skip_id)) = word(offsetof(RayTraversal, source_id)) = none;
+  word(offsetof(RayTraversal, number)) = none;  // the caller's to say
   IntQuad largest = {};
   for (const FloatQuad& component : d) {
     largest = maximum(bits_in(absolute(component)), largest);  // a NaN's exceed any number's
@@ -120,10 +133,6 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
     }
   }
   for (RayTraversal* const walk : walks) {
-    walk->low = walk->high = std::numeric_limits<float>::infinity();
-    walk->cutoff = std::numeric_limits<float>::max();
-    walk->primitive = walk->skip_id = walk->source_id = NearestHit::kNone;
-    walk->enough = -1.0f;
     walk->work = {};
     walk->at = {0, 0};
     walk->end();

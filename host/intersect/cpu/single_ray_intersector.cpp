@@ -152,8 +152,11 @@ void SingleRayIntersector::walk_all() {
     QuadSides sides[kAtOnce];
     LaneMask open[kAtOnce];
     std::uint32_t near[kAtOnce];
-    RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];  // by where they are
-    std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+    enum : std::size_t { kInside, kLeaf, kIdle, kPlaces };
+    RayTraversal* lists[kPlaces][2 * kAtOnce];
+    std::size_t counts[kPlaces] = {0, 0, kAtOnce};
+    auto& [inside, leaves, idle] = lists;
+    auto& [inside_count, leaf_count, idle_count] = counts;
     for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
     for (;;) {
       while (idle_count >= kQuad && next_ < rays_.size()) {
@@ -191,10 +194,8 @@ void SingleRayIntersector::walk_all() {
         RayTraversal& walk = *inside[i];
         go_on(bvh_, walk);
         const std::size_t ended = walk.has_ended() ? 1 : 0, in_leaf = walk.at.count != 0 ? 1 : 0;
-        inside[inside_count] = leaves[leaf_count] = idle[idle_count] = &walk;
-        inside_count += (ended | in_leaf) ^ 1;
-        leaf_count += in_leaf & ~ended;
-        idle_count += ended;
+        const std::size_t place = ended * kIdle | (in_leaf & ~ended) * kLeaf;
+        lists[place][counts[place]++] = &walk;
       }
       for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
       add_points(kPlanes);

@@ -34,7 +34,9 @@ class SingleRayIntersector {
   void add_points(int enough);
   void add_points(std::span<const std::uint32_t> numbers);
 
-  static constexpr int kAtOnce = 48;  // rays that take turns
+  // Rays that take turns: enough to hide what they wait for, few enough for a cache of 32 KB that
+  // another thread of the processor may share.
+  static constexpr int kAtOnce = 32;
 
   const Bvh& bvh_;
   IntersectCounters& counters_;
