@@ -4,7 +4,6 @@ import dataclasses
 import os
 import pathlib
 import re
-import threading
 
 from synth import cores, store, tools
 from synth.cells import catalogue as cells

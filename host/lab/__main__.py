@@ -14,6 +14,7 @@ import subprocess
 import sys
 
 from host.lab import evidence, rows as kept, steps
+from host.lab.bench.compare import compare
 from host.lab.machine import processors
 from host.lab.report import document
 from host.lab.rows import KEPT, ROOT
@@ -78,6 +79,8 @@ def run(given: argparse.Namespace) -> int:
         raise ValueError(f"{', '.join(sorted(unknown))}: expected parts of {', '.join(target.PARTS)}")
     if given.publish and (given.only or given.quick or given.scenes):
         raise ValueError("--publish: expected a whole run, without --only, --quick and --scenes")
+    if given.base and given.target != "bench":
+        raise ValueError(f"--base: expected only with bench, found {given.target}")
     base = kept.read(given.base) if given.base else None
     file = KEPT / f"{'-'.join([given.target, *(parts if given.only else [])])}.jsonl"
     if not given.report_only:
@@ -92,7 +95,7 @@ def run(given: argparse.Namespace) -> int:
     text = document.render(f"{given.target}.md.j2", folder, rows, **values) + document.measured(rows[0])
     document.write(text, folder, values.get("cards"))
     if base:
-        print("\n".join(target.compare(base, rows)))
+        print("\n".join(compare(base, rows)))
     if given.publish:
         publish(given.target, folder, text, rows[0])
     if given.target not in ("bench", "stress"):  # of which nobody reads all

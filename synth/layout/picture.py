@@ -4,7 +4,6 @@ import pathlib
 
 from matplotlib import collections as shapes
 
-from synth import drawing  # sets matplotlib up
 from synth.drawing import plt
 from synth.layout import route
 from synth.layout.flow import Layout

@@ -15,7 +15,7 @@ import sys
 
 from host.lab.rows import ROOT
 from synth import brought, catalogue, measure as synth, tools
-from synth.layout import energy as energy_of, flow, formats, tests as operations
+from synth.layout import energy as energy_of, flow as placement, formats, tests as operations
 from synth.layout.jobs import SPARSE
 
 LIBRARY = "osu035"  # the paper's era
@@ -58,8 +58,8 @@ def _measured(folder: str, rows: dict, workers: int, wires: bool) -> list[dict]:
     with _kept_apart({"brought": folder}):
         made, failures = synth.measure(list(rows.values()), synth.Targets((LIBRARY,), workers))
         for record in made if wires else ():
-            placed = flow.Job(rows[record["design"]].design, catalogue.library(LIBRARY), FLOWS[0], *SPARSE, routed=False)
-            record["wired_ns"] = flow.make(placed)[0]["guess_ns"]
+            placed = placement.Job(rows[record["design"]].design, catalogue.library(LIBRARY), FLOWS[0], *SPARSE, routed=False)
+            record["wired_ns"] = placement.make(placed)[0]["guess_ns"]
     print("\n".join(failures), file=sys.stderr)
     return [{**record, "brought": folder} for record in made]
 

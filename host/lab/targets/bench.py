@@ -14,7 +14,6 @@ from collections.abc import Callable
 import pandas
 
 from host.lab.bench import costs, runs
-from host.lab.bench.compare import compare  # noqa: F401  (the driver asks for it)
 from host.lab.machine import processors
 from host.lab.report import cards, charts, plots
 from host.lab.report.statistics import median_seconds

@@ -8,7 +8,7 @@ import sys
 
 from host.lab.bench import costs
 from host.lab.machine import processors
-from host.lab.report import cards, charts
+from host.lab.report import cards, charts, plots
 from host.lab.rows import KEPT, ROOT, of, read, scene_name, write
 from host.lab.steps import Step
 from host.lab.targets import bench

@@ -118,6 +118,10 @@ VariantCheck check_pipeline(const Variant& variant, std::uint64_t tests, std::ui
   VariantBurstUnit twin(variant.math);
   const auto rtl = make_rtl_burst_unit(variant);
   VariantCheck check;
+  if (rtl == nullptr) {
+    check.difference = "no hardware of it was built";
+    return check;
+  }
   while (check.tests < tests && check.difference.empty()) {
     const BurstBatch batch = random.make(std::min(kBatch, tests - check.tests));
     check.tests += batch.tests;
@@ -148,6 +152,10 @@ VariantCheck check_serial(const Variant& variant, std::uint64_t tests, std::uint
   VariantPlaneUnit twin(variant.math);
   const auto rtl = make_rtl_plane_unit(variant);
   VariantCheck check;
+  if (rtl == nullptr) {
+    check.difference = "no hardware of it was built";
+    return check;
+  }
   const auto word = [](float x) { return std::bit_cast<std::uint32_t>(x); };
   while (check.tests < tests && check.difference.empty()) {
     const BurstBatch batch = random.make(std::min(kBatch, tests - check.tests));
