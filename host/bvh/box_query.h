@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh.h"
+#include "host/bvh/bvh_view.h"
 #include "host/exact/exact.h"
 
 namespace raygate {
@@ -15,11 +15,12 @@ namespace raygate {
 template <Vectors kCode, class Visit>
 RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                   const Visit& visit) {
+  const BvhView tree(bvh);
   std::uint32_t waiting[Bvh::kStackSize];
   waiting[0] = 0;
   for (int depth = 1; depth > 0;) {
     Bvh::Node room;
-    const Bvh::Node& node = bvh.node(waiting[--depth], room);
+    const Bvh::Node& node = tree.node(waiting[--depth], room);
     IntLanes touches = IntLanes{} - 1;
     for (int k = 0; k < 3; ++k) {
       const FloatLanes lows = load<FloatLanes>(node.bounds[0][k]),
@@ -28,7 +29,7 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
     }
     for (LaneMask met = sign_mask<kCode>(touches); met != 0; met &= met - 1) {
       const Bvh::Child child = node.child[std::countr_zero(met)];
-      bvh.prefetch(child);
+      tree.prefetch(child);
       if (child.count == 0) {
         waiting[depth++] = child.first;
       } else if (visit(child)) {

@@ -39,7 +39,7 @@ struct InstanceBvh {
 ///
 /// Of a mesh that stands in several places there is one tree. What is below an instance looks like
 /// any other part of the tree, with nodes and primitives of numbers that nothing is stored for:
-/// node() and corners_of() make them out of the mesh's when they are asked for: placed_tree.cpp
+/// BvhView and corners_of() make them out of the mesh's when they are asked for: instance_bvh.cpp
 /// says how. An instance takes some 200 bytes.
 class Bvh {
  public:
@@ -54,6 +54,10 @@ class Bvh {
   struct Child {
     std::uint32_t first;  ///< inner: index of the node; leaf: the primitives first .. first + count
     std::uint32_t count;  ///< 0: an inner node
+
+    /// The last kind, of more triangles than a leaf may have, is what a walk ends with.
+    enum Kind : std::size_t { kInner, kLeaf, kNone, kKinds };
+    [[nodiscard]] std::size_t kind() const { return (count + kMaxLeafSize - 1) / kMaxLeafSize; }
   };
 
   /// Eight boxes against which one ray is tested at once. Boxes are one float wider than what they
@@ -85,19 +89,6 @@ class Bvh {
 
   /// Those that are stored, of no instance; nodes()[0] is the root.
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
-  /// A node, which may be made in `room`.
-  [[nodiscard]] RAYGATE_INLINE const Node& node(std::uint32_t index, Node& room) const {
-    if (is_instanced(index)) [[unlikely]] {
-      make_instance_node(index, room);
-      return room;
-    }
-    return nodes_[index];
-  }
-  [[nodiscard]] RAYGATE_INLINE Child child_of(std::uint32_t index, int i) const {
-    if (is_instanced(index)) [[unlikely]]
-      return instance_child(index, i);
-    return nodes_[index].child[i];
-  }
 
   /// The primitives below are those that are stored, of no instance.
   [[nodiscard]] std::uint32_t primitive_count() const {
@@ -137,27 +128,10 @@ class Bvh {
       return instance_corners(primitive);
     return stored_corners(primitive);
   }
-  /// The corners of a leaf's triangles, one coordinate of all of them after the other: coordinate k
-  /// of corner v of triangle i is [(3 v + k) count + i]. What comes after the last one may be read,
-  /// and means nothing, as far as for four triangles. They may be made in `room`.
-  [[nodiscard]] RAYGATE_INLINE const float* corners_of(const Child& leaf, LeafRoom& room) const {
-    if (is_instanced(leaf.first)) [[unlikely]] {
-      make_instance_corners(leaf, room);
-      return room.corners;
-    }
-    return stored_corners(leaf);
-  }
-
-  /// Says that a child will soon be visited. (Always inlined: GCC 12 takes a function that does
-  /// nothing but prefetch for one without effect, and leaves its calls out.)
-  RAYGATE_INLINE void prefetch(const Child& child) const {
-    if (is_instanced(child.first)) [[unlikely]]
-      return prefetch_instance(child);
-    prefetch_stored(child);
-  }
 
  private:
   friend class BvhWriter;
+  friend class BvhView;
 
   Bvh() = default;
 
@@ -169,7 +143,6 @@ class Bvh {
   [[nodiscard]] int levels(std::uint32_t index = 0) const;
 
   void make_instance_node(std::uint32_t index, Node& room) const;
-  [[nodiscard]] Child instance_child(std::uint32_t index, int i) const;
   void make_instance_corners(const Child& leaf, LeafRoom& room) const;
   [[nodiscard]] Corners instance_corners(std::uint32_t primitive) const;
   [[nodiscard]] std::uint32_t instance_triangle(std::uint32_t primitive) const;
@@ -184,18 +157,6 @@ class Bvh {
       for (int k = 0; k < 3; ++k) corners[v][k] = from[std::size_t(3 * v + k) * place.count];
     }
     return corners;
-  }
-  [[nodiscard]] const float* stored_corners(const Child& leaf) const {
-    return corners_.data() + 9 * std::size_t{leaf.first};
-  }
-  RAYGATE_INLINE void prefetch_stored(const Child& child) const {
-    // Without a branch, which would be a guess about what kind of child it is.
-    const auto* const corners = reinterpret_cast<const char*>(stored_corners(child));
-    const auto node = reinterpret_cast<std::uintptr_t>(nodes_.data() + child.first);
-    const auto to_node =
-        static_cast<std::ptrdiff_t>(node - reinterpret_cast<std::uintptr_t>(corners));
-    const char* const begin = corners + (to_node & -std::ptrdiff_t{child.count == 0});
-    for (std::ptrdiff_t line = 0; line < 4; ++line) __builtin_prefetch(begin + 64 * line);
   }
 
   /// Which of its leaf's triangles a primitive is.

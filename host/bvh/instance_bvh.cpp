@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh.h"
+#include "host/bvh/bvh_view.h"
 #include "host/bvh/sah_builder.h"
 #include "host/exact/exact.h"
 
@@ -168,15 +168,11 @@ void Bvh::make_instance_node(std::uint32_t index, Node& room) const {
   in_vectors([&](auto) RAYGATE_BODY { place(at, from, room); });
 }
 
-Bvh::Child Bvh::instance_child(std::uint32_t index, int i) const {
-  const InstanceBvh& at = instances_[instance_nodes_.find(index)];
-  return placed(at, meshes_[at.mesh].nodes_[index - at.first_node].child[i]);
-}
-
 void Bvh::make_instance_corners(const Child& leaf, LeafRoom& room) const {
   const InstanceBvh& at = instances_[instance_primitives_.find(leaf.first)];
+  LeafRoom unused;
   const float* const from =
-      meshes_[at.mesh].stored_corners({leaf.first - at.first_primitive, leaf.count});
+      BvhView(meshes_[at.mesh]).corners_of({leaf.first - at.first_primitive, leaf.count}, unused);
   in_vectors([&](auto) RAYGATE_BODY { place(at, from, leaf.count, room.corners); });
 }
 
@@ -201,8 +197,9 @@ FaceRef Bvh::instance_face(std::uint32_t primitive) const {
 void Bvh::prefetch_instance(const Child& child) const {
   const InstanceBvh& at = instances_[child.count == 0 ? instance_nodes_.find(child.first)
                                                       : instance_primitives_.find(child.first)];
-  meshes_[at.mesh].prefetch_stored(
-      {child.first - (child.count == 0 ? at.first_node : at.first_primitive), child.count});
+  BvhView(meshes_[at.mesh])
+      .prefetch(
+          {child.first - (child.count == 0 ? at.first_node : at.first_primitive), child.count});
 }
 
 std::vector<Bvh::Child> Bvh::leaves() const {

@@ -149,8 +149,9 @@ void advance(PacketTraversal& packet, LeafVisits& leaf) {
   in_vectors([&](auto) RAYGATE_BODY {
     PacketVisitor visitor(packet);
     StackEntry<LaneMask> waiting;
+    const BvhView tree(*packet.bvh_);
     leaf.count = 0;
-    while (leaf.count == 0 && next_leaf(*packet.bvh_, visitor, packet.stack_, waiting)) {
+    while (leaf.count == 0 && next_leaf(tree, visitor, packet.stack_, waiting)) {
       const std::uint32_t end = waiting.child.first + waiting.child.count;
       for (std::uint32_t primitive = waiting.child.first; primitive < end; ++primitive) {
         const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(primitive));

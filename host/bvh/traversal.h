@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh.h"
+#include "host/bvh/bvh_view.h"
 
 namespace raygate {
 
@@ -34,12 +34,11 @@ struct SingleRay {};
 /// Goes on to the next leaf; false when there is none. To be called again and again, whatever the
 /// visitor has learned in between. The visitor is asked
 ///   * should_visit(entry, rays): whether a child still matters to any of `rays`; may narrow them;
-///   * intersect_boxes(node, rays, entry): which children the rays intersect_boxes, bit i for child
-///   i, and where they
-///     enter them, 0 or more;
-///   * rays_of_child(i): which of the rays intersect_boxes child i, after that.
+///   * intersect_boxes(node, rays, entry): which children the rays meet, bit i for child i, and
+///     where they enter them, 0 or more;
+///   * rays_of_child(i): which of the rays meet child i, after that.
 template <class Visitor, class Rays>
-RAYGATE_INLINE bool next_leaf(const Bvh& tree, Visitor& visitor, TraversalStack<Rays>& stack,
+RAYGATE_INLINE bool next_leaf(const BvhView& tree, Visitor& visitor, TraversalStack<Rays>& stack,
                               StackEntry<Rays>& leaf) {
   using Key = std::int32_t;  // a child's number in the place of the last bits of its entry
   constexpr Key kNumber = Bvh::kWidth - 1;

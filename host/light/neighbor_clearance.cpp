@@ -17,7 +17,7 @@ RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_
                             NeighborClearanceSearch& search) {
   LaneMask rest = (LaneMask{1} << leaf.count) - 1;
   Bvh::LeafRoom room;
-  const float* const corners = bvh.corners_of(leaf, room);
+  const float* const corners = BvhView(bvh).corners_of(leaf, room);
   rest &= ~search.behind_an_edge<kCode>(corners, leaf.count);
   if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
   if (rest == 0) return;

@@ -66,7 +66,7 @@ bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, co
   FrustumVisitor visitor{frustum};
   TraversalStack<SingleRay> stack({});
   StackEntry<SingleRay> leaf;
-  return next_leaf(bvh, visitor, stack, leaf);
+  return next_leaf(BvhView(bvh), visitor, stack, leaf);
 }
 
 bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "host/bvh/bvh_view.h"
 #include "host/bvh/packet_bounds.h"
 #include "host/bvh/traversal.h"
 #include "host/intersect/cpu/quad_test.h"
@@ -29,7 +30,7 @@ RAYGATE_INLINE void test_leaf(const Bvh& bvh, const Ray& ray, const ShearedRay& 
                               RayWork& work) {
   QuadVerdict verdict;
   Bvh::LeafRoom room;
-  test_quad(sheared, bvh.corners_of(leaf, room), leaf.count, verdict);
+  test_quad(sheared, BvhView(bvh).corners_of(leaf, room), leaf.count, verdict);
   work.tests += leaf.count;
   work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
   for (LaneMask open = verdict.hit | verdict.level | verdict.doubt; open != 0; open &= open - 1) {
@@ -55,7 +56,7 @@ void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHi
     const LineVisitor visitor{PacketBounds(ray.origin, ray.direction), cutoff_beyond(t_max)};
     TraversalStack<SingleRay> stack({});
     StackEntry<SingleRay> leaf;
-    while (next_leaf(bvh, visitor, stack, leaf)) {
+    while (next_leaf(BvhView(bvh), visitor, stack, leaf)) {
       test_leaf(bvh, ray, sheared, leaf.child, hits, work);
     }
   });

@@ -41,7 +41,7 @@ RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& nod
 }
 
 /// Puts a child of the node whose children are above `bottom` onto the stack, in its place.
-RAYGATE_INLINE void push(ConeTraversal& walk, const Bvh& tree, int bottom,
+RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
                          const ConeTraversal::StackEntry& next) {
   tree.prefetch(next.child);
   int place = walk.depth++;
@@ -57,7 +57,7 @@ constexpr int kFewRays = 8;
 
 /// step_through for a few rays.
 template <Vectors kCode>
-RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const Bvh& tree, const Bvh::Node& node,
+RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, const Bvh::Node& node,
                                     std::uint64_t rays) {
   FloatLanes entry = FloatLanes{} + std::numeric_limits<float>::infinity();
   LaneMask met[kFewRays] = {}, any = 0;
@@ -91,7 +91,7 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const Bvh& tree, const 
 /// with a visitor for it, `build/lab rays landscape.obj` gave 0.88 as many shadow rays a second,
 /// and 0.93 as many camera rays.
 template <Vectors kCode>
-RAYGATE_INLINE void step_through(ConeTraversal& walk, const Bvh& tree, std::uint32_t index,
+RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
   constexpr int kFew = 1;  // children
   Bvh::Node room;

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "host/bvh/bvh.h"
+#include "host/bvh/bvh_view.h"
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/cone.h"
 #include "host/intersect/intersector.h"

@@ -159,7 +159,7 @@ RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const Quad
 /// Walks the tree, near before far, and tests what is there.
 void PacketIntersector::traverse(ConeTraversal& walk) {
   in_vectors([&](auto code) RAYGATE_BODY {
-    const Bvh& tree = bvh_;  // a local: read once, in these loops
+    const BvhView tree(bvh_);
     const bool ending = !query_.any_hit_before.empty();
     Cones& cones = walk.cones;
     while (walk.depth > 0 && walk.going != 0) {

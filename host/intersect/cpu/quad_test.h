@@ -59,6 +59,9 @@
 //    1. A product that underflows is off by 2^-150, that is 2^-150 / D' of z, where D' > 3 b >
 //    2^-80: less than 2^-68 in all, and m 2^-45 >= 2^-65.
 //
+// The code has O-p for p-O, of which each sum, difference and product of steps 1 to 4 has the same
+// magnitude: so a corner is read by the instruction that subtracts it.
+//
 // So z* is within 6.5 b R / (D - 3.2 b) + 16 u max |Z_i| + 2^-45 m of the quotient, roundings of
 // this included, and within 16 u max |Z_i| of what is between the corners' z.
 
@@ -75,9 +78,9 @@ struct ShearedRay {
   /// The direction usable (see is_usable).
   RAYGATE_INLINE explicit ShearedRay(const Ray& ray);
 
-  /// The sign bit of I_z.
-  [[nodiscard]] RAYGATE_INLINE std::int32_t back() const {
-    return std::bit_cast<std::int32_t>(way) & std::numeric_limits<std::int32_t>::min();
+  /// The sign bit that (O-p)_z has for points p ahead: that of -I_z.
+  [[nodiscard]] RAYGATE_INLINE std::int32_t sign_ahead() const {
+    return std::bit_cast<std::int32_t>(-way) & std::numeric_limits<std::int32_t>::min();
   }
 };
 
@@ -127,10 +130,11 @@ struct QuadVerdict {
 
 /// What the first half of a test leaves for the second one.
 struct QuadSides {
-  FloatQuad z[3], across[3];
+  FloatQuad z[3];  ///< of O-p
+  FloatQuad across[3];
   FloatQuad lowest, highest;  ///< of `across`
-  FloatQuad farthest, m, bound;
-  IntQuad bounded;
+  FloatQuad farthest, m;
+  FloatQuad bound;  ///< a NaN where nothing is sure: no comparison with it holds
 };
 
 /// Which of 1 to 4 triangles the ray does not surely miss, as far as the edges say. Coordinate k of
@@ -143,33 +147,32 @@ struct QuadSides {
   const std::ptrdiff_t stride = count;
   const float* const along[3] = {corners + stride * ray.axes[0], corners + stride * ray.axes[1],
                                  corners + stride * ray.axes[2]};
-  FloatQuad x[3], y[3], (&z)[3] = sides.z;
-  FloatQuad sum = {}, farthest = {};
+  FloatQuad x[3], y[3], (&z)[3] = sides.z, size[3];
   for (std::ptrdiff_t v = 0; v < 3; ++v) {
     x[v] = load<FloatQuad>(along[0] + 3 * v * stride);
     y[v] = load<FloatQuad>(along[1] + 3 * v * stride);
     z[v] = load<FloatQuad>(along[2] + 3 * v * stride);
-    z[v] = z[v] - ray.origin[2];
-    x[v] = (x[v] - ray.origin[0]) - ray.shear[0] * z[v];
-    y[v] = (y[v] - ray.origin[1]) - ray.shear[1] * z[v];
-    sum += absolute(x[v]) + absolute(y[v]);
-    farthest = maximum(absolute(z[v]), farthest);
+    z[v] = ray.origin[2] - z[v];
+    x[v] = (ray.origin[0] - x[v]) - ray.shear[0] * z[v];
+    y[v] = (ray.origin[1] - y[v]) - ray.shear[1] * z[v];
+    size[v] = absolute(x[v]) + absolute(y[v]);
   }
+  const FloatQuad sum = (size[0] + size[1]) + size[2];
+  const FloatQuad farthest = maximum(maximum(absolute(z[0]), absolute(z[1])), absolute(z[2]));
   const FloatQuad m = farthest + sum;
-  const IntQuad bounded = (m >= kSmallest) & (m <= kLargest);
-  const FloatQuad bound = m * (kBoundOfSum * sum + kBoundOfSize * m);
+  const IntQuad unsure = (m < kSmallest) | (m > kLargest);
+  const FloatQuad bound = float_of(bits_in(m * (kBoundOfSum * sum + kBoundOfSize * m)) | unsure);
   const FloatQuad across[3] = {x[1] * y[2] - y[1] * x[2], x[2] * y[0] - y[2] * x[0],
                                x[0] * y[1] - y[0] * x[1]};
   const FloatQuad lowest = minimum(minimum(across[0], across[1]), across[2]);
   const FloatQuad highest = maximum(maximum(across[0], across[1]), across[2]);
-  const IntQuad miss = bounded & (lowest < -bound) & (highest > bound);
+  const IntQuad miss = (lowest < -bound) & (highest > bound);
   for (int i = 0; i < 3; ++i) sides.across[i] = across[i];
   sides.lowest = lowest;
   sides.highest = highest;
   sides.farthest = farthest;
   sides.m = m;
   sides.bound = bound;
-  sides.bounded = bounded;
   return ~sign_mask(miss) & ((1u << count) - 1);
 }
 
@@ -181,14 +184,13 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
   const FloatQuad &m = sides.m, &bound = sides.bound;
   FloatQuad z[3];
   for (int v = 0; v < 3; ++v) {
-    z[v] = float_of(bits_in(sides.z[v]) ^ ray.back());
+    z[v] = float_of(bits_in(sides.z[v]) ^ ray.sign_ahead());
   }
   FloatQuad near = minimum(minimum(z[0], z[1]), z[2]), far = maximum(maximum(z[0], z[1]), z[2]);
   const FloatQuad whole = (across[0] + across[1]) + across[2];
   const FloatQuad middle = ((across[0] * z[0] + across[1] * z[1]) + across[2] * z[2]) / whole;
   const FloatQuad sure_whole = absolute(whole) - 3.2f * bound;
-  const IntQuad through =
-      sides.bounded & ((lowest > bound) | (highest < -bound)) & (sure_whole > 0.0f);
+  const IntQuad through = ((lowest > bound) | (highest < -bound)) & (sure_whole > 0.0f);
   const FloatQuad rounding = (16.0f * 0x1p-24f) * farthest, room = rounding + 0x1p-45f * m;
   const FloatQuad width = (6.5f * bound / sure_whole) * (far - near) + room;
   near -= rounding;

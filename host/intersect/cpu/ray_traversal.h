@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh.h"
+#include "host/bvh/bvh_view.h"
 #include "host/bvh/packet_bounds.h"
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/quad_test.h"
@@ -30,11 +30,12 @@ namespace raygate {
 
 /// One ray on its way. Many take turns, so that what a step needs of one is kept in few cache
 /// lines: the first for a node, the second for a leaf, the third for either, with the bottom of
-/// `keys`.
+/// `keys`, and one with the bottom of `children`.
 struct alignas(64) RayTraversal {
-  // Against boxes, by axis: see PacketBounds. A node has the planes to which the ray comes first,
-  // and last, so many bytes from its beginning.
-  float origin[3], inverse_near[3], inverse_far[3];
+  // Against boxes, by axis: see PacketBounds, whose inverses these are with the other sign, for
+  // (O - near) (-inverse) reads the plane in the instruction that subtracts it. A node has the
+  // planes to which the ray comes first, and last, so many bytes from its beginning.
+  float origin[3], minus_inverse_near[3], minus_inverse_far[3];
   std::uint32_t near_at[3], far_at[3];
   float cutoff;  ///< cutoff_beyond the nearest hit
 
@@ -45,20 +46,22 @@ struct alignas(64) RayTraversal {
   std::uint32_t skip_id, source_id;  ///< primitives
   std::uint32_t number;              ///< of the ray
 
-  Bvh::Child at;  ///< what is visited next
   RayWork work;
-  // What waits: children of nodes, the nearest last, as far as one node knows. A key is where the
-  // ray enters a child's box, a little less at most, with the child's number in the last bits. At
-  // the bottom is one that always matters: there the way ends.
+  // What waits: children of nodes, the nearest last, as far as one node knows; above them the one
+  // that is visited. A key is where the ray enters a child's box, a little less at most, with the
+  // child's number in the last bits. At the bottom is a child that always matters, and is none:
+  // there the way ends.
   std::size_t depth;
   std::int32_t keys[1 + Bvh::kStackSize + Bvh::kWidth];
-  std::uint32_t nodes[1 + Bvh::kStackSize + Bvh::kWidth];
+  Bvh::Child children[1 + Bvh::kStackSize + Bvh::kWidth];
 
   RayTraversal() {
     keys[0] = std::numeric_limits<std::int32_t>::min();
-    nodes[0] = 0;
+    children[0] = {0, Bvh::kMaxLeafSize + 1};
   }
 
+  /// What is visited.
+  [[nodiscard]] const Bvh::Child& at() const { return children[depth]; }
   [[nodiscard]] double t_scale() const { return std::abs(sheared.way); }
   /// The nearest hit, or the limit, is at a t, or at a depth, within these bounds.
   RAYGATE_INLINE void end_at(const Interval& t) {
@@ -72,7 +75,6 @@ struct alignas(64) RayTraversal {
   [[nodiscard]] Interval t() const { return {low / t_scale(), high / t_scale()}; }
   /// Nothing that waits matters any more.
   void end() { depth = 1; }
-  [[nodiscard]] bool has_ended() const { return depth == 0; }
 };
 
 /// Sends rays from the root on their ways, to no limit; bit i of the result where ray i is scaled,
@@ -90,10 +92,10 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   transpose(first);
   transpose(last);
   const FloatQuad o[3] = {first[0], first[1], first[2]}, d[3] = {last[1], last[2], last[3]};
-  // A RayTraversal's words, up to those of `at`.
+  // A RayTraversal's words, up to those of `work`.
   constexpr std::size_t kBoxWords = 16, kWords = 32;
   static_assert(offsetof(RayTraversal, sheared) == 4 * kBoxWords);
-  static_assert(offsetof(RayTraversal, at) == 4 * kWords && kWords % kQuad == 0);
+  static_assert(offsetof(RayTraversal, work) == 4 * kWords && kWords % kQuad == 0);
   FloatQuad words[kWords], sheared[sizeof(ShearedRay) / sizeof(float)];
   const auto word = [&](std::size_t offset) __attribute__((always_inline))->FloatQuad& {
     return words[offset / sizeof(float)];
@@ -117,11 +119,12 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
     const FloatQuad size = absolute(d[k]);
     const IntQuad small = size < kSmallestComponent, back = d[k] < 0.0f;
     const FloatQuad one = {1.0f, 1.0f, 1.0f, 1.0f}, sign = back ? -one : one;
-    const FloatQuad inverse = longest / (small ? sign * kSmallestComponent : d[k]);
+    const FloatQuad minus_inverse = -(longest / (small ? sign * kSmallestComponent : d[k]));
+    const FloatQuad minus_infinity = sign * -std::numeric_limits<float>::infinity();
     const IntQuad to_high = back & (3 * kRow), low_at = IntQuad{} + k * kRow;
     words[k] = o[k];
-    words[3 + k] = inverse;
-    words[6 + k] = kExitGrowth * (small ? sign * std::numeric_limits<float>::infinity() : inverse);
+    words[3 + k] = minus_inverse;
+    words[6 + k] = kExitGrowth * (small ? minus_infinity : minus_inverse);
     words[9 + k] = float_of(low_at + to_high);
     words[12 + k] = float_of(low_at + 3 * kRow - to_high);
   }
@@ -134,8 +137,8 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   }
   for (RayTraversal* const walk : walks) {
     walk->work = {};
-    walk->at = {0, 0};
-    walk->end();
+    walk->depth = 1;
+    walk->children[1] = {0, 0};
   }
   return sign_mask((largest >= 0x3F800000) & (largest < 0x40000000));
 }
@@ -171,11 +174,11 @@ RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count = kLanes) {
 /// Puts the children of the inner node where the ray is onto its stack, those whose boxes it meets.
 /// Without a branch but for three or more, as which these are nobody can foretell.
 template <Vectors kCode>
-RAYGATE_INLINE void step_inside(const Bvh& tree, RayTraversal& walk) {
+RAYGATE_INLINE void step_inside(const BvhView& tree, RayTraversal& walk) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;
   constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
   Bvh::Node room;
-  const Bvh::Node& node = tree.node(walk.at.first, room);
+  const Bvh::Node& node = tree.node(walk.at().first, room);
   const char* const bounds = reinterpret_cast<const char*>(&node);
   using Floats = NativeFloats<kCode>;
   IntLanes keys;
@@ -186,8 +189,8 @@ RAYGATE_INLINE void step_inside(const Bvh& tree, RayTraversal& walk) {
       Floats near, far;
       std::memcpy(&near, bounds + walk.near_at[k] + 4 * part, sizeof near);
       std::memcpy(&far, bounds + walk.far_at[k] + 4 * part, sizeof far);
-      const Floats t_near = (near - walk.origin[k]) * walk.inverse_near[k];
-      const Floats t_far = (far - walk.origin[k]) * walk.inverse_far[k];
+      const Floats t_near = (walk.origin[k] - near) * walk.minus_inverse_near[k];
+      const Floats t_far = (walk.origin[k] - far) * walk.minus_inverse_far[k];
       enter = t_near > enter ? t_near : enter;
       leave = t_far < leave ? t_far : leave;
     }
@@ -196,39 +199,46 @@ RAYGATE_INLINE void step_inside(const Bvh& tree, RayTraversal& walk) {
   }
   keys = (keys & ~kNumber) | kNumbers;
   const auto count = static_cast<std::size_t>(std::popcount(mask));
+  std::int32_t* const to_keys = walk.keys + walk.depth;
+  Bvh::Child* const to_children = walk.children + walk.depth;
+  walk.depth += count;
+  if (kCode != Vectors::kAvx512 && count <= 2) {
+    const auto first = static_cast<std::uint32_t>(std::countr_zero(mask | 1u << kNumber));
+    const auto last = 31 - static_cast<std::uint32_t>(std::countl_zero(mask | 1));
+    const bool falling = keys[first] > keys[last];
+    const std::uint32_t swap = (first ^ last) & -std::uint32_t{falling};
+    const std::uint32_t farther = last ^ swap, nearer = first ^ swap;
+    to_keys[0] = keys[farther];
+    to_keys[1] = keys[nearer];
+    to_children[0] = node.child[farther];
+    to_children[1] = node.child[nearer];
+    return;
+  }
 #ifdef RAYGATE_AVX2
   if constexpr (kCode == Vectors::kAvx512) {
     avx512_compress(keys, mask);
     sort_falling(keys, count);
-    std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
   } else
 #endif
-      if (count > 2) {
-    const IntLanes met = lanes_of(mask);
-    keys |= ~met;  // negative: they come last
+  {
+    keys |= ~lanes_of(mask);  // those that are not met are negative: they come last
     sort_falling(keys);
-    std::memcpy(walk.keys + walk.depth, &keys, sizeof keys);
-  } else {
-    const std::int32_t first = keys[std::countr_zero(mask | 0x100) & kNumber];
-    const std::int32_t second = keys[31 - std::countl_zero(mask | 1)];
-    const std::int32_t to_smaller = std::int32_t{first > second} * (second - first);
-    walk.keys[walk.depth] = second - to_smaller;
-    walk.keys[walk.depth + 1] = first + to_smaller;
   }
-  const IntLanes nodes = static_cast<std::int32_t>(walk.at.first) - IntLanes{};
-  std::memcpy(walk.nodes + walk.depth, &nodes, sizeof nodes);
-  walk.depth += count;
+  std::memcpy(to_keys, &keys, sizeof keys);
+  constexpr int kFew = Bvh::kWidth / 2;
+  for (int i = 0; i < kFew; ++i) to_children[i] = node.child[to_keys[i] & kNumber];
+  if (count <= kFew) return;
+  for (int i = kFew; i < Bvh::kWidth; ++i) to_children[i] = node.child[to_keys[i] & kNumber];
 }
 
 /// Goes on to what waits last and still matters.
-RAYGATE_INLINE void go_on(const Bvh& tree, RayTraversal& walk) {
-  constexpr std::int32_t kNumber = Bvh::kWidth - 1;
+RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
   // Floats from 0 on are in the order of their bits.
-  const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | kNumber;
-  while (walk.keys[--walk.depth] > last_key) {
-  }
-  walk.at = tree.child_of(walk.nodes[walk.depth], walk.keys[walk.depth] & kNumber);
-  tree.prefetch(walk.at);
+  const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | (Bvh::kWidth - 1);
+  do {
+    --walk.depth;
+  } while (walk.keys[walk.depth] > last_key);
+  tree.prefetch(walk.at());
 }
 
 }  // namespace raygate

@@ -123,6 +123,7 @@ RAYGATE_INLINE void SingleRayIntersector::finish(const RayTraversal& walk) {
 
 /// Each ray tests everything.
 void SingleRayIntersector::visit_all() {
+  const BvhView tree(bvh_);
   const std::vector<Bvh::Child> leaves = bvh_.leaves();
   const auto walks = std::make_unique<RayTraversal[]>(kQuad);
   while (next_ < rays_.size()) {
@@ -133,7 +134,7 @@ void SingleRayIntersector::visit_all() {
         QuadSides sides;
         Bvh::LeafRoom room;
         const LaneMask near =
-            find_sides(walk.sheared, bvh_.corners_of(leaf, room), leaf.count, sides);
+            find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, sides);
         walk.work.tests += leaf.count;
         if (near != 0 && !judge(walk, leaf, sides, near)) break;
       }
@@ -149,14 +150,14 @@ void SingleRayIntersector::visit_all() {
 void SingleRayIntersector::walk_all() {
   const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
   in_vectors([&](auto code) RAYGATE_BODY {
+    // By where they are: those at their ends are idle.
+    RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
+    // Those that do not surely miss all triangles of their leaves.
+    RayTraversal* near[kAtOnce];
     QuadSides sides[kAtOnce];
     LaneMask open[kAtOnce];
-    std::uint32_t near[kAtOnce];
-    enum : std::size_t { kInside, kLeaf, kIdle, kPlaces };
-    RayTraversal* lists[kPlaces][2 * kAtOnce];
-    std::size_t counts[kPlaces] = {0, 0, kAtOnce};
-    auto& [inside, leaves, idle] = lists;
-    auto& [inside_count, leaf_count, idle_count] = counts;
+    std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+    const BvhView tree(bvh_);
     for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
     for (;;) {
       while (idle_count >= kQuad && next_ < rays_.size()) {
@@ -172,31 +173,31 @@ void SingleRayIntersector::walk_all() {
         }
       }
       if (inside_count + leaf_count == 0) return;
-      for (std::size_t i = 0; i < inside_count; ++i) step_inside<code()>(bvh_, *inside[i]);
-      std::size_t open_count = 0;
+      for (std::size_t i = 0; i < inside_count; ++i) step_inside<code()>(tree, *inside[i]);
+      std::size_t near_count = 0;
       for (std::size_t i = 0; i < leaf_count; ++i) {
         RayTraversal& walk = *leaves[i];
-        walk.work.tests += walk.at.count;
+        const Bvh::Child leaf = walk.at();
+        walk.work.tests += leaf.count;
         Bvh::LeafRoom room;
-        open[i] = find_sides(walk.sheared, bvh_.corners_of(walk.at, room), walk.at.count, sides[i]);
-        near[open_count] = static_cast<std::uint32_t>(i);
-        open_count += open[i] != 0 ? 1 : 0;
-        inside[inside_count + i] = &walk;
+        open[near_count] =
+            find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, sides[near_count]);
+        inside[inside_count + i] = near[near_count] = &walk;
+        near_count += open[near_count] != 0 ? 1 : 0;
       }
-      for (std::size_t k = 0; k < open_count; ++k) {
-        const std::uint32_t i = near[k];
-        RayTraversal& walk = *leaves[i];
-        if (!judge(walk, walk.at, sides[i], open[i])) walk.end();
+      for (std::size_t i = 0; i < near_count; ++i) {
+        if (!judge(*near[i], near[i]->at(), sides[i], open[i])) near[i]->end();
       }
       const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
-      inside_count = leaf_count = 0;
+      RayTraversal** ends[Bvh::Child::kKinds] = {inside, leaves, idle + idle_count};
       for (std::size_t i = 0; i < count; ++i) {
         RayTraversal& walk = *inside[i];
-        go_on(bvh_, walk);
-        const std::size_t ended = walk.has_ended() ? 1 : 0, in_leaf = walk.at.count != 0 ? 1 : 0;
-        const std::size_t place = ended * kIdle | (in_leaf & ~ended) * kLeaf;
-        lists[place][counts[place]++] = &walk;
+        go_on(tree, walk);
+        *ends[walk.at().kind()]++ = &walk;
       }
+      inside_count = static_cast<std::size_t>(ends[Bvh::Child::kInner] - inside);
+      leaf_count = static_cast<std::size_t>(ends[Bvh::Child::kLeaf] - leaves);
+      idle_count = static_cast<std::size_t>(ends[Bvh::Child::kNone] - idle);
       for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
       add_points(kPlanes);
     }
