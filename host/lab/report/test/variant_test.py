@@ -3,8 +3,11 @@
 import pathlib
 import tempfile
 import unittest
+from unittest import mock
 
-from host.lab.report import cards
+import numpy
+
+from host.lab.report import cards, plots
 from host.lab.targets import variant
 
 
@@ -47,6 +50,29 @@ class Words(unittest.TestCase):
                 variant.table(words)
         with self.assertRaisesRegex(ValueError, "expected UNIT=serial"):
             variant.table(["UNIT=pipeline", "QUOTIENT_BITS=12"])
+
+
+class Card(unittest.TestCase):
+    def test_is_made_of_rows(self) -> None:
+        format_of = {"unit": "pipeline", "exponent_bits": 8, "doubts": True, "flush": False, "fused": False, "rounding": "nearest-even",
+                     "quotient_digits": 0}
+        decisions = {"tests": 1000, "wrong_hits": 1, "wrong_misses": 2, "doubts": 4, "point_ulp": {"p99": 2.5}}
+        with tempfile.TemporaryDirectory() as name, mock.patch.object(variant, "CARDS", pathlib.Path(name) / "cards.jsonl"):
+            folder = pathlib.Path(name)
+            plots.save_pixels(numpy.zeros((2, 3, 3)), folder / "seen.png")
+            rows = [{"table": "machine"}]
+            for line, digits in (("binary32", 24), ("e8p16", 16)):
+                frame = {"table": "pictures", "section": "variants", "variant": line, "scene": "scenes/cornell.obj", "unit_tests": 50,
+                         "clocks": 60}
+                rows += [{"table": "variants", "variant": line, "digits": digits, **format_of}, {**frame, "engine": "unit"},
+                         {**frame, "engine": "model", "audit": True, "decisions": decisions, "flip": 0.5, "picture": str(folder / "seen"),
+                          "map": str(folder / "seen.png")}]
+            values = variant.values(rows, folder)
+            self.assertTrue(values["pictures"].with_suffix(".png").exists())
+            self.assertEqual((values["mine"]["variant"], values["mine"]["wrong"], values["mine"]["clocks"]), ("e8p16", 3000.0, 60.0))
+            self.assertEqual([line["figure"] for line in values["figures"]],
+                             ["clocks a frame", "wrong tests a million", "doubts a million", "P, ulp: 99 %", "FLIP"])
+            self.assertTrue((folder / "cards.jsonl").exists())
 
 
 class Figures(unittest.TestCase):
