@@ -226,6 +226,9 @@ RAYGATE_INLINE auto join(const Quad& low, const Quad& high) {
 [[gnu::target("avx")]] inline LaneMask avx_sign_mask(const FloatLanes& x) {
   return static_cast<LaneMask>(__builtin_ia32_movmskps256(x));
 }
+[[gnu::target("avx2")]] inline void avx2_permute(IntLanes& x, const IntLanes& lanes) {
+  x = __builtin_ia32_permvarsi256(x, lanes);
+}
 [[gnu::target("avx512f,avx512vl")]] inline void avx512_compress(IntLanes& x, LaneMask mask) {
   x = __builtin_ia32_compresssi256_mask(x, IntLanes{} - 1, static_cast<unsigned char>(mask));
 }

@@ -42,9 +42,9 @@ class BvhView {
            9 * std::size_t{leaf.first};
   }
 
-  /// Says that a child will soon be visited; of kNone nothing. Without a branch, which would be a
-  /// guess about its kind. (Always inlined: GCC 12 takes a function that does nothing but prefetch
-  /// for one without effect, and leaves its calls out.)
+  /// Says that a child will soon be visited; kNone stands for the first leaf, as good as any other.
+  /// Without a branch, which would be a guess about its kind. (Always inlined: GCC 12 takes a
+  /// function that does nothing but prefetch for one without effect, and leaves its calls out.)
   RAYGATE_INLINE void prefetch(const Bvh::Child& child) const {
     if (child.first >= first_instanced_) [[unlikely]]
       return bvh_->prefetch_instance(child);

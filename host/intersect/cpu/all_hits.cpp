@@ -25,12 +25,12 @@ struct LineVisitor {
 };
 
 /// The primitives of a leaf's triangles that the ray hits at some t > 0.
-RAYGATE_INLINE void test_leaf(const Bvh& bvh, const Ray& ray, const ShearedRay& sheared,
-                              const Bvh::Child& leaf, std::vector<NearestHit>& hits,
-                              RayWork& work) {
+RAYGATE_INLINE void test_leaf(const Bvh& bvh, const BvhView& tree, const Ray& ray,
+                              const ShearedRay& sheared, const Bvh::Child& leaf,
+                              std::vector<NearestHit>& hits, RayWork& work) {
   QuadVerdict verdict;
   Bvh::LeafRoom room;
-  test_quad(sheared, BvhView(bvh).corners_of(leaf, room), leaf.count, verdict);
+  test_quad(sheared, tree.corners_of(leaf, room), leaf.count, verdict);
   work.tests += leaf.count;
   work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
   for (LaneMask open = verdict.hit | verdict.level | verdict.doubt; open != 0; open &= open - 1) {
@@ -56,8 +56,9 @@ void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHi
     const LineVisitor visitor{PacketBounds(ray.origin, ray.direction), cutoff_beyond(t_max)};
     TraversalStack<SingleRay> stack({});
     StackEntry<SingleRay> leaf;
-    while (next_leaf(BvhView(bvh), visitor, stack, leaf)) {
-      test_leaf(bvh, ray, sheared, leaf.child, hits, work);
+    const BvhView tree(bvh);
+    while (next_leaf(tree, visitor, stack, leaf)) {
+      test_leaf(bvh, tree, ray, sheared, leaf.child, hits, work);
     }
   });
   std::erase_if(hits, [&](const NearestHit& hit) { return !is_before(bvh, ray, hit, t_max); });

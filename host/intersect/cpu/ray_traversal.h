@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -137,15 +138,28 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   }
   for (RayTraversal* const walk : walks) {
     walk->work = {};
-    walk->depth = 1;
-    walk->children[1] = {0, 0};
+    walk->end();
+    walk->children[walk->depth] = {0, 0};
   }
   return sign_mask((largest >= 0x3F800000) & (largest < 0x40000000));
 }
 
-/// Puts eight keys in order, the largest first: Batcher's bitonic network. All but `count` may be
-/// known to be the smallest, and behind the others.
-RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count = kLanes) {
+/// By sets of lanes: their numbers one after the other, and negative ones behind them.
+inline constexpr auto kNumbersOf = [] {
+  std::array<std::array<std::int32_t, kLanes>, 1 << kLanes> numbers{};
+  for (std::size_t mask = 0; mask < numbers.size(); ++mask) {
+    std::size_t count = 0;
+    numbers[mask].fill(std::numeric_limits<std::int32_t>::min());
+    for (std::int32_t i = 0; i < kLanes; ++i) {
+      if ((mask >> i & 1) != 0) numbers[mask][count++] = i;
+    }
+  }
+  return numbers;
+}();
+
+/// Puts eight keys in order, the largest first: Batcher's bitonic network. All but `count` are
+/// negative, and behind the others.
+RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
   IntLanes other, larger, smaller;
   const auto compare = [&]() __attribute__((always_inline)) {
     larger = keys > other ? keys : other;
@@ -157,6 +171,7 @@ RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count = kLanes) {
     keys = __builtin_shufflevector(larger, smaller, 0, 9, 2, 11, 4, 13, 6, 15);
   };
   of_pairs();
+  if (count <= 2) return;
   other = __builtin_shufflevector(keys, keys, 3, 2, 1, 0, 7, 6, 5, 4);
   compare();
   keys = __builtin_shufflevector(larger, smaller, 0, 1, 10, 11, 4, 5, 14, 15);
@@ -171,17 +186,20 @@ RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count = kLanes) {
   of_pairs();
 }
 
-/// Puts the children of the inner node where the ray is onto its stack, those whose boxes it meets.
-/// Without a branch but for three or more, as which these are nobody can foretell.
+/// The children of a node, and which of their boxes a ray meets.
+struct MetChildren {
+  IntLanes keys;  ///< where it enters those that it meets: the bits of floats from 0 on
+  const Bvh::Child* children;
+  LaneMask mask;
+};
+
+/// Tests the ray against the boxes of the inner node where it is, which may be made in `room`.
 template <Vectors kCode>
-RAYGATE_INLINE void step_inside(const BvhView& tree, RayTraversal& walk) {
-  constexpr std::int32_t kNumber = Bvh::kWidth - 1;
-  constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
-  Bvh::Node room;
+RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk, Bvh::Node& room,
+                                  MetChildren& met) {
   const Bvh::Node& node = tree.node(walk.at().first, room);
   const char* const bounds = reinterpret_cast<const char*>(&node);
   using Floats = NativeFloats<kCode>;
-  IntLanes keys;
   LaneMask mask = 0;
   for (std::size_t part = 0; part < Bvh::kWidth; part += sizeof(Floats) / sizeof(float)) {
     Floats enter = {}, leave = walk.cutoff - Floats{};
@@ -195,40 +213,60 @@ RAYGATE_INLINE void step_inside(const BvhView& tree, RayTraversal& walk) {
       leave = t_far < leave ? t_far : leave;
     }
     mask |= sign_mask<kCode>(enter <= leave) << part;
-    std::memcpy(reinterpret_cast<char*>(&keys) + 4 * part, &enter, sizeof enter);
+    std::memcpy(reinterpret_cast<char*>(&met.keys) + 4 * part, &enter, sizeof enter);
   }
-  keys = (keys & ~kNumber) | kNumbers;
-  const auto count = static_cast<std::size_t>(std::popcount(mask));
+  met.children = node.child;
+  met.mask = mask;
+}
+
+/// Puts the children that the ray meets onto its stack. Without a branch but for three or more, as
+/// which these are nobody can foretell.
+template <Vectors kCode>
+RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
+  constexpr std::int32_t kNumber = Bvh::kWidth - 1;
+  constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  const auto count = static_cast<std::size_t>(std::popcount(met.mask));
+  const auto& numbers = kNumbersOf[met.mask];
   std::int32_t* const to_keys = walk.keys + walk.depth;
   Bvh::Child* const to_children = walk.children + walk.depth;
   walk.depth += count;
-  if (kCode != Vectors::kAvx512 && count <= 2) {
-    const auto first = static_cast<std::uint32_t>(std::countr_zero(mask | 1u << kNumber));
-    const auto last = 31 - static_cast<std::uint32_t>(std::countl_zero(mask | 1));
-    const bool falling = keys[first] > keys[last];
-    const std::uint32_t swap = (first ^ last) & -std::uint32_t{falling};
-    const std::uint32_t farther = last ^ swap, nearer = first ^ swap;
-    to_keys[0] = keys[farther];
-    to_keys[1] = keys[nearer];
-    to_children[0] = node.child[farther];
-    to_children[1] = node.child[nearer];
+  const auto push = [&](int first, int last) __attribute__((always_inline)) {
+    for (int i = first; i < last; ++i) to_children[i] = met.children[to_keys[i] & kNumber];
+  };
+  // Two of them one by one, where no register holds all eight.
+  if (kCode == Vectors::kBaseline && count <= 2) {
+    const auto key = [&](int i) __attribute__((always_inline)) {
+      return (met.keys[numbers[i] & kNumber] & ~kNumber) | numbers[i];
+    };
+    const std::int32_t one = key(0), other = key(1);
+    const std::int32_t swap = (one ^ other) & -std::int32_t{one < other};
+    to_keys[0] = one ^ swap;
+    to_keys[1] = other ^ swap;
+    push(0, 2);
     return;
   }
+  // Those that are met come first, or are the only ones that are not negative.
+  IntLanes keys = met.keys & ~kNumber;
 #ifdef RAYGATE_AVX2
   if constexpr (kCode == Vectors::kAvx512) {
-    avx512_compress(keys, mask);
-    sort_falling(keys, count);
+    keys |= kNumbers;
+    avx512_compress(keys, met.mask);
+  } else if constexpr (kCode == Vectors::kAvx2) {
+    const auto lanes = load<IntLanes>(numbers.data());
+    avx2_permute(keys, lanes);
+    keys |= lanes;
   } else
 #endif
   {
-    keys |= ~lanes_of(mask);  // those that are not met are negative: they come last
-    sort_falling(keys);
+    keys |= kNumbers | ~lanes_of(met.mask);
   }
+  sort_falling(keys, kCode == Vectors::kBaseline ? kLanes : count);
   std::memcpy(to_keys, &keys, sizeof keys);
-  constexpr int kFew = Bvh::kWidth / 2;
-  for (int i = 0; i < kFew; ++i) to_children[i] = node.child[to_keys[i] & kNumber];
-  if (count <= kFew) return;
-  for (int i = kFew; i < Bvh::kWidth; ++i) to_children[i] = node.child[to_keys[i] & kNumber];
+  push(0, 2);
+  if (count <= 2) return;
+  push(2, 4);
+  if (count <= 4) return;
+  push(4, Bvh::kWidth);
 }
 
 /// Goes on to what waits last and still matters.

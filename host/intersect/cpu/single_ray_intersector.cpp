@@ -152,10 +152,15 @@ void SingleRayIntersector::walk_all() {
   in_vectors([&](auto code) RAYGATE_BODY {
     // By where they are: those at their ends are idle.
     RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
-    // Those that do not surely miss all triangles of their leaves.
-    RayTraversal* near[kAtOnce];
-    QuadSides sides[kAtOnce];
-    LaneMask open[kAtOnce];
+    // What those inside meet.
+    MetChildren met[kAtOnce];
+    Bvh::Node rooms[kAtOnce];
+    // Those at leaves that do not surely miss all triangles there.
+    struct {
+      RayTraversal* walk;
+      LaneMask open;
+      QuadSides sides;
+    } near[kAtOnce];
     std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
     const BvhView tree(bvh_);
     for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
@@ -173,20 +178,24 @@ void SingleRayIntersector::walk_all() {
         }
       }
       if (inside_count + leaf_count == 0) return;
-      for (std::size_t i = 0; i < inside_count; ++i) step_inside<code()>(tree, *inside[i]);
-      std::size_t near_count = 0;
+      // In two loops: the shorter a turn, the more rays a processor has in work at once.
+      for (std::size_t i = 0; i < inside_count; ++i) {
+        meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
+      }
+      for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
+      auto* near_end = near;
       for (std::size_t i = 0; i < leaf_count; ++i) {
         RayTraversal& walk = *leaves[i];
         const Bvh::Child leaf = walk.at();
         walk.work.tests += leaf.count;
         Bvh::LeafRoom room;
-        open[near_count] =
-            find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, sides[near_count]);
-        inside[inside_count + i] = near[near_count] = &walk;
-        near_count += open[near_count] != 0 ? 1 : 0;
+        near_end->walk = inside[inside_count + i] = &walk;
+        near_end->open =
+            find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, near_end->sides);
+        near_end += near_end->open != 0 ? 1 : 0;
       }
-      for (std::size_t i = 0; i < near_count; ++i) {
-        if (!judge(*near[i], near[i]->at(), sides[i], open[i])) near[i]->end();
+      for (const auto* at = near; at != near_end; ++at) {
+        if (!judge(*at->walk, at->walk->at(), at->sides, at->open)) at->walk->end();
       }
       const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
       RayTraversal** ends[Bvh::Child::kKinds] = {inside, leaves, idle + idle_count};

@@ -36,7 +36,7 @@ class SingleRayIntersector {
 
   // Rays that take turns: enough to hide what they wait for, few enough for a cache of 32 KB that
   // another thread of the processor may share.
-  static constexpr int kAtOnce = 32;
+  static constexpr int kAtOnce = 24;
 
   const Bvh& bvh_;
   IntersectCounters& counters_;
