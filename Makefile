@@ -71,23 +71,25 @@ frames: verilate ## measure: the paper's frame at 10 MHz: clocks, frames per sec
 	@python3 sim/bench/$(if $(BOARD),board_frames.py ./render scenes,frame_rates.py ./render scenes/paper.obj)
 
 # Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic; renders and
-# ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error.
+# ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error; a fault under
+# each guard of .ci/guards.toml, in a clone.
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
 LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
 LONG_kills = RAYGATE_KILLS=$(or $(KILLS),100) build/run_test --gtest_filter='*SurviveBeingKilled'
 LONG_faults = RAYGATE_FAULTS=0 build/faults_test
 LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='KilledRanks.*'
+LONG_guards = python3 .ci/guards.py try $(GUARDS)
 LONG_page = $(PYTHON) -m unittest sim/page/test/page_test.py
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=page | LONG=error SEEDS=1000
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=page | LONG=error SEEDS=1000 | LONG=guards GUARDS='mutation pip'
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page or error))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, error or guards))
 	$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))),worked_example))
 	@$(LONG_$(LONG))
 else
 	$(call build,test,all)
-	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error
+	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error $${SKIP:+-E "$$SKIP"}
 endif
 
 python: ## use: install the Python module into build/python, test it and its notebook

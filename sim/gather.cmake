@@ -21,7 +21,10 @@ endforeach()
 file(WRITE ${DIR}/all.cpp "${sources}\n")
 file(WRITE ${DIR}/slow.cpp "${slow}\n")
 
-# Verilator names every file it wrote as a target; the build knows of all.cpp alone.
+# Verilator names every file it wrote as a target; the build knows of all.cpp alone. What it read has names relative to
+# the folder that it and this script run in.
 file(READ ${DIR}/${NAME}__ver.d depends)
-string(REGEX REPLACE "^[^:]*:" "${DIR}/all.cpp:" depends "${depends}")
+string(REGEX REPLACE "^[^:]*:" "" depends "${depends}")
+string(REGEX REPLACE " ([^/ \n])" " ${CMAKE_CURRENT_SOURCE_DIR}/\\1" depends "${depends}")
+string(PREPEND depends "${DIR}/all.cpp:")
 file(WRITE ${DIR}/all.d "${depends}")

@@ -1,10 +1,10 @@
 # Verilated models, and the tests that use them.
 #
-#   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [OPEN])
+#   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [OPEN [LEVELS 6]])
 #     A static library `fp_adder_f16`: module TOP of hw/ (or of the calling folder, where a test joins
 #     several modules under one top) with these parameters, as class Vfp_adder_f16 in
-#     "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a waveform (sim/ray_batch.h)
-#     and the signals that visible.vlt lists be read. Name a model after its module and what its
+#     "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a waveform (sim/wave_model.h),
+#     down to so many levels of instances, and the signals that visible.vlt lists be read. Name a model after its module and what its
 #     parameters stand for; models that several programs use are built once.
 #
 #     PATCHES <folder>: modules found there are taken instead of those of hw/: broken on purpose, or brought
@@ -42,11 +42,11 @@ set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-tree-slp-vectorize -fno-sanitize=all)
 target_compile_options(verilated PRIVATE ${RAYGATE_VERILATED_OPTIONS})
 set_target_properties(verilated PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
 
-# hw/*/*.core list the files, in the order to compile them.
+# hw/*/*.core list the files, in the order to compile them. Verilator runs in the root of the checkout and is given
+# relative names, so that what it writes is the same in every checkout.
 execute_process(COMMAND python3 -m synth.cores WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
   OUTPUT_VARIABLE RAYGATE_HW OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 string(REPLACE "\n" ";" RAYGATE_HW "${RAYGATE_HW}")
-list(TRANSFORM RAYGATE_HW PREPEND ${CMAKE_SOURCE_DIR}/)
 file(GLOB cores CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/*/*.core)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${cores})
 set(RAYGATE_HW_PACKAGES ${RAYGATE_HW})
@@ -64,11 +64,11 @@ list(TRANSFORM RAYGATE_HW_FOLDERS PREPEND -I)
 # (SYNCASYNCNET). What the RTL leaves open (registers before their first load, x in an assignment) is 0 in
 # a model, or random in one whose context asks for it (sim/model.h): its bits must not depend on that.
 set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-SYNCASYNCNET -fno-const-bit-op-tree --assert
-  --x-assign unique --x-initial unique ${CMAKE_SOURCE_DIR}/sim/words.vlt)
-set(RAYGATE_CHECKS ${CMAKE_SOURCE_DIR}/sim/checks)  # bindings.sv binds them to the modules of hw/
+  --x-assign unique --x-initial unique sim/words.vlt)
+set(RAYGATE_CHECKS sim/checks)  # bindings.sv binds them to the modules of hw/
 
 function(raygate_model NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES;NETLIST;AS" "PARAMETERS")
+  cmake_parse_arguments(PARSE_ARGV 1 MODEL "OPEN;SHARED" "TOP;PATCHES;NETLIST;AS;LEVELS" "PARAMETERS")
   if(NOT MODEL_TOP OR MODEL_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "raygate_model(${NAME}): expected TOP <module> [PARAMETERS ...] [OPEN] [SHARED], "
       "got ${ARGN}")
@@ -76,14 +76,14 @@ function(raygate_model NAME)
   set(top_file ${RAYGATE_HW})
   list(FILTER top_file INCLUDE REGEX "/${MODEL_TOP}\\.sv$")
   if(NOT top_file)
-    set(top_file ${CMAKE_CURRENT_SOURCE_DIR}/${MODEL_TOP}.sv)
+    file(RELATIVE_PATH top_file ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${MODEL_TOP}.sv)
   endif()
   set(patches)
   set(options ${RAYGATE_VERILATED_OPTIONS})
   if(MODEL_NETLIST)  # lint is for what people write
     set(top_file ${MODEL_NETLIST})
     set(patches -Wno-lint -Wno-style -Wno-UNOPTFLAT)
-  elseif(NOT EXISTS ${top_file})
+  elseif(NOT EXISTS ${CMAKE_SOURCE_DIR}/${top_file})
     message(FATAL_ERROR "raygate_model(${NAME}): no ${MODEL_TOP}.sv in hw/*/*.core or this folder")
   endif()
 
@@ -98,14 +98,20 @@ function(raygate_model NAME)
   list(TRANSFORM MODEL_PARAMETERS PREPEND -G)
   set(open)
   if(MODEL_OPEN)
-    set(open --trace ${CMAKE_SOURCE_DIR}/sim/visible.vlt)
+    set(open --trace sim/visible.vlt)
+    if(MODEL_LEVELS)
+      list(APPEND open --trace-depth ${MODEL_LEVELS})
+    endif()
   endif()
   if(MODEL_SHARED)
-    list(APPEND open ${CMAKE_SOURCE_DIR}/sim/shared.vlt)
+    list(APPEND open sim/shared.vlt)
   endif()
   if(MODEL_PATCHES)
     set(patches -y ${MODEL_PATCHES} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
   endif()
+  set(read ${RAYGATE_HW_PACKAGES} ${RAYGATE_CHECKS}/bindings.sv sim/gather.cmake)
+  list(TRANSFORM read PREPEND ${CMAKE_SOURCE_DIR}/)
+  get_filename_component(top_path ${top_file} ABSOLUTE BASE_DIR ${CMAKE_SOURCE_DIR})
   add_custom_command(OUTPUT ${all} BYPRODUCTS ${dir}/V${MODEL_AS}.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
     COMMAND ${VERILATOR_BIN} --cc -O3 --no-timing
@@ -113,9 +119,8 @@ function(raygate_model NAME)
       --prefix V${MODEL_AS} --Mdir ${dir} --make cmake --MMD
       --top-module ${MODEL_TOP} ${MODEL_PARAMETERS} ${RAYGATE_HW_PACKAGES}
       ${top_file} ${RAYGATE_CHECKS}/bindings.sv
-    COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${MODEL_AS} -P ${CMAKE_SOURCE_DIR}/sim/gather.cmake
-    DEPENDS ${top_file} ${RAYGATE_HW_PACKAGES} ${RAYGATE_CHECKS}/bindings.sv
-      ${CMAKE_SOURCE_DIR}/sim/gather.cmake
+    COMMAND ${CMAKE_COMMAND} -DDIR=${dir} -DNAME=V${MODEL_AS} -P sim/gather.cmake
+    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DEPENDS ${top_path} ${read}
     DEPFILE ${dir}/all.d
     COMMENT "Verilating ${NAME}" VERBATIM COMMAND_EXPAND_LISTS)
 

@@ -5,7 +5,7 @@ import pathlib
 import re
 from collections.abc import Callable
 
-from synth import catalogue, cores, induction, store, tools
+from synth import catalogue, cores, induction, smt, store, tools
 
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
 # A line of a counterexample of Yosys's: name, decimal, hexadecimal, bits.
@@ -47,7 +47,8 @@ def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = No
     hardware = cores.used(top, [*rtl("arith"), own])[:-1] if sources is None else sources
     read = [*(file for file in hardware if not prepare or file.stem in beside), own]
     scripts = [PROOFS / "prove.tcl", pathlib.Path(induction.__file__), *([PROOFS / prepare] if prepare else [])]
-    wanted = store.key([*hardware, *read, *scripts], tools.version("yosys"), method, parameters, steps,
+    solver = smt.version() if method == "Bitwuzla" else ""
+    wanted = store.key([*hardware, *read, *scripts], tools.version("yosys"), solver, method, parameters, steps,
                        reach, prepared)
 
     def work() -> dict:
@@ -64,4 +65,4 @@ def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = No
             raise tools.Refuted(f"{top} (log: {folder / 'yosys.log'})", dict(PORT.findall(said)))
         return {"holds": True}
 
-    return store.cached(folder, wanted, tools.measured(work))
+    return store.proven(folder, wanted, work)

@@ -75,7 +75,7 @@ def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
     uncut = FloatProof(cut.uncut, name, arithmetic)
     parameters = f"ExpWidth {exp} FracWidth {frac} {ARITHMETIC[arithmetic]} {cut.parameters}"
     wanted = store.key([*uncut.sources(), FLOAT / "model.tcl", FLOAT / "solve.py"],
-                       tools.version("yosys"), parameters, cut.latency[name])
+                       tools.version("yosys"), smt.version(), parameters, cut.latency[name])
 
     def work() -> dict:
         stages = smt.write_model(uncut.sources(), cut.top, parameters, folder / "stages")
@@ -91,4 +91,4 @@ def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
             text += f"(assert {claim})\n"
         return {"holds": True}
 
-    return store.cached(folder, wanted, tools.measured(work))
+    return store.proven(folder, wanted, work)

@@ -247,7 +247,7 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
     """Proves a claim; raises ToolFailed, with the operands, where it does not hold."""
     folder = store.OUT / "proofs" / f"float.{one.name}"
     wanted = store.key([*one.sources(), FLOAT / "model.tcl", FLOAT / "solve.py"],
-                       tools.version("yosys"), one.parameters, one.texts(), *filter(None, [one.case()]))
+                       tools.version("yosys"), smt.version(), one.parameters, one.texts(), *filter(None, [one.case()]))
 
     def work() -> dict:
         top = OPERATIONS[one.operation].top
@@ -263,7 +263,7 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
             raise tools.ToolFailed(f"{one.name}: {answer['answer']}: {answer['values']}")
         return {"holds": True}
 
-    return store.cached(folder, wanted, tools.measured(work))
+    return store.proven(folder, wanted, work)
 
 
 def lemma(name: str) -> tuple[dict, bool]:
@@ -278,7 +278,7 @@ def lemma(name: str) -> tuple[dict, bool]:
             raise tools.ToolFailed(f"{file}: {' '.join(answers)}")
         return {"holds": True}
 
-    return store.cached(folder, store.key([file], tools.version("z3")), tools.measured(work))
+    return store.proven(folder, store.key([file], tools.version("z3")), work)
 
 
 LEMMAS = {"multiplication": "what claims/multiply.smt2 assumes of a product",

@@ -40,7 +40,7 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
     text = string.Template(text).substitute(numbers)
     oracle = [tools.ROOT / "sim" / name for name in ("fp/vectors.cpp", "test/fp/oracle.cpp")]
     program = FLOAT / "mpfr_vectors.cpp"
-    wanted = store.key([*oracle, program, FLOAT / "solve.py"], text, count)
+    wanted = store.key([*oracle, program, FLOAT / "solve.py"], smt.version(), text, count)
 
     def case(line: str, second: str) -> str:
         mode, after, a, b, result, flags = map(int, line.split())
@@ -72,4 +72,4 @@ def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]
                     raise tools.ToolFailed(f"{one.name}: differs from MPFR: {folder}/cases.smt2")
         return {"holds": True}
 
-    return store.cached(folder, wanted, tools.measured(work))
+    return store.proven(folder, wanted, work)

@@ -58,7 +58,8 @@ class Model:
 
 
 def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
-    """Raises ToolFailed, with what breaks and the inputs, unless no state of `clocks` breaks an assertion."""
+    """Raises Refuted, with the broken assertions and the inputs, if a state of `clocks` breaks an assertion, and ToolFailed if
+    the solver does not know."""
     asserts, inputs = model.listed("assert"), model.listed("input")
     last = clocks[-1]
     terms = [f"(|{model.top}_a {number}| s{last})" for number, _ in asserts]
@@ -67,13 +68,14 @@ def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
     if answer["answer"] == "unsat":
         return
     values = answer["values"]
+    if answer["answer"] != "sat":
+        raise tools.ToolFailed(f"{file}: {answer['answer']}: {values}")
     broken = [place for (_, place), term in zip(asserts, terms) if values.get(term) == "0"]
-    shown = " ".join(f"{term}={value}" for term, value in values.items() if "_n " in term)
-    raise tools.ToolFailed(f"{file}: {answer['answer']}: {'; '.join(broken)}: {shown}")
+    raise tools.Refuted(f"{'; '.join(broken)} ({file})", {term: value for term, value in values.items() if "_n " in term})
 
 
 def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
-    """Raises ToolFailed unless every assertion holds: in `steps` clocks from power-up on, and after any
+    """Raises Refuted or ToolFailed unless every assertion holds: in `steps` clocks from power-up on, and after any
     so many in which they held; and unless there are such clocks at all, and each `cover` is reached within
     `reach` of them. A module that assumes something must cover something: what contradicts itself would
     hold of everything.

@@ -31,7 +31,7 @@ def equal(design: Design, library: Library, flow: str) -> tuple[dict, bool]:
             raise tools.ToolFailed(f"{folder}/abc.log: {said.strip().splitlines()[-1]}")
         return {"holds": True}
 
-    return store.cached(folder, wanted, tools.measured(work))
+    return store.proven(folder, wanted, work)
 
 
 def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[dict, bool]:
@@ -41,8 +41,7 @@ def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[di
              PROOFS / "netlist_cells.tcl", pathlib.Path(__file__), *mapping.scripts()]
     wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.facts,
                        library, flow, vectors)
-    return store.cached(folder, wanted, tools.measured(
-        lambda: _agree(design, library, flow, vectors, folder)))
+    return store.proven(folder, wanted, lambda: _agree(design, library, flow, vectors, folder))
 
 
 def _agree(design: Design, library: Library, flow: str, vectors: int,

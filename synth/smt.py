@@ -1,6 +1,7 @@
 """Modules as SMT-LIB, by Yosys, and what Bitwuzla says of them."""
 
 import functools
+import importlib.metadata
 import importlib.util
 import json
 import pathlib
@@ -72,6 +73,14 @@ def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: 
         "SOURCES": " ".join(map(str, sources)), "TOP": top, "PARAMETERS": parameters,
         "SMT2": str(smt2), "KEEP": keep})
     return smt2.read_text()
+
+
+def version() -> str:
+    """The version of Bitwuzla, or "" where it is not installed."""
+    try:
+        return importlib.metadata.version("bitwuzla")
+    except importlib.metadata.PackageNotFoundError:
+        return ""
 
 
 def solve(file: pathlib.Path, text: str, terms: tuple[str, ...] = (), limit: float = 0) -> dict:

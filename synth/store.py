@@ -12,6 +12,10 @@ from collections.abc import Callable, Iterable
 from synth import tools
 
 OUT = tools.ROOT / "build" / "synth"
+# Outcomes of proofs, kept for all checkouts of this user, and the programs that lead to them.
+PROVERS = [tools.ROOT / "synth" / f"{name}.py" for name in (
+    "assertions", "float_cuts", "float_proofs", "float_specifications", "induction", "netlists", "prove", "smt", "unit_proofs")]
+PROVEN = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "raygate" / "proven"
 
 
 class NotKept(Exception):
@@ -73,3 +77,25 @@ def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple
         result = make()
         file.write_text(json.dumps({"key": wanted, "result": result}, indent=1))
         return json.loads(file.read_text())["result"], False
+
+
+def proven(folder: pathlib.Path, wanted: str, prove: Callable[[], dict]) -> tuple[dict, bool]:
+    """`cached` for a proof, whose outcome is also kept in PROVEN under its key and the text of PROVERS: no checkout proves or
+    refutes it again.
+
+    Raises Refuted where the proof does, at once or in an earlier run. No other failure is kept: a solver that ran out of time
+    or a missing tool says nothing about the claim.
+    """
+    file = PROVEN / f"{key(PROVERS, wanted)}.json"
+    if file.exists():
+        outcome = json.loads(file.read_text())
+        if "refuted" in outcome:
+            raise tools.Refuted(outcome["refuted"], outcome["values"])
+        return outcome, True
+    try:
+        result, there = cached(folder, wanted, tools.measured(prove))
+    except tools.Refuted as error:
+        replace(file, json.dumps({"refuted": error.claim, "values": error.values}))
+        raise
+    replace(file, json.dumps(result))
+    return result, there

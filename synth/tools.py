@@ -42,10 +42,11 @@ class ToolFailed(Exception):
 
 
 class Refuted(ToolFailed):
-    """A claim does not hold. `values`: of the ports, bits by name."""
+    """The claim `claim` does not hold. `values`: the bits of each port in a counterexample, by name."""
 
-    def __init__(self, what: str, values: dict[str, str]) -> None:
-        super().__init__(f"{what} does not hold: {values}")
+    def __init__(self, claim: str, values: dict[str, str]) -> None:
+        super().__init__(f"{claim} does not hold: {values}")
+        self.claim = claim
         self.values = values
 
 

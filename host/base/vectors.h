@@ -26,23 +26,40 @@ inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "av
 template <Vectors kVectors>
 using VectorCode = std::integral_constant<Vectors, kVectors>;
 
-#define RAYGATE_INLINE inline __attribute__((always_inline))
-#define RAYGATE_BODY __attribute__((always_inline))
-
-// The instructions of each kind, as GCC and Clang name them.
-#if defined(__x86_64__) && defined(__GNUC__)
-#define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"
-#define RAYGATE_AVX512 RAYGATE_AVX2 ",avx512f,avx512cd,avx512bw,avx512dq,avx512vl"
+// The widest kind that is compiled, as a number of Vectors. Builds with sanitizers, whose time each kind adds to, have fewer.
+#ifndef RAYGATE_WIDEST_VECTORS
+#define RAYGATE_WIDEST_VECTORS 2
 #endif
 
-/// The widest that this machine has.
+// Baseline code alone can be called as it is, which compiles in less time.
+#if RAYGATE_WIDEST_VECTORS > 0
+#define RAYGATE_INLINE inline __attribute__((always_inline))
+#define RAYGATE_BODY __attribute__((always_inline))
+#else
+#define RAYGATE_INLINE inline
+#define RAYGATE_BODY
+#endif
+
+// The instructions of each kind, as GCC and Clang name them.
+#if defined(__x86_64__) && defined(__GNUC__) && RAYGATE_WIDEST_VECTORS > 0
+#define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"
+#if RAYGATE_WIDEST_VECTORS > 1
+#define RAYGATE_AVX512 RAYGATE_AVX2 ",avx512f,avx512cd,avx512bw,avx512dq,avx512vl"
+#endif
+#endif
+
+/// The widest kind that is compiled and that this machine has.
 [[nodiscard]] inline Vectors widest_vectors() {
 #ifdef RAYGATE_AVX2
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
-  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
-                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512vl");
-  return avx2 && avx512 ? Vectors::kAvx512 : avx2 ? Vectors::kAvx2 : Vectors::kBaseline;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return Vectors::kBaseline;
+#ifdef RAYGATE_AVX512
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl")) {
+    return Vectors::kAvx512;
+  }
+#endif
+  return Vectors::kAvx2;
 #else
   return Vectors::kBaseline;
 #endif
@@ -107,6 +124,8 @@ template <class Body>
 [[gnu::noinline, gnu::target(RAYGATE_AVX2)]] auto in_avx2(const Body& body) {
   return body(VectorCode<Vectors::kAvx2>{});
 }
+#endif
+#ifdef RAYGATE_AVX512
 template <class Body>
 [[gnu::noinline, gnu::target(RAYGATE_AVX512)]] auto in_avx512(const Body& body) {
   return body(VectorCode<Vectors::kAvx512>{});
@@ -122,15 +141,11 @@ template <class Body>
 /// passed by value to anything that is not inlined.
 template <class Body>
 auto in_vectors(const Body& body) {
+#ifdef RAYGATE_AVX512
+  if (vectors_in_use() == Vectors::kAvx512) return detail::in_avx512(body);
+#endif
 #ifdef RAYGATE_AVX2
-  switch (vectors_in_use()) {
-    case Vectors::kAvx512:
-      return detail::in_avx512(body);
-    case Vectors::kAvx2:
-      return detail::in_avx2(body);
-    case Vectors::kBaseline:
-      break;
-  }
+  if (vectors_in_use() == Vectors::kAvx2) return detail::in_avx2(body);
 #endif
   return detail::in_baseline(body);
 }

@@ -5,8 +5,9 @@ import pathlib
 import tempfile
 import time
 import unittest
+import unittest.mock
 
-from synth import store
+from synth import store, tools
 
 
 class Cached(unittest.TestCase):
@@ -32,6 +33,35 @@ class Cached(unittest.TestCase):
             self.assertEqual(store.cached(run, "old", lambda: {"n": 1}), ({"n": 1}, False))
             self.assertEqual(store.cached(run, "new", lambda: {"n": 2}), ({"n": 2}, False))
             self.assertEqual(store.cached(run, "new", lambda: {"n": 3}), ({"n": 2}, True))
+
+    def test_a_proof_is_proven_or_refuted_once_for_all_folders(self):
+        runs = []
+
+        def prove() -> dict:
+            runs.append("proven")
+            return {"holds": True}
+
+        def refute() -> dict:
+            runs.append("refuted")
+            raise tools.Refuted("a < b", {"a": "1", "b": "0"})
+
+        def give_up() -> dict:
+            runs.append("gave up")
+            raise tools.ToolFailed("out of time")
+
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder)
+            with unittest.mock.patch.object(store, "PROVEN", place / "proven"):
+                for number, checkout in enumerate(("one", "other")):
+                    result, kept = store.proven(place / checkout, "k1", prove)
+                    self.assertTrue(result["holds"])
+                    self.assertEqual(kept, number > 0)
+                    with self.assertRaisesRegex(tools.Refuted, "a < b does not hold") as refused:
+                        store.proven(place / checkout, "k2", refute)
+                    self.assertEqual(refused.exception.values, {"a": "1", "b": "0"})
+                    with self.assertRaisesRegex(tools.ToolFailed, "out of time"):
+                        store.proven(place / checkout, "k3", give_up)
+        self.assertEqual(runs, ["proven", "refuted", "gave up", "gave up"])
 
 
 if __name__ == "__main__":

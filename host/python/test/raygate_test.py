@@ -1,4 +1,4 @@
-"""The Python module as its users have it: installed by `pip install .`."""
+"""The Python module: built in build/host/python, or installed by `pip install .`."""
 
 import concurrent.futures
 import ctypes
@@ -8,8 +8,6 @@ import platform
 import re
 import resource
 import signal
-import subprocess
-import sys
 import tempfile
 import threading
 import unittest
@@ -136,28 +134,6 @@ class Pages(unittest.TestCase):
                 self.assertTrue(pathlib.Path("teapot.png").read_bytes().startswith(b"\x89PNG"))
             finally:
                 os.chdir(before)
-
-
-class Commands(unittest.TestCase):
-    """Those that come with the module: raygate-render and the others."""
-
-    def run_command(self, name, *words, **options):
-        return subprocess.run([pathlib.Path(sys.executable).with_name(f"raygate-{name}"), *words], check=True, capture_output=True, **options).stdout
-
-    def test_say_what_the_module_says(self):
-        hits = self.run_command("trace", SCENES / "teapot.obj", "-", "--columns", "triangle,t", input=b"0,1,5,0,0,-1\n", cwd="/")
-        triangle, t = hits.split()[1].decode().split(",")
-        hit = raygate.Scene(SCENES / "teapot.obj").trace([0, 1, 5], [[0.0, 0.0, -1.0]])
-        self.assertEqual((int(triangle), float(t)), (hit["triangle"][0], hit["t"][0]))
-
-    def test_draw_compare_and_merge(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for part in ("0:1", "1:2"):
-                self.run_command("render", SCENES / "cornell.json", "--quiet", "--size", "16x12", "--spp", "2", "--samples", part,
-                                 "-o", f"part-{part[0]}.exr", cwd=folder)
-            self.run_command("merge", "part-0.exr", "part-1.exr", "-o", "merged", cwd=folder)
-            self.run_command("render", SCENES / "cornell.json", "--quiet", "--size", "16x12", "--spp", "2", "-o", "whole", cwd=folder)
-            self.assertIn(b"differing     0\n", self.run_command("compare", "merged.exr", "whole.exr", cwd=folder))
 
 
 class Arrays(unittest.TestCase):
