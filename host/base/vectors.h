@@ -26,7 +26,8 @@ inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "av
 template <Vectors kVectors>
 using VectorCode = std::integral_constant<Vectors, kVectors>;
 
-// The widest kind that is compiled, as a number of Vectors. Builds with sanitizers, whose time each kind adds to, have fewer.
+// The widest kind that is compiled, as a number of Vectors. Builds with sanitizers, whose time each
+// kind adds to, have fewer.
 #ifndef RAYGATE_WIDEST_VECTORS
 #define RAYGATE_WIDEST_VECTORS 2
 #endif
