@@ -96,7 +96,8 @@ python: ## use: install the Python module into build/python, test it and its not
 	$(call build,build,float_cores)
 	@$(SETUP) python
 	@test -e build/python/bin/pip || python3 -m venv build/python
-	@build/python/bin/pip install --quiet --disable-pip-version-check . -r host/python/requirements.txt
+	@rm -rf build-pip  # beside build, so that ccache sees the same relative paths as there
+	@build/python/bin/pip install --quiet --disable-pip-version-check -Cbuild-dir=build-pip . -r host/python/requirements.txt
 	@build/python/bin/python -m unittest discover -s host/python/test -p '*_test.py'
 
 wheel: ## use: a wheel of the Python module and its commands, for other Linux machines, into build/wheel; tested in a fresh environment
@@ -160,7 +161,7 @@ format: ## develop: lay out all sources as lint expects
 	@.ci/lint format --fix
 
 clean: ## develop: remove what was built; scenes and pictures stay
-	rm -rf build render trace compare merge
+	rm -rf build build-pip render trace compare merge
 
 # What was chosen once stays, until `make MPI=0 ...` or 1.
 ifdef MPI
