@@ -17,7 +17,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--top", help="module of hw/ (adder, booth_multiplier, fp_adder, ...), or "
                         "adders: the adders' part of the report alone")
     chosen.add_arguments(parser)
-    parser.add_argument("--targets", help="osu035,osu018,sky130,ice40,ecp5; those installed if not given")
+    parser.add_argument("--targets", help="osu035,osu018,sky130,ice40,ecp5; if not given, those installed, of one design its standard cells alone")
     parser.add_argument("--budget", type=chosen.whole(1, 10**6), default="16", help="groupings tried in each search (%(default)s)")
     parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
     return chosen.parse(parser)

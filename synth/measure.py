@@ -19,8 +19,8 @@ def available(names: list[str] | None, whole: bool = True) -> tuple[str, ...]:
     """The targets asked for, or all whose tools are installed.
 
     Raises MissingTool for one that was asked for and for the standard-cell tools; an FPGA whose
-    placer is absent is left out of a run of everything. So are, of a run that is not `whole`, cells
-    that would have to be measured first: that takes longer than one design.
+    placer is absent is left out of a run of everything. A run that is not `whole` leaves out FPGAs, which
+    a large unit may not fit, and cells that would have to be measured first: both take longer than one design.
     """
     tools.find("yosys")
     chosen = []
@@ -32,7 +32,7 @@ def available(names: list[str] | None, whole: bool = True) -> tuple[str, ...]:
             tools.find("sta")
             _ = library.liberty, library.corners
             chosen.append(library.name)
-    for device in FPGAS:
+    for device in FPGAS if names or whole else ():
         if names and device.name in names:
             tools.find(device.tool)
         if not names and not tools.installed(device.tool):

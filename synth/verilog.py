@@ -16,6 +16,7 @@ OUT = tools.ROOT / "build" / "verilog"
 def write(design: catalogue.Design, out: pathlib.Path) -> None:
     """Elaborates `design` and writes `out`; raises ToolFailed where Yosys refuses it."""
     out.parent.mkdir(parents=True, exist_ok=True)
+    out.unlink(missing_ok=True)  # a run that fails must not leave the file of an earlier one
     tools.run(["yosys", "-c", tools.FLOWS / "verilog.tcl"], out.with_suffix(".log"),
               {**mapping.elaboration(design), "OUT": str(out)})
 

@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-from synth import cores
+from synth import catalogue, cores, tools, verilog
 
 
 class Cores(unittest.TestCase):
@@ -53,6 +53,16 @@ class Cores(unittest.TestCase):
                 cores.files("fp", self.hw)
             if (self.hw / "arith" / "new.sv").exists():
                 (self.hw / "arith" / "new.sv").unlink()
+
+    def test_plain_verilog_takes_parameters_of_any_module(self) -> None:
+        """Also of modules with an unsized constant at a cell's port, and a run that fails leaves no file."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "exact_unit.v"
+            verilog.write(catalogue.design("exact_unit", DigitWidth=24), out)
+            self.assertIn("module exact_unit(", out.read_text())
+            with self.assertRaises(tools.ToolFailed):
+                verilog.write(catalogue.design("exact_unit", DigitWidth=1), out)
+            self.assertFalse(out.exists())
 
 
 if __name__ == "__main__":
