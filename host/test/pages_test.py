@@ -1,7 +1,9 @@
-"""The Markdown pages: links lead to files and headings that are there, and `make` targets that they name exist."""
+"""The Markdown pages: links lead to files and headings that are there, and `make` targets that they name exist. And `make`
+refuses variables that it does not know."""
 
 import pathlib
 import re
+import subprocess
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -47,6 +49,12 @@ class Pages(unittest.TestCase):
         self.assertGreater(len(named), 50)
         for page, target in named:
             self.assertIn(target, targets, f"{page.relative_to(ROOT)}: make {target}")
+
+    def test_make_refuses_a_misspelt_variable(self) -> None:
+        for words, status in (("variant FRACWIDTH=15", 2), ("variant FRAC_WIDTH=15 ARGS=--a=1", 0), ("cpu CXX=clang++", 0)):
+            done = subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, status, words)
+            self.assertEqual("FRACWIDTH: no target reads it" in done.stderr, status == 2)
 
 
 if __name__ == "__main__":
