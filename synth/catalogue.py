@@ -249,7 +249,7 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
     `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL,
     but for carry-select groups of an `adder` alone, which ripple, as ADDERS and all pages have it.
     """
-    found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists()]
+    found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists() and not top.endswith("_pkg")]
     if not found:
         raise FileNotFoundError(f"no module {top} in hw/{{{','.join(cores.names())}}}")
     folder = found[0]

@@ -38,7 +38,7 @@ class MissingTool(Exception):
 
 
 class ToolFailed(Exception):
-    """A tool ended with an error; the message holds its last lines and where its log is."""
+    """A tool ended with an error; the message holds its line with ERROR, or else its last lines, and where its log is."""
 
 
 class Refuted(ToolFailed):
@@ -97,8 +97,10 @@ def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None
     costs.append((usage.ru_utime + usage.ru_stime, usage.ru_maxrss // 1024))
     text = log.read_text(errors="replace")
     if process.returncode != 0:
-        tail = "\n".join(text.strip().splitlines()[-8:])
-        raise ToolFailed(f"{pathlib.Path(command[0]).name} failed (log: {log}):\n{tail}")
+        lines = text.strip().splitlines()
+        errors = [line.replace(f"{ROOT}/", "") for line in lines if "ERROR: " in line]
+        said = f" {errors[-1]}" if errors else "\n" + "\n".join(lines[-8:])
+        raise ToolFailed(f"{pathlib.Path(command[0]).name} failed (log: {log}):{said}")
     return text
 
 
