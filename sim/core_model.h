@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/intersect/core/core_unit.h"
@@ -18,8 +19,8 @@ namespace raygate {
 
 /// Cores of `Top`, each with a `Holder` (see CorePort), in step: they share one port to memory,
 /// which takes one request and gives one line a clock, in turn. Hardware that is broken is told by
-/// std::runtime_error: no line and no result for kPatience clocks, a ray that ends twice, lines on
-/// their way that it does not tell of.
+/// std::runtime_error: no line, no result and no test for longer than the questions in its queue
+/// can take, a ray that ends twice, lines on their way that it does not tell of.
 template <class Top, template <class> class Holder = Model>
 class CoreModel : public CoreUnit {
  public:
@@ -40,7 +41,8 @@ class CoreModel : public CoreUnit {
     lacking_ = 0;
     for (Core& core : cores_) core.invalidate(lines.size());
     std::size_t sent = 0, ended = 0;
-    unsigned quiet = 0;
+    const std::uint64_t before = visits();
+    std::uint64_t visited = 0, quiet = 0;
     while (ended < rays.size()) {
       for (Core& core : cores_) {
         const bool has_room = set_.rays == 0 || core.rays() < set_.rays;
@@ -55,10 +57,12 @@ class CoreModel : public CoreUnit {
         }
       }
       if (serve_memory()) quiet = 0;
-      if (++quiet > kPatience) {
-        broken("nothing asked for and nothing told for " + std::to_string(kPatience) +
-               " clocks; of " + std::to_string(sent) + " rays " + std::to_string(sent - ended) +
-               " have not ended");
+      const std::uint64_t now = visits() - before;
+      // A ray visits each line once, and its hit's line once more.
+      if (now != std::exchange(visited, now) && now <= 2 * sent * lines.size()) quiet = 0;
+      if (++quiet > patience(sent + visited)) {
+        broken("nothing asked for and nothing told for " + std::to_string(quiet) + " clocks; of " +
+               std::to_string(sent) + " rays " + std::to_string(sent - ended) + " have not ended");
       }
       for (Core& core : cores_) core.clock();
     }
@@ -100,11 +104,24 @@ class CoreModel : public CoreUnit {
 
  private:
   using Core = CorePort<Top, Holder>;
-  static constexpr unsigned kPatience = 10'000;
+  static constexpr std::uint64_t kPatience = 10'000;       // clocks
+  static constexpr std::uint64_t kQuestionClocks = 4'000;  // at most: hw/exact/exact_unit.sv
+  static constexpr std::uint64_t kMostQuestions = 3 * kTableRays + 128;  // that wait in a core
   static constexpr unsigned kCoreBit = 48;  // of a tag in memory: above the core's own
 
   [[noreturn]] static void broken(const std::string& what) {
     throw std::runtime_error("ray_core: " + what);
+  }
+
+  /// Clocks in which a sound core may show no sign of work, if it was given reason for so many
+  /// questions.
+  [[nodiscard]] std::uint64_t patience(std::uint64_t questions) const {
+    return kPatience + (is_exact() ? kQuestionClocks * std::min(questions, kMostQuestions) : 0);
+  }
+  [[nodiscard]] std::uint64_t visits() const {
+    std::uint64_t sum = 0;
+    for (const Core& core : cores_) sum += core.counters().nodes + core.counters().triangles;
+    return sum;
   }
 
   bool chance(int of_256) { return of_256 != 0 && static_cast<int>(random_() & 0xFF) < of_256; }

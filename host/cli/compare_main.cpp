@@ -134,7 +134,7 @@ void write_difference(const CompareOptions& options, const ChannelPicture& pictu
   const Image8 shown =
       false_color(picture.width, picture.height, comparison.window, channel, scale);
   AtomicFile(options.difference, encode_png(shown)).commit();
-  print("wrote         " + options.difference + ", " + shown.texts.at(0).second + "\n",
+  print("wrote         " + printable(options.difference) + ", " + shown.texts.at(0).second + "\n",
         options.json ? stderr : stdout);
 }
 

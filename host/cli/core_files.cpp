@@ -1,41 +1,13 @@
 #include "host/cli/core_files.h"
 
-#include <system_error>
-
 #include "host/base/input_error.h"
 #include "host/cli/format.h"
+#include "host/cli/process.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/core/core_intersector.h"
 #include "sim/rtl_core.h"
 
 namespace raygate {
-namespace {
-
-/// A file that gets its name only when it is whole, for others to write; removed before that.
-class UnnamedFile {
- public:
-  explicit UnnamedFile(const std::filesystem::path& path)
-      : path_(path), unnamed_(path.string() + ".unfinished") {}
-  UnnamedFile(const UnnamedFile&) = delete;
-  UnnamedFile& operator=(const UnnamedFile&) = delete;
-  ~UnnamedFile() {
-    std::error_code ignored;
-    std::filesystem::remove(unnamed_, ignored);
-  }
-
-  [[nodiscard]] const std::filesystem::path& unnamed() const { return unnamed_; }
-  void name() const {
-    std::error_code error;
-    std::filesystem::rename(unnamed_, path_, error);
-    if (error) throw InputError(path_.string() + ": cannot write: " + error.message());
-  }
-
- private:
-  std::filesystem::path path_, unnamed_;
-};
-
-}  // namespace
-
 std::vector<std::filesystem::path> CoreFileOptions::paths() const {
   std::vector<std::filesystem::path> paths;
   for (const auto& path : {image, wave}) {
@@ -45,7 +17,8 @@ std::vector<std::filesystem::path> CoreFileOptions::paths() const {
 }
 
 void add_core_file_options(OptionTable& table, CoreFileOptions& files) {
-  table.text("--dump-image", "FILE", "dump the ray cores' memory image", files.image);
+  table.text("--dump-image", "FILE", "dump the ray cores' memory image; render nothing",
+             files.image);
   table.text("--trace", "FILE.vcd", "write a pixel's waveform; render nothing", files.wave);
   table.add("--trace-pixel", "X,Y", "the pixel of --trace",
             [&files](const std::string& option, const std::string& text) {
@@ -76,17 +49,19 @@ void check_core_file_options(const CoreFileOptions& files, const EngineOptions& 
   }
 }
 
-std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine,
-                                                     const CoreFileOptions& files, const Bvh& bvh) {
-  if (!engine.has_core()) return nullptr;
-  auto image = std::make_shared<const MemoryImage>(bvh, engine.threads);
-  if (!files.image.empty()) AtomicFile(files.image, image->bytes()).commit();
-  return image;
+std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine, const Bvh& bvh) {
+  return engine.has_core() ? std::make_shared<const MemoryImage>(bvh, engine.threads) : nullptr;
+}
+
+std::string dump_image(const CoreFileOptions& files, const MemoryImage& image) {
+  AtomicFile(files.image, image.bytes()).commit();
+  return "wrote " + printable(files.image.string()) + ", " +
+         format_count(image.lines().size(), "line") + "\n";
 }
 
 std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& files, const Bvh& bvh,
                         std::shared_ptr<const MemoryImage> image, const Ray& ray) {
-  const UnnamedFile file(files.wave);
+  AtomicFile file(files.wave);
   NearestHit hit;
   CoreCounters counters;
   {
@@ -94,7 +69,7 @@ std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& file
     CoreIntersector(bvh, std::move(image), core).intersect({&ray, 1}, {}, {&hit, 1});
     counters = core->counters();
   }
-  file.name();
+  file.commit();
   std::string text = "the ray of pixel " + std::to_string(files.pixel->x) + "," +
                      std::to_string(files.pixel->y) + " hits ";
   text += hit.primitive == NearestHit::kNone
@@ -104,7 +79,8 @@ std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& file
   return text + ": " + format_count(counters.clocks, "clock") + ", " +
          format_count(counters.nodes, "node") + ", " +
          format_count(counters.triangles, "triangle") + ", " +
-         format_count(counters.lines, "line") + " read; wrote " + files.wave.string() + "\n";
+         format_count(counters.lines, "line") + " read; wrote " + printable(files.wave.string()) +
+         "\n";
 }
 
 }  // namespace raygate

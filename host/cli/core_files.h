@@ -31,11 +31,12 @@ void add_core_file_options(OptionTable& table, CoreFileOptions& files);
 void check_core_file_options(const CoreFileOptions& files, const EngineOptions& engine,
                              const glm::ivec2& size);
 
-/// The image of `bvh` that the engine's cores read, and its file, if that is wanted; null for an
-/// engine without cores.
+/// Returns the image of `bvh` that the engine's cores read; null for an engine without cores.
 [[nodiscard]] std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine,
-                                                                   const CoreFileOptions& files,
                                                                    const Bvh& bvh);
+
+/// Writes the image to its file. Returns a line that says so. Throws InputError.
+[[nodiscard]] std::string dump_image(const CoreFileOptions& files, const MemoryImage& image);
 
 /// Sends the ray through the middle of `files.pixel` into a core that writes its wave. What it
 /// found, one line. Throws InputError as make_core_wave does.

@@ -1,11 +1,16 @@
 #include "host/cli/http_server.h"
 
 #include <civetweb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <future>
 #include <memory>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -25,9 +30,27 @@ std::string decoded(const std::string& text) {
   return result;
 }
 
+/// The descriptor of the socket whose other end has this port; -1: none. The library keeps it to
+/// itself.
+int socket_from(int port) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const int socket = std::stoi(entry.path().filename());
+    sockaddr_in peer{};
+    socklen_t size = sizeof peer;
+    if (::getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &size) == 0 &&
+        peer.sin_family == AF_INET && ntohs(peer.sin_port) == port) {
+      return socket;
+    }
+  }
+  return -1;
+}
+
 HttpRequest request_of(mg_connection* connection) {
   HttpRequest request;
-  if (const char* host = mg_get_header(connection, "Host")) request.host = host;
+  request.is_abandoned = [socket = socket_from(mg_get_request_info(connection)->remote_port)] {
+    pollfd end{.fd = socket, .events = POLLRDHUP, .revents = 0};
+    return ::poll(&end, 1, 0) == 1;
+  };
   const char* query = mg_get_request_info(connection)->query_string;
   std::istringstream words(query == nullptr ? "" : query);
   for (std::string word; std::getline(words, word, '&');) {
@@ -36,6 +59,10 @@ HttpRequest request_of(mg_connection* connection) {
                                decoded(word.substr(std::min(equals + 1, word.size()))));
   }
   return request;
+}
+
+std::string method_of(mg_connection* connection) {
+  return mg_get_request_info(connection)->request_method;
 }
 
 void send(mg_connection* connection, const HttpReply& reply) {
@@ -50,7 +77,7 @@ void send(mg_connection* connection, const HttpReply& reply) {
     mg_response_header_add(connection, name, value.c_str(), static_cast<int>(value.size()));
   }
   mg_response_header_send(connection);
-  mg_write(connection, reply.body.data(), reply.body.size());
+  if (method_of(connection) != "HEAD") mg_write(connection, reply.body.data(), reply.body.size());
 }
 
 /// A route, and the names that the server goes by.
@@ -58,13 +85,33 @@ struct Handler {
   const HttpRoute& route;
   const std::set<std::string>& names;
 
+  /// The answer to what is no request of the server's own page; none otherwise.
+  [[nodiscard]] std::optional<HttpReply> refusal(mg_connection* connection) const {
+    const auto header = [&](const char* name) -> std::string {
+      const char* const value = mg_get_header(connection, name);
+      return value == nullptr ? "" : value;
+    };
+    const std::string site = header("Sec-Fetch-Site"), origin = header("Origin");
+    const bool is_own_page =
+        (site.empty() || site == "same-origin" || site == "none") &&
+        (origin.empty() || (origin.starts_with("http://") && names.contains(origin.substr(7))));
+    if (!is_own_page || !names.contains(header("Host"))) {
+      return HttpReply{.status = 403,
+                       .body =
+                           "expected a request of this server's page, to the host 127.0.0.1 or "
+                           "localhost, and this port\n"};
+    }
+    const std::string method = method_of(connection);
+    if (method == "GET" || method == "HEAD") return std::nullopt;
+    return HttpReply{.status = 405,
+                     .body = "found " + printable(method) + ", expected GET or HEAD\n",
+                     .headers = {{"Allow", "GET, HEAD"}}};
+  }
+
   [[nodiscard]] HttpReply answer(mg_connection* connection) const {
     try {
-      const HttpRequest request = request_of(connection);
-      if (!names.contains(request.host)) {
-        return {.status = 403, .body = "expected the host 127.0.0.1 or localhost, and this port\n"};
-      }
-      return route.answer(request);
+      if (auto refused = refusal(connection)) return *std::move(refused);
+      return route.answer(request_of(connection));
     } catch (const InputError& error) {
       return {.status = 400, .body = printable(error.what()) + "\n"};
     } catch (const std::exception& error) {
@@ -75,9 +122,13 @@ struct Handler {
 
 int handle(mg_connection* connection, void* handler) {
   // The library's threads have stacks of 100 kB, which parsing a command line nearly fills.
-  const HttpReply reply = std::async(std::launch::async, &Handler::answer,
-                                     static_cast<const Handler*>(handler), connection)
-                              .get();
+  HttpReply reply{.status = 503, .body = "found no thread that is free\n"};
+  try {
+    reply = std::async(std::launch::async, &Handler::answer, static_cast<const Handler*>(handler),
+                       connection)
+                .get();
+  } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): the reply says so
+  }
   send(connection, reply);
   return reply.status;
 }
@@ -86,8 +137,10 @@ int handle(mg_connection* connection, void* handler) {
 
 void serve_http(int port, const std::vector<HttpRoute>& routes) {
   const std::string wanted = "127.0.0.1:" + std::to_string(port);
-  const char* settings[] = {"listening_ports",   wanted.c_str(), "num_threads", "8",
-                            "enable_keep_alive", "yes",          nullptr};
+  // A connection that says nothing has a thread until its time is over.
+  const char* settings[] = {
+      "listening_ports",    wanted.c_str(), "num_threads", "64", "enable_keep_alive", "yes",
+      "request_timeout_ms", "5000",         nullptr};
   const mg_callbacks none{};
   std::set<std::string> names;
   std::vector<Handler> handlers;  // outlive the server, which ends with its last answer

@@ -11,7 +11,7 @@ namespace raygate {
 
 /// What a browser asks: the query's names and values, decoded.
 struct HttpRequest {
-  std::string host;
+  std::function<bool()> is_abandoned;  ///< whether the browser has closed the connection
   std::multimap<std::string, std::string> parameters;
 
   /// The first of that name; empty where there is none.
@@ -39,8 +39,8 @@ struct HttpRoute {
 
 /// Serves the routes at 127.0.0.1 and to no other host until a signal comes, and says the address
 /// on standard output. `port`: 0 for any free one. An answer's InputError is one line of text,
-/// status 400, another exception status 500. A page of another site may know the port, but not call
-/// the server by its name: status 403. Throws InputError where the port cannot be had.
+/// status 400, another exception status 500. Requests of pages of other sites have status 403,
+/// methods but GET and HEAD 405. Throws InputError where the port cannot be had.
 void serve_http(int port, const std::vector<HttpRoute>& routes);
 
 }  // namespace raygate

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "host/base/input_error.h"
+#include "host/film/atomic_file.h"
 #include "host/render/adaptive_sampling.h"
 
 namespace raygate {
@@ -208,16 +209,14 @@ std::optional<SceneFile> find_scene_file(const CommandLine& line) {
   return file;
 }
 
-/// The scene file's options as words of a command line, each of them checked.
+/// The scene file's options as words of a command line, the value of each of them checked.
 std::vector<std::string> words_of(const SceneFile& file) {
   std::vector<std::string> words;
   for (const OptionSetting& setting : file.options) {
     words.push_back("--" + setting.name + "=" + setting.value);
     try {
       Options ignored;
-      CommandLine line(ignored);
-      (void)line.parse({words.back()});
-      check(line.table, ignored, 0);
+      (void)CommandLine(ignored).parse({words.back()});
     } catch (const InputError& error) {
       throw InputError(file.file.string(), setting.line, error.what());
     }
@@ -239,12 +238,54 @@ void check_serve(const OptionTable& table, const Options& options) {
   }
 }
 
+/// Reads the scene file's options and then what was typed, whose values take the place of the
+/// former. An error that goes away without an option of the file names its line.
+Options read_options(const Options& begin, const std::vector<std::string>& typed,
+                     unsigned processors) {
+  const auto read = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    Options options = begin;
+    CommandLine line(options);
+    (void)line.parse(words);
+    check(line.table, options, processors);
+    check_serve(line.table, options);
+    return options;
+  };
+  const auto is_possible = [&](const auto&... words) {
+    try {
+      (void)read(words...);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  if (!begin.scene_file) return read(typed, {});
+  const SceneFile& file = *begin.scene_file;
+  const std::vector<std::string> settings = words_of(file);
+  try {
+    return read(settings, typed);
+  } catch (const InputError& error) {
+    for (std::size_t i = settings.size(); i-- > 0;) {
+      std::vector<std::string> others = settings;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      if (!is_possible(others, typed)) continue;
+      const OptionSetting& setting = file.options[i];
+      if (!is_possible(settings, std::vector<std::string>())) {
+        throw InputError(file.file.string(), setting.line, error.what());
+      }
+      throw InputError(std::string(error.what()) + " (" + file.file.string() + ":" +
+                       std::to_string(setting.line) + " sets " + setting.name + ")");
+    }
+    throw;
+  }
+}
+
 /// No output may take the place of the scene or of another output.
 void require_distinct_outputs(const Options& options) {
   // What cannot be resolved is refused where it is read or written.
   const auto resolve = [](const std::filesystem::path& path) {
     std::error_code error;
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
+    return target_of(path, error);
   };
   std::vector<std::filesystem::path> paths{options.scene, options.obj()};
   // A file of this name would be read with the scene next time.
@@ -285,9 +326,6 @@ Options parse_options(int argc, const char* const* argv, unsigned processors) {
                                  ignored);
   }
   if (const auto& file = options.scene_file) {
-    // Of two values of an option the later one counts.
-    const std::vector<std::string> settings = words_of(*file);
-    words.insert(words.begin(), settings.begin(), settings.end());
     options.camera.camera = file->camera;
     options.camera.path = file->path;
     options.camera.lens = file->lens;
@@ -295,10 +333,7 @@ Options parse_options(int argc, const char* const* argv, unsigned processors) {
     if (!file->camera)
       std::tie(options.camera.up, options.camera.fov) = std::tie(file->up, file->fov);
   }
-  CommandLine line(options);
-  (void)line.parse(words);
-  check(line.table, options, processors);
-  check_serve(line.table, options);
+  options = read_options(options, words, processors);
   require_distinct_outputs(options);
   return options;
 }

@@ -61,7 +61,7 @@ StagedFiles stage_files(const OutputOptions& options, const Film& film, const Ex
 std::string listed(const std::vector<std::filesystem::path>& paths) {
   std::vector<std::string> names;
   names.reserve(paths.size());
-  for (const auto& path : paths) names.push_back(path.string());
+  for (const auto& path : paths) names.push_back(printable(path.string()));
   return listed(names, ", ");
 }
 

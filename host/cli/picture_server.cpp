@@ -36,6 +36,9 @@ const std::set<std::string>& request_options() {
   return kNames;
 }
 
+constexpr std::int64_t kMostServedPixels = std::int64_t{1} << 24;
+constexpr int kMostServedSamples = 1 << 16;
+
 /// As a shell takes it.
 std::string quoted(const std::string& word) {
   const auto is_plain = [](char c) {
@@ -102,6 +105,15 @@ class PictureServer {
     std::vector<const char*> words{"render"};
     for (const std::string& word : command.words) words.push_back(word.c_str());
     command.options = parse_options(static_cast<int>(words.size()), words.data());
+    const RenderOptions& render = command.options.render;
+    if (std::int64_t{render.width} * render.height > kMostServedPixels) {
+      throw InputError("--size: expected at most " + std::to_string(kMostServedPixels) +
+                       " pixels beside --serve");
+    }
+    if (render.samples > kMostServedSamples) {
+      throw InputError("--spp: expected at most " + std::to_string(kMostServedSamples) +
+                       " beside --serve");
+    }
     if (command.options.has_core() && scene_.prepared.bvh.has_instances()) {
       throw InputError("--unit core: expected --instances write beside --serve");
     }
@@ -125,7 +137,7 @@ class PictureServer {
   [[nodiscard]] IntersectorFactory intersectors_of(const Options& options) {
     prepare_engine(options);
     if (options.has_core() && !image_) {
-      image_ = make_memory_image(options, {}, scene_.prepared.bvh);
+      image_ = make_memory_image(options, scene_.prepared.bvh);
     }
     return make_intersector_factory(options, scene_.prepared.bvh, options.render.skips, image_);
   }
@@ -146,10 +158,10 @@ class PictureServer {
     render_options.channels = options.output.needed_channels();
     RenderMonitor monitor;
     monitor.progress = [&](double /*fraction*/) {
-      return interruption() == 0 && is_current(slot, turn);
+      return interruption() == 0 && is_current(slot, turn) && !request.is_abandoned();
     };
     RenderStats stats;
-    if (is_current(slot, turn)) {
+    if (monitor.progress(0.0)) {
       const Film film = render(scene_.prepared, cameras.frame(1).camera, render_options,
                                intersectors_of(options), stats, monitor);
       if (!stats.cancelled) {

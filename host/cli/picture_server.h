@@ -30,7 +30,8 @@ struct ServedScene {
 ///
 /// OPTIONS are those of ./render that change neither the scene nor files, without dashes:
 /// engine=cpu&size=80x60. They take the place of what `options` has. `slot=NAME&turn=N` ends the
-/// pictures of that slot with a smaller N (status 204, no picture). A bad option is one line of
+/// pictures of that slot with a smaller N (status 204, no picture); so does the end of a picture's
+/// connection. Pictures have at most 2^24 pixels of 2^16 samples. A bad option is one line of
 /// text, status 400. Throws InputError where the port cannot be had.
 void serve_pictures(const Options& options, const ServedScene& scene);
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <stdexcept>
 
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
@@ -15,7 +16,7 @@ namespace raygate {
 namespace {
 
 constexpr int kUserError = 2;
-constexpr const char* kOutOfMemory = "out of memory; a smaller picture needs less";
+constexpr const char* kOutOfMemory = "out of memory";
 constexpr int kSignalBase = 128;  // as shells report a death by signal
 
 int why_output_failed = 0;  // errno of a failed print; 0: none failed
@@ -112,6 +113,8 @@ Ending ending_of(const std::exception_ptr& error, int internal_error) {
   } catch (const Interrupted& interrupted) {
     return {kSignalBase + interrupted.signal(), interrupted.what()};
   } catch (const std::bad_alloc&) {
+    return {kUserError, kOutOfMemory};
+  } catch (const std::length_error&) {  // more than any memory has
     return {kUserError, kOutOfMemory};
   } catch (const RankFailure& trouble) {
     return {trouble.status(), trouble.what()};

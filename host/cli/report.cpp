@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/cli/format.h"
+#include "host/cli/process.h"
 #include "host/options/version.h"
 
 namespace raygate {
@@ -27,9 +28,10 @@ std::string rate(std::uint64_t count, double seconds, const char* of_what) {
 
 std::string headline(const Report& report) {
   const Options& options = report.options;
-  std::string line =
-      options.obj().filename().string() + ": " + format_count(report.triangles, "triangle") + ", " +
-      std::to_string(options.render.width) + "x" + std::to_string(options.render.height);
+  std::string line = printable(options.obj().filename().string()) + ": " +
+                     format_count(report.triangles, "triangle") + ", " +
+                     std::to_string(options.render.width) + "x" +
+                     std::to_string(options.render.height);
   if (options.render.window.width() != options.render.width ||
       options.render.window.height() != options.render.height) {
     line += " cropped to " + std::to_string(options.render.window.width()) + "x" +
@@ -207,7 +209,7 @@ std::string to_text(const Report& report) {
   }
   std::string pictures;
   for (const auto& path : report.pictures) {
-    pictures += (pictures.empty() ? "" : ", ") + path.string();
+    pictures += (pictures.empty() ? "" : ", ") + printable(path.string());
   }
   text += row("wrote", pictures + " in " + format_duration(report.total_seconds));
   if (!report.view.empty()) text += row("view", report.view);

@@ -155,7 +155,8 @@ class Run {
     }
     resolve_instances(scene_, options_.instances, options_.scene);
 
-    if (!options_.core_files.pixel) prepare_engine(options_);
+    const bool is_rendering = options_.core_files.paths().empty();
+    if (is_rendering) prepare_engine(options_);
     const Clock::time_point tree_start = Clock::now();
     const Bvh bvh(scene_, options_.threads);
     report_.tree_seconds = seconds_since(tree_start);
@@ -164,9 +165,9 @@ class Run {
       if (ranks_.index() == 0) serve_pictures(options_, {unframed, prepared, cameras.has_ground()});
       return;
     }
-    image_ = make_memory_image(options_, options_.core_files, bvh);
-    if (options_.core_files.pixel) {
-      write_wave(bvh, cameras.frame(1).camera);
+    image_ = make_memory_image(options_, bvh);
+    if (!is_rendering) {
+      if (ranks_.index() == 0) write_core_files(bvh, cameras.frame(1).camera);
     } else if (options_.output.frames > 0) {
       render_animation(prepared, cameras);
     } else {
@@ -203,13 +204,14 @@ class Run {
     require_distinct(options_.core_files.paths(), resumed);
   }
 
-  void write_wave(const Bvh& bvh, const Camera& camera) const {
-    const glm::ivec2& pixel = *options_.core_files.pixel;
+  void write_core_files(const Bvh& bvh, const Camera& camera) const {
+    const CoreFileOptions& files = options_.core_files;
+    if (!files.image.empty()) print(dump_image(files, *image_), console_);
+    if (!files.pixel) return;
+    const glm::ivec2& pixel = *files.pixel;
     const Ray ray = camera.ray((pixel.x + 0.5) / options_.render.width,
                                (pixel.y + 0.5) / options_.render.height, glm::dvec2(0.0));
-    if (ranks_.index() == 0) {
-      print(trace_pixel(options_, options_.core_files, bvh, image_, ray), console_);
-    }
+    print(trace_pixel(options_, files, bvh, image_, ray), console_);
   }
 
   /// One picture after the other, each by the rank that is free; a line for each.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -138,7 +139,9 @@ class Table {
     file_->commit();
   }
   /// For the last thread of a program that ends: there is no file, and nothing is written any more.
+  /// A stream has no file to remove, and a write to it may never end.
   void abandon() {
+    if (!file_ || file_->is_stream()) return;
     mutex_.lock();
     file_.reset();
   }
@@ -168,7 +171,7 @@ void watch(const std::stop_token& is_over, const TraceOptions& options, Table& t
     if (is_over_after(std::chrono::milliseconds(50))) return;
   }
   if (is_over_after(std::chrono::milliseconds(500))) return;
-  if (!options.is_to_standard_output()) table.abandon();
+  table.abandon();
   std::_Exit(run_guarded([&]() -> int { end_interrupted(options); }, 1));
 }
 
@@ -210,7 +213,12 @@ int run(const TraceOptions& options) {
   const HitTable answers(scene, bvh, options.columns, options.format());
   Table table(options, answers);
   note_interruptions();
-  std::jthread watcher(watch, std::cref(options), std::ref(table));
+  std::jthread watcher;
+  try {
+    watcher = std::jthread(watch, std::cref(options), std::ref(table));
+  } catch (const std::system_error&) {
+    print_warning("no thread could be started that ends the program soon after a signal");
+  }
   const auto start = std::chrono::steady_clock::now();
   const TraceCounts counts =
       trace([&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits,

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -29,17 +28,6 @@ struct Target {
   std::optional<mode_t> permissions;  ///< of the file that is there
 };
 
-/// Where a chain of symbolic links ends, there or not.
-fs::path end_of_links(fs::path name) {
-  constexpr int kMostLinks = 40;  // as Linux follows; of a circle stat() has told
-  std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(name, error); ++i) {
-    name = name.parent_path() / fs::read_symlink(name, error);
-    if (error) break;
-  }
-  return name;
-}
-
 Target inspect(const fs::path& name) {
   Target target;
   struct stat status {};
@@ -49,7 +37,7 @@ Target inspect(const fs::path& name) {
                                   is_standard_output(name));
   if (!target.is_stream) {  // a stream's name may lead to what has no path, as /dev/stdout does
     std::error_code error;
-    target.path = fs::weakly_canonical(end_of_links(name), error);
+    target.path = target_of(name, error);
     if (error) fail(name, error.value());
   }
   if (!is_there) return target;
@@ -165,6 +153,16 @@ void AtomicFile::commit() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(name_, errno);
   temporary_.clear();
   fail_if(sync_folder_of(target_));
+}
+
+fs::path target_of(const fs::path& name, std::error_code& error) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  fs::path end = fs::absolute(name, error);
+  std::error_code ignored;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(end, ignored); ++i) {
+    end = end.parent_path() / fs::read_symlink(end, ignored);
+  }
+  return error ? fs::path() : fs::weakly_canonical(end, error);
 }
 
 bool is_standard_output(const fs::path& file) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <system_error>
 
 namespace raygate {
 
@@ -38,6 +39,10 @@ class AtomicFile {
   void finish();
   /// Makes the target the new file, finished, and brings its name to the disk. At most once.
   void commit();
+  /// A name for code that writes all bytes by itself.
+  [[nodiscard]] const std::filesystem::path& unnamed() const {
+    return is_stream() ? name_ : temporary_;
+  }
   /// Whether it goes to a device, a pipe or standard output.
   [[nodiscard]] bool is_stream() const { return temporary_.empty(); }
 
@@ -50,6 +55,11 @@ class AtomicFile {
   std::optional<mode_t> permissions_;  ///< of the file that is there
   int descriptor_ = -1;                ///< -1: closed
 };
+
+/// The absolute path that `name` leads to when all symbolic links are followed, also to what is not
+/// there yet.
+[[nodiscard]] std::filesystem::path target_of(const std::filesystem::path& name,
+                                              std::error_code& error);
 
 /// Throws InputError where one of `outputs` is, under whatever name, one of `inputs`: "a.png: would
 /// overwrite scene.mtl".

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "host/base/elementary.h"
 #include "host/base/file_bytes.h"
@@ -65,7 +65,8 @@ class Reader {
   }
 
   void read_header() {
-    if (!rest_.starts_with("#?")) fail("not a Radiance HDR file");
+    if (!rest_.starts_with("#?"))
+      fail("found a file of another kind, expected OpenEXR or Radiance HDR");
     for (std::string_view text = line(); !text.empty(); text = line()) {
       if (text.starts_with("FORMAT=") && text != "FORMAT=32-bit_rle_rgbe") {
         fail(quoted(text) + ", expected FORMAT=32-bit_rle_rgbe");
@@ -158,13 +159,6 @@ class Reader {
 
 float usable(double x) { return x > 0.0 ? static_cast<float>(std::min(x, 1e30)) : 0.0f; }
 
-bool is_radiance(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  char first[2] = {};
-  stream.read(first, 2);
-  return first[0] == '#' && first[1] == '?';
-}
-
 /// What is ahead where `up` is upwards: across it, and nearly -z or +y.
 glm::dvec3 ahead_of(const glm::dvec3& up) {
   const glm::dvec3 across = glm::cross(up, glm::dvec3(1.0, 0.0, 0.0));
@@ -180,15 +174,8 @@ HdrImage read_hdr(const std::filesystem::path& file) {
 
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene) {
   EnvironmentMap map;
-  if (is_radiance(setting.file)) {
-    HdrImage picture = read_hdr(setting.file);
-    map.width = picture.width;
-    map.height = picture.height;
-    map.texels = std::move(picture.pixels);
-  } else if (std::filesystem::is_regular_file(setting.file) && !is_exr(setting.file)) {
-    throw InputError(setting.file.string() +
-                     ": found a file of another kind, expected OpenEXR or Radiance HDR");
-  } else {
+  std::error_code ignored;  // what cannot be looked up cannot be read either
+  if (std::filesystem::is_regular_file(setting.file, ignored) && is_exr(setting.file)) {
     const std::string names[] = {"R", "G", "B"};
     const ChannelPicture picture = read_exr(setting.file, names);
     map.width = picture.window.width();
@@ -198,6 +185,11 @@ void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, S
       map.texels.emplace_back(usable(channels[0][i]), usable(channels[1][i]),
                               usable(channels[2][i]));
     }
+  } else {  // a pipe is read once, from its beginning to its end
+    HdrImage picture = read_hdr(setting.file);
+    map.width = picture.width;
+    map.height = picture.height;
+    map.texels = std::move(picture.pixels);
   }
   map.strength = static_cast<float>(setting.strength);
   map.up = glm::normalize(up);

@@ -133,7 +133,8 @@ struct HitBlock {
   std::vector<ScatteredRay> scattered;               ///< room for `scattered_per_hit` of each hit
   std::vector<std::uint8_t> scattered_counts;        ///< and how many of these it has
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
-  FirstSurface* first_surfaces = nullptr;  ///< by sample; none after the camera's rays
+  /// By place: null where the hit is not the first surface of its path. Empty: none of them is.
+  std::vector<FirstSurface*> first_surfaces;
   SkipCounters skipped;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
@@ -209,7 +210,7 @@ struct Hits {
       surface.colour = catcher_colour(shading.lights, shading.ambient, surface);
     }
     bsdf = Bsdf<T>(surface, kind, materials);
-    if (hits.first_surfaces != nullptr) show_first_surfaces();
+    if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
   /// The cosine of light from a unit direction; 0 where the surface scatters none of it: from the
@@ -269,7 +270,10 @@ struct Hits {
   RAYGATE_INLINE void show_first_surfaces() {
     const auto normals = unpack(surface.normal), colours = unpack(surface.colour);
     for (int k = 0; k < count; ++k) {
-      block.first_surfaces[block.state(place[k]).sample] = {normals[k], colours[k]};
+      FirstSurface* const first = block.first_surfaces[place[k]];
+      if (first == nullptr) continue;
+      first->normal = normals[k];
+      first->albedo = colours[k];
     }
   }
 };

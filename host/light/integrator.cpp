@@ -15,8 +15,8 @@ constexpr std::size_t kMostHits = 2048;             // of a block: its lists sta
 constexpr std::size_t kFacesAhead = 12;             // to fetch
 constexpr std::size_t kMostLightSamples = 1 << 16;  // of a block: 3 MB
 
-/// Each surface lit from the camera: its diffuse colour times the cosine of the view, and what it
-/// emits.
+/// Lights each surface from the camera: its diffuse colour times the cosine of the view, and its
+/// emission. Rays go on through holes.
 void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [](auto& hits) RAYGATE_BODY {
@@ -24,7 +24,12 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
     const T facing = at_least(dot(hits.surface.normal, hits.surface.view), 0.0f);
     const bool is_seen = (hits.kind & kShadowCatcher) == 0;
     const Triple<T> colour = is_seen ? hits.surface.colour : zero<T>();
-    hits.set_radiance(colour * facing + hits.emission());
+    const auto are_holes = gather<T>(hits.materials, &MaterialParameters::is_hole);
+    hits.set_radiance(choose(are_holes, zero<T>(), colour * facing + hits.emission()));
+    if (!any(are_holes)) return;
+    ScatteredRays<T> next(hits);
+    next.is_wanted = are_holes & next.pass_through(hits, hits.surface.normal);
+    next.send(hits, 0);
   });
 }
 
@@ -46,11 +51,12 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
       spawner_(prepared.clearances),
       skips_(skips),
       point_error_(options.point_error),
-      materials_(prepared.materials) {
+      materials_(prepared.materials),
+      has_masks_(std::ranges::any_of(materials_, &MaterialParameters::has_mask)) {
   const bool is_whitted = kind == IntegratorKind::kWhitted;
   const bool splits = is_whitted || kind == IntegratorKind::kEmitters;
   block_.light_samples_per_hit = is_whitted ? lights.count() : is_path() ? 1 : 0;
-  scattered_count_ = splits ? 2 : is_path() ? 1 : 0;
+  scattered_count_ = splits ? 2 : is_path() || has_masks_ ? 1 : 0;
   const bool has_caustic_rays = kind == IntegratorKind::kPath && options.light_paths != nullptr;
   block_.scattered_per_hit = scattered_count_ + (has_caustic_rays ? kCausticRays : 0);
   block_size_ = std::clamp<std::size_t>(
@@ -69,8 +75,6 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   const std::size_t count = end - begin;
   block_.batch = &batch;
   block_.begin = begin;
-  block_.first_surfaces =
-      batch.depth == 0 && !output.first_surface.empty() ? output.first_surface.data() : nullptr;
   for (LightSample& sample : block_.light_samples_of(0, count)) sample.is_asked = 0;
   for (std::size_t i = 0; i < count; ++i) {
     block_.scattered_counts[i] = scattered_count_;
@@ -105,6 +109,10 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
   const bool sees_surroundings = sees_environment(block_.batch->depth);
+  // Behind holes the first surface is met by later rays.
+  const bool may_be_first = kind_ != IntegratorKind::kLight && !output.first_surface.empty() &&
+                            (block_.batch->depth == 0 || has_masks_);
+  block_.first_surfaces.assign(may_be_first ? count : 0, nullptr);
   escaped_.clear();
   first_.assign(kHitKinds + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
@@ -134,7 +142,8 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     const MaterialParameters& material = materials_[face.material];
     const bool is_there =
         !material.has_mask || !is_masked_out(scene, shading_.bvh, block_.places[i]);
-    block_.materials[i] = is_there ? &material : &transparent_;
+    block_.materials[i] = is_there ? &material : &hole_;
+    if (is_there && may_be_first) note_first_surface(i, hit, output);
     kinds_[i] = block_.materials[i]->kind | weights_needed(scene, block_.places[i]);
     ++first_[kinds_[i] + 1];
   }
@@ -148,6 +157,21 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   }
   first_.erase(first_.begin());
   first_.push_back(static_cast<std::uint32_t>(order_.size()));
+}
+
+/// Notes the hit at place i if it is the first surface of its path.
+void Integrator::note_first_surface(std::size_t i, const NearestHit& hit, ShadingOutput& output) {
+  const PathState& state = block_.state(i);
+  FirstSurface& first = output.first_surface[state.sample];
+  if (first.primitive != NearestHit::kNone) return;
+  block_.first_surfaces[i] = &first;
+  first.primitive = hit.primitive;
+  if (state.index != 0) return;
+  const SurfaceHit& place = block_.places[i];
+  first.origin = place.ray->origin;
+  first.point = place.point != nullptr
+                    ? *place.point
+                    : precise_hit(*place.ray, shading_.bvh.corners_of(hit.primitive)).point;
 }
 
 /// Adds what the environment sends along the rays that hit nothing else. Where surfaces sample the

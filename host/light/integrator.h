@@ -64,6 +64,7 @@ class Integrator {
     return kind_ == IntegratorKind::kWhitted || kind_ == IntegratorKind::kPath;
   }
   void sort(std::span<const NearestHit> hits, std::size_t count, ShadingOutput& output);
+  void note_first_surface(std::size_t i, const NearestHit& hit, ShadingOutput& output);
   void add_infinite_light(ShadingOutput& output);
   void list_spawn_queries(std::size_t i);
   [[nodiscard]] bool leaves(const SurfaceHit& place, ScatteredRay& scattered) const;
@@ -77,7 +78,8 @@ class Integrator {
   std::uint64_t point_doubts_ = 0;
   std::size_t block_size_;
   std::span<const MaterialParameters> materials_;
-  const MaterialParameters transparent_ = MaterialParameters::transparent();
+  bool has_masks_;
+  const MaterialParameters hole_ = MaterialParameters::hole();
   HitBlock block_;
   std::uint8_t scattered_count_;           // of a hit without caustic rays
   std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in their order

@@ -50,8 +50,8 @@ struct MaterialParameters {
   const FacetAlbedo* glass_albedo = nullptr;  ///< and of what is rough glass
   HitKind kind = 0;                           ///< without what depends on the triangle
 
-  bool has_mask =
-      false;  ///< is_masked_out may say that it is not there: hits have transparent() then
+  bool has_mask = false;  ///< where is_masked_out() says so, hits have hole() instead
+  bool is_hole = false;
 
   explicit MaterialParameters(const Material& material);
 
@@ -63,12 +63,14 @@ struct MaterialParameters {
   /// The same of glass at whose borders light is bent.
   [[nodiscard]] bool is_bending_glass() const { return is_mirror_or_glass() && refracts; }
 
-  /// A material that is not there: all light goes straight on.
-  [[nodiscard]] static MaterialParameters transparent() {
+  /// The hole of a mask: all light goes straight on.
+  [[nodiscard]] static MaterialParameters hole() {
     Material clear;
     clear.illumination_model = 1;
     clear.opacity = 0.0f;
-    return MaterialParameters(clear);
+    MaterialParameters parameters(clear);
+    parameters.is_hole = true;
+    return parameters;
   }
 
  private:

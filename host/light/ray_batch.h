@@ -58,8 +58,11 @@ struct RayBatch {
   }
 };
 
-/// The surface that a camera ray hits.
+/// The first surface that a camera ray meets; holes of masks are no surface.
 struct FirstSurface {
+  std::uint32_t primitive = NearestHit::kNone;
+  glm::vec3 origin{0.0f};  ///< of the ray that meets it, of a pixel's first sample only
+  glm::vec3 point{0.0f};   ///< relative to `origin`
   glm::vec3 normal{0.0f}, albedo{0.0f};
 };
 

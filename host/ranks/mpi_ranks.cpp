@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <cstring>
 #include <list>
 #include <optional>
 #include <string>
@@ -11,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/ranks/ranks.h"
 
@@ -43,6 +46,8 @@ class MpiRanks : public Ranks {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &index_);
     MPI_Comm_size(MPI_COMM_WORLD, &count_);
+    MPI_Type_contiguous(kUnit, MPI_BYTE, &unit_);
+    MPI_Type_commit(&unit_);
     processors_ = count_processors();
   }
 
@@ -65,9 +70,12 @@ class MpiRanks : public Ranks {
   [[nodiscard]] unsigned processors() const override { return processors_; }
 
   void send(int to, About about, std::string bytes) override {
+    const std::uint64_t size = bytes.size(), units = (size + sizeof size + kUnit - 1) / kUnit;
+    bytes.resize(kUnit * units);
+    std::memcpy(bytes.data() + bytes.size() - sizeof size, &size, sizeof size);
     Sending& sending = sending_.emplace_back(std::move(bytes));
-    MPI_Isend(sending.bytes.data(), static_cast<int>(sending.bytes.size()), MPI_BYTE, to,
-              static_cast<int>(about), MPI_COMM_WORLD, &sending.request);
+    MPI_Isend(sending.bytes.data(), static_cast<int>(units), unit_, to, static_cast<int>(about),
+              MPI_COMM_WORLD, &sending.request);
     forget_sent();
   }
 
@@ -84,6 +92,10 @@ class MpiRanks : public Ranks {
   }
 
  private:
+  /// Bytes of the unit that messages are counted in: MPI counts with ints, and bytes may be more. A
+  /// message is filled up to whole units, of which the last eight bytes say how long it is.
+  static constexpr std::size_t kUnit = 64;
+
   struct Sending {
     explicit Sending(std::string all) : bytes(std::move(all)) {}
     std::string bytes;
@@ -106,16 +118,20 @@ class MpiRanks : public Ranks {
       MPI_Status status;
       MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &handle, &status);
       if (there == 0) return std::nullopt;
-      int size = 0;
-      MPI_Get_count(&status, MPI_BYTE, &size);
+      int units = 0;
+      MPI_Get_count(&status, unit_, &units);
       coming_.emplace(status.MPI_SOURCE, static_cast<About>(status.MPI_TAG),
-                      std::string(static_cast<std::size_t>(size), '\0'));
-      MPI_Imrecv(coming_->bytes.data(), size, MPI_BYTE, &handle, &receiving_);
+                      std::string(kUnit * static_cast<std::size_t>(units), '\0'));
+      MPI_Imrecv(coming_->bytes.data(), units, unit_, &handle, &receiving_);
     }
     MPI_Test(&receiving_, &there, MPI_STATUS_IGNORE);
-    return there == 0 ? std::nullopt : std::exchange(coming_, std::nullopt);
+    if (there == 0) return std::nullopt;
+    std::string& bytes = coming_->bytes;
+    bytes.resize(number_at<std::uint64_t>(&bytes[bytes.size() - sizeof(std::uint64_t)]));
+    return std::exchange(coming_, std::nullopt);
   }
 
+  MPI_Datatype unit_ = MPI_DATATYPE_NULL;
   int index_ = 0, count_ = 1;
   unsigned processors_ = 1;
   bool is_over_ = false, has_left_ = false;

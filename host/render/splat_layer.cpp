@@ -22,12 +22,16 @@ void SplatLayer::add(std::span<const Splat> splats) {
   const double radius = filter_radius(filter_);
   for (const Splat& splat : splats) {
     const glm::dvec2 low = splat.place - radius, high = splat.place + radius;
-    const int x0 = std::max(window_.x0, static_cast<int>(std::ceil(low.x - 0.5)));
-    const int x1 = std::min(window_.x1 - 1, static_cast<int>(std::floor(high.x - 0.5)));
-    const int y0 = std::max(window_.y0, static_cast<int>(std::ceil(low.y - 0.5)));
-    const int y1 = std::min(window_.y1 - 1, static_cast<int>(std::floor(high.y - 0.5)));
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
+    // Places may be farther away than an int can say.
+    const auto pixel = [](double at, int first, int end) {
+      return static_cast<int>(std::clamp<double>(at, first, end));
+    };
+    const int x0 = pixel(std::ceil(low.x - 0.5), window_.x0, window_.x1);
+    const int x1 = pixel(std::floor(high.x - 0.5) + 1.0, window_.x0, window_.x1);
+    const int y0 = pixel(std::ceil(low.y - 0.5), window_.y0, window_.y1);
+    const int y1 = pixel(std::floor(high.y - 0.5) + 1.0, window_.y0, window_.y1);
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) {
         const double weight = filter_density(filter_, splat.place - glm::dvec2(x + 0.5, y + 0.5));
         const std::size_t row = std::size_t(y - window_.y0) * std::size_t(window_.width());
         auto& sum = sums_[row + std::size_t(x - window_.x0)];

@@ -108,7 +108,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   watch.lap();
   paths_ = 0;
   for (const PixelSamples& pixel : pixels_) paths_ += pixel.path_count();
-  first_hits_.assign(paths_, {});
+  path_work_.assign(is_counting_ ? paths_ : 0, {});
   output_.radiance.assign(paths_, is_empty ? integrator_.background() : glm::vec3(0.0f));
   output_.first_surface.assign(paths_, {});
   output_.shadows.clear();
@@ -205,7 +205,6 @@ void TileRenderer::trace_wave(Integrator& integrator) {
   output_.next.clear();
   output_.next.depth = batch_.depth + 1;
   for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], batch_.states[i].sample);
-  if (batch_.depth == 0) record_first_hits();
   for (std::size_t i = 0; i < rays.size();) {
     const std::size_t end = std::min(rays.size(), i + integrator.block_size());
     integrator.shade(batch_, hits_, i, end, output_);
@@ -244,22 +243,8 @@ void TileRenderer::add_splat(const ShadowRay& way) {
       {*place * glm::dvec2(job_.options.width, job_.options.height), glm::dvec3(way.radiance)});
 }
 
-/// Notes what the camera's rays hit.
-void TileRenderer::record_first_hits() {
-  for (std::size_t i = 0; i < hits_.size(); ++i) {
-    const NearestHit& hit = hits_[i];
-    first_hits_[i].primitive = hit.primitive;
-    if (hit.primitive == NearestHit::kNone || batch_.states[i].index != 0) continue;
-    first_hits_[i].origin = batch_.rays[i].origin;
-    first_hits_[i].point =
-        is_point_doubt(hit, job_.options.point_error)
-            ? precise_hit(batch_.rays[i], job_.prepared.bvh.corners_of(hit.primitive)).point
-            : hit.point;
-  }
-}
-
 void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
-  first_hits_[sample].work += work;
+  path_work_[sample] += work;
 }
 
 void TileRenderer::write() {
@@ -281,16 +266,16 @@ void TileRenderer::write() {
     if (!kept.albedo.empty()) albedo = kept.albedo[at];
     double hits = 0.0;
     for (const std::size_t end = i + pixel.path_count(); i < end; ++i) {
-      const FirstHit& first_hit = first_hits_[i];
+      const FirstSurface& first = output_.first_surface[i];
       const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(direct_light_[i]);
       for (int k = 0; k < 3; ++k) {
         color[k].add(light[k] / pixel.paths);
         if (has_albedo) {
-          albedo[k].add(double{output_.first_surface[i].albedo[k]} / pixel.paths);
+          albedo[k].add(double{first.albedo[k]} / pixel.paths);
         }
       }
-      if (first_hit.primitive != NearestHit::kNone) hits += 1.0 / pixel.paths;
-      count(first_hit.work);
+      if (first.primitive != NearestHit::kNone) hits += 1.0 / pixel.paths;
+      if (is_counting_) count(path_work_[i]);
     }
     color[3].add(hits);
     for (int k = 0; k < 3; ++k) color[k] += emitter_sums_[p][k];
@@ -318,20 +303,20 @@ void TileRenderer::update_errors() {
 
 /// Those that are the first sample's.
 void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
-  const FirstHit& first_hit = first_hits_[sample];
-  if (first_hit.primitive == NearestHit::kNone) return;
-  const std::uint32_t triangle = job_.prepared.bvh.triangle_of(first_hit.primitive);
-  const glm::dvec3 origin(first_hit.origin), point(first_hit.point);
+  const FirstSurface& first = output_.first_surface[sample];
+  if (first.primitive == NearestHit::kNone) return;
+  const std::uint32_t triangle = job_.prepared.bvh.triangle_of(first.primitive);
+  const glm::dvec3 origin(first.origin), point(first.point);
   const glm::dvec3 from_eye = origin - glm::dvec3(job_.camera.eye()) + point;
   film_.depth[pixel] = static_cast<float>(job_.camera.depth(from_eye));
-  film_.normal[pixel] = output_.first_surface[sample].normal;
+  film_.normal[pixel] = first.normal;
   film_.primitive[pixel] = triangle;
   if (!film_.position.empty()) {
     film_.position[pixel] = glm::vec3(job_.prepared.scene.origin + origin + point);
   }
   if (!film_.object.empty())
     film_.object[pixel] =
-        object_at(job_.prepared.scene, job_.prepared.bvh.face_of(first_hit.primitive));
+        object_at(job_.prepared.scene, job_.prepared.bvh.face_of(first.primitive));
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

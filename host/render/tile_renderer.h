@@ -43,14 +43,6 @@ class TileRenderer {
   void add_to(RenderStats& stats) const;
 
  private:
-  /// What a camera ray saw.
-  struct FirstHit {
-    std::uint32_t primitive = NearestHit::kNone;
-    glm::vec3 origin{0.0f};  // of the ray
-    glm::vec3 point{0.0f};   // relative to it
-    RayWork work;            // of all rays of the path
-  };
-
   void choose_path_counts();
   void make_camera_rays();
   void supersample_emitters();
@@ -62,7 +54,6 @@ class TileRenderer {
   void trace_wave(Integrator& integrator);
   void trace_shadows();
   void add_splat(const ShadowRay& way);
-  void record_first_hits();
   void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, std::size_t path);
   void update_errors();
@@ -82,8 +73,8 @@ class TileRenderer {
   RenderStats stats_;
   // Of the samples that were traced last, pixel by pixel.
   std::vector<PixelSamples> pixels_;
-  std::size_t paths_ = 0;             // of all of them
-  std::vector<FirstHit> first_hits_;  // by path
+  std::size_t paths_ = 0;           // of all of them
+  std::vector<RayWork> path_work_;  // by path: of all its rays, if it is counted
   bool is_counting_, has_glass_;
   ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by path: what shadow rays have brought

@@ -93,6 +93,34 @@ TEST_F(BadInput, UnreadableFile) {
   expect_refused(outcome, "scene\\.obj: [^\n]+");
 }
 
+/// What stands beside the scene, in a folder that may not be entered, is not missing.
+TEST_F(BadInput, UnreadableFolder) {
+  ::chmod(folder_.path().c_str(), 0777);
+  folder_.write("scene.obj", std::string("mtllib locked/m.mtl\n") + kGoodScene);
+  fs::create_directory(folder_.path() / "locked");
+  folder_.write("scene.json", R"({"obj": "scene.obj", "environment": {"file": "locked/sky.hdr"}})");
+  ::chmod((folder_.path() / "locked").c_str(), 0);
+  for (const std::string scene : {"scene.json", "scene.obj"}) {
+    std::vector<std::string> words{scene, "--engine", "cpu", "--size", "8x6", "-o", "new"};
+    if (scene == "scene.obj")
+      words.insert(words.end(), {"--no-scene-file", "--environment", "locked/sky.hdr"});
+    const Outcome outcome =
+        run_program({.arguments = words, .folder = folder_.path(), .without_rights = true});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("error: locked/sky.hdr: cannot read: Permission denied\n"),
+              std::string::npos)
+        << outcome.err;
+    expect_old_files();
+  }
+  const Outcome outcome = run_program({.arguments = {"scene.obj", "--no-scene-file", "--engine",
+                                                     "cpu", "--size", "8x6", "-o", "new"},
+                                       .folder = folder_.path(),
+                                       .without_rights = true});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("'locked/m.mtl' cannot be read: Permission denied"), std::string::npos)
+      << outcome.err;
+}
+
 TEST_F(BadInput, EmptyFile) {
   folder_.write("scene.obj", "");
   expect_refused(render({"scene.obj"}), "scene\\.obj(:1)?: [^\n]+");

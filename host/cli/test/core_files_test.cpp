@@ -21,7 +21,10 @@ class CoreFiles : public Render {
 };
 
 TEST_F(CoreFiles, TheMemoryImageIsWhatItsReaderExpects) {
-  ASSERT_EQ(run({"--engine", "model", "--dump-image", "image"}).status, 0);
+  const Outcome dumped = run({"--dump-image", "image"});
+  ASSERT_EQ(dumped.status, 0) << dumped.err;
+  EXPECT_EQ(dumped.out, "wrote image, 42 lines\n");
+  EXPECT_EQ(folder_.list(), std::vector{"image"s}) << "nothing is rendered";
   const std::string image = folder_.read("image");
   EXPECT_EQ(image.size(), 42u * 64u);
   const Outcome whole = read_image({"--hex", "image.hex"});
@@ -90,10 +93,14 @@ TEST_F(CoreFiles, APortThatIsNoneIsAnInputError) {
 }
 
 TEST_F(CoreFiles, TheWaveOfAPixelsRay) {
-  const Outcome outcome = run({"--trace-pixel", "8,8", "--trace", "pixel.vcd"});
+  folder_.write("link.vcd.unfinished", "of another program");
+  std::filesystem::create_symlink("pixel.vcd", folder_.path() / "link.vcd");
+  const Outcome outcome = run({"--trace-pixel", "8,8", "--trace", "link.vcd"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("the ray of pixel 8,8 hits triangle "), std::string::npos);
-  EXPECT_EQ(folder_.list(), std::vector{"pixel.vcd"s});
+  EXPECT_EQ(folder_.list(), (std::vector{"link.vcd"s, "link.vcd.unfinished"s, "pixel.vcd"s}));
+  EXPECT_EQ(folder_.read("link.vcd.unfinished"), "of another program");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_.path() / "link.vcd"));
   EXPECT_NE(folder_.read("pixel.vcd").find("ray_core"), std::string::npos);
 }
 

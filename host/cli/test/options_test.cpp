@@ -184,6 +184,12 @@ TEST_F(OptionsOfASceneFile, AreTakenWhereTheCommandLineHasNone) {
 TEST_F(OptionsOfASceneFile, AreRefusedWithTheirPlace) {
   const std::string json = write("a.json", "{\"render\": {\n\"size\": \"big\"}}");
   expect_error({json.c_str()}, json + ":2: --size: expected WIDTHxHEIGHT");
+  const std::string both = write("a.json", "{\"render\": {\n\"error\": 1,\n\"spp\": 4}}");
+  expect_error({both.c_str()}, both + ":3: --spp: expected more than the 16 that --error begins");
+  EXPECT_EQ(parse({both.c_str(), "--spp", "32"}).render.samples, 32) << "typed values count";
+  const std::string one = write("a.json", "{\"render\": {\n\"error\": 1}}");
+  expect_error({one.c_str(), "--samples", "0:2"},
+               "--samples and --error exclude each other (" + one + ":2 sets error)");
   const std::string other = write("b.json", R"({"obj": "c.obj"})");
   const std::string scene = folder_.path() / "b.obj";
   EXPECT_EQ(parse({scene.c_str()}).obj(), folder_.path() / "c.obj") << "there is no b.obj";

@@ -3,12 +3,14 @@
 usage: RAYGATE_PROGRAM=build/render python3 -m unittest host/cli/test/picture_server_test.py
 """
 
+import http.client
 import json
 import os
 import pathlib
 import re
 import shlex
 import signal
+import socket
 import subprocess
 import tempfile
 import threading
@@ -96,6 +98,8 @@ class Http(unittest.TestCase):
                     ("/picture", {"width": 3}, "width: expected an option"),
                     ("/picture", {"output": "a.png"}, "output: expected an option"),
                     ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
+                    ("/picture", {"size": "5000x5000"}, "--size: expected at most 16777216 pixels"),
+                    ("/picture", {"spp": 100000}, "--spp: expected at most 65536"),
                     ("/picture", {"slot": "left"}, "turn: expected the number"),
                     ("/picture", {"false-colour": "nothing=a.png"}, "nothing"),
                     ("/picture", {"variant": "e8p9-raw"}, "--engine: expected model with --variant e8p9-raw, got cpu"),
@@ -107,6 +111,43 @@ class Http(unittest.TestCase):
                 self.assertEqual(text.count(b"\n"), 1)
             status, _, text = served.get("/picture", headers={"Host": "elsewhere.example"})
             self.assertEqual(status, 403)
+
+    def test_other_sites_and_methods_are_refused(self):
+        with Served() as served:
+            host = served.address.removeprefix("http://")
+            for method, headers, expected in (
+                    ("GET", {"Origin": "http://elsewhere.example"}, 403),
+                    ("GET", {"Origin": "null"}, 403),
+                    ("GET", {"Sec-Fetch-Site": "cross-site"}, 403),
+                    ("GET", {"Sec-Fetch-Site": "same-site"}, 403),
+                    ("GET", {"Sec-Fetch-Site": "same-origin", "Origin": served.address}, 200),
+                    ("PUT", {}, 405), ("DELETE", {}, 405), ("POST", {}, 405), ("HEAD", {}, 200)):
+                with self.subTest(method=method, headers=headers):
+                    connection = http.client.HTTPConnection(host, timeout=30)
+                    connection.request(method, "/camera", headers=headers)
+                    self.assertEqual(connection.getresponse().status, expected)
+                    connection.close()
+            with socket.create_connection(host.split(":"), timeout=30) as plain:
+                plain.sendall(f"HEAD / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+                self.assertTrue(plain.makefile("rb").read().endswith(b"\r\n\r\n"), "without a body")
+
+    def test_a_picture_ends_with_its_connection(self):
+        with Served() as served:
+            host = served.address.removeprefix("http://")
+            with socket.create_connection(host.split(":"), timeout=30) as left:
+                left.sendall(f"GET /picture?spp=60000&size=640x480 HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
+                time.sleep(0.5)
+            self.assertEqual(served.get("/picture", spp=1)[0], 200)
+
+    def test_connections_that_say_nothing_block_nobody(self):
+        with Served() as served:
+            host = served.address.removeprefix("http://").split(":")
+            silent = [socket.create_connection(host, timeout=30) for _ in range(20)]
+            begin = time.monotonic()
+            self.assertEqual(served.get("/camera")[0], 200)
+            self.assertLess(time.monotonic() - begin, 15)
+            for connection in silent:
+                connection.close()
 
     def test_a_pixel_by_two_engines(self):
         with Served() as served:

@@ -92,11 +92,28 @@ TEST_F(Render, ControlCharactersDoNotReachTheTerminal) {
       {.arguments = {name, "--size", "4x4", "--engine", "cpu"}, .folder = folder_.path()});
   EXPECT_NE(outcome.out.find("gotcha"), std::string::npos);
   expect_clean(outcome.out);
+  const std::string lines = "a\nb.obj";
+  folder_.write(lines, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  outcome = run_program(
+      {.arguments = {lines, "--size", "4x4", "--engine", "cpu"}, .folder = folder_.path()});
+  EXPECT_EQ(outcome.out.substr(0, 12), "a\\x0Ab.obj: ");
+  EXPECT_EQ(outcome.out.find("a\nb"), std::string::npos) << outcome.out;
   // What is no control character stays: letters of all languages.
   folder_.write("Grüße 光.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   outcome = run_program({.arguments = {"Grüße 光.obj", "--size", "4x4", "--engine", "cpu"},
                          .folder = folder_.path()});
   EXPECT_NE(outcome.out.find("Grüße 光.obj"), std::string::npos) << outcome.out;
+}
+
+/// Two names that lead to one file, which is not there yet.
+TEST_F(Render, OutputsThatAreOneFileAreRefused) {
+  folder_.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  fs::create_symlink("a.png", folder_.path() / "b.png");
+  const Outcome outcome = run_program({.arguments = {"m.obj", "-o", "a.png", "--false-colour",
+                                                     "Z=b.png", "--size", "4x4", "--engine", "cpu"},
+                                       .folder = folder_.path()});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err, "error: b.png: would overwrite a.png\n");
 }
 
 /// No output takes the place of what the scene was read from, under whatever name.

@@ -17,6 +17,8 @@
 namespace raygate {
 namespace {
 
+namespace fs = std::filesystem;
+
 class TraceRays : public testing::Test {
  protected:
   void SetUp() override {
@@ -148,6 +150,41 @@ TEST_F(TraceRays, EndsSoonAfterASignal) {
     EXPECT_EQ(folder_.list(),
               (std::vector<std::string>{"rays", "rays.csv", "sheets.obj", "warned.obj"}));
   }
+}
+
+/// A pipe that is full, and whose reader does not go on.
+TEST_F(TraceRays, EndsSoonThoughItsReaderIsStuck) {
+  folder_.write("warned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
+  folder_.write("many.csv", many_rays());
+  const fs::path pipe = folder_.path() / "hits.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  const Outcome outcome =
+      run_program({.arguments = {"warned.obj", "many.csv", "-o", "hits.csv"},
+                   .folder = folder_.path(),
+                   .when_said = {{"warning",
+                                  [](int process) {
+                                    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+                                    ::kill(process, SIGTERM);
+                                  }}},
+                   .most_seconds = 10});
+  ::close(reader);
+  EXPECT_EQ(outcome.status, 128 + SIGTERM) << "signal " << outcome.signal;
+}
+
+TEST_F(TraceRays, GoesOnWithFewerThreads) {
+  const fs::path home = folder_.path() / "home";
+  fs::create_directory(home);
+  fs::copy_file(RAYGATE_PROGRAM, home / "trace");
+  for (const fs::path& path : {folder_.path(), home}) fs::permissions(path, fs::perms::all);
+  const Outcome outcome =
+      run_program({.arguments = {"sheets.obj", "rays.csv", "--threads", "4", "--columns", "t"},
+                   .folder = folder_.path(),
+                   .without_rights = true,
+                   .most_threads = 1,
+                   .program = home / "trace"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "t\n0.5\ninf\ninf\n");
 }
 
 TEST_F(TraceRays, EndsQuietlyWithItsReader) {

@@ -4,8 +4,11 @@
 #include <ImfArray.h>
 #include <ImfRgbaFile.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <fstream>
 #include <string>
+#include <thread>
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
@@ -61,7 +64,7 @@ TEST_F(EnvironmentFile, RunsOfComponents) {
 }
 
 TEST_F(EnvironmentFile, DamagedOnesAreRefused) {
-  expect_refused("P6 1 1 255", "not a Radiance HDR file");
+  expect_refused("P6 1 1 255", "found a file of another kind, expected ");
   expect_refused("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n", "'FORMAT=32-bit_rle_xyze', expected ");
   expect_refused("#?RADIANCE\nEXPOSURE=0\n\n", "EXPOSURE: expected a positive number");
   expect_refused(kHeader + "+Y 2 +X 2\n", "'+Y 2 +X 2', expected -Y HEIGHT +X WIDTH");
@@ -99,6 +102,14 @@ TEST_F(EnvironmentFile, LieAsTheSceneDoes) {
   EXPECT_NEAR(glm::length(scene.environment->ahead - glm::dvec3(0, 1, 0)), 0.0, 1e-12);
   EXPECT_THROW(load_environment({folder_.path() / "none.exr", 0.0, 1.0}, {0, 1, 0}, scene),
                InputError);
+  const auto circle = folder_.path() / "circle.hdr";
+  std::filesystem::create_symlink(circle, circle);
+  EXPECT_THROW(load_environment({circle, 0.0, 1.0}, {0, 1, 0}, scene), InputError);
+  const auto pipe = folder_.path() / "pipe.hdr";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::jthread writer([&] { std::ofstream(pipe) << kHeader + "-Y 1 +X 1\n\x01\x02\x03\x80"; });
+  load_environment({pipe, 0.0, 1.0}, {0, 1, 0}, scene);
+  EXPECT_EQ(scene.environment->width, 1);
   const auto png = folder_.write("sky.png", "\x89PNG\r\n\x1a\n");
   try {
     load_environment({png, 0.0, 1.0}, {0, 1, 0}, scene);

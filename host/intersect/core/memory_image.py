@@ -15,6 +15,7 @@ import fractions
 import pathlib
 import struct
 import sys
+import tempfile
 
 LINE = 64
 CHILDREN = 7
@@ -127,9 +128,10 @@ def main() -> int:
         lines = read(given.file)
         counts = check(lines)
         if given.hex:
-            unfinished = given.hex.with_name(given.hex.name + ".unfinished")
-            unfinished.write_text("".join(f"{line:0{2 * LINE}x}\n" for line in lines))
-            unfinished.replace(given.hex)
+            with tempfile.TemporaryDirectory(dir=given.hex.resolve().parent) as folder:
+                whole = pathlib.Path(folder, "hex")
+                whole.write_text("".join(f"{line:0{2 * LINE}x}\n" for line in lines))
+                whole.replace(given.hex.resolve())
     except OSError as error:
         print(f"{error.filename}: {error.strerror}", file=sys.stderr)
         return 2

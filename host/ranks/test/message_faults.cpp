@@ -45,7 +45,9 @@ int MPI_Isend(const void* bytes, int size, MPI_Datatype type, int to, int tag, M
   const int status = PMPI_Isend(bytes, size, type, to, tag, world, request);
   // Of a long message only the beginning is on its way by now.
   const long least = number_in("RAYGATE_FAULT_BYTES");
-  end_if(least >= 0 && size >= least);
+  int unit = 0;
+  PMPI_Type_size(type, &unit);
+  end_if(least >= 0 && long{size} * unit >= least);
   return status;
 }
 

@@ -100,8 +100,8 @@ int GltfMaterials::texcoord_set(int material) {
   int set = -1;
   const auto look_at = [&](int texture, int texcoord, const tinygltf::ExtensionMap& extensions) {
     if (texture < 0) return;
-    const int its =
-        static_cast<int>(number_in(extensions, "KHR_texture_transform", "texCoord", texcoord));
+    const int its = static_cast<int>(std::clamp(
+        number_in(extensions, "KHR_texture_transform", "texCoord", texcoord), -1.0, 1e6));
     if (set >= 0 && its != set) {
       file_.warn_once(
           "of textures of one material with several sets of coordinates the first has its own",

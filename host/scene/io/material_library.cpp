@@ -18,8 +18,12 @@ void MaterialLibrary::load_library(std::string_view names) {
     if (const auto file = find_file(folder_, name)) {
       load(*file);
     } else {
+      std::error_code error;
+      const bool is_known =
+          std::filesystem::status(folder_ / name, error).type() != std::filesystem::file_type::none;
       warnings_.push_back(obj_.place() + "material file " + in_quotes(name) +
-                          " is missing, default materials instead");
+                          (is_known ? " is missing" : " cannot be read: " + error.message()) +
+                          ", default materials instead");
     }
   }
 }

@@ -180,8 +180,8 @@ class PlyReader {
   /// How long a list is; a list of so many numbers is there, or the reading fails at its end.
   long long take_count(const Property& list) {
     const double count = take(*list.count_type, "a list's length");
-    if (!(count >= 0.0) || std::floor(count) != count) {
-      fail("a list's length: expected a whole number from 0");
+    if (!(count >= 0.0 && count <= 0xFFFF'FFFF) || std::floor(count) != count) {
+      fail("a list's length: expected a whole number from 0 to 4294967295");
     }
     return static_cast<long long>(count);
   }

@@ -171,6 +171,23 @@ TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   EXPECT_GT(found, 0);
 }
 
+/// Many long questions about few lines: for a long time no ray ends and nothing is read.
+TEST_F(ExactResolverTest, LongWorkIsWaitedFor) {
+  std::vector<Corners> fan;
+  for (int n = 0; n < 14; ++n) {
+    const auto corner = [](int k) {
+      const float sign = k % 2 == 0 ? 1.0f : -1.0f;
+      return glm::vec3(sign * 0x1.234567p100f, std::ldexp(1.3f, 7 * k - 100), sign * 0x1.77p-90f);
+    };
+    fan.push_back({glm::vec3(1, 1, 1.5f), corner(n), corner(n + 1)});
+  }
+  const Bvh bvh(test::scene_of(fan));
+  image_ = std::make_shared<MemoryImage>(bvh);
+  Core core({.latency = 5}, {}, kExact);
+  compare(core, std::vector<CoreRay>(
+                    40, {.ray = {glm::vec3(0x1.1p-100f), scaled_direction({1, 1, 1.5})}}));
+}
+
 /// One read in 32 comes back with an error, a line that was there before among them, and now and
 /// then rays are given up: those say so, all others have the reference's hit.
 TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {

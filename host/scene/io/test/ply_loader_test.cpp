@@ -146,6 +146,8 @@ TEST_F(LoadPly, WhatIsRefused) {
             "s.ply:16: face with 2 corners, expected at least 3");
   EXPECT_EQ(error(with("4 0 1 2 3\n", "4 0 1 2\n")),
             "s.ply:17: a vertex index: found the file's end, expected a finite number");
+  EXPECT_EQ(error(with("4 0 1 2 3\n", "1e30 0 1 2 3\n")),
+            "s.ply:16: a list's length: expected a whole number from 0 to 4294967295");
   EXPECT_EQ(error(with("face 1\n", "face 0\n")), "s.ply: no faces, expected at least one polygon");
   EXPECT_EQ(error(with("vertex 4", "vertex 900000000000")).substr(0, 10), "s.ply:17: ");
 }
