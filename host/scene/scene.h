@@ -118,8 +118,8 @@ struct Instance {
 };
 
 /// Where a spot light shines: within `inner` of its axis fully, beyond `outer` not at all, and
-/// between them as KHR_lights_punctual of glTF says. Angles from the axis, in degrees, 0 <= inner <
-/// outer <= 90.
+/// between them as KHR_lights_punctual of glTF says. Angles from the axis, in degrees, 0 <= inner
+/// <= outer <= 90; equal ones make a hard edge.
 struct SpotCone {
   glm::dvec3 axis{0.0, 0.0, -1.0};  ///< unit length, away from the light
   double inner = 0.0, outer = 45.0;

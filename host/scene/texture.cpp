@@ -108,10 +108,11 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
     fail(file, "a texture of more than " + std::to_string(kMaxTexels) + " pixels");
   }
   const bool is_opacity = content != Content::kColour;
+  // The library gives no reason where the file ends too soon, or the last picture's.
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(first, size, &width, &height, &channels, is_opacity ? 2 : 3),
       stbi_image_free);
-  if (!pixels) fail(file, unreadable + stbi_failure_reason());
+  if (!pixels) fail(file, unreadable + "its pixels are damaged or end too soon");
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (is_opacity) {
     // Grey and opacity, 1 where there is none.

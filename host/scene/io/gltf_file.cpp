@@ -8,10 +8,12 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/scene/io/find_file.h"
 #include "host/scene/io/tokens.h"
 
 namespace raygate {
@@ -30,15 +32,25 @@ constexpr std::string_view kCompressions[] = {"KHR_draco_mesh_compression",
 
 /// Files that are read beside the first one.
 struct Reading {
+  std::string folder, place;
   std::vector<std::filesystem::path>* files;
   std::size_t* bytes;
+  std::vector<std::string>* warnings;
+
+  /// Returns the file of a path that the library made of the folder and a name.
+  [[nodiscard]] std::optional<std::filesystem::path> find(
+      const std::string& path, std::vector<std::string>& found_warnings) const {
+    const std::string prefix = folder.empty() ? "" : folder + "/";
+    if (!path.starts_with(prefix)) return find_exact_file("", path);
+    return find_file(folder, path.substr(prefix.size()), place, found_warnings);
+  }
 };
 
 tinygltf::FsCallbacks callbacks(Reading& reading) {
   tinygltf::FsCallbacks calls{};
-  calls.FileExists = [](const std::string& path, void*) {
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(path, ignored);
+  calls.FileExists = [](const std::string& path, void* user) {
+    std::vector<std::string> ignored;
+    return static_cast<const Reading*>(user)->find(path, ignored).has_value();
   };
   // As it stands: the library's own would let a shell expand it.
   calls.ExpandFilePath = [](const std::string& path, void*) { return path; };
@@ -46,9 +58,10 @@ tinygltf::FsCallbacks callbacks(Reading& reading) {
                            const std::string& path, void* user) {
     const auto& read = *static_cast<Reading*>(user);
     try {
-      const std::string bytes = read_file(path);
+      const std::filesystem::path file = read.find(path, *read.warnings).value_or(path);
+      const std::string bytes = read_file(file);
       out->assign(bytes.begin(), bytes.end());
-      read.files->emplace_back(path);
+      read.files->emplace_back(file);
       *read.bytes += bytes.size();
       return true;
     } catch (const InputError& reason) {
@@ -105,12 +118,12 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
     json = json.substr(kJson, number_at<std::uint32_t>(bytes.data() + kJsonLength));
   }
   if (is_deep(json)) fail("JSON of more than 64 levels, expected fewer");
-  Reading reading{&files_, &bytes_};
+  const std::string folder = file.parent_path().string();
+  Reading reading{folder, name_ + ": ", &files_, &bytes_, &warnings_};
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(callbacks(reading));
   loader.SetImageLoader(keep_picture, nullptr);
   std::string error, warning;
-  const std::string folder = file.parent_path().string();
   bool is_read = false;
   try {
     is_read = is_binary ? loader.LoadBinaryFromMemory(
@@ -163,6 +176,15 @@ void GltfFile::fail_index(const char* what, int index, std::size_t count) const 
        std::to_string(count));
 }
 
+std::string GltfFile::picture_bytes(const tinygltf::Image& image) {
+  constexpr std::string_view kBase64 = ";base64,";
+  const std::size_t at = image.uri.find(kBase64);
+  if (image.image.empty() && image.uri.starts_with("data:") && at != std::string::npos) {
+    return tinygltf::base64_decode(image.uri.substr(at + kBase64.size()));
+  }
+  return {image.image.begin(), image.image.end()};
+}
+
 std::size_t GltfFile::count(int accessor) const {
   return at(model_.accessors, accessor, "accessor").count;
 }
@@ -213,6 +235,27 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
 }
 
 std::vector<double> GltfFile::vectors(int accessor, int width, const char* what) const {
+  std::vector<double> all = numbers(accessor, width, what);
+  if (!std::ranges::all_of(all, [](double number) { return std::isfinite(number); })) {
+    fail("accessor " + std::to_string(accessor) + " (" + what + "): a number that is not finite");
+  }
+  return all;
+}
+
+std::vector<double> GltfFile::optional_vectors(int accessor, int width, const char* what,
+                                               std::size_t vertices,
+                                               std::vector<std::string>& warnings) const {
+  if (accessor < 0) return {};
+  try {
+    if (count(accessor) == vertices) return numbers(accessor, width, what);
+    warn_once(std::string(what) + ": not as many as positions, left out", warnings);
+  } catch (const InputError& error) {
+    warnings.push_back(std::string(error.what()) + ", left out");
+  }
+  return {};
+}
+
+std::vector<double> GltfFile::numbers(int accessor, int width, const char* what) const {
   const Elements from = elements(accessor, what);
   const auto fail_here = [&](const char* found) {
     fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
@@ -229,9 +272,6 @@ std::vector<double> GltfFile::vectors(int accessor, int width, const char* what)
     for (int k = 0; k < width; ++k, at += bytes_of(type)) {
       double number = number_at(at, type);
       if (from.normalized) number = std::max(number / one, -1.0);
-      if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
-        fail_here("a number that is not finite");
-      }
       numbers.push_back(number);
     }
   }

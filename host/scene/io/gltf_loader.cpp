@@ -66,6 +66,7 @@ class GltfReader {
         meshes_(file_, scene_, options.textures) {}
 
   Scene read() {
+    scene_.warnings = file_.warnings();
     walk(roots());
     for (const auto& [node, world] : nodes_) count_uses(*node);
     for (const auto& [node, world] : nodes_) read_node(*node, world);
@@ -212,10 +213,10 @@ class GltfReader {
     const double fov = is_orthographic ? 90.0 : camera.perspective.yfov * kDegrees;
     const double distance = is_orthographic ? camera.orthographic.ymag : 1.0;
     if (!(fov > 0.0 && fov < 180.0)) {
-      file_.fail("a camera's yfov: expected more than 0 and less than pi");
+      return warn_once("a camera whose yfov is not between 0 and pi is left out");
     }
     if (!(distance > 0.0 && distance <= kMostFloat)) {
-      file_.fail("a camera's ymag: expected a positive number within the range of float");
+      return warn_once("a camera whose ymag is not a positive number is left out");
     }
     if (scene_.camera) return warn_once("of several cameras the first one is taken");
     const glm::dvec3 eye(world[3]), back(world[2]), up(world[1]);
@@ -249,7 +250,7 @@ class GltfReader {
     for (int k = 0; k < 3; ++k) {
       if (light.color.size() == 3) intensity[k] *= light.color[static_cast<std::size_t>(k)];
       if (!(intensity[k] >= 0.0 && intensity[k] <= kMostFloat)) {
-        file_.fail("a light's intensity: expected no negative number within the range of float");
+        return warn_once("a light whose intensity is negative or not finite is left out");
       }
     }
     const double length = glm::length(glm::dvec3(world[2]));
@@ -267,10 +268,12 @@ class GltfReader {
     const double inner = light.spot.innerConeAngle * kDegrees,
                  outer = light.spot.outerConeAngle * kDegrees;
     // 90 degrees are pi / 2 but for rounding.
-    if (!(inner >= 0.0 && inner < outer && outer <= 90.0 + 1e-9)) {
-      file_.fail("a spot light's angles: expected 0 <= inner < outer <= pi / 2");
+    if (!(inner >= 0.0 && inner <= outer && outer <= 90.0 + 1e-9)) {
+      warn_once("a spot light's angles are limited to 0 <= inner <= outer <= pi / 2");
     }
-    placed.spot = SpotCone{direction, inner, std::min(outer, 90.0)};
+    SpotCone& cone = placed.spot.emplace(SpotCone{direction});
+    cone.outer = outer >= 0.0 ? std::min(outer, 90.0) : 0.0;
+    cone.inner = inner >= 0.0 ? std::min(inner, cone.outer) : 0.0;
   }
 
   /// Gives the scene its point lights, when its origin is known.

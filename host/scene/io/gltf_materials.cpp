@@ -5,7 +5,9 @@
 #include <limits>
 #include <string_view>
 
+#include "host/base/input_error.h"
 #include "host/base/srgb.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -132,20 +134,24 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
     return std::nullopt;
   }
   const tinygltf::Image& image = file_.at(model.images, source, "image");
-  if (image.image.empty()) {
-    file_.warn_once("the texture " + image.uri + " is missing, its material is plain instead",
-                    scene_.warnings);
+  const std::string bytes = GltfFile::picture_bytes(image);
+  if (bytes.empty()) {
+    file_.warn_once(
+        "the texture " + in_quotes(image.uri) + " is missing, its material is plain instead",
+        scene_.warnings);
     return std::nullopt;
   }
-  const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()),
-                               image.image.size());
-  Texture result =
-      Texture::decode(bytes, file_.name() + ": image " + std::to_string(source), content);
-  texels_ += std::int64_t{result.width()} * result.height();
-  if (texels_ > kMostTexels) {
-    file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
+  const std::string name = "image " + std::to_string(source);
+  try {
+    Texture result = Texture::decode(bytes, name, content);
+    texels_ += std::int64_t{result.width()} * result.height();
+    if (texels_ <= kMostTexels) return result;
+    throw InputError(name + ": more than " + std::to_string(kMostTexels) +
+                     " pixels in all textures");
+  } catch (const InputError& error) {
+    file_.warn_once(std::string(error.what()) + ", its material is plain instead", scene_.warnings);
+    return std::nullopt;
   }
-  return result;
 }
 
 MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& extensions,

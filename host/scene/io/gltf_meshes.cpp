@@ -56,28 +56,31 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
     const auto found = primitive.attributes.find(name);
     return found == primitive.attributes.end() ? -1 : found->second;
   };
-  const int position = attribute("POSITION"), normal = attribute("NORMAL");
-  const int color = attribute("COLOR_0");
+  const int position = attribute("POSITION");
   if (position < 0)
     return file_.warn_once("a primitive without positions is left out", scene_.warnings);
   const std::size_t vertices = file_.count(position);
   count(vertices);
   const std::vector<double> positions = file_.vectors(position, 3, "POSITION");
-  std::vector<double> colors;
-  if (color >= 0) {
-    colors = file_.vectors(color, 3, "COLOR_0");
-    if (colors.size() != positions.size()) file_.fail("not as many colours as positions");
-    to.colors_are_linear();
-  }
+  const auto optional = [&](const std::string& name, int width) {
+    return file_.optional_vectors(attribute(name), width, name.c_str(), vertices, scene_.warnings);
+  };
+  const std::vector<double> normals = optional("NORMAL", 3), colors = optional("COLOR_0", 3);
+  if (!colors.empty()) to.colors_are_linear();
   const int set = materials_.texcoord_set(primitive.material);
-  const int texcoord = set < 0 ? -1 : attribute("TEXCOORD_" + std::to_string(set));
+  std::vector<double> texcoords;
+  if (set >= 0) texcoords = optional("TEXCOORD_" + std::to_string(set), 2);
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
   count(corners.size());
   if (corners.size() % 3 != 0)
     file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
 
   const MeshBuilder::Counts before = to.counts();
-  const double sign = glm::determinant(glm::dmat3(world)) < 0.0 ? -1.0 : 1.0;
+  const glm::dmat3 turn(world);
+  const double sign = glm::determinant(turn) < 0.0 ? -1.0 : 1.0;
+  // The inverse transpose but for a factor, which a flat matrix has, too.
+  const glm::dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
+                             glm::cross(turn[0], turn[1]));
   for (std::size_t i = 0; i < vertices; ++i) {
     const glm::dvec3 at(
         world * glm::dvec4(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2], 1.0));
@@ -86,10 +89,13 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
       file_.fail("a vertex is beyond the range of float");
     }
     to.add_position(at);
-    if (color >= 0) to.add_color({colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]});
+    if (!colors.empty()) to.add_color({colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]});
+    if (!normals.empty()) {
+      to.add_normal(
+          sign * (cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2])));
+    }
+    if (!texcoords.empty()) to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
   }
-  if (normal >= 0) add_normals(normal, glm::dmat3(world), sign, vertices, to);
-  if (texcoord >= 0) add_texcoords(texcoord, vertices, to);
 
   const std::size_t first_face = to.face_count();
   for (std::size_t i = 0; i < corners.size(); i += 3) {
@@ -103,38 +109,15 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
       const auto number = [&](std::size_t earlier) {
         return static_cast<std::int32_t>(earlier + vertex + 1);
       };
-      face[k] = {number(before.positions), texcoord >= 0 ? number(before.texcoords) : 0,
-                 normal >= 0 ? number(before.normals) : 0};
+      face[k] = {number(before.positions), texcoords.empty() ? 0 : number(before.texcoords),
+                 normals.empty() ? 0 : number(before.normals)};
     }
     to.add_face(face, 0);
   }
   const std::uint32_t material = materials_.number_of(primitive.material);
-  if (primitive.material < 0 && color >= 0) scene_.materials[material].diffuse = glm::vec3(1.0f);
+  if (primitive.material < 0 && !colors.empty())
+    scene_.materials[material].diffuse = glm::vec3(1.0f);
   to.assign_faces(first_face, to.face_count(), material, object);
-}
-
-void GltfMeshes::add_normals(int accessor, const glm::dmat3& world, double sign,
-                             std::size_t vertices, MeshBuilder& to) const {
-  const std::vector<double> normals = file_.vectors(accessor, 3, "NORMAL");
-  if (normals.size() != 3 * vertices) file_.fail("not as many normals as positions");
-  // The inverse transpose but for a factor, which a flat matrix has, too.
-  const glm::dmat3 cofactors(glm::cross(world[1], world[2]), glm::cross(world[2], world[0]),
-                             glm::cross(world[0], world[1]));
-  for (std::size_t i = 0; i < vertices; ++i) {
-    const glm::dvec3 turned =
-        cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
-    to.add_normal(is_finite(turned) ? sign * turned : glm::dvec3(0.0));
-  }
-}
-
-void GltfMeshes::add_texcoords(int accessor, std::size_t vertices, MeshBuilder& to) const {
-  const std::vector<double> texcoords = file_.vectors(accessor, 2, "TEXCOORD");
-  if (texcoords.size() != 2 * vertices) {
-    file_.fail("not as many texture coordinates as positions");
-  }
-  for (std::size_t i = 0; i < vertices; ++i) {
-    to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
-  }
 }
 
 }  // namespace raygate

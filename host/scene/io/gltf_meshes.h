@@ -35,9 +35,6 @@ class GltfMeshes {
   /// The triangles' corners, as numbers of the primitive's vertices.
   [[nodiscard]] std::vector<std::uint32_t> corners_of(const tinygltf::Primitive& primitive,
                                                       std::size_t vertices);
-  void add_normals(int accessor, const glm::dmat3& world, double sign, std::size_t vertices,
-                   MeshBuilder& to) const;
-  void add_texcoords(int accessor, std::size_t vertices, MeshBuilder& to) const;
 
   const GltfFile& file_;
   Scene& scene_;

@@ -34,7 +34,9 @@ class MeshBuilder {
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   void add_normal(const glm::dvec3& normal);
 
-  /// At least three corners. `line` is for messages; 0 in a file without lines.
+  /// Adds a polygon. One of fewer than three corners is left out by build(), with a warning; a
+  /// corner whose normal or texture coordinate does not exist costs the face all of these. `line`
+  /// is for messages; 0 in a file without lines.
   void add_face(std::span<const FileCorner> corners, std::size_t line);
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
   /// Gives faces by number, from `begin` to `end`, their material, object and smoothing group; 0
@@ -88,8 +90,7 @@ class MeshBuilder {
   };
   class WarningCount;
 
-  [[nodiscard]] std::uint32_t resolve(std::int32_t index, std::size_t count, const char* what,
-                                      std::size_t line) const;
+  [[nodiscard]] static std::uint32_t resolve(std::int32_t index, std::size_t count);
   void check_indices() const;
   void recentre(Scene& scene);
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;

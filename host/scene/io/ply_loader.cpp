@@ -222,8 +222,7 @@ class PlyReader {
       mesh_.add_position({values[0], values[1], values[2]});
       if (has_colors) mesh_.add_color({values[kColor], values[kColor + 1], values[kColor + 2]});
       if (!has_normals_) continue;
-      const glm::dvec3 normal(values[3], values[4], values[5]);
-      mesh_.add_normal(is_finite(normal) ? normal : glm::dvec3(0.0));
+      mesh_.add_normal({values[3], values[4], values[5]});
     }
   }
 
@@ -311,11 +310,6 @@ class PlyReader {
           const double index = take(property.type, "a vertex index");
           corners.push_back(corner_of(position_of(index)));
         }
-      }
-      if (corners.size() < 3) {
-        throw InputError(
-            name_, face_line,
-            "face with " + std::to_string(corners.size()) + " corners, expected at least 3");
       }
       mesh_.add_face(corners, face_line);
     }

@@ -35,8 +35,9 @@ struct LoadOptions {
 ///
 /// Throws InputError, with a line of what is text, for any other ending, with what to do about it;
 /// for what cannot be read or breaks its format; an index of no vertex, a number that is not
-/// finite, a damaged texture; no face with an area. Warns (Scene::warnings) and goes on where a
-/// material or texture is missing, or something is left out.
+/// finite in a position; no face with an area. Warns (Scene::warnings) and goes on where a material
+/// or texture is missing or damaged, a normal or texture coordinate is bad, or something is left
+/// out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// The file of this stem that is there, by the first of those endings: "room" gives "room.obj",
