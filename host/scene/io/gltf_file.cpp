@@ -19,13 +19,17 @@
 namespace raygate {
 namespace {
 
-/// What may stand in extensionsRequired: read, or of no consequence.
-constexpr std::string_view kKnown[] = {"KHR_lights_punctual",     "KHR_materials_emissive_strength",
-                                       "KHR_materials_ior",       "KHR_materials_transmission",
-                                       "KHR_materials_unlit",     "KHR_mesh_quantization",
-                                       "KHR_texture_transform",   "KHR_materials_specular",
-                                       "KHR_materials_clearcoat", "KHR_materials_volume",
-                                       "KHR_materials_sheen",     "KHR_materials_variants"};
+/// Extensions that are read. Of others that are used a warning says so.
+constexpr std::string_view kRead[] = {
+    "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_mesh_quantization",      "KHR_texture_transform"};
+
+/// Extensions without which a file that requires them looks plainer, and no worse.
+constexpr std::string_view kDispensable[] = {"KHR_materials_sheen", "KHR_materials_variants",
+                                             "KHR_materials_volume"};
 
 constexpr std::string_view kCompressions[] = {"KHR_draco_mesh_compression",
                                               "EXT_meshopt_compression", "KHR_meshopt_compression"};
@@ -145,8 +149,15 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
   if (!model_.asset.version.starts_with("2.")) {
     fail("glTF version " + in_quotes(model_.asset.version) + ", expected 2.0");
   }
+  const auto is_in = [](const auto& list, const std::string& extension) {
+    return std::ranges::find(list, extension) != std::end(list);
+  };
   for (const std::string& extension : model_.extensionsRequired) {
-    if (std::ranges::find(kKnown, extension) == std::end(kKnown)) fail_extension(extension);
+    if (!is_in(kRead, extension) && !is_in(kDispensable, extension)) fail_extension(extension);
+  }
+  for (const std::string& extension : model_.extensionsUsed) {
+    if (is_in(kRead, extension)) continue;
+    warn_once("the extension " + in_quotes(extension) + " is not read", warnings_);
   }
 }
 
@@ -203,7 +214,26 @@ struct GltfFile::Elements {
   const Component* component;
   int components;
   bool normalized;
+  std::vector<char> own;  // the elements, where no buffer has them as they are
+
+  [[nodiscard]] std::size_t size() const {
+    return bytes_of(component->type) * static_cast<std::size_t>(components);
+  }
 };
+
+void GltfFile::find_stored(int buffer_view, std::size_t offset, const std::string& number,
+                           Elements& elements) const {
+  const tinygltf::BufferView& view = at(model_.bufferViews, buffer_view, "buffer view");
+  const tinygltf::Buffer& buffer = at(model_.buffers, view.buffer, "buffer");
+  const std::size_t element = elements.size(), whole = buffer.data.size();
+  elements.stride = view.byteStride == 0 ? element : view.byteStride;
+  const bool is_within =
+      view.byteOffset <= whole && view.byteLength <= whole - view.byteOffset &&
+      offset <= view.byteLength && elements.count > 0 && element <= view.byteLength - offset &&
+      elements.count - 1 <= (view.byteLength - offset - element) / elements.stride;
+  if (!is_within) fail(number + "beyond its buffer, which ends too soon");
+  elements.first = reinterpret_cast<const char*>(buffer.data.data() + view.byteOffset + offset);
+}
 
 GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
   static constexpr Component kComponents[] = {
@@ -215,23 +245,45 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
       {TINYGLTF_COMPONENT_TYPE_FLOAT, NumberType::kFloat, 1.0}};
   const std::string number = "accessor " + std::to_string(accessor) + " (" + what + "): ";
   const tinygltf::Accessor& a = at(model_.accessors, accessor, "accessor");
-  if (a.sparse.isSparse) fail(number + "sparse, which is not read");
-  const tinygltf::BufferView& view = at(model_.bufferViews, a.bufferView, "buffer view");
-  const tinygltf::Buffer& buffer = at(model_.buffers, view.buffer, "buffer");
-  const auto* const component = std::ranges::find(kComponents, a.componentType, &Component::code);
-  const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
-  if (component == std::end(kComponents) || components <= 0) fail(number + "of an unknown type");
-  const std::size_t element = bytes_of(component->type) * static_cast<std::size_t>(components);
-  const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
-  const std::size_t whole = buffer.data.size();
-  const bool is_within = view.byteOffset <= whole && view.byteLength <= whole - view.byteOffset &&
-                         a.byteOffset <= view.byteLength && a.count > 0 &&
-                         element <= view.byteLength - a.byteOffset &&
-                         a.count - 1 <= (view.byteLength - a.byteOffset - element) / stride;
-  if (!is_within) fail(number + "beyond its buffer, which ends too soon");
-  const unsigned char* const first = buffer.data.data() + view.byteOffset + a.byteOffset;
-  return {
-      reinterpret_cast<const char*>(first), stride, a.count, component, components, a.normalized};
+  const auto typed = [&](int component_type, int components, std::size_t count) {
+    const auto* const component = std::ranges::find(kComponents, component_type, &Component::code);
+    if (component == std::end(kComponents) || components <= 0) fail(number + "of an unknown type");
+    return Elements{nullptr, 0, count, component, components, a.normalized, {}};
+  };
+  Elements result =
+      typed(a.componentType, tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)),
+            a.count);
+  if (a.bufferView >= 0) find_stored(a.bufferView, a.byteOffset, number, result);
+  if (a.bufferView >= 0 && !a.sparse.isSparse) return result;
+  // Elements of no buffer are 0; sparse ones are replaced.
+  constexpr std::size_t kMost = 12'000'000;
+  if (a.count > kMost + bytes_) fail(number + "too many elements without a buffer");
+  const std::size_t size = result.size();
+  std::vector<char> own(size * a.count);
+  for (std::size_t i = 0; result.first != nullptr && i < a.count; ++i) {
+    std::copy_n(result.first + i * result.stride, size, own.data() + i * size);
+  }
+  if (a.sparse.isSparse && a.sparse.count > 0) {
+    const auto count = static_cast<std::size_t>(a.sparse.count);
+    Elements places = typed(a.sparse.indices.componentType, 1, count);
+    Elements values = typed(a.componentType, result.components, count);
+    find_stored(a.sparse.indices.bufferView, static_cast<std::size_t>(a.sparse.indices.byteOffset),
+                number, places);
+    find_stored(a.sparse.values.bufferView, static_cast<std::size_t>(a.sparse.values.byteOffset),
+                number, values);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double place = number_at(places.first + i * places.stride, places.component->type);
+      if (!(place >= 0.0 && place < static_cast<double>(a.count))) {
+        fail(number + "a sparse element beyond its end");
+      }
+      std::copy_n(values.first + i * values.stride, size,
+                  own.data() + static_cast<std::size_t>(place) * size);
+    }
+  }
+  result.own = std::move(own);
+  result.first = result.own.data();
+  result.stride = size;
+  return result;
 }
 
 std::vector<double> GltfFile::vectors(int accessor, int width, const char* what) const {

@@ -65,6 +65,9 @@ class GltfFile {
   struct Component;
   struct Elements;
   [[nodiscard]] Elements elements(int accessor, const char* what) const;
+  /// Sets where elements of that type and count are stored; fails where their buffer ends too soon.
+  void find_stored(int buffer_view, std::size_t offset, const std::string& number,
+                   Elements& elements) const;
   [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;
   [[noreturn]] void fail_extension(const std::string& extension) const;
   [[noreturn]] void fail_index(const char* what, int index, std::size_t count) const;

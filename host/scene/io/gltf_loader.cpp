@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -30,6 +31,9 @@ bool has_finite_elements(const glm::dmat4& m) {
   return true;
 }
 
+/// A mesh by number, with the weights of its morph targets.
+using Shape = std::pair<int, std::vector<double>>;
+
 /// A mesh that stands in several places.
 struct SharedMesh {
   Scene part;                              // until it is the scene's
@@ -39,7 +43,7 @@ struct SharedMesh {
 
 /// One of these places.
 struct MeshInstance {
-  int mesh;
+  Shape shape;
   glm::dmat4 world;
   std::uint32_t object;
 };
@@ -80,9 +84,7 @@ class GltfReader {
     if (!options_.keep_instances) resolve_instances(scene_, InstanceMode::kFlatten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
-    if (!file_.model().animations.empty() || !file_.model().skins.empty()) {
-      warn_once("animations and skins are not read");
-    }
+    if (!file_.model().animations.empty()) warn_once("animations are not read");
     return std::move(scene_);
   }
 
@@ -138,10 +140,33 @@ class GltfReader {
     }
   }
 
+  [[nodiscard]] Shape shape_of(const tinygltf::Node& node) const {
+    const tinygltf::Mesh& mesh = file_.at(file_.model().meshes, node.mesh, "mesh");
+    return {node.mesh, node.weights.empty() ? mesh.weights : node.weights};
+  }
+
   void count_uses(const tinygltf::Node& node) {
-    if (node.mesh < 0) return;
+    if (node.mesh < 0 || node.skin >= 0) return;
     const bool many = node.extensions.contains("EXT_mesh_gpu_instancing");
-    uses_[node.mesh] += many ? 2 : 1;
+    uses_[shape_of(node)] += many ? 2 : 1;
+  }
+
+  /// Returns where the joints of a skin take their vertices.
+  [[nodiscard]] std::vector<glm::dmat4> joints_of(int number) {
+    const tinygltf::Model& model = file_.model();
+    const tinygltf::Skin& skin = file_.at(model.skins, number, "skin");
+    std::vector<glm::dmat4> joints;
+    for (const int joint : skin.joints) {
+      const tinygltf::Node* const node = &file_.at(model.nodes, joint, "node");
+      const auto placed =
+          std::ranges::find(nodes_, node, &std::pair<const tinygltf::Node*, glm::dmat4>::first);
+      joints.push_back(placed == nodes_.end() ? glm::dmat4(1.0) : placed->second);
+    }
+    const std::vector<double> inverse = file_.optional_vectors(
+        skin.inverseBindMatrices, 16, "inverseBindMatrices", joints.size(), scene_.warnings);
+    for (std::size_t i = 0; i < inverse.size() / 16; ++i)
+      joints[i] *= glm::make_mat4(&inverse[16 * i]);
+    return joints;
   }
 
   void read_node(const tinygltf::Node& node, const glm::dmat4& world) {
@@ -152,12 +177,15 @@ class GltfReader {
       scene_.objects.push_back(!node.name.empty()   ? node.name
                                : !mesh.name.empty() ? mesh.name
                                                     : "object " + std::to_string(object));
-      if (uses_[node.mesh] > 1) {
+      const Shape shape = shape_of(node);
+      if (node.skin >= 0) {
+        meshes_.read(mesh, {world, &shape.second, joints_of(node.skin)}, object, builder_);
+      } else if (uses_[shape] > 1) {
         for (const glm::dmat4& own : file_.instance_transforms(node)) {
-          instances_.push_back({node.mesh, world * own, object});
+          instances_.push_back({shape, world * own, object});
         }
       } else {
-        meshes_.read(mesh, world, object, builder_);
+        meshes_.read(mesh, {world, &shape.second, {}}, object, builder_);
       }
     }
     if (node.camera >= 0) read_camera(file_.at(model.cameras, node.camera, "camera"), world);
@@ -170,13 +198,13 @@ class GltfReader {
   }
 
   /// The mesh of an instance, read when it is first asked for: in its own coordinates.
-  SharedMesh& shared(int number) {
-    const auto [at, is_new] = shared_.try_emplace(number);
+  SharedMesh& shared(const Shape& shape) {
+    const auto [at, is_new] = shared_.try_emplace(shape);
     if (!is_new) return at->second;
     MeshBuilder builder(file_.name());
     builder.allow_empty();
-    meshes_.read(file_.model().meshes[static_cast<std::size_t>(number)], glm::dmat4(1.0), 0,
-                 builder);
+    meshes_.read(file_.model().meshes[static_cast<std::size_t>(shape.first)],
+                 {glm::dmat4(1.0), &shape.second, {}}, 0, builder);
     Scene& part = at->second.part;
     builder.build(options_, part);
     at->second.box = bounds_of(part.positions);
@@ -185,7 +213,7 @@ class GltfReader {
 
   /// The whole scene is recentred. And what will be flattened is counted.
   void expand_extent(const MeshInstance& instance) {
-    const auto& [part, own_box, ignored] = shared(instance.mesh);
+    const auto& [part, own_box, ignored] = shared(instance.shape);
     if (part.triangles.empty()) return;
     if (!options_.keep_instances) meshes_.count(part.positions.size() + 3 * part.triangles.size());
     const Bounds3 box = transform_bounds(instance.world, part.origin, own_box);
@@ -196,7 +224,7 @@ class GltfReader {
   }
 
   void add_instance(const MeshInstance& instance) {
-    SharedMesh& mesh = shared(instance.mesh);
+    SharedMesh& mesh = shared(instance.shape);
     if (!mesh.instancer) {
       if (mesh.part.triangles.empty()) return;
       mesh.instancer.emplace(scene_, std::move(mesh.part));
@@ -293,8 +321,8 @@ class GltfReader {
   MeshBuilder builder_;  // of meshes that stand in one place
   GltfMeshes meshes_;
   std::vector<std::pair<const tinygltf::Node*, glm::dmat4>> nodes_;  // in their order
-  std::map<int, int> uses_;                                          // of meshes, by number
-  std::map<int, SharedMesh> shared_;
+  std::map<Shape, int> uses_;
+  std::map<Shape, SharedMesh> shared_;
   std::vector<MeshInstance> instances_;
   std::vector<PlacedLight> lights_;
 };

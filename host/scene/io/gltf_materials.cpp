@@ -77,6 +77,12 @@ tinygltf::TextureInfo texture_in(const tinygltf::Material& material, const char*
   return info;
 }
 
+Wrap wrap_of(int mode) {
+  return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::kClamp
+         : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirror
+                                                         : Wrap::kRepeat;
+}
+
 constexpr const char *kCoat = "KHR_materials_clearcoat", *kSpecular = "KHR_materials_specular",
                      *kTransmission = "KHR_materials_transmission";
 
@@ -170,18 +176,40 @@ MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& ext
   }
   map.texture = entry->second;
   if (from.sampler >= 0) {
-    map.mapping.clamp = file_.at(model.samplers, from.sampler, "sampler").wrapS ==
-                        TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    const tinygltf::Sampler& sampler = file_.at(model.samplers, from.sampler, "sampler");
+    map.mapping.sampling.u = wrap_of(sampler.wrapS);
+    map.mapping.sampling.v = wrap_of(sampler.wrapT);
+    map.mapping.sampling.is_nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
   }
   const auto transform = extensions.find("KHR_texture_transform");
   if (transform == extensions.end()) return map;
   map.mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
-  // Their v runs down: 1 - (s v + o) = s (1 - v) + 1 - s - o.
+  // The file's v runs down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
   const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
-  map.mapping.offset = {offset.x, 1.0f - map.mapping.scale.y - offset.y};
-  if (transform->second.Has("rotation"))
-    file_.warn_once("a texture's rotation is not read", scene_.warnings);
+  const double angle = number_in(extensions, "KHR_texture_transform", "rotation", 0.0);
+  map.mapping.turn = {std::cos(angle), std::sin(angle)};
+  const glm::vec2 up = map.mapping.scale.y * map.mapping.turn;
+  map.mapping.offset = {offset.x + up.y, 1.0f - up.x - offset.y};
   return map;
+}
+
+bool GltfMaterials::has_opacity(int material) const {
+  if (material < 0) return false;
+  const std::string& mode = file_.at(file_.model().materials, material, "material").alphaMode;
+  return mode == "MASK" || mode == "BLEND";
+}
+
+void GltfMaterials::use_vertex_opacity(int material) {
+  const tinygltf::Material& from = file_.at(file_.model().materials, material, "material");
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  const tinygltf::TextureInfo& base = pbr.baseColorTexture;
+  Material& to = scene_.materials[number_of(material)];
+  to.has_vertex_opacity = true;
+  to.opacity_blends = from.alphaMode == "BLEND";
+  to.opacity_map = map_of(base.index, base.extensions, Texture::Content::kAlpha);
+  const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
+  if (!to.opacity_blends)
+    to.opacity_cutoff = static_cast<float>(std::max(from.alphaCutoff, 0.0) / factor);
 }
 
 /// Opacity: as it is, by a factor; or a mask, which the base colour's texture is, too.
@@ -190,7 +218,7 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
   const bool is_mask = from.alphaMode == "MASK";
   const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
-  const double cutoff = in_unit(from.alphaCutoff);
+  const double cutoff = std::max(from.alphaCutoff, 0.0);  // above 1 nothing is left
   if (!is_mask) material.opacity = static_cast<float>(factor);
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
   const tinygltf::TextureInfo& base = pbr.baseColorTexture;

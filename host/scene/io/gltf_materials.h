@@ -24,6 +24,10 @@ class GltfMaterials {
   std::uint32_t number_of(int material);
   /// Which set of texture coordinates its textures ask for; -1: it has none.
   [[nodiscard]] int texcoord_set(int material);
+  /// Whether the opacity of its vertices counts.
+  [[nodiscard]] bool has_opacity(int material) const;
+  /// Multiplies its opacity by that of its vertices.
+  void use_vertex_opacity(int material);
 
  private:
   Material translated(const tinygltf::Material& from);

@@ -77,6 +77,16 @@ void MeshBuilder::add_normal(const glm::dvec3& normal) {
   normals_.push_back(has_direction ? glm::vec3(unit(normal)) : glm::vec3(0.0f));
 }
 
+void MeshBuilder::add_tangent(const glm::vec4& tangent) {
+  tangents_.resize(normals_.size() - 1, glm::vec4(0.0f));
+  tangents_.push_back(tangent);
+}
+
+void MeshBuilder::add_opacity(float opacity) {
+  opacities_.resize(texcoords_.size() - 1, 1.0f);
+  opacities_.push_back(opacity);
+}
+
 std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count) {
   if (index == 0) return kNoIndex;
   if (index > 0) return static_cast<std::uint32_t>(index - 1);
@@ -264,7 +274,9 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     throw InputError(file_name_ + ": no face has an area");
   }
   scene.normals = std::move(normals_);
+  scene.tangents = std::move(tangents_);
   scene.texcoords = std::move(texcoords_);
+  scene.opacities = std::move(opacities_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);
   } else if (options.smooth_if_unsaid && !is_smoothing_said_ && scene.normals.empty()) {

@@ -247,7 +247,7 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
     if (option == kTextureOptions.end()) break;  // a file whose name begins with '-'
     words = rest;
     if (name == "-clamp") {
-      mapping.clamp = take_token(rest) == "on" || mapping.clamp;
+      if (take_token(rest) == "on") mapping.sampling = Wrap::kClamp;
       words = rest;
     } else if (name == "-s") {
       mapping.scale = take_texture_vector(map + " -s", words);

@@ -133,6 +133,15 @@ INSTANTIATE_TEST_SUITE_P(
                     ":14: face of fewer than 3 corners, left out"},
         ForeignFile{"EmptyFacePly", ".ply", kPly + "0\n"s, "1 0 0 0",
                     ":14: face of fewer than 3 corners, left out"},
+        ForeignFile{
+            "TexturePly", ".ply",
+            "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\n"
+            "property float x\nproperty float y\nproperty float z\nproperty float s\n"
+            "element face 1\nproperty list uchar int vertex_indices\n"
+            "property list uchar float texcoord\nelement edge 1\nproperty int vertex1\n"
+            "end_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2 0\n0\n",
+            "1 0 0 0",
+            ": not read: texture 'a.png', 's' of vertex, 'texcoord' of face, element 'edge'"},
         ForeignFile{"TextureOfUnknownType", ".obj", textured("webp.mtl"), "1 1 1 0",
                     "pic.webp: not a PNG, JPEG, TGA or BMP picture"},
         ForeignFile{"TextureCutOff", ".obj", textured("cut.mtl"), "1 1 1 0",
