@@ -71,6 +71,7 @@ class Digest {
     add(m.scale, m.offset, clamps);
     if (!clamps && m.sampling != Sampling()) add(m.sampling.u, m.sampling.v, m.sampling.is_nearest);
     if (m.turn != glm::vec2(1.0f, 0.0f)) add(m.turn);
+    if (m.is_second) add(m.is_second);
   }
   void add(const MaterialMap& m) { add(m.mapping, m.texture); }
   void add(const MetallicRoughness& m) {
@@ -129,6 +130,7 @@ std::string digest_of(const Scene& scene) {
              scene.origin);
   if (!scene.colors.empty()) digest.add(scene.colors);
   if (!scene.tangents.empty()) digest.add(scene.tangents);
+  if (!scene.second_texcoords.empty()) digest.add(scene.second_texcoords);
   if (!scene.opacities.empty()) digest.add(scene.opacities);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(digest.value()));

@@ -8,6 +8,14 @@
 namespace raygate {
 namespace {
 
+/// The texture coordinates of a vertex of a triangle that has some.
+glm::dvec2 texcoord(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
+                    std::size_t vertex) {
+  const std::uint32_t at = triangle.texcoords[vertex];
+  const bool is_second = mapping.is_second && at < scene.second_texcoords.size();
+  return glm::dvec2(is_second ? scene.second_texcoords[at] : scene.texcoords[at]);
+}
+
 /// Texture coordinates, or differences of them, scaled and turned.
 glm::dvec2 turned(const TextureMapping& mapping, const glm::dvec2& uv) {
   const glm::dvec2 scaled = uv * glm::dvec2(mapping.scale), turn(mapping.turn);
@@ -19,7 +27,7 @@ glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Tri
                     const glm::dvec3& weights) {
   glm::dvec2 uv(0.0);
   for (int k = 0; k < 3; ++k) {
-    uv += weights[k] * glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(k)]]);
+    uv += weights[k] * texcoord(mapping, scene, triangle, static_cast<std::size_t>(k));
   }
   return turned(mapping, uv) + glm::dvec2(mapping.offset);
 }
@@ -103,9 +111,7 @@ bool is_nowhere_masked(const Scene& scene, const Triangle& triangle, const glm::
   const Material& material = scene.materials[triangle.material];
   double least = 1.0;
   if (const MaterialMap& map = material.opacity_map; map.texture != kNoIndex) {
-    const auto uv = [&](std::size_t k) {
-      return glm::dvec2(scene.texcoords[triangle.texcoords[k]]);
-    };
+    const auto uv = [&](std::size_t k) { return texcoord(map.mapping, scene, triangle, k); };
     // Changes of weights have the sum 0.
     const glm::dvec2 reach = change.y * glm::abs(turned(map.mapping, uv(1) - uv(0))) +
                              change.z * glm::abs(turned(map.mapping, uv(2) - uv(0)));
@@ -133,7 +139,7 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
   const MaterialMap& map = material.normal_map;
   if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return normal;
   const auto uv = [&](std::size_t k) {
-    return turned(map.mapping, glm::dvec2(scene.texcoords[triangle.texcoords[k]]));
+    return turned(map.mapping, texcoord(map.mapping, scene, triangle, k));
   };
   const glm::dvec2 to_1 = uv(1) - uv(0), to_2 = uv(2) - uv(0);
   const glm::dvec3 a(corners[0]), edge_1 = glm::dvec3(corners[1]) - a,

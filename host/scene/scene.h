@@ -26,6 +26,7 @@ struct TextureMapping {
   glm::vec2 offset{0.0f};      ///< -o
   Sampling sampling;           ///< -clamp on: Wrap::kClamp
   glm::vec2 turn{1.0f, 0.0f};  ///< cosine and sine of a counter-clockwise rotation
+  bool is_second = false;      ///< it is of Scene::second_texcoords
 };
 
 /// A texture that a material names, and where it lies.
@@ -181,6 +182,8 @@ struct Scene {
   /// along cross(normal, x)). 0, and beyond the end: as the texture coordinates say.
   std::vector<glm::vec4> tangents;
   std::vector<glm::vec2> texcoords;
+  /// Of the texture coordinates, in their order: a second set. It may be shorter.
+  std::vector<glm::vec2> second_texcoords;
   /// Of the texture coordinates, in their order: the vertices' opacity. Beyond the end it is 1.
   std::vector<float> opacities;
   std::vector<Triangle> triangles;

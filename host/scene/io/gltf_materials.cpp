@@ -83,6 +83,13 @@ Wrap wrap_of(int mode) {
                                                          : Wrap::kRepeat;
 }
 
+/// The number of the set of coordinates that a texture asks for.
+template <class TextureInfo>
+int set_of(const TextureInfo& info) {
+  return static_cast<int>(
+      number_in(info.extensions, "KHR_texture_transform", "texCoord", info.texCoord));
+}
+
 constexpr const char *kCoat = "KHR_materials_clearcoat", *kSpecular = "KHR_materials_specular",
                      *kTransmission = "KHR_materials_transmission";
 
@@ -101,24 +108,27 @@ std::uint32_t GltfMaterials::number_of(int material) {
   return entry->second;
 }
 
-int GltfMaterials::texcoord_set(int material) {
-  if (material < 0) return -1;
-  const tinygltf::Material& from = file_.at(file_.model().materials, material, "material");
+GltfMaterials::Sets GltfMaterials::texcoord_sets(int material) {
+  if (material < 0) return {-1, -1};
+  return sets_of(file_.at(file_.model().materials, material, "material"));
+}
+
+GltfMaterials::Sets GltfMaterials::sets_of(const tinygltf::Material& from) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-  int set = -1;
-  const auto look_at = [&](int texture, int texcoord, const tinygltf::ExtensionMap& extensions) {
-    if (texture < 0) return;
-    const int its =
-        static_cast<int>(number_in(extensions, "KHR_texture_transform", "texCoord", texcoord));
-    if (set >= 0 && its != set) {
-      file_.warn_once(
-          "of textures of one material with several sets of coordinates the first has its own",
-          scene_.warnings);
+  Sets sets{-1, -1};
+  const auto look = [&](const auto& info) {
+    if (info.index < 0) return;
+    const int set = set_of(info);
+    auto at = std::ranges::find(sets, set);
+    if (at == sets.end()) at = std::ranges::find(sets, -1);
+    if (at != sets.end()) {
+      *at = set;
     } else {
-      set = its;
+      file_.warn_once(
+          "of textures of one material with three sets of coordinates the third is not read",
+          scene_.warnings);
     }
   };
-  const auto look = [&](const auto& info) { look_at(info.index, info.texCoord, info.extensions); };
   look(pbr.baseColorTexture);
   look(pbr.metallicRoughnessTexture);
   look(from.normalTexture);
@@ -128,7 +138,7 @@ int GltfMaterials::texcoord_set(int material) {
   look(texture_in(from, kTransmission, "transmissionTexture"));
   look(texture_in(from, kSpecular, "specularTexture"));
   look(texture_in(from, kSpecular, "specularColorTexture"));
-  return set;
+  return sets;
 }
 
 std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content content) {
@@ -160,10 +170,12 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
   }
 }
 
-MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& extensions,
-                                  Texture::Content content) {
+template <class TextureInfo>
+MaterialMap GltfMaterials::map_of(const TextureInfo& info, Texture::Content content) {
   MaterialMap map;
+  const int texture = info.index;
   if (texture < 0) return map;
+  map.mapping.is_second = set_of(info) == sets_[1];
   const tinygltf::Model& model = file_.model();
   const tinygltf::Texture& from = file_.at(model.textures, texture, "texture");
   const auto [entry, is_new] =
@@ -181,12 +193,12 @@ MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& ext
     map.mapping.sampling.v = wrap_of(sampler.wrapT);
     map.mapping.sampling.is_nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
   }
-  const auto transform = extensions.find("KHR_texture_transform");
-  if (transform == extensions.end()) return map;
+  const auto transform = info.extensions.find("KHR_texture_transform");
+  if (transform == info.extensions.end()) return map;
   map.mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
   // The file's v runs down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
   const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
-  const double angle = number_in(extensions, "KHR_texture_transform", "rotation", 0.0);
+  const double angle = number_in(info.extensions, "KHR_texture_transform", "rotation", 0.0);
   map.mapping.turn = {std::cos(angle), std::sin(angle)};
   const glm::vec2 up = map.mapping.scale.y * map.mapping.turn;
   map.mapping.offset = {offset.x + up.y, 1.0f - up.x - offset.y};
@@ -204,9 +216,10 @@ void GltfMaterials::use_vertex_opacity(int material) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
   const tinygltf::TextureInfo& base = pbr.baseColorTexture;
   Material& to = scene_.materials[number_of(material)];
+  sets_ = sets_of(from);
   to.has_vertex_opacity = true;
   to.opacity_blends = from.alphaMode == "BLEND";
-  to.opacity_map = map_of(base.index, base.extensions, Texture::Content::kAlpha);
+  to.opacity_map = map_of(base, Texture::Content::kAlpha);
   const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
   if (!to.opacity_blends)
     to.opacity_cutoff = static_cast<float>(std::max(from.alphaCutoff, 0.0) / factor);
@@ -223,7 +236,7 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
   const tinygltf::TextureInfo& base = pbr.baseColorTexture;
   if (base.index < 0 || material.opacity == 0.0f) return;
-  MaterialMap map = map_of(base.index, base.extensions, Texture::Content::kAlpha);
+  MaterialMap map = map_of(base, Texture::Content::kAlpha);
   const double least = is_mask ? cutoff / factor : 1.0;
   if (map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least) return;
   material.opacity_map = std::move(map);
@@ -234,6 +247,7 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
 Material GltfMaterials::translated(const tinygltf::Material& from) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
   Material material;
+  sets_ = sets_of(from);
   material.name = from.name;
   const glm::vec3 base = colour_of(pbr.baseColorFactor);
   material.diffuse = base;
@@ -241,13 +255,11 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
   shares.metallic = static_cast<float>(in_unit(pbr.metallicFactor));
   shares.roughness = static_cast<float>(in_unit(pbr.roughnessFactor));
   const auto colour = Texture::Content::kColour;
-  shares.map =
-      map_of(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.extensions, colour);
-  const MaterialMap diffuse =
-      map_of(pbr.baseColorTexture.index, pbr.baseColorTexture.extensions, colour);
+  shares.map = map_of(pbr.metallicRoughnessTexture, colour);
+  const MaterialMap diffuse = map_of(pbr.baseColorTexture, colour);
   material.diffuse_texture = diffuse.texture;
   material.diffuse_mapping = diffuse.mapping;
-  material.normal_map = map_of(from.normalTexture.index, from.normalTexture.extensions, colour);
+  material.normal_map = map_of(from.normalTexture, colour);
   material.normal_scale =
       static_cast<float>(std::isfinite(from.normalTexture.scale) ? from.normalTexture.scale : 1.0);
   set_opacity(from, material);
@@ -259,15 +271,14 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
                           ? colour_of(from.emissiveFactor) * static_cast<float>(strength)
                           : glm::vec3(0.0f);
   if (material.emission != glm::vec3(0.0f)) {
-    material.emission_map =
-        map_of(from.emissiveTexture.index, from.emissiveTexture.extensions, colour);
+    material.emission_map = map_of(from.emissiveTexture, colour);
   }
   const auto share = [&](const char* extension, const char* key, double otherwise) {
     return static_cast<float>(in_unit(number_in(from.extensions, extension, key, otherwise)));
   };
   const auto map = [&](const char* extension, const char* key, Texture::Content content) {
     const tinygltf::TextureInfo info = texture_in(from, extension, key);
-    return map_of(info.index, info.extensions, content);
+    return map_of(info, content);
   };
   shares.specular = share(kSpecular, "specularFactor", 1.0);
   shares.specular_map = map(kSpecular, "specularTexture", Texture::Content::kAlpha);

@@ -139,9 +139,12 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement&
   const std::size_t channels = has_alpha ? 4 : 3;
   const std::vector<double> colors = read("COLOR_0", static_cast<int>(channels));
   if (!colors.empty()) to.colors_are_linear();
-  const int set = materials_.texcoord_set(primitive.material);
-  std::vector<double> texcoords;
-  if (set >= 0) texcoords = read("TEXCOORD_" + std::to_string(set), 2);
+  const auto [set, second_set] = materials_.texcoord_sets(primitive.material);
+  const auto read_set = [&](int number) {
+    return number < 0 ? std::vector<double>() : read("TEXCOORD_" + std::to_string(number), 2);
+  };
+  std::vector<double> texcoords = read_set(set);
+  const std::vector<double> seconds = read_set(second_set);
   const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(primitive.material);
   if (is_clear && set < 0) texcoords.resize(2 * vertices);  // which opacities go by
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
@@ -184,6 +187,9 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement&
       to.add_tangent(is_direction ? glm::vec4(along / size, side) : glm::vec4(0.0f));
     }
     if (!texcoords.empty()) to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
+    if (!seconds.empty() && !texcoords.empty()) {
+      to.add_second_texcoord({seconds[2 * i], 1.0 - seconds[2 * i + 1]});
+    }
     if (is_clear && !texcoords.empty()) {
       to.add_opacity(static_cast<float>(std::clamp(colors[4 * i + 3], 0.0, 1.0)));
     }

@@ -82,6 +82,11 @@ void MeshBuilder::add_tangent(const glm::vec4& tangent) {
   tangents_.push_back(tangent);
 }
 
+void MeshBuilder::add_second_texcoord(const glm::vec2& texcoord) {
+  second_texcoords_.resize(texcoords_.size() - 1, glm::vec2(0.0f));
+  second_texcoords_.push_back(texcoord);
+}
+
 void MeshBuilder::add_opacity(float opacity) {
   opacities_.resize(texcoords_.size() - 1, 1.0f);
   opacities_.push_back(opacity);
@@ -276,6 +281,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   scene.normals = std::move(normals_);
   scene.tangents = std::move(tangents_);
   scene.texcoords = std::move(texcoords_);
+  scene.second_texcoords = std::move(second_texcoords_);
   scene.opacities = std::move(opacities_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);

@@ -33,9 +33,10 @@ class MeshBuilder {
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   void add_normal(const glm::dvec3& normal);
-  /// Gives the last normal a tangent, and the last texture coordinate an opacity (as Scene has
-  /// them).
+  /// Gives the last normal a tangent; the last texture coordinate those of a second set, or an
+  /// opacity (as Scene has them).
   void add_tangent(const glm::vec4& tangent);
+  void add_second_texcoord(const glm::vec2& texcoord);
   void add_opacity(float opacity);
 
   /// Adds a polygon. One of fewer than three corners is left out by build(), with a warning; a
@@ -112,6 +113,7 @@ class MeshBuilder {
   std::vector<glm::vec3> normals_;
   std::vector<glm::vec4> tangents_;  // of the first normals
   std::vector<glm::vec2> texcoords_;
+  std::vector<glm::vec2> second_texcoords_;
   std::vector<float> opacities_;  // of the first texture coordinates
   std::vector<Corner> corners_;
   std::vector<Face> faces_;

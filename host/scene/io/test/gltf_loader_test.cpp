@@ -553,6 +553,27 @@ TEST_F(LoadGltfPicture, SamplersAndTransforms) {
   EXPECT_EQ(diffuse_at(scene, scene.triangles[1], {0.375, 0.25, 0.375}), glm::vec3(0, 0, 1));
 }
 
+TEST_F(LoadGltf, TwoSetsOfTextureCoordinates) {
+  std::string buffer = square_buffer();
+  std::string json = square_json(
+      R"([{"children": [1, 2]}, {"mesh": 0}, {"mesh": 0}])",
+      R"(, "materials": [{"emissiveTexture": {"index": 0, "texCoord": 1}, "emissiveFactor": [1, 1, 1],
+           "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+         "textures": [{"source": 0}], "images": [{"uri": "two.tga"}])",
+      R"(, "material": 0)");
+  add({{"TEXCOORD_1", {0.75, 0.5, 0, 0, 0.75, 0.5, 0, 0, 0.75, 0.5, 0, 0, 0.75, 0.5}}}, json,
+      buffer);
+  (void)folder_.write("two.tga", test::tga(2, 1, {{255, 0, 0}, {0, 0, 255}}));
+  const Scene scene = load(json, buffer);
+  EXPECT_EQ(scene.warnings, std::vector<std::string>());
+  ASSERT_EQ(scene.triangles.size(), 4u);
+  for (const std::size_t face : {1u, 3u}) {
+    const Triangle& triangle = scene.triangles[face];
+    EXPECT_EQ(diffuse_at(scene, triangle, {0.375, 0.25, 0.375}), glm::vec3(1, 0, 0));
+    EXPECT_EQ(emission_factor_at(scene, triangle, {0.375, 0.25, 0.375}), glm::vec3(0, 0, 1));
+  }
+}
+
 TEST_F(LoadGltf, UnknownAttributesAreWarnedOf) {
   std::string json = square_json(kOneNode);
   json.insert(json.find("\"NORMAL\""), R"("COLOR_1": 0, )");
