@@ -65,9 +65,15 @@ class Digest {
   template <class... Values>
   requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
-  void add(const TextureMapping& m) { add(m.scale, m.offset, m.clamp); }
-  void add(const MaterialMap& m) { add(m.mapping, m.texture); }
   // What few materials have is left out where it is the default: files keep their digest.
+  void add(const TextureMapping& m) {
+    const bool clamps = m.sampling == Sampling(Wrap::kClamp);
+    add(m.scale, m.offset, clamps);
+    if (!clamps && m.sampling != Sampling()) add(m.sampling.u, m.sampling.v, m.sampling.is_nearest);
+    if (m.turn != glm::vec2(1.0f, 0.0f)) add(m.turn);
+    if (m.is_second) add(m.is_second);
+  }
+  void add(const MaterialMap& m) { add(m.mapping, m.texture); }
   void add(const MetallicRoughness& m) {
     add(m.metallic, m.roughness, m.transmission, m.map);
     if (m.specular != 1.0f || m.specular_color != glm::vec3(1.0f)) {
@@ -85,6 +91,7 @@ class Digest {
     add(m.metallic_roughness, m.normal_map, m.normal_scale, m.opacity_map, m.opacity_cutoff);
     if (m.emission_map.texture != kNoIndex) add(m.emission_map);
     if (m.opacity_blends) add(m.opacity_blends);
+    if (m.has_vertex_opacity) add(m.has_vertex_opacity);
   }
   void add(const NameList& names) {
     word(names.size());
@@ -122,6 +129,9 @@ std::string digest_of(const Scene& scene) {
   digest.add(scene.lights, scene.directional_lights, scene.background, scene.environment,
              scene.origin);
   if (!scene.colors.empty()) digest.add(scene.colors);
+  if (!scene.tangents.empty()) digest.add(scene.tangents);
+  if (!scene.second_texcoords.empty()) digest.add(scene.second_texcoords);
+  if (!scene.opacities.empty()) digest.add(scene.opacities);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(digest.value()));
   return text;

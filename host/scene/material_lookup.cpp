@@ -1,26 +1,47 @@
 #include "host/scene/material_lookup.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "host/scene/instances.h"
 
 namespace raygate {
 namespace {
+
+/// The texture coordinates of a vertex of a triangle that has some.
+glm::dvec2 texcoord(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
+                    std::size_t vertex) {
+  const std::uint32_t at = triangle.texcoords[vertex];
+  const bool is_second = mapping.is_second && at < scene.second_texcoords.size();
+  return glm::dvec2(is_second ? scene.second_texcoords[at] : scene.texcoords[at]);
+}
+
+/// Texture coordinates, or differences of them, scaled and turned.
+glm::dvec2 turned(const TextureMapping& mapping, const glm::dvec2& uv) {
+  const glm::dvec2 scaled = uv * glm::dvec2(mapping.scale), turn(mapping.turn);
+  return {turn.x * scaled.x - turn.y * scaled.y, turn.y * scaled.x + turn.x * scaled.y};
+}
 
 /// Where on its texture a point of a triangle is that has texture coordinates.
 glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
                     const glm::dvec3& weights) {
   glm::dvec2 uv(0.0);
   for (int k = 0; k < 3; ++k) {
-    uv += weights[k] * glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(k)]]);
+    uv += weights[k] * texcoord(mapping, scene, triangle, static_cast<std::size_t>(k));
   }
-  return uv * glm::dvec2(mapping.scale) + glm::dvec2(mapping.offset);
+  return turned(mapping, uv) + glm::dvec2(mapping.offset);
 }
-
-Wrap wrap_of(const TextureMapping& mapping) { return mapping.clamp ? Wrap::kClamp : Wrap::kRepeat; }
 
 bool has_mask(const Scene& scene, const Triangle& triangle) {
   const Material& material = scene.materials[triangle.material];
-  return material.opacity_map.texture != kNoIndex && !material.opacity_blends &&
-         triangle.texcoords[0] != kNoIndex;
+  return (material.opacity_map.texture != kNoIndex || material.has_vertex_opacity) &&
+         !material.opacity_blends && triangle.texcoords[0] != kNoIndex;
+}
+
+/// The opacity of a vertex of a triangle that has texture coordinates.
+double vertex_opacity(const Scene& scene, const Triangle& triangle, int vertex) {
+  const std::uint32_t at = triangle.texcoords[static_cast<std::size_t>(vertex)];
+  return at < scene.opacities.size() ? scene.opacities[at] : 1.0;
 }
 
 /// The codes of a map, from 0 to 1.
@@ -28,7 +49,32 @@ glm::vec3 codes_of(const MaterialMap& map, const Scene& scene, const Triangle& t
                    const glm::dvec3& weights) {
   if (map.texture == kNoIndex) return glm::vec3(1.0f);
   return scene.textures[map.texture].codes_at(place_on(map.mapping, scene, triangle, weights),
-                                              wrap_of(map.mapping));
+                                              map.mapping.sampling);
+}
+
+/// What a map of opacity and the vertices say of a triangle that has texture coordinates.
+float opacity_of(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const Material& material = scene.materials[triangle.material];
+  const float mapped = codes_of(material.opacity_map, scene, triangle, weights).r;
+  if (!material.has_vertex_opacity) return mapped;
+  double between = 0.0;
+  for (int k = 0; k < 3; ++k) between += weights[k] * vertex_opacity(scene, triangle, k);
+  return mapped * static_cast<float>(between);
+}
+
+/// The tangent at a point of a triangle: a direction, and the side of y; 0: the file has none.
+glm::dvec4 tangent_at(const Scene& scene, const Triangle& triangle, const Instance* instance,
+                      const glm::dvec3& weights) {
+  glm::dvec3 sum(0.0);
+  double side = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t at = triangle.normals[static_cast<std::size_t>(k)];
+    if (at >= scene.tangents.size() || scene.tangents[at].w == 0.0f) return glm::dvec4(0.0);
+    const glm::vec4& own = scene.tangents[at];
+    sum += weights[k] * glm::dvec3(instance == nullptr ? own : transform_tangent(*instance, own));
+    side = own.w;
+  }
+  return {sum, side};
 }
 
 }  // namespace
@@ -40,7 +86,7 @@ glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dv
   }
   const TextureMapping& mapping = material.diffuse_mapping;
   return material.diffuse * scene.textures[material.diffuse_texture].at(
-                                place_on(mapping, scene, triangle, weights), wrap_of(mapping));
+                                place_on(mapping, scene, triangle, weights), mapping.sampling);
 }
 
 glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& triangle,
@@ -56,39 +102,44 @@ glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& 
 bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   if (!has_mask(scene, triangle)) return false;
   const Material& material = scene.materials[triangle.material];
-  return codes_of(material.opacity_map, scene, triangle, weights).r < material.opacity_cutoff;
+  return opacity_of(scene, triangle, weights) < material.opacity_cutoff;
 }
 
 bool is_nowhere_masked(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights,
                        const glm::dvec3& change) {
   if (!has_mask(scene, triangle)) return true;
   const Material& material = scene.materials[triangle.material];
-  const TextureMapping& mapping = material.opacity_map.mapping;
-  const auto uv = [&](std::size_t k) { return glm::dvec2(scene.texcoords[triangle.texcoords[k]]); };
-  // Changes of weights have the sum 0.
-  const glm::dvec2 reach =
-      (change.y * glm::abs(uv(1) - uv(0)) + change.z * glm::abs(uv(2) - uv(0))) *
-      glm::abs(glm::dvec2(mapping.scale));
+  double least = 1.0;
+  if (const MaterialMap& map = material.opacity_map; map.texture != kNoIndex) {
+    const auto uv = [&](std::size_t k) { return texcoord(map.mapping, scene, triangle, k); };
+    // Changes of weights have the sum 0.
+    const glm::dvec2 reach = change.y * glm::abs(turned(map.mapping, uv(1) - uv(0))) +
+                             change.z * glm::abs(turned(map.mapping, uv(2) - uv(0)));
+    least = scene.textures[map.texture].min_code_near(
+        place_on(map.mapping, scene, triangle, weights), reach, map.mapping.sampling);
+  }
+  if (material.has_vertex_opacity) {
+    least *= std::min({vertex_opacity(scene, triangle, 0), vertex_opacity(scene, triangle, 1),
+                       vertex_opacity(scene, triangle, 2)});
+  }
   constexpr double kRounding = 1e-6;
-  return scene.textures[material.opacity_map.texture].min_code_near(
-             place_on(mapping, scene, triangle, weights), reach, wrap_of(mapping)) >
-         material.opacity_cutoff + kRounding;
+  return least > material.opacity_cutoff + kRounding;
 }
 
 float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
   if (!material.opacity_blends || triangle.texcoords[0] == kNoIndex) return 1.0f;
-  return codes_of(material.opacity_map, scene, triangle, weights).r;
+  return opacity_of(scene, triangle, weights);
 }
 
 glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
-                        const std::array<glm::vec3, 3>& corners, const glm::dvec3& weights,
-                        const glm::vec3& normal) {
+                        const std::array<glm::vec3, 3>& corners, const Instance* instance,
+                        const glm::dvec3& weights, const glm::vec3& normal) {
   const Material& material = scene.materials[triangle.material];
   const MaterialMap& map = material.normal_map;
   if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return normal;
   const auto uv = [&](std::size_t k) {
-    return glm::dvec2(scene.texcoords[triangle.texcoords[k]]) * glm::dvec2(map.mapping.scale);
+    return turned(map.mapping, texcoord(map.mapping, scene, triangle, k));
   };
   const glm::dvec2 to_1 = uv(1) - uv(0), to_2 = uv(2) - uv(0);
   const glm::dvec3 a(corners[0]), edge_1 = glm::dvec3(corners[1]) - a,
@@ -96,14 +147,16 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
   const double sign = to_1.x * to_2.y < to_1.y * to_2.x ? -1.0 : 1.0;
   const glm::dvec3 n(normal), along_u = sign * (edge_1 * to_2.y - edge_2 * to_1.y),
                               along_v = sign * (edge_2 * to_1.x - edge_1 * to_2.x);
-  const glm::dvec3 across = along_u - n * glm::dot(n, along_u);
+  const glm::dvec4 given = tangent_at(scene, triangle, instance, weights);
+  const glm::dvec3 along_x = given.w != 0.0 ? glm::dvec3(given) : along_u;
+  const glm::dvec3 across = along_x - n * glm::dot(n, along_x);
   const double length = glm::length(across);
   const glm::dvec3 side = glm::cross(n, across);
-  const double turn = glm::dot(side, along_v);
+  const double turn = given.w != 0.0 ? given.w : glm::dot(side, along_v);
   if (!(length > 0.0) || !std::isfinite(length) || turn == 0.0) return normal;
   const glm::dvec3 x = across / length, y = (turn < 0.0 ? -side : side) / length;
   const glm::dvec2 place = place_on(map.mapping, scene, triangle, weights);
-  const glm::dvec3 codes(scene.textures[map.texture].codes_at(place, wrap_of(map.mapping)));
+  const glm::dvec3 codes(scene.textures[map.texture].codes_at(place, map.mapping.sampling));
   const double scale = material.normal_scale;
   const glm::dvec3 bent = x * ((2.0 * codes.x - 1.0) * scale) +
                           y * ((2.0 * codes.y - 1.0) * scale) + n * (2.0 * codes.z - 1.0);
@@ -116,7 +169,7 @@ glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,
   const MaterialMap& map = scene.materials[triangle.material].emission_map;
   if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return glm::vec3(1.0f);
   return scene.textures[map.texture].at(place_on(map.mapping, scene, triangle, weights),
-                                        wrap_of(map.mapping));
+                                        map.mapping.sampling);
 }
 
 glm::dvec3 mean_emission(const Scene& scene, const Material& material) {
@@ -142,7 +195,7 @@ MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene, const
   factors.coat_roughness = codes(shares->coat_roughness_map).g;
   if (const MaterialMap& color = shares->specular_color_map; color.texture != kNoIndex) {
     factors.specular_color = scene.textures[color.texture].at(
-        place_on(color.mapping, scene, triangle, weights), wrap_of(color.mapping));
+        place_on(color.mapping, scene, triangle, weights), color.mapping.sampling);
   }
   return factors;
 }

@@ -30,11 +30,13 @@ namespace raygate {
 
 /// The normal at that point by the map of the triangle's material, around `normal`, a unit vector
 /// on the side where the vertices, at `corners`, run counter-clockwise: the map's x and y are along
-/// the directions in which u and v grow (their part across the normal). `normal` itself where there
-/// is no map or where the texture coordinates have no direction.
+/// the directions in which u and v grow (their part across the normal), or along the file's
+/// tangents, which the `instance` of the triangle turns, if any. `normal` itself where there is no
+/// map or where the texture coordinates have no direction.
 [[nodiscard]] glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
                                       const std::array<glm::vec3, 3>& corners,
-                                      const glm::dvec3& weights, const glm::vec3& normal);
+                                      const Instance* instance, const glm::dvec3& weights,
+                                      const glm::vec3& normal);
 
 /// What the texture of emission multiplies at that point: a colour. 1 where there is none, or the
 /// face has no texture coordinates.

@@ -20,11 +20,13 @@ namespace raygate {
 /// No normal, texture coordinate or material stands behind this index.
 inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
 
-/// Where on a texture a surface's texture coordinates lead: scale * (u, v) + offset.
+/// Where on a texture a surface's texture coordinates lead: scale * (u, v), turned, plus offset.
 struct TextureMapping {
-  glm::vec2 scale{1.0f};   ///< -s
-  glm::vec2 offset{0.0f};  ///< -o
-  bool clamp = false;      ///< -clamp on: its border goes on for ever, instead of repeating it
+  glm::vec2 scale{1.0f};       ///< -s
+  glm::vec2 offset{0.0f};      ///< -o
+  Sampling sampling;           ///< -clamp on: Wrap::kClamp
+  glm::vec2 turn{1.0f, 0.0f};  ///< cosine and sine of a counter-clockwise rotation
+  bool is_second = false;      ///< it is of Scene::second_texcoords
 };
 
 /// A texture that a material names, and where it lies.
@@ -77,13 +79,14 @@ struct Material {
   TextureMapping diffuse_mapping;
   std::uint32_t diffuse_texture = kNoIndex;  ///< index into Scene::textures
   std::optional<MetallicRoughness> metallic_roughness;
-  MaterialMap normal_map;         ///< codes 0 .. 1 are -1 .. 1 along tangent, bitangent, normal
-  float normal_scale = 1.0f;      ///< of the first two
-  MaterialMap emission_map;       ///< times the emission
-  MaterialMap opacity_map;        ///< what is below opacity_cutoff there is not there
-  float opacity_cutoff = 0.5f;    ///< in [0, 1]
-  bool opacity_blends = false;    ///< there is no cutoff: the map is times the opacity
-  bool has_vertex_colors = true;  ///< those of its vertices count
+  MaterialMap normal_map;           ///< codes 0 .. 1 are -1 .. 1 along tangent, bitangent, normal
+  float normal_scale = 1.0f;        ///< of the first two
+  MaterialMap emission_map;         ///< times the emission
+  MaterialMap opacity_map;          ///< what is below opacity_cutoff there is not there
+  float opacity_cutoff = 0.5f;      ///< in [0, 1]
+  bool opacity_blends = false;      ///< there is no cutoff: the map is times the opacity
+  bool has_vertex_opacity = false;  ///< Scene::opacities multiply the map
+  bool has_vertex_colors = true;    ///< those of its vertices count
 };
 
 [[nodiscard]] inline bool emits(const Material& material) {
@@ -118,8 +121,8 @@ struct Instance {
 };
 
 /// Where a spot light shines: within `inner` of its axis fully, beyond `outer` not at all, and
-/// between them as KHR_lights_punctual of glTF says. Angles from the axis, in degrees, 0 <= inner <
-/// outer <= 90.
+/// between them as KHR_lights_punctual of glTF says. Angles from the axis, in degrees, 0 <= inner
+/// <= outer <= 90; equal ones make a hard edge.
 struct SpotCone {
   glm::dvec3 axis{0.0, 0.0, -1.0};  ///< unit length, away from the light
   double inner = 0.0, outer = 45.0;
@@ -175,7 +178,14 @@ struct Scene {
   /// its end, and where it is empty, they are white.
   std::vector<glm::vec3> colors;
   std::vector<glm::vec3> normals;  ///< unit length, where a triangle uses them
+  /// Of the normals, in their order: where a normal map's x points, and the side of its y (1 or -1,
+  /// along cross(normal, x)). 0, and beyond the end: as the texture coordinates say.
+  std::vector<glm::vec4> tangents;
   std::vector<glm::vec2> texcoords;
+  /// Of the texture coordinates, in their order: a second set. It may be shorter.
+  std::vector<glm::vec2> second_texcoords;
+  /// Of the texture coordinates, in their order: the vertices' opacity. Beyond the end it is 1.
+  std::vector<float> opacities;
   std::vector<Triangle> triangles;
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;  ///< of meshes that are kept as such: see instances.h

@@ -45,21 +45,27 @@ struct Neighbours {
 /// [-0.5, size - 0.5].
 double place_along(double coordinate, int size, Wrap wrap) {
   if (!std::isfinite(coordinate)) coordinate = 0.0;
-  coordinate = wrap == Wrap::kRepeat ? coordinate - std::floor(coordinate)
-                                     : std::clamp(coordinate, 0.0, 1.0);
+  if (wrap == Wrap::kClamp) coordinate = std::clamp(coordinate, 0.0, 1.0);
+  if (wrap == Wrap::kRepeat) coordinate -= std::floor(coordinate);
+  if (wrap == Wrap::kMirror) {
+    coordinate -= 2.0 * std::floor(0.5 * coordinate);
+    if (coordinate > 1.0) coordinate = 2.0 - coordinate;
+  }
   return coordinate * size - 0.5;
 }
 
 /// The texel that is seen as number i, in [-size, 2 size).
 int wrapped(int i, int size, Wrap wrap) {
   if (wrap == Wrap::kClamp) return std::clamp(i, 0, size - 1);
+  if (wrap == Wrap::kMirror) return i < 0 ? -1 - i : i >= size ? 2 * size - 1 - i : i;
   return i < 0 ? i + size : i >= size ? i - size : i;
 }
 
-Neighbours neighbours(double coordinate, int size, Wrap wrap) {
+Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
   const double place = place_along(coordinate, size, wrap), below = std::floor(place);
-  const int first = static_cast<int>(below);
-  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), place - below};
+  const double share = place - below;
+  const int first = static_cast<int>(below) + (is_nearest && share >= 0.5 ? 1 : 0);
+  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : share};
 }
 
 /// Whether the bytes begin as one of the formats that Texture::load promises. The library knows
@@ -108,10 +114,11 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
     fail(file, "a texture of more than " + std::to_string(kMaxTexels) + " pixels");
   }
   const bool is_opacity = content != Content::kColour;
+  // The library gives no reason where the file ends too soon, or the last picture's.
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(first, size, &width, &height, &channels, is_opacity ? 2 : 3),
       stbi_image_free);
-  if (!pixels) fail(file, unreadable + stbi_failure_reason());
+  if (!pixels) fail(file, unreadable + "its pixels are damaged or end too soon");
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (is_opacity) {
     // Grey and opacity, 1 where there is none.
@@ -154,21 +161,24 @@ double Texture::min_code() const {
   return least / 255.0;
 }
 
-double Texture::min_code_near(const glm::dvec2& uv, const glm::dvec2& reach, Wrap wrap) const {
+double Texture::min_code_near(const glm::dvec2& uv, const glm::dvec2& reach,
+                              const Sampling& sampling) const {
   constexpr double kMany = 4.0;  // texels to each side
   const double across = reach.x * width_, up = reach.y * height_;
   if (!(across < std::min(kMany, 0.5 * width_) && up < std::min(kMany, 0.5 * height_))) return 0.0;
-  const double x = place_along(uv.x, width_, wrap), y = place_along(1.0 - uv.y, height_, wrap);
+  const double x = place_along(uv.x, width_, sampling.u),
+               y = place_along(1.0 - uv.y, height_, sampling.v);
   const auto first_column = static_cast<int>(std::floor(x - across)),
              last_column = static_cast<int>(std::floor(x + across)) + 1;
   const auto first_row = static_cast<int>(std::floor(y - up)),
              last_row = static_cast<int>(std::floor(y + up)) + 1;
   std::uint8_t least = 255;
   for (int row = first_row; row <= last_row; ++row) {
-    const Texel* const texels = &texels_[static_cast<std::size_t>(wrapped(row, height_, wrap)) *
-                                         static_cast<std::size_t>(width_)];
+    const Texel* const texels =
+        &texels_[static_cast<std::size_t>(wrapped(row, height_, sampling.v)) *
+                 static_cast<std::size_t>(width_)];
     for (int column = first_column; column <= last_column; ++column) {
-      least = std::min(least, texels[wrapped(column, width_, wrap)][0]);
+      least = std::min(least, texels[wrapped(column, width_, sampling.u)][0]);
     }
   }
   return least / 255.0;
@@ -185,9 +195,10 @@ glm::dvec3 Texture::mean_color() const {
 
 /// Bilinear, of what `value` makes of a texel's codes.
 template <class TexelValue>
-glm::vec3 Texture::between(const glm::dvec2& uv, Wrap wrap, const TexelValue& value) const {
-  const Neighbours x = neighbours(uv.x, width_, wrap);
-  const Neighbours y = neighbours(1.0 - uv.y, height_, wrap);
+glm::vec3 Texture::between(const glm::dvec2& uv, const Sampling& sampling,
+                           const TexelValue& value) const {
+  const Neighbours x = neighbours(uv.x, width_, sampling.u, sampling.is_nearest);
+  const Neighbours y = neighbours(1.0 - uv.y, height_, sampling.v, sampling.is_nearest);
   const auto texel = [&](int column, int row) {
     const Texel& codes = texels_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
                                  static_cast<std::size_t>(column)];
@@ -198,13 +209,13 @@ glm::vec3 Texture::between(const glm::dvec2& uv, Wrap wrap, const TexelValue& va
   return glm::vec3(glm::mix(upper, lower, y.share));
 }
 
-glm::vec3 Texture::at(const glm::dvec2& uv, Wrap wrap) const {
+glm::vec3 Texture::at(const glm::dvec2& uv, const Sampling& sampling) const {
   const auto& linear = linear_of_code();
-  return between(uv, wrap, [&](std::uint8_t code) { return linear[code]; });
+  return between(uv, sampling, [&](std::uint8_t code) { return linear[code]; });
 }
 
-glm::vec3 Texture::codes_at(const glm::dvec2& uv, Wrap wrap) const {
-  return between(uv, wrap, [](std::uint8_t code) { return code / 255.0; });
+glm::vec3 Texture::codes_at(const glm::dvec2& uv, const Sampling& sampling) const {
+  return between(uv, sampling, [](std::uint8_t code) { return code / 255.0; });
 }
 
 }  // namespace raygate

@@ -11,8 +11,17 @@
 
 namespace raygate {
 
-/// What a texture shows where its coordinates leave [0, 1].
-enum class Wrap { kRepeat, kClamp };
+/// What a texture shows where a coordinate leaves [0, 1].
+enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
+
+/// How a texture is sampled.
+struct Sampling {
+  Sampling(Wrap both = Wrap::kRepeat) : u(both), v(both) {}
+  Wrap u, v;
+  bool is_nearest = false;  ///< the nearest texel alone counts
+
+  [[nodiscard]] bool operator==(const Sampling&) const = default;
+};
 
 /// An 8-bit sRGB picture that gives scene-linear colours. Coordinate (0, 0) is its lower left
 /// corner and (1, 1) its upper right one, as OBJ files have it.
@@ -46,17 +55,17 @@ class Texture {
   /// The least of the red codes that codes_at reads within `reach` of a point, on both axes; 0
   /// where these are many texels.
   [[nodiscard]] double min_code_near(const glm::dvec2& uv, const glm::dvec2& reach,
-                                     Wrap wrap) const;
+                                     const Sampling& sampling) const;
 
   /// The mean of all texels' scene-linear colours.
   [[nodiscard]] glm::dvec3 mean_color() const;
 
   /// Scene-linear colour, between the four nearest texels' middles in proportion (bilinear). Not
   /// finite coordinates count as 0.
-  [[nodiscard]] glm::vec3 at(const glm::dvec2& uv, Wrap wrap) const;
+  [[nodiscard]] glm::vec3 at(const glm::dvec2& uv, const Sampling& sampling) const;
 
   /// The codes themselves, from 0 to 1, likewise between texels.
-  [[nodiscard]] glm::vec3 codes_at(const glm::dvec2& uv, Wrap wrap) const;
+  [[nodiscard]] glm::vec3 codes_at(const glm::dvec2& uv, const Sampling& sampling) const;
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
@@ -64,7 +73,8 @@ class Texture {
 
  private:
   template <class TexelValue>
-  [[nodiscard]] glm::vec3 between(const glm::dvec2& uv, Wrap wrap, const TexelValue& value) const;
+  [[nodiscard]] glm::vec3 between(const glm::dvec2& uv, const Sampling& sampling,
+                                  const TexelValue& value) const;
 
   int width_, height_;
   std::vector<Texel> texels_;

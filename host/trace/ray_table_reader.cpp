@@ -70,6 +70,12 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+std::string_view unquoted(std::string_view text) {
+  const bool is_quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
+                         text.back() == text.front();
+  return is_quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
 std::optional<double> number_of(std::string_view text) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   double value = 0.0;
@@ -109,7 +115,15 @@ class RayTableReader::Source {
 
 class RayTableReader::CsvSource : public RayTableReader::Source {
  public:
-  explicit CsvSource(std::unique_ptr<Bytes> bytes) : bytes_(std::move(bytes)) {}
+  /// Skips a byte order mark.
+  explicit CsvSource(std::unique_ptr<Bytes> bytes) : bytes_(std::move(bytes)) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    const std::string_view start = bytes_->peek(kMark.size());
+    if (start.starts_with("\xFF\xFE") || start.starts_with("\xFE\xFF")) {
+      throw InputError(bytes_->name() + ": found UTF-16 text, expected ASCII or UTF-8");
+    }
+    if (start.starts_with(kMark)) bytes_->skip(kMark.size());
+  }
 
   int next(double (&numbers)[kMostNumbers]) override {
     while (true) {
@@ -149,7 +163,7 @@ class RayTableReader::CsvSource : public RayTableReader::Source {
     for (std::size_t start = 0; start <= line.size(); ++count) {
       if (is_spaced) start = line.find_first_not_of(separators, start);
       const std::size_t end = std::min(line.find_first_of(separators, start), line.size());
-      const std::string_view field = trimmed(line.substr(start, end - start));
+      const std::string_view field = unquoted(trimmed(line.substr(start, end - start)));
       start = end + 1;
       const std::optional<double> number = number_of(field);
       is_header = is_header && !number && !begins_as_number(field);

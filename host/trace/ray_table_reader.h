@@ -17,10 +17,10 @@ namespace raygate {
 /// Reads rays block by block, so that a file may be longer than the memory is.
 ///
 /// CSV: OX,OY,OZ,DX,DY,DZ or, with the limit, OX,OY,OZ,DX,DY,DZ,LIMIT on each line, between commas,
-/// or else semicolons, or else spaces and tabs; spaces around numbers, empty lines, lines that
-/// begin with # and one header line, without a number, are allowed. NPY: an array of shape (N, 6)
-/// or (N, 7), float32 or float64, little-endian, C order (NumPy's NEP 1). Which of the two it is,
-/// the first bytes say.
+/// or else semicolons, or else spaces and tabs; spaces and quotes around numbers, a byte order
+/// mark, empty lines, lines that begin with # and one header line, without a number, are allowed.
+/// NPY: an array of shape (N, 6) or (N, 7), float32 or float64, little-endian, C order (NumPy's NEP
+/// 1). Which of the two it is, the first bytes say.
 ///
 /// What the numbers mean, RayTable::add says.
 class RayTableReader {

@@ -149,7 +149,7 @@ TEST(DirectLight, ATexturedLightShinesByTexel) {
   textured.textures.emplace_back(kTexels, 1, texels);
   Material material = emitter(glm::vec3(3.0f));
   material.emission_map.texture = 0;
-  material.emission_map.mapping.clamp = true;
+  material.emission_map.mapping.sampling = Wrap::kClamp;
   add(textured, rectangle({0, 1.2f, 0}, {3, 0, 0}, {0, 0, 0.8f}), material);
   textured.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   textured.triangles[0].texcoords = {0, 1, 2};

@@ -56,7 +56,7 @@ void add_picture(Scene& scene, const Material& material) {
 TEST(Surface, AMaskHidesHalfOfASquare) {
   Material masked = matte(glm::vec3(0.5f));
   masked.opacity_map.texture = 0;
-  masked.opacity_map.mapping.clamp = true;
+  masked.opacity_map.mapping.sampling = Wrap::kClamp;
   const auto scene_with = [&](bool has_square) {
     Scene scene;
     scene.textures.emplace_back(8, 1,

@@ -8,37 +8,53 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/scene/io/find_file.h"
 #include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
 
-/// What may stand in extensionsRequired: read, or of no consequence.
-constexpr std::string_view kKnown[] = {"KHR_lights_punctual",     "KHR_materials_emissive_strength",
-                                       "KHR_materials_ior",       "KHR_materials_transmission",
-                                       "KHR_materials_unlit",     "KHR_mesh_quantization",
-                                       "KHR_texture_transform",   "KHR_materials_specular",
-                                       "KHR_materials_clearcoat", "KHR_materials_volume",
-                                       "KHR_materials_sheen",     "KHR_materials_variants"};
+/// Extensions that are read. Of others that are used a warning says so.
+constexpr std::string_view kRead[] = {
+    "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_mesh_quantization",      "KHR_texture_transform"};
+
+/// Extensions without which a file that requires them looks plainer, and no worse.
+constexpr std::string_view kDispensable[] = {"KHR_materials_sheen", "KHR_materials_variants",
+                                             "KHR_materials_volume"};
 
 constexpr std::string_view kCompressions[] = {"KHR_draco_mesh_compression",
                                               "EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 /// Files that are read beside the first one.
 struct Reading {
+  std::string folder, place;
   std::vector<std::filesystem::path>* files;
   std::size_t* bytes;
+  std::vector<std::string>* warnings;
+
+  /// Returns the file of a path that the library made of the folder and a name.
+  [[nodiscard]] std::optional<std::filesystem::path> find(
+      const std::string& path, std::vector<std::string>& found_warnings) const {
+    const std::string prefix = folder.empty() ? "" : folder + "/";
+    if (!path.starts_with(prefix)) return find_exact_file("", path);
+    return find_file(folder, path.substr(prefix.size()), place, found_warnings);
+  }
 };
 
 tinygltf::FsCallbacks callbacks(Reading& reading) {
   tinygltf::FsCallbacks calls{};
-  calls.FileExists = [](const std::string& path, void*) {
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(path, ignored);
+  calls.FileExists = [](const std::string& path, void* user) {
+    std::vector<std::string> ignored;
+    return static_cast<const Reading*>(user)->find(path, ignored).has_value();
   };
   // As it stands: the library's own would let a shell expand it.
   calls.ExpandFilePath = [](const std::string& path, void*) { return path; };
@@ -46,9 +62,10 @@ tinygltf::FsCallbacks callbacks(Reading& reading) {
                            const std::string& path, void* user) {
     const auto& read = *static_cast<Reading*>(user);
     try {
-      const std::string bytes = read_file(path);
+      const std::filesystem::path file = read.find(path, *read.warnings).value_or(path);
+      const std::string bytes = read_file(file);
       out->assign(bytes.begin(), bytes.end());
-      read.files->emplace_back(path);
+      read.files->emplace_back(file);
       *read.bytes += bytes.size();
       return true;
     } catch (const InputError& reason) {
@@ -105,12 +122,12 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
     json = json.substr(kJson, number_at<std::uint32_t>(bytes.data() + kJsonLength));
   }
   if (is_deep(json)) fail("JSON of more than 64 levels, expected fewer");
-  Reading reading{&files_, &bytes_};
+  const std::string folder = file.parent_path().string();
+  Reading reading{folder, name_ + ": ", &files_, &bytes_, &warnings_};
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(callbacks(reading));
   loader.SetImageLoader(keep_picture, nullptr);
   std::string error, warning;
-  const std::string folder = file.parent_path().string();
   bool is_read = false;
   try {
     is_read = is_binary ? loader.LoadBinaryFromMemory(
@@ -132,8 +149,15 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
   if (!model_.asset.version.starts_with("2.")) {
     fail("glTF version " + in_quotes(model_.asset.version) + ", expected 2.0");
   }
+  const auto is_in = [](const auto& list, const std::string& extension) {
+    return std::ranges::find(list, extension) != std::end(list);
+  };
   for (const std::string& extension : model_.extensionsRequired) {
-    if (std::ranges::find(kKnown, extension) == std::end(kKnown)) fail_extension(extension);
+    if (!is_in(kRead, extension) && !is_in(kDispensable, extension)) fail_extension(extension);
+  }
+  for (const std::string& extension : model_.extensionsUsed) {
+    if (is_in(kRead, extension)) continue;
+    warn_once("the extension " + in_quotes(extension) + " is not read", warnings_);
   }
 }
 
@@ -163,6 +187,15 @@ void GltfFile::fail_index(const char* what, int index, std::size_t count) const 
        std::to_string(count));
 }
 
+std::string GltfFile::picture_bytes(const tinygltf::Image& image) {
+  constexpr std::string_view kBase64 = ";base64,";
+  const std::size_t at = image.uri.find(kBase64);
+  if (image.image.empty() && image.uri.starts_with("data:") && at != std::string::npos) {
+    return tinygltf::base64_decode(image.uri.substr(at + kBase64.size()));
+  }
+  return {image.image.begin(), image.image.end()};
+}
+
 std::size_t GltfFile::count(int accessor) const {
   return at(model_.accessors, accessor, "accessor").count;
 }
@@ -181,7 +214,26 @@ struct GltfFile::Elements {
   const Component* component;
   int components;
   bool normalized;
+  std::vector<char> own;  // the elements, where no buffer has them as they are
+
+  [[nodiscard]] std::size_t size() const {
+    return bytes_of(component->type) * static_cast<std::size_t>(components);
+  }
 };
+
+void GltfFile::find_stored(int buffer_view, std::size_t offset, const std::string& number,
+                           Elements& elements) const {
+  const tinygltf::BufferView& view = at(model_.bufferViews, buffer_view, "buffer view");
+  const tinygltf::Buffer& buffer = at(model_.buffers, view.buffer, "buffer");
+  const std::size_t element = elements.size(), whole = buffer.data.size();
+  elements.stride = view.byteStride == 0 ? element : view.byteStride;
+  const bool is_within =
+      view.byteOffset <= whole && view.byteLength <= whole - view.byteOffset &&
+      offset <= view.byteLength && elements.count > 0 && element <= view.byteLength - offset &&
+      elements.count - 1 <= (view.byteLength - offset - element) / elements.stride;
+  if (!is_within) fail(number + "beyond its buffer, which ends too soon");
+  elements.first = reinterpret_cast<const char*>(buffer.data.data() + view.byteOffset + offset);
+}
 
 GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
   static constexpr Component kComponents[] = {
@@ -193,26 +245,69 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
       {TINYGLTF_COMPONENT_TYPE_FLOAT, NumberType::kFloat, 1.0}};
   const std::string number = "accessor " + std::to_string(accessor) + " (" + what + "): ";
   const tinygltf::Accessor& a = at(model_.accessors, accessor, "accessor");
-  if (a.sparse.isSparse) fail(number + "sparse, which is not read");
-  const tinygltf::BufferView& view = at(model_.bufferViews, a.bufferView, "buffer view");
-  const tinygltf::Buffer& buffer = at(model_.buffers, view.buffer, "buffer");
-  const auto* const component = std::ranges::find(kComponents, a.componentType, &Component::code);
-  const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
-  if (component == std::end(kComponents) || components <= 0) fail(number + "of an unknown type");
-  const std::size_t element = bytes_of(component->type) * static_cast<std::size_t>(components);
-  const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
-  const std::size_t whole = buffer.data.size();
-  const bool is_within = view.byteOffset <= whole && view.byteLength <= whole - view.byteOffset &&
-                         a.byteOffset <= view.byteLength && a.count > 0 &&
-                         element <= view.byteLength - a.byteOffset &&
-                         a.count - 1 <= (view.byteLength - a.byteOffset - element) / stride;
-  if (!is_within) fail(number + "beyond its buffer, which ends too soon");
-  const unsigned char* const first = buffer.data.data() + view.byteOffset + a.byteOffset;
-  return {
-      reinterpret_cast<const char*>(first), stride, a.count, component, components, a.normalized};
+  const auto typed = [&](int component_type, int components, std::size_t count) {
+    const auto* const component = std::ranges::find(kComponents, component_type, &Component::code);
+    if (component == std::end(kComponents) || components <= 0) fail(number + "of an unknown type");
+    return Elements{nullptr, 0, count, component, components, a.normalized, {}};
+  };
+  Elements result =
+      typed(a.componentType, tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)),
+            a.count);
+  if (a.bufferView >= 0) find_stored(a.bufferView, a.byteOffset, number, result);
+  if (a.bufferView >= 0 && !a.sparse.isSparse) return result;
+  // Elements of no buffer are 0; sparse ones are replaced.
+  constexpr std::size_t kMost = 12'000'000;
+  if (a.count > kMost + bytes_) fail(number + "too many elements without a buffer");
+  const std::size_t size = result.size();
+  std::vector<char> own(size * a.count);
+  for (std::size_t i = 0; result.first != nullptr && i < a.count; ++i) {
+    std::copy_n(result.first + i * result.stride, size, own.data() + i * size);
+  }
+  if (a.sparse.isSparse && a.sparse.count > 0) {
+    const auto count = static_cast<std::size_t>(a.sparse.count);
+    Elements places = typed(a.sparse.indices.componentType, 1, count);
+    Elements values = typed(a.componentType, result.components, count);
+    find_stored(a.sparse.indices.bufferView, static_cast<std::size_t>(a.sparse.indices.byteOffset),
+                number, places);
+    find_stored(a.sparse.values.bufferView, static_cast<std::size_t>(a.sparse.values.byteOffset),
+                number, values);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double place = number_at(places.first + i * places.stride, places.component->type);
+      if (!(place >= 0.0 && place < static_cast<double>(a.count))) {
+        fail(number + "a sparse element beyond its end");
+      }
+      std::copy_n(values.first + i * values.stride, size,
+                  own.data() + static_cast<std::size_t>(place) * size);
+    }
+  }
+  result.own = std::move(own);
+  result.first = result.own.data();
+  result.stride = size;
+  return result;
 }
 
 std::vector<double> GltfFile::vectors(int accessor, int width, const char* what) const {
+  std::vector<double> all = numbers(accessor, width, what);
+  if (!std::ranges::all_of(all, [](double number) { return std::isfinite(number); })) {
+    fail("accessor " + std::to_string(accessor) + " (" + what + "): a number that is not finite");
+  }
+  return all;
+}
+
+std::vector<double> GltfFile::optional_vectors(int accessor, int width, const char* what,
+                                               std::size_t vertices,
+                                               std::vector<std::string>& warnings) const {
+  if (accessor < 0) return {};
+  try {
+    if (count(accessor) == vertices) return numbers(accessor, width, what);
+    warn_once(std::string(what) + ": not as many as positions, left out", warnings);
+  } catch (const InputError& error) {
+    warnings.push_back(std::string(error.what()) + ", left out");
+  }
+  return {};
+}
+
+std::vector<double> GltfFile::numbers(int accessor, int width, const char* what) const {
   const Elements from = elements(accessor, what);
   const auto fail_here = [&](const char* found) {
     fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
@@ -229,9 +324,6 @@ std::vector<double> GltfFile::vectors(int accessor, int width, const char* what)
     for (int k = 0; k < width; ++k, at += bytes_of(type)) {
       double number = number_at(at, type);
       if (from.normalized) number = std::max(number / one, -1.0);
-      if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
-        fail_here("a number that is not finite");
-      }
       numbers.push_back(number);
     }
   }

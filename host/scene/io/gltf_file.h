@@ -24,6 +24,8 @@ class GltfFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// All that were read.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
+  /// Warnings about them.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// Of all of them together.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
@@ -40,10 +42,19 @@ class GltfFile {
     fail_index(what, index, list.size());
   }
 
-  /// `width` finite numbers of each element of an accessor: of the vector's first components.
+  /// Returns `width` finite numbers of each element of an accessor: of the vector's first
+  /// components. Throws InputError where there are none such.
   [[nodiscard]] std::vector<double> vectors(int accessor, int width, const char* what) const;
+  /// Returns the same of an attribute that a primitive of `vertices` can do without, NaN for what
+  /// is not finite. Empty for accessor -1 and, with a warning, for one that cannot be read.
+  [[nodiscard]] std::vector<double> optional_vectors(int accessor, int width, const char* what,
+                                                     std::size_t vertices,
+                                                     std::vector<std::string>& warnings) const;
   /// The whole numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(int accessor) const;
+  /// Returns a picture's file; empty where it is missing. The library decodes data URIs of a few
+  /// types alone.
+  [[nodiscard]] static std::string picture_bytes(const tinygltf::Image& image);
   /// How many elements an accessor has.
   [[nodiscard]] std::size_t count(int accessor) const;
 
@@ -54,12 +65,17 @@ class GltfFile {
   struct Component;
   struct Elements;
   [[nodiscard]] Elements elements(int accessor, const char* what) const;
+  /// Sets where elements of that type and count are stored; fails where their buffer ends too soon.
+  void find_stored(int buffer_view, std::size_t offset, const std::string& number,
+                   Elements& elements) const;
+  [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;
   [[noreturn]] void fail_extension(const std::string& extension) const;
   [[noreturn]] void fail_index(const char* what, int index, std::size_t count) const;
 
   std::string name_;
   std::vector<std::filesystem::path> files_;
   std::size_t bytes_ = 0;
+  std::vector<std::string> warnings_;
   tinygltf::Model model_;
 };
 

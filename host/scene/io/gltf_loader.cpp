@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -30,6 +31,9 @@ bool has_finite_elements(const glm::dmat4& m) {
   return true;
 }
 
+/// A mesh by number, with the weights of its morph targets.
+using Shape = std::pair<int, std::vector<double>>;
+
 /// A mesh that stands in several places.
 struct SharedMesh {
   Scene part;                              // until it is the scene's
@@ -39,7 +43,7 @@ struct SharedMesh {
 
 /// One of these places.
 struct MeshInstance {
-  int mesh;
+  Shape shape;
   glm::dmat4 world;
   std::uint32_t object;
 };
@@ -66,6 +70,7 @@ class GltfReader {
         meshes_(file_, scene_, options.textures) {}
 
   Scene read() {
+    scene_.warnings = file_.warnings();
     walk(roots());
     for (const auto& [node, world] : nodes_) count_uses(*node);
     for (const auto& [node, world] : nodes_) read_node(*node, world);
@@ -79,9 +84,7 @@ class GltfReader {
     if (!options_.keep_instances) resolve_instances(scene_, InstanceMode::kFlatten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
-    if (!file_.model().animations.empty() || !file_.model().skins.empty()) {
-      warn_once("animations and skins are not read");
-    }
+    if (!file_.model().animations.empty()) warn_once("animations are not read");
     return std::move(scene_);
   }
 
@@ -137,10 +140,33 @@ class GltfReader {
     }
   }
 
+  [[nodiscard]] Shape shape_of(const tinygltf::Node& node) const {
+    const tinygltf::Mesh& mesh = file_.at(file_.model().meshes, node.mesh, "mesh");
+    return {node.mesh, node.weights.empty() ? mesh.weights : node.weights};
+  }
+
   void count_uses(const tinygltf::Node& node) {
-    if (node.mesh < 0) return;
+    if (node.mesh < 0 || node.skin >= 0) return;
     const bool many = node.extensions.contains("EXT_mesh_gpu_instancing");
-    uses_[node.mesh] += many ? 2 : 1;
+    uses_[shape_of(node)] += many ? 2 : 1;
+  }
+
+  /// Returns where the joints of a skin take their vertices.
+  [[nodiscard]] std::vector<glm::dmat4> joints_of(int number) {
+    const tinygltf::Model& model = file_.model();
+    const tinygltf::Skin& skin = file_.at(model.skins, number, "skin");
+    std::vector<glm::dmat4> joints;
+    for (const int joint : skin.joints) {
+      const tinygltf::Node* const node = &file_.at(model.nodes, joint, "node");
+      const auto placed =
+          std::ranges::find(nodes_, node, &std::pair<const tinygltf::Node*, glm::dmat4>::first);
+      joints.push_back(placed == nodes_.end() ? glm::dmat4(1.0) : placed->second);
+    }
+    const std::vector<double> inverse = file_.optional_vectors(
+        skin.inverseBindMatrices, 16, "inverseBindMatrices", joints.size(), scene_.warnings);
+    for (std::size_t i = 0; i < inverse.size() / 16; ++i)
+      joints[i] *= glm::make_mat4(&inverse[16 * i]);
+    return joints;
   }
 
   void read_node(const tinygltf::Node& node, const glm::dmat4& world) {
@@ -151,12 +177,15 @@ class GltfReader {
       scene_.objects.push_back(!node.name.empty()   ? node.name
                                : !mesh.name.empty() ? mesh.name
                                                     : "object " + std::to_string(object));
-      if (uses_[node.mesh] > 1) {
+      const Shape shape = shape_of(node);
+      if (node.skin >= 0) {
+        meshes_.read(mesh, {world, &shape.second, joints_of(node.skin)}, object, builder_);
+      } else if (uses_[shape] > 1) {
         for (const glm::dmat4& own : file_.instance_transforms(node)) {
-          instances_.push_back({node.mesh, world * own, object});
+          instances_.push_back({shape, world * own, object});
         }
       } else {
-        meshes_.read(mesh, world, object, builder_);
+        meshes_.read(mesh, {world, &shape.second, {}}, object, builder_);
       }
     }
     if (node.camera >= 0) read_camera(file_.at(model.cameras, node.camera, "camera"), world);
@@ -169,13 +198,13 @@ class GltfReader {
   }
 
   /// The mesh of an instance, read when it is first asked for: in its own coordinates.
-  SharedMesh& shared(int number) {
-    const auto [at, is_new] = shared_.try_emplace(number);
+  SharedMesh& shared(const Shape& shape) {
+    const auto [at, is_new] = shared_.try_emplace(shape);
     if (!is_new) return at->second;
     MeshBuilder builder(file_.name());
     builder.allow_empty();
-    meshes_.read(file_.model().meshes[static_cast<std::size_t>(number)], glm::dmat4(1.0), 0,
-                 builder);
+    meshes_.read(file_.model().meshes[static_cast<std::size_t>(shape.first)],
+                 {glm::dmat4(1.0), &shape.second, {}}, 0, builder);
     Scene& part = at->second.part;
     builder.build(options_, part);
     at->second.box = bounds_of(part.positions);
@@ -184,7 +213,7 @@ class GltfReader {
 
   /// The whole scene is recentred. And what will be flattened is counted.
   void expand_extent(const MeshInstance& instance) {
-    const auto& [part, own_box, ignored] = shared(instance.mesh);
+    const auto& [part, own_box, ignored] = shared(instance.shape);
     if (part.triangles.empty()) return;
     if (!options_.keep_instances) meshes_.count(part.positions.size() + 3 * part.triangles.size());
     const Bounds3 box = transform_bounds(instance.world, part.origin, own_box);
@@ -195,7 +224,7 @@ class GltfReader {
   }
 
   void add_instance(const MeshInstance& instance) {
-    SharedMesh& mesh = shared(instance.mesh);
+    SharedMesh& mesh = shared(instance.shape);
     if (!mesh.instancer) {
       if (mesh.part.triangles.empty()) return;
       mesh.instancer.emplace(scene_, std::move(mesh.part));
@@ -212,10 +241,10 @@ class GltfReader {
     const double fov = is_orthographic ? 90.0 : camera.perspective.yfov * kDegrees;
     const double distance = is_orthographic ? camera.orthographic.ymag : 1.0;
     if (!(fov > 0.0 && fov < 180.0)) {
-      file_.fail("a camera's yfov: expected more than 0 and less than pi");
+      return warn_once("a camera whose yfov is not between 0 and pi is left out");
     }
     if (!(distance > 0.0 && distance <= kMostFloat)) {
-      file_.fail("a camera's ymag: expected a positive number within the range of float");
+      return warn_once("a camera whose ymag is not a positive number is left out");
     }
     if (scene_.camera) return warn_once("of several cameras the first one is taken");
     const glm::dvec3 eye(world[3]), back(world[2]), up(world[1]);
@@ -249,7 +278,7 @@ class GltfReader {
     for (int k = 0; k < 3; ++k) {
       if (light.color.size() == 3) intensity[k] *= light.color[static_cast<std::size_t>(k)];
       if (!(intensity[k] >= 0.0 && intensity[k] <= kMostFloat)) {
-        file_.fail("a light's intensity: expected no negative number within the range of float");
+        return warn_once("a light whose intensity is negative or not finite is left out");
       }
     }
     const double length = glm::length(glm::dvec3(world[2]));
@@ -267,10 +296,12 @@ class GltfReader {
     const double inner = light.spot.innerConeAngle * kDegrees,
                  outer = light.spot.outerConeAngle * kDegrees;
     // 90 degrees are pi / 2 but for rounding.
-    if (!(inner >= 0.0 && inner < outer && outer <= 90.0 + 1e-9)) {
-      file_.fail("a spot light's angles: expected 0 <= inner < outer <= pi / 2");
+    if (!(inner >= 0.0 && inner <= outer && outer <= 90.0 + 1e-9)) {
+      warn_once("a spot light's angles are limited to 0 <= inner <= outer <= pi / 2");
     }
-    placed.spot = SpotCone{direction, inner, std::min(outer, 90.0)};
+    SpotCone& cone = placed.spot.emplace(SpotCone{direction});
+    cone.outer = outer >= 0.0 ? std::min(outer, 90.0) : 0.0;
+    cone.inner = inner >= 0.0 ? std::min(inner, cone.outer) : 0.0;
   }
 
   /// Gives the scene its point lights, when its origin is known.
@@ -290,8 +321,8 @@ class GltfReader {
   MeshBuilder builder_;  // of meshes that stand in one place
   GltfMeshes meshes_;
   std::vector<std::pair<const tinygltf::Node*, glm::dmat4>> nodes_;  // in their order
-  std::map<int, int> uses_;                                          // of meshes, by number
-  std::map<int, SharedMesh> shared_;
+  std::map<Shape, int> uses_;
+  std::map<Shape, SharedMesh> shared_;
   std::vector<MeshInstance> instances_;
   std::vector<PlacedLight> lights_;
 };

@@ -5,7 +5,9 @@
 #include <limits>
 #include <string_view>
 
+#include "host/base/input_error.h"
 #include "host/base/srgb.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -75,6 +77,19 @@ tinygltf::TextureInfo texture_in(const tinygltf::Material& material, const char*
   return info;
 }
 
+Wrap wrap_of(int mode) {
+  return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::kClamp
+         : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirror
+                                                         : Wrap::kRepeat;
+}
+
+/// The number of the set of coordinates that a texture asks for.
+template <class TextureInfo>
+int set_of(const TextureInfo& info) {
+  const double set = number_in(info.extensions, "KHR_texture_transform", "texCoord", info.texCoord);
+  return static_cast<int>(std::clamp(set, -1.0, 1e6));
+}
+
 constexpr const char *kCoat = "KHR_materials_clearcoat", *kSpecular = "KHR_materials_specular",
                      *kTransmission = "KHR_materials_transmission";
 
@@ -93,24 +108,27 @@ std::uint32_t GltfMaterials::number_of(int material) {
   return entry->second;
 }
 
-int GltfMaterials::texcoord_set(int material) {
-  if (material < 0) return -1;
-  const tinygltf::Material& from = file_.at(file_.model().materials, material, "material");
+GltfMaterials::Sets GltfMaterials::texcoord_sets(int material) {
+  if (material < 0) return {-1, -1};
+  return sets_of(file_.at(file_.model().materials, material, "material"));
+}
+
+GltfMaterials::Sets GltfMaterials::sets_of(const tinygltf::Material& from) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-  int set = -1;
-  const auto look_at = [&](int texture, int texcoord, const tinygltf::ExtensionMap& extensions) {
-    if (texture < 0) return;
-    const int its = static_cast<int>(std::clamp(
-        number_in(extensions, "KHR_texture_transform", "texCoord", texcoord), -1.0, 1e6));
-    if (set >= 0 && its != set) {
-      file_.warn_once(
-          "of textures of one material with several sets of coordinates the first has its own",
-          scene_.warnings);
+  Sets sets{-1, -1};
+  const auto look = [&](const auto& info) {
+    if (info.index < 0) return;
+    const int set = set_of(info);
+    auto at = std::ranges::find(sets, set);
+    if (at == sets.end()) at = std::ranges::find(sets, -1);
+    if (at != sets.end()) {
+      *at = set;
     } else {
-      set = its;
+      file_.warn_once(
+          "of textures of one material with three sets of coordinates the third is not read",
+          scene_.warnings);
     }
   };
-  const auto look = [&](const auto& info) { look_at(info.index, info.texCoord, info.extensions); };
   look(pbr.baseColorTexture);
   look(pbr.metallicRoughnessTexture);
   look(from.normalTexture);
@@ -120,7 +138,7 @@ int GltfMaterials::texcoord_set(int material) {
   look(texture_in(from, kTransmission, "transmissionTexture"));
   look(texture_in(from, kSpecular, "specularTexture"));
   look(texture_in(from, kSpecular, "specularColorTexture"));
-  return set;
+  return sets;
 }
 
 std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content content) {
@@ -132,26 +150,32 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
     return std::nullopt;
   }
   const tinygltf::Image& image = file_.at(model.images, source, "image");
-  if (image.image.empty()) {
-    file_.warn_once("the texture " + image.uri + " is missing, its material is plain instead",
-                    scene_.warnings);
+  const std::string bytes = GltfFile::picture_bytes(image);
+  if (bytes.empty()) {
+    file_.warn_once(
+        "the texture " + in_quotes(image.uri) + " is missing, its material is plain instead",
+        scene_.warnings);
     return std::nullopt;
   }
-  const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()),
-                               image.image.size());
-  Texture result =
-      Texture::decode(bytes, file_.name() + ": image " + std::to_string(source), content);
-  texels_ += std::int64_t{result.width()} * result.height();
-  if (texels_ > kMostTexels) {
-    file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
+  const std::string name = "image " + std::to_string(source);
+  try {
+    Texture result = Texture::decode(bytes, name, content);
+    texels_ += std::int64_t{result.width()} * result.height();
+    if (texels_ <= kMostTexels) return result;
+    throw InputError(name + ": more than " + std::to_string(kMostTexels) +
+                     " pixels in all textures");
+  } catch (const InputError& error) {
+    file_.warn_once(std::string(error.what()) + ", its material is plain instead", scene_.warnings);
+    return std::nullopt;
   }
-  return result;
 }
 
-MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& extensions,
-                                  Texture::Content content) {
+template <class TextureInfo>
+MaterialMap GltfMaterials::map_of(const TextureInfo& info, Texture::Content content) {
   MaterialMap map;
+  const int texture = info.index;
   if (texture < 0) return map;
+  map.mapping.is_second = set_of(info) == sets_[1];
   const tinygltf::Model& model = file_.model();
   const tinygltf::Texture& from = file_.at(model.textures, texture, "texture");
   const auto [entry, is_new] =
@@ -164,18 +188,41 @@ MaterialMap GltfMaterials::map_of(int texture, const tinygltf::ExtensionMap& ext
   }
   map.texture = entry->second;
   if (from.sampler >= 0) {
-    map.mapping.clamp = file_.at(model.samplers, from.sampler, "sampler").wrapS ==
-                        TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    const tinygltf::Sampler& sampler = file_.at(model.samplers, from.sampler, "sampler");
+    map.mapping.sampling.u = wrap_of(sampler.wrapS);
+    map.mapping.sampling.v = wrap_of(sampler.wrapT);
+    map.mapping.sampling.is_nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
   }
-  const auto transform = extensions.find("KHR_texture_transform");
-  if (transform == extensions.end()) return map;
+  const auto transform = info.extensions.find("KHR_texture_transform");
+  if (transform == info.extensions.end()) return map;
   map.mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
-  // Their v runs down: 1 - (s v + o) = s (1 - v) + 1 - s - o.
+  // The file's v runs down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
   const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
-  map.mapping.offset = {offset.x, 1.0f - map.mapping.scale.y - offset.y};
-  if (transform->second.Has("rotation"))
-    file_.warn_once("a texture's rotation is not read", scene_.warnings);
+  const double angle = number_in(info.extensions, "KHR_texture_transform", "rotation", 0.0);
+  map.mapping.turn = {std::cos(angle), std::sin(angle)};
+  const glm::vec2 up = map.mapping.scale.y * map.mapping.turn;
+  map.mapping.offset = {offset.x + up.y, 1.0f - up.x - offset.y};
   return map;
+}
+
+bool GltfMaterials::has_opacity(int material) const {
+  if (material < 0) return false;
+  const std::string& mode = file_.at(file_.model().materials, material, "material").alphaMode;
+  return mode == "MASK" || mode == "BLEND";
+}
+
+void GltfMaterials::use_vertex_opacity(int material) {
+  const tinygltf::Material& from = file_.at(file_.model().materials, material, "material");
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  const tinygltf::TextureInfo& base = pbr.baseColorTexture;
+  Material& to = scene_.materials[number_of(material)];
+  sets_ = sets_of(from);
+  to.has_vertex_opacity = true;
+  to.opacity_blends = from.alphaMode == "BLEND";
+  to.opacity_map = map_of(base, Texture::Content::kAlpha);
+  const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
+  if (!to.opacity_blends)
+    to.opacity_cutoff = static_cast<float>(std::max(from.alphaCutoff, 0.0) / factor);
 }
 
 /// Opacity: as it is, by a factor; or a mask, which the base colour's texture is, too.
@@ -184,12 +231,12 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
   const bool is_mask = from.alphaMode == "MASK";
   const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
-  const double cutoff = in_unit(from.alphaCutoff);
+  const double cutoff = std::max(from.alphaCutoff, 0.0);  // above 1 nothing is left
   if (!is_mask) material.opacity = static_cast<float>(factor);
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
   const tinygltf::TextureInfo& base = pbr.baseColorTexture;
   if (base.index < 0 || material.opacity == 0.0f) return;
-  MaterialMap map = map_of(base.index, base.extensions, Texture::Content::kAlpha);
+  MaterialMap map = map_of(base, Texture::Content::kAlpha);
   const double least = is_mask ? cutoff / factor : 1.0;
   if (map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least) return;
   material.opacity_map = std::move(map);
@@ -200,6 +247,7 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
 Material GltfMaterials::translated(const tinygltf::Material& from) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
   Material material;
+  sets_ = sets_of(from);
   material.name = from.name;
   const glm::vec3 base = colour_of(pbr.baseColorFactor);
   material.diffuse = base;
@@ -207,13 +255,11 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
   shares.metallic = static_cast<float>(in_unit(pbr.metallicFactor));
   shares.roughness = static_cast<float>(in_unit(pbr.roughnessFactor));
   const auto colour = Texture::Content::kColour;
-  shares.map =
-      map_of(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.extensions, colour);
-  const MaterialMap diffuse =
-      map_of(pbr.baseColorTexture.index, pbr.baseColorTexture.extensions, colour);
+  shares.map = map_of(pbr.metallicRoughnessTexture, colour);
+  const MaterialMap diffuse = map_of(pbr.baseColorTexture, colour);
   material.diffuse_texture = diffuse.texture;
   material.diffuse_mapping = diffuse.mapping;
-  material.normal_map = map_of(from.normalTexture.index, from.normalTexture.extensions, colour);
+  material.normal_map = map_of(from.normalTexture, colour);
   material.normal_scale =
       static_cast<float>(std::isfinite(from.normalTexture.scale) ? from.normalTexture.scale : 1.0);
   set_opacity(from, material);
@@ -225,15 +271,14 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
                           ? colour_of(from.emissiveFactor) * static_cast<float>(strength)
                           : glm::vec3(0.0f);
   if (material.emission != glm::vec3(0.0f)) {
-    material.emission_map =
-        map_of(from.emissiveTexture.index, from.emissiveTexture.extensions, colour);
+    material.emission_map = map_of(from.emissiveTexture, colour);
   }
   const auto share = [&](const char* extension, const char* key, double otherwise) {
     return static_cast<float>(in_unit(number_in(from.extensions, extension, key, otherwise)));
   };
   const auto map = [&](const char* extension, const char* key, Texture::Content content) {
     const tinygltf::TextureInfo info = texture_in(from, extension, key);
-    return map_of(info.index, info.extensions, content);
+    return map_of(info, content);
   };
   shares.specular = share(kSpecular, "specularFactor", 1.0);
   shares.specular_map = map(kSpecular, "specularTexture", Texture::Content::kAlpha);

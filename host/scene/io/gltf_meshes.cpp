@@ -4,6 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
+
+#include "host/exact/exact.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -12,9 +16,11 @@ constexpr std::size_t kMostVertices = 12'000'000;  // besides one for each byte
 
 }  // namespace
 
-void GltfMeshes::read(const tinygltf::Mesh& mesh, const glm::dmat4& world, std::uint32_t object,
-                      MeshBuilder& to) {
-  for (const tinygltf::Primitive& primitive : mesh.primitives) read(primitive, world, object, to);
+void GltfMeshes::read(const tinygltf::Mesh& mesh, const GltfPlacement& placement,
+                      std::uint32_t object, MeshBuilder& to) {
+  for (const tinygltf::Primitive& primitive : mesh.primitives) {
+    read(primitive, placement, object, to);
+  }
 }
 
 void GltfMeshes::count(std::size_t more) {
@@ -46,50 +52,148 @@ std::vector<std::uint32_t> GltfMeshes::corners_of(const tinygltf::Primitive& pri
   return corners;
 }
 
-void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& world,
+void GltfMeshes::warn_of_attributes(const tinygltf::Primitive& primitive) {
+  constexpr std::string_view kRead[] = {"POSITION", "NORMAL", "TANGENT", "COLOR_0"};
+  // Sets of texture coordinates that no texture asks for, and joints without a skin, show nowhere.
+  constexpr std::string_view kNumbered[] = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
+  for (const auto& [name, accessor] : primitive.attributes) {
+    const auto begins_name = [&](std::string_view start) { return name.starts_with(start); };
+    if (std::ranges::find(kRead, name) != std::end(kRead)) continue;
+    if (std::ranges::any_of(kNumbered, begins_name)) continue;
+    file_.warn_once("the attribute " + in_quotes(name) + " is not read", scene_.warnings);
+  }
+}
+
+std::vector<double> GltfMeshes::attribute(const tinygltf::Primitive& primitive,
+                                          const std::string& name, int width, std::size_t vertices,
+                                          const std::vector<double>& weights) {
+  const auto accessor = [&](const std::map<std::string, int>& attributes) {
+    const auto found = attributes.find(name);
+    return found == attributes.end() ? -1 : found->second;
+  };
+  const auto optional = [&](int number, int components) {
+    return file_.optional_vectors(number, components, name.c_str(), vertices, scene_.warnings);
+  };
+  std::vector<double> all = name == "POSITION"
+                                ? file_.vectors(accessor(primitive.attributes), width, "POSITION")
+                                : optional(accessor(primitive.attributes), width);
+  const int moved = std::min(width, 3);  // of a tangent its direction alone
+  for (std::size_t target = 0; target < std::min(weights.size(), primitive.targets.size());
+       ++target) {
+    if (weights[target] == 0.0 || all.empty()) continue;
+    const std::vector<double> by = optional(accessor(primitive.targets[target]), moved);
+    for (std::size_t i = 0; i < by.size(); ++i) {
+      const std::size_t vertex = i / static_cast<std::size_t>(moved),
+                        k = i % static_cast<std::size_t>(moved);
+      all[vertex * static_cast<std::size_t>(width) + k] += weights[target] * by[i];
+    }
+  }
+  return all;
+}
+
+std::vector<glm::dmat4> GltfMeshes::skinned(const tinygltf::Primitive& primitive,
+                                            const GltfPlacement& placement, std::size_t vertices) {
+  std::vector<glm::dmat4> all(vertices, glm::dmat4(0.0));
+  std::vector<double> sums(vertices);
+  for (int set = 0;; ++set) {
+    const std::string number = std::to_string(set);
+    if (!primitive.attributes.contains("JOINTS_" + number)) break;
+    const std::vector<double> joints = attribute(primitive, "JOINTS_" + number, 4, vertices, {}),
+                              weights = attribute(primitive, "WEIGHTS_" + number, 4, vertices, {});
+    for (std::size_t i = 0; i < std::min(joints.size(), weights.size()); ++i) {
+      if (!(weights[i] > 0.0) || !(joints[i] < static_cast<double>(placement.joints.size())))
+        continue;
+      all[i / 4] += weights[i] * placement.joints[static_cast<std::size_t>(joints[i])];
+      sums[i / 4] += weights[i];
+    }
+  }
+  for (std::size_t i = 0; i < vertices; ++i) {
+    all[i] = sums[i] > 0.0 ? all[i] / sums[i] : placement.world;
+  }
+  return all;
+}
+
+void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement& placement,
                       std::uint32_t object, MeshBuilder& to) {
   if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
     return file_.warn_once("points and lines are ignored: only polygons are rendered",
                            scene_.warnings);
   }
-  const auto attribute = [&](const std::string& name) {
-    const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? -1 : found->second;
-  };
-  const int position = attribute("POSITION"), normal = attribute("NORMAL");
-  const int color = attribute("COLOR_0");
-  if (position < 0)
+  const auto position = primitive.attributes.find("POSITION");
+  if (position == primitive.attributes.end()) {
     return file_.warn_once("a primitive without positions is left out", scene_.warnings);
-  const std::size_t vertices = file_.count(position);
-  count(vertices);
-  const std::vector<double> positions = file_.vectors(position, 3, "POSITION");
-  std::vector<double> colors;
-  if (color >= 0) {
-    colors = file_.vectors(color, 3, "COLOR_0");
-    if (colors.size() != positions.size()) file_.fail("not as many colours as positions");
-    to.colors_are_linear();
   }
-  const int set = materials_.texcoord_set(primitive.material);
-  const int texcoord = set < 0 ? -1 : attribute("TEXCOORD_" + std::to_string(set));
+  warn_of_attributes(primitive);
+  const std::size_t vertices = file_.count(position->second);
+  count(vertices);
+  const auto read = [&](const std::string& name, int width) {
+    return attribute(primitive, name, width, vertices, *placement.weights);
+  };
+  const std::vector<double> positions = read("POSITION", 3), normals = read("NORMAL", 3);
+  std::vector<double> tangents;
+  if (!normals.empty()) tangents = read("TANGENT", 4);
+  const auto color = primitive.attributes.find("COLOR_0");
+  const bool has_alpha =
+      color != primitive.attributes.end() &&
+      file_.at(file_.model().accessors, color->second, "accessor").type == TINYGLTF_TYPE_VEC4;
+  const std::size_t channels = has_alpha ? 4 : 3;
+  const std::vector<double> colors = read("COLOR_0", static_cast<int>(channels));
+  if (!colors.empty()) to.colors_are_linear();
+  const auto [set, second_set] = materials_.texcoord_sets(primitive.material);
+  const auto read_set = [&](int number) {
+    return number < 0 ? std::vector<double>() : read("TEXCOORD_" + std::to_string(number), 2);
+  };
+  std::vector<double> texcoords = read_set(set);
+  const std::vector<double> seconds = read_set(second_set);
+  const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(primitive.material);
+  if (is_clear && set < 0) texcoords.resize(2 * vertices);  // which opacities go by
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
   count(corners.size());
   if (corners.size() % 3 != 0)
     file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
 
+  std::vector<glm::dmat4> places;
+  if (!placement.joints.empty()) places = skinned(primitive, placement, vertices);
+  const auto place_of = [&](std::size_t vertex) -> const glm::dmat4& {
+    return places.empty() ? placement.world : places[vertex];
+  };
   const MeshBuilder::Counts before = to.counts();
-  const double sign = glm::determinant(glm::dmat3(world)) < 0.0 ? -1.0 : 1.0;
+  const double sign = glm::determinant(glm::dmat3(place_of(0))) < 0.0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < vertices; ++i) {
+    const glm::dmat4& place = place_of(i);
+    const glm::dmat3 turn(place);
     const glm::dvec3 at(
-        world * glm::dvec4(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2], 1.0));
-    if (!(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <=
-          std::numeric_limits<float>::max())) {
+        place * glm::dvec4(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2], 1.0));
+    if (!(is_finite(at) && largest(at) <= std::numeric_limits<float>::max())) {
       file_.fail("a vertex is beyond the range of float");
     }
     to.add_position(at);
-    if (color >= 0) to.add_color({colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]});
+    if (!colors.empty()) {
+      const double* const rgb = &colors[channels * i];
+      to.add_color({rgb[0], rgb[1], rgb[2]});
+    }
+    if (!normals.empty()) {
+      // The inverse transpose but for a factor, which a flat matrix has, too.
+      const glm::dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
+                                 glm::cross(turn[0], turn[1]));
+      to.add_normal(
+          sign * (cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2])));
+    }
+    if (!tangents.empty()) {
+      const glm::dvec3 along =
+          turn * glm::dvec3(tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2]);
+      const double side = tangents[4 * i + 3] < 0.0 ? -sign : sign, size = glm::length(along);
+      const bool is_direction = size > 0.0 && std::isfinite(size);
+      to.add_tangent(is_direction ? glm::vec4(along / size, side) : glm::vec4(0.0f));
+    }
+    if (!texcoords.empty()) to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
+    if (!seconds.empty() && !texcoords.empty()) {
+      to.add_second_texcoord({seconds[2 * i], 1.0 - seconds[2 * i + 1]});
+    }
+    if (is_clear && !texcoords.empty()) {
+      to.add_opacity(static_cast<float>(std::clamp(colors[4 * i + 3], 0.0, 1.0)));
+    }
   }
-  if (normal >= 0) add_normals(normal, glm::dmat3(world), sign, vertices, to);
-  if (texcoord >= 0) add_texcoords(texcoord, vertices, to);
 
   const std::size_t first_face = to.face_count();
   for (std::size_t i = 0; i < corners.size(); i += 3) {
@@ -103,38 +207,16 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const glm::dmat4& wo
       const auto number = [&](std::size_t earlier) {
         return static_cast<std::int32_t>(earlier + vertex + 1);
       };
-      face[k] = {number(before.positions), texcoord >= 0 ? number(before.texcoords) : 0,
-                 normal >= 0 ? number(before.normals) : 0};
+      face[k] = {number(before.positions), texcoords.empty() ? 0 : number(before.texcoords),
+                 normals.empty() ? 0 : number(before.normals)};
     }
     to.add_face(face, 0);
   }
   const std::uint32_t material = materials_.number_of(primitive.material);
-  if (primitive.material < 0 && color >= 0) scene_.materials[material].diffuse = glm::vec3(1.0f);
+  if (primitive.material < 0 && !colors.empty())
+    scene_.materials[material].diffuse = glm::vec3(1.0f);
+  if (is_clear) materials_.use_vertex_opacity(primitive.material);
   to.assign_faces(first_face, to.face_count(), material, object);
-}
-
-void GltfMeshes::add_normals(int accessor, const glm::dmat3& world, double sign,
-                             std::size_t vertices, MeshBuilder& to) const {
-  const std::vector<double> normals = file_.vectors(accessor, 3, "NORMAL");
-  if (normals.size() != 3 * vertices) file_.fail("not as many normals as positions");
-  // The inverse transpose but for a factor, which a flat matrix has, too.
-  const glm::dmat3 cofactors(glm::cross(world[1], world[2]), glm::cross(world[2], world[0]),
-                             glm::cross(world[0], world[1]));
-  for (std::size_t i = 0; i < vertices; ++i) {
-    const glm::dvec3 turned =
-        cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
-    to.add_normal(is_finite(turned) ? sign * turned : glm::dvec3(0.0));
-  }
-}
-
-void GltfMeshes::add_texcoords(int accessor, std::size_t vertices, MeshBuilder& to) const {
-  const std::vector<double> texcoords = file_.vectors(accessor, 2, "TEXCOORD");
-  if (texcoords.size() != 2 * vertices) {
-    file_.fail("not as many texture coordinates as positions");
-  }
-  for (std::size_t i = 0; i < vertices; ++i) {
-    to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
-  }
 }
 
 }  // namespace raygate

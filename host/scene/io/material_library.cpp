@@ -1,8 +1,11 @@
 #include "host/scene/io/material_library.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
+#include "host/base/input_error.h"
+#include "host/scene/io/find_file.h"
 #include "host/scene/io/mtl_reader.h"
 #include "host/scene/io/tokens.h"
 
@@ -13,9 +16,19 @@ void MaterialLibrary::load_library(std::string_view names) {
     warnings_.push_back(obj_.place() + "mtllib without a file");
     return;
   }
-  if (const auto file = find_file(folder_, names)) return load(*file);
-  for (std::string_view name = take_token(names); !name.empty(); name = take_token(names)) {
-    if (const auto file = find_file(folder_, name)) {
+  std::vector<std::string_view> words;
+  std::string_view rest = names;
+  for (std::string_view name = take_token(rest); !name.empty(); name = take_token(rest)) {
+    words.push_back(name);
+  }
+  // One name of several words may be on another machine, too.
+  const bool are_several = std::ranges::all_of(
+      words, [&](std::string_view name) { return find_exact_file(folder_, name).has_value(); });
+  if (!are_several || find_exact_file(folder_, names)) {
+    if (const auto file = find_file(folder_, names, obj_.place(), warnings_)) return load(*file);
+  }
+  for (const std::string_view name : words) {
+    if (const auto file = find_file(folder_, name, obj_.place(), warnings_)) {
       load(*file);
     } else {
       std::error_code error;
@@ -45,6 +58,8 @@ std::optional<std::uint32_t> MaterialLibrary::find(const std::string& name) cons
 }
 
 namespace {
+
+constexpr const char* kPlainInstead = ", its material is plain instead";
 
 class TextureLoader {
  public:
@@ -92,11 +107,15 @@ class TextureLoader {
     const auto [entry, is_new] = loaded_.try_emplace(std::pair(file, content), kNoIndex);
     std::error_code ignored;
     if (is_new && !std::filesystem::is_regular_file(file, ignored)) {
-      scene_.warnings.push_back(file + ": the texture is missing, its material is plain instead");
+      scene_.warnings.push_back(file + ": the texture is missing" + kPlainInstead);
     } else if (is_new) {
-      entry->second = static_cast<std::uint32_t>(scene_.textures.size());
-      scene_.files.emplace_back(file);
-      scene_.textures.push_back(Texture::load(file, content));
+      try {
+        scene_.textures.push_back(Texture::load(file, content));
+        scene_.files.emplace_back(file);
+        entry->second = static_cast<std::uint32_t>(scene_.textures.size() - 1);
+      } catch (const InputError& error) {
+        scene_.warnings.push_back(std::string(error.what()) + kPlainInstead);
+      }
     }
     return entry->second;
   }

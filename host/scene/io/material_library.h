@@ -24,7 +24,8 @@ class MaterialLibrary {
       : folder_(std::move(folder)), obj_(obj), warnings_(warnings) {}
 
   /// Loads what a mtllib statement names: one file whose name may hold spaces, or several files
-  /// with spaces between. Warns of one that is missing, throws InputError for one that is wrong.
+  /// with spaces between, as find_file does. Warns of one that is missing, throws InputError for
+  /// one that is wrong.
   void load_library(std::string_view names);
 
   /// Index into materials() of the first material with this name.
@@ -46,8 +47,8 @@ class MaterialLibrary {
 
 /// Loads the textures that materials of triangles name by files, each file once for each use;
 /// fills Scene::textures and the materials' indices. Pictures of roughness and of metalness
-/// become one. Masks that hide nothing are left out. Warns of a file that is missing; throws
-/// InputError as Texture::load.
+/// become one. Masks that hide nothing are left out. Warns of a file that is missing or that
+/// Texture::load refuses.
 void load_textures(Scene& scene);
 
 }  // namespace raygate

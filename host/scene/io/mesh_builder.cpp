@@ -14,6 +14,8 @@ namespace raygate {
 namespace {
 
 constexpr glm::vec3 kNoColor(-1.0f);
+/// Index of a corner whose index in the file names nothing.
+constexpr std::uint32_t kBadIndex = kNoIndex - 1;
 
 }  // namespace
 
@@ -71,29 +73,43 @@ glm::vec3 MeshBuilder::linear_color(std::size_t position, float white) const {
 }
 
 void MeshBuilder::add_normal(const glm::dvec3& normal) {
-  normals_.push_back(normal == glm::dvec3(0.0) ? glm::vec3(0.0f) : glm::vec3(unit(normal)));
+  const bool has_direction = is_finite(normal) && normal != glm::dvec3(0.0);
+  normals_.push_back(has_direction ? glm::vec3(unit(normal)) : glm::vec3(0.0f));
 }
 
-std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count, const char* what,
-                                   std::size_t line) const {
+void MeshBuilder::add_tangent(const glm::vec4& tangent) {
+  tangents_.resize(normals_.size() - 1, glm::vec4(0.0f));
+  tangents_.push_back(tangent);
+}
+
+void MeshBuilder::add_second_texcoord(const glm::vec2& texcoord) {
+  second_texcoords_.resize(texcoords_.size() - 1, glm::vec2(0.0f));
+  second_texcoords_.push_back(texcoord);
+}
+
+void MeshBuilder::add_opacity(float opacity) {
+  opacities_.resize(texcoords_.size() - 1, 1.0f);
+  opacities_.push_back(opacity);
+}
+
+std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count) {
   if (index == 0) return kNoIndex;
   if (index > 0) return static_cast<std::uint32_t>(index - 1);
   const auto back = static_cast<std::size_t>(-static_cast<std::int64_t>(index));
-  if (back > count) {
-    throw InputError(file_name_, line,
-                     std::string(what) + " index " + std::to_string(index) +
-                         " in a face, but the file has " + std::to_string(count) + " so far");
-  }
-  return static_cast<std::uint32_t>(count - back);
+  return back > count ? kBadIndex : static_cast<std::uint32_t>(count - back);
 }
 
 void MeshBuilder::add_face(std::span<const FileCorner> corners, std::size_t line) {
   for (const FileCorner& corner : corners) {
-    corners_.push_back(
-        {resolve(corner.position, earlier_.positions + positions_.size(), "vertex", line),
-         resolve(corner.texcoord, earlier_.texcoords + texcoords_.size(), "texture coordinate",
-                 line),
-         resolve(corner.normal, earlier_.normals + normals_.size(), "normal", line)});
+    const std::size_t vertices = earlier_.positions + positions_.size();
+    const std::uint32_t position = resolve(corner.position, vertices);
+    if (position == kBadIndex) {
+      throw InputError(file_name_, line,
+                       "vertex index " + std::to_string(corner.position) +
+                           " in a face, but the file has " + std::to_string(vertices) + " so far");
+    }
+    corners_.push_back({position, resolve(corner.texcoord, earlier_.texcoords + texcoords_.size()),
+                        resolve(corner.normal, earlier_.normals + normals_.size())});
   }
   faces_.push_back({corners_.size(), line});
 }
@@ -127,19 +143,13 @@ void MeshBuilder::append(MeshBuilder&& part) {
 }
 
 void MeshBuilder::check_indices() const {
-  const auto check = [&](std::uint32_t index, std::size_t count, const char* what,
-                         const Face& face) {
-    if (index == kNoIndex || index < count) return;
-    throw InputError(file_name_, face.line,
-                     std::string(what) + " index " + std::to_string(index + std::uint64_t{1}) +
-                         " in a face, but the file has " + std::to_string(count));
-  };
   std::size_t i = 0;
   for (const Face& face : faces_) {
     for (; i < face.end; ++i) {
-      check(corners_[i].position, positions_.size(), "vertex", face);
-      check(corners_[i].texcoord, texcoords_.size(), "texture coordinate", face);
-      check(corners_[i].normal, normals_.size(), "normal", face);
+      if (corners_[i].position < positions_.size()) continue;
+      throw InputError(file_name_, face.line,
+                       "vertex index " + std::to_string(corners_[i].position + std::uint64_t{1}) +
+                           " in a face, but the file has " + std::to_string(positions_.size()));
     }
   }
 }
@@ -174,12 +184,28 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::vec3> polygon;
-  WarningCount dropped, touching, no_direction;
-  scene.triangles.reserve(corners_.size() - 2 * faces_.size());
+  WarningCount dropped, too_short, touching, no_direction, no_normal, no_texcoord;
+  const auto has_all = [](std::span<const Corner> corners, std::uint32_t Corner::*index,
+                          std::size_t count) {
+    return std::ranges::all_of(corners, [&](const Corner& c) { return c.*index < count; });
+  };
+  const auto has_none = [](std::span<const Corner> corners, std::uint32_t Corner::*index) {
+    return std::ranges::all_of(corners, [&](const Corner& c) { return c.*index == kNoIndex; });
+  };
+  scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size());
   std::size_t begin = 0;
   for (const Face& face : faces_) {
     const std::span<const Corner> corners(corners_.data() + begin, face.end - begin);
     begin = face.end;
+    if (corners.size() < 3) {
+      if (options.strict) {
+        throw InputError(file_name_, face.line,
+                         "face with " + std::to_string(corners.size()) +
+                             " corners, expected at least 3, as --strict asks");
+      }
+      too_short.note(face.line);
+      continue;
+    }
     polygon.clear();
     for (const Corner& corner : corners) polygon.push_back(scene.positions[corner.position]);
 
@@ -203,13 +229,19 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
     }
     if (kind == PolygonKind::kSelfTouching) touching.note(face.line);
 
-    bool has_normals = corners[0].normal != kNoIndex;
-    if (has_normals && std::any_of(corners.begin(), corners.end(), [&](const Corner& corner) {
+    bool has_normals = has_all(corners, &Corner::normal, normals_.size());
+    if (!has_normals && !has_none(corners, &Corner::normal)) no_normal.note(face.line);
+    if (has_normals && std::ranges::any_of(corners, [&](const Corner& corner) {
           return normals_[corner.normal] == glm::vec3(0.0f);
         })) {
       no_direction.note(face.line);
       has_normals = false;
     }
+    const bool has_texcoords = has_all(corners, &Corner::texcoord, texcoords_.size()) &&
+                               std::ranges::all_of(corners, [&](const Corner& corner) {
+                                 return is_finite(glm::vec3(texcoords_[corner.texcoord], 0.0f));
+                               });
+    if (!has_texcoords && !has_none(corners, &Corner::texcoord)) no_texcoord.note(face.line);
     for (const auto& piece : pieces) {
       Triangle& triangle = scene.triangles.emplace_back();
       triangle.material = face.material;
@@ -221,14 +253,18 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
       for (int i = 0; i < 3; ++i) {
         const Corner& corner = corners[piece[i]];
         triangle.vertices[i] = corner.position;
-        triangle.texcoords[i] = corner.texcoord;
+        if (has_texcoords) triangle.texcoords[i] = corner.texcoord;
         if (has_normals) triangle.normals[i] = corner.normal;
       }
     }
   }
   dropped.report(file_name_, "face of zero area, left out", scene);
+  too_short.report(file_name_, "face of fewer than 3 corners, left out", scene);
   touching.report(file_name_, "polygon crosses or touches itself, cut as well as can be", scene);
-  no_direction.report(file_name_, "normal of length 0, the face is taken as flat", scene);
+  no_direction.report(file_name_, "normal without a direction, the face is taken as flat", scene);
+  no_normal.report(file_name_, "face corner without a normal, the face is taken as flat", scene);
+  no_texcoord.report(file_name_, "face corner without texture coordinates, the face has no texture",
+                     scene);
   return groups;
 }
 
@@ -243,7 +279,10 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     throw InputError(file_name_ + ": no face has an area");
   }
   scene.normals = std::move(normals_);
+  scene.tangents = std::move(tangents_);
   scene.texcoords = std::move(texcoords_);
+  scene.second_texcoords = std::move(second_texcoords_);
+  scene.opacities = std::move(opacities_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);
   } else if (options.smooth_if_unsaid && !is_smoothing_said_ && scene.normals.empty()) {

@@ -33,8 +33,15 @@ class MeshBuilder {
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   void add_normal(const glm::dvec3& normal);
+  /// Gives the last normal a tangent; the last texture coordinate those of a second set, or an
+  /// opacity (as Scene has them).
+  void add_tangent(const glm::vec4& tangent);
+  void add_second_texcoord(const glm::vec2& texcoord);
+  void add_opacity(float opacity);
 
-  /// At least three corners. `line` is for messages; 0 in a file without lines.
+  /// Adds a polygon. One of fewer than three corners is left out by build(), with a warning; a
+  /// corner whose normal or texture coordinate does not exist costs the face all of these. `line`
+  /// is for messages; 0 in a file without lines.
   void add_face(std::span<const FileCorner> corners, std::size_t line);
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
   /// Gives faces by number, from `begin` to `end`, their material, object and smoothing group; 0
@@ -88,8 +95,7 @@ class MeshBuilder {
   };
   class WarningCount;
 
-  [[nodiscard]] std::uint32_t resolve(std::int32_t index, std::size_t count, const char* what,
-                                      std::size_t line) const;
+  [[nodiscard]] static std::uint32_t resolve(std::int32_t index, std::size_t count);
   void check_indices() const;
   void recentre(Scene& scene);
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
@@ -105,7 +111,10 @@ class MeshBuilder {
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
   bool has_linear_colors_ = false;
   std::vector<glm::vec3> normals_;
+  std::vector<glm::vec4> tangents_;  // of the first normals
   std::vector<glm::vec2> texcoords_;
+  std::vector<glm::vec2> second_texcoords_;
+  std::vector<float> opacities_;  // of the first texture coordinates
   std::vector<Corner> corners_;
   std::vector<Face> faces_;
 };

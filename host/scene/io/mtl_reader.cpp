@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "host/scene/io/find_file.h"
 #include "host/scene/io/tokens.h"
 
 namespace raygate {
@@ -74,18 +75,6 @@ glm::vec3* colour_of(Material& material, glm::vec3& unused, std::string_view key
 bool is_clear(int model) { return model == 4 || model == 6 || model == 7 || model == 9; }
 
 }  // namespace
-
-std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
-                                               std::string_view name) {
-  std::string slashed(name);
-  std::replace(slashed.begin(), slashed.end(), '\\', '/');
-  for (const std::string& spelling : {std::string(name), slashed}) {
-    std::error_code ignored;
-    std::filesystem::path file = folder / spelling;
-    if (std::filesystem::is_regular_file(file, ignored)) return file;
-  }
-  return std::nullopt;
-}
 
 std::vector<Material> MtlReader::read() {
   while (const auto statement = lines().next()) read_statement(*statement);
@@ -258,7 +247,7 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
     if (option == kTextureOptions.end()) break;  // a file whose name begins with '-'
     words = rest;
     if (name == "-clamp") {
-      mapping.clamp = take_token(rest) == "on" || mapping.clamp;
+      if (take_token(rest) == "on") mapping.sampling = Wrap::kClamp;
       words = rest;
     } else if (name == "-s") {
       mapping.scale = take_texture_vector(map + " -s", words);
@@ -277,7 +266,8 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
     }
   }
   if (words.empty()) return warn(map + " without a file, ignored");
-  const std::string file = find_file(folder_, words).value_or(folder_ / words).string();
+  const std::string file =
+      find_file(folder_, words, lines().place(), warnings()).value_or(folder_ / words).string();
   if (keyword == "norm") {
     material_.normal_map = {file, mapping};
     material_.normal_scale = normal_scale;

@@ -13,7 +13,7 @@ namespace raygate {
 /// InputError.
 class MtlReader final : public StatementReader {
  public:
-  /// Textures are looked for in the file's folder.
+  /// Textures are looked for in the file's folder, as find_file does.
   MtlReader(const std::filesystem::path& file, std::vector<std::string>& warnings)
       : StatementReader(file, warnings), folder_(file.parent_path()) {}
 
@@ -50,9 +50,5 @@ class MtlReader final : public StatementReader {
   std::optional<Transparency> transparency_;  // of the material that is being read
   std::vector<Transparency> transparencies_;
 };
-
-/// The file `name` in `folder`: as it is written, or with Windows' backslashes for slashes.
-[[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
-                                                             std::string_view name);
 
 }  // namespace raygate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include "host/scene/io/tokens.h"
 
@@ -22,11 +23,6 @@ constexpr std::array<std::string_view, 26> kOtherShapes{
 // What changes no polygon and no material: merging groups, display attributes.
 constexpr std::array<std::string_view, 9> kOfNoConsequence{
     "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "usemap", "maplib"};
-
-// Bits of a corner's form.
-constexpr int kHasTexcoord = 1;
-constexpr int kHasNormal = 2;
-constexpr const char* kForms[4] = {"v", "v/vt", "v//vn", "v/vt/vn"};
 
 }  // namespace
 
@@ -99,7 +95,10 @@ std::span<const double> ObjChunk::read_numbers(std::string_view keyword, std::st
   for (std::string_view word = take_token_before_comment(words); !word.empty();
        word = take_token_before_comment(words)) {
     if (count == numbers_.size()) lines_.fail("too many numbers after " + in_quotes(keyword));
-    numbers_[count++] = lines_.number(word, keyword);
+    // A normal or texture coordinate that is no number costs its faces theirs.
+    numbers_[count++] = keyword == "v"
+                            ? lines_.number(word, keyword)
+                            : to_number(word).value_or(std::numeric_limits<double>::quiet_NaN());
   }
   const auto expect = [&](bool right, const char* what) {
     if (!right) {
@@ -122,7 +121,6 @@ std::span<const double> ObjChunk::read_numbers(std::string_view keyword, std::st
 
 void ObjChunk::read_face(std::string_view words) {
   corners_.clear();
-  int form = 0;
   for (std::string_view corner = take_token_before_comment(words); !corner.empty();
        corner = take_token_before_comment(words)) {
     // "1/" and "1//" have no texture coordinate and no normal.
@@ -130,21 +128,12 @@ void ObjChunk::read_face(std::string_view words) {
     while (plain.size() > 1 && plain.back() == '/' && corner.size() - plain.size() < 2) {
       plain.remove_suffix(1);
     }
-    int this_form = 0;
-    corners_.push_back(read_corner(plain, this_form));
-    if (corners_.size() == 1) form = this_form;
-    if (this_form != form) {
-      lines_.fail("face corner " + in_quotes(corner) + " has the form " + kForms[this_form] +
-                  ", expected " + kForms[form] + " as in the face's first corner");
-    }
-  }
-  if (corners_.size() < 3) {
-    lines_.fail("face with " + std::to_string(corners_.size()) + " corners, expected at least 3");
+    corners_.push_back(read_corner(plain));
   }
   mesh_.add_face(corners_, lines_.line());
 }
 
-FileCorner ObjChunk::read_corner(std::string_view corner, int& form) const {
+FileCorner ObjChunk::read_corner(std::string_view corner) const {
   const auto malformed = [&] {
     lines_.fail("face corner " + in_quotes(corner) + ", expected v, v/vt, v//vn or v/vt/vn");
   };
@@ -162,11 +151,11 @@ FileCorner ObjChunk::read_corner(std::string_view corner, int& form) const {
     if (error == std::errc::result_out_of_range || index == INT32_MIN) {
       lines_.fail("face corner " + in_quotes(corner) + ": an index beyond 2147483647");
     }
-    if (index == 0) {
+    if (index == 0 && field == 0) {
       lines_.fail("face corner " + in_quotes(corner) +
                   ": index 0, expected 1 for the first or -1 for the last so far");
     }
-    if (field > 0) form |= field == 1 ? kHasTexcoord : kHasNormal;
+    if (index == 0) index = INT32_MIN;  // names nothing
     at = rest;
     if (at == end) return {indices[0], indices[1], indices[2]};
     if (*at++ != '/') malformed();

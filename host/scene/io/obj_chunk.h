@@ -38,8 +38,8 @@ class ObjChunk {
   /// What the parts before it have; before read().
   void begin_after(const Counts& counts);
 
-  /// Reads v, vt, vn and f: the right count of finite numbers, corners of one form without index
-  /// 0. Stops at a statement that is wrong.
+  /// Reads v, vt, vn and f: the right count of numbers, those of vertices finite, corners without
+  /// vertex index 0. Stops at a statement that is wrong.
   void read();
 
   [[nodiscard]] MeshBuilder& mesh() { return mesh_; }
@@ -53,7 +53,7 @@ class ObjChunk {
   void read_statement(std::string_view statement);
   std::span<const double> read_numbers(std::string_view keyword, std::string_view words);
   void read_face(std::string_view corners);
-  FileCorner read_corner(std::string_view corner, int& form) const;
+  FileCorner read_corner(std::string_view corner) const;
   void keep(std::string_view statement);
   void keep_once(std::string_view keyword);
 

@@ -58,10 +58,16 @@ class PlyReader {
       } else if (element.name == "tristrips" && has_vertices) {
         read_strips(element);
       } else if (!element.properties.empty()) {
+        unread_.push_back("element " + in_quotes(element.name));
         for (long long i = 0; i < element.count; ++i) {
           for (const Property& property : element.properties) skip(property);
         }
       }
+    }
+    if (!unread_.empty()) {
+      std::string all;
+      for (const std::string& one : unread_) all.append(all.empty() ? "" : ", ").append(one);
+      scene.warnings.push_back(name_ + ": not read: " + all);
     }
     mesh_.build_plain(options, scene);
     return scene;
@@ -99,7 +105,9 @@ class PlyReader {
       } else if (keyword == "property") {
         if (elements_.empty()) fail("a property before the first element");
         elements_.back().properties.push_back(read_property(line));
-      } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+      } else if (keyword == "comment") {
+        if (take_token(line) == "TextureFile") unread_.push_back("texture " + in_quotes(line));
+      } else if (keyword != "obj_info" && !keyword.empty()) {
         warnings.push_back(InputError::location(name_, line_) + in_quotes(keyword) +
                            " is no word of a PLY header, ignored");
       }
@@ -205,12 +213,16 @@ class PlyReader {
     if ((found & 7) != 7) fail("vertices without x, y and z");
     has_normals_ = (found & 070) == 070;
     const bool has_colors = (found & 0700) == 0700;
+    for (std::size_t p = 0; p < place.size(); ++p) {
+      if (place[p] >= kColor ? !has_colors : place[p] >= 3 && !has_normals_) place[p] = -1;
+      if (place[p] < 0) note_unread(element, p);
+    }
     for (long long i = 0; i < element.count; ++i) {
       double values[kCount] = {};
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const Property& property = element.properties[p];
         const int at = place[p];
-        if (at < 0 || (at >= kColor ? !has_colors : at >= 3 && !has_normals_)) {
+        if (at < 0) {
           skip(property);
         } else if (at >= kColor) {
           values[at] = take(property.type, property.name) / largest_code(property.type);
@@ -222,8 +234,7 @@ class PlyReader {
       mesh_.add_position({values[0], values[1], values[2]});
       if (has_colors) mesh_.add_color({values[kColor], values[kColor + 1], values[kColor + 2]});
       if (!has_normals_) continue;
-      const glm::dvec3 normal(values[3], values[4], values[5]);
-      mesh_.add_normal(is_finite(normal) ? normal : glm::dvec3(0.0));
+      mesh_.add_normal({values[3], values[4], values[5]});
     }
   }
 
@@ -232,12 +243,19 @@ class PlyReader {
     return type == NumberType::kUint8 ? 255.0 : type == NumberType::kUint16 ? 65535.0 : 1.0;
   }
 
-  /// Which property lists the vertices of a face or a strip.
-  [[nodiscard]] std::size_t index_list(const Element& element) const {
+  void note_unread(const Element& element, std::size_t property) {
+    unread_.push_back(in_quotes(element.properties[property].name) + " of " + element.name);
+  }
+
+  /// Returns which property lists the vertices of a face or a strip; others are not read.
+  [[nodiscard]] std::size_t index_list(const Element& element) {
     auto list = element.find("vertex_indices");
     if (!list) list = element.find("vertex_index");
     if (!list || !element.properties[*list].count_type) {
       fail("element " + element.name + " without a list vertex_indices");
+    }
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      if (p != *list) note_unread(element, p);
     }
     return *list;
   }
@@ -312,11 +330,6 @@ class PlyReader {
           corners.push_back(corner_of(position_of(index)));
         }
       }
-      if (corners.size() < 3) {
-        throw InputError(
-            name_, face_line,
-            "face with " + std::to_string(corners.size()) + " corners, expected at least 3");
-      }
       mesh_.add_face(corners, face_line);
     }
   }
@@ -327,6 +340,7 @@ class PlyReader {
   bool in_header_ = true;
   Format format_ = Format::kAscii;
   std::vector<Element> elements_;
+  std::vector<std::string> unread_;  // what the file has besides, for a warning
   MeshBuilder mesh_;
   TokenReader tokens_;  // of an ASCII file, behind the header
   bool has_normals_ = false;

@@ -35,8 +35,9 @@ struct LoadOptions {
 ///
 /// Throws InputError, with a line of what is text, for any other ending, with what to do about it;
 /// for what cannot be read or breaks its format; an index of no vertex, a number that is not
-/// finite, a damaged texture; no face with an area. Warns (Scene::warnings) and goes on where a
-/// material or texture is missing, or something is left out.
+/// finite in a position; no face with an area. Warns (Scene::warnings) and goes on where a material
+/// or texture is missing or damaged, a normal or texture coordinate is bad, or something is left
+/// out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// The file of this stem that is there, by the first of those endings: "room" gives "room.obj",
@@ -48,15 +49,15 @@ struct LoadOptions {
 
 /// glTF 2.0 (.gltf and .glb): triangles, strips and fans of all nodes, in their order, an object
 /// for each; materials as GltfMaterials says; the first camera; lights (KHR_lights_punctual: 683
-/// candela are 1 watt per steradian). +y is up. Positions are transformed in double. Skins, morph
-/// targets and animations are left as they are at rest.
+/// candela are 1 watt per steradian). +y is up. Positions are transformed in double. Skins and
+/// morph targets are as their nodes have them; animations are not read.
 /// Refuses, too: a node with two parents, more than 12 million vertices and corners of faces, and
 /// as many again as there are bytes, once instances are flattened.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// PLY, ASCII and binary: the polygons of the element "face", as one object of a default material.
-/// Of vertices x, y, z count, and where they are there nx, ny, nz. All other elements and
-/// properties are skipped; colours of vertices with a warning.
+/// Of vertices x, y, z count, and where they are there nx, ny, nz and red, green, blue. All other
+/// elements and properties are skipped with a warning.
 ///
 /// (No library that Debian 12 has reads PLY: assimp 5.2 crashed on damaged files, and keeps
 /// positions as float alone, with which a scene far from its origin is lost.)

@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
@@ -48,33 +51,67 @@ void read_binary(const std::string& name, std::string_view bytes, std::size_t fa
   }
 }
 
-/// solid NAME, facets, endsolid NAME; names may have several words. More than one solid is one.
-void read_ascii(const std::string& name, std::string_view bytes, MeshBuilder& mesh) {
-  TokenReader tokens(name, bytes);
+/// Whether the next word is this one, but for capital letters.
+bool is_next(std::string_view word, const TokenReader& tokens) {
+  return std::ranges::equal(word, tokens.peek(), [](char small, char letter) {
+    return letter == small || (letter >= 'A' && letter <= 'Z' && letter - 'A' + 'a' == small);
+  });
+}
+
+/// Takes a word that must be this one, but for capital letters.
+void expect(std::string_view word, TokenReader& tokens) {
+  if (is_next(word, tokens)) {
+    (void)tokens.take();
+  } else {
+    tokens.expect(word);
+  }
+}
+
+/// Takes "endWORD" or "end WORD".
+void expect_end(const std::string& word, TokenReader& tokens) {
+  if (is_next("end", tokens)) {
+    (void)tokens.take();
+    expect(word, tokens);
+  } else {
+    expect("end" + word, tokens);
+  }
+}
+
+/// Reads solid NAME, facets, endsolid NAME; names may have several words. Several
+/// solids become one. The last endsolid may be missing: then a warning says so.
+void read_ascii(const std::string& name, std::string_view text, MeshBuilder& mesh,
+                std::vector<std::string>& warnings) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  TokenReader tokens(name, text);
   std::int32_t positions = 0;
   while (!tokens.at_end()) {
-    tokens.expect("solid");
+    expect("solid", tokens);
     tokens.skip_line();
-    while (tokens.peek() == "facet") {
+    while (is_next("facet", tokens)) {
       const std::size_t line = tokens.line();
-      tokens.expect("facet");
-      tokens.expect("normal");
+      expect("facet", tokens);
+      expect("normal", tokens);
       for (int axis = 0; axis < 3; ++axis) (void)tokens.take();  // often nan
-      tokens.expect("outer");
-      tokens.expect("loop");
+      expect("outer", tokens);
+      expect("loop", tokens);
       std::array<glm::dvec3, 3> corners;
       for (glm::dvec3& corner : corners) {
-        tokens.expect("vertex");
+        expect("vertex", tokens);
         for (int axis = 0; axis < 3; ++axis) corner[axis] = tokens.number("a coordinate");
       }
-      tokens.expect("endloop");
-      tokens.expect("endfacet");
+      expect_end("loop", tokens);
+      expect_end("facet", tokens);
       if (positions > std::numeric_limits<std::int32_t>::max() - 3) {
         tokens.fail("too many facets");
       }
       add_facet(corners, line, mesh, positions);
     }
-    tokens.expect("endsolid");
+    if (tokens.at_end() && positions > 0) {
+      warnings.push_back(name + ": the file ends without endsolid, perhaps too soon");
+      break;
+    }
+    expect_end("solid", tokens);
     tokens.skip_line();
   }
 }
@@ -84,21 +121,25 @@ void read_ascii(const std::string& name, std::string_view bytes, MeshBuilder& me
 Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
   const std::string bytes = read_file(file), name = file.string();
   MeshBuilder mesh(name);
-  // A binary file may begin with "solid", too: its length says what it is.
+  Scene scene;
   const std::size_t facets =
       bytes.size() < kStart ? 0 : number_at<std::uint32_t>(bytes.data() + kHeader);
   const std::size_t length = kStart + facets * kFacet;
-  const bool is_solid = std::string_view(bytes).starts_with("solid");
-  if (bytes.size() == length || (!is_solid && facets > 0 && bytes.size() > length)) {
+  // A binary file may begin with "solid", too. It soon has a byte of value 0, which text has not.
+  const bool has_zero = bytes.find('\0') < 1024;
+  if (facets > 0 && (bytes.size() == length || (has_zero && bytes.size() > length))) {
     read_binary(name, bytes, facets, mesh);  // perhaps with something after it
-  } else if (is_solid) {
-    read_ascii(name, bytes, mesh);
+    if (const std::size_t more = (bytes.size() - length) / kFacet; more > 0) {
+      scene.warnings.push_back(name + ": room for " + std::to_string(more) + " facets after the " +
+                               std::to_string(facets) + " that its header counts, ignored");
+    }
+  } else if (!has_zero) {
+    read_ascii(name, bytes, mesh, scene.warnings);
   } else {
-    throw InputError(name + ": not an STL file: " + std::to_string(bytes.size()) +
-                     " bytes, expected \"solid\" at its start or " + std::to_string(length) +
-                     " bytes for its " + std::to_string(facets) + " facets");
+    throw InputError(name + ": found " + std::to_string(bytes.size()) + " bytes, expected " +
+                     std::to_string(length) + " for the " + std::to_string(facets) +
+                     " facets that the header of a binary STL file counts");
   }
-  Scene scene;
   mesh.build_plain(options, scene);
   scene.is_usually_z_up = true;
   return scene;

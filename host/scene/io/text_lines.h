@@ -81,6 +81,7 @@ class StatementReader {
   [[nodiscard]] const TextLines& lines() const { return lines_; }
   [[nodiscard]] TextLines& lines() { return lines_; }
 
+  [[nodiscard]] std::vector<std::string>& warnings() { return warnings_; }
   void warn(const std::string& what) { warnings_.push_back(lines_.place() + what); }
 
   /// Warns of the first statement with this keyword alone.

@@ -60,7 +60,7 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
       [](Scene& s) { s.materials[1].metallic_roughness->specular_map.texture = 0; },
       [](Scene& s) { s.materials[0].illumination_model = 1; },
       [](Scene& s) { s.materials[0].diffuse_texture = 0; },
-      [](Scene& s) { s.materials[0].diffuse_mapping.clamp = true; },
+      [](Scene& s) { s.materials[0].diffuse_mapping.sampling = Wrap::kClamp; },
       [](Scene& s) { s.materials[0].normal_scale = 2.0f; },
       [](Scene& s) { s.materials[0].opacity_map.texture = 0; },
       [](Scene& s) { s.materials[1].metallic_roughness->roughness = 0.5f; },

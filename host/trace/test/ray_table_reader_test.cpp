@@ -97,9 +97,11 @@ TEST_F(Table, OfText) {
 TEST_F(Table, OfTextWithoutAHeader) { EXPECT_EQ(read_all("1,2,3,4,5,6\n").rays.size(), 1u); }
 
 TEST_F(Table, OfTextWithOtherSeparators) {
-  for (const char* const row :
-       {"278 273  800 0 0 -1\n", "278;273; 800;0;0;-1\n", "\t278\t273\t800\t0\t0\t-1\r\n",
-        "a b c d e f\n278 273 800 0 0 -1"}) {
+  for (const char* const row : {"278 273  800 0 0 -1\n", "278;273; 800;0;0;-1\n",
+                                "\t278\t273\t800\t0\t0\t-1\r\n", "a b c d e f\n278 273 800 0 0 -1",
+                                "\xEF\xBB\xBF"
+                                "278,273,800,0,0,-1",
+                                "\"278\",'273', \" 800\",\"0\",\"0\",\"-1\"\r\n"}) {
     const RayTable rays = read_all(row);
     ASSERT_EQ(rays.rays.size(), 1u) << row;
     EXPECT_EQ(rays.rays[0].origin, glm::vec3(278.0f, 273.0f, 800.0f));
@@ -122,6 +124,9 @@ TEST_F(Table, SaysWhichLineIsWrong) {
   EXPECT_EQ(refusal("a,b\nc,d\n"), ":2: found 'c', expected a number");
   EXPECT_EQ(refusal("0,5;1,0;5,0;0,0;0,0;-1,0\n"), ":1: found '5;1', expected a number");
   EXPECT_EQ(refusal("1.f 2.f 3.f 4.f 5.f 6.f\n"), ":1: found '1.f', expected a number");
+  EXPECT_EQ(refusal("\xFF\xFE"
+                    "1"),
+            ": found UTF-16 text, expected ASCII or UTF-8");
   EXPECT_EQ(refusal(",,,,,\n"), ":1: found '', expected a number");
   EXPECT_EQ(refusal("1 2 3 4 5\n"), ":1: found 5 numbers" + wanted);
   EXPECT_EQ(refusal("1,2,3,4,5,6,\n"), ":1: found '', expected a number");

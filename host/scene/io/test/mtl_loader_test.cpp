@@ -130,7 +130,7 @@ TEST_F(LoadMtl, TextureOptionsAreNotTheFile) {
   EXPECT_EQ(m.diffuse_map, (folder_.path() / "3d model.png").string());
   EXPECT_EQ(m.diffuse_mapping.scale, glm::vec2(2, 1));
   EXPECT_EQ(m.diffuse_mapping.offset, glm::vec2(0.5f, 0.25f));
-  EXPECT_TRUE(m.diffuse_mapping.clamp);
+  EXPECT_EQ(m.diffuse_mapping.sampling, Sampling(Wrap::kClamp));
   EXPECT_EQ(material("newmtl a\nmap_Kd -minus.png\n").diffuse_map,
             (folder_.path() / "-minus.png").string());
 }

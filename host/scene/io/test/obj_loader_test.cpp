@@ -226,7 +226,8 @@ TEST(LoadObj, CrossingPolygonsAndZeroNormalsAreWarnedOf) {
   EXPECT_EQ(only_warning(crossing),
             "scene.obj:5: polygon crosses or touches itself, cut as well as can be");
   const Scene flat = load_square("vn 0 0 0\nvn 0 0 1\nf 1//2 2//2 3//1\nf 1//2 3//2 4//2\n");
-  EXPECT_EQ(only_warning(flat), "scene.obj:7: normal of length 0, the face is taken as flat");
+  EXPECT_EQ(only_warning(flat),
+            "scene.obj:7: normal without a direction, the face is taken as flat");
   EXPECT_EQ(flat.triangles[0].normals, (Indices{kNoIndex, kNoIndex, kNoIndex}));
   EXPECT_EQ(flat.triangles[1].normals, (Indices{1, 1, 1}));
 }

@@ -1,0 +1,62 @@
+#include "host/scene/io/find_file.h"
+
+#include <algorithm>
+
+#include "host/scene/io/tokens.h"
+
+namespace raygate {
+namespace {
+
+std::string in_small_letters(std::string text) {
+  for (char& letter : text) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  return text;
+}
+
+std::string with_slashes(std::string_view name) {
+  std::string slashed(name);
+  std::ranges::replace(slashed, '\\', '/');
+  return slashed;
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> find_exact_file(const std::filesystem::path& folder,
+                                                     std::string_view name) {
+  for (const std::string& spelling : {std::string(name), with_slashes(name)}) {
+    std::error_code ignored;
+    std::filesystem::path file = folder / spelling;
+    if (std::filesystem::is_regular_file(file, ignored)) return file;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                               std::string_view name, const std::string& place,
+                                               std::vector<std::string>& warnings) {
+  if (auto exact = find_exact_file(folder, name)) return exact;
+  const std::filesystem::path said(with_slashes(name));
+  const std::string wanted = in_small_letters(said.filename().string());
+  if (wanted.empty()) return std::nullopt;
+  for (const std::filesystem::path& where : {folder / said.parent_path(), folder}) {
+    std::optional<std::filesystem::path> found;  // the first one by name
+    std::error_code ignored;
+    const std::filesystem::path listed = where.empty() ? "." : where;
+    for (std::filesystem::directory_iterator entry(listed, ignored), end; entry != end;
+         entry.increment(ignored)) {
+      const std::filesystem::path file = where / entry->path().filename();
+      if (in_small_letters(file.filename().string()) == wanted && entry->is_regular_file(ignored) &&
+          (!found || file < *found)) {
+        found = file;
+      }
+      if (ignored) break;
+    }
+    if (!found) continue;
+    warnings.push_back(place + in_quotes(name) + " is missing, " + found->string() + " instead");
+    return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace raygate

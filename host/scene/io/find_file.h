@@ -1,0 +1,24 @@
+// Files that a model names, as another machine may have written the name.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace raygate {
+
+/// Returns the file that a model in `folder` means by `name`: of that name, with '\' read as '/',
+/// too; nullopt where there is none.
+[[nodiscard]] std::optional<std::filesystem::path> find_exact_file(
+    const std::filesystem::path& folder, std::string_view name);
+
+/// Returns the same, or else a file whose name is the last part of `name` but for capital letters:
+/// in the folder that `name` says, or in `folder`. A warning that begins with `place` names that.
+[[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                                             std::string_view name,
+                                                             const std::string& place,
+                                                             std::vector<std::string>& warnings);
+
+}  // namespace raygate

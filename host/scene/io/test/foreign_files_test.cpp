@@ -1,0 +1,211 @@
+// Files as other programs write them: what is optional and bad costs a warning, not the model.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "host/base/test/temp_folder.h"
+#include "host/scene/io/scene_loader.h"
+#include "host/scene/io/test/binary.h"
+#include "host/scene/test/tga.h"
+
+namespace raygate {
+namespace {
+
+using namespace std::string_literals;
+
+/// Returns the counts of triangles, of those with normals and with texture coordinates, and of
+/// textures.
+std::string counts(const Scene& scene) {
+  const auto count = [&](std::array<std::uint32_t, 3> Triangle::*indices) {
+    return std::to_string(std::ranges::count_if(
+        scene.triangles, [&](const Triangle& t) { return (t.*indices)[0] != kNoIndex; }));
+  };
+  return std::to_string(scene.triangles.size()) + " " + count(&Triangle::normals) + " " +
+         count(&Triangle::texcoords) + " " + std::to_string(scene.textures.size());
+}
+
+struct ForeignFile {
+  const char* name;
+  const char* ending;
+  std::string bytes;
+  std::string counts;
+  std::string warning;  ///< part of the first one; empty: there is none
+};
+
+class LoadForeign : public testing::TestWithParam<ForeignFile> {};
+
+TEST_P(LoadForeign, IsRead) {
+  const TempFolder folder;
+  (void)folder.write("maps/pic.tga", test::tga(1, 1, {{255, 0, 0}}));
+  (void)folder.write("cut.png",
+                     "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\2\0\0\0\x90wS\xde"s);
+  (void)folder.write("pic.webp", "RIFF");
+  const ForeignFile& with = GetParam();
+  (void)folder.write("beside.tga", test::tga(1, 1, {{255, 0, 0}}));
+  for (const auto& [name, map] : {std::pair{"webp.mtl", "pic.webp"},
+                                  {"cut.mtl", "cut.png"},
+                                  {"inner.mtl", "maps\\PIC.tga"},
+                                  {"windows.mtl", "D:\\My Work\\Beside.TGA"}}) {
+    (void)folder.write(name, "newmtl m\nmap_Kd "s + map + "\n");
+  }
+  const Scene scene = load_scene(folder.write("s"s + with.ending, with.bytes));
+  EXPECT_EQ(counts(scene), with.counts);
+  const std::string first = scene.warnings.empty() ? "" : scene.warnings[0];
+  EXPECT_EQ(first.empty(), with.warning.empty()) << first;
+  EXPECT_NE(first.find(with.warning), std::string::npos) << first;
+  EXPECT_LT(first.size(), folder.path().string().size() + 200) << "no data URI";
+}
+
+/// Two triangles that share their corners, with normals and texture coordinates.
+std::string obj(const std::string& faces, const std::string& more = "") {
+  return "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n" + more + faces +
+         "f 1/1/1 2/2/1 3/3/1\n";
+}
+
+std::string textured(const std::string& library) {
+  return obj("mtllib " + library + "\nusemtl m\n");
+}
+
+std::string facet(const std::string& end = "endfacet") {
+  return "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n" +
+         end + "\n";
+}
+
+std::string binary_stl(std::string header, int facets, const std::string& tail) {
+  header.resize(80, ' ');
+  std::string bytes = header + test::bytes_of(facets);
+  for (int i = 0; i < facets; ++i) {
+    bytes += test::bytes_of(0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f) + "\0\0"s;
+  }
+  return bytes + tail;
+}
+
+/// A square; its buffer holds a NaN in place of the number at `place`, if any.
+std::string gltf(const std::string& more, const std::string& nodes = R"([{"mesh": 0}])",
+                 std::size_t nan_at = 0, const std::string& material = R"(, "material": 0)") {
+  std::string buffer = test::square_buffer();
+  if (nan_at > 0) buffer.replace(nan_at, 4, test::bytes_of(std::nanf("")));
+  return test::glb(test::square_json(nodes, more, material), buffer);
+}
+
+std::string with_image(const std::string& image) {
+  return gltf(R"(, "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+      "textures": [{"source": 0}], "images": [)" +
+              image + "]");
+}
+
+std::string with_spot(const std::string& light) {
+  return gltf(R"(, "extensionsUsed": ["KHR_lights_punctual"],
+      "extensions": {"KHR_lights_punctual": {"lights": [)" +
+                  light + "]}}",
+              R"([{"mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}])", 0, "");
+}
+
+constexpr const char* kPly =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    , LoadForeign,
+    testing::Values(
+
+        ForeignFile{"NanNormal", ".obj", obj("f 1/1/2 2/2/1 3/3/1\n", "vn nan nan nan\n"),
+                    "2 1 2 0", ":9: normal without a direction"},
+        ForeignFile{"NormalOfOldMicrosoft", ".obj",
+                    obj("f 1/1/2 2/2/1 3/3/1\n", "vn -nan(ind) 1.#QNAN 0\n"), "2 1 2 0",
+                    ":9: normal without a direction"},
+        ForeignFile{"InfiniteTexcoord", ".obj", obj("f 1/1/1 2/4/1 3/3/1\n", "vt inf 0\n"),
+                    "2 2 1 0", ":9: face corner without texture coordinates"},
+        ForeignFile{"NoTexcoordOfOneCorner", ".obj", obj("f 1/1/1 2//1 3/3/1\n"), "2 2 1 0",
+                    ":8: face corner without texture coordinates"},
+        ForeignFile{"NoNormalOfOneCorner", ".obj", obj("f 1/1/1 2/2 3/3/1\n"), "2 1 2 0",
+                    ":8: face corner without a normal"},
+        ForeignFile{"TexcoordOutOfRange", ".obj", obj("f 1/9/1 2/9/1 3/-9/1\n"), "2 2 1 0",
+                    ":8: face corner without texture coordinates"},
+        ForeignFile{"TexcoordZero", ".obj", obj("f 1/0/1 2/0/1 3/0/1\n"), "2 2 1 0",
+                    ":8: face corner without texture coordinates"},
+        ForeignFile{"NormalOutOfRange", ".obj", obj("f 1/1/2 2/2/1 3/3/1\n"), "2 1 2 0",
+                    ":8: face corner without a normal"},
+        ForeignFile{"ShortFaces", ".obj", obj("f 1\nf 1 2\nf\n"), "1 1 1 0",
+                    ":8: face of fewer than 3 corners, left out, here and in 2 later faces"},
+        ForeignFile{"ShortFacePly", ".ply", kPly + "2 0 1\n"s, "1 0 0 0",
+                    ":14: face of fewer than 3 corners, left out"},
+        ForeignFile{"EmptyFacePly", ".ply", kPly + "0\n"s, "1 0 0 0",
+                    ":14: face of fewer than 3 corners, left out"},
+        ForeignFile{
+            "TexturePly", ".ply",
+            "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\n"
+            "property float x\nproperty float y\nproperty float z\nproperty float s\n"
+            "element face 1\nproperty list uchar int vertex_indices\n"
+            "property list uchar float texcoord\nelement edge 1\nproperty int vertex1\n"
+            "end_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2 0\n0\n",
+            "1 0 0 0",
+            ": not read: texture 'a.png', 's' of vertex, 'texcoord' of face, element 'edge'"},
+        ForeignFile{"TextureOfUnknownType", ".obj", textured("webp.mtl"), "1 1 1 0",
+                    "pic.webp: not a PNG, JPEG, TGA or BMP picture"},
+        ForeignFile{"TextureCutOff", ".obj", textured("cut.mtl"), "1 1 1 0",
+                    "cut.png: not a PNG, JPEG, TGA or BMP picture that can be read: its pixels are "
+                    "damaged or end too soon, its material is plain instead"},
+        ForeignFile{"NanNormalGltf", ".glb", gltf("", R"([{"mesh": 0}])", 48, ""), "2 0 0 0",
+                    "normal without a direction"},
+        ForeignFile{"NanTexcoordGltf", ".glb",
+                    gltf(R"(, "materials": [{"normalTexture": {"index": 0}}], "textures": [{}])",
+                         R"([{"mesh": 0}])", 104),
+                    "2 2 1 0", "a texture without a PNG"},
+        ForeignFile{"WebpGltf", ".glb",
+                    with_image(R"({"bufferView": 0, "mimeType": "image/webp"})"), "2 2 2 0",
+                    "image 0: not a PNG, JPEG, TGA or BMP picture"},
+        ForeignFile{"EqualSpotAngles", ".glb",
+                    with_spot(R"({"type": "spot", "spot": {"innerConeAngle": 0.5,
+                                  "outerConeAngle": 0.5}})"),
+                    "2 2 0 0", ""},
+        ForeignFile{"SpotAnglesOutOfRange", ".glb",
+                    with_spot(R"({"type": "spot", "spot": {"innerConeAngle": 0.5,
+                                  "outerConeAngle": 3}})"),
+                    "2 2 0 0", "a spot light's angles"},
+        ForeignFile{"NegativeLight", ".glb", with_spot(R"({"type": "point", "intensity": -1})"),
+                    "2 2 0 0", "a light whose intensity"},
+        ForeignFile{"StlIndented", ".stl", "\n \tsolid a\n" + facet() + "endsolid a\n", "1 0 0 0",
+                    ""},
+        ForeignFile{"StlByteOrderMark", ".stl", "\xEF\xBB\xBFsolid a\n" + facet() + "endsolid a\n",
+                    "1 0 0 0", ""},
+        ForeignFile{"StlCapitals", ".stl",
+                    "SOLID a\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\n"
+                    "VERTEX 0 1E0 0\nENDLOOP\nENDFACET\nEndSolid\n",
+                    "1 0 0 0", ""},
+        ForeignFile{"StlEndsInTwoWords", ".stl", "solid\n" + facet("end facet") + "end solid a\n",
+                    "1 0 0 0", ""},
+        ForeignFile{"StlWithoutEnd", ".stl", "solid\n" + facet(), "1 0 0 0",
+                    "the file ends without endsolid"},
+        ForeignFile{"StlSolidWithTail", ".stl", binary_stl("solid facet", 2, "more"), "2 0 0 0",
+                    ""},
+        ForeignFile{"StlMoreFacets", ".stl", binary_stl("a", 2, std::string(60, '\0')), "2 0 0 0",
+                    "room for 1 facets after the 2 that its header counts"},
+
+        ForeignFile{"WindowsTexture", ".obj", textured("windows.mtl"), "1 1 1 1",
+                    "windows.mtl:2: 'D:\\My Work\\Beside.TGA' is missing, "},
+        ForeignFile{"TextureInOtherCase", ".obj", textured("inner.mtl"), "1 1 1 1",
+                    "'maps\\PIC.tga' is missing, "},
+        ForeignFile{"LibraryInOtherCase", ".obj", textured("C:\\My Work\\CUT.MTL"), "1 1 1 0",
+                    ":8: 'C:\\My Work\\CUT.MTL' is missing, "},
+        ForeignFile{"ImageInOtherCase", ".glb",
+                    with_image(R"({"uri": "C:%5CTextures%5CBeside.tga"})"), "2 2 2 1",
+                    "'C:\\Textures\\Beside.tga' is missing, "},
+        ForeignFile{"ImageMissing", ".glb", with_image(R"({"uri": "none.png"})"), "2 2 2 0",
+                    "the texture 'none.png' is missing"},
+        ForeignFile{"DataOfOtherType", ".glb",
+                    with_image(R"({"uri": "data:image/x-tga;charset=x;base64,)"
+                               R"(AAACAAAAAAAAAAAAAQABABgg/wAA"})"),
+                    "2 2 2 1", ""},
+        ForeignFile{
+            "LongData", ".glb",
+            with_image(R"({"uri": "data:image/x-png;base64,)" + std::string(9000, 'A') + "\"}"),
+            "2 2 2 0", "image 0: not a PNG"},
+        ForeignFile{"LongDataOfNoKind", ".glb",
+                    with_image(R"({"uri": "data:image/x-png,)" + std::string(9000, 'A') + "\"}"),
+                    "2 2 2 0", "the texture 'data:image/x-png,AAA"}),
+    [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace raygate
