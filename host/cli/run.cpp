@@ -109,10 +109,9 @@ Scene load(const Options& options) {
                                  .smooth = options.smooth,
                                  .smooth_if_unsaid = options.is_bare_model,
                                  .threads = options.threads};
-  Scene scene = options.scene_file ? load_scene(*options.scene_file, load_options)
-                                   : load_scene(options.scene, load_options);
+  Scene scene =
+      load_scene(options.scene_file.value_or(SceneFile{.obj = options.scene}), load_options);
   require_numbers(scene, options.scene);
-  if (options.scene_file) add_lights(*options.scene_file, scene);
   if (options.environment) {
     load_environment(*options.environment, environment_up(options, scene), scene);
   }

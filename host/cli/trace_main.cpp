@@ -20,7 +20,6 @@
 #include "host/exact/ieee_floats.h"
 #include "host/film/atomic_file.h"
 #include "host/scene/io/scene_file.h"
-#include "host/scene/io/scene_loader.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table_reader.h"
 #include "host/trace/tracer.h"
@@ -189,12 +188,9 @@ std::string summary(const TraceOptions& options, const TraceCounts& counts, doub
 
 int run(const TraceOptions& options) {
   if (!options.is_to_standard_output()) require_writable(options.output);
-  std::optional<SceneFile> scene_file;
-  if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
   const LoadOptions load_options{
       .strict = options.strict, .keep_instances = true, .textures = false};
-  Scene scene =
-      scene_file ? load_scene(*scene_file, load_options) : load_scene(options.scene, load_options);
+  Scene scene = load_scene(read_scene_file(options.scene), load_options);
   resolve_instances(scene, options.engine.instances, options.scene);
   for (const std::string& warning : scene.warnings) print_warning(warning);
   prepare_engine(options.engine);

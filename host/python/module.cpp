@@ -39,7 +39,6 @@
 #include "host/scene/camera.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_file.h"
-#include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
@@ -141,17 +140,14 @@ class PythonScene {
     keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
     keywords.read(settings);
     const std::filesystem::path path = std::string(file.c_str(), file.size());
-    if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
     const LoadOptions options{.strict = strict, .keep_instances = true, .smooth = smooth};
-    scene_ = file_ ? load_scene(*file_, options) : load_scene(path, options);
-    if (file_) {
-      add_lights(*file_, scene_);
-      const auto& environment = file_->lights.environment;
-      if (environment)
-        load_environment(*environment, file_->up.value_or(guess_up_axis(scene_)), scene_);
+    scene_ = load_scene(file_, options);
+    if (const auto& environment = file_.lights.environment) {
+      load_environment(*environment, file_.up.value_or(guess_up_axis(scene_)), scene_);
     }
     resolve_instances(scene_, InstanceMode::kFlatten, path);
+    file_ = read_scene_file(path);
     build(keywords.threads);
   }
 
@@ -325,7 +321,7 @@ class PythonScene {
   }
 
   [[nodiscard]] std::optional<CameraSetting> given_camera() const {
-    return file_ && file_->camera ? file_->camera : scene_.camera;
+    return file_.camera ? file_.camera : scene_.camera;
   }
 
   [[nodiscard]] Camera camera_of(const std::optional<Three>& eye,
@@ -348,7 +344,7 @@ class PythonScene {
     return Camera::look_at(setting, aspect);
   }
 
-  std::optional<SceneFile> file_;
+  SceneFile file_;
   Scene scene_;
   std::unique_ptr<Bvh> bvh_;
   std::unique_ptr<PreparedScene> prepared_;

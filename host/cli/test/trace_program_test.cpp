@@ -76,6 +76,13 @@ TEST_F(TraceRays, SaysTheSameByEveryEngine) {
   }
 }
 
+TEST_F(TraceRays, HitsTheAreaLightsOfSceneFiles) {
+  folder_.write("lit.json", R"({"obj": "sheets.obj", "area_lights": [
+      {"corner": [-1, -1, 0.5], "edges": [[2, 0, 0], [0, 2, 0]], "radiance": 1}]})");
+  EXPECT_EQ(trace({"lit.json", "rays.csv", "--hits", "all", "--columns", "triangle,object,t"}).out,
+            "triangle,object,t\n4,2,0.25\n0,0,0.5\n2,1,1.5\n4,2,0.25\n");
+}
+
 TEST_F(TraceRays, SaysAllAndWhetherAny) {
   EXPECT_EQ(trace({"sheets.obj", "rays.csv", "--hits", "all", "--columns", "ray,triangle,t"}).out,
             "ray,triangle,t\n0,0,0.5\n0,2,1.5\n");

@@ -178,49 +178,6 @@ std::vector<OptionSetting> read_options(const JsonValue& render) {
   return options;
 }
 
-}  // namespace
-
-SceneFile read_scene_file(const std::filesystem::path& file) {
-  const JsonFile json(file);
-  const JsonValue root = json.root();
-  const std::filesystem::path folder = file.parent_path();
-  root.require_keys({"obj", "camera", "instances", "point_lights", "spot_lights",
-                     "directional_lights", "area_lights", "environment", "background", "render"});
-  SceneFile scene;
-  scene.file = file;
-  scene.obj = find_scene_file(std::filesystem::path(file).replace_extension());
-  if (const auto obj = root.find("obj")) scene.obj = folder / obj->string("the name of a scene");
-  if (const auto camera = root.find("camera")) read_cameras(*camera, scene);
-  scene.instances = read_instances(root, folder);
-  scene.lights = read_lights(root, folder);
-  if (const auto render = root.find("render")) scene.options = read_options(*render);
-  return scene;
-}
-
-Scene load_scene(const SceneFile& file, const LoadOptions& options) {
-  LoadOptions kept = options, flat = options;
-  kept.keep_instances = true;
-  flat.keep_instances = false;
-  Scene scene = load_scene(file.obj, kept);
-  for (const InstanceSetting& setting : file.instances) {
-    Scene model = load_scene(setting.model, flat);
-    const NameList objects = std::move(model.objects);
-    MeshInstancer instancer(scene, std::move(model));
-    std::size_t object = scene.objects.size();
-    scene.objects.append(objects, setting.transforms.size());
-    for (const glm::dmat4& transform : setting.transforms) {
-      if (!instancer.add(transform, static_cast<std::uint32_t>(object))) {
-        throw InputError(
-            file.file.string(), setting.line,
-            "an instance of " + setting.model.string() + " is beyond the range of float");
-      }
-      object += objects.size();
-    }
-  }
-  if (!options.keep_instances) resolve_instances(scene, InstanceMode::kFlatten, file.file);
-  return scene;
-}
-
 void add_lights(const SceneFile& file, Scene& scene) {
   const LightSettings& lights = file.lights;
   for (const PointLightSetting& light : lights.points) {
@@ -261,6 +218,51 @@ void add_lights(const SceneFile& file, Scene& scene) {
     material.emission = light.radiance;
     scene.objects.push_back(name);
   }
+}
+
+}  // namespace
+
+SceneFile read_scene_file(const std::filesystem::path& file) {
+  if (file.extension() != ".json") return {.file = file, .obj = file};
+  const JsonFile json(file);
+  const JsonValue root = json.root();
+  const std::filesystem::path folder = file.parent_path();
+  root.require_keys({"obj", "camera", "instances", "point_lights", "spot_lights",
+                     "directional_lights", "area_lights", "environment", "background", "render"});
+  SceneFile scene;
+  scene.file = file;
+  scene.obj = find_scene_file(std::filesystem::path(file).replace_extension());
+  if (const auto obj = root.find("obj")) scene.obj = folder / obj->string("the name of a scene");
+  if (const auto camera = root.find("camera")) read_cameras(*camera, scene);
+  scene.instances = read_instances(root, folder);
+  scene.lights = read_lights(root, folder);
+  if (const auto render = root.find("render")) scene.options = read_options(*render);
+  return scene;
+}
+
+Scene load_scene(const SceneFile& file, const LoadOptions& options) {
+  LoadOptions kept = options, flat = options;
+  kept.keep_instances = true;
+  flat.keep_instances = false;
+  Scene scene = load_scene(file.obj, kept);
+  for (const InstanceSetting& setting : file.instances) {
+    Scene model = load_scene(setting.model, flat);
+    const NameList objects = std::move(model.objects);
+    MeshInstancer instancer(scene, std::move(model));
+    std::size_t object = scene.objects.size();
+    scene.objects.append(objects, setting.transforms.size());
+    for (const glm::dmat4& transform : setting.transforms) {
+      if (!instancer.add(transform, static_cast<std::uint32_t>(object))) {
+        throw InputError(
+            file.file.string(), setting.line,
+            "an instance of " + setting.model.string() + " is beyond the range of float");
+      }
+      object += objects.size();
+    }
+  }
+  add_lights(file, scene);
+  if (!options.keep_instances) resolve_instances(scene, InstanceMode::kFlatten, file.file);
+  return scene;
 }
 
 }  // namespace raygate
