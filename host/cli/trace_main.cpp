@@ -80,8 +80,8 @@ TraceOptions parse(const std::vector<std::string>& words) {
                      {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
   table.text(
       "--columns", "NAMES",
-      "ray,hit,triangle,object,material,t,point,uv,normal,doubts, unit-point,unit-error (all "
-      "but material and the last two; of any: ray,hit)",
+      "ray,hit,triangle,object,material,t,point,uv,normal,side,doubts, unit-point,unit-error (all "
+      "but material, side and the last two; of any: ray,hit)",
       columns);
   add_engine_options(table, options.engine);
   table.flag("--strict", "refuse faces without area (they are left out)", options.strict);

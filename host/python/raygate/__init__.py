@@ -113,7 +113,7 @@ class Scene:
         order. One of them may be one vector, shape (3,), for all rays. Hits P = origin + t direction have 0 < t < limit; limits has shape (N,).
         hits: "nearest", a row for each ray; "any", whether there is a hit, sooner; "all", a row for
         each hit of each ray, near before far. columns: ray, hit, triangle, object, material, t,
-        point (x, y, z), uv, normal (nx, ny, nz), doubts, unit-point, unit-error; what each means is
+        point (x, y, z), uv, normal (nx, ny, nz), side, doubts, unit-point, unit-error; what each means is
         in host/docs/reference.md. engine: "cpu", or "model", the hit-test unit's reference model."""
         origins, directions = _rays(origins, directions)
         if limits is not None:
@@ -140,15 +140,13 @@ class Scene:
                                            _settings(width=width, height=height, **options)))
 
     def inside(self, points):
-        """Whether points, shape (N, 3), are inside of closed surfaces: an array of bool. A ray from
-        the point, whose hits are exact, does not leave as many surfaces as it enters; of what is open, or a
-        point on a surface, the answer has no meaning."""
+        """Whether points, shape (N, 3), are inside of closed surfaces: an array of bool. Exact: it
+        counts how often a ray from the point leaves and enters surfaces. The answer has no meaning
+        for an open surface and for a point on a surface."""
         points = _vectors("points", points)
         direction = np.float32([0.36, 0.48, 0.8])  # as good as any
-        hits = self.trace(points, direction, hits="all", columns=["ray", "normal"])
-        along = hits["nx"] * direction[0] + hits["ny"] * direction[1] + hits["nz"] * direction[2]
-        leaves = np.bincount(hits["ray"].astype(np.int64), np.sign(along), minlength=len(points))
-        return leaves != 0
+        hits = self.trace(points, direction, hits="all", columns=["ray", "side"])
+        return np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
 
     @in_ieee_floats
     def closest(self, points):

@@ -176,6 +176,25 @@ class Arrays(unittest.TestCase):
         np.testing.assert_allclose(found["distance"], np.linalg.norm(outside - expected, axis=1))
         self.assertTrue(((found["triangle"] >= 0) & (found["triangle"] < 12)).all())
 
+    def test_inside_beside_faces_along_the_ray(self):
+        """Tetrahedra with an edge that runs along the ray of `inside` but for 2^-58, and points near
+        its end, against whole numbers of any length."""
+        random, along, tiny = np.random.default_rng(5), [0.36, 0.48, 0.8], 2.0 ** -58
+
+        def is_left(a, b, c, points):
+            (ax, ay, az), (bx, by, bz) = b - a, c - a
+            normal = np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+            return (points - a) @ normal > 0
+
+        for _ in range(200):
+            a, c, d = random.uniform(-0.5, 0.5, (3, 3)) * [[tiny], [1], [1]]
+            places = np.float32([a, along, c, d, *random.uniform(-2 * tiny, 2 * tiny, (40, 3))])
+            whole = np.vectorize(int, otypes=[object])(places.astype(float) * 2.0 ** 110)
+            faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
+            lefts = [is_left(*whole[face], whole[4:]) for face in faces]
+            expected = np.all(lefts, axis=0) | ~np.any(lefts, axis=0)
+            np.testing.assert_array_equal(raygate.Scene(places[:4], faces).inside(places[4:]), expected)
+
     def test_says_what_it_cannot_use(self):
         for expected, call in (
                 ("face 1, expected numbers from 0 to 7",
