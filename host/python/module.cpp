@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -123,7 +124,16 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
       nb::ndarray<nb::numpy, T>(const_cast<T*>(static_cast<const T*>(data)), shape, capsule));
 }
 
-nb::bytes bytes_of(const std::string& text) { return nb::bytes(text.data(), text.size()); }
+/// The bytes that `encode` makes, without Python's lock.
+template <class Encode>
+nb::bytes bytes_of(const Encode& encode) {
+  std::string text;
+  {
+    const nb::gil_scoped_release release;
+    text = encode();
+  }
+  return nb::bytes(text.data(), text.size());
+}
 
 /// A film, to be encoded.
 struct PythonFilm {
@@ -240,13 +250,20 @@ class PythonScene {
     const Elements from("points", points);
     const std::size_t count = points.shape(0), width = 5;
     auto rows = std::make_unique<std::vector<double>>();
-    rows->reserve(count * width);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i % 1024 == 0) (void)keep_going();
-      const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
-      const glm::dvec3 at = found.point + scene_.origin;
-      const double triangle = bvh_->triangle_of(found.primitive);
-      rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
+    {
+      const nb::gil_scoped_release release;
+      rows->reserve(count * width);
+      auto looked = std::chrono::steady_clock::now();
+      for (std::size_t i = 0; i < count; ++i) {
+        const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
+        const glm::dvec3 at = found.point + scene_.origin;
+        const double triangle = bvh_->triangle_of(found.primitive);
+        rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
+        const auto now = std::chrono::steady_clock::now();
+        if (now - looked < std::chrono::milliseconds(50)) continue;
+        looked = now;
+        (void)keep_going();
+      }
     }
     std::vector<double>* const kept = rows.release();
     const nb::capsule capsule(
@@ -385,11 +402,12 @@ NB_MODULE(_raygate, m) {
   nb::class_<PythonFilm>(m, "Film")
       .def("png",
            [](const PythonFilm& f, double exposure) {
-             return raygate::bytes_of(
-                 raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure})));
+             return raygate::bytes_of([&] {
+               return raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure}));
+             });
            })
       .def("exr", [](const PythonFilm& f) {
-        return raygate::bytes_of(raygate::encode_exr(*f.film, f.metadata));
+        return raygate::bytes_of([&] { return raygate::encode_exr(*f.film, f.metadata); });
       });
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())

@@ -10,6 +10,7 @@ import resource
 import signal
 import tempfile
 import threading
+import time
 import unittest
 import warnings
 
@@ -318,12 +319,42 @@ class Embedding(unittest.TestCase):
                 self.assertTrue(hits == self.hits)
 
     def test_other_threads_go_on(self):
-        turns = 0
-        with concurrent.futures.ThreadPoolExecutor(1) as other:
-            rendering = other.submit(self.scene.render, 300, 300, spp=16, threads=1)
-            while not rendering.done():
-                turns += 1
-        self.assertGreater(turns, 100)
+        picture = self.scene.render(1200, 1200)
+        points = np.random.default_rng(8).normal(size=(100000, 3))
+        for work in (lambda: self.scene.render(300, 300, spp=16, threads=1),
+                     lambda: self.scene.closest(points), lambda: self.scene.inside(points),
+                     picture.png, lambda: picture._film.exr()):
+            turns = [time.monotonic()]
+            with concurrent.futures.ThreadPoolExecutor(1) as other:
+                done = other.submit(work)
+                while not done.done():
+                    turns.append(time.monotonic())
+                turns.append(time.monotonic())
+            self.assertLess(np.diff(turns).max(), 0.5 * (turns[-1] - turns[0]) + 0.05)
+
+    def test_far_points_are_found_soon(self):
+        far = np.random.default_rng(8).normal(size=(3000, 3)) * 1e6
+        start = time.monotonic()
+        found = self.scene.closest(far)
+        self.assertLess(time.monotonic() - start, 3)  # a look at every triangle: 6 s and more
+        self.assertTrue((found["distance"] > 1e3).all())
+
+    def test_closest_points_can_be_interrupted(self):
+        # All points of the sphere are equally near its middle: each search looks at all triangles.
+        u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 300), np.linspace(0.01, 3.1, 300))
+        sphere = np.stack([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)], axis=-1)
+        quads = [sphere[:-1, :-1], sphere[1:, :-1], sphere[1:, 1:]]
+        scene = raygate.Scene.of_triangles(np.stack(quads, axis=2).reshape(-1, 3, 3))
+        raised = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        start = time.monotonic()
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                scene.closest(np.zeros((100000, 3)))
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, raised)
+        self.assertLess(time.monotonic() - start, 5)
 
     def test_works_in_a_child(self):
         self.assertTrue(in_child(lambda: self.trace() == self.hits))
