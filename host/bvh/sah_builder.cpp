@@ -195,7 +195,7 @@ std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left
                                [](const Primitive& primitive) { return primitive.middle(0); });
     } else if (size <= kFew) {
       cut_few(run, unit_of(box), cut);
-      return static_cast<std::uint32_t>(cut.part);
+      if (cut.part > 0) return static_cast<std::uint32_t>(cut.part);
     } else {
       const Slices slices(around.middles, size);
       cut_between_slices(run, slices, unit_of(box), cut);

@@ -138,6 +138,7 @@ class Run {
     scene_ = load(options_);
     report_.load_seconds = seconds_since(start_);
     report_.triangles = triangle_count(scene_);
+    report_.rounding = scene_.rounding;
     scene_digest_ = digest_of(scene_);
     if (ranks_.index() == 0) print_warnings(scene_, options_.verbose);
     require_inputs_kept();

@@ -45,7 +45,7 @@ wanted, a limit:
 constexpr const char* kFooter =
     R"(Numbers count from 0. A ray that hits nothing has triangle -1, t inf, the rest
 nan. Positions become binary32 relative to the scene's middle; the summary says
-how many rays that changed.
+how many rays and corners that changed.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene, the rays or the output cannot be used; 130 interrupted.)";
@@ -171,7 +171,8 @@ void watch(const std::stop_token& is_over, const TraceOptions& options, Table& t
   std::_Exit(run_guarded([&]() -> int { end_interrupted(options); }, 1));
 }
 
-std::string summary(const TraceOptions& options, const TraceCounts& counts, double seconds) {
+std::string summary(const TraceOptions& options, const CornerRounding& rounding,
+                    const TraceCounts& counts, double seconds) {
   std::string text = format_count(counts.rays, "ray") + ", " + format_count(counts.hits, "hit") +
                      ", " + format_duration(seconds);
   if (seconds > 0.0) {
@@ -182,6 +183,10 @@ std::string summary(const TraceOptions& options, const TraceCounts& counts, doub
   text += ", engine " + to_string(options.engine.engine) + "\n";
   if (counts.rounded > 0) {
     text += format_count(counts.rounded, "ray") + " rounded to binary32\n";
+  }
+  if (rounding.corners > 0) {
+    text += format_count(rounding.corners, "corner") + " rounded to binary32, by up to " +
+            format_number(rounding.most) + "\n";
   }
   return text;
 }
@@ -216,7 +221,7 @@ int run(const TraceOptions& options) {
   if (interruption() != 0) end_interrupted(options);
   table.finish(counts.rows, options.format());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  if (!options.quiet) print(summary(options, counts, took.count()), stderr);
+  if (!options.quiet) print(summary(options, scene.rounding, counts, took.count()), stderr);
   return 0;
 }
 

@@ -408,6 +408,10 @@ NB_MODULE(_raygate, m) {
            })
       .def("exr", [](const PythonFilm& f) {
         return raygate::bytes_of([&] { return raygate::encode_exr(*f.film, f.metadata); });
+      .def_prop_ro("rounding",
+                   [](const PythonScene& s) {
+                     return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
+                   })
       });
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())

@@ -134,7 +134,7 @@ class Digest {
   void add(const Scene& s) {
     const auto& [positions, colors, normals, texcoords, triangles, meshes, instances, materials,
                  textures, objects, lights, directional_lights, background, environment, origin,
-                 camera, up, is_usually_z_up, files, warnings] = s;
+                 rounding, camera, up, is_usually_z_up, files, warnings] = s;
     add(positions, normals, texcoords, triangles, meshes, instances, materials, textures, objects);
     add(lights, directional_lights, background, environment, origin);
     if (!colors.empty()) add(colors);

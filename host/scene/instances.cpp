@@ -98,6 +98,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
     }
   }
   const std::uint32_t materials = append(scene.materials, std::move(part.materials));
+  scene.rounding.add(part.rounding);
   (void)append(scene.files, std::move(part.files));
   (void)append(scene.warnings, std::move(part.warnings));
   Mesh& mesh = scene.meshes.emplace_back();

@@ -100,6 +100,12 @@ class Scene:
         return self._scene.warnings
 
     @property
+    def rounding(self):
+        """How many corners binary32 does not hold as they were given, and the largest error of one
+        of their coordinates."""
+        return self._scene.rounding
+
+    @property
     def origin(self):
         """The point that binary32 positions are relative to."""
         return np.array(self._scene.origin)

@@ -200,7 +200,8 @@ void add_lights(const SceneFile& file, Scene& scene) {
     scene.positions.emplace_back(corner + light.edges[0] + light.edges[1]);
     scene.positions.emplace_back(corner + light.edges[1]);
     const glm::vec3* const corners = &scene.positions[first];
-    if (!std::all_of(corners, corners + 4, is_finite<float>) ||
+    const auto is_near = [](const glm::vec3& at) { return largest(at) <= kMostCoordinate; };
+    if (!std::all_of(corners, corners + 4, is_near) ||
         collinear(corners[0], corners[1], corners[2]) ||
         collinear(corners[0], corners[2], corners[3])) {
       throw InputError(file.file.string() + ": area_lights[" + std::to_string(number - 1) +
