@@ -21,7 +21,6 @@
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
 #include "host/bvh/closest_point.h"
-#include "host/exact/exact_sign.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/display.h"
 #include "host/film/environment_file.h"
@@ -151,19 +150,18 @@ class PythonScene {
     keywords.read(settings);
     const std::filesystem::path path = std::string(file.c_str(), file.size());
     const nb::gil_scoped_release release;
+    file_ = read_scene_file(path);
     const LoadOptions options{.strict = strict, .keep_instances = true, .smooth = smooth};
     scene_ = load_scene(file_, options);
     if (const auto& environment = file_.lights.environment) {
       load_environment(*environment, file_.up.value_or(guess_up_axis(scene_)), scene_);
     }
     resolve_instances(scene_, InstanceMode::kFlatten, path);
-    file_ = read_scene_file(path);
     build(keywords.threads);
   }
 
-  /// Triangles alone: their corners, one after the other. Refuses those without area, so that
-  /// their numbers stay.
-  PythonScene(const Vectors3& corners, const Settings& settings) {
+  /// Triangles alone: their corners, one after the other.
+  PythonScene(const Vectors3& corners, bool strict, const Settings& settings) {
     std::optional<double> smooth;
     Keywords keywords;
     keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
@@ -179,16 +177,7 @@ class PythonScene {
       }
       mesh.add_face(face, 0);
     }
-    mesh.build({.smooth = smooth}, scene_);
-    for (std::size_t i = 0; i + 2 < scene_.positions.size(); i += 3) {
-      const glm::vec3* const p = &scene_.positions[i];
-      if (collinear(p[0], p[1], p[2])) {
-        throw InputError("triangles: found no area in triangle " + std::to_string(i / 3) +
-                         ", expected one");
-      }
-    }
-    scene_.materials.emplace_back().name = "default";
-    scene_.objects = {"default"};
+    mesh.build_plain({.strict = strict, .smooth = smooth}, scene_);
     build(keywords.threads);
   }
 
@@ -408,14 +397,10 @@ NB_MODULE(_raygate, m) {
            })
       .def("exr", [](const PythonFilm& f) {
         return raygate::bytes_of([&] { return raygate::encode_exr(*f.film, f.metadata); });
-      .def_prop_ro("rounding",
-                   [](const PythonScene& s) {
-                     return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
-                   })
       });
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())
-      .def(nb::init<const raygate::Vectors3&, const raygate::Settings&>())
+      .def(nb::init<const raygate::Vectors3&, bool, const raygate::Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects",
@@ -423,6 +408,10 @@ NB_MODULE(_raygate, m) {
       .def_prop_ro("materials", &PythonScene::material_names)
       .def_prop_ro("warnings",
                    [](const PythonScene& s) { return raygate::texts_of(s.scene().warnings); })
+      .def_prop_ro("rounding",
+                   [](const PythonScene& s) {
+                     return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
+                   })
       .def_prop_ro("origin",
                    [](const PythonScene& s) {
                      const glm::dvec3& o = s.scene().origin;

@@ -203,7 +203,8 @@ void flatten_emitters(Scene& scene) {
   emits.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     emits.push_back(std::ranges::any_of(mesh.triangles, [&](const Triangle& triangle) {
-      return scene.materials[triangle.material].emission != glm::vec3(0.0f);
+      return !is_left_out(triangle) &&
+             scene.materials[triangle.material].emission != glm::vec3(0.0f);
     }));
   }
   // Clang 14 doesn't compile the library's std::ranges::stable_partition.

@@ -76,6 +76,20 @@ TEST_F(TraceRays, SaysTheSameByEveryEngine) {
   }
 }
 
+TEST_F(TraceRays, KeepsTheNumbersOfFaces) {
+  // The first face has no area; the model stands in two places.
+  folder_.write("flat.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv 3 -1 0\nf 1 2 4\nf 1 2 3\n");
+  folder_.write("flat.json",
+                R"({"instances": [{"model": "flat.obj", "places": [[0, 0, -2], [0, 0, -4]]}]})");
+  for (const char* how : {"keep", "write"}) {
+    EXPECT_EQ(trace({"flat.json", "rays.csv", "--instances", how, "--hits", "all", "--columns",
+                     "triangle,t,side"})
+                  .out,
+              "triangle,t,side\n1,0.5,-1\n3,1.5,-1\n5,2.5,-1\n")
+        << how;
+  }
+}
+
 TEST_F(TraceRays, HitsTheAreaLightsOfSceneFiles) {
   folder_.write("lit.json", R"({"obj": "sheets.obj", "area_lights": [
       {"corner": [-1, -1, 0.5], "edges": [[2, 0, 0], [0, 2, 0]], "radiance": 1}]})");

@@ -60,11 +60,11 @@ class Scene:
     def __init__(self, file, faces=None, *, strict=False, smooth=None, threads=None):
         """Reads `file`, or takes vertices of shape (N, 3) and, as `faces`, the numbers of three
         vertices in each row, shape (M, 3); and builds its tree. InputError, a ValueError, says with
-        file and line what cannot be used. `strict`: refuse faces without area, as arrays always do.
+        file and line what cannot be used. `strict`: refuse faces without area, which are left out.
         `smooth`: degrees at which faces without normals may meet to be smooth. `threads`: one per
         processor if None, here as everywhere."""
         if faces is not None or not isinstance(file, (str, bytes, os.PathLike)):
-            self._scene = _scene_of(_corners(file, faces), smooth, threads)
+            self._scene = _scene_of(_corners(file, faces), strict, smooth, threads)
             return
         name = os.fsencode(file)
         if b"\0" in name:
@@ -74,10 +74,10 @@ class Scene:
     @classmethod
     @in_ieee_floats
     def of_triangles(cls, corners, *, threads=None):
-        """A scene of grey triangles: corners of shape (N, 3, 3), float32 or float64. Triangles
-        without area are refused: leave them out, no ray hits them."""
+        """A scene of grey triangles: corners of shape (N, 3, 3), float32 or float64. No ray hits
+        triangles without area; they keep their numbers."""
         scene = cls.__new__(cls)
-        scene._scene = _scene_of(corners, None, threads)
+        scene._scene = _scene_of(corners, False, None, threads)
         return scene
 
     @property
@@ -145,6 +145,7 @@ class Scene:
                                            _point("up", up),
                                            _settings(width=width, height=height, **options)))
 
+    @in_ieee_floats
     def inside(self, points):
         """Whether points, shape (N, 3), are inside of closed surfaces: an array of bool. Exact: it
         counts how often a ray from the point leaves and enters surfaces. The answer has no meaning
@@ -176,7 +177,7 @@ def _settings(**options):
     return [(name, str(value)) for name, value in options.items() if value is not None]
 
 
-def _scene_of(corners, smooth, threads):
+def _scene_of(corners, strict, smooth, threads):
     """The C++ half of a scene of triangles, from their corners."""
     corners = _numbers("triangles", corners)
     if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not 0 < len(corners) < 2 ** 29:
@@ -185,7 +186,7 @@ def _scene_of(corners, smooth, threads):
     if wrong.any():
         raise InputError(f"triangles: found inf, nan or a coordinate beyond 2^125 in triangle "
                          f"{np.argmax(wrong)}, expected finite numbers")
-    return _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3),
+    return _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3), bool(strict),
                           _settings(smooth=smooth, threads=threads))
 
 

@@ -110,7 +110,15 @@ class Trace(unittest.TestCase):
         flat[7, 2] = flat[7, 1]
         infinite = corners.copy()
         infinite[9, 0, 0] = np.inf
-        for wrong, line in ((flat, "no area in triangle 7"), (infinite, "in triangle 9"),
+        left = raygate.Scene.of_triangles(flat)
+        expected = hits[0][hits[0]["triangle"] != 7]
+        self.assertEqual(left.trace(self.origins, self.directions, hits="all").tobytes(), expected.tobytes())
+        self.assertRegex(left.warnings[0], "zero area, left out$")
+        vertices, faces = flat.reshape(-1, 3), np.arange(900).reshape(-1, 3)
+        self.assertEqual(raygate.Scene(vertices, faces).triangle_count, 300)
+        with self.assertRaisesRegex(ValueError, "zero area"):
+            raygate.Scene(vertices, faces, strict=True)
+        for wrong, line in ((infinite, "in triangle 9"),
                             (corners[:0], r"shape \(0, 3, 3\)"), (corners[0], r"shape \(3, 3\)"),
                             ("teapot", "array of <U6")):
             with self.assertRaisesRegex(ValueError, line):
@@ -168,15 +176,6 @@ class Arrays(unittest.TestCase):
         both = expected | (np.abs(self.points - 0.5) < 0.9).all(axis=1)
         np.testing.assert_array_equal(two.inside(self.points), both)  # also where they overlap
 
-    def test_closest(self):
-        outside = self.points[(np.abs(self.points) > 1).any(axis=1)]
-        found = self.cube.closest(outside)
-        expected = np.clip(outside, -1, 1)
-        for axis, name in enumerate("xyz"):
-            np.testing.assert_allclose(found[name], expected[:, axis], atol=1e-15)
-        np.testing.assert_allclose(found["distance"], np.linalg.norm(outside - expected, axis=1))
-        self.assertTrue(((found["triangle"] >= 0) & (found["triangle"] < 12)).all())
-
     def test_inside_beside_faces_along_the_ray(self):
         """Tetrahedra with an edge that runs along the ray of `inside` but for 2^-58, and points near
         its end, against whole numbers of any length."""
@@ -195,6 +194,15 @@ class Arrays(unittest.TestCase):
             lefts = [is_left(*whole[face], whole[4:]) for face in faces]
             expected = np.all(lefts, axis=0) | ~np.any(lefts, axis=0)
             np.testing.assert_array_equal(raygate.Scene(places[:4], faces).inside(places[4:]), expected)
+
+    def test_closest(self):
+        outside = self.points[(np.abs(self.points) > 1).any(axis=1)]
+        found = self.cube.closest(outside)
+        expected = np.clip(outside, -1, 1)
+        for axis, name in enumerate("xyz"):
+            np.testing.assert_allclose(found[name], expected[:, axis], atol=1e-15)
+        np.testing.assert_allclose(found["distance"], np.linalg.norm(outside - expected, axis=1))
+        self.assertTrue(((found["triangle"] >= 0) & (found["triangle"] < 12)).all())
 
     def test_says_what_it_cannot_use(self):
         for expected, call in (

@@ -234,6 +234,9 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
                                    "area, as --strict asks");
       }
       (is_flat ? dropped : flattened).note(face.line);
+      Triangle left_out{.material = face.material, .object = face.object};
+      left_out.vertices.fill(corners[0].position);
+      scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);
       continue;
     }
     if (kind == PolygonKind::kSelfTouching) touching.note(face.line);
@@ -287,7 +290,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   check_indices();
   recentre(scene);
   const std::vector<std::uint32_t> groups = triangulate(options, scene);
-  if (scene.triangles.empty() && !may_be_empty_) {
+  if (is_empty(scene) && !may_be_empty_) {
     throw InputError(file_name_ + ": no face has an area");
   }
   scene.normals = std::move(normals_);
