@@ -40,6 +40,12 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
   return false;
 }
 
+/// Whether a triangle's axis-aligned box touches the closed box from `low` to `high`.
+[[nodiscard]] inline bool touches(const glm::vec3& low, const glm::vec3& high, const Corners& t) {
+  return glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
+         glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2])));
+}
+
 /// Calls visit(primitive, corners) for all triangles whose axis-aligned boxes touch that box, until
 /// it says true; whether it did.
 template <class Visit>
@@ -49,11 +55,7 @@ template <class Visit>
     const auto look = [&](const Bvh::Child& leaf) RAYGATE_BODY {
       for (std::uint32_t primitive = leaf.first; primitive < leaf.first + leaf.count; ++primitive) {
         const Corners t = bvh.corners_of(primitive);
-        if (glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
-            glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2]))) &&
-            visit(primitive, t)) {
-          return true;
-        }
+        if (touches(low, high, t) && visit(primitive, t)) return true;
       }
       return false;
     };

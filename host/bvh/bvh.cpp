@@ -47,7 +47,7 @@ class BvhWriter {
   void write() {
     bvh_.nodes_.assign(1, {});
     clear(bvh_.nodes_[0]);
-    const std::size_t primitives = content_.triangles.size();
+    const std::size_t primitives = tree_.size() - content_.others.size();
     bvh_.triangles_.resize(primitives);
     bvh_.places_.resize(primitives);
     bvh_.corners_.resize(9 * primitives + Bvh::kMaxLeafSize);

@@ -1,10 +1,10 @@
 #include "host/bvh/closest_point.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
+#include <queue>
 
-#include "host/bvh/box_query.h"
+#include "host/bvh/bvh_view.h"
+#include "host/exact/exact.h"
 
 namespace raygate {
 namespace {
@@ -32,42 +32,50 @@ glm::dvec3 closest_on(const Corners& corners, const glm::dvec3& point) {
   return a + ab * (of_b * inverse) + ac * (of_c * inverse);
 }
 
-float below(double x) {
-  return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
-}
-float above(double x) {
-  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
-}
+/// A child whose triangles are all at least `bound` away.
+struct Waiting {
+  double bound;
+  Bvh::Child child;
+  bool operator<(const Waiting& other) const { return bound > other.bound; }  // the nearest first
+};
 
 }  // namespace
 
-/// Looks at the triangles in a box around the point, first around what is surely there: a corner.
-/// Once something is found, nothing beyond its distance can be nearer.
+/// A best-first search: nearer boxes first, until none can hold anything nearer.
 ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point) {
+  constexpr double kRounding = 1.0 - 0x1p-40;  // of distances in double
+  const BvhView tree(bvh);
   ClosestPoint best;
   best.distance = std::numeric_limits<double>::infinity();
-  const auto look = [&](std::uint32_t primitive, const Corners& corners) {
-    const glm::dvec3 at = closest_on(corners, point);
-    const double distance = glm::distance(at, point);
-    if (distance < best.distance ||
-        (distance == best.distance &&
-         bvh.triangle_of(primitive) < bvh.triangle_of(best.primitive))) {
-      best = {primitive, distance, at};
+  std::priority_queue<Waiting> waiting;
+  for (Waiting nearest{0.0, {0, 0}}; nearest.bound <= best.distance;) {
+    const Bvh::Child& child = nearest.child;
+    for (std::uint32_t primitive = child.first; primitive < child.first + child.count;
+         ++primitive) {
+      const glm::dvec3 at = closest_on(bvh.corners_of(primitive), point);
+      const double distance = glm::distance(at, point);
+      if (distance < best.distance ||
+          (distance == best.distance &&
+           bvh.triangle_of(primitive) < bvh.triangle_of(best.primitive))) {
+        best = {primitive, distance, at};
+      }
     }
-  };
-  look(0, bvh.corners_of(0));
-  double radius = best.distance * 0x1p-10;  // grows to what is found, where there is nothing nearer
-  while (true) {
-    const double reach = std::min(radius, best.distance);
-    const glm::vec3 low(below(point.x - reach), below(point.y - reach), below(point.z - reach));
-    const glm::vec3 high(above(point.x + reach), above(point.y + reach), above(point.z + reach));
-    (void)any_primitive_near(bvh, low, high, [&](std::uint32_t primitive, const Corners& corners) {
-      look(primitive, corners);
-      return false;
-    });
-    if (best.distance <= reach) return best;
-    radius *= 4.0;
+    if (child.count == 0) {
+      Bvh::Node room;
+      const Bvh::Node& node = tree.node(child.first, room);
+      for (int i = 0; i < Bvh::kWidth; ++i) {
+        const auto [low, high] = node.box(i);  // infinitely far away where there is no child
+        const glm::dvec3 gap =
+            glm::max(glm::max(glm::dvec3(low) - point, point - glm::dvec3(high)), 0.0);
+        const double bound = kRounding * glm::length(gap);
+        if (bound <= best.distance) waiting.push({bound, node.child[i]});
+      }
+    }
+    if (waiting.empty()) break;
+    nearest = waiting.top();
+    waiting.pop();
   }
+  return best;
 }
 
 }  // namespace raygate

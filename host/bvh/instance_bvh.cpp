@@ -140,7 +140,7 @@ int Bvh::add_instances(const Scene& scene, int threads, TreeContent& content) {
     at.first_node = instance_nodes_.begin(i);
     at.first_primitive = instance_primitives_.begin(i);
     at.first_triangle = triangle;
-    triangle += primitive_counts[i];
+    triangle += static_cast<std::uint32_t>(scene.meshes[scene.instances[i].mesh].triangles.size());
     Node root;
     make_instance_node(at.first_node, root);
     TreeContent::Other& other = content.others.emplace_back();

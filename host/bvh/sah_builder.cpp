@@ -195,7 +195,7 @@ std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left
                                [](const Primitive& primitive) { return primitive.middle(0); });
     } else if (size <= kFew) {
       cut_few(run, unit_of(box), cut);
-      return static_cast<std::uint32_t>(cut.part);
+      if (cut.part > 0) return static_cast<std::uint32_t>(cut.part);
     } else {
       const Slices slices(around.middles, size);
       cut_between_slices(run, slices, unit_of(box), cut);
@@ -292,24 +292,29 @@ class SahBuilder {
 }  // namespace
 
 BinaryBvh::BinaryBvh(const TreeContent& content, int max_depth, int threads)
-    : primitives(content.size()), nodes(content.size()) {
-  if (primitives.empty()) return;
+    : primitives(content.size()) {
+  constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
   const std::size_t tasks = (primitives.size() + kTaskSize - 1) / kTaskSize;
   for_each_on_threads(threads, tasks, [&](std::size_t task) {
     const std::size_t begin = task * kTaskSize;
     const std::size_t end = std::min(begin + kTaskSize, primitives.size());
     for (std::size_t i = begin; i < end; ++i) {
       Box box;
+      auto number = static_cast<std::uint32_t>(i);
       if (i < content.triangles.size()) {
+        if (is_left_out(content.triangles[i])) number = kLeftOut;
         const auto& [a, b, c] = content.triangles[i].vertices;
         box_around(content.positions[a], content.positions[b], content.positions[c], box);
       } else {
         box = content.others[i - content.triangles.size()].box;
       }
       std::memcpy(&primitives[i], &box, sizeof box);
-      primitives[i].triangle = static_cast<std::uint32_t>(i);
+      primitives[i].triangle = number;
     }
   });
+  std::erase_if(primitives, [](const Primitive& one) { return one.triangle == kLeftOut; });
+  nodes.resize(primitives.size());
+  if (primitives.empty()) return;
   SahBuilder builder(*this, max_depth);
   on_threads(static_cast<int>(std::min<std::size_t>(threads, tasks)), [&] { builder.work(); });
 }

@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// What a tree is built around.
+/// What a tree is built around; faces without area are left out (see is_left_out).
 struct TreeContent {
   /// Whatever has a tree of its own: an instance.
   struct Other {

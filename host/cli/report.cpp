@@ -207,6 +207,10 @@ std::string to_text(const Report& report) {
   if (report.options.engine == Engine::kCheck) {
     text += row("check", "rtl and cpu agreed on all " + format_count(render.rays) + " rays");
   }
+  if (report.rounding.corners > 0) {
+    text += row("rounded", format_count(report.rounding.corners, "corner") +
+                               " to binary32, by up to " + format_number(report.rounding.most));
+  }
   std::string pictures;
   for (const auto& path : report.pictures) {
     pictures += (pictures.empty() ? "" : ", ") + printable(path.string());
@@ -228,6 +232,8 @@ std::string to_json(const Report& report) {
   ordered_json json = {{"software", kSoftware},
                        {"scene", options.obj().string()},
                        {"triangles", report.triangles},
+                       {"rounded_corners", report.rounding.corners},
+                       {"largest_rounding", report.rounding.most},
                        {"width", options.render.width},
                        {"height", options.render.height},
                        {"window", {window.x0, window.y0, window.x1, window.y1}},

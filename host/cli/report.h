@@ -8,6 +8,7 @@
 
 #include "host/cli/options.h"
 #include "host/render/renderer.h"
+#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -16,6 +17,7 @@ struct Report {
   Options options;
   int ranks = 1;  ///< that shared the run
   std::size_t triangles = 0;
+  CornerRounding rounding;  ///< of the scene's corners
   RenderStats render;
   double load_seconds = 0.0;   ///< reading OBJ and MTL
   double tree_seconds = 0.0;   ///< building the tree of boxes
@@ -30,7 +32,8 @@ struct Report {
 [[nodiscard]] double clocks_per_test(const HitCounters& counters);
 
 /// The summary at the end of a run: four lines, one more for --engine check, for --error, for each
-/// legend and for a view, and with --verbose all there is to say. Every line is ended.
+/// legend, for a view and for rounded corners, and with --verbose all there is to say. Every line
+/// is ended.
 [[nodiscard]] std::string to_text(const Report& report);
 
 /// The same and some more as a JSON object, for --stats. statistics.csv lists the keys.

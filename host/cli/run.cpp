@@ -109,10 +109,9 @@ Scene load(const Options& options) {
                                  .smooth = options.smooth,
                                  .smooth_if_unsaid = options.is_bare_model,
                                  .threads = options.threads};
-  Scene scene = options.scene_file ? load_scene(*options.scene_file, load_options)
-                                   : load_scene(options.scene, load_options);
+  Scene scene =
+      load_scene(options.scene_file.value_or(SceneFile{.obj = options.scene}), load_options);
   require_numbers(scene, options.scene);
-  if (options.scene_file) add_lights(*options.scene_file, scene);
   if (options.environment) {
     load_environment(*options.environment, environment_up(options, scene), scene);
   }
@@ -139,6 +138,7 @@ class Run {
     scene_ = load(options_);
     report_.load_seconds = seconds_since(start_);
     report_.triangles = triangle_count(scene_);
+    report_.rounding = scene_.rounding;
     scene_digest_ = digest_of(scene_);
     if (ranks_.index() == 0) print_warnings(scene_, options_.verbose);
     require_inputs_kept();

@@ -21,7 +21,6 @@
 #include "host/exact/ieee_floats.h"
 #include "host/film/atomic_file.h"
 #include "host/scene/io/scene_file.h"
-#include "host/scene/io/scene_loader.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table_reader.h"
 #include "host/trace/tracer.h"
@@ -47,7 +46,7 @@ wanted, a limit:
 constexpr const char* kFooter =
     R"(Numbers count from 0. A ray that hits nothing has triangle -1, t inf, the rest
 nan. Positions become binary32 relative to the scene's middle; the summary says
-how many rays that changed.
+how many rays and corners that changed.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene, the rays or the output cannot be used; 130 interrupted.)";
@@ -82,8 +81,8 @@ TraceOptions parse(const std::vector<std::string>& words) {
                      {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
   table.text(
       "--columns", "NAMES",
-      "ray,hit,triangle,object,material,t,point,uv,normal,doubts, unit-point,unit-error (all "
-      "but material and the last two; of any: ray,hit)",
+      "ray,hit,triangle,object,material,t,point,uv,normal,side,doubts, unit-point,unit-error (all "
+      "but material, side and the last two; of any: ray,hit)",
       columns);
   add_engine_options(table, options.engine);
   table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
@@ -175,7 +174,8 @@ void watch(const std::stop_token& is_over, const TraceOptions& options, Table& t
   std::_Exit(run_guarded([&]() -> int { end_interrupted(options); }, 1));
 }
 
-std::string summary(const TraceOptions& options, const TraceCounts& counts, double seconds) {
+std::string summary(const TraceOptions& options, const CornerRounding& rounding,
+                    const TraceCounts& counts, double seconds) {
   std::string text = format_count(counts.rays, "ray") + ", " + format_count(counts.hits, "hit") +
                      ", " + format_duration(seconds);
   if (seconds > 0.0) {
@@ -187,17 +187,18 @@ std::string summary(const TraceOptions& options, const TraceCounts& counts, doub
   if (counts.rounded > 0) {
     text += format_count(counts.rounded, "ray") + " rounded to binary32\n";
   }
+  if (rounding.corners > 0) {
+    text += format_count(rounding.corners, "corner") + " rounded to binary32, by up to " +
+            format_number(rounding.most) + "\n";
+  }
   return text;
 }
 
 int run(const TraceOptions& options) {
   if (!options.is_to_standard_output()) require_writable(options.output);
-  std::optional<SceneFile> scene_file;
-  if (options.scene.extension() == ".json") scene_file = read_scene_file(options.scene);
   const LoadOptions load_options{
       .strict = options.strict, .keep_instances = true, .textures = false};
-  Scene scene =
-      scene_file ? load_scene(*scene_file, load_options) : load_scene(options.scene, load_options);
+  Scene scene = load_scene(read_scene_file(options.scene), load_options);
   resolve_instances(scene, options.engine.instances, options.scene);
   for (const std::string& warning : scene.warnings) print_warning(warning);
   prepare_engine(options.engine);
@@ -228,7 +229,7 @@ int run(const TraceOptions& options) {
   if (interruption() != 0) end_interrupted(options);
   table.finish(counts.rows, options.format());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  if (!options.quiet) print(summary(options, counts, took.count()), stderr);
+  if (!options.quiet) print(summary(options, scene.rounding, counts, took.count()), stderr);
   return 0;
 }
 

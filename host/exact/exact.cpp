@@ -131,6 +131,17 @@ int order_of_planes(const Ray& ray, const Corners& first, const Corners& second)
 
 }  // namespace
 
+RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin) {
+  RecentredPosition result;
+  for (int k = 0; k < 3; ++k) {
+    const ExactPair difference = two_sum(position[k], -origin[k]);
+    result.position[k] = static_cast<float>(difference.value);
+    const double error = (double{result.position[k]} - difference.value) - difference.error;
+    result.error = std::max(result.error, std::abs(error));
+  }
+  return result;
+}
+
 bool is_usable(const glm::vec3& direction) {
   return std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z) &&
          direction != glm::vec3(0.0f);

@@ -20,6 +20,17 @@ template <class T>
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+/// Largest magnitude of coordinates that trees and predicates take.
+inline constexpr double kMostCoordinate = 0x1p126;
+
+/// A position relative to an origin, in binary32, and the largest of its coordinates' errors: 0 if
+/// and only if the position is exact.
+struct RecentredPosition {
+  glm::vec3 position{0.0f};
+  double error = 0.0;
+};
+[[nodiscard]] RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin);
+
 /// The float nearest to x that is not above it, or not below it.
 [[nodiscard]] inline float float_below(double x) {
   const auto nearest = static_cast<float>(x);
@@ -52,7 +63,7 @@ template <class T>
 /// A ray: origin + t direction for t > 0, an open beginning: what the origin lies on, and what is
 /// behind it, is not hit. Where a ray has a limit, its end is open too: hits have t < limit (see
 /// RayQuery in host/intersect). All components finite; coordinates, the triangles' too,
-/// of magnitude at most 2^126. Intersectors want the direction scaled (see is_scaled).
+/// of magnitude at most kMostCoordinate. Intersectors want the direction scaled (see is_scaled).
 struct Ray {
   glm::vec3 origin{0.0f};
   glm::vec3 direction{0.0f};

@@ -40,13 +40,14 @@ void require_like(const NamedFilm& part, const NamedFilm& first) {
   if (const auto difference = different_picture(file.metadata, first.second.metadata)) {
     throw InputError(name + ": found " + *difference + " as in " + first.first);
   }
-  bool is_like = film.width == other.width && film.height == other.height;
+  bool is_like = film.width == other.width && film.height == other.height &&
+                 file.metadata.world_to_camera == first.second.metadata.world_to_camera;
   for_each_field([&](const FilmField&, const auto& a,
                      const auto& b) { is_like = is_like && a.empty() == b.empty(); },
                  film, other);
   if (!is_like) {
-    throw InputError(name + ": found another frame or other channels than in " + first.first +
-                     ", expected the same");
+    throw InputError(name + ": found another frame, camera or other channels than in " +
+                     first.first + ", expected the same");
   }
 }
 

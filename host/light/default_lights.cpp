@@ -52,7 +52,8 @@ class LightPlaces {
            kFar * size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
   }
   [[nodiscard]] static PointLight light(const glm::dvec3& at, double distance, double radiance) {
-    return {glm::vec3(at), glm::dvec3(radiance * std::numbers::pi * distance * distance)};
+    return {glm::vec3(glm::clamp(at, -kMostCoordinate, kMostCoordinate)),
+            glm::dvec3(radiance * std::numbers::pi * distance * distance)};
   }
 
   const Camera& camera_;
@@ -69,7 +70,7 @@ bool has_lights(const Scene& scene) {
 bool has_emitter(const Scene& scene) {
   return std::ranges::any_of(scene.triangles, [&](const Triangle& face) {
     const Material& material = scene.materials[face.material];
-    return emits(material) && material.emission_map.texture == kNoIndex;
+    return !is_left_out(face) && emits(material) && material.emission_map.texture == kNoIndex;
   });
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 #include "host/bvh/box_query.h"
 #include "host/light/spawn_ray_lanes.h"
@@ -45,6 +46,9 @@ struct HitPoint {
 /// Whether no point of the triangle is in the box, as far as double can tell for sure. By the
 /// theorem of separating axes; the boxes' own axes have been looked at already.
 bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& triangle) {
+  for (const glm::vec3& corner : triangle) {
+    if (corner == glm::clamp(corner, low, high)) return false;
+  }
   const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
   const glm::dvec3 half = 0.5 * (glm::dvec3(high) - glm::dvec3(low));
   glm::dvec3 v[3];
@@ -178,19 +182,37 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
   const glm::dvec3 offsets[2] = {
       normal * (-sign / largest(normal)),
       glm::dvec3(ray.direction) * (side == SpawnSide::kIncident ? -1.0 : 1.0)};
+  // What has refused a candidate often refuses the next ones, too: it is asked first, for boxes may
+  // hold thousands of triangles.
+  struct Refuser {
+    Corners corners;
+    int wanted;  // the side on which a candidate is to be
+  };
+  std::vector<Refuser> refusers;
   const auto good = [&](const glm::vec3& candidate) {
     if (orient3d(candidate, hit) != sign) return false;
     // The box of X and the candidate, and some room for the error of X and for rounding.
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
+    const auto is_refused = [&](const Refuser& refuser) {
+      return orient3d(candidate, refuser.corners) != refuser.wanted;
+    };
+    if (std::ranges::any_of(refusers, [&](const Refuser& refuser) {
+          return is_refused(refuser) && touches(low, high, refuser.corners) &&
+                 !surely_apart(low, high, refuser.corners);
+        })) {
+      return false;
+    }
     return !any_primitive_near(bvh_, low, high,
                                [&](std::uint32_t other_slot, const Corners& other) {
                                  if (other_slot == primitive || surely_apart(low, high, other))
                                    return false;
                                  if (lies_beyond(other, hit, sign)) return false;
-                                 const int wanted = side_of_ray(ray, hit, other, side);
-                                 return wanted != 0 && orient3d(candidate, other) != wanted;
+                                 const Refuser refuser{other, side_of_ray(ray, hit, other, side)};
+                                 if (refuser.wanted == 0 || !is_refused(refuser)) return false;
+                                 refusers.push_back(refuser);
+                                 return true;
                                });
   };
   for (int k = 0; k <= kLastStep; ++k) {

@@ -19,15 +19,14 @@ glm::vec3 vector(const Tracer::Point& p) { return {p[0], p[1], p[2]}; }
 
 /// What the tree is built from, and not kept.
 Scene scene_of(std::span<const Tracer::Triangle> triangles) {
-  constexpr float kFarthest = 0x1p126f;
   Scene scene;
   scene.positions.reserve(3 * triangles.size());
   scene.triangles.resize(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const glm::vec3 position = vector(triangles[i][k]);
-      if (!(std::abs(position.x) <= kFarthest && std::abs(position.y) <= kFarthest &&
-            std::abs(position.z) <= kFarthest)) {
+      if (!(std::abs(position.x) <= kMostCoordinate && std::abs(position.y) <= kMostCoordinate &&
+            std::abs(position.z) <= kMostCoordinate)) {
         throw std::invalid_argument("triangle " + std::to_string(i) +
                                     ": found a corner that is not finite or beyond 2^126, "
                                     "expected coordinates of magnitude at most 2^126");

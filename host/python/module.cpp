@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -20,7 +21,6 @@
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
 #include "host/bvh/closest_point.h"
-#include "host/exact/exact_sign.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/display.h"
 #include "host/film/environment_file.h"
@@ -39,7 +39,6 @@
 #include "host/scene/camera.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_file.h"
-#include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
@@ -124,7 +123,16 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
       nb::ndarray<nb::numpy, T>(const_cast<T*>(static_cast<const T*>(data)), shape, capsule));
 }
 
-nb::bytes bytes_of(const std::string& text) { return nb::bytes(text.data(), text.size()); }
+/// The bytes that `encode` makes, without Python's lock.
+template <class Encode>
+nb::bytes bytes_of(const Encode& encode) {
+  std::string text;
+  {
+    const nb::gil_scoped_release release;
+    text = encode();
+  }
+  return nb::bytes(text.data(), text.size());
+}
 
 /// A film, to be encoded.
 struct PythonFilm {
@@ -141,23 +149,19 @@ class PythonScene {
     keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
     keywords.read(settings);
     const std::filesystem::path path = std::string(file.c_str(), file.size());
-    if (path.extension() == ".json") file_ = read_scene_file(path);
     const nb::gil_scoped_release release;
+    file_ = read_scene_file(path);
     const LoadOptions options{.strict = strict, .keep_instances = true, .smooth = smooth};
-    scene_ = file_ ? load_scene(*file_, options) : load_scene(path, options);
-    if (file_) {
-      add_lights(*file_, scene_);
-      const auto& environment = file_->lights.environment;
-      if (environment)
-        load_environment(*environment, file_->up.value_or(guess_up_axis(scene_)), scene_);
+    scene_ = load_scene(file_, options);
+    if (const auto& environment = file_.lights.environment) {
+      load_environment(*environment, file_.up.value_or(guess_up_axis(scene_)), scene_);
     }
     resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(keywords.threads);
   }
 
-  /// Triangles alone: their corners, one after the other. Refuses those without area, so that
-  /// their numbers stay.
-  PythonScene(const Vectors3& corners, const Settings& settings) {
+  /// Triangles alone: their corners, one after the other.
+  PythonScene(const Vectors3& corners, bool strict, const Settings& settings) {
     std::optional<double> smooth;
     Keywords keywords;
     keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
@@ -173,16 +177,7 @@ class PythonScene {
       }
       mesh.add_face(face, 0);
     }
-    mesh.build({.smooth = smooth}, scene_);
-    for (std::size_t i = 0; i + 2 < scene_.positions.size(); i += 3) {
-      const glm::vec3* const p = &scene_.positions[i];
-      if (collinear(p[0], p[1], p[2])) {
-        throw InputError("triangles: found no area in triangle " + std::to_string(i / 3) +
-                         ", expected one");
-      }
-    }
-    scene_.materials.emplace_back().name = "default";
-    scene_.objects = {"default"};
+    mesh.build_plain({.strict = strict, .smooth = smooth}, scene_);
     build(keywords.threads);
   }
 
@@ -244,13 +239,20 @@ class PythonScene {
     const Elements from("points", points);
     const std::size_t count = points.shape(0), width = 5;
     auto rows = std::make_unique<std::vector<double>>();
-    rows->reserve(count * width);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i % 1024 == 0) (void)keep_going();
-      const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
-      const glm::dvec3 at = found.point + scene_.origin;
-      const double triangle = bvh_->triangle_of(found.primitive);
-      rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
+    {
+      const nb::gil_scoped_release release;
+      rows->reserve(count * width);
+      auto looked = std::chrono::steady_clock::now();
+      for (std::size_t i = 0; i < count; ++i) {
+        const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
+        const glm::dvec3 at = found.point + scene_.origin;
+        const double triangle = bvh_->triangle_of(found.primitive);
+        rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
+        const auto now = std::chrono::steady_clock::now();
+        if (now - looked < std::chrono::milliseconds(50)) continue;
+        looked = now;
+        (void)keep_going();
+      }
     }
     std::vector<double>* const kept = rows.release();
     const nb::capsule capsule(
@@ -325,7 +327,7 @@ class PythonScene {
   }
 
   [[nodiscard]] std::optional<CameraSetting> given_camera() const {
-    return file_ && file_->camera ? file_->camera : scene_.camera;
+    return file_.camera ? file_.camera : scene_.camera;
   }
 
   [[nodiscard]] Camera camera_of(const std::optional<Three>& eye,
@@ -348,7 +350,7 @@ class PythonScene {
     return Camera::look_at(setting, aspect);
   }
 
-  std::optional<SceneFile> file_;
+  SceneFile file_;
   Scene scene_;
   std::unique_ptr<Bvh> bvh_;
   std::unique_ptr<PreparedScene> prepared_;
@@ -389,15 +391,16 @@ NB_MODULE(_raygate, m) {
   nb::class_<PythonFilm>(m, "Film")
       .def("png",
            [](const PythonFilm& f, double exposure) {
-             return raygate::bytes_of(
-                 raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure})));
+             return raygate::bytes_of([&] {
+               return raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure}));
+             });
            })
       .def("exr", [](const PythonFilm& f) {
-        return raygate::bytes_of(raygate::encode_exr(*f.film, f.metadata));
+        return raygate::bytes_of([&] { return raygate::encode_exr(*f.film, f.metadata); });
       });
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())
-      .def(nb::init<const raygate::Vectors3&, const raygate::Settings&>())
+      .def(nb::init<const raygate::Vectors3&, bool, const raygate::Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects",
@@ -405,6 +408,10 @@ NB_MODULE(_raygate, m) {
       .def_prop_ro("materials", &PythonScene::material_names)
       .def_prop_ro("warnings",
                    [](const PythonScene& s) { return raygate::texts_of(s.scene().warnings); })
+      .def_prop_ro("rounding",
+                   [](const PythonScene& s) {
+                     return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
+                   })
       .def_prop_ro("origin",
                    [](const PythonScene& s) {
                      const glm::dvec3& o = s.scene().origin;

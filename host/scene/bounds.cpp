@@ -58,6 +58,7 @@ Bounds3 transform_bounds(const glm::dmat4& world, const glm::dvec3& origin, cons
 Bounds3 triangle_bounds(const Scene& scene) {
   Bounds3 box;
   for (const Triangle& triangle : scene.triangles) {
+    if (is_left_out(triangle)) continue;
     for (const std::uint32_t vertex : triangle.vertices) box.expand(scene.positions[vertex]);
   }
   expand_by_instances(scene, box);

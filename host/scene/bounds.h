@@ -1,6 +1,7 @@
 // Bounding boxes of a scene, its instances included, and visits to all that lies in it.
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <limits>
 #include <span>
@@ -38,9 +39,9 @@ struct Bounds3 {
 /// Bounds of all positions, those of no triangle included.
 [[nodiscard]] Bounds3 position_bounds(const Scene& scene);
 
-/// Neither triangles nor instances.
+/// Neither instances nor triangles, but for faces without area.
 [[nodiscard]] inline bool is_empty(const Scene& scene) {
-  return scene.triangles.empty() && scene.instances.empty();
+  return scene.instances.empty() && std::ranges::all_of(scene.triangles, is_left_out);
 }
 
 /// Calls visit(position) for all positions of the scene and of its instances.
@@ -54,17 +55,20 @@ void for_each_position(const Scene& scene, const Visit& visit) {
   }
 }
 
-/// Calls visit(corners, face) for all triangles of the scene in the order of their numbers.
+/// Calls visit(corners, face) for all triangles of the scene in the order of their numbers, but not
+/// for faces without area.
 template <class Visit>
 void for_each_face(const Scene& scene, const Visit& visit) {
   Corners corners;
   for (const Triangle& face : scene.triangles) {
+    if (is_left_out(face)) continue;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = scene.positions[face.vertices[k]];
     visit(corners, face);
   }
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     for (const Triangle& face : mesh.triangles) {
+      if (is_left_out(face)) continue;
       for (std::size_t k = 0; k < 3; ++k) {
         corners[k] = transform_point(instance.rows, mesh.positions[face.vertices[k]]);
       }

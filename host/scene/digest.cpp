@@ -65,33 +65,44 @@ class Digest {
   template <class... Values>
   requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
+  // All members are named, so that a new one does not compile until it is decided upon.
   // What few materials have is left out where it is the default: files keep their digest.
   void add(const TextureMapping& m) {
-    const bool clamps = m.sampling == Sampling(Wrap::kClamp);
-    add(m.scale, m.offset, clamps);
-    if (!clamps && m.sampling != Sampling()) add(m.sampling.u, m.sampling.v, m.sampling.is_nearest);
-    if (m.turn != glm::vec2(1.0f, 0.0f)) add(m.turn);
-    if (m.is_second) add(m.is_second);
+    const auto& [scale, offset, sampling, turn, is_second] = m;
+    const bool clamps = sampling == Sampling(Wrap::kClamp);
+    add(scale, offset, clamps);
+    if (!clamps && sampling != Sampling()) add(sampling.u, sampling.v, sampling.is_nearest);
+    if (turn != glm::vec2(1.0f, 0.0f)) add(turn);
+    if (is_second) add(is_second);
   }
-  void add(const MaterialMap& m) { add(m.mapping, m.texture); }
+  void add(const MaterialMap& m) {
+    const auto& [file, mapping, texture] = m;
+    add(mapping, texture);
+  }
   void add(const MetallicRoughness& m) {
-    add(m.metallic, m.roughness, m.transmission, m.map);
-    if (m.specular != 1.0f || m.specular_color != glm::vec3(1.0f)) {
-      add(m.specular, m.specular_color);
-    }
-    if (m.coat != 0.0f) add(m.coat, m.coat_roughness);
+    const auto& [metallic, roughness, transmission, map, metallic_file, specular, specular_color,
+                 coat, coat_roughness, transmission_map, specular_map, specular_color_map, coat_map,
+                 coat_roughness_map] = m;
+    add(metallic, roughness, transmission, map);
+    if (specular != 1.0f || specular_color != glm::vec3(1.0f)) add(specular, specular_color);
+    if (coat != 0.0f) add(coat, coat_roughness);
     int number = 0;
     for_each_map(m, [&](const MaterialMap& map) {
       if (number++ > 0 && map.texture != kNoIndex) add(number, map);
     });
   }
   void add(const Material& m) {
-    add(m.diffuse, m.specular, m.emission, m.transmittance, m.shininess, m.refraction_index,
-        m.opacity, m.illumination_model, m.diffuse_mapping, m.diffuse_texture);
-    add(m.metallic_roughness, m.normal_map, m.normal_scale, m.opacity_map, m.opacity_cutoff);
-    if (m.emission_map.texture != kNoIndex) add(m.emission_map);
-    if (m.opacity_blends) add(m.opacity_blends);
-    if (m.has_vertex_opacity) add(m.has_vertex_opacity);
+    const auto& [name, diffuse, specular, emission, transmittance, shininess, refraction_index,
+                 opacity, illumination_model, diffuse_map, diffuse_mapping, diffuse_texture,
+                 metallic_roughness, normal_map, normal_scale, emission_map, opacity_map,
+                 opacity_cutoff, opacity_blends, has_vertex_opacity, has_vertex_colors] = m;
+    add(diffuse, specular, emission, transmittance, shininess, refraction_index, opacity,
+        illumination_model, diffuse_mapping, diffuse_texture);
+    add(metallic_roughness, normal_map, normal_scale, opacity_map, opacity_cutoff);
+    if (emission_map.texture != kNoIndex) add(emission_map);
+    if (opacity_blends) add(opacity_blends);
+    if (has_vertex_opacity) add(has_vertex_opacity);
+    if (!has_vertex_colors) add(has_vertex_colors);
   }
   void add(const NameList& names) {
     word(names.size());
@@ -99,16 +110,46 @@ class Digest {
   }
   void add(const Texture& t) { add(t.width(), t.height(), t.texels()); }
   void add(const Mesh& m) {
-    add(m.positions, m.triangles);
-    if (!m.colors.empty()) add(m.colors);
+    const auto& [positions, triangles, colors] = m;
+    add(positions, triangles);
+    if (!colors.empty()) add(colors);
+    if (!tangents.empty()) add(tangents);
+    if (!second_texcoords.empty()) add(second_texcoords);
+    if (!opacities.empty()) add(opacities);
   }
-  void add(const SpotCone& c) { add(c.axis, c.inner, c.outer); }
-  void add(const PointLight& l) { add(l.position, l.intensity, l.spot); }
-  void add(const DirectionalLight& l) { add(l.direction, l.irradiance); }
-  void add(const EnvironmentMap& e) { add(e.width, e.height, e.texels, e.strength, e.up, e.ahead); }
+  void add(const SpotCone& c) {
+    const auto& [axis, inner, outer] = c;
+    add(axis, inner, outer);
+  }
+  void add(const PointLight& l) {
+    const auto& [position, intensity, spot] = l;
+    add(position, intensity, spot);
+  }
+  void add(const DirectionalLight& l) {
+    const auto& [direction, irradiance] = l;
+    add(direction, irradiance);
+  }
+  void add(const EnvironmentMap& e) {
+    const auto& [width, height, texels, strength, up, ahead] = e;
+    add(width, height, texels, strength, up, ahead);
+  }
   void add(const Instance& i) {
-    bytes(i.rows, sizeof i.rows);
-    add(i.mesh, i.object);
+    const auto& [rows, mesh, object] = i;
+    bytes(rows, sizeof rows);
+    add(mesh, object);
+  }
+  // Of the rest, views depend on `camera`, `up` and `is_usually_z_up`: pictures say their own view.
+  void add(const Scene& s) {
+    const auto& [positions, colors, normals, tangents, texcoords, second_texcoords, opacities,
+                 triangles, meshes, instances, materials, textures, objects, lights,
+                 directional_lights, background, environment, origin, rounding, camera, up,
+                 is_usually_z_up, files, warnings] = s;
+    add(positions, normals, texcoords, triangles, meshes, instances, materials, textures, objects);
+    add(lights, directional_lights, background, environment, origin);
+    if (!colors.empty()) add(colors);
+    if (!tangents.empty()) add(tangents);
+    if (!second_texcoords.empty()) add(second_texcoords);
+    if (!opacities.empty()) add(opacities);
   }
 
  private:
@@ -124,14 +165,7 @@ class Digest {
 
 std::string digest_of(const Scene& scene) {
   Digest digest;
-  digest.add(scene.positions, scene.normals, scene.texcoords, scene.triangles, scene.meshes,
-             scene.instances, scene.materials, scene.textures, scene.objects);
-  digest.add(scene.lights, scene.directional_lights, scene.background, scene.environment,
-             scene.origin);
-  if (!scene.colors.empty()) digest.add(scene.colors);
-  if (!scene.tangents.empty()) digest.add(scene.tangents);
-  if (!scene.second_texcoords.empty()) digest.add(scene.second_texcoords);
-  if (!scene.opacities.empty()) digest.add(scene.opacities);
+  digest.add(scene);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(digest.value()));
   return text;

@@ -116,6 +116,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
     }
   }
   const std::uint32_t materials = append(scene.materials, std::move(part.materials));
+  scene.rounding.add(part.rounding);
   (void)append(scene.files, std::move(part.files));
   (void)append(scene.warnings, std::move(part.warnings));
   Mesh& mesh = scene.meshes.emplace_back();
@@ -227,7 +228,8 @@ void flatten_emitters(Scene& scene) {
   emits.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     emits.push_back(std::ranges::any_of(mesh.triangles, [&](const Triangle& triangle) {
-      return scene.materials[triangle.material].emission != glm::vec3(0.0f);
+      return !is_left_out(triangle) &&
+             scene.materials[triangle.material].emission != glm::vec3(0.0f);
     }));
   }
   // Clang 14 doesn't compile the library's std::ranges::stable_partition.

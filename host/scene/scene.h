@@ -1,6 +1,7 @@
 // Scene: triangles, materials, textures, lights and instances, recentred on an origin.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -103,6 +104,12 @@ struct Triangle {
   std::uint32_t object = 0;    ///< always valid: index into Scene::objects
 };
 
+/// Whether it stands for a face without area, or for a part of one: its vertices are one. It keeps
+/// its number, and is in no tree.
+[[nodiscard]] inline bool is_left_out(const Triangle& triangle) {
+  return triangle.vertices[0] == triangle.vertices[1];
+}
+
 /// Triangles that stand in several places: written once, in coordinates of their own. None of their
 /// materials emits.
 struct Mesh {
@@ -166,12 +173,24 @@ struct EnvironmentSetting {
   double strength = 1.0;       ///< times what the file has; 0 or more
 };
 
+/// Corners that binary32 does not hold as their files have them, and the largest error of one of
+/// their coordinates, in the unit of its file.
+struct CornerRounding {
+  std::uint64_t corners = 0;
+  double most = 0.0;
+
+  void add(const CornerRounding& other) {
+    corners += other.corners;
+    most = std::max(most, other.most);
+  }
+};
+
 /// All geometry, materials and lights besides the faces that emit. Positions are relative to
 /// `origin`, which is subtracted in double before rounding to float, so that a scene far from the
 /// world's origin keeps its digits.
 ///
 /// A triangle's number is its place in `triangles`; those of the instances follow, one instance
-/// after the other.
+/// after the other. Faces without area have numbers, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
   /// Of the positions, in their order, scene-linear RGB: they multiply the diffuse colour. Beyond
@@ -197,11 +216,12 @@ struct Scene {
   glm::vec3 background{0.0f};  ///< radiance from where no geometry is, scene-linear RGB
   std::optional<EnvironmentMap> environment;  ///< takes the background's place
   glm::dvec3 origin{0.0};                     ///< world = origin + position
-  std::optional<CameraSetting> camera;        ///< the file's first one, in world coordinates
-  std::optional<glm::dvec3> up;               ///< upwards, where the file's format says so
-  bool is_usually_z_up = false;               ///< else: what is usual in the format, z or y
-  std::vector<std::filesystem::path> files;   ///< that were read for it: OBJ, MTL and textures
-  std::vector<std::string> warnings;          ///< "file:line: ...": of statements, then of faces
+  CornerRounding rounding;
+  std::optional<CameraSetting> camera;       ///< the file's first one, in world coordinates
+  std::optional<glm::dvec3> up;              ///< upwards, where the file's format says so
+  bool is_usually_z_up = false;              ///< else: what is usual in the format, z or y
+  std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures
+  std::vector<std::string> warnings;         ///< "file:line: ...": of statements, then of faces
 };
 
 }  // namespace raygate

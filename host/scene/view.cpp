@@ -231,7 +231,7 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
   const auto first = static_cast<std::uint32_t>(scene.positions.size());
   for (const glm::dvec3& corner : {-u - v, u - v, u + v, v - u}) {
     const glm::vec3 rounded(centre + corner);
-    if (!is_finite(rounded)) {
+    if (!(largest(rounded) <= kMostCoordinate)) {
       scene.positions.resize(first);
       return;
     }

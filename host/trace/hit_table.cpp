@@ -29,6 +29,7 @@ constexpr Column kColumns[] = {{"ray", true, {"ray"}},
                                {"point", false, {"x", "y", "z"}},
                                {"uv", false, {"u", "v"}},
                                {"normal", false, {"nx", "ny", "nz"}},
+                               {"side", true, {"side"}},
                                {"doubts", true, {"doubts"}},
                                {"unit-point", false, {"unit_x", "unit_y", "unit_z"}},
                                {"unit-error", false, {"unit_error"}}};
@@ -180,6 +181,9 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
         break;
       case HitColumn::kNormal:
         vector(glm::normalize(triangle_normal(corners)));
+        break;
+      case HitColumn::kSide:
+        integer(is_hit ? direction_side(ray.direction, corners) : 0);
         break;
       case HitColumn::kDoubts:
         integer(found.doubts);

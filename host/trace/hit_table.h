@@ -26,6 +26,7 @@ enum class HitColumn {
   kPoint,      ///< x, y, z: P in the file's coordinates
   kUv,         ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
   kNormal,     ///< nx, ny, nz: (B - A) x (C - A) by its length; not turned towards the ray
+  kSide,       ///< the exact sign of D . N: -1 where the ray meets the front, 1 the back
   kDoubts,     ///< tests of this ray that binary32 left open: the engine's, resolved exactly
   kUnitPoint,  ///< unit_x, unit_y, unit_z: P with the bits of the hit-test unit
   kUnitError,  ///< unit_error: its error bound, as NearestHit::point_error

@@ -15,7 +15,6 @@ void RayTable::clear(std::uint64_t its_first) {
 
 const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                           const glm::dvec3& scene_origin) {
-  constexpr double kFarthest = 0x1p126;  // see Ray
   const auto is_finite = [](const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   };
@@ -23,11 +22,11 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
     return "found inf or nan in origin or direction, expected finite numbers";
   }
   if (!(limit > 0.0)) return "found a limit that is not above 0, expected one, or inf";
-  const glm::dvec3 recentred = origin - scene_origin;
-  if (largest(recentred) > kFarthest) {
+  if (largest(origin - scene_origin) > kMostCoordinate) {
     return "found an origin farther than 2^126 from the scene, expected a nearer one";
   }
-  Ray ray{.origin = glm::vec3(recentred)};
+  const RecentredPosition start = recentred(origin, scene_origin);
+  Ray ray{.origin = start.position};
   int exponent = 0;
   if (direction != glm::dvec3(0.0)) {
     ray.direction = scaled_direction(direction);
@@ -41,7 +40,7 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
   const double scaled_limit = std::ldexp(limit, -exponent);
   const float float_limit =
       std::max(static_cast<float>(scaled_limit), std::numeric_limits<float>::denorm_min());
-  rounded += glm::dvec3(ray.origin) != recentred || kept != direction ||
+  rounded += start.error != 0.0 || kept != direction ||
              (double{float_limit} != scaled_limit && std::isfinite(float_limit));
   rays.push_back(ray);
   limits.push_back(float_limit);

@@ -324,6 +324,11 @@ TEST_F(Parts, FramesOfAnotherAnimationAreRefused) {
   refuse({"--spp", "1", "--frames", "2", "--crop", "0,0,8,8"}, "a-0001.exr: found another frame");
   refuse({"--spp", "1", "--frames", "3"}, "a-0002.exr: found another camera");
   EXPECT_EQ(folder_.read("a-0002.exr"), before);
+  make({"-o", "l.exr", "--spp", "1", "--frames", "2", "--crop", "0,0,30,44"});
+  make({"-o", "r.exr", "--spp", "1", "--frames", "2", "--crop", "30,0,60,44"});
+  EXPECT_EQ(merge({"l-0002.exr", "r-0002.exr", "-o", "merged"}).status, 0);
+  expect_refused(merge({"l-0001.exr", "r-0002.exr", "-o", "merged"}),
+                 "r-0002.exr: found another frame, camera or other channels than in l-0001.exr");
   expect_refused(part({"--frames", "2", "-o", "a.exr", "--resume", "b.exr"}),
                  "--resume: expected a.exr with --frames, the animation's own name, got 'b.exr'");
   expect_refused(part({"--frames", "2", "-o", "a.png", "--resume", "a.exr"}),

@@ -78,6 +78,27 @@ TEST_F(TraceRays, SaysTheSameByEveryEngine) {
   }
 }
 
+TEST_F(TraceRays, KeepsTheNumbersOfFaces) {
+  // The first face has no area; the model stands in two places.
+  folder_.write("flat.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv 3 -1 0\nf 1 2 4\nf 1 2 3\n");
+  folder_.write("flat.json",
+                R"({"instances": [{"model": "flat.obj", "places": [[0, 0, -2], [0, 0, -4]]}]})");
+  for (const char* how : {"keep", "write"}) {
+    EXPECT_EQ(trace({"flat.json", "rays.csv", "--instances", how, "--hits", "all", "--columns",
+                     "triangle,t,side"})
+                  .out,
+              "triangle,t,side\n1,0.5,-1\n3,1.5,-1\n5,2.5,-1\n")
+        << how;
+  }
+}
+
+TEST_F(TraceRays, HitsTheAreaLightsOfSceneFiles) {
+  folder_.write("lit.json", R"({"obj": "sheets.obj", "area_lights": [
+      {"corner": [-1, -1, 0.5], "edges": [[2, 0, 0], [0, 2, 0]], "radiance": 1}]})");
+  EXPECT_EQ(trace({"lit.json", "rays.csv", "--hits", "all", "--columns", "triangle,object,t"}).out,
+            "triangle,object,t\n4,2,0.25\n0,0,0.5\n2,1,1.5\n4,2,0.25\n");
+}
+
 TEST_F(TraceRays, SaysAllAndWhetherAny) {
   EXPECT_EQ(trace({"sheets.obj", "rays.csv", "--hits", "all", "--columns", "ray,triangle,t"}).out,
             "ray,triangle,t\n0,0,0.5\n0,2,1.5\n");

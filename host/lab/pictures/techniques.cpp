@@ -43,8 +43,7 @@ struct Plan {
 class Set {
  public:
   Set(const std::string& file, const Plan& plan) : plan_(plan), options_(options_of(file, plan)) {
-    scene_ = options_.scene_file ? load_scene(*options_.scene_file) : load_scene(options_.scene);
-    if (options_.scene_file) add_lights(*options_.scene_file, scene_);
+    scene_ = load_scene(options_.scene_file.value_or(SceneFile{.obj = options_.scene}));
     cameras_ = std::make_unique<CameraSequence>(options_, scene_);
     bvh_ = std::make_unique<Bvh>(scene_);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);

@@ -43,6 +43,16 @@ TEST(DefaultLights, AreOneLightAboveTheCameraAndAStudio) {
   EXPECT_LT(glm::length(mean - glm::dvec3(lights->background)), 1e-3);
 }
 
+// Sixteen times the size of such a scene is beyond the range of float.
+TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
+  Scene scene;
+  add(scene, rectangle({-8e37f, -8e37f, 0}, {1.6e38f, 0, 0}, {0, 1.6e38f, 0}),
+      matte(glm::vec3(0.5f)));
+  for (const PointLight& light : preview_lights(scene, camera_from({0, 0, 3e38}))->points) {
+    EXPECT_LE(largest(light.position), kMostCoordinate);
+  }
+}
+
 // Whatever faces the camera, and is white, is not clipped; by paths next to nothing is.
 TEST(DefaultLights, LeaveWhiteBelowOne) {
   Scene scene;

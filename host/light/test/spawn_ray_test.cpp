@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 #include <optional>
 
 #include "host/exact/test/meshes.h"
@@ -203,6 +204,40 @@ TEST(RaySpawner, ManyAtOnceAreTheSame) {
 }
 
 // Away from other triangles the distance is what departure.h says, whatever the angle.
+// As where a file has a stray corner far away: thousands of triangles within some float steps.
+TEST(RaySpawner, IsSoonDoneAmongManyTriangles) {
+  constexpr int kSide = 50;
+  const auto at = [](int x, int y) {  // on the grid of floats there
+    const float z = 0.25f * static_cast<float>((3 * x + 5 * y) % 7);
+    return glm::vec3(2.7e6f + 0.05f * static_cast<float>(x), 0.05f * static_cast<float>(y), z);
+  };
+  std::vector<Corners> triangles;
+  for (int x = 0; x < kSide; ++x) {
+    for (int y = 0; y < kSide; ++y) {
+      triangles.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
+      triangles.push_back({at(x, y), at(x + 1, y + 1), at(x, y + 1)});
+    }
+  }
+  const Bvh bvh(test::scene_of(triangles));
+  const NeighborClearances clearances(bvh);
+  RaySpawner spawner(clearances);
+  Random random;
+  std::clock_t took = 0;
+  int hits = 0;
+  for (int i = 0; i < 500; ++i) {
+    const glm::vec3 aim = at(random.below(kSide), random.below(kSide)) + random.point(0.02f);
+    const Ray ray{aim + glm::vec3(0.5f, 0.25f, 4.0f), {-0.125f, -0.0625f, -1.0f}};
+    const auto primitive = nearest(bvh, ray);
+    if (!primitive) continue;
+    ++hits;
+    const std::clock_t start = std::clock();
+    (void)spawner.find(ray, *primitive, SpawnSide::kIncident);
+    took += std::clock() - start;
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_LT(took, hits * CLOCKS_PER_SEC / 1000) << "a millisecond each";
+}
+
 TEST(RaySpawner, StaysWithinTheBoundOnBothSides) {
   Random random;
   double farthest = 0.0;

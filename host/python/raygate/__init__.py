@@ -60,11 +60,11 @@ class Scene:
     def __init__(self, file, faces=None, *, strict=False, smooth=None, threads=None):
         """Reads `file`, or takes vertices of shape (N, 3) and, as `faces`, the numbers of three
         vertices in each row, shape (M, 3); and builds its tree. InputError, a ValueError, says with
-        file and line what cannot be used. `strict`: refuse faces without area, as arrays always do.
+        file and line what cannot be used. `strict`: refuse faces without area, which are left out.
         `smooth`: degrees at which faces without normals may meet to be smooth. `threads`: one per
         processor if None, here as everywhere."""
         if faces is not None or not isinstance(file, (str, bytes, os.PathLike)):
-            self._scene = _scene_of(_corners(file, faces), smooth, threads)
+            self._scene = _scene_of(_corners(file, faces), strict, smooth, threads)
             return
         name = os.fsencode(file)
         if b"\0" in name:
@@ -74,10 +74,10 @@ class Scene:
     @classmethod
     @in_ieee_floats
     def of_triangles(cls, corners, *, threads=None):
-        """A scene of grey triangles: corners of shape (N, 3, 3), float32 or float64. Triangles
-        without area are refused: leave them out, no ray hits them."""
+        """A scene of grey triangles: corners of shape (N, 3, 3), float32 or float64. No ray hits
+        triangles without area; they keep their numbers."""
         scene = cls.__new__(cls)
-        scene._scene = _scene_of(corners, None, threads)
+        scene._scene = _scene_of(corners, False, None, threads)
         return scene
 
     @property
@@ -100,6 +100,12 @@ class Scene:
         return self._scene.warnings
 
     @property
+    def rounding(self):
+        """How many corners binary32 does not hold as they were given, and the largest error of one
+        of their coordinates."""
+        return self._scene.rounding
+
+    @property
     def origin(self):
         """The point that binary32 positions are relative to."""
         return np.array(self._scene.origin)
@@ -113,7 +119,7 @@ class Scene:
         order. One of them may be one vector, shape (3,), for all rays. Hits P = origin + t direction have 0 < t < limit; limits has shape (N,).
         hits: "nearest", a row for each ray; "any", whether there is a hit, sooner; "all", a row for
         each hit of each ray, near before far. columns: ray, hit, triangle, object, material, t,
-        point (x, y, z), uv, normal (nx, ny, nz), doubts, unit-point, unit-error; what each means is
+        point (x, y, z), uv, normal (nx, ny, nz), side, doubts, unit-point, unit-error; what each means is
         in host/docs/reference.md. engine: "cpu", or "model", the hit-test unit's reference model."""
         origins, directions = _rays(origins, directions)
         if limits is not None:
@@ -139,16 +145,15 @@ class Scene:
                                            _point("up", up),
                                            _settings(width=width, height=height, **options)))
 
+    @in_ieee_floats
     def inside(self, points):
-        """Whether points, shape (N, 3), are inside of closed surfaces: an array of bool. A ray from
-        the point, whose hits are exact, does not leave as many surfaces as it enters; of what is open, or a
-        point on a surface, the answer has no meaning."""
+        """Whether points, shape (N, 3), are inside of closed surfaces: an array of bool. Exact: it
+        counts how often a ray from the point leaves and enters surfaces. The answer has no meaning
+        for an open surface and for a point on a surface."""
         points = _vectors("points", points)
         direction = np.float32([0.36, 0.48, 0.8])  # as good as any
-        hits = self.trace(points, direction, hits="all", columns=["ray", "normal"])
-        along = hits["nx"] * direction[0] + hits["ny"] * direction[1] + hits["nz"] * direction[2]
-        leaves = np.bincount(hits["ray"].astype(np.int64), np.sign(along), minlength=len(points))
-        return leaves != 0
+        hits = self.trace(points, direction, hits="all", columns=["ray", "side"])
+        return np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
 
     @in_ieee_floats
     def closest(self, points):
@@ -172,7 +177,7 @@ def _settings(**options):
     return [(name, str(value)) for name, value in options.items() if value is not None]
 
 
-def _scene_of(corners, smooth, threads):
+def _scene_of(corners, strict, smooth, threads):
     """The C++ half of a scene of triangles, from their corners."""
     corners = _numbers("triangles", corners)
     if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not 0 < len(corners) < 2 ** 29:
@@ -181,7 +186,7 @@ def _scene_of(corners, smooth, threads):
     if wrong.any():
         raise InputError(f"triangles: found inf, nan or a coordinate beyond 2^125 in triangle "
                          f"{np.argmax(wrong)}, expected finite numbers")
-    return _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3),
+    return _raygate.Scene(np.ascontiguousarray(corners).reshape(-1, 3), bool(strict),
                           _settings(smooth=smooth, threads=threads))
 
 

@@ -10,6 +10,7 @@ import resource
 import signal
 import tempfile
 import threading
+import time
 import unittest
 import warnings
 
@@ -109,7 +110,15 @@ class Trace(unittest.TestCase):
         flat[7, 2] = flat[7, 1]
         infinite = corners.copy()
         infinite[9, 0, 0] = np.inf
-        for wrong, line in ((flat, "no area in triangle 7"), (infinite, "in triangle 9"),
+        left = raygate.Scene.of_triangles(flat)
+        expected = hits[0][hits[0]["triangle"] != 7]
+        self.assertEqual(left.trace(self.origins, self.directions, hits="all").tobytes(), expected.tobytes())
+        self.assertRegex(left.warnings[0], "zero area, left out$")
+        vertices, faces = flat.reshape(-1, 3), np.arange(900).reshape(-1, 3)
+        self.assertEqual(raygate.Scene(vertices, faces).triangle_count, 300)
+        with self.assertRaisesRegex(ValueError, "zero area"):
+            raygate.Scene(vertices, faces, strict=True)
+        for wrong, line in ((infinite, "in triangle 9"),
                             (corners[:0], r"shape \(0, 3, 3\)"), (corners[0], r"shape \(3, 3\)"),
                             ("teapot", "array of <U6")):
             with self.assertRaisesRegex(ValueError, line):
@@ -166,6 +175,25 @@ class Arrays(unittest.TestCase):
                             np.concatenate([self.FACES, np.array(self.FACES) + 8]))
         both = expected | (np.abs(self.points - 0.5) < 0.9).all(axis=1)
         np.testing.assert_array_equal(two.inside(self.points), both)  # also where they overlap
+
+    def test_inside_beside_faces_along_the_ray(self):
+        """Tetrahedra with an edge that runs along the ray of `inside` but for 2^-58, and points near
+        its end, against whole numbers of any length."""
+        random, along, tiny = np.random.default_rng(5), [0.36, 0.48, 0.8], 2.0 ** -58
+
+        def is_left(a, b, c, points):
+            (ax, ay, az), (bx, by, bz) = b - a, c - a
+            normal = np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+            return (points - a) @ normal > 0
+
+        for _ in range(200):
+            a, c, d = random.uniform(-0.5, 0.5, (3, 3)) * [[tiny], [1], [1]]
+            places = np.float32([a, along, c, d, *random.uniform(-2 * tiny, 2 * tiny, (40, 3))])
+            whole = np.vectorize(int, otypes=[object])(places.astype(float) * 2.0 ** 110)
+            faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
+            lefts = [is_left(*whole[face], whole[4:]) for face in faces]
+            expected = np.all(lefts, axis=0) | ~np.any(lefts, axis=0)
+            np.testing.assert_array_equal(raygate.Scene(places[:4], faces).inside(places[4:]), expected)
 
     def test_closest(self):
         outside = self.points[(np.abs(self.points) > 1).any(axis=1)]
@@ -299,12 +327,42 @@ class Embedding(unittest.TestCase):
                 self.assertTrue(hits == self.hits)
 
     def test_other_threads_go_on(self):
-        turns = 0
-        with concurrent.futures.ThreadPoolExecutor(1) as other:
-            rendering = other.submit(self.scene.render, 300, 300, spp=16, threads=1)
-            while not rendering.done():
-                turns += 1
-        self.assertGreater(turns, 100)
+        picture = self.scene.render(1200, 1200)
+        points = np.random.default_rng(8).normal(size=(100000, 3))
+        for work in (lambda: self.scene.render(300, 300, spp=16, threads=1),
+                     lambda: self.scene.closest(points), lambda: self.scene.inside(points),
+                     picture.png, lambda: picture._film.exr()):
+            turns = [time.monotonic()]
+            with concurrent.futures.ThreadPoolExecutor(1) as other:
+                done = other.submit(work)
+                while not done.done():
+                    turns.append(time.monotonic())
+                turns.append(time.monotonic())
+            self.assertLess(np.diff(turns).max(), 0.5 * (turns[-1] - turns[0]) + 0.05)
+
+    def test_far_points_are_found_soon(self):
+        far = np.random.default_rng(8).normal(size=(3000, 3)) * 1e6
+        start = time.monotonic()
+        found = self.scene.closest(far)
+        self.assertLess(time.monotonic() - start, 3)  # a look at every triangle: 6 s and more
+        self.assertTrue((found["distance"] > 1e3).all())
+
+    def test_closest_points_can_be_interrupted(self):
+        # All points of the sphere are equally near its middle: each search looks at all triangles.
+        u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 300), np.linspace(0.01, 3.1, 300))
+        sphere = np.stack([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)], axis=-1)
+        quads = [sphere[:-1, :-1], sphere[1:, :-1], sphere[1:, 1:]]
+        scene = raygate.Scene.of_triangles(np.stack(quads, axis=2).reshape(-1, 3, 3))
+        raised = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        start = time.monotonic()
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                scene.closest(np.zeros((100000, 3)))
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, raised)
+        self.assertLess(time.monotonic() - start, 5)
 
     def test_works_in_a_child(self):
         self.assertTrue(in_child(lambda: self.trace() == self.hits))

@@ -25,7 +25,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const raygate::SceneFile read = raygate::read_scene_file(file);
     raygate::Scene scene = raygate::load_scene(read, {.keep_instances = true});
-    raygate::add_lights(read, scene);
     raygate::test::draw(scene);
   } catch (const raygate::InputError&) {
     // What a bad file deserves.

@@ -214,7 +214,7 @@ class GltfReader {
   /// The whole scene is recentred. And what will be flattened is counted.
   void expand_extent(const MeshInstance& instance) {
     const auto& [part, own_box, ignored] = shared(instance.shape);
-    if (part.triangles.empty()) return;
+    if (is_empty(part)) return;
     if (!options_.keep_instances) meshes_.count(part.positions.size() + 3 * part.triangles.size());
     const Bounds3 box = transform_bounds(instance.world, part.origin, own_box);
     if (!(largest(box.low) <= kMostFloat && largest(box.high) <= kMostFloat)) {
@@ -226,7 +226,7 @@ class GltfReader {
   void add_instance(const MeshInstance& instance) {
     SharedMesh& mesh = shared(instance.shape);
     if (!mesh.instancer) {
-      if (mesh.part.triangles.empty()) return;
+      if (is_empty(mesh.part)) return;
       mesh.instancer.emplace(scene_, std::move(mesh.part));
     }
     if (!mesh.instancer->add(instance.world, instance.object)) {

@@ -131,7 +131,7 @@ void load_textures(Scene& scene) {
   TextureLoader loader(scene);
   std::vector<bool> is_done(scene.materials.size());
   for (const Triangle& triangle : scene.triangles) {
-    if (is_done[triangle.material]) continue;
+    if (is_left_out(triangle) || is_done[triangle.material]) continue;
     is_done[triangle.material] = true;
     loader.load_all(scene.materials[triangle.material]);
   }

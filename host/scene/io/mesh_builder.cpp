@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "host/base/input_error.h"
 #include "host/base/srgb.h"
@@ -154,6 +155,15 @@ void MeshBuilder::check_indices() const {
   }
 }
 
+void MeshBuilder::fail_far(std::size_t position) const {
+  std::size_t i = 0;
+  while (corners_[i].position != position) ++i;
+  const auto face = std::ranges::upper_bound(faces_, i, {}, &Face::end);
+  throw InputError(
+      file_name_, face->line,
+      "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
+}
+
 // Keeps the positions that some face uses, relative to the origin, and renumbers the corners.
 void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
@@ -173,10 +183,32 @@ void MeshBuilder::recentre(Scene& scene) {
   });
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     if (new_index[i] == kNoIndex) continue;
-    scene.positions[new_index[i]] = glm::vec3(positions_[i] - scene.origin);
+    if (!(largest(positions_[i] - scene.origin) <= kMostCoordinate)) fail_far(i);
+    const auto [position, error] = recentred(positions_[i], scene.origin);
+    scene.positions[new_index[i]] = position;
+    scene.rounding.add({error != 0.0, error});
+    positions_[new_index[i]] = positions_[i];
     if (!colors_.empty()) scene.colors[new_index[i]] = linear_color(i, is_bytes ? 255.0f : 1.0f);
   }
   for (Corner& corner : corners_) corner.position = new_index[corner.position];
+}
+
+// Whether a polygon has no area in its file either: at most what decimals become in double.
+bool MeshBuilder::was_flat(std::span<const Corner> corners) const {
+  const glm::dvec3& first = positions_[corners[0].position];
+  glm::dvec3 area(0.0), size(0.0), reach = glm::abs(first);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const glm::dvec3 &p = positions_[corners[i - 1].position], &q = positions_[corners[i].position];
+    area += glm::cross(p - first, q - first);
+    size = glm::max(size, glm::abs(q - first));
+    reach = glm::max(reach, glm::abs(q));
+  }
+  const auto products = [](const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::dvec3(a.y * b.z, a.z * b.x, a.x * b.y);
+  };
+  const glm::dvec3 bound = products(reach, size) + products(size, reach);
+  return glm::all(
+      glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
 }
 
 std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
@@ -184,7 +216,7 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::vec3> polygon;
-  WarningCount dropped, too_short, touching, no_direction, no_normal, no_texcoord;
+  WarningCount dropped, flattened, moved, too_short, touching, no_direction, no_normal, no_texcoord;
   const auto has_all = [](std::span<const Corner> corners, std::uint32_t Corner::*index,
                           std::size_t count) {
     return std::ranges::all_of(corners, [&](const Corner& c) { return c.*index < count; });
@@ -219,15 +251,27 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
       kind = PolygonKind::kZeroArea;
     }
     if (kind == PolygonKind::kZeroArea) {
+      const bool is_flat = was_flat(corners);
       if (options.strict) {
         throw InputError(file_name_, face.line,
-                         "face of zero area (its corners are on one line, or cancel out), "
-                         "expected one with an area, as --strict asks");
+                         is_flat ? "face of zero area (its corners are on one line, or cancel "
+                                   "out), expected one with an area, as --strict asks"
+                                 : "face flattened by rounding to binary32, expected one with an "
+                                   "area, as --strict asks");
       }
-      dropped.note(face.line);
+      (is_flat ? dropped : flattened).note(face.line);
+      Triangle left_out{.material = face.material, .object = face.object};
+      left_out.vertices.fill(corners[0].position);
+      scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);
       continue;
     }
     if (kind == PolygonKind::kSelfTouching) touching.note(face.line);
+    double error = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      error = std::max(error, recentred(positions_[corners[i].position], scene.origin).error);
+      size = std::max(size, largest(glm::dvec3(polygon[i]) - glm::dvec3(polygon[0])));
+    }
+    if (error > 0.01 * size) moved.note(face.line);
 
     bool has_normals = has_all(corners, &Corner::normal, normals_.size());
     if (!has_normals && !has_none(corners, &Corner::normal)) no_normal.note(face.line);
@@ -260,6 +304,13 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
   }
   dropped.report(file_name_, "face of zero area, left out", scene);
   too_short.report(file_name_, "face of fewer than 3 corners, left out", scene);
+  flattened.report(file_name_, "face flattened by rounding to binary32, left out", scene);
+  char most[32];
+  std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
+  moved.report(file_name_,
+               std::string("corners moved by up to ") + most +
+                   ", more than a hundredth of their face, by rounding to binary32",
+               scene);
   touching.report(file_name_, "polygon crosses or touches itself, cut as well as can be", scene);
   no_direction.report(file_name_, "normal without a direction, the face is taken as flat", scene);
   no_normal.report(file_name_, "face corner without a normal, the face is taken as flat", scene);
@@ -275,7 +326,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   check_indices();
   recentre(scene);
   const std::vector<std::uint32_t> groups = triangulate(options, scene);
-  if (scene.triangles.empty() && !may_be_empty_) {
+  if (is_empty(scene) && !may_be_empty_) {
     throw InputError(file_name_ + ": no face has an area");
   }
   scene.normals = std::move(normals_);

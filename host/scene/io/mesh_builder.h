@@ -98,6 +98,8 @@ class MeshBuilder {
   [[nodiscard]] static std::uint32_t resolve(std::int32_t index, std::size_t count);
   void check_indices() const;
   void recentre(Scene& scene);
+  [[noreturn]] void fail_far(std::size_t position) const;
+  [[nodiscard]] bool was_flat(std::span<const Corner> corners) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
   [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,

@@ -178,9 +178,53 @@ std::vector<OptionSetting> read_options(const JsonValue& render) {
   return options;
 }
 
+void add_lights(const SceneFile& file, Scene& scene) {
+  const LightSettings& lights = file.lights;
+  for (const PointLightSetting& light : lights.points) {
+    const glm::vec3 position(light.position - scene.origin);
+    if (!is_finite(position)) {
+      throw InputError(file.file.string() + ": a point light is beyond the range of float");
+    }
+    scene.lights.push_back({position, light.intensity, light.spot});
+  }
+  scene.directional_lights.insert(scene.directional_lights.end(), lights.directions.begin(),
+                                  lights.directions.end());
+  if (lights.background) scene.background = *lights.background;
+  int number = 0;
+  for (const AreaLightSetting& light : lights.areas) {
+    const std::string name = "light " + std::to_string(++number);
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    const glm::dvec3 corner = light.corner - scene.origin;
+    scene.positions.emplace_back(corner);
+    scene.positions.emplace_back(corner + light.edges[0]);
+    scene.positions.emplace_back(corner + light.edges[0] + light.edges[1]);
+    scene.positions.emplace_back(corner + light.edges[1]);
+    const glm::vec3* const corners = &scene.positions[first];
+    const auto is_near = [](const glm::vec3& at) { return largest(at) <= kMostCoordinate; };
+    if (!std::all_of(corners, corners + 4, is_near) ||
+        collinear(corners[0], corners[1], corners[2]) ||
+        collinear(corners[0], corners[2], corners[3])) {
+      throw InputError(file.file.string() + ": area_lights[" + std::to_string(number - 1) +
+                       "] is beyond the range of float, or too small for its place");
+    }
+    for (const std::uint32_t second : {1u, 2u}) {
+      Triangle& triangle = scene.triangles.emplace_back();
+      triangle.vertices = {first, first + second, first + second + 1};
+      triangle.material = static_cast<std::uint32_t>(scene.materials.size());
+      triangle.object = static_cast<std::uint32_t>(scene.objects.size());
+    }
+    Material& material = scene.materials.emplace_back();
+    material.name = name;
+    material.diffuse = glm::vec3(0.0f);
+    material.emission = light.radiance;
+    scene.objects.push_back(name);
+  }
+}
+
 }  // namespace
 
 SceneFile read_scene_file(const std::filesystem::path& file) {
+  if (file.extension() != ".json") return {.file = file, .obj = file};
   const JsonFile json(file);
   const JsonValue root = json.root();
   const std::filesystem::path folder = file.parent_path();
@@ -217,50 +261,9 @@ Scene load_scene(const SceneFile& file, const LoadOptions& options) {
       object += objects.size();
     }
   }
+  add_lights(file, scene);
   if (!options.keep_instances) resolve_instances(scene, InstanceMode::kFlatten, file.file);
   return scene;
-}
-
-void add_lights(const SceneFile& file, Scene& scene) {
-  const LightSettings& lights = file.lights;
-  for (const PointLightSetting& light : lights.points) {
-    const glm::vec3 position(light.position - scene.origin);
-    if (!is_finite(position)) {
-      throw InputError(file.file.string() + ": a point light is beyond the range of float");
-    }
-    scene.lights.push_back({position, light.intensity, light.spot});
-  }
-  scene.directional_lights.insert(scene.directional_lights.end(), lights.directions.begin(),
-                                  lights.directions.end());
-  if (lights.background) scene.background = *lights.background;
-  int number = 0;
-  for (const AreaLightSetting& light : lights.areas) {
-    const std::string name = "light " + std::to_string(++number);
-    const auto first = static_cast<std::uint32_t>(scene.positions.size());
-    const glm::dvec3 corner = light.corner - scene.origin;
-    scene.positions.emplace_back(corner);
-    scene.positions.emplace_back(corner + light.edges[0]);
-    scene.positions.emplace_back(corner + light.edges[0] + light.edges[1]);
-    scene.positions.emplace_back(corner + light.edges[1]);
-    const glm::vec3* const corners = &scene.positions[first];
-    if (!std::all_of(corners, corners + 4, is_finite<float>) ||
-        collinear(corners[0], corners[1], corners[2]) ||
-        collinear(corners[0], corners[2], corners[3])) {
-      throw InputError(file.file.string() + ": area_lights[" + std::to_string(number - 1) +
-                       "] is beyond the range of float, or too small for its place");
-    }
-    for (const std::uint32_t second : {1u, 2u}) {
-      Triangle& triangle = scene.triangles.emplace_back();
-      triangle.vertices = {first, first + second, first + second + 1};
-      triangle.material = static_cast<std::uint32_t>(scene.materials.size());
-      triangle.object = static_cast<std::uint32_t>(scene.objects.size());
-    }
-    Material& material = scene.materials.emplace_back();
-    material.name = name;
-    material.diffuse = glm::vec3(0.0f);
-    material.emission = light.radiance;
-    scene.objects.push_back(name);
-  }
 }
 
 }  // namespace raygate

@@ -64,18 +64,16 @@ struct SceneFile {
   std::vector<OptionSetting> options;
 };
 
-/// Reads a scene file. Throws InputError, "file:line: what: found, expected ...": what cannot be
-/// read or is not JSON, unknown keys, values of a wrong type or out of range.
+/// Reads a scene file (.json); a file of any other ending is a model, with nothing to add. Throws
+/// InputError, "file:line: what: found, expected ...": what cannot be read or is not JSON, unknown
+/// keys, values of a wrong type or out of range.
 [[nodiscard]] SceneFile read_scene_file(const std::filesystem::path& file);
 
-/// Loads the scene that the file is about, without the file's lights, and adds instances of its
-/// models: an object for each of a model's in each place; lights and cameras of models are left
-/// out. Throws InputError as load_scene does, and where an instance is beyond the range of float.
+/// Loads the scene that the file is about and adds the file's lights and instances of its models:
+/// an object for each of a model's in each place; lights and cameras of models are left out. Area
+/// lights become two triangles each of an object and a material of their own, "light 1" and on. The
+/// environment is left for load_environment. Throws InputError as load_scene does, and where an
+/// instance or a light is beyond the range of float, or a light too small for it.
 [[nodiscard]] Scene load_scene(const SceneFile& file, const LoadOptions& options = {});
-
-/// Adds the file's lights to its scene; area lights as two triangles each of an object and a
-/// material of their own, "light 1" and on. Throws InputError if a light is too far away or too
-/// small for float. The environment is left for load_environment.
-void add_lights(const SceneFile& file, Scene& scene);
 
 }  // namespace raygate

@@ -52,7 +52,8 @@ class Smoother {
 
  private:
   [[nodiscard]] bool is_wanted(std::size_t triangle) const {
-    return scene_.triangles[triangle].normals[0] == kNoIndex &&
+    return !is_left_out(scene_.triangles[triangle]) &&
+           scene_.triangles[triangle].normals[0] == kNoIndex &&
            (by_angle_ || groups_[triangle] != 0);
   }
   [[nodiscard]] const glm::vec3& position(Corner corner) const {

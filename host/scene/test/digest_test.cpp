@@ -17,7 +17,8 @@ Scene sample() {
   test::Random random;
   Scene scene = test::instanced_scene(random, 3);
   scene.materials.resize(2);
-  scene.materials[1].metallic_roughness = MetallicRoughness{};
+  scene.materials[1].metallic_roughness = MetallicRoughness{.coat = 0.25f};
+  scene.colors.assign(1, glm::vec3(0.5f));
   scene.textures.emplace_back(2, 1, std::vector<Texture::Texel>{{1, 2, 3}, {4, 5, 6}});
   scene.lights.push_back({.spot = SpotCone{}});
   scene.directional_lights.emplace_back();
@@ -39,7 +40,7 @@ TEST(Digest, IsTheSameOfEqualScenes) {
 }
 
 TEST(Digest, IsAnotherOfScenesThatDiffer) {
-  const std::vector<std::function<void(Scene&)>> changes = {
+  std::vector<std::function<void(Scene&)>> changes = {
       [](Scene&) {},
       [](Scene& s) { s.positions[0].x += 1; },
       [](Scene& s) { s.positions[0].x = s.positions[0].x == 0.0f ? -0.0f : 1e-45f; },
@@ -83,7 +84,43 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
       [](Scene& s) { s.environment->ahead.x = 0.5; },
       [](Scene& s) { s.environment.reset(); },
       [](Scene& s) { s.origin.z = 1e-12; },
+      [](Scene& s) { s.colors[0].r = 0.25f; },
+      [](Scene& s) { s.meshes[0].colors.assign(1, glm::vec3(0.5f)); },
+      [](Scene& s) { s.lights[0].position.x = 1.0f; },
+      [](Scene& s) { s.lights[0].spot->axis.x = 1.0; },
+      [](Scene& s) { s.lights[0].spot->inner = 1.0; },
+      [](Scene& s) { s.directional_lights[0].direction.x = 1.0; },
+      [](Scene& s) { s.environment->up.x = 0.5; },
+      [](Scene& s) { s.environment->width = 2; },
+      [](Scene& s) { s.environment->height = 2; },
   };
+  using Change = std::function<void(Material&)>;
+  for (const Change& change : std::initializer_list<Change>{
+           [](Material& m) { m.specular.g = 0.5f; },
+           [](Material& m) { m.emission.g = 0.5f; },
+           [](Material& m) { m.transmittance.g = 0.5f; },
+           [](Material& m) { m.shininess = 2.0f; },
+           [](Material& m) { m.refraction_index = 1.25f; },
+           [](Material& m) { m.opacity = 0.25f; },
+           [](Material& m) { m.diffuse_mapping.scale.y = 2.0f; },
+           [](Material& m) { m.diffuse_mapping.offset.y = 2.0f; },
+           [](Material& m) { m.normal_map.texture = 0; },
+           [](Material& m) { m.normal_map.mapping.clamp = true; },
+           [](Material& m) { m.opacity_map.mapping.clamp = true; },
+           [](Material& m) { m.opacity_cutoff = 0.25f; },
+           [](Material& m) { m.emission_map.texture = 0; },
+           [](Material& m) { m.has_vertex_colors = false; },
+           [](Material& m) { m.metallic_roughness->metallic = 0.5f; },
+           [](Material& m) { m.metallic_roughness->transmission = 0.5f; },
+           [](Material& m) { m.metallic_roughness->specular = 0.5f; },
+           [](Material& m) { m.metallic_roughness->specular_color.g = 0.5f; },
+           [](Material& m) { m.metallic_roughness->coat_roughness = 0.5f; },
+           [](Material& m) { m.metallic_roughness->map.mapping.clamp = true; },
+           [](Material& m) { m.metallic_roughness->transmission_map.texture = 0; },
+           [](Material& m) { m.metallic_roughness->specular_color_map.texture = 0; },
+           [](Material& m) { m.metallic_roughness->coat_roughness_map.texture = 0; }}) {
+    changes.push_back([change](Scene& s) { change(s.materials[1]); });
+  }
   std::set<std::string> seen;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     Scene scene = sample();

@@ -141,6 +141,12 @@ TEST_F(Table, SaysWhichLineIsWrong) {
             ":2: found a line of over 1,000,000 bytes" + wanted);
 }
 
+TEST(RayTable, CountsOriginsThatRecentringRounds) {
+  RayTable table;
+  for (const double x : {1.0, 0x1p60, 0.0}) table.add({x, 0, 0}, {1, 0, 0}, 1.0, {0x1p60, 0, 0});
+  EXPECT_EQ(table.rounded, 1u);  // 1 - 2^60
+}
+
 TEST_F(Table, OfNumbersOfEitherWidth) {
   const RayTable narrow =
       read_all(npy("<f4", "(2, 6)", raw<float>({1, 2, 3, 0, 0, 2, 4, 5, 6, 0, 1, 0})));

@@ -109,8 +109,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "with an area, as --strict asks"},
         // Distinct as doubles, one point as floats.
         BadFile{"CollapsesInFloat", "v 0 0 0\nv 1 0 0\nv 1 1e-60 0\nf 1 2 3\n",
-                "4: face of zero area (its corners are on one line, or cancel out), expected one "
-                "with an area, as --strict asks"},
+                "4: face flattened by rounding to binary32, expected one with an area, as --strict "
+                "asks"},
+        BadFile{"FarApart", "v 3e38 0 0\nv -3e38 0 0\nv 0 1 0\nv 1 1 0\nf 3 4 3\nf 1 2 3\n",
+                "6: found a corner farther than 2^126 from the scene's middle, expected a nearer "
+                "one"},
         BadFile{"AfterContinuation", after_triangle("f 1 \\\n2 \\\n3\nf 1 2 9\n"),
                 "7: vertex index 9 in a face, but the file has 3"},
         BadFile{"AfterCrLf", "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n\r\nf 1 2 9\r\n",

@@ -136,8 +136,8 @@ TEST(LoadObj, TrailingSlashesMeanNothing) {
 }
 
 TEST(LoadObj, NumbersOfAllKinds) {
-  const Scene scene = load("v +1 .5 -2.\nv 1e-3 1E+2 -0\nv 1e-400 3.4028234e38 0\nf 1 2 3\n");
-  EXPECT_EQ(scene.positions, (Positions{{1, 0.5f, -2}, {0.001f, 100, 0}, {0, 3.4028234e38f, 0}}));
+  const Scene scene = load("v +1 .5 -2.\nv 1e-3 1E+2 -0\nv 1e-400 8.507059e37 0\nf 1 2 3\n");
+  EXPECT_EQ(scene.positions, (Positions{{1, 0.5f, -2}, {0.001f, 100, 0}, {0, 8.507059e37f, 0}}));
 }
 
 // Numbers just above the middle of two floats: off by one unit of double, and the float is wrong.
@@ -211,10 +211,26 @@ TEST(LoadObj, FacesWithoutAreaAreLeftOut) {
   const std::string text = std::string(kSquare) + "f 1 1 2\nf 1 2 3 4\nf 1 2 1 2\n";
   EXPECT_THROW((void)load(text, {.strict = true}), InputError);
   const Scene scene = load(text);
-  EXPECT_EQ(vertices_of(scene), kTwoTriangles);
+  // Those that are left keep their numbers.
+  EXPECT_EQ(vertices_of(scene),
+            (std::vector<Indices>{{0, 0, 0}, {0, 1, 2}, {0, 2, 3}, {0, 0, 0}, {0, 0, 0}}));
   EXPECT_EQ(only_warning(scene),
             "scene.obj:5: face of zero area, left out, here and in 1 later face");
   EXPECT_THROW((void)load(std::string(kSquare) + "f 1 1 2\n"), InputError) << "nothing is left";
+}
+
+TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
+  // Half a unit is the distance of floats at the first face.
+  const std::string far =
+      "v 5411987 0 0\nv 5411987 1 0\nv 5411987.2 0 0\nv -1 0 0\nv 0 0 0\nv -1 1 0\n";
+  const Scene scene = load(far + "f 1 2 3\nf 4 5 6\n");
+  EXPECT_EQ(scene.rounding.corners, 1u);
+  EXPECT_NEAR(scene.rounding.most, 0.2, 1e-9);
+  EXPECT_EQ(only_warning(scene), "scene.obj:7: face flattened by rounding to binary32, left out");
+  const Scene moved = load(far + "v 5411988 0 0\nf 7 2 3\nf 4 5 6\n");
+  EXPECT_EQ(only_warning(moved),
+            "scene.obj:8: corners moved by up to 0.2, more than a hundredth of their face, by "
+            "rounding to binary32");
 }
 
 TEST(LoadObj, ARepeatedCornerOfAPolygonIsLeftOut) {

@@ -229,8 +229,7 @@ TEST_F(ReadSceneFile, LightsJoinTheScene) {
   const SceneFile file = read(R"({"obj": "room.obj", "background": 0.5,
       "point_lights": [{"position": [100000, 5, 1], "intensity": [1, 2, 3]}],
       "area_lights": [{"corner": [100000, 3, 0], "edges": [[1, 0, 0], [0, 0, 2]], "radiance": 7}]})");
-  Scene scene = load_obj(file.obj);
-  add_lights(file, scene);
+  const Scene scene = load_scene(file);
   EXPECT_EQ(scene.background, glm::vec3(0.5f));
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.origin + glm::dvec3(scene.lights[0].position), glm::dvec3(100000, 5, 1));
@@ -292,8 +291,7 @@ TEST_F(ReadSceneFile, LightsBeyondFloatAreRefused) {
   folder_.write("room.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const SceneFile tiny = read(R"({"obj": "room.obj", "area_lights": [
       {"corner": [1e6, 3, 0], "edges": [[1e-6, 0, 0], [0, 0, 1e-6]], "radiance": 7}]})");
-  Scene scene = load_obj(tiny.obj);
-  EXPECT_THROW(add_lights(tiny, scene), InputError);
+  EXPECT_THROW((void)load_scene(tiny), InputError);
 }
 
 /// Damaged files: read, or refused in one line that names the file.
