@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "host/base/file_bytes.h"
-#include "host/base/input_error.h"
 #include "host/scene/io/find_file.h"
 #include "host/scene/io/tokens.h"
 
@@ -170,7 +169,12 @@ void GltfFile::fail_extension(const std::string& extension) const {
 }
 
 void GltfFile::warn_once(const std::string& what, std::vector<std::string>& warnings) const {
-  const std::string warning = name_ + ": " + what;
+  warn_once(InputError(name_ + ": " + what), "", warnings);
+}
+
+void GltfFile::warn_once(const InputError& error, const char* instead,
+                         std::vector<std::string>& warnings) {
+  const std::string warning = error.what() + std::string(*instead == 0 ? "" : ", ") + instead;
   if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
 }
 
@@ -256,7 +260,7 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
   if (a.bufferView >= 0) find_stored(a.bufferView, a.byteOffset, number, result);
   if (a.bufferView >= 0 && !a.sparse.isSparse) return result;
   // Elements of no buffer are 0; sparse ones are replaced.
-  constexpr std::size_t kMost = 12'000'000;
+  constexpr std::size_t kMost = 1'000'000;
   if (a.count > kMost + bytes_) fail(number + "too many elements without a buffer");
   const std::size_t size = result.size();
   std::vector<char> own(size * a.count);
@@ -302,7 +306,7 @@ std::vector<double> GltfFile::optional_vectors(int accessor, int width, const ch
     if (count(accessor) == vertices) return numbers(accessor, width, what);
     warn_once(std::string(what) + ": not as many as positions, left out", warnings);
   } catch (const InputError& error) {
-    warnings.push_back(std::string(error.what()) + ", left out");
+    warn_once(error, "left out", warnings);
   }
   return {};
 }

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "host/base/input_error.h"
+
 namespace raygate {
 
 /// .gltf or .glb, with its buffers and the bytes of its pictures. (tinygltf because Debian 12 has
@@ -32,6 +34,10 @@ class GltfFile {
   [[noreturn]] void fail(const std::string& what) const;
   /// Appends "file: what" to warnings that do not have it yet.
   void warn_once(const std::string& what, std::vector<std::string>& warnings) const;
+
+  /// Appends an error about something optional, and what is done about it, likewise.
+  static void warn_once(const InputError& error, const char* instead,
+                        std::vector<std::string>& warnings);
 
   /// The element of `list` with this number; `what` is for messages.
   template <class T>

@@ -179,7 +179,9 @@ class GltfReader {
                                                     : "object " + std::to_string(object));
       const Shape shape = shape_of(node);
       if (node.skin >= 0) {
-        meshes_.read(mesh, {world, &shape.second, joints_of(node.skin)}, object, builder_);
+        GltfPlacement placement{world, &shape.second, {}};
+        optionally([&] { placement.joints = joints_of(node.skin); });
+        meshes_.read(mesh, placement, object, builder_);
       } else if (uses_[shape] > 1) {
         for (const glm::dmat4& own : file_.instance_transforms(node)) {
           instances_.push_back({shape, world * own, object});
@@ -188,12 +190,26 @@ class GltfReader {
         meshes_.read(mesh, {world, &shape.second, {}}, object, builder_);
       }
     }
-    if (node.camera >= 0) read_camera(file_.at(model.cameras, node.camera, "camera"), world);
+    optionally([&] {
+      if (node.camera >= 0) read_camera(file_.at(model.cameras, node.camera, "camera"), world);
+    });
     const auto light = node.extensions.find("KHR_lights_punctual");
     if (light != node.extensions.end() && light->second.Has("light") &&
         light->second.Get("light").IsInt()) {
-      read_light(file_.at(model.lights, light->second.Get("light").GetNumberAsInt(), "light"),
-                 world);
+      optionally([&] {
+        read_light(file_.at(model.lights, light->second.Get("light").GetNumberAsInt(), "light"),
+                   world);
+      });
+    }
+  }
+
+  /// Reads something that costs a warning where it is bad.
+  template <class Read>
+  void optionally(const Read& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      GltfFile::warn_once(error, "left out", scene_.warnings);
     }
   }
 
@@ -241,10 +257,10 @@ class GltfReader {
     const double fov = is_orthographic ? 90.0 : camera.perspective.yfov * kDegrees;
     const double distance = is_orthographic ? camera.orthographic.ymag : 1.0;
     if (!(fov > 0.0 && fov < 180.0)) {
-      return warn_once("a camera whose yfov is not between 0 and pi is left out");
+      file_.fail("a camera's yfov: expected more than 0 and less than pi");
     }
     if (!(distance > 0.0 && distance <= kMostFloat)) {
-      return warn_once("a camera whose ymag is not a positive number is left out");
+      file_.fail("a camera's ymag: expected a positive number within the range of float");
     }
     if (scene_.camera) return warn_once("of several cameras the first one is taken");
     const glm::dvec3 eye(world[3]), back(world[2]), up(world[1]);
@@ -278,8 +294,11 @@ class GltfReader {
     for (int k = 0; k < 3; ++k) {
       if (light.color.size() == 3) intensity[k] *= light.color[static_cast<std::size_t>(k)];
       if (!(intensity[k] >= 0.0 && intensity[k] <= kMostFloat)) {
-        return warn_once("a light whose intensity is negative or not finite is left out");
+        file_.fail("a light's intensity: expected no negative number within the range of float");
       }
+    }
+    if (light.range > 0.0) {
+      warn_once("a light's range is not read: light goes on by the square of the distance");
     }
     const double length = glm::length(glm::dvec3(world[2]));
     const bool is_directional = light.type == "directional", is_spot = light.type == "spot";

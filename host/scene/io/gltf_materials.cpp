@@ -157,21 +157,27 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
         scene_.warnings);
     return std::nullopt;
   }
-  const std::string name = "image " + std::to_string(source);
-  try {
-    Texture result = Texture::decode(bytes, name, content);
-    texels_ += std::int64_t{result.width()} * result.height();
-    if (texels_ <= kMostTexels) return result;
-    throw InputError(name + ": more than " + std::to_string(kMostTexels) +
-                     " pixels in all textures");
-  } catch (const InputError& error) {
-    file_.warn_once(std::string(error.what()) + ", its material is plain instead", scene_.warnings);
-    return std::nullopt;
+  Texture result =
+      Texture::decode(bytes, file_.name() + ": image " + std::to_string(source), content);
+  texels_ += std::int64_t{result.width()} * result.height();
+  if (texels_ > kMostTexels) {
+    file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
   }
+  return result;
 }
 
 template <class TextureInfo>
 MaterialMap GltfMaterials::map_of(const TextureInfo& info, Texture::Content content) {
+  try {
+    return read_map(info, content);
+  } catch (const InputError& error) {
+    file_.warn_once(error, "its material is plain instead", scene_.warnings);
+    return {};
+  }
+}
+
+template <class TextureInfo>
+MaterialMap GltfMaterials::read_map(const TextureInfo& info, Texture::Content content) {
   MaterialMap map;
   const int texture = info.index;
   if (texture < 0) return map;

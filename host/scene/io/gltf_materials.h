@@ -37,6 +37,9 @@ class GltfMaterials {
   [[nodiscard]] Sets sets_of(const tinygltf::Material& from);
   /// Returns the texture in the scene, and how it lies; none for index -1.
   template <class TextureInfo>
+  MaterialMap read_map(const TextureInfo& info, Texture::Content content);
+  /// Returns the same; none, with a warning, where it cannot be read.
+  template <class TextureInfo>
   MaterialMap map_of(const TextureInfo& info, Texture::Content content);
   /// Decoded; nothing, and a warning, where there is none.
   std::optional<Texture> picture(int texture, Texture::Content content);

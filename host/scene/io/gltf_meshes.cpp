@@ -101,8 +101,9 @@ std::vector<glm::dmat4> GltfMeshes::skinned(const tinygltf::Primitive& primitive
     const std::vector<double> joints = attribute(primitive, "JOINTS_" + number, 4, vertices, {}),
                               weights = attribute(primitive, "WEIGHTS_" + number, 4, vertices, {});
     for (std::size_t i = 0; i < std::min(joints.size(), weights.size()); ++i) {
-      if (!(weights[i] > 0.0) || !(joints[i] < static_cast<double>(placement.joints.size())))
-        continue;
+      const bool is_joint =
+          joints[i] >= 0.0 && joints[i] < static_cast<double>(placement.joints.size());
+      if (!(weights[i] > 0.0) || !is_joint) continue;
       all[i / 4] += weights[i] * placement.joints[static_cast<std::size_t>(joints[i])];
       sums[i / 4] += weights[i];
     }
@@ -191,7 +192,8 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement&
       to.add_second_texcoord({seconds[2 * i], 1.0 - seconds[2 * i + 1]});
     }
     if (is_clear && !texcoords.empty()) {
-      to.add_opacity(static_cast<float>(std::clamp(colors[4 * i + 3], 0.0, 1.0)));
+      const double alpha = colors[4 * i + 3];
+      to.add_opacity(std::isfinite(alpha) ? static_cast<float>(std::clamp(alpha, 0.0, 1.0)) : 1.0f);
     }
   }
 

@@ -60,7 +60,8 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
 
 void MeshBuilder::add_color(const glm::vec3& color) {
   colors_.resize(positions_.size() - 1, kNoColor);
-  colors_.push_back(glm::max(color, glm::vec3(0.0f)));
+  if (!is_finite(color)) ++bad_colors_;
+  colors_.push_back(is_finite(color) ? glm::max(color, glm::vec3(0.0f)) : kNoColor);
 }
 
 glm::vec3 MeshBuilder::linear_color(std::size_t position, float white) const {
@@ -133,6 +134,7 @@ void MeshBuilder::append(MeshBuilder&& part) {
     }
   };
   const std::size_t corners = corners_.size();
+  bad_colors_ += part.bad_colors_;
   for (Face& face : part.faces_) face.end += corners;
   if (!part.colors_.empty()) colors_.resize(positions_.size(), kNoColor);
   add(colors_, part.colors_);
@@ -324,6 +326,10 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     throw InputError(file_name_ + ": no faces, expected at least one polygon");
   }
   check_indices();
+  if (bad_colors_ > 0) {
+    scene.warnings.push_back(file_name_ + ": " + std::to_string(bad_colors_) +
+                             " colours of vertices that are not finite numbers, taken as white");
+  }
   recentre(scene);
   const std::vector<std::uint32_t> groups = triangulate(options, scene);
   if (is_empty(scene) && !may_be_empty_) {

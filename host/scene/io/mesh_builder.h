@@ -111,6 +111,7 @@ class MeshBuilder {
   Counts earlier_;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
+  std::size_t bad_colors_ = 0;     // that are not finite
   bool has_linear_colors_ = false;
   std::vector<glm::vec3> normals_;
   std::vector<glm::vec4> tangents_;  // of the first normals

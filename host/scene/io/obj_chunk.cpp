@@ -95,8 +95,9 @@ std::span<const double> ObjChunk::read_numbers(std::string_view keyword, std::st
   for (std::string_view word = take_token_before_comment(words); !word.empty();
        word = take_token_before_comment(words)) {
     if (count == numbers_.size()) lines_.fail("too many numbers after " + in_quotes(keyword));
-    // A normal or texture coordinate that is no number costs its faces theirs.
-    numbers_[count++] = keyword == "v"
+    // A normal, texture coordinate or colour that is no number costs its faces theirs.
+    const bool must_be_finite = keyword == "v" && count < 3;
+    numbers_[count++] = must_be_finite
                             ? lines_.number(word, keyword)
                             : to_number(word).value_or(std::numeric_limits<double>::quiet_NaN());
   }

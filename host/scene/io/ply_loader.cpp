@@ -225,7 +225,7 @@ class PlyReader {
         if (at < 0) {
           skip(property);
         } else if (at >= kColor) {
-          values[at] = take(property.type, property.name) / largest_code(property.type);
+          values[at] = take_any(property.type) / largest_code(property.type);
         } else {
           values[place[p]] =
               place[p] < 3 ? take(property.type, property.name) : take_any(property.type);
