@@ -148,7 +148,8 @@ void serve_http(int port, const std::vector<HttpRoute>& routes) {
       mg_start(&none, nullptr, settings), mg_stop);
   mg_server_port bound{};
   if (!server || mg_get_server_ports(server.get(), 1, &bound) != 1) {
-    fail_value("--port", std::to_string(port), "a port that no other program listens at");
+    fail_value("--port", std::to_string(port),
+               "a port that no other program listens at, and room for 66 threads");
   }
   const std::string number = std::to_string(bound.port);
   names = {"127.0.0.1:" + number, "localhost:" + number};

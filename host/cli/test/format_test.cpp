@@ -2,10 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <exception>
 #include <limits>
+#include <stdexcept>
+
+#include "host/cli/process.h"
 
 namespace raygate {
 namespace {
+
+// A file may ask for a list longer than any memory.
+TEST(Ending, OfAListThatIsTooLong) {
+  const Ending ending = ending_of(std::make_exception_ptr(std::length_error("vector")), 1);
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_EQ(ending.line, "out of memory");
+}
 
 TEST(Format, Counts) {
   EXPECT_EQ(format_count(0), "0");

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "host/render/splat_layer.h"
+
 namespace raygate {
 namespace {
 
@@ -37,6 +39,19 @@ TEST(Tiles, CoverEachPixelOnceAndAllSamples) {
     }
   }
   EXPECT_EQ(cases, 90);
+}
+
+TEST(SplatLayer, LeavesOutWhatNoIntCanPlace) {
+  Film film = make_film(4, 4, {0, 0, 4, 4}, {});
+  add_sums(film, false);
+  std::ranges::fill(film.sums.samples, 1u);
+  SplatLayer layer(film.window, ReconstructionFilter::kBox);
+  for (const double far : {1e300, -1e300}) {
+    const Splat splats[] = {{{far, 1.0}, glm::dvec3(1.0)}, {{1.0, far}, glm::dvec3(1.0)}};
+    layer.add(splats);
+  }
+  layer.add_to(film);
+  for (const glm::vec4& color : film.color) EXPECT_EQ(color, glm::vec4(0.0f));
 }
 
 TEST(Tiles, ShrinkForManyRanksAndKeepTheirSamples) {
