@@ -113,9 +113,6 @@ class Digest {
     const auto& [positions, triangles, colors] = m;
     add(positions, triangles);
     if (!colors.empty()) add(colors);
-    if (!tangents.empty()) add(tangents);
-    if (!second_texcoords.empty()) add(second_texcoords);
-    if (!opacities.empty()) add(opacities);
   }
   void add(const SpotCone& c) {
     const auto& [axis, inner, outer] = c;
