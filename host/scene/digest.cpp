@@ -1,5 +1,6 @@
 #include "host/scene/digest.h"
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <cstdio>
@@ -97,7 +98,6 @@ class Digest {
     add(metallic_roughness, normal_map, normal_scale, opacity_map, opacity_cutoff);
     if (emission_map.texture != kNoIndex) add(emission_map);
     if (opacity_blends) add(opacity_blends);
-    if (!has_vertex_colors) add(has_vertex_colors);
   }
   void add(const NameList& names) {
     word(names.size());
@@ -138,6 +138,12 @@ class Digest {
     add(positions, normals, texcoords, triangles, meshes, instances, materials, textures, objects);
     add(lights, directional_lights, background, environment, origin);
     if (!colors.empty()) add(colors);
+    // Materials to which vertex colours, where there are any, do not apply.
+    const auto has_colors = [](const Mesh& mesh) { return !mesh.colors.empty(); };
+    if (colors.empty() && std::ranges::none_of(meshes, has_colors)) return;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      if (!materials[i].has_vertex_colors) word(i);
+    }
   }
 
  private:
