@@ -1,5 +1,6 @@
 #include "host/scene/digest.h"
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <cstdio>
@@ -102,7 +103,6 @@ class Digest {
     if (emission_map.texture != kNoIndex) add(emission_map);
     if (opacity_blends) add(opacity_blends);
     if (has_vertex_opacity) add(has_vertex_opacity);
-    if (!has_vertex_colors) add(has_vertex_colors);
   }
   void add(const NameList& names) {
     word(names.size());
@@ -147,6 +147,12 @@ class Digest {
     if (!tangents.empty()) add(tangents);
     if (!second_texcoords.empty()) add(second_texcoords);
     if (!opacities.empty()) add(opacities);
+    // Materials to which vertex colours, where there are any, do not apply.
+    const auto has_colors = [](const Mesh& mesh) { return !mesh.colors.empty(); };
+    if (colors.empty() && std::ranges::none_of(meshes, has_colors)) return;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      if (!materials[i].has_vertex_colors) word(i);
+    }
   }
 
  private:

@@ -324,9 +324,10 @@ TEST_F(Parts, FramesOfAnotherAnimationAreRefused) {
   refuse({"--spp", "1", "--frames", "2", "--crop", "0,0,8,8"}, "a-0001.exr: found another frame");
   refuse({"--spp", "1", "--frames", "3"}, "a-0002.exr: found another camera");
   EXPECT_EQ(folder_.read("a-0002.exr"), before);
-  make({"-o", "l.exr", "--spp", "1", "--frames", "2", "--crop", "0,0,30,44"});
-  make({"-o", "r.exr", "--spp", "1", "--frames", "2", "--crop", "30,0,60,44"});
-  EXPECT_EQ(merge({"l-0002.exr", "r-0002.exr", "-o", "merged"}).status, 0);
+  make({"-o", "l.exr", "--spp", "1", "--frames", "2", "--crop", "0,0,30,44", "--channels", "sums"});
+  make(
+      {"-o", "r.exr", "--spp", "1", "--frames", "2", "--crop", "30,0,60,44", "--channels", "sums"});
+  EXPECT_EQ(merge({"l-0002.exr", "r-0002.exr", "-o", "both"}).status, 0);
   expect_refused(merge({"l-0001.exr", "r-0002.exr", "-o", "merged"}),
                  "r-0002.exr: found another frame, camera or other channels than in l-0001.exr");
   expect_refused(part({"--frames", "2", "-o", "a.exr", "--resume", "b.exr"}),
@@ -358,6 +359,34 @@ TEST_F(Parts, OfAnEditedSceneAreRefused) {
     expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}), "b" + line + " as in a.exr");
     expect_refused(render_part({"--resume", "a.exr", "-o", "c"}),
                    "a" + line + " as this run has it");
+  }
+}
+
+TEST_F(Parts, OfAnotherCameraAreRefused) {
+  folder_.write("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string camera = R"({"camera": {"eye": [0.3, 0.3, 3], "target": [0.3, 0.3, 0],
+      "up": [0, 1, 0], "fov": 30, "aperture": 0.125, "focus": 2}})";
+  const auto render_part = [&](const std::string& text, const char* samples, const char* name) {
+    folder_.write("s.json", text);
+    return run_program({.arguments = {"s.json", "--engine", "cpu", "--size", "8x6", "--spp", "4",
+                                      "--samples", samples, "-o", name},
+                        .folder = folder_.path()});
+  };
+  ASSERT_EQ(render_part(camera, "0:2", "a.exr").status, 0);
+  ASSERT_EQ(render_part(camera, "2:4", "b.exr").status, 0);
+  EXPECT_EQ(merge({"a.exr", "b.exr", "-o", "both"}).status, 0);
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"3, 3]", "3, 4]"},
+           {"3, 0]", "31, 0]"},
+           {"1, 0]", "1, 1]"},
+           {"30", "31"},
+           {"125", "25"},
+           {"2}", "2.5}"},
+           {R"("fov")", R"("projection": "orthographic", "fov")"}}) {
+    std::string other = camera;
+    ASSERT_EQ(render_part(other.replace(other.find(from), from.size(), to), "2:4", "b.exr").status,
+              0);
+    expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}), "b.exr: found");
   }
 }
 

@@ -90,15 +90,15 @@ TEST_F(Render, StatisticsAreWholeDocumentedAndAgree) {
   EXPECT_NE(outcome.out.find("cornell.obj: "), std::string::npos);
   EXPECT_NE(outcome.out.find("60x50, engine rtl (pipeline, structural), 2 threads\n"),
             std::string::npos);
-  for (const char* row : {"\nrays ", "\ntests ", "\nwrote "}) {
+  for (const char* row : {"\nrays ", "\ntests ", "\nrounded ", "\nwrote "}) {
     EXPECT_NE(outcome.out.find(row), std::string::npos) << row;
   }
-  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 4) << outcome.out;
+  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << outcome.out;
 }
 
 TEST_F(Render, TheSummaryNamesNoUnitWhereNoneIsAtWork) {
   const Outcome brief = render({kCornell, "--size", "60x50", "--engine", "cpu"});
-  EXPECT_EQ(std::ranges::count(brief.out, '\n'), 4) << brief.out;
+  EXPECT_EQ(std::ranges::count(brief.out, '\n'), 5) << brief.out;
   EXPECT_EQ(brief.out.find("unit"), std::string::npos) << brief.out;
   EXPECT_NE(brief.out.find(" rays/s\n"), std::string::npos) << brief.out;
   EXPECT_NE(brief.out.find(" tests/s\n"), std::string::npos) << brief.out;

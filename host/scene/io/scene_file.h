@@ -52,16 +52,17 @@ struct OptionSetting {
 
 /// A scene file as it stands; every value is possible, but options are not looked into.
 struct SceneFile {
-  std::filesystem::path file;
-  std::filesystem::path obj;
-  std::optional<CameraSetting> camera;
-  std::optional<glm::dvec3> up;     ///< "camera.up", also without a camera: of views
-  std::optional<double> fov;        ///< the same of "camera.fov"
-  LensSetting lens;                 ///< and of what the camera looks through
-  std::vector<CameraSetting> path;  ///< what the camera passes, in order; at least two, or none
-  LightSettings lights;
-  std::vector<InstanceSetting> instances;
-  std::vector<OptionSetting> options;
+  std::filesystem::path file = {};
+  std::filesystem::path obj = {};
+  std::optional<CameraSetting> camera = {};
+  std::optional<glm::dvec3> up = {};  ///< "camera.up", also without a camera: of views
+  std::optional<double> fov = {};     ///< the same of "camera.fov"
+  LensSetting lens = {};              ///< and of what the camera looks through
+  std::vector<CameraSetting> path =
+      {};  ///< what the camera passes, in order; at least two, or none
+  LightSettings lights = {};
+  std::vector<InstanceSetting> instances = {};
+  std::vector<OptionSetting> options = {};
 };
 
 /// Reads a scene file (.json); a file of any other ending is a model, with nothing to add. Throws
