@@ -17,7 +17,7 @@ Scene sample() {
   test::Random random;
   Scene scene = test::instanced_scene(random, 3);
   scene.materials.resize(2);
-  scene.materials[1].metallic_roughness = MetallicRoughness{.coat = 0.25f};
+  scene.materials[1].metallic_roughness.emplace().coat = 0.25f;
   scene.colors.assign(1, glm::vec3(0.5f));
   scene.textures.emplace_back(2, 1, std::vector<Texture::Texel>{{1, 2, 3}, {4, 5, 6}});
   scene.lights.push_back({.spot = SpotCone{}});
@@ -47,6 +47,9 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
       [](Scene& s) { s.positions.emplace_back(0.0f); },
       [](Scene& s) { s.normals[0] = -s.normals[0]; },
       [](Scene& s) { s.texcoords.emplace_back(0.0f); },
+      [](Scene& s) { s.second_texcoords.emplace_back(0.0f); },
+      [](Scene& s) { s.tangents.emplace_back(0.0f); },
+      [](Scene& s) { s.opacities.emplace_back(0.5f); },
       [](Scene& s) { std::swap(s.triangles[0].vertices[0], s.triangles[0].vertices[1]); },
       [](Scene& s) { s.triangles[0].material = 1; },
       [](Scene& s) { s.meshes[0].positions[0].y += 1; },
@@ -104,9 +107,14 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
            [](Material& m) { m.opacity = 0.25f; },
            [](Material& m) { m.diffuse_mapping.scale.y = 2.0f; },
            [](Material& m) { m.diffuse_mapping.offset.y = 2.0f; },
+           [](Material& m) { m.diffuse_mapping.sampling = Wrap::kMirror; },
+           [](Material& m) { m.diffuse_mapping.sampling.is_nearest = true; },
+           [](Material& m) { m.diffuse_mapping.turn.y = 1.0f; },
+           [](Material& m) { m.diffuse_mapping.is_second = true; },
+           [](Material& m) { m.has_vertex_opacity = true; },
            [](Material& m) { m.normal_map.texture = 0; },
-           [](Material& m) { m.normal_map.mapping.clamp = true; },
-           [](Material& m) { m.opacity_map.mapping.clamp = true; },
+           [](Material& m) { m.normal_map.mapping.sampling = Wrap::kClamp; },
+           [](Material& m) { m.opacity_map.mapping.sampling = Wrap::kClamp; },
            [](Material& m) { m.opacity_cutoff = 0.25f; },
            [](Material& m) { m.emission_map.texture = 0; },
            [](Material& m) { m.has_vertex_colors = false; },
@@ -115,7 +123,7 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
            [](Material& m) { m.metallic_roughness->specular = 0.5f; },
            [](Material& m) { m.metallic_roughness->specular_color.g = 0.5f; },
            [](Material& m) { m.metallic_roughness->coat_roughness = 0.5f; },
-           [](Material& m) { m.metallic_roughness->map.mapping.clamp = true; },
+           [](Material& m) { m.metallic_roughness->map.mapping.sampling = Wrap::kClamp; },
            [](Material& m) { m.metallic_roughness->transmission_map.texture = 0; },
            [](Material& m) { m.metallic_roughness->specular_color_map.texture = 0; },
            [](Material& m) { m.metallic_roughness->coat_roughness_map.texture = 0; }}) {
