@@ -153,8 +153,6 @@ TEST_F(BadInput, IndexOutOfRange) {
   expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", 4);
   expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", 4);
   expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", 4);
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n", 4);
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n", 4);
 }
 
 TEST_F(BadInput, NumbersThatAreNotFinite) {

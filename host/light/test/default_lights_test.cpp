@@ -48,7 +48,9 @@ TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
   Scene scene;
   add(scene, rectangle({-8e37f, -8e37f, 0}, {1.6e38f, 0, 0}, {0, 1.6e38f, 0}),
       matte(glm::vec3(0.5f)));
-  for (const PointLight& light : preview_lights(scene, camera_from({0, 0, 3e38}))->points) {
+  const auto lights = preview_lights(scene, camera_from({0, 0, 3e38}));
+  ASSERT_FALSE(lights->points.empty());
+  for (const PointLight& light : lights->points) {
     EXPECT_LE(largest(light.position), kMostCoordinate);
   }
 }

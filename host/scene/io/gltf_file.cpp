@@ -304,7 +304,9 @@ std::vector<double> GltfFile::optional_vectors(int accessor, int width, const ch
   if (accessor < 0) return {};
   try {
     if (count(accessor) == vertices) return numbers(accessor, width, what);
-    warn_once(std::string(what) + ": not as many as positions, left out", warnings);
+    warn_once(std::string(what) + ": found " + std::to_string(count(accessor)) + ", expected " +
+                  std::to_string(vertices) + ", left out",
+              warnings);
   } catch (const InputError& error) {
     warn_once(error, "left out", warnings);
   }

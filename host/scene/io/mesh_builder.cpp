@@ -333,7 +333,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   recentre(scene);
   const std::vector<std::uint32_t> groups = triangulate(options, scene);
   if (is_empty(scene) && !may_be_empty_) {
-    throw InputError(file_name_ + ": no face has an area");
+    throw InputError(file_name_, faces_.empty() ? 0 : faces_[0].line, "no face has an area");
   }
   scene.normals = std::move(normals_);
   scene.tangents = std::move(tangents_);
