@@ -167,6 +167,12 @@ class Arrays(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, r"origins: found an array of shape \(2,\)"):
             self.cube.trace([0, 1], directions)
 
+    def test_rounding(self):
+        self.assertEqual(self.cube.rounding, (0, 0.0))
+        moved = raygate.Scene(np.array(self.VERTICES) * [0.1, 1, 1], self.FACES)
+        self.assertEqual(moved.rounding[0], 36)  # three corners of each face
+        self.assertAlmostEqual(moved.rounding[1], np.float64(np.float32(0.1)) - 0.1, 15)
+
     def test_inside(self):
         expected = (np.abs(self.points) < 1).all(axis=1)
         self.assertTrue(expected.any())
