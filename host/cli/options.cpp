@@ -251,12 +251,12 @@ Options read_options(const Options& begin, const std::vector<std::string>& typed
     check_serve(line.table, options);
     return options;
   };
-  const auto is_possible = [&](const auto&... words) {
+  const auto error_of = [&](const auto&... words) -> std::string {
     try {
       (void)read(words...);
-      return true;
-    } catch (const InputError&) {
-      return false;
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
     }
   };
   if (!begin.scene_file) return read(typed, {});
@@ -268,9 +268,9 @@ Options read_options(const Options& begin, const std::vector<std::string>& typed
     for (std::size_t i = settings.size(); i-- > 0;) {
       std::vector<std::string> others = settings;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      if (!is_possible(others, typed)) continue;
+      if (!error_of(others, typed).empty()) continue;
       const OptionSetting& setting = file.options[i];
-      if (!is_possible(settings, std::vector<std::string>())) {
+      if (error_of(settings, std::vector<std::string>()) == error.what()) {
         throw InputError(file.file.string(), setting.line, error.what());
       }
       throw InputError(std::string(error.what()) + " (" + file.file.string() + ":" +

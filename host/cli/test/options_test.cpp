@@ -187,6 +187,8 @@ TEST_F(OptionsOfASceneFile, AreRefusedWithTheirPlace) {
   const std::string both = write("a.json", "{\"render\": {\n\"error\": 1,\n\"spp\": 4}}");
   expect_error({both.c_str()}, both + ":3: --spp: expected more than the 16 that --error begins");
   EXPECT_EQ(parse({both.c_str(), "--spp", "32"}).render.samples, 32) << "typed values count";
+  expect_error({both.c_str(), "--spp", "32", "--samples", "0:2"},
+               "--samples and --error exclude each other (" + both + ":2 sets error)");
   const std::string one = write("a.json", "{\"render\": {\n\"error\": 1}}");
   expect_error({one.c_str(), "--samples", "0:2"},
                "--samples and --error exclude each other (" + one + ":2 sets error)");
