@@ -92,7 +92,7 @@ TEST_F(Ranks, ShareAPicture) {
     if (count == 1) continue;
     EXPECT_NE(outcome.out.find(std::to_string(count) + " ranks of 1 thread"), std::string::npos)
         << outcome.out;
-    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 4) << "of rank 0 alone:\n" << outcome.out;
+    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << "of rank 0 alone:\n" << outcome.out;
     EXPECT_NE(outcome.err.find("rendering: 100 %"), std::string::npos) << outcome.err;
   }
 }
