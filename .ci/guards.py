@@ -127,6 +127,8 @@ def try_faults(names: list[str]) -> int:
     clone = ROOT / "build/guards"
     if not clone.exists():
         subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)
+        (clone / "build").mkdir()
+        (clone / "build/venv").symlink_to(ROOT / "build/venv")
     in_clone = {"cwd": clone, "check": True, "capture_output": True, "text": True}
     head = git("rev-parse", "HEAD").strip()
     subprocess.run(["git", "fetch", "-q", ROOT, head], **in_clone)
