@@ -5,7 +5,7 @@ usage: guards.py plan            prints each guard and what of it runs
        guards.py cases GUARD     of the cases on standard input, one a line, those that run
        guards.py rooms           prints the rooms of the address sanitizer, one a line
        guards.py skipped BUILD   a regular expression of the tests of a build that do not run
-       guards.py passed          records that everything passed at this commit
+       guards.py passed COMMIT   records that everything passed at this commit
        guards.py try [GUARD ...] puts each guard's fault into a clone, in build/guards, and shows that the guard refuses it
 
 A guard runs in full if a file that it guards differs from the commit that last passed on this machine, or if none is known.
@@ -176,9 +176,9 @@ def main() -> int:
             print("|".join(f"^{re.escape(test)}$" for test in plan.skipped(tests_of(build))))
         case ["rooms"]:
             print(*TABLE["address-sanitizer"]["rooms"], sep="\n")
-        case ["passed"]:
+        case ["passed", commit]:
             STATE.parent.mkdir(parents=True, exist_ok=True)
-            STATE.write_text(json.dumps({"commit": git("rev-parse", "HEAD").strip(), "runs": plan.runs + 1}))
+            STATE.write_text(json.dumps({"commit": commit, "runs": plan.runs + 1}))
         case ["try", *names]:
             return try_faults(names or list(TABLE))
         case _:
