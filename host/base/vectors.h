@@ -142,11 +142,12 @@ template <class Body>
 /// passed by value to anything that is not inlined.
 template <class Body>
 auto in_vectors(const Body& body) {
+  [[maybe_unused]] const Vectors vectors = vectors_in_use();
 #ifdef RAYGATE_AVX512
-  if (vectors_in_use() == Vectors::kAvx512) return detail::in_avx512(body);
+  if (vectors == Vectors::kAvx512) return detail::in_avx512(body);
 #endif
 #ifdef RAYGATE_AVX2
-  if (vectors_in_use() == Vectors::kAvx2) return detail::in_avx2(body);
+  if (vectors == Vectors::kAvx2) return detail::in_avx2(body);
 #endif
   return detail::in_baseline(body);
 }
