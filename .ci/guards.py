@@ -9,7 +9,7 @@ usage: guards.py plan            prints each guard and what of it runs
        guards.py try [GUARD ...] puts each guard's fault into a clone, in build/guards, and shows that the guard refuses it
 
 A guard runs in full if a file that it guards differs from the commit that last passed on this machine, or if none is known.
-Otherwise a guard with `turns` runs one case in so many, other ones at the next run.
+All guards do if the set-up of builds or checks differs. Otherwise a guard with `turns` runs one case in so many, other ones at the next run.
 """
 
 import hashlib
@@ -25,6 +25,10 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLE = tomllib.loads((ROOT / ".ci/guards.toml").read_text())
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
 STATE = pathlib.Path(os.environ.get("RAYGATE_CI_STATE") or CACHE / "raygate" / "ci.json")
+
+
+# Beginnings of the paths of what all guards depend on.
+SET_UP = (".ci/", ".clang-tidy", "CMakeLists.txt", "host/CMakeLists.txt", "sim/verilate.cmake")
 
 
 def git(*words: str) -> str:
@@ -65,7 +69,7 @@ class Plan:
         self.runs = runs
 
     def runs_in_full(self, name: str) -> bool:
-        return "turns" not in TABLE[name] or is_touched(TABLE[name], self.files)
+        return "turns" not in TABLE[name] or is_touched({"files": [*SET_UP, *TABLE[name]["files"]]}, self.files)
 
     def has_turn(self, name: str, case: str) -> bool:
         """Whether it is this case's turn."""
@@ -74,6 +78,8 @@ class Plan:
 
     def cases(self, name: str, cases: list[str]) -> list[str]:
         """Those cases that run."""
+        if any(file.startswith(SET_UP) for file in self.files):
+            return cases
         guard, touched = TABLE[name], {room(file) for file in self.files}
         if guard.get("by_room"):
             return [case for case in cases if room(case) in touched or self.has_turn(name, case)]

@@ -49,6 +49,11 @@ class Plan(unittest.TestCase):
         self.assertTrue(all(0 < len(cases) < len(self.CASES) for cases in runs))
         self.assertEqual(guards.Plan(["README.md"], 5).cases("verilator", self.CASES), self.CASES)
 
+    def test_a_change_of_the_set_up_runs_everything(self):
+        for file in (".ci/setup", ".clang-tidy", "host/CMakeLists.txt"):
+            for name in ("mutation", "clang-tidy", "address-sanitizer"):
+                self.assertEqual(guards.Plan([file], 1).cases(name, self.CASES), self.CASES)
+
     def test_sources_of_a_touched_room_all_run(self):
         sources = [f"host/{room}/{name}.cpp" for room in ("light", "scene") for name in "abcdefgh"]
         runs = [guards.Plan(["host/light/lights.h"], run).cases("clang-tidy", sources) for run in range(3)]
