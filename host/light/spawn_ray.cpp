@@ -182,8 +182,8 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
   const glm::dvec3 offsets[2] = {
       normal * (-sign / largest(normal)),
       glm::dvec3(ray.direction) * (side == SpawnSide::kIncident ? -1.0 : 1.0)};
-  // What has refused a candidate often refuses the next ones, too: it is asked first, for boxes may
-  // hold thousands of triangles.
+  // The triangle that rejected a candidate often rejects the next one, too: it is tested first, as
+  // the boxes may hold thousands of triangles.
   struct Refuser {
     Corners corners;
     int wanted;  // the side on which a candidate is to be

@@ -104,8 +104,8 @@ struct Triangle {
   std::uint32_t object = 0;    ///< always valid: index into Scene::objects
 };
 
-/// Whether it stands for a face without area, or for a part of one: its vertices are one. It keeps
-/// its number, and is in no tree.
+/// Whether a triangle is a placeholder for (part of) a face without area: its vertices coincide. It
+/// keeps the file's triangle number and is in no tree.
 [[nodiscard]] inline bool is_left_out(const Triangle& triangle) {
   return triangle.vertices[0] == triangle.vertices[1];
 }

@@ -18,7 +18,7 @@
 namespace raygate {
 namespace {
 
-/// Extensions that are read. Of others that are used a warning says so.
+/// Extensions that are read. A file that uses another one gets a warning.
 constexpr std::string_view kRead[] = {
     "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
     "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
