@@ -14,8 +14,8 @@ namespace raygate {
 [[nodiscard]] std::optional<std::filesystem::path> find_exact_file(
     const std::filesystem::path& folder, std::string_view name);
 
-/// Returns the same, or else a file whose name is the last part of `name` in any letter case, in the
-/// folder of `name` or in `folder`. Such a file costs a warning that begins with `place`.
+/// Returns the same, or else a file whose name is the last part of `name` in any letter case, in
+/// the folder of `name` or in `folder`. Such a file costs a warning that begins with `place`.
 [[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                              std::string_view name,
                                                              const std::string& place,
