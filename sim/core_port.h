@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "host/intersect/core/core_unit.h"
-#include "host/intersect/core/core_words.h"
+#include "host/intersect/core/linked_core.h"
 #include "sim/model.h"
 
 namespace raygate {

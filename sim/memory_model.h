@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "host/intersect/core/memory_line.h"
+#include "host/intersect/core/memory_image.h"
 #include "sim/memory_timing.h"
 
 namespace raygate {

@@ -6,7 +6,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "host/intersect/unit/plane_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "sim/model.h"
 #include "sim/port_numbers.h"
 

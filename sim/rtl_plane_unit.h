@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "host/intersect/unit/plane_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "sim/arith.h"
 
 namespace raygate {

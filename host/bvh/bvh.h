@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/base/vectors.h"
-#include "host/bvh/range_map.h"
+#include "host/bvh/sah_builder.h"
 #include "host/scene/instances.h"
 #include "host/scene/scene.h"
 

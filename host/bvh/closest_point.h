@@ -1,10 +1,14 @@
 // Closest point: of a scene's triangles, the point that is nearest to a given one.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "host/base/lanes.h"
 #include "host/bvh/bvh.h"
+#include "host/bvh/bvh_view.h"
+#include "host/exact/exact.h"
 
 namespace raygate {
 
@@ -17,5 +21,58 @@ struct ClosestPoint {
 /// For a finite point, in double: off by its rounding. Of triangles at the same distance the one of
 /// the lower number. The tree has a triangle.
 [[nodiscard]] ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point);
+
+/// Calls visit(leaf) for all leaves of the tree whose boxes touch the closed box from `low` to
+/// `high`, in no particular order, until it says true; whether it did. For bodies of in_vectors.
+template <Vectors kCode, class Visit>
+RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                                  const Visit& visit) {
+  const BvhView tree(bvh);
+  std::uint32_t waiting[Bvh::kStackSize];
+  waiting[0] = 0;
+  for (int depth = 1; depth > 0;) {
+    Bvh::Node room;
+    const Bvh::Node& node = tree.node(waiting[--depth], room);
+    IntLanes touches = IntLanes{} - 1;
+    for (int k = 0; k < 3; ++k) {
+      const FloatLanes lows = load<FloatLanes>(node.bounds[0][k]),
+                       highs = load<FloatLanes>(node.bounds[1][k]);
+      touches &= (lows <= high[k]) & (highs >= low[k]);
+    }
+    for (LaneMask met = sign_mask<kCode>(touches); met != 0; met &= met - 1) {
+      const Bvh::Child child = node.child[std::countr_zero(met)];
+      tree.prefetch(child);
+      if (child.count == 0) {
+        waiting[depth++] = child.first;
+      } else if (visit(child)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Whether a triangle's axis-aligned box touches the closed box from `low` to `high`.
+[[nodiscard]] inline bool touches(const glm::vec3& low, const glm::vec3& high, const Corners& t) {
+  return glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
+         glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2])));
+}
+
+/// Calls visit(primitive, corners) for all triangles whose axis-aligned boxes touch that box, until
+/// it says true; whether it did.
+template <class Visit>
+[[nodiscard]] bool any_primitive_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
+                                      const Visit& visit) {
+  return in_vectors([&](auto code) RAYGATE_BODY {
+    const auto look = [&](const Bvh::Child& leaf) RAYGATE_BODY {
+      for (std::uint32_t primitive = leaf.first; primitive < leaf.first + leaf.count; ++primitive) {
+        const Corners t = bvh.corners_of(primitive);
+        if (touches(low, high, t) && visit(primitive, t)) return true;
+      }
+      return false;
+    };
+    return any_leaf_near<code()>(bvh, low, high, look);
+  });
+}
 
 }  // namespace raygate

@@ -1,14 +1,17 @@
 // Packet traversal: takes eight rays through the tree and stops at each leaf.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "host/base/lanes.h"
 #include "host/bvh/bvh.h"
-#include "host/bvh/packet_bounds.h"
 #include "host/bvh/traversal.h"
 
 namespace raygate {
@@ -62,5 +65,119 @@ class PacketTraversal {
   int octant_;
   TraversalStack<LaneMask> stack_{0xFF};
 };
+
+// Why no true hit is culled
+//
+// packet_traversal.cpp has it for one ray, whose entry into a box is the largest of 0 and
+// float32((near - O) * inverse_near) of each axis, and whose exit the smallest of its cutoff and
+// float32((far - O) * inverse_far). Both inverses have the sign of the direction's component, and
+// never grow when its magnitude does: rounding keeps order. So a bounds that takes inverse_near for
+// a magnitude no smaller than any of its rays', and inverse_far for one no larger, enters
+//   * where near - O has the sign of I: no later than any of them;
+//   * else: at 0 or before, as they do;
+// and leaves, where far - O has the sign of I, no earlier than any of them (else none of them hits
+// anything in the box). Its cutoff is no nearer than any of theirs.
+
+/// For boxes as for single rays: direction components below are as good as 0, and exits grow.
+inline constexpr float kSmallestComponent = 0x1p-100f;
+inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
+
+/// Which octant a direction points into: bit k is set where component k is negative.
+[[nodiscard]] inline int octant_of(const glm::vec3& direction) {
+  return (direction.x < 0.0f ? 1 : 0) | (direction.y < 0.0f ? 2 : 0) | (direction.z < 0.0f ? 4 : 0);
+}
+
+/// Where boxes end to matter for a ray that ends at `t`: stored as t (1 + 8 u), rounded up; finite,
+/// so that an entry of +infinity stands for a box that is not entered. A t below 0 leaves nothing.
+[[nodiscard]] inline float cutoff_beyond(double t) {
+  constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float: no t is, nor any entry
+  if (t < 0.0) return -1.0f;
+  const auto nearest = std::bit_cast<std::int32_t>(static_cast<float>(t * kExitGrowth));
+  return std::bit_cast<float>(std::min(nearest + 1, kFarthest));
+}
+
+/// Rays from one origin into one octant.
+struct PacketBounds {
+  float origin[3];
+  float inverse_near[3], inverse_far[3];
+  int octant;  ///< see octant_of
+
+  PacketBounds() = default;
+  /// Around one ray; its direction is scaled.
+  PacketBounds(const glm::vec3& from, const glm::vec3& direction) : octant(octant_of(direction)) {
+    for (int k = 0; k < 3; ++k) {
+      const bool small = std::abs(direction[k]) < kSmallestComponent;
+      const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
+      constexpr float kInfinity = std::numeric_limits<float>::infinity();
+      origin[k] = from[k];
+      inverse_near[k] = small ? sign / kSmallestComponent : 1.0f / direction[k];
+      inverse_far[k] = small ? sign * kInfinity : kExitGrowth * (1.0f / direction[k]);
+    }
+  }
+};
+
+/// Sets bit i of the result where the bounds meets the box of child i before `cutoff` (see
+/// PacketTraversal::set_cutoff), and entry[i] to where it enters it.
+template <Vectors kCode = Vectors::kBaseline>
+RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh::Node& node,
+                                           float cutoff, FloatLanes& entry) {
+  FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
+  for (int k = 0; k < 3; ++k) {
+    const int negative = bounds.octant >> k & 1;
+    const FloatLanes near = load<FloatLanes>(node.bounds[negative][k]),
+                     far = load<FloatLanes>(node.bounds[negative ^ 1][k]);
+    const FloatLanes t_near = (near - bounds.origin[k]) * bounds.inverse_near[k];
+    const FloatLanes t_far = (far - bounds.origin[k]) * bounds.inverse_far[k];
+    enter = t_near > enter ? t_near : enter;
+    leave = t_far < leave ? t_far : leave;
+  }
+  entry = enter;
+  return sign_mask<kCode>(enter <= leave);
+}
+
+/// Eight bounds8 of one origin and octant; an absent one has a negative cutoff.
+struct PacketBounds8 {
+  FloatLanes inverse_near[3], inverse_far[3];
+  FloatLanes cutoff;
+
+  /// From magnitudes of direction components: no smaller and no larger than any of the rays'.
+  RAYGATE_INLINE void set(int axis, int octant, const FloatLanes& smallest,
+                          const FloatLanes& largest) {
+    const float sign = (octant >> axis & 1) != 0 ? -1.0f : 1.0f;
+    const FloatLanes least = FloatLanes{} + kSmallestComponent;
+    inverse_near[axis] = sign / (largest > least ? largest : least);
+    inverse_far[axis] = smallest < least
+                            ? FloatLanes{} + sign * std::numeric_limits<float>::infinity()
+                            : kExitGrowth * (sign / smallest);
+  }
+};
+
+/// One of the eight, in a form for intersect_children.
+RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
+                                      const PacketBounds& like) {
+  PacketBounds bounds = like;
+  for (int k = 0; k < 3; ++k) {
+    bounds.inverse_near[k] = bounds8.inverse_near[k][which];
+    bounds.inverse_far[k] = bounds8.inverse_far[k][which];
+  }
+  return bounds;
+}
+
+/// The bounds8 that intersect_boxes the box of a node's child.
+template <Vectors kCode = Vectors::kBaseline>
+RAYGATE_INLINE LaneMask intersect_packets(const PacketBounds8& bounds8, const glm::vec3& origin,
+                                          int octant, const Bvh::Node& node, int child) {
+  FloatLanes enter = {}, leave = bounds8.cutoff;
+  for (int k = 0; k < 3; ++k) {
+    const int negative = octant >> k & 1;
+    const float near = node.bounds[negative][k][child] - origin[k];
+    const float far = node.bounds[negative ^ 1][k][child] - origin[k];
+    const FloatLanes t_near = near * bounds8.inverse_near[k];
+    const FloatLanes t_far = far * bounds8.inverse_far[k];
+    enter = t_near > enter ? t_near : enter;
+    leave = t_far < leave ? t_far : leave;
+  }
+  return sign_mask<kCode>(enter <= leave);
+}
 
 }  // namespace raygate

@@ -4,10 +4,10 @@
 #include <initializer_list>
 
 #include "host/cli/camera_options.h"
-#include "host/cli/format.h"
+#include "host/cli/report.h"
 #include "host/exact/exact.h"
 #include "host/light/default_lights.h"
-#include "host/scene/camera_setting.h"
+#include "host/scene/camera.h"
 
 namespace raygate {
 namespace {

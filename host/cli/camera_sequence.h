@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/cli/options.h"
-#include "host/light/camera_lights.h"
+#include "host/light/default_lights.h"
 #include "host/scene/camera.h"
 #include "host/scene/scene.h"
 #include "host/scene/view.h"

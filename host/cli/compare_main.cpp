@@ -15,7 +15,6 @@
 #include "host/film/compare.h"
 #include "host/film/display.h"
 #include "host/film/false_color.h"
-#include "host/film/picture_file.h"
 #include "host/options/option_table.h"
 
 namespace raygate {

@@ -8,7 +8,7 @@
 #include "host/cli/output_files.h"
 #include "host/cli/output_options.h"
 #include "host/cli/process.h"
-#include "host/film/merge.h"
+#include "host/film/film.h"
 
 namespace raygate {
 namespace {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "host/cli/camera_options.h"
-#include "host/cli/core_files.h"
 #include "host/cli/engines.h"
 #include "host/cli/output_options.h"
 #include "host/options/light_options.h"

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <new>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "host/base/input_error.h"
 #include "host/cli/process.h"
 #include "host/film/display.h"
+#include "host/film/exr.h"
 #include "host/film/false_color.h"
 #include "host/film/film.h"
 
@@ -107,6 +112,121 @@ void Checkpointer::write(const Film& film, const OutputOptions& outputs) const {
   ExrMetadata metadata = metadata_;
   metadata.partial = true;
   for (AtomicFile& file : stage_files(outputs, film, metadata, threads_).files) file.commit();
+}
+
+namespace {
+
+std::string* option_of(ExrMetadata& metadata, const std::string& name) {
+  for (auto& [key, value] : metadata.options) {
+    if (key == name) return &value;
+  }
+  return nullptr;
+}
+
+/// The channels on demand that this run has, and those of a film; what it needs and what it has
+/// too many of.
+template <class T>
+void keep(bool needed, std::vector<T>& values, const std::string& name, const std::string& file) {
+  if (!needed) {
+    values.clear();
+  } else if (values.empty()) {
+    throw InputError(file + ": found no channel " + name + ", expected it as --channels names it");
+  }
+}
+
+/// `found`: a film, or what a file says of one.
+template <class Found>
+void require_place(const Options& options, const std::string& name, const ExrMetadata& metadata,
+                   const Found& found, const ExrMetadata& found_metadata) {
+  const auto layout = [](int width, int height, const PixelRect& w) {
+    return std::tuple(width, height, w.x0, w.y0, w.x1, w.y1);
+  };
+  const PixelRect window = options.render.window.width() > 0
+                               ? options.render.window
+                               : PixelRect{0, 0, options.render.width, options.render.height};
+  if (layout(found.width, found.height, found.window) !=
+      layout(options.render.width, options.render.height, window)) {
+    throw InputError(name + ": found another frame or crop, expected those of this run");
+  }
+  if (found_metadata.world_to_camera != metadata.world_to_camera) {
+    throw InputError(name + ": found another camera, expected that of this run");
+  }
+}
+
+/// In the order of their letters, as a file has them.
+std::vector<std::string> channels_of_file(const ExtraChannels& extra, bool with_error) {
+  Film film = make_film(1, 1, {0, 0, 1, 1}, extra);
+  if (extra.sums || with_error) add_sums(film, with_error);
+  std::vector<std::string> names;
+  for (const Channel& channel : channels_of(film)) names.push_back(channel.name);
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace
+
+Film read_unfinished(const Options& options, const std::filesystem::path& path,
+                     const ExrMetadata& metadata) {
+  const std::string name = path.string();
+  FilmFile file = read_film(path);
+  Film& film = file.film;
+
+  const SampleRange there = samples_of(file.metadata);
+  const SampleRange wanted = samples_of(metadata);
+  if (there.first != wanted.first || there.end > wanted.end) {
+    throw InputError(name + ": found samples " + to_string(there) + ", expected the first of " +
+                     to_string(wanted));
+  }
+  // A single sample is its pixel's middle, the first of several is not.
+  std::string* const spp = option_of(file.metadata, "spp");
+  if (spp != nullptr && *spp != "1") *spp = std::to_string(options.render.samples);
+  if (const auto difference = different_picture(file.metadata, metadata)) {
+    throw InputError(name + ": found " + *difference + " as this run has it");
+  }
+  require_place(options, name, metadata, film, file.metadata);
+  const ExtraChannels needed = options.output.needed_channels();
+  keep(needed.position, film.position, "P", name);
+  keep(needed.albedo, film.albedo, "Albedo", name);
+  keep(needed.albedo, film.sums.albedo, "sums.Albedo", name);
+  keep(needed.object, film.object, "objectId", name);
+  keep(needed.tests, film.tests, "tests", name);
+  keep(needed.doubts, film.doubts, "doubts", name);
+  keep(options.render.error > 0.0, film.sums.error, "error", name);
+  keep(options.render.error > 0.0, film.sums.shown, "sums.shown", name);
+  return film;
+}
+
+FoundFrame find_frame(const Options& options, const OutputOptions& outputs,
+                      const ExrMetadata& metadata) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(*outputs.exr, ignored)) return {};
+  const std::string name = outputs.exr->string();
+  ExrSummary found;
+  try {
+    found = read_summary(*outputs.exr);
+    (void)read_exr(*outputs.exr, found.channels);
+  } catch (const InputError& error) {
+    return {.damage = error.what()};
+  }
+  const bool has_sums = std::ranges::find(found.channels, "sums.R.0") != found.channels.end();
+  const auto difference = different_picture(found.metadata, metadata);
+  if (has_sums && (found.metadata.partial || difference)) {
+    return {false, read_unfinished(options, *outputs.exr, metadata)};
+  }
+  if (difference) throw InputError(name + ": found " + *difference + " as this run has it");
+  require_place(options, name, metadata, found, found.metadata);
+  if (found.metadata.partial || !found.is_complete) return {};
+  if (found.channels != channels_of_file(outputs.needed_channels(), options.render.error > 0.0)) {
+    throw InputError(name + ": found other channels, expected those of this run");
+  }
+  for (const std::filesystem::path& path : outputs.paths()) {
+    if (!std::filesystem::exists(path, ignored)) return {};
+    if (path == outputs.exr) continue;
+    const bool is_whole =
+        path == outputs.stats ? std::filesystem::file_size(path, ignored) > 0 : is_whole_png(path);
+    if (!is_whole) return {.damage = path.string() + ": damaged"};
+  }
+  return {.is_finished = true};
 }
 
 }  // namespace raygate

@@ -19,8 +19,8 @@
 #include "host/cli/process.h"
 #include "host/film/display.h"
 #include "host/film/false_color.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/hex_words.h"
 #include "host/render/renderer.h"
 
 namespace raygate {

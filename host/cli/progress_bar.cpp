@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "host/cli/format.h"
+#include "host/cli/report.h"
 
 namespace raygate {
 namespace {

@@ -16,13 +16,13 @@
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
 #include "host/cli/engines.h"
-#include "host/cli/format.h"
 #include "host/cli/process.h"
+#include "host/cli/report.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/atomic_file.h"
 #include "host/scene/io/scene_file.h"
 #include "host/trace/hit_table.h"
-#include "host/trace/ray_table_reader.h"
+#include "host/trace/ray_table.h"
 #include "host/trace/tracer.h"
 
 namespace raygate {

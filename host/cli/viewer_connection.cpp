@@ -13,7 +13,7 @@
 
 #include "host/base/input_error.h"
 #include "host/cli/process.h"
-#include "host/options/option_text.h"
+#include "host/options/option_table.h"
 
 namespace raygate {
 namespace {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "host/film/exr.h"
@@ -46,5 +49,11 @@ struct Comparison {
 /// TIP 13(4), 2004, with its constants: a Gaussian of sigma 1.5, K1 = 0.01, K2 = 0.03.
 [[nodiscard]] std::optional<double> ssim(const std::vector<double>& a, const std::vector<double>& b,
                                          std::size_t width);
+
+/// Reads the channels `names`: of OpenEXR those of that name (see read_exr); of a PNG file, whose
+/// name ends in .png, R, G and B, scene-linear from 0 to 1. Throws InputError for other channels of
+/// a PNG, and for files that cannot be read or are damaged.
+[[nodiscard]] ChannelPicture read_picture(const std::filesystem::path& file,
+                                          std::span<const std::string> names);
 
 }  // namespace raygate

@@ -55,4 +55,9 @@ struct DisplayOptions {
 /// the last, and each has its checksum (PNG, Third Edition, 5.3 to 5.6). What they say is not read.
 [[nodiscard]] bool is_whole_png(const std::filesystem::path& file);
 
+/// Why nothing can be seen in a film, and what to try: no pixel has hit anything, all are black, or
+/// all have one colour. Empty where something is seen, and of films that are only a crop or smaller
+/// than 16 x 16 pixels, where that is nothing special.
+[[nodiscard]] std::string why_blank(const Film& film, const DisplayOptions& display);
+
 }  // namespace raygate

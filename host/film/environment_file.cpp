@@ -13,7 +13,6 @@
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/film/exr.h"
-#include "host/film/exr_check.h"
 
 namespace raygate {
 namespace {

@@ -87,4 +87,12 @@ struct ExrSummary {
 /// such a film, is damaged, or is larger than 2^26 pixels.
 [[nodiscard]] FilmFile read_film(const std::filesystem::path& file);
 
+/// Whether the file begins as OpenEXR files do.
+[[nodiscard]] bool is_exr(const std::filesystem::path& file);
+
+/// Throws InputError, one line that begins with the file's name: for what cannot be read or is no
+/// OpenEXR file, and for a header for which the library would take memory that the file does not
+/// fill. What passes may still be damaged.
+void require_exr(const std::filesystem::path& file);
+
 }  // namespace raygate

@@ -3,17 +3,93 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "host/film/exact_accumulator.h"
+#include "host/film/exr.h"
 
 namespace raygate {
+
+/// A sum of numbers in 192 bits, two's complement, with a unit of 2^-96. What a number has below
+/// that is cut off; numbers count as at most 2^63 in size, so that 2^31 of them do not overflow. A
+/// NaN counts as 0.
+class ExactAccumulator {
+ public:
+  static_assert(std::endian::native == std::endian::little, "files have its words");
+
+  void add(double number) {
+    const double size = std::min(std::abs(number), kMost);
+    if (!(size >= kLeast)) return;
+    const auto bits = std::bit_cast<std::uint64_t>(size);
+    std::uint64_t significand = (bits & (kHidden - 1)) | kHidden;
+    int shift = static_cast<int>(bits >> 52) - 1075 + kFraction;
+    if (shift < 0) {
+      significand >>= -shift;
+      shift = 0;
+    }
+    // kMost's shift is 107, so that the last 64 bits have what lies above the first 128.
+    const Wide low = Wide{significand} << shift;
+    const std::uint64_t high = shift > 64 ? significand >> (128 - shift) : 0;
+    if (number < 0.0) {
+      subtract(low, high);
+    } else {
+      add(low, high);
+    }
+  }
+
+  ExactAccumulator& operator+=(const ExactAccumulator& other) {
+    add(other.low(), other.words_[2]);
+    return *this;
+  }
+
+  [[nodiscard]] ExactAccumulator operator-() const {
+    ExactAccumulator result;
+    result.subtract(low(), words_[2]);
+    return result;
+  }
+
+  /// The double near it: off by less than 2^-51 of it.
+  [[nodiscard]] double value() const {
+    if (words_[2] >> 63 != 0) return -(-*this).value();
+    return static_cast<double>(words_[2]) * 0x1p32 +
+           (static_cast<double>(words_[1]) * 0x1p-32 + static_cast<double>(words_[0]) * 0x1p-96);
+  }
+
+  friend bool operator==(const ExactAccumulator&, const ExactAccumulator&) = default;
+
+ private:
+  __extension__ using Wide = unsigned __int128;
+
+  [[nodiscard]] Wide low() const { return Wide{words_[1]} << 64 | words_[0]; }
+  void set(Wide low, std::uint64_t high) {
+    words_[0] = static_cast<std::uint64_t>(low);
+    words_[1] = static_cast<std::uint64_t>(low >> 64);
+    words_[2] = high;
+  }
+  void add(Wide low, std::uint64_t high) {
+    const Wide sum = this->low() + low;
+    set(sum, words_[2] + high + (sum < low ? 1 : 0));
+  }
+  void subtract(Wide low, std::uint64_t high) {
+    const Wide from = this->low();
+    set(from - low, words_[2] - high - (from < low ? 1 : 0));
+  }
+
+  static constexpr int kFraction = 96;
+  static constexpr double kMost = 0x1p63, kLeast = 0x1p-96;
+  static constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;
+
+  std::uint64_t words_[3] = {};  // the lowest first
+};
 
 /// The primitive or object of a pixel whose ray hits nothing.
 inline constexpr std::uint32_t kNoPrimitive = std::numeric_limits<std::uint32_t>::max();
@@ -151,5 +227,40 @@ struct Channel {
 /// Writes bytes that region_bytes() gave for the same window and arrays into `film`. Throws
 /// InputError where they are not as many, or `rect` is not within the window.
 void set_region(Film& film, const PixelRect& rect, std::string_view bytes);
+
+/// Samples [first, end) of each pixel.
+struct SampleRange {
+  int first = 0, end = 0;
+};
+
+/// "A:B"; none if it is no such range with 0 <= A < B.
+[[nodiscard]] std::optional<SampleRange> parse_sample_range(const std::string& text);
+[[nodiscard]] std::string to_string(const SampleRange& range);
+
+/// The attribute of a file that does not have all of "spp".
+inline constexpr const char* kSamplesAttribute = "samples";
+
+/// The attribute of the digest of all geometry, materials and lights that were read
+/// (host/scene/digest.h).
+inline constexpr const char* kSceneAttribute = "sceneDigest";
+
+/// What a film file says that it holds: that attribute, or all of "spp".
+[[nodiscard]] SampleRange samples_of(const ExrMetadata& metadata);
+/// The attribute says so from now on; it is not there where that is all of "spp".
+void set_samples(ExrMetadata& metadata, const SampleRange& range);
+
+/// In what two files are not of the same picture, whatever samples and pixels of it they have:
+/// "spp 8, expected spp 16", or "another geometry, material or light"; or nothing.
+[[nodiscard]] std::optional<std::string> different_picture(const ExrMetadata& found,
+                                                           const ExrMetadata& expected);
+
+/// A film and the name of its file, for messages.
+using NamedFilm = std::pair<std::string, FilmFile>;
+
+/// What `parts` are together, which is bit for bit what one render would have given: parts of one
+/// window have ranges of samples that follow each other, and windows have the same samples and
+/// make up a rectangle. Throws InputError, one line: parts of different pictures, unfinished
+/// ones, gaps and overlaps.
+[[nodiscard]] FilmFile merge(std::vector<NamedFilm> parts);
 
 }  // namespace raygate

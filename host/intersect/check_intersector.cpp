@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "host/intersect/hex_words.h"
-
 namespace raygate {
 namespace {
 

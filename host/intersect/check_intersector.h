@@ -1,8 +1,13 @@
 // Check intersector: compares two intersectors and stops at the first ray where they differ.
 #pragma once
 
+#include <bit>
+#include <cstdint>
+#include <cstdio>
 #include <memory>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "host/intersect/intersector.h"
@@ -41,5 +46,16 @@ class CheckIntersector : public Intersector {
   std::unique_ptr<Intersector> intersector_, reference_;
   std::vector<NearestHit> expected_;
 };
+
+/// " 3F800000 BF000000".
+[[nodiscard]] inline std::string hex_words(std::span<const float> words) {
+  std::string text;
+  for (const float word : words) {
+    char buffer[16];
+    std::snprintf(buffer, sizeof buffer, " %08X", std::bit_cast<std::uint32_t>(word));
+    text += buffer;
+  }
+  return text;
+}
 
 }  // namespace raygate

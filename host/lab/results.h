@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/variants/json_object.h"
+#include "host/variants/variant_table.h"
 
 namespace raygate::lab {
 

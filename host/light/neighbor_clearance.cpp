@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "host/bvh/box_query.h"
+#include "host/bvh/closest_point.h"
 #include "host/light/neighbor_clearance_search.h"
 
 namespace raygate {

@@ -1,7 +1,6 @@
 // Path tracing: next-event estimation and BSDF sampling, combined by multiple importance sampling.
 #include "host/light/light_paths.h"
 #include "host/light/sample_scattered_ray.h"
-#include "host/light/seen_caustics.h"
 #include "host/light/shade.h"
 
 namespace raygate {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "host/bvh/box_query.h"
+#include "host/bvh/closest_point.h"
 #include "host/light/spawn_ray_lanes.h"
 
 // How far O' is from X

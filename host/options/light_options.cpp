@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/exact/exact.h"
-#include "host/film/merge.h"
+#include "host/film/film.h"
 
 namespace raygate {
 namespace {

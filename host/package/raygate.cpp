@@ -6,7 +6,6 @@
 
 #include "host/bvh/bvh.h"
 #include "host/exact/ieee_floats.h"
-#include "host/intersect/cpu/all_hits.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/scene/scene.h"
 #include "host/trace/hit_table.h"

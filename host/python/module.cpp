@@ -26,7 +26,7 @@
 #include "host/film/environment_file.h"
 #include "host/film/exr.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/record_cache.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"

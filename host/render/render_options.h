@@ -8,7 +8,7 @@
 #include "host/film/film.h"
 #include "host/film/reconstruction_filter.h"
 #include "host/intersect/intersector.h"
-#include "host/light/camera_lights.h"
+#include "host/light/default_lights.h"
 #include "host/light/integrator_options.h"
 
 namespace raygate {

@@ -10,9 +10,9 @@
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/ranks/ranks.h"
-#include "host/render/adaptive_splats.h"
 #include "host/render/coordinator.h"
 #include "host/render/emitter_supersampler.h"
+#include "host/render/splat_layer.h"
 #include "host/render/tiles.h"
 #include "host/scene/camera.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/camera_setting.h"
+#include "host/scene/camera.h"
 #include "host/scene/name_list.h"
 #include "host/scene/texture.h"
 
@@ -223,5 +223,11 @@ struct Scene {
   std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures
   std::vector<std::string> warnings;         ///< "file:line: ...": of statements, then of faces
 };
+
+/// 64 bits, as 16 hexadecimal digits, of all that a scene was read to: geometry, materials,
+/// textures, lights, instances.
+/// Equal scenes have equal digests, on every machine of the same byte order; of two that differ,
+/// one pair in 2^64 would. Against mistakes, not against malice: it is no cryptographic hash.
+[[nodiscard]] std::string digest_of(const Scene& scene);
 
 }  // namespace raygate

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/base/threads.h"
-#include "host/intersect/cpu/all_hits.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 
 namespace raygate {
 namespace {

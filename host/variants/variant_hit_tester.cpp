@@ -5,8 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "host/intersect/unit/pipeline_hit_tester.h"
-#include "host/intersect/unit/serial_hit_tester.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/variants/variant_units.h"
 
 // The bound of an edge test in a format of u = 2^-digits

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/plane_unit.h"
 #include "host/variants/variant_table.h"
 #include "host/variants/variant_units.h"
 

@@ -1,15 +1,24 @@
 // The variants of arithmetic that are compared, from variants.json.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/variants/arithmetic.h"
-#include "host/variants/json_object.h"
 
 namespace raygate {
+
+using Json = nlohmann::ordered_json;
+
+/// `object` with the values of `usual` where it has none. Throws InputError, "WHAT has ...": an
+/// unknown name, or a value that is not of the usual one's kind.
+[[nodiscard]] Json with_usual(const Json& object, Json usual, const std::string& what);
+
+/// Throws InputError, "NAME is ..., expected LOW to HIGH".
+int in_range(const std::string& name, int value, int low, int high);
 
 /// An object of variants.json. What it leaves out is as in binary32:
 ///

@@ -1,7 +1,7 @@
 // The hit-test units with a variant's arithmetic, in C++: the twins of what is Verilated.
 #pragma once
 
-#include "host/intersect/unit/plane_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/variants/arithmetic.h"
 

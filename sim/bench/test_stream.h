@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/plane_unit.h"
 
 namespace raygate {
 

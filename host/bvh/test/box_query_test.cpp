@@ -1,10 +1,9 @@
 // Box queries against a look at every triangle.
-#include "host/bvh/box_query.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "host/bvh/closest_point.h"
 #include "host/exact/test/meshes.h"
 
 namespace raygate {

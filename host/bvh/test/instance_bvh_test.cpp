@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "host/bvh/bvh.h"
-#include "host/bvh/range_map.h"
+#include "host/bvh/sah_builder.h"
 #include "host/bvh/test/walk_bvh.h"
 #include "host/scene/test/instanced_scene.h"
 

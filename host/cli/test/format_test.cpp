@@ -1,5 +1,3 @@
-#include "host/cli/format.h"
-
 #include <gtest/gtest.h>
 
 #include <exception>
@@ -7,6 +5,7 @@
 #include <stdexcept>
 
 #include "host/cli/process.h"
+#include "host/cli/report.h"
 
 namespace raygate {
 namespace {

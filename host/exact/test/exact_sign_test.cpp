@@ -1,11 +1,10 @@
-#include "host/exact/exact_sign.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 #include <random>
 
+#include "host/exact/exact.h"
 #include "host/exact/test/rational_oracle.h"
 
 namespace raygate {

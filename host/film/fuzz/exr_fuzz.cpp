@@ -9,7 +9,7 @@
 
 #include "host/base/input_error.h"
 #include "host/film/exr.h"
-#include "host/film/merge.h"
+#include "host/film/film.h"
 
 namespace {
 

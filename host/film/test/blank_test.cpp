@@ -1,9 +1,9 @@
 // Blank pictures are told, and no others.
-#include "host/film/blank.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "host/film/display.h"
 
 namespace raygate {
 namespace {

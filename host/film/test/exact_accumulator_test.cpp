@@ -1,12 +1,12 @@
 // Sums that do not depend on their order.
-#include "host/film/exact_accumulator.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "host/film/film.h"
 
 namespace raygate {
 namespace {

@@ -1,7 +1,13 @@
 // Linked core: a ray core with a memory of its own, behind a link that carries words.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <deque>
+#include <filesystem>
+#include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,6 +15,80 @@
 #include "host/intersect/core/core_unit.h"
 
 namespace raygate {
+
+/// Fields of a packed struct in words of 32 bits, lowest first: the struct's last field first.
+/// `Words` has an operator [].
+template <class Words>
+class PackedFields {
+ public:
+  explicit PackedFields(Words& words) : words_(words) {}
+
+  /// Writes the next field of `width` bits, 32 at most, into bits that are 0.
+  void put(std::uint32_t value, unsigned width = 32) {
+    const std::uint64_t two = std::uint64_t{value} << at_ % 32;
+    words_[at_ / 32] |= static_cast<std::uint32_t>(two);
+    if (two >> 32 != 0) words_[at_ / 32 + 1] |= static_cast<std::uint32_t>(two >> 32);
+    at_ += width;
+  }
+  void put(const glm::vec3& vector) {
+    for (int k = 0; k < 3; ++k) put(std::bit_cast<std::uint32_t>(vector[k]));
+  }
+
+  /// Reads the next field.
+  std::uint32_t take(unsigned width = 32) {
+    std::uint64_t two = words_[at_ / 32];
+    if (at_ % 32 + width > 32) two |= std::uint64_t{words_[at_ / 32 + 1]} << 32;
+    two >>= at_ % 32;
+    at_ += width;
+    return static_cast<std::uint32_t>(two & ((std::uint64_t{1} << width) - 1));
+  }
+  float take_float() { return std::bit_cast<float>(take()); }
+
+ private:
+  Words& words_;
+  unsigned at_ = 0;
+};
+
+/// Of ray_core_pkg::result_t.
+template <class Words>
+CoreResult unpack_result(const Words& words) {
+  PackedFields fields(words);
+  CoreResult result;
+  result.error = static_cast<CoreResult::Error>(fields.take(3));
+  result.tests = fields.take(28);
+  for (int k = 0; k < 3; ++k) result.point[k] = fields.take_float();
+  result.t_error = fields.take(5);
+  result.t = fields.take_float();
+  result.triangle = fields.take();
+  result.found = fields.take(1) != 0;
+  result.tag = fields.take();
+  result.kind = static_cast<CoreResult::Kind>(fields.take(1));
+  return result;
+}
+
+/// A result as core_link sends it.
+using ResultWords = std::array<std::uint32_t, 8>;
+
+/// Messages to core_link.
+using LineMessage = std::array<std::uint32_t, 17>;
+using RayMessage = std::array<std::uint32_t, 11>;
+
+[[nodiscard]] inline LineMessage line_message(std::uint32_t number, const MemoryLine& line) {
+  LineMessage message{1u << 28 | number};
+  std::ranges::copy(line.words, message.begin() + 1);
+  return message;
+}
+/// Memory has changed: it has so many lines.
+[[nodiscard]] inline std::uint32_t lines_message(std::uint32_t lines) { return 2u << 28 | lines; }
+[[nodiscard]] inline RayMessage ray_message(const CoreRay& ray) {
+  RayMessage message{(4u | (ray.any_hit ? 1u : 0u) | (ray.no_cull ? 2u : 0u)) << 28, ray.tag,
+                     ray.source_id, ray.skip_id, std::bit_cast<std::uint32_t>(ray.t_max)};
+  for (int k = 0; k < 3; ++k) {
+    message[5 + static_cast<unsigned>(k)] = std::bit_cast<std::uint32_t>(ray.ray.direction[k]);
+    message[8 + static_cast<unsigned>(k)] = std::bit_cast<std::uint32_t>(ray.ray.origin[k]);
+  }
+  return message;
+}
 
 /// Words to a board and from it, hw/board/core_link.sv's, in their order.
 class WordLink {
@@ -48,6 +128,34 @@ class LinkedCore : public CoreUnit {
   std::vector<MemoryLine> memory_;    ///< what the board holds
   std::vector<std::uint32_t> words_;  ///< of a result that is not whole
   CoreCounters counters_;
+};
+
+/// Words as four bytes, lowest first, 8N1, 2 Mbaud. Throws InputError, with the port's name, where
+/// it can't be opened, and where the board says nothing for kPatience seconds while something is
+/// expected of it.
+class SerialLink : public WordLink {
+ public:
+  explicit SerialLink(std::filesystem::path port);
+  SerialLink(const SerialLink&) = delete;
+  SerialLink& operator=(const SerialLink&) = delete;
+  ~SerialLink() override;
+
+  bool send(std::uint32_t word) override;
+  std::optional<std::uint32_t> receive() override;
+  void wait() override;
+
+ private:
+  static constexpr int kPatience = 30;
+  static constexpr std::size_t kBuffer = 4096;  ///< bytes that wait to be written
+
+  [[noreturn]] void fail(const std::string& what) const;
+  void write_some();
+  void read_some();
+
+  std::filesystem::path port_;
+  int file_;
+  std::vector<unsigned char> out_, in_;
+  std::size_t taken_ = 0;  ///< of in_
 };
 
 }  // namespace raygate

@@ -1,14 +1,117 @@
 // Memory image: the nodes and triangles that the ray core reads.
 #pragma once
 
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <glm/glm.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "host/bvh/bvh.h"
-#include "host/intersect/core/memory_line.h"
+#include "host/exact/exact.h"
 
 namespace raygate {
+
+/// 512 bits; bit 0 is the lowest of words[0].
+struct alignas(64) MemoryLine {
+  std::array<std::uint32_t, 16> words{};
+
+  /// Bits `first` to `first + width - 1`; width is 1 to 32.
+  [[nodiscard]] std::uint32_t bits(unsigned first, unsigned width) const {
+    std::uint64_t two = words[first / 32];
+    if (first / 32 < 15) two |= std::uint64_t{words[first / 32 + 1]} << 32;
+    return static_cast<std::uint32_t>(two >> first % 32 & ((std::uint64_t{1} << width) - 1));
+  }
+  /// Into bits that were 0.
+  void set_bits(unsigned first, std::uint64_t value) {
+    words[first / 32] |= static_cast<std::uint32_t>(value << first % 32);
+    if (first % 32 != 0 && first / 32 < 15) {
+      words[first / 32 + 1] |= static_cast<std::uint32_t>(value >> (32 - first % 32));
+    }
+  }
+  [[nodiscard]] float number(unsigned word) const { return std::bit_cast<float>(words[word]); }
+};
+static_assert(sizeof(MemoryLine) == 64);
+
+/// Up to seven children of an inner node, and their boxes on the node's grid: along axis k, q
+/// stands for origin[k] + q 2^(exponent[k] - 127), exactly.
+struct NodeLine {
+  static constexpr int kChildren = 7;
+  static constexpr std::uint32_t kAbsent = 0, kInner = 8;  ///< kinds; others: a leaf's triangles
+
+  struct Child {
+    std::uint32_t kind = kAbsent;
+    std::array<std::uint8_t, 3> low{}, high{};
+
+    /// Lines in memory.
+    [[nodiscard]] std::uint32_t size() const { return kind == kInner ? 1 : kind; }
+  };
+
+  glm::vec3 origin{0.0f};
+  std::array<int, 3> exponent{1, 1, 1};  ///< 1 to 254
+  std::uint32_t base = 0;                ///< line of the first child; the others' follow
+  std::array<Child, kChildren> child{};
+
+  NodeLine() = default;
+  explicit NodeLine(const MemoryLine& line) : base(line.bits(120, 28)) {
+    for (unsigned k = 0; k < 3; ++k) {
+      origin[static_cast<int>(k)] = line.number(k);
+      exponent[k] = static_cast<int>(line.bits(96 + 8 * k, 8));
+    }
+    for (unsigned i = 0; i < kChildren; ++i) {
+      child[i].kind = line.bits(148 + 4 * i, 4);
+      for (unsigned k = 0; k < 3; ++k) {
+        child[i].low[k] = static_cast<std::uint8_t>(line.bits(176 + 48 * i + 8 * k, 8));
+        child[i].high[k] = static_cast<std::uint8_t>(line.bits(200 + 48 * i + 8 * k, 8));
+      }
+    }
+  }
+
+  [[nodiscard]] MemoryLine line() const {
+    MemoryLine line;
+    for (unsigned k = 0; k < 3; ++k) {
+      line.words[k] = std::bit_cast<std::uint32_t>(origin[static_cast<int>(k)]);
+      line.set_bits(96 + 8 * k, static_cast<std::uint64_t>(exponent[k]));
+    }
+    line.set_bits(120, base);
+    for (unsigned i = 0; i < kChildren; ++i) {
+      line.set_bits(148 + 4 * i, child[i].kind);
+      for (unsigned k = 0; k < 3; ++k) {
+        line.set_bits(176 + 48 * i + 8 * k, child[i].low[k]);
+        line.set_bits(200 + 48 * i + 8 * k, child[i].high[k]);
+      }
+    }
+    return line;
+  }
+};
+
+/// A triangle, and what it is called.
+struct TriangleLine {
+  Corners corners{};
+  std::uint32_t index = 0;      ///< its name: the number of this line
+  std::uint32_t rank = 0;       ///< of hits at the same t the lowest is the nearest
+  std::uint32_t primitive = 0;  ///< the host's number of it, which the core does not read
+
+  TriangleLine() = default;
+  explicit TriangleLine(const MemoryLine& line)
+      : index(line.words[9]), rank(line.words[10]), primitive(line.words[11]) {
+    for (unsigned i = 0; i < 9; ++i) corners[i / 3][static_cast<int>(i % 3)] = line.number(i);
+  }
+
+  [[nodiscard]] MemoryLine line() const {
+    MemoryLine line;
+    for (unsigned i = 0; i < 9; ++i) {
+      line.words[i] = std::bit_cast<std::uint32_t>(corners[i / 3][static_cast<int>(i % 3)]);
+    }
+    line.words[9] = index;
+    line.words[10] = rank;
+    line.words[11] = primitive;
+    return line;
+  }
+};
 
 /// The lines of a scene, the root's at kRoot. Triangles are named by their lines, and ranked as the
 /// Bvh's scene numbers them. The same whatever the number of threads that make it.

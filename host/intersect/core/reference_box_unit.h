@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "host/intersect/core/memory_line.h"
+#include "host/intersect/core/memory_image.h"
 
 namespace raygate {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "host/base/lanes.h"
-#include "host/bvh/packet_bounds.h"
+#include "host/bvh/packet_traversal.h"
 #include "host/exact/exact.h"
 
 namespace raygate {

@@ -7,7 +7,7 @@
 
 #include "host/intersect/cpu/packet_intersector.h"
 #include "host/intersect/point_error.h"
-#include "host/intersect/record_batch.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "host/intersect/cpu/cone_traversal.h"
-#include "host/intersect/cpu/quad_record.h"
+#include "host/intersect/cpu/quad_test.h"
 
 // Why a group is never wrongly spared a triangle
 //

@@ -4,7 +4,7 @@
 #include <bit>
 #include <limits>
 
-#include "host/bvh/packet_bounds.h"
+#include "host/bvh/packet_traversal.h"
 #include "host/intersect/cpu/cone_traversal.h"
 
 namespace raygate {

@@ -6,7 +6,7 @@
 
 #include "host/bvh/bvh.h"
 #include "host/intersect/cpu/cone_traversal.h"
-#include "host/intersect/cpu/quad_record.h"
+#include "host/intersect/cpu/quad_test.h"
 #include "host/intersect/intersector.h"
 
 namespace raygate {

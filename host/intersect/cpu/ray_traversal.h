@@ -13,7 +13,7 @@
 
 #include "host/base/lanes.h"
 #include "host/bvh/bvh_view.h"
-#include "host/bvh/packet_bounds.h"
+#include "host/bvh/packet_traversal.h"
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/quad_test.h"
 #include "host/intersect/intersector.h"

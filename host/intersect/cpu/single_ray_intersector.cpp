@@ -11,7 +11,7 @@
 
 #include "host/intersect/cpu/ray_traversal.h"
 #include "host/intersect/point_error.h"
-#include "host/intersect/record_batch.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 

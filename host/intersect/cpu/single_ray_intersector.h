@@ -8,7 +8,7 @@
 #include "host/bvh/bvh.h"
 #include "host/intersect/cpu/ray_traversal.h"
 #include "host/intersect/intersector.h"
-#include "host/intersect/record_batch.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 

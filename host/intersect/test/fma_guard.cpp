@@ -6,7 +6,7 @@
 #include <span>
 
 #include "host/exact/ieee_floats.h"
-#include "host/intersect/unit/plane_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {

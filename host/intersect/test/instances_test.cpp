@@ -5,9 +5,8 @@
 #include <limits>
 #include <memory>
 
-#include "host/intersect/cpu/all_hits.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/scene/test/instanced_scene.h"

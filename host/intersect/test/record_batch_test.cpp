@@ -1,12 +1,11 @@
 // Four records at a time are what they are one by one.
-#include "host/intersect/record_batch.h"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <vector>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 namespace {

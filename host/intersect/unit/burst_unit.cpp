@@ -5,7 +5,7 @@
 #include <bit>
 #include <string>
 
-#include "host/intersect/hex_words.h"
+#include "host/intersect/check_intersector.h"
 
 namespace raygate {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <thread>
 
-#include "host/intersect/record_batch.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 namespace {

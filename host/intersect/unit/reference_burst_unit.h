@@ -189,4 +189,14 @@ struct UnitPoint {
 [[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
                                 std::optional<std::uint32_t> grazing = std::nullopt);
 
+/// The reference model: BurstUnit's point has the same bits.
+class ReferencePlaneUnit : public PlaneUnit {
+ public:
+  void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override {
+    std::ranges::transform(tests, points.begin(), [](const PlaneTest& test) {
+      return ReferenceBurstUnit().point({.normal = test.normal, .d = test.d}, test.direction);
+    });
+  }
+};
+
 }  // namespace raygate

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "host/base/stopwatch.h"
-#include "host/intersect/record_batch.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/plane_unit.h"
 #include "host/variants/variant_table.h"
 
 namespace raygate {

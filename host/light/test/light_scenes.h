@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/render/renderer.h"

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <optional>
 
-#include "host/exact/exact_sign.h"
+#include "host/exact/exact.h"
 #include "host/exact/test/meshes.h"
 #include "host/scene/camera.h"
 

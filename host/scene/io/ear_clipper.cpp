@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/exact/exact_sign.h"
+#include "host/exact/exact.h"
 
 namespace raygate {
 

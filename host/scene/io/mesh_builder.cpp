@@ -6,7 +6,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/srgb.h"
-#include "host/exact/exact_sign.h"
+#include "host/exact/exact.h"
 #include "host/scene/io/ear_clipper.h"
 #include "host/scene/io/smooth_normals.h"
 

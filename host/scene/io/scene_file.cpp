@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "host/base/input_error.h"
-#include "host/exact/exact_sign.h"
+#include "host/exact/exact.h"
 #include "host/scene/instances.h"
 #include "host/scene/io/json_reader.h"
 

@@ -1,6 +1,6 @@
-#include "host/scene/camera_setting.h"
-
 #include <gtest/gtest.h>
+
+#include "host/scene/camera.h"
 
 namespace raygate {
 namespace {

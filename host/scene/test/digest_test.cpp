@@ -1,6 +1,4 @@
 // Each thing that a picture may depend on changes a scene's digest.
-#include "host/scene/digest.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/scene/scene.h"
 #include "host/scene/test/instanced_scene.h"
 
 namespace raygate {

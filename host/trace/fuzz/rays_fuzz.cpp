@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/trace/ray_table_reader.h"
+#include "host/trace/ray_table.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const int file = memfd_create("rays", 0);

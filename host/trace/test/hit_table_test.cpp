@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/cpu/all_hits.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/trace/ray_table.h"
 
 namespace raygate {

@@ -1,6 +1,4 @@
 // Tables of rays: what is read, and what is said of those that cannot be.
-#include "host/trace/ray_table_reader.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -9,6 +7,7 @@
 #include <limits>
 
 #include "host/base/input_error.h"
+#include "host/trace/ray_table.h"
 
 namespace raygate {
 namespace {

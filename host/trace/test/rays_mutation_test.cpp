@@ -13,7 +13,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/damage.h"
-#include "host/trace/ray_table_reader.h"
+#include "host/trace/ray_table.h"
 
 namespace raygate {
 namespace {

@@ -1,6 +1,4 @@
 // All hits of a ray, against every triangle asked for itself in rationals.
-#include "host/intersect/cpu/all_hits.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "host/exact/test/meshes.h"
 #include "host/exact/test/rational_oracle.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 
 namespace raygate {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "host/base/vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/pipeline_hit_tester.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 

@@ -1,11 +1,10 @@
 // What records in float32 call sure is so in exact arithmetic.
-#include "host/intersect/cpu/quad_record.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/cpu/quad_test.h"
 #include "host/scene/camera.h"
 
 namespace raygate {

@@ -14,10 +14,8 @@
 #include <utility>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/unit/pipeline_hit_tester.h"
-#include "host/intersect/unit/plane_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/serial_hit_tester.h"
 #include "host/scene/camera.h"
 
 namespace raygate {

@@ -1,10 +1,10 @@
 // The plane unit's reference model.
-#include "host/intersect/unit/plane_unit.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <limits>
+
+#include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
 namespace {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "host/exact/exact_sign.h"
+#include "host/exact/exact.h"
 
 namespace raygate {
 namespace {

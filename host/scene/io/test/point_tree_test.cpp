@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "host/exact/exact_sign.h"
+#include "host/exact/exact.h"
 #include "host/scene/io/ear_clipper.h"
 
 namespace raygate {

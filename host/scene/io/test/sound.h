@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "host/exact/exact_sign.h"
+#include "host/exact/exact.h"
 #include "host/scene/scene.h"
 
 namespace raygate::test {

@@ -1,4 +1,4 @@
-#include "host/scene/digest.h"
+#include "host/scene/scene.h"
 
 #include <algorithm>
 #include <concepts>
