@@ -95,8 +95,6 @@ struct CommandLine {
     add_run_output_options(table, options.output);
     table.flag("--serve", "show the scene in a page of the browser", options.serve);
     table.number("--port", "N", "of --serve's page (any free one)", options.port, kPortRange);
-    table.text("--display-server", "HOST:PORT", "show the picture in tev, too",
-               options.display_server);
     table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
     table.flag("--no-scene-file", "ignore the .json beside an OBJ", no_scene_file);
     table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
@@ -230,7 +228,7 @@ void check_serve(const OptionTable& table, const Options& options) {
     if (!table.typed("port").empty()) throw InputError("--port: expected with --serve");
     return;
   }
-  for (const char* name : {"crop", "display-server", "error", "frames", "resume", "samples",
+  for (const char* name : {"crop", "error", "frames", "resume", "samples",
                            "stats", "save-every", "trace", "dump-image"}) {
     if (!table.typed(name).empty()) {
       throw InputError("--" + std::string(name) + " and --serve exclude each other");

@@ -31,7 +31,6 @@ struct Options : EngineOptions {
   CoreFileOptions core_files;
   std::filesystem::path resume;  ///< a picture to resume; empty: none
   bool serve = false;            ///< the scene in a page, in place of files
-  std::string display_server;    ///< HOST:PORT of a viewer such as tev; empty: none
   int port = 0;                  ///< of that page; 0: any that is free
   bool quiet = false, verbose = false;
   bool strict = false;           ///< faces without area are refused

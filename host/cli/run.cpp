@@ -19,7 +19,6 @@
 #include "host/cli/process.h"
 #include "host/cli/progress_bar.h"
 #include "host/cli/report.h"
-#include "host/cli/viewer_connection.h"
 #include "host/film/display.h"
 #include "host/film/environment_file.h"
 #include "host/film/film.h"
@@ -129,8 +128,6 @@ class Run {
 
   void operator()() {
     if (!options_.serve) check_outputs();
-    if (!options_.display_server.empty() && ranks_.index() == 0)
-      viewer_.emplace(options_.display_server);
     report_.options = options_;
     report_.ranks = ranks_.count();
     scene_ = load(options_);
@@ -297,16 +294,6 @@ class Run {
       monitor.snapshot = [&](const Film* film) { checkpointer.save(film); };
       monitor.snapshot_seconds = outputs.save_seconds;
     }
-    if (viewer_) {
-      monitor.snapshot = [&, save = monitor.snapshot,
-                          begin = Clock::now()](const Film* film) mutable {
-        if (film != nullptr) viewer_->show(*film, metadata.scene);
-        if (!save || seconds_since(begin) < outputs.save_seconds) return;
-        save(film);
-        begin = Clock::now();
-      };
-      monitor.snapshot_seconds = std::min(1.0, monitor.snapshot_seconds);
-    }
     if (has_ranks) {
       note_warnings();
       monitor.is_urgent = take_warning;
@@ -322,7 +309,6 @@ class Run {
                        make_intersector_factory(options_, prepared.bvh, options.skips, image_),
                        stats, monitor);
     bar.erase();
-    if (viewer_) viewer_->show(film, metadata.scene);
     if (stats.cancelled) {
       if (!is_first) throw Interrupted(interruption(), "rank 0 has the picture");
       checkpointer.end_interrupted(film);
@@ -371,7 +357,6 @@ class Run {
   Scene scene_;
   std::string scene_digest_;                  // of the files, without default lights and ground
   std::shared_ptr<const MemoryImage> image_;  // of a ray core
-  std::optional<ViewerConnection> viewer_;
   Report report_;
 };
 

@@ -1,6 +1,5 @@
 #include "host/options/option_table.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <numeric>
@@ -13,42 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kColumn = 28, kWidth = 80;  // of the help texts, of a terminal
-
-/// Two columns, the second one wrapped; a wide name goes on in the second column.
-class HelpFormatter : public CLI::Formatter {
- public:
-  [[nodiscard]] std::string make_description(const CLI::App* app) const override {
-    return app->get_description() + "\n";
-  }
-  [[nodiscard]] std::string make_usage(const CLI::App* /*app*/, std::string) const override {
-    return "";
-  }
-  [[nodiscard]] std::string make_positionals(const CLI::App* /*app*/) const override { return ""; }
-  [[nodiscard]] std::string make_group(std::string title, bool /*is_positional*/,
-                                       std::vector<const CLI::Option*> options) const override {
-    for (const CLI::Option* option : options) title += "\n" + make_option(option, false);
-    return title + "\n";
-  }
-  [[nodiscard]] std::string make_option(const CLI::Option* option,
-                                        bool /*is_positional*/) const override {
-    std::string line = "  ";
-    for (const char c : option->get_name(false, true)) line += c == ',' ? ", " : std::string(1, c);
-    if (const std::size_t at = line.find(", --false-color"); at != std::string::npos)
-      line.resize(at);
-    if (option->get_type_size() > 0) line += " " + option->get_type_name();
-    line.resize(std::max(kColumn, line.size() + 2), ' ');
-    std::string text;
-    for (const std::string& word : CLI::detail::split(option->get_description(), ' ')) {
-      if (line.size() + word.size() > kWidth) {
-        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-        line.assign(kColumn, ' ');
-      }
-      line += word + " ";
-    }
-    return text + line.substr(0, line.find_last_not_of(' ') + 1);
-  }
-};
+constexpr std::size_t kColumn = 28, kWidth = 80;  // of the help text, in characters
 
 /// "point-error": "pointError".
 std::string camel_case(const std::string& name) {
@@ -79,92 +43,120 @@ std::string meant_option(const std::string& typed, const std::vector<std::string
 
 }  // namespace
 
-struct OptionTable::Row {
-  std::string name;
-  Read read;
-  Show show;
-  unsigned places;
-  CLI::Option* option;
-};
-
-struct OptionTable::CommandLine {
-  CLI::App app;
-  std::vector<std::string*> positionals;
-  std::vector<std::string>* all_positionals = nullptr;
-};
-
-OptionTable::OptionTable(const char* about, const char* footer)
-    : line_(new CommandLine{CLI::App(about == nullptr ? "" : about), {}}) {
-  line_->app.formatter(std::make_shared<HelpFormatter>());
-  line_->app.footer(footer);
-  line_->app.allow_extras();  // so that an unknown option can be answered with a known one
-}
-
-OptionTable::~OptionTable() = default;
-
 void OptionTable::add(const std::string& names, const char* value, std::string help, Read read,
                       Show show, unsigned places, bool repeats) {
   if (const std::size_t at = help.find("{}"); at != std::string::npos) help.replace(at, 2, show());
-  CLI::Option* const option = line_->app.add_option(
-      names, [](const CLI::results_t&) { return true; }, help);
-  option->type_name(value)->group(group_)->allow_extra_args(false);
-  if (repeats) {
-    option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
-  } else {
-    option->take_last();
+  std::vector<std::string> all = split_at_commas(names);
+  const auto first_long = std::ranges::find_if(all, [](const auto& n) { return n[1] == '-'; });
+  const std::string name = first_long->substr(2);
+  rows_.push_back({std::move(all),
+                   name,
+                   value,
+                   std::move(help),
+                   group_,
+                   std::move(read),
+                   std::move(show),
+                   places,
+                   repeats,
+                   {}});
+}
+
+/// Two columns, the second one wrapped; a wide name continues in the second column.
+std::string OptionTable::help() const {
+  std::string text = about_ + "\n";
+  const char* group = nullptr;
+  for (const Row& row : rows_) {
+    if (group != row.group) text += std::string(group != nullptr ? "\n" : "") + row.group + "\n";
+    group = row.group;
+    std::string line = "  ";
+    for (const std::string& name : row.names) {
+      if (name != "--false-color") line += (line.size() > 2 ? ", " : "") + name;
+    }
+    if (row.value != nullptr) line += std::string(" ") + row.value;
+    line.resize(std::max(kColumn, line.size() + 2), ' ');
+    const auto end_line = [&] { text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n"; };
+    for (std::size_t start = 0; start < row.help.size();) {
+      const std::size_t end = std::min(row.help.find(' ', start), row.help.size());
+      if (line.size() + (end - start) > kWidth) {
+        end_line();
+        line.assign(kColumn, ' ');
+      }
+      line += row.help.substr(start, end - start) + " ";
+      start = end + 1;
+    }
+    end_line();
   }
-  rows_.push_back({option->get_lnames().at(0), std::move(read), std::move(show), places, option});
+  return text + "\n" + footer_ + "\n";
 }
 
-void OptionTable::flag(const std::string& names, const char* help, bool& on) {
-  line_->app.add_flag(names, on, help)->disable_flag_override()->group(group_);
+OptionTable::Row* OptionTable::find(const std::string& name) {
+  const auto row = std::ranges::find_if(
+      rows_, [&](const Row& row) { return std::ranges::count(row.names, name) > 0; });
+  return row == rows_.end() ? nullptr : &*row;
 }
 
-void OptionTable::positional(std::string& target) { line_->positionals.push_back(&target); }
-void OptionTable::positionals(std::vector<std::string>& targets) {
-  line_->all_positionals = &targets;
+void OptionTable::fail_unknown(const std::string& word) const {
+  std::vector<std::string> names;
+  for (const Row& row : rows_) {
+    std::ranges::copy_if(row.names, std::back_inserter(names),
+                         [](const std::string& name) { return name[1] == '-'; });
+  }
+  throw InputError(word + ": unknown option" + meant_option(split_at_equals(word).first, names) +
+                   " (see --help)");
 }
 
 std::string OptionTable::parse(const std::vector<std::string>& words, const std::string& too_many) {
-  CLI::App& app = line_->app;
-  app.set_help_flag("-h,--help", "print this text")->group(group_);
-  app.set_version_flag("--version", std::string(kSoftware), "print the version")->group(group_);
-  try {
-    std::vector<std::string> reversed(words.rbegin(), words.rend());  // as the library wants them
-    app.parse(reversed);
-  } catch (const CLI::CallForHelp&) {
-    return app.help();
-  } catch (const CLI::CallForVersion&) {
-    return std::string(kSoftware) + "\n";
-  } catch (const CLI::ArgumentMismatch& error) {  // "--size: 1 required TEXT missing"
-    const std::string what = error.what();
-    throw InputError(what.substr(0, what.find(':')) + ": expected a value (see --help)");
-  } catch (const CLI::ParseError& error) {
-    throw InputError(std::string(error.what()) + " (see --help)");
-  }
-  std::size_t place = 0;
-  for (const std::string& extra : app.remaining()) {
-    if (extra.size() > 1 && extra[0] == '-') {
-      std::vector<std::string> names;
-      for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-      }
-      throw InputError(extra + ": unknown option" +
-                       meant_option(split_at_equals(extra).first, names) + " (see --help)");
+  bool asks_help = false, asks_version = false;
+  flag("-h,--help", "print this text", asks_help);
+  flag("--version", "print the version", asks_version);
+  std::vector<std::string> plain;
+  bool only_plain = false;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (only_plain || word.size() < 2 || word[0] != '-') {
+      plain.push_back(word);
+      continue;
     }
-    if (line_->all_positionals != nullptr) {
-      line_->all_positionals->push_back(extra);
-    } else if (place < line_->positionals.size()) {
-      *line_->positionals[place++] = extra;
+    if (word == "--") {
+      only_plain = true;
+      continue;
+    }
+    // "--name=VALUE" or "-nVALUE".
+    const std::size_t name_end =
+        word[1] == '-' ? std::min(word.find('='), word.size()) : std::size_t{2};
+    Row* const row = find(word.substr(0, name_end));
+    if (row == nullptr) fail_unknown(word);
+    const bool has_value = name_end < word.size();
+    if (row->value == nullptr) {
+      if (has_value) throw InputError(word + ": --" + row->name + " takes no value (see --help)");
+      row->typed.emplace_back();
+    } else if (has_value) {
+      row->typed.push_back(word.substr(name_end + (word[1] == '-' ? 1 : 0)));
+    } else if (i + 1 < words.size()) {
+      row->typed.push_back(words[++i]);
     } else {
-      throw InputError(std::string(extra).append(": ").append(too_many));
+      throw InputError("--" + row->name + ": expected a value (see --help)");
+    }
+  }
+  if (!rows_.rbegin()->typed.empty()) return std::string(kSoftware) + "\n";
+  if (!std::next(rows_.rbegin())->typed.empty()) return help();
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    if (all_positionals_ != nullptr) {
+      all_positionals_->push_back(plain[i]);
+    } else if (i < positionals_.size()) {
+      *positionals_[i] = plain[i];
+    } else {
+      throw InputError(plain[i] + ": " + too_many);
     }
   }
   for (const Row& row : rows_) {
-    for (const std::string& text : row.option->results()) {
-      if (text.empty()) throw InputError("--" + row.name + ": expected a value, got ''");
+    for (const std::string& text : row.typed) {
+      if (row.value != nullptr && text.empty()) {
+        throw InputError("--" + row.name + ": expected a value, got ''");
+      }
     }
-    for (const std::string& text : row.option->reduced_results()) row.read("--" + row.name, text);
+    const std::size_t first = row.repeats || row.typed.empty() ? 0 : row.typed.size() - 1;
+    for (std::size_t i = first; i < row.typed.size(); ++i) row.read("--" + row.name, row.typed[i]);
   }
   return "";
 }
@@ -180,9 +172,8 @@ void OptionTable::set(const std::string& name, const std::string& text) const {
 }
 
 std::string OptionTable::typed(const std::string& name) const {
-  // CLI11's own search promises to throw nothing, and takes memory.
-  const CLI::results_t& results = std::ranges::find(rows_, name, &Row::name)->option->results();
-  return results.empty() ? "" : results.back();
+  const auto& typed = std::ranges::find(rows_, name, &Row::name)->typed;
+  return typed.empty() ? "" : typed.back();
 }
 
 std::vector<std::pair<std::string, std::string>> OptionTable::values(OptionPlaces place) const {

@@ -1,11 +1,10 @@
-// Option table: the options of a program, each declared once with its name, type, range, default
-// and help, and with the places besides the command line where its value appears.
+// Option table: the options of a program, each declared once with its name, type, range, default,
+// help text, and the places besides the command line where its value appears.
 #pragma once
 
 #include <algorithm>
 #include <charconv>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -97,15 +96,15 @@ template <typename T>
                                                    const std::string& text,
                                                    std::span<const std::string> names);
 
-/// Where an option appears, besides the command line.
+/// Where an option appears besides the command line.
 enum OptionPlaces : unsigned {
   kNowhere = 0,
-  kInExr = 1,     ///< as an attribute: --point-error as "pointError"
-  kInStats = 2,   ///< in the JSON of --stats, under the option's name
-  kInPython = 4,  ///< as a keyword of the Python module
+  kInExr = 1,     ///< EXR attribute: --point-error as "pointError"
+  kInStats = 2,   ///< key in the JSON of --stats, under the option's name
+  kInPython = 4,  ///< keyword of the Python module
 };
 
-/// The values that a number may have. `expected` says so in messages; null: "a number from 0 to 1".
+/// The closed range of a number. `expected` describes it in messages; null: "a number from 0 to 1".
 template <typename T>
 struct Range {
   T low, high;
@@ -119,25 +118,31 @@ struct Range {
   }
 };
 
-/// The rows of a program's options. Values go where the row says, which must outlive the table. In
-/// help texts "{}" stands for the default: the value that is there when the row is added.
+/// The options of a program, in the order of --help. Parsed values are stored in the targets that
+/// the rows name, which must outlive the table. "{}" in a help text is replaced by the default: the
+/// target's value when the row is added.
+///
+/// A command line has words "--name VALUE", "--name=VALUE", "-n VALUE", "-nVALUE", flags "--name"
+/// and "-n", and positional words. The last of several values counts. An option's value may begin
+/// with a dash; after "--" every word is positional.
 class OptionTable {
  public:
+  /// Takes the option's name as messages show it, and the text of its value. Throws InputError.
   using Read = std::function<void(const std::string& option, const std::string& text)>;
   using Show = std::function<std::string()>;
 
-  /// `about` and `footer` go around the options in --help. Messages call an option --NAME; in a
-  /// table for Python, of which `about` is null, NAME.
-  explicit OptionTable(const char* about = nullptr, const char* footer = "");
-  ~OptionTable();
+  /// `about` and `footer` enclose the options in --help.
+  explicit OptionTable(std::string about = "", std::string footer = "")
+      : about_(std::move(about)), footer_(std::move(footer)) {}
   OptionTable(const OptionTable&) = delete;
   OptionTable& operator=(const OptionTable&) = delete;
 
-  /// The heading in --help of the rows that follow.
+  /// Sets the heading in --help of the rows that are added next.
   void group(const char* title) { group_ = title; }
 
-  /// `names`: "-o,--output"; `value`: what it takes, as --help calls it. `read` takes the text that
-  /// was typed, the last of several, or each where `repeats`. It throws InputError.
+  /// Adds an option. `names`: "-o,--output"; the first long name is the option's name. `value`:
+  /// the placeholder of its value in --help. `read` is called with the last value typed, or with
+  /// each if the option `repeats`. `show` returns the current value as text, "" for none.
   void add(const std::string& names, const char* value, std::string help, Read read, Show show = {},
            unsigned places = kNowhere, bool repeats = false);
 
@@ -166,36 +171,53 @@ class OptionTable {
         [&target, choices] { return name_of(choices, target); }, places);
   }
 
-  /// A file or the like, as it was typed.
+  /// Adds an option whose value is stored as typed, such as a file name.
   template <typename Target>
   void text(const std::string& names, const char* value, const char* help, Target& target) {
     add(names, value, help, [&target](const auto&, const std::string& text) { target = text; });
   }
 
-  void flag(const std::string& names, const char* help, bool& on);
-  /// A word without an option's name: a file. They are taken in their order.
-  void positional(std::string& target);
-  void positionals(std::vector<std::string>& targets);
+  void flag(const std::string& names, const char* help, bool& on) {
+    add(names, nullptr, help, [&on](const auto&, const auto&) { on = true; });
+  }
+  /// Adds a positional word, such as a file name. They are filled in order.
+  void positional(std::string& target) { positionals_.push_back(&target); }
+  /// Collects all positional words.
+  void positionals(std::vector<std::string>& targets) { all_positionals_ = &targets; }
 
-  /// Reads a command line without the program's name, and gives the text that --help or --version
-  /// asks for; then nothing else is of use. Throws InputError, one line: an unknown option and what
-  /// it may have been meant to be, an option without its value, a word too many, of which
-  /// `too_many` says what it is.
+  /// Parses a command line without the program's name and stores the values. Returns the text that
+  /// --help or --version asks for; the targets are then incomplete. Throws InputError, one line:
+  /// an unknown option with the likely intended one, an option without its value, or one positional
+  /// word too many, described by `too_many`.
   [[nodiscard]] std::string parse(const std::vector<std::string>& words,
                                   const std::string& too_many);
 
-  /// Sets an option from Python, as "--name=text" does. Throws InputError.
+  /// Sets an option that Python shows; messages name it without dashes. Throws InputError.
   void set(const std::string& name, const std::string& text) const;
 
-  /// What was typed for an option, named without dashes; empty: nothing.
+  /// Returns the last value typed for an option, named without dashes; "" if there was none.
   [[nodiscard]] std::string typed(const std::string& name) const;
 
-  /// Names, as that place has them, and values of the options there that have one.
+  /// Name/value pairs of the options shown at `place`; options without a value are omitted.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values(OptionPlaces place) const;
 
  private:
-  struct Row;
-  struct CommandLine;
+  struct Row {
+    std::vector<std::string> names;  // with dashes, as in --help
+    std::string name;                // the first long one, without dashes
+    const char* value;               // null: a flag
+    std::string help;
+    const char* group;
+    Read read;
+    Show show;
+    unsigned places;
+    bool repeats;
+    std::vector<std::string> typed;  // values, in order
+  };
+
+  [[nodiscard]] std::string help() const;
+  [[nodiscard]] Row* find(const std::string& name);
+  [[noreturn]] void fail_unknown(const std::string& word) const;
 
   template <typename Target>
   [[nodiscard]] static std::string text_of(const Target& target) {
@@ -206,9 +228,11 @@ class OptionTable {
     }
   }
 
-  std::unique_ptr<CommandLine> line_;
+  std::string about_, footer_;
   std::vector<Row> rows_;
   const char* group_ = "";
+  std::vector<std::string*> positionals_;
+  std::vector<std::string>* all_positionals_ = nullptr;
 };
 
 }  // namespace raygate
