@@ -19,7 +19,7 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help cpu verilate example page wave render gallery denoise frames test python wheel check mutate fuzz lint format clean
+.PHONY: help cpu verilate example page wave render gallery denoise test python wheel check mutate fuzz lint format clean
 
 help:
 	@for group in use test measure hardware develop; do \
@@ -66,9 +66,6 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
 	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
-
-frames: verilate ## measure: the paper's frame at 10 MHz: clocks, frames per second, bytes read; three scenes by the board's core: BOARD=1
-	@python3 sim/bench/$(if $(BOARD),board_frames.py ./render scenes,frame_rates.py ./render scenes/paper.obj)
 
 # Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic; renders and
 # ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error; a fault under

@@ -13,15 +13,14 @@ import shutil
 import subprocess
 import sys
 
-from host.lab import evidence, rows as kept, steps
-from host.lab.bench.compare import compare
+from host.lab import rows as kept, steps
 from host.lab.machine import processors
 from host.lab.report import document
 from host.lab.rows import KEPT, ROOT
 
 REPORTS = ROOT / "build" / "reports"
 PUBLISHED = ROOT / "host" / "lab" / "results"
-TARGETS = ("stress", "bench", "peers", "speed", "core", "scaling", "variant")
+TARGETS = ("stress", "bench", "peers", "speed", "core", "variant")
 
 
 def arguments() -> argparse.Namespace:
@@ -39,9 +38,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--tests", type=int, help="stress: tests in each suite")
     parser.add_argument("--seed", type=int, default=1, help="stress (1)")
     parser.add_argument("--jobs", type=int, default=processors(), help="stress: suites at once (all processors)")
-    parser.add_argument("--launcher", default="", help="stress, bench: shares the steps among ranks, 'mpirun -n 4'")
-    parser.add_argument("--base", type=pathlib.Path, metavar="OLD.jsonl",
-                        help="bench: say what got slower or less accurate since these rows")
     parser.add_argument("--variant", nargs="*", default=[], metavar="FRAC_WIDTH=15", help="variant: what is not as in binary32")
     parser.add_argument("--energy", action="store_true", help="variant: simulate what an operation of the paper's unit takes")
     parser.add_argument("--wires", action="store_true", help="variant: place the units, and estimate their wires")
@@ -58,13 +54,12 @@ def make_command(given: argparse.Namespace) -> str:
     return " ".join(["make", given.target, *given.variant, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
 
 
-def publish(name: str, folder: pathlib.Path, text: str, about: dict) -> None:
-    """Into host/lab/results, with plots and long tables; those that no report shows any more go. `about`: when and where it was measured."""
+def publish(name: str, folder: pathlib.Path, text: str) -> None:
+    """Copies a report with its plots and long tables into host/lab/results; removes those that no report shows any more."""
     (PUBLISHED / f"{name}.md").write_text(text)
-    evidence.renew(f"host/lab/results/{name}.md", about, about["command"])
     for file in [*folder.glob("*.png"), *folder.glob("*.csv")]:
         shutil.copy(file, PUBLISHED)
-    shown = "".join(page.read_text() for page in [PUBLISHED.parent / "README.md", *PUBLISHED.glob("*.md")])
+    shown = "".join(page.read_text() for page in PUBLISHED.glob("*.md"))
     for file in [*PUBLISHED.glob("*.*g"), *PUBLISHED.glob("*.csv")]:
         if file.name not in shown:
             file.unlink()
@@ -79,13 +74,10 @@ def run(given: argparse.Namespace) -> int:
         raise ValueError(f"{', '.join(sorted(unknown))}: expected parts of {', '.join(target.PARTS)}")
     if given.publish and (given.only or given.quick or given.scenes):
         raise ValueError("--publish: expected a whole run, without --only, --quick and --scenes")
-    if given.base and given.target != "bench":
-        raise ValueError(f"--base: expected only with bench, found {given.target}")
-    base = kept.read(given.base) if given.base else None
     file = KEPT / f"{'-'.join([given.target, *(parts if given.only else [])])}.jsonl"
     if not given.report_only:
         found = steps.run(given.target, [step for part in parts for step in target.PARTS[part](given)],
-                          make_command(given), given.launcher, given.jobs if given.target == "stress" else 1)
+                          make_command(given), given.jobs if given.target == "stress" else 1)
         found[0] |= {"quick": given.quick, "command": make_command(given)}
         kept.write(file, target.finish(found) if hasattr(target, "finish") else found)
     rows = kept.read(file)
@@ -93,11 +85,9 @@ def run(given: argparse.Namespace) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     values = target.values(rows, folder)
     text = document.render(f"{given.target}.md.j2", folder, rows, **values) + document.measured(rows[0])
-    document.write(text, folder, values.get("cards"))
-    if base:
-        print("\n".join(compare(base, rows)))
+    document.write(text, folder)
     if given.publish:
-        publish(given.target, folder, text, rows[0])
+        publish(given.target, folder, text)
     if given.target not in ("bench", "stress"):  # of which nobody reads all
         print(text)
     print(f"Report: {folder.relative_to(ROOT)}/report.md, and report.html beside it; rows: {file.relative_to(ROOT)}")

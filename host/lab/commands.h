@@ -25,6 +25,5 @@ AddCommand add_core;        ///< clocks a ray of the ray core
 AddCommand add_variants;    ///< the table of variants
 AddCommand add_check;       ///< reference models against hardware
 AddCommand add_pictures;    ///< pictures by any variant, timed and judged
-AddCommand add_techniques;  ///< what each technique of the path tracer gains
 
 }  // namespace raygate::lab

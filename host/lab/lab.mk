@@ -1,34 +1,27 @@
 # What the lab measures: host/lab/README.md. Rows are kept in build/results/, reports written to build/reports/. An interrupted
 # run goes on when it is started again.
-.PHONY: stress bench variant peers speed core scaling dates claims
+.PHONY: stress bench variant peers speed core
 
 comma := ,
 # $(call of,PARTS): those of PARTS that were asked for; all without ONLY.
 of = $(if $(ONLY),$(filter $(1),$(subst $(comma), ,$(ONLY))),$(1))
-# `MPIRUN='mpirun -n 4'`: ranks share the suites of `make stress` and the sections of `make bench`.
-ifdef MPIRUN
-stress bench: configure += -DRAYGATE_MPI=ON
-endif
 define measure
 @$(PYTHON) -B -m host.lab $@ $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
   $(if $(SCENES),--scenes '$(SCENES)') $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)') \
-  $(if $(BASE),--base '$(BASE)') $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS) \
-  $(if $(MPIRUN),--launcher '$(MPIRUN)')
+  $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS)
 endef
 
-stress: ## measure: try to make hit tests wrong: make stress [QUICK=1 ONLY=core TESTS=10000000 SEED=1 MPIRUN=]
+stress: ## measure: try to make hit tests wrong: make stress [QUICK=1 ONLY=core TESTS=10000000 SEED=1]
 ifdef QUICK
 	$(call build,build,lab >/dev/null)
 	@build/lab stress --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
 else
-	@$(if $(MPIRUN),$(SETUP) mpi)
-	$(call build,lab,lab $(if $(MPIRUN),share))
+	$(call build,lab,lab)
 	$(measure)
 endif
 
-bench: ## measure: run time against error, adder to picture: make bench [QUICK=1 ONLY=lanes BASE=old.jsonl MPIRUN=]
-	@$(if $(MPIRUN),$(SETUP) mpi)
-	$(call build,bench,lab render scenes unit_bench $(if $(MPIRUN),share))
+bench: ## measure: run time against error, adder to picture: make bench [QUICK=1 ONLY=lanes]
+	$(call build,bench,lab scenes unit_bench)
 	$(measure)
 
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),$(word)=$($(word))))
@@ -42,8 +35,8 @@ variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=
 	$(call build,bench,lab)
 	$(measure) $(if $(ENERGY),--energy) $(if $(WIRES),--wires) --variant $(variant_words)
 
-peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 ONLY=pictures,gltf SCENES=cornell]
-	$(call build,peers,render compare scenes $(if $(call of,techniques),lab))
+peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 SCENES=cornell]
+	$(call build,peers,render compare scenes )
 	$(measure)
 
 speed: ## measure: rays/s next to Embree, exact decisions, skips, where time goes: make speed [QUICK=1 ONLY=rays,phases BEFORE=]
@@ -54,15 +47,3 @@ speed: ## measure: rays/s next to Embree, exact decisions, skips, where time goe
 core: ## measure: clocks of the simulated ray core: make core [QUICK=1 ONLY=scenes,wide,in-flight,exact,cores]
 	$(call build,lab,lab scenes)
 	$(measure)
-
-scaling: configure += -DRAYGATE_MPI=ON
-scaling: ## measure: a picture's time by ranks, and a model up to 1,000: make scaling [QUICK=1 PUBLISH=1]
-	@$(SETUP) mpi
-	$(call build,lab,render scenes)
-	$(measure)
-
-dates: ## measure: how old results are: make dates [RENEWED=sim/README.md: its figures are this commit's]
-	@python3 -B -m host.lab.evidence $(RENEWED) || test $$? -eq 1
-
-claims: dates everything ## measure: how old results are; figures of host/lab/claims.csv by their commands: make claims [ONLY=frame_rates]
-	@python3 -B host/lab/claims.py --only '$(ONLY)'

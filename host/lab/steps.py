@@ -45,22 +45,12 @@ def _measure(step: Step, file: pathlib.Path) -> None:
     os.replace(f"{file}.unfinished", file)
 
 
-def _share(launcher: str, steps: list[tuple[Step, pathlib.Path]]) -> None:
-    """Runs the commands of build/lab by `launcher`, "mpirun -n 4" or the like: each rank takes the next one."""
-    file = KEPT / "share.txt"
-    file.write_text("".join(
-        shlex.join(map(str, (LAB, "--results", f"{kept_in}.unfinished", *step.words)))
-        + f"; test $? -le 1 && mv {shlex.quote(f'{kept_in}.unfinished')} {shlex.quote(str(kept_in))}\n"
-        for step, kept_in in steps if step.words))
-    subprocess.run([*shlex.split(launcher), ROOT / "build" / "share", file], cwd=ROOT, stdout=sys.stderr, check=True)
-
-
 def _left(seconds: list[float | None]) -> str:
     """What is left of steps that took so long the last time; nothing where one is new."""
     return "" if None in seconds else f", about {max(1, round(sum(seconds) / 60))} min left"
 
 
-def run(target: str, steps: list[Step], asked: str = "", launcher: str = "", at_once: int = 1) -> list[dict]:
+def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> list[dict]:
     """The rows of all steps. Steps of an interrupted run of the same make command `asked`, at the same commit, stay as they are."""
     about = machine.describe(ROOT)
     stamp = {"commit": about["commit"], "machine": f"{about['processor']}, {about['processors']} processors"}
@@ -72,8 +62,6 @@ def run(target: str, steps: list[Step], asked: str = "", launcher: str = "", at_
         return folder / f"{re.sub(r'[^A-Za-z0-9]+', '-', step.name)}-{digest[:10]}.jsonl"
 
     files = [(step, file_of(step)) for step in steps]
-    if launcher:
-        _share(launcher, [(step, file) for step, file in files if not file.exists()])
     missing = [(step, file) for step, file in files if not file.exists()]
     taken = KEPT / "seconds.json"
     seconds = json.loads(taken.read_text()) if taken.exists() else {}

@@ -151,29 +151,6 @@ TEST_F(Ranks, ShareTheFramesOfAnAnimation) {
   }
 }
 
-TEST_F(Ranks, ShareCommands) {
-  const auto share = [&](const std::string& commands) {
-    folder_.write("commands", commands);
-    return run_program({.arguments = {"--oversubscribe", "-n", "3", RAYGATE_SHARE, "commands"},
-                        .folder = folder_.path(),
-                        .program = RAYGATE_MPIRUN});
-  };
-  std::string commands;
-  for (char name = 'a'; name <= 'k'; ++name) {
-    commands += std::string("echo $PPID >> ") + name + "\n";
-  }
-  const Outcome outcome = share(commands + "env | grep -c OMPI_COMM || true\n");
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.out, "0\n") << "programs take themselves for ranks";
-  for (char name = 'a'; name <= 'k'; ++name) {
-    const std::string text = folder_.read(std::string(1, name));
-    EXPECT_EQ(std::ranges::count(text, '\n'), 1) << name << ": " << text;
-  }
-  const Outcome failed = share(commands + "exit 3\n");
-  EXPECT_EQ(failed.status, 2);
-  EXPECT_NE(failed.err.find("this command failed: exit 3"), std::string::npos) << failed.err;
-}
-
 TEST_F(Ranks, SayOnceWhatIsWrong) {
   const auto refused = [&](const Words& arguments, const std::string& line) {
     const Outcome outcome = on_ranks(3, arguments);

@@ -1,21 +1,16 @@
 """The report generator: rows and a Jinja2 template make a page of Markdown, beside its plots and long tables, and one of HTML."""
 
 import base64
-import json
+import html
 import pathlib
 import re
 
 import jinja2
 import markdown
 import pandas
-import vl_convert
 
 from host.lab.report.statistics import median_seconds, spread, times
 from host.lab.rows import of, scene_name
-
-# In a template: where the page has the cards. Markdown shows nothing there.
-CARDS = "<!-- cards -->"
-
 
 # "HEAD = EXPRESSION :FORMAT": a column of a table. Without an expression the head names the row's value; without a
 # format the cells are text.
@@ -105,30 +100,21 @@ def inlined(picture: pathlib.Path) -> str:
     return f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}"
 
 
-def page(text: str, folder: pathlib.Path, cards: dict | None = None) -> str:
-    """The report as one HTML page that loads nothing: pictures in it, charts (charts.py) that answer to the pointer, tables that
-    sort and filter, and the cards (cards.py) where the text has CARDS."""
-    charts = {}
-
-    def inside(match: re.Match) -> str:
-        file = folder / match["file"]
-        if file.with_suffix(".json").exists():
-            charts[file.stem] = json.loads(file.with_suffix(".json").read_text())
-            return f'<div class="chart" data-name="{file.stem}"></div>'
-        return match[0].replace(match["file"], inlined(file))
-
+def page(text: str, folder: pathlib.Path) -> str:
+    """The report as one HTML page that loads nothing: its pictures are inside."""
     body = markdown.markdown(text, extensions=["tables"])
-    body = re.sub(r'<img [^>]*?src="(?P<file>[^":]+\.png)"[^>]*>', inside, body)
-    body = re.sub(r"<table>.*?</table>", r'<div class="wide">\g<0></div>', body, flags=re.DOTALL)
-    if cards:
-        body = body.replace(CARDS, ENVIRONMENT.get_template("cards.html.j2").render())
+    body = re.sub(r'src="([^":]+\.png)"', lambda match: f'src="{inlined(folder / match[1])}"', body)
     title = re.search(r"^# (.*)", text, re.MULTILINE)
-    return ENVIRONMENT.get_template("page.html.j2").render(
-        title=title[1] if title else "", body=body, charts=charts, cards=cards,
-        library=vl_convert.javascript_bundle().replace("</script", "<\\/script") if charts else "")
+    return f"""<!doctype html>
+<meta charset="utf-8">
+<title>{html.escape(title[1]) if title else ""}</title>
+<style>body {{ font: 15px/1.5 system-ui, sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }} img {{ max-width: 100%; }}
+table {{ border-collapse: collapse; }} td, th {{ padding: 2px 10px; border-bottom: 1px solid #ddd; }}</style>
+{body}
+"""
 
 
-def write(text: str, folder: pathlib.Path, cards: dict | None = None) -> None:
-    """report.md and report.html."""
+def write(text: str, folder: pathlib.Path) -> None:
+    """Writes report.md and report.html."""
     (folder / "report.md").write_text(text)
-    (folder / "report.html").write_text(page(text, folder, cards))
+    (folder / "report.html").write_text(page(text, folder))

@@ -1,4 +1,4 @@
-"""The reports' pictures: galleries, maps, and plots of matplotlib's; charts.py has those that answer to the pointer."""
+"""The reports' pictures: galleries, maps and plots."""
 
 import io
 import math
@@ -8,7 +8,15 @@ import numpy
 from matplotlib import colors
 from PIL import Image
 
+from host.lab.report import statistics
 from synth.drawing import plt
+
+# Label, colour and marker of a variant, by its unit and whether doubts are resolved.
+KINDS = {("pipeline", True): ("pipelined unit, doubts resolved", "#4477aa", "o"),
+         ("pipeline", False): ("pipelined unit, doubts ignored", "#ee6677", "x"),
+         ("serial", True): ("the paper's unit, software decides", "#228833", "s")}
+# On a logarithmic axis an error of 0 is drawn this factor below the smallest other error.
+BELOW = 10.0
 
 
 def write_png(drawn: bytes, file: pathlib.Path) -> None:
@@ -95,4 +103,42 @@ def error_by_angle(curves: dict[str, list[tuple[float, float]]], unit: list[tupl
     axes.set_ylim(top=1e9)  # above it are overflows of the narrow formats alone
     figure.legend(loc="outside right upper", fontsize="small")
     axes.grid(True, alpha=0.3)
+    return save(figure, file)
+
+
+def pareto(frames: list[dict], costs: dict[str, str], error: str, label: str, title: str, file: pathlib.Path) -> pathlib.Path:
+    """A panel for each cost (key of the frames: label) against the key `error`, lower is better in both. A line joins the
+    variants that no other betters; these are named."""
+    floor = min((frame[error] for frame in frames if frame[error] > 0), default=1.0) / BELOW
+    figure, grid = panels(len(costs), 2, (5.5, 4))
+    for axes, (cost, text) in zip(grid, costs.items(), strict=True):
+        known = [frame for frame in frames if frame.get(cost)]
+        drawn = [(frame[cost], max(frame[error], floor)) for frame in known]
+        best = statistics.front(drawn)
+        axes.step(*zip(*(drawn[i] for i in best), strict=True), where="post", color="0.6", linewidth=1, zorder=0)
+        for kind, (name, colour, marker) in KINDS.items():
+            mine = [point for frame, point in zip(known, drawn, strict=True) if (frame["unit"], frame["doubts"]) == kind]
+            if mine:
+                axes.scatter(*zip(*mine, strict=True), color=colour, marker=marker, s=25, label=name)
+        for i in best:
+            axes.annotate(known[i]["variant"], drawn[i], xytext=(4, 3), textcoords="offset points", fontsize=7)
+        axes.set(xscale="log", yscale="log", xlabel=text, ylabel=label)
+        axes.grid(True, alpha=0.3)
+        if any(frame[error] <= 0 for frame in known):
+            axes.axhline(floor, color="0.8", linewidth=0.8, zorder=0)
+            axes.text(0.01, floor, "no error", transform=axes.get_yaxis_transform(), fontsize=7, color="0.5", va="bottom")
+    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
+    figure.suptitle(title)
+    return save(figure, file)
+
+
+def lines(series: dict[str, list[tuple[float, float]]], xlabel: str, ylabel: str, title: str, file: pathlib.Path) -> pathlib.Path:
+    """The points (x, y) of each series on logarithmic axes, joined by lines."""
+    figure, axes = plt.subplots(figsize=(7.5, 5), layout="constrained")
+    axes.set_prop_cycle(color=plt.get_cmap("tab20" if len(series) > 10 else "tab10").colors)
+    for name, points in series.items():
+        axes.loglog(*zip(*sorted(points), strict=True), marker=".", linewidth=1, label=name)
+    axes.set(xlabel=xlabel, ylabel=ylabel, title=title)
+    axes.grid(True, which="both", alpha=0.3)
+    figure.legend(loc="outside right upper", fontsize="small")
     return save(figure, file)

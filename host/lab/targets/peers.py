@@ -1,14 +1,12 @@
-"""`make peers`: raygate next to Mitsuba 3, time, error, and their product; its own --error and techniques in the same terms."""
+"""`make peers`: raygate next to Mitsuba 3: time, error, and their product."""
 
 import argparse
 import pathlib
-import statistics
 
 from host.lab.machine import processors
-from host.lab.peers import adaptive
-from host.lab.peers.measure import BEST, COUNT, SCENES, VARIANTS, scene_file
-from host.lab.report import charts, plots
-from host.lab.rows import ROOT, of
+from host.lab.peers.measure import BEST, COUNT, SCENES, VARIANTS
+from host.lab.report import plots
+from host.lab.rows import of
 from host.lab.steps import Step
 
 
@@ -28,28 +26,7 @@ def pictures_steps(given: argparse.Namespace) -> list[Step]:
         scene, given.quick, given.render, {1, processors()})) for scene in scenes_of(given, ("cornell", "cornell_spheres"))]
 
 
-def gltf_steps(given: argparse.Namespace) -> list[Step]:
-    """glTF models by both renderers."""
-    from host.lab.peers import gltf_pictures  # needs Mitsuba, which tests of the tables do without
-
-    return [Step("gltf", "models", measure=lambda: gltf_pictures.measure(given.render, 4 if given.quick else 64))]
-
-
-def adaptive_steps(given: argparse.Namespace) -> list[Step]:
-    """--error beside uniform --spp."""
-    return [Step("adaptive", scene, measure=lambda scene=scene: [adaptive.row(
-        given.render, scene_file(scene), adaptive.QUICK if given.quick else adaptive.USUAL)])
-        for scene in scenes_of(given, ("cornell",), (*SCENES, "rough_spheres"))]  # which Mitsuba cannot have
-
-
-def techniques_steps(given: argparse.Namespace) -> list[Step]:
-    """Techniques of the path tracer, one changed at a time."""
-    size = ("--side", 32, "--spp", 4, "--reference", 64, "--repeats", 1) if given.quick else ()
-    return [Step("techniques", scene, ("techniques", scene_file(scene).relative_to(ROOT), *size))
-            for scene in scenes_of(given, ("cornell",))]
-
-
-PARTS = {"pictures": pictures_steps, "gltf": gltf_steps, "adaptive": adaptive_steps, "techniques": techniques_steps}
+PARTS = {"pictures": pictures_steps}
 
 
 def name(row: dict) -> str:
@@ -90,21 +67,14 @@ def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> path
     for row in mine:
         if row["renderer"] == "raygate" or row["sampler"] in BEST or row in at_count(mine):
             series.setdefault(name(row), []).append((row["median_seconds"], row["display_rmse"]))
-    plot, _ = charts.scaling(series, "seconds, one thread", "RMSE on a display, 8-bit steps", scene, file)
-    return plot
+    return plots.lines(series, "seconds, one thread", "RMSE on a display, 8-bit steps", scene, file)
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
     """Tables by scene, and plots."""
-    found = of(rows, "adaptive")
-    extremes = [{"scene": word, **{f"{kind}_ratio": of_all(row[f"{kind}_ratio"] for row in found) for kind in adaptive.MEASURES}}
-                for word, of_all in (("median", statistics.median), ("most", max))] if found else []
-    gltf = of(rows, "gltf")
     beyond = max(((max(row["rmse"] ** 2 - row["noise"] ** 2, 0.0)) ** 0.5 for row in of(rows, "references")), default=0.0)
-    return {"variants": VARIANTS, "beyond": beyond, "summary": summary(rows), "adaptive": found + extremes, "gltf_plot": plots.gallery(
-        [(f"{row['model']}: raygate, Mitsuba, difference + 0.5", ROOT / row["picture"]) for row in gltf],
-        folder / "gltf.png", 1) if gltf else None,
-        "scenes": [{"reference": reference,
+    return {"variants": VARIANTS, "beyond": beyond, "summary": summary(rows),
+            "scenes": [{"reference": reference,
                     "rows": beside_ours(of(rows, "peers", scene=reference["scene"])),
                     "plot": error_against_time(rows, reference["scene"], folder / f"peers-{reference['scene']}.png")}
                    for reference in of(rows, "references")]}

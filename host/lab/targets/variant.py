@@ -8,7 +8,8 @@ import sys
 
 from host.lab.bench import costs
 from host.lab.machine import processors
-from host.lab.report import cards, charts, plots
+from host.lab.report import plots
+from host.lab.report.document import number
 from host.lab.rows import KEPT, ROOT, of, read, scene_name, write
 from host.lab.steps import Step
 from host.lab.targets import bench
@@ -27,6 +28,17 @@ FILES = (".sv", ".v")
 # Points of the Pareto plots.
 COSTS = {"area": "area, um2 in OSU 0.35 um", "frame_ms": "ms per frame at the clock of synthesis"}
 ERRORS = {"wrong": "wrong hit decisions per million tests", "point": "error of P, 99th percentile, ulp of binary32"}
+
+
+# The lines of a card: name, value of a frame (targets/bench.py), format.
+FIGURES = (("area, um2 in OSU 0.35 um", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
+           ("period with estimated wires, ns", "wired_ns", ".2f"),
+           ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"), ("uJ a frame, cores", "energy_uj", ".3g"),
+           ("wrong tests a million", "wrong", ".1f"), ("doubts a million", "doubtful", ".1f"),
+           ("wrong rays", "decisions.wrong_rays", ",d"), ("P, ulp: median", "decisions.point_ulp.p50", ".3g"),
+           ("P, ulp: 99 %", "decisions.point_ulp.p99", ".3g"), ("P, ulp: largest", "decisions.point_ulp.max", ".3g"),
+           ("t, ulp: 99 %", "decisions.t_ulp.p99", ".3g"), ("RMSE", "rmse", ".3g"), ("SSIM", "ssim", ".4f"),
+           ("FLIP", "flip", ".5f"))
 
 
 def read_word(word: str) -> tuple[str, object]:
@@ -123,6 +135,25 @@ PARTS = {
 finish = bench.judge_pictures
 
 
+def _value(frame: dict, path: str) -> float | None:
+    for key in path.split("."):
+        frame = frame.get(key) if isinstance(frame, dict) else None
+    return frame
+
+
+def figures(usual: dict, mine: dict, made: dict[str, str] = {}) -> list[dict]:
+    """Lines of a card: both values as text, a dash where there is none, their ratio, and the file in `made` that the variant's
+    is from."""
+    found = []
+    for name, path, form in FIGURES:
+        numbers = [_value(usual, path), _value(mine, path)]
+        if numbers[1] is not None:
+            found.append({"figure": name, "ratio": numbers[1] / numbers[0] if numbers[0] else None,
+                          "from": made.get(path, made.get("", "")),
+                          **dict(zip(("usual", "mine"), (number(each, form) for each in numbers), strict=True))})
+    return found
+
+
 def kept_cards(mine: dict) -> list[dict]:
     """All cards of the same scene, this one new."""
     others = [card for card in (read(CARDS) if CARDS.exists() else [])
@@ -154,7 +185,7 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
     shown = [(usual["variant"], ROOT / f"{usual['picture']}.png"), (mine["variant"], ROOT / f"{mine['picture']}.png"),
              (f"FLIP {mine['flip']:.5f}", ROOT / mine["map"])]
     made_so_far = [usual, *kept_cards(mine)]
-    pareto = [(charts.pareto(made_so_far, COSTS, error, label, f"{mine['scene']}: {label}", folder / f"pareto-{error}.png"), label)
+    pareto = [(plots.pareto(made_so_far, COSTS, error, label, f"{mine['scene']}: {label}", folder / f"pareto-{error}.png"), label)
               for error, label in ERRORS.items() if all(card.get("area") for card in made_so_far)]
 
     def link(name: str, file: pathlib.Path) -> str:
@@ -167,8 +198,7 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
             f"{record['design']}.{record['target']}.{record['flow']}")
         made |= {"area": link("netlist", run / "netlist.v"), "period_ns": link("timing", run / "timing.txt")}
         made |= {"frame_ms": f"{made['period_ns']}, {made['']}", "log": link("log of synthesis", run / "yosys.log")}
-    return {"usual": usual, "mine": mine, "figures": cards.figures(usual, mine, made), "pareto": pareto, "standing": standing(made_so_far),
-            "cards": cards.of_scenes({mine["scene"]: [usual, mine]}),
+    return {"usual": usual, "mine": mine, "figures": figures(usual, mine, made), "pareto": pareto, "standing": standing(made_so_far),
             "pictures": plots.gallery(shown, folder / "pictures.png", 3), "path": report.path_table(record) if record else "",
             "made": made}
 
@@ -182,7 +212,8 @@ def failures(rows: list[dict]) -> list[str]:
     """A model that is not its hardware; a unit that could not be synthesised."""
     missing = costs.unit(of(rows, "synthesis"), of(rows, "variants")[-1]) is None
     return ([f"{row['file']}: {row['counterexample']}" for row in of(rows, "proofs") if not row["holds"]]
-            + [line.split("; direction")[0] for line in bench.failures(rows)]
+            + [f"{row['variant']}: model and hardware differ: {row['difference'].split('; direction')[0]}"
+               for row in of(rows, "checks") if row["difference"] != "none"]
             + ["the unit could not be synthesised"] * missing)
 
 

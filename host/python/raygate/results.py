@@ -16,7 +16,7 @@ from ._raygate import InputError
 
 def bench(file="build/results/bench.jsonl"):
     """The tables of `make bench` (also of `make stress`, stress.jsonl): a dictionary of data
-    frames by name. Columns are explained in host/lab/report/columns.csv; nested ones are called
+    frames by name. Nested columns are named
     outer.inner."""
     frames = {}
     for number, line in enumerate(_text(file, "make bench").splitlines(), 1):

@@ -7,7 +7,7 @@ from unittest import mock
 
 import numpy
 
-from host.lab.report import cards, plots
+from host.lab.report import plots
 from host.lab.targets import variant
 
 
@@ -79,7 +79,7 @@ class Figures(unittest.TestCase):
     def test_both_and_their_ratio(self) -> None:
         usual = {"area": 2000.0, "wrong": 0.0, "decisions": {"wrong_rays": 0, "point_ulp": {"p50": 0.5}}}
         mine = {"area": 500.0, "wrong": 12.0, "decisions": {"wrong_rays": 7, "point_ulp": {"p50": 64.0}}}
-        lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in cards.figures(usual, mine)}
+        lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in variant.figures(usual, mine)}
         self.assertEqual(lines, {"area, um2 in OSU 0.35 um": ("2,000", "500", 0.25), "wrong tests a million": ("0.0", "12.0", None),
                                  "wrong rays": ("0", "7", None), "P, ulp: median": ("0.5", "64", 128.0)})
 
