@@ -11,7 +11,7 @@
 #include "host/bvh/bvh.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/intersector.h"
-#include "host/light/integrator_options.h"
+#include "host/light/integrator_settings.h"
 #include "host/options/option_table.h"
 #include "host/scene/instances.h"
 #include "host/variants/variant_table.h"

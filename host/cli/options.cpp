@@ -228,8 +228,8 @@ void check_serve(const OptionTable& table, const Options& options) {
     if (!table.typed("port").empty()) throw InputError("--port: expected with --serve");
     return;
   }
-  for (const char* name : {"crop", "error", "frames", "resume", "samples",
-                           "stats", "save-every", "trace", "dump-image"}) {
+  for (const char* name : {"crop", "error", "frames", "resume", "samples", "stats", "save-every",
+                           "trace", "dump-image"}) {
     if (!table.typed(name).empty()) {
       throw InputError("--" + std::string(name) + " and --serve exclude each other");
     }

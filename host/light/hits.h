@@ -13,7 +13,7 @@
 #include "host/base/triple.h"
 #include "host/intersect/intersector.h"
 #include "host/light/bsdf.h"
-#include "host/light/integrator_options.h"
+#include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/ray_batch.h"
@@ -153,13 +153,10 @@ struct ShadingScene {
   const Scene& scene;
   const Bvh& bvh;
   const Lights& lights;
-  glm::vec3 ambient{0.0f};  ///< radiance from all sides, before anything is in its way
-  int max_depth = 4;
-  float threshold = 0.0f;
-  bool single_sample = false;
-  bool skips_weightless = true;
-  PathOptions path{};
-  const LightPaths* light_paths = nullptr;  ///< none: camera paths find all light
+  const IntegratorSettings& settings;
+  glm::vec3 ambient{0.0f};                  ///< radiance from all sides, before occlusion
+  int max_depth = 4;                        ///< rays of this depth are the last
+  const LightPaths* light_paths = nullptr;  ///< null: camera paths find all light
 };
 
 /// The matte colour at which `surface` looks like the background, in the light of all lights

@@ -33,31 +33,37 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
+/// The depth of the last rays. kEmitters' rays see what paths meet one ray deeper; Whitted's do
+/// not go so far, and those of kPrimary end at the first surface.
+int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
+  if (kind == IntegratorKind::kPrimary) return 0;
+  const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();
+  const bool is_path = settings.integrator == IntegratorKind::kPath;
+  return kind == IntegratorKind::kEmitters && !is_path ? depth - 1 : depth;
+}
+
 }  // namespace
 
 Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
-                       const Skips& skips, const IntegratorOptions& options)
+                       const IntegratorSettings& settings, const LightPaths* light_paths)
     : kind_(kind),
       shading_{.scene = prepared.scene,
                .bvh = prepared.bvh,
                .lights = lights,
-               .ambient = is_path() ? lights.light_from_above() : glm::vec3(options.ambient),
-               .max_depth = options.max_depth,
-               .threshold = static_cast<float>(options.threshold),
-               .single_sample = options.single_sample,
-               .skips_weightless = skips.weightless,
-               .path = options.path,
-               .light_paths = options.light_paths},
+               .settings = settings,
+               .ambient = is_path()          ? lights.light_from_above()
+                          : settings.ambient ? glm::vec3(static_cast<float>(*settings.ambient))
+                                             : glm::vec3(lights.ambient()),
+               .max_depth = last_depth(kind, settings),
+               .light_paths = light_paths},
       spawner_(prepared.clearances),
-      skips_(skips),
-      point_error_(options.point_error),
       materials_(prepared.materials),
       has_masks_(std::ranges::any_of(materials_, &MaterialParameters::has_mask)) {
   const bool is_whitted = kind == IntegratorKind::kWhitted;
   const bool splits = is_whitted || kind == IntegratorKind::kEmitters;
   block_.light_samples_per_hit = is_whitted ? lights.count() : is_path() ? 1 : 0;
   scattered_count_ = splits ? 2 : is_path() || has_masks_ ? 1 : 0;
-  const bool has_caustic_rays = kind == IntegratorKind::kPath && options.light_paths != nullptr;
+  const bool has_caustic_rays = kind == IntegratorKind::kPath && light_paths != nullptr;
   block_.scattered_per_hit = scattered_count_ + (has_caustic_rays ? kCausticRays : 0);
   block_size_ = std::clamp<std::size_t>(
       kMostLightSamples / std::max<std::size_t>(1, block_.light_samples_per_hit), 1, kMostHits);
@@ -133,7 +139,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
       output.radiance[state.sample] += state.throughput * behind;
       continue;
     }
-    const bool is_doubtful = is_point_doubt(hit, point_error_);
+    const bool is_doubtful = is_point_doubt(hit, shading_.settings.point_error);
     point_doubts_ += is_doubtful ? 1 : 0;
     const FaceRef stored = shading_.bvh.face_of(hit.primitive);
     const Triangle& face = face_at(scene, stored);
@@ -229,7 +235,7 @@ void Integrator::list_spawn_queries(std::size_t i) {
   bool any_at[2] = {};  // by side
   for (LightSample& sample : block_.light_samples_of(i)) {
     if (sample.is_asked == 0) continue;
-    if (sample.is_dark != 0 && skips_.light_behind) {
+    if (sample.is_dark != 0 && shading_.settings.skips.light_behind) {
       ++block_.skipped.lights_behind;
       sample.is_asked = 0;
       continue;
@@ -238,7 +244,7 @@ void Integrator::list_spawn_queries(std::size_t i) {
   }
   for (ScatteredRay& scattered : block_.scattered_of(i)) {
     if (scattered.is_wanted == 0) continue;
-    if (scattered.state.throughput == glm::vec3(0.0f) && skips_.weightless) {
+    if (scattered.state.throughput == glm::vec3(0.0f) && shading_.settings.skips.weightless) {
       ++block_.skipped.weightless;
       scattered.is_wanted = 0;
     } else if (leaves(place, scattered)) {

@@ -9,7 +9,7 @@
 
 #include "host/intersect/intersector.h"
 #include "host/light/hits.h"
-#include "host/light/integrator_options.h"
+#include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
@@ -27,8 +27,10 @@ namespace raygate {
 class Integrator {
  public:
   /// The references must outlive this.
+  /// `kind` may differ from the settings' (kLight, kEmitters). `light_paths`: what kPath and kLight
+  /// are combined with, or null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
-             const Skips& skips, const IntegratorOptions& options);
+             const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
@@ -73,8 +75,6 @@ class Integrator {
   IntegratorKind kind_;
   ShadingScene shading_;
   RaySpawner spawner_;
-  Skips skips_;
-  float point_error_;
   std::uint64_t point_doubts_ = 0;
   std::size_t block_size_;
   std::span<const MaterialParameters> materials_;

@@ -164,27 +164,9 @@ glm::dvec3 mean_before(const EnvironmentMap& map, const glm::dvec3& normal) {
   return sum * (double{map.strength} / all);
 }
 
-double diagonal_of(const Scene& scene) {
-  const auto [low, high] = position_bounds(scene);
-  return glm::length(high - low);
-}
-
-/// A source that is as likely wherever it is asked for: as bright as it is on the average there.
-LightBounds placeless(const LightBounds& source, double scene_radius) {
-  LightBounds everywhere;
-  everywhere.is_far = true;
-  everywhere.radius = 1.0;
-  everywhere.power = source.power;
-  if (source.is_far) return everywhere;
-  // Of all it sends out, what falls on the ball around the scene.
-  const double spread = source.reach < 1.0 ? 2.0 : 2.0 * (1.0 - source.spread);
-  everywhere.power *= spread / (scene_radius * scene_radius);
-  return everywhere;
-}
-
 }  // namespace
 
-Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice,
+Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
                const std::optional<CameraLights>& camera_lights)
     : scene_(scene),
       bvh_(bvh),
@@ -221,18 +203,18 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, LightSampling choice,
   }
   if (scene.environment || own_.studio) {
     environment_.emplace(own_.studio ? *own_.studio : *scene.environment,
-                         choice != LightSampling::kNone);
+                         sampling == Sampling::kOne);
     lights_.emplace_back().kind = Kind::kEnvironment;
   }
   from_above_ = background();
   if (own_.studio)
     from_above_ = glm::vec3(mean_before(*own_.studio, floor_normal(scene, bvh, own_.studio->up)));
-  if (choice != LightSampling::kNone) add_sources(choice, unit);
-}
-
-glm::dvec3 Lights::ambient() const {
-  return background() != glm::vec3(0.0f) ? glm::dvec3(background())
-                                         : guessed_ambient(scene_, areas_);
+  if (sampling == Sampling::kOne) {
+    add_sources(unit);
+  } else {
+    ambient_ =
+        background() != glm::vec3(0.0f) ? glm::dvec3(background()) : guessed_ambient(scene, areas_);
+  }
 }
 
 glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& point) const {
@@ -329,7 +311,7 @@ LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, dou
 }
 
 /// Of area lights each patch, of others the whole.
-void Lights::add_sources(LightSampling choice, double unit) {
+void Lights::add_sources(double unit) {
   std::vector<LightBounds> sources;
   std::uint32_t number = 0;
   const auto add = [&](const LightBounds& source, std::uint32_t patch = kNoIndex,
@@ -370,10 +352,6 @@ void Lights::add_sources(LightSampling choice, double unit) {
          .power = std::numbers::pi * mean(environment_->mean_radiance())});
   }
   any_power_ = std::ranges::any_of(sources, [](const auto& source) { return source.power > 0.0; });
-  if (choice == LightSampling::kPower) {
-    const double radius = is_empty(scene_) ? 1.0 : 0.5 * diagonal_of(scene_) / unit;
-    for (LightBounds& source : sources) source = placeless(source, radius);
-  }
   tree_ = LightTree(sources);
 }
 

@@ -13,7 +13,6 @@
 #include "host/bvh/bvh.h"
 #include "host/light/default_lights.h"
 #include "host/light/environment.h"
-#include "host/light/integrator_options.h"
 #include "host/light/light_tree.h"
 #include "host/light/sampler.h"
 #include "host/scene/scene.h"
@@ -91,9 +90,14 @@ struct LightPoint {
 /// room for their squares then.
 class Lights {
  public:
-  /// The references must outlive this. Without a `choice` there are no sources, and none of what
-  /// they are chosen by. `camera_lights` take the place of the scene's.
-  Lights(const Scene& scene, const Bvh& bvh, LightSampling choice = LightSampling::kTree,
+  /// How an integrator samples the lights.
+  enum class Sampling : std::uint8_t {
+    kAll,  ///< every light at each hit (Whitted): there are no sources
+    kOne,  ///< one at each hit, chosen by LightTree (paths): there is no ambient light
+  };
+
+  /// The references must outlive this. `camera_lights` take the place of the scene's.
+  Lights(const Scene& scene, const Bvh& bvh, Sampling sampling = Sampling::kOne,
          const std::optional<CameraLights>& camera_lights = {});
 
   [[nodiscard]] std::span<const PointLight> points() const { return own_.points; }
@@ -117,7 +121,7 @@ class Lights {
   /// background's or, where that is black, what the lights' flux would come to after many
   /// reflections if it were spread evenly over all surfaces ("A progressive refinement approach to
   /// fast radiosity image generation", Cohen, Chen, Wallace and Greenberg 1988, has such a term).
-  [[nodiscard]] glm::dvec3 ambient() const;
+  [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
   /// Points first, then areas, then directions, then the environment.
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
 
@@ -235,7 +239,7 @@ class Lights {
   [[nodiscard]] glm::vec3 textured_radiance(std::uint32_t primitive, const glm::vec3& point) const;
   void find_areas();
   void add_patches(const AreaLight& light, Light& record);
-  void add_sources(LightSampling choice, double unit);
+  void add_sources(double unit);
   [[nodiscard]] static LightBounds light_bounds(const Patch& patch, const AreaLight& light,
                                                 double unit, OuterSide side);
 
@@ -244,6 +248,7 @@ class Lights {
   CameraLights own_;
   std::optional<Environment> environment_;
   glm::vec3 from_above_{0.0f};
+  glm::dvec3 ambient_{0.0};
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
   std::vector<Patch> patches_;

@@ -9,7 +9,7 @@ namespace {
 /// The least MIS weight of a scattered ray that finds the light. Beside the light such a ray meets
 /// the sky: with this weight the light is as bright to it, and chance does not matter.
 float min_mis_weight(const ShadingScene& shading, const Lights::Source& source) {
-  return shading.path.limits_mis_weight ? shading.lights.light(source.light).sky : 0.0f;
+  return shading.lights.light(source.light).sky;
 }
 
 /// The weights of light that paths meet after mirrors and glass, beside that of light paths.
@@ -176,7 +176,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
     const T light_pdf =
         choose(light.is_area, light.pdf * light.distance_squared / light.light_cosine, light.pdf);
     const T bsdf_pdf = hits.bsdf.pdf(light.direction) * lobes.scatter_probability();
-    const T least = shading.path.limits_mis_weight ? chosen.get(&Lights::Light::sky) : T{};
+    const T least = chosen.get(&Lights::Light::sky);
     mis_weight = choose((bsdf_pdf > kMinPdf) & !is_delta,
                         minimum(power_heuristic(light_pdf, bsdf_pdf), T(1.0f - least)), mis_weight);
   }

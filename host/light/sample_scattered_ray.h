@@ -16,7 +16,9 @@ inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, 
                                kCausticDirection = 15, kCausticFacet = 16;
 }  // namespace streams
 
-inline constexpr int kRouletteDepth = 3;  // surfaces before Russian roulette begins
+// Russian roulette begins after so many surfaces, for paths of less throughput than this.
+inline constexpr int kRouletteDepth = 3;
+inline constexpr float kRouletteThroughput = 0.25f;
 inline constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
 
 /// How likely each lobe is to be sampled, in proportion to what it reflects; rough glass scatters.
@@ -126,9 +128,9 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   ScatteredRays<T> next(hits);
   next.is_wanted = lobes.sum > 0.0f;
   // Russian roulette comes before the lobe is chosen: no work is lost on rays that end.
-  if (hits.block.batch->depth >= kRouletteDepth && shading.path.roulette_threshold > 0.0f) {
-    const float per_threshold = 1.0f / shading.path.roulette_threshold;
-    const T weight = kFromLight ? spread<T>(1.0f) : largest(throughput) * per_threshold;
+  if (hits.block.batch->depth >= kRouletteDepth) {
+    const T weight =
+        kFromLight ? spread<T>(1.0f) : largest(throughput) * (1.0f / kRouletteThroughput);
     const T survival = at_most(weight * lobes.sum, 1.0f);
     next.is_wanted = next.is_wanted & (choice.y < survival);
     throughput = choose(next.is_wanted, throughput * (1.0f / survival), throughput);

@@ -9,7 +9,7 @@
 
 #include "host/bvh/bvh.h"
 #include "host/intersect/intersector.h"
-#include "host/light/integrator_options.h"
+#include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"

@@ -34,7 +34,7 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
     std::ranges::fill(indices, i);
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
     const AreaLight& area = lights.areas()[number];
-    const bool in_middle = shading.single_sample && area.is_flat;
+    const bool in_middle = shading.settings.samples == 1 && area.is_flat;
     const LightPoint<T> point =
         in_middle ? Lights::middle<T>(area)
                   : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
@@ -49,7 +49,7 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
   }
   const bool is_ball = own.radius > 0.0f;
   const Triple<T> position =
-      is_ball && !shading.single_sample
+      is_ball && shading.settings.samples > 1
           ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
                                 hits.random(kFirstPointLight + i))
           : middle;
@@ -91,17 +91,19 @@ template <class T>
 RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& hits,
                                     const Triple<T>& throughput) {
   SkipCounters& skipped = hits.block.skipped;
+  const auto threshold = static_cast<float>(shading.settings.threshold);
+  const bool skips_weightless = shading.settings.skips.weightless;
   const T size = largest(throughput);
   const auto sizes = unpack(size);
   for (int k = 0; k < hits.count; ++k) {
     if (sizes[k] == 0.0f) {
-      skipped.weightless += shading.skips_weightless ? 1 : 0;
-    } else if (sizes[k] < shading.threshold) {
+      skipped.weightless += skips_weightless ? 1 : 0;
+    } else if (sizes[k] < threshold) {
       ++skipped.dim;
     }
   }
-  const auto is_bright = (size > 0.0f) & !(size < shading.threshold);
-  return shading.skips_weightless ? MaskOf<T>(is_bright) : MaskOf<T>(is_bright | (size == 0.0f));
+  const auto is_bright = (size > 0.0f) & !(size < threshold);
+  return skips_weightless ? MaskOf<T>(is_bright) : MaskOf<T>(is_bright | (size == 0.0f));
 }
 
 /// Without `goes_on` the depth is reached: rays go on only where a mask says that nothing is there.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/film/film.h"
-#include "host/light/integrator_options.h"
+#include "host/light/integrator_settings.h"
 #include "host/options/option_table.h"
 #include "host/render/render_options.h"
 

@@ -30,21 +30,13 @@ EmitterWays with_beginnings(EmitterWays ways) {
   return all;
 }
 
-IntegratorOptions emitter_options(const RenderJob& job) {
-  // Paths go one ray deeper, which sees what emits; the primary integrator's rays end at once.
-  const bool is_path = job.options.integrator == IntegratorKind::kPath;
-  const int depth = job.options.integrator == IntegratorKind::kPrimary ? 0 : job.options.depth();
-  return {.max_depth = is_path ? depth : depth - 1, .point_error = job.options.point_error};
-}
-
 }  // namespace
 
 EmitterSupersampler::EmitterSupersampler(const RenderJob& job, Intersector& intersector,
                                          bool counts_work)
     : job_(job),
       intersector_(intersector),
-      integrator_(IntegratorKind::kEmitters, job.prepared, job.lights, job.options.skips,
-                  emitter_options(job)),
+      integrator_(IntegratorKind::kEmitters, job.prepared, job.lights, job.options),
       counts_work_(counts_work),
       all_(kDirect) {
   // Whitted's pictures have few samples: to find the ways would take longer than they save.

@@ -24,7 +24,6 @@ struct RenderJob {
   const Camera& camera;
   const RenderOptions& options;
   const Lights& lights;
-  glm::dvec3 ambient;                       ///< as IntegratorOptions has it
   const LightPaths* light_paths = nullptr;  ///< none: caustics are found by chance
   bool only_light_paths = false;            ///< no camera paths
   const SplatLayer* splats = nullptr;       ///< of all light paths; none: these go with the samples

@@ -9,7 +9,7 @@
 #include "host/film/reconstruction_filter.h"
 #include "host/intersect/intersector.h"
 #include "host/light/default_lights.h"
-#include "host/light/integrator_options.h"
+#include "host/light/integrator_settings.h"
 
 namespace raygate {
 
@@ -17,7 +17,7 @@ class Ranks;
 
 /// What to render. Impossible values are bugs of the caller. The defaults are those of ./render and
 /// of the Python module, whatever the engine; four samples as in Mitsuba.
-struct RenderOptions {
+struct RenderOptions : IntegratorSettings {
   int width = 640, height = 480;  ///< of the whole frame, at least 1
   PixelRect window;               ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;                ///< at least 1; the film does not depend on it
@@ -26,7 +26,6 @@ struct RenderOptions {
   /// call back for nothing but progress, to be told to stop. If one of them cannot go on, rank 0
   /// calls `urgent_snapshot` and throws RankFailure.
   Ranks* ranks = nullptr;
-  int samples = 4;       ///< per pixel, at least 1; a single one goes through the pixel's middle
   int first_sample = 0;  ///< samples [first, end) are rendered
   int end_sample = 0;    ///< 0: all from the first on
   /// The unfinished film, with its sums, of the same window, options and samples from first_sample
@@ -40,19 +39,8 @@ struct RenderOptions {
   double exposure = 0.0;
   ReconstructionFilter filter = ReconstructionFilter::kBlackmanHarris;  ///< of several samples
   std::uint64_t seed = 0;                                               ///< of everything random
-  ExtraChannels channels{};  ///< besides colour, depth, normal and primitive
-  IntegratorKind integrator = IntegratorKind::kWhitted;  ///< see choose_integrator()
-  std::optional<int> max_depth{};  ///< reflections and refractions in a row; none: see depth()
-  double threshold = 1.0 / 256.0;  ///< Whitted: rays that count for less are not traced
+  ExtraChannels channels{};              ///< besides colour, depth, normal and primitive
   std::optional<CameraLights> lights{};  ///< in place of the scene's
-  std::optional<double> ambient{};       ///< Whitted: radiance; none: see Lights::ambient
-  PathOptions path{};                    ///< path
-  /// Path: not with a single sample, `lights`, or a camera that is not perspective.
-  Caustics caustics = Caustics::kAuto;
-  Skips skips{};  ///< the film does not depend on them
-  /// The unit's P is used where it is off by no more of the distance than that, in all else the
-  /// host's: 0 for the host's alone; the largest float for the unit's wherever it has one.
-  float point_error = kPointError;
 
   /// What takes the place of defaults: light from all around needs paths, as whitted has neither
   /// shadows nor shape of it; and paths need samples.
@@ -62,11 +50,6 @@ struct RenderOptions {
     if (!samples_are_given) samples = kPathSamples;
   }
   static constexpr int kPathSamples = 16;
-
-  /// By default 4 for Whitted, as in the paper; 64 for paths, which end by chance.
-  [[nodiscard]] int depth() const {
-    return max_depth.value_or(integrator == IntegratorKind::kPath ? 64 : 4);
-  }
 };
 
 /// What a render tells its caller while it runs, on the thread that called render(). What is empty

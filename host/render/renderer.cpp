@@ -60,8 +60,8 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   const Tiles tiles(film.window, end - options.first_sample, first_intersector->preferred_batch(),
                     options.threads, ranks, options.error > 0.0);
   const bool is_path = options.integrator == IntegratorKind::kPath;
-  const Lights lights(prepared.scene, bvh, is_path ? options.path.lights : LightSampling::kNone,
-                      options.lights);
+  const Lights lights(prepared.scene, bvh,
+                      is_path ? Lights::Sampling::kOne : Lights::Sampling::kAll, options.lights);
   std::optional<LightPaths> light_paths;
   if (wants_light_paths(options, camera)) {
     light_paths.emplace(prepared, lights, frame_view(camera, options, film));
@@ -81,14 +81,7 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
     emitter_ways.assign(film.color.size(), kUnknownWays);
   }
-  RenderJob job{prepared,
-                camera,
-                options,
-                lights,
-                options.ambient ? glm::dvec3(*options.ambient)
-                : is_path       ? glm::dvec3(0.0)
-                                : lights.ambient(),
-                light_paths ? &*light_paths : nullptr};
+  RenderJob job{prepared, camera, options, lights, light_paths ? &*light_paths : nullptr};
   SplatLayer splats;
   if (light_paths && options.error > 0.0) {
     splats = adaptive_splats(job, film, make_intersector, monitor, stats);

@@ -132,7 +132,7 @@ SplatLayer adaptive_splats(const RenderJob& job, const Film& film,
   options.ranks = nullptr;  // each rank has need of all of them
   options.unfinished = nullptr;
   options.channels = {};
-  RenderJob own{job.prepared, job.camera, options, job.lights, job.ambient, job.light_paths};
+  RenderJob own{job.prepared, job.camera, options, job.lights, job.light_paths};
   own.only_light_paths = true;
   RenderMonitor quiet;
   quiet.progress = [&](double /*of a pass*/) { return !monitor.progress || monitor.progress(0.0); };

@@ -15,17 +15,6 @@ namespace {
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 constexpr int kGlassPaths = 2;                    // of a sample
 
-IntegratorOptions integrator_options(const RenderJob& job) {
-  const RenderOptions& options = job.options;
-  return {.max_depth = options.integrator == IntegratorKind::kPrimary ? 0 : options.depth(),
-          .threshold = options.threshold,
-          .ambient = job.ambient,
-          .single_sample = options.samples == 1,
-          .path = options.path,
-          .point_error = options.point_error,
-          .light_paths = job.light_paths};
-}
-
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
@@ -34,8 +23,7 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
       intersector_(intersector),
       film_(film),
       emitter_ways_(emitter_ways),
-      integrator_(job.options.integrator, job.prepared, job.lights, job.options.skips,
-                  integrator_options(job)),
+      integrator_(job.options.integrator, job.prepared, job.lights, job.options, job.light_paths),
       shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()),
@@ -43,8 +31,8 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
           std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_bending_glass)) {
   if (!emitter_ways.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
   if (job.light_paths == nullptr || job.splats != nullptr) return;
-  light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options.skips,
-                            integrator_options(job));
+  light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options,
+                            job.light_paths);
 }
 
 /// Glass is the noisiest that a camera sees: at each of its borders chance chooses between mirror

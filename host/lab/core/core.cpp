@@ -57,16 +57,13 @@ class CoreBench {
       if (!is_asked(kind)) continue;
       run(bvh, image, kind, [&](const IntersectorFactory& make_intersector) {
         const Camera camera = front_camera(scene, 1.0);
-        const int size = options_.size / options_.every;
+        RenderOptions options;
+        options.width = options.height = options_.size / options_.every;
+        options.samples = 1;
+        options.integrator = integrator;
+        options.lights = default_lights(scene, camera);
         RenderStats stats;
-        (void)render(scene, bvh, camera,
-                     {.width = size,
-                      .height = size,
-                      .window = {},
-                      .samples = 1,
-                      .integrator = integrator,
-                      .lights = default_lights(scene, camera)},
-                     make_intersector, stats);
+        (void)render(scene, bvh, camera, options, make_intersector, stats);
         return static_cast<std::size_t>(stats.rays);
       });
     }

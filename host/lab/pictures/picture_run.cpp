@@ -136,20 +136,19 @@ class TimedRun {
 
   /// Renders once more; what was first is only kept as the picture where there are more repeats.
   void render_once() {
-    const RenderOptions options{
-        .width = run_.width,
-        .height = run_.height,
-        .window = {},
-        .threads = run_.threads,
-        .samples = run_.samples,
-        .seed = run_.seed,
-        .integrator = std::ranges::find(kIntegrators, run_.integrator,
-                                        [](const auto& kind) { return std::string(kind.first); })
-                          ->second,
-        .max_depth = run_.depth,
-        .lights = stage_.lights,
-        .point_error = run_.point_error < 0.0 ? std::numeric_limits<float>::max()
-                                              : static_cast<float>(run_.point_error)};
+    RenderOptions options;
+    options.width = run_.width;
+    options.height = run_.height;
+    options.threads = run_.threads;
+    options.samples = run_.samples;
+    options.seed = run_.seed;
+    options.integrator = std::ranges::find(kIntegrators, run_.integrator, [](const auto& kind) {
+                           return std::string(kind.first);
+                         })->second;
+    options.max_depth = run_.depth;
+    options.lights = stage_.lights;
+    options.point_error = run_.point_error < 0.0 ? std::numeric_limits<float>::max()
+                                                 : static_cast<float>(run_.point_error);
     const Film film = render(stage_.scene, stage_.bvh, camera_, options,
                              factory_of(run_, variant_, stage_.bvh), stats_);
     if (film_ && !same_picture(*film_, film)) {

@@ -81,7 +81,7 @@ std::uint32_t count_of(const Lights& lights) { return lights.environment_source(
 // Who asks all lights has the same ones, and nothing to choose from.
 TEST_P(ManyLights, AreListedWithoutAChoice) {
   const Bvh bvh(scene_);
-  const Lights chosen(scene_, bvh), all(scene_, bvh, LightSampling::kNone);
+  const Lights chosen(scene_, bvh), all(scene_, bvh, Lights::Sampling::kAll);
   EXPECT_EQ(count_of(all), 0u);
   EXPECT_FALSE(all.any_power());
   ASSERT_EQ(all.count(), chosen.count());
@@ -179,19 +179,6 @@ TEST(LightTree, PrefersWhatIsNearAndFacesTheSurface) {
     EXPECT_GT(tree.pmf<float>(here, {x, 0, 0}, up), 0.25f) << "of 64";
     EXPECT_LT(tree.pmf<float>(here > 32 ? 0 : 63, {x, 0, 0}, up), 0.003f);
     EXPECT_EQ(tree.sample<float>({x, 0, 0}, -up, 0.5).source, kNoIndex) << "all are behind";
-  }
-}
-
-TEST(LightTree, PowerAloneIsTheSameEverywhere) {
-  Scene scene;
-  scene.lights.push_back({{1, 2, 0}, glm::dvec3(1.0)});
-  scene.lights.push_back({{-7, 1, 0}, glm::dvec3(3.0)});
-  add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), test::matte(glm::vec3(0.5f)));
-  const Bvh bvh(scene);
-  const Lights lights(scene, bvh, LightSampling::kPower);
-  for (const glm::vec3& point : {glm::vec3(0.0f), glm::vec3(-7, 0, 0), glm::vec3(1, 1.9f, 0)}) {
-    EXPECT_FLOAT_EQ(lights.pmf<float>(0, point, {0, -1, 0}), 0.25f);
-    EXPECT_FLOAT_EQ(lights.pmf<float>(1, point, {0, 1, 0}), 0.75f);
   }
 }
 

@@ -1,8 +1,8 @@
-// Options of the integrators: the kind, its limits, and which work is skipped.
+// Settings of the integrators: the kind, its limits, and which work is skipped.
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
+#include <optional>
 
 namespace raygate {
 
@@ -15,37 +15,8 @@ enum class IntegratorKind {
   kEmitters,  ///< emitters that the camera sees: directly, in mirrors and through glass
 };
 
-/// How one of many lights is chosen.
-enum class LightSampling : std::uint8_t {
-  kNone,   ///< none is: an integrator samples all lights, or no light
-  kTree,   ///< by what each may bring to the point that is lit (LightTree)
-  kPower,  ///< by power alone: what the tree is measured against
-};
-
-/// Variance reduction of the path tracer. The mean of a picture is the same with any of them. The
-/// defaults came out best; the lab's `techniques` measures the others next to them.
-struct PathOptions {
-  LightSampling lights = LightSampling::kTree;
-  /// MIS weights: a light that a scattered ray finds counts for as much as the sky beside it.
-  bool limits_mis_weight = true;
-  /// Russian roulette below this throughput, after three surfaces; 0: never.
-  float roulette_threshold = 0.25f;
-};
-
 /// The default relative error of the hit-test unit's P above which the host computes the point.
 inline constexpr float kPointError = 0x1p-16f;
-
-class LightPaths;
-
-struct IntegratorOptions {
-  int max_depth = 4;               ///< rays of this depth are the last
-  double threshold = 1.0 / 256.0;  ///< Whitted: rays that count for less are not traced
-  glm::dvec3 ambient{0.0};         ///< Whitted: radiance from all sides that reaches everything
-  bool single_sample = false;      ///< one sample a pixel: no chance where there is a middle
-  PathOptions path{};
-  float point_error = kPointError;          ///< relative; beyond it the host computes P
-  const LightPaths* light_paths = nullptr;  ///< kPath, kLight: what it is to be combined with
-};
 
 /// Whether light paths find caustics.
 enum class Caustics {
@@ -84,6 +55,27 @@ struct SkipCounters {
     empty_tile_rays += other.empty_tile_rays;
     first_occluders += other.first_occluders;
     return *this;
+  }
+};
+
+/// What the user asks of the integrators. The defaults are those of ./render and of the Python
+/// module.
+struct IntegratorSettings {
+  IntegratorKind integrator = IntegratorKind::kWhitted;
+  int samples = 4;                  ///< per pixel, at least 1; a single one has no random choices
+  std::optional<int> max_depth{};   ///< reflections and refractions in a row; none: see depth()
+  double threshold = 1.0 / 256.0;   ///< Whitted: rays of less throughput are not traced
+  std::optional<double> ambient{};  ///< Whitted: radiance from all sides; none: Lights::ambient()
+  /// Path: not with a single sample, camera lights, or a camera that is not perspective.
+  Caustics caustics = Caustics::kAuto;
+  Skips skips{};  ///< the film does not depend on them
+  /// The host computes the hit point P where the relative error of the unit's may be larger. 0: the
+  /// host always computes it; the largest float: only where the unit has none.
+  float point_error = kPointError;
+
+  /// By default 4 for Whitted, as in the paper; 64 for paths, which end by chance.
+  [[nodiscard]] int depth() const {
+    return max_depth.value_or(integrator == IntegratorKind::kPath ? 64 : 4);
   }
 };
 
